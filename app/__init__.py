@@ -1,0 +1,1 @@
+"""The lab around the numerics: viewer, threads, the wall clock, files."""

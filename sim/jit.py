@@ -1,0 +1,79 @@
+"""`kernel`: the only compiler decorator of the repository, and where compiled code is kept.
+
+numba does not notice an edit in a *callee's* file, so the cache directory is named by a hash of all of sim's
+sources: an edit anywhere makes a new one. Where nothing is writable, kernels compile afresh at each start.
+"""
+
+import hashlib
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numba
+import platformdirs
+from numba.core.options import TargetOptions
+from numba.core.registry import cpu_target
+
+# Every flag of `fastmath` but nnan and ninf: a NaN must stay visible to the checks that stop a run.
+FASTMATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
+
+STALE_AFTER = 30 * 24 * 3600  # [s] a cache directory unused for this long belongs to sources long edited
+
+# numba knows this flag (numba.core.compiler.Flags) but offers no spelling of it in njit. Without it each loop
+# starts with run-time overlap checks on every pair of arrays, a third of the time at 128 points.
+_HAS_NOALIAS = hasattr(numba.core.compiler.Flags, "noalias")
+if _HAS_NOALIAS:
+    cpu_target.options.noalias = TargetOptions.Mapping("noalias")  # type: ignore[attr-defined]
+
+
+def sources_hash(root: Path) -> str:
+    """Hash of every Python source below `root`: names and contents."""
+    digest = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        digest.update(path.relative_to(root).as_posix().encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def cache_directory() -> Path | None:
+    """The writable directory compiled kernels are kept in, or None where there is none."""
+    base = Path(os.environ.get("SPRINGTIDE_CACHE") or platformdirs.user_cache_dir("springtide"))
+    own = base / "kernels" / sources_hash(Path(__file__).parent)
+    try:
+        own.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=own):
+            pass
+        os.utime(own)
+        for other in own.parent.iterdir():
+            if time.time() - other.stat().st_mtime > STALE_AFTER:
+                shutil.rmtree(other, ignore_errors=True)
+    except OSError:
+        return None
+    return own
+
+
+CACHE = cache_directory()
+
+
+def kernel(function: Callable[..., Any] | None = None, *, noalias: bool = False, parallel: bool = False) -> Any:
+    """Compile `function` with numba, without the GIL, cached on disk.
+
+    noalias: promise that no two array arguments overlap, so that loops vectorise without checks.
+    parallel: allow numba.prange.
+    """
+    if function is None:
+        return lambda f: kernel(f, noalias=noalias, parallel=parallel)
+    options: dict[str, Any] = {"nogil": True, "fastmath": FASTMATH, "error_model": "numpy", "parallel": parallel}
+    if noalias and _HAS_NOALIAS:
+        options["noalias"] = True
+    previous = numba.config.CACHE_DIR  # type: ignore[attr-defined]
+    try:
+        # numba reads the setting once, here; other libraries' kernels stay where they were.
+        numba.config.CACHE_DIR = str(CACHE) if CACHE else previous  # type: ignore[attr-defined]
+        return numba.njit(cache=CACHE is not None, **options)(function)
+    finally:
+        numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]

@@ -59,15 +59,32 @@ def cache_directory() -> Path | None:
 CACHE = cache_directory()
 
 
-def kernel(function: Callable[..., Any] | None = None, *, noalias: bool = False, parallel: bool = False) -> Any:
+def kernel(
+    function: Callable[..., Any] | None = None,
+    *,
+    noalias: bool = False,
+    inline: bool = False,
+    allocates: bool = True,
+    parallel: bool = False,
+) -> Any:
     """Compile `function` with numba, without the GIL, cached on disk.
 
-    noalias: promise that no two array arguments overlap, so that loops vectorise without checks.
+    noalias: promise that no array argument that is written overlaps another, so that loops vectorise without checks.
+    inline: always expand into the calling kernel (for the short loops that a step is made of); implies no allocation.
+    allocates: False promises that no array or view is made, so that array arguments are not reference-counted: at ten
+    points that counting costs several times the arithmetic.
     parallel: allow numba.prange.
     """
     if function is None:
-        return lambda f: kernel(f, noalias=noalias, parallel=parallel)
-    options: dict[str, Any] = {"nogil": True, "fastmath": FASTMATH, "error_model": "numpy", "parallel": parallel}
+        return lambda f: kernel(f, noalias=noalias, inline=inline, allocates=allocates, parallel=parallel)
+    options: dict[str, Any] = {
+        "nogil": True,
+        "fastmath": FASTMATH,
+        "error_model": "numpy",
+        "parallel": parallel,
+        "forceinline": inline,
+        "_nrt": allocates and not inline,
+    }
     if noalias and _HAS_NOALIAS:
         options["noalias"] = True
     previous = numba.config.CACHE_DIR  # type: ignore[attr-defined]

@@ -1,0 +1,13 @@
+"""Spring-mass systems: ropes and nets, their integrators, energies, stability and statics.
+
+k is a stiffness here, h a time step.
+"""
+
+from sim.springs.integrators import Integrator, discover
+from sim.springs.net import Contact, Grab, Net, PinPath, lab_units, rope
+
+INTEGRATORS: dict[str, Integrator] = discover()
+
+from sim.springs.simulate import Run, simulate  # noqa: E402  (it looks integrators up)
+
+__all__ = ["INTEGRATORS", "Contact", "Grab", "Integrator", "Net", "PinPath", "Run", "lab_units", "rope", "simulate"]

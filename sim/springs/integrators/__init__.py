@@ -1,0 +1,39 @@
+"""The interchangeable integrators: one file each, found by being here.
+
+To add one, write a module in this folder with
+
+1. `advance(x, v, ledger, t, h, steps, p, with_ledger) -> evals`, one `kernel` that advances the flat x and v
+   (3 rows cols,) in place by `steps` steps of h [s] from time t, calls `accelerate` inside its loop and `set_pins` at every time it
+   evaluates forces, and returns how many force evaluations that took. With `with_ledger` it adds what damping took and
+   what pins put in [J] to ledger[0] and ledger[1], by a quadrature of its own order.
+2. `limit(zeta)`: the largest stable h omega of x'' + 2 zeta omega x' + omega^2 x = 0, in closed form or from
+   the largest h omega at which the method's amplification stays within 1.
+3. `RECORD = Integrator(...)`, which declares what the tests then check.
+"""
+
+import importlib
+import pkgutil
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+
+class Integrator(NamedTuple):
+    """What an integrator declares of itself."""
+
+    name: str
+    order: int  # of the global error, with damping
+    symplectic: bool  # without damping
+    evals: int  # force evaluations a step
+    limit: Callable[[float], float]  # zeta -> largest stable h omega, of damping ratio zeta
+    advance: Callable[..., int]
+    summary: str  # when to choose it
+    lag: float = 0.0  # v is stored this part of a step before x
+    undamped_order: int = 0  # where it differs from `order`
+
+
+def discover() -> dict[str, Integrator]:
+    """Every RECORD in this folder, the simplest methods first."""
+    records: list[Any] = [
+        importlib.import_module(f"{__name__}.{module.name}").RECORD for module in pkgutil.iter_modules(__path__)
+    ]
+    return {r.name: r for r in sorted(records, key=lambda r: (r.order, r.evals, r.symplectic, r.name))}

@@ -1,0 +1,308 @@
+"""`Net`: particles on a structured grid, joined by springs. A rope is a net one particle wide.
+
+Links are families of neighbour offsets, never index lists: every particle of the grid is linked to the one
+(di, dj) further, where there is one. In this package k is a stiffness, h a time step.
+"""
+
+import dataclasses
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.knobs import refusal
+
+Vector = tuple[float, float, float]
+
+DAMPING_MODELS = ("isotropic", "axial")
+CONTACT_LAWS = ("clipped", "lab")
+
+
+class Family(NamedTuple):
+    """All links from (i, j) to (i + di, j + dj). di >= 0; dj may be negative where di > 0."""
+
+    di: int
+    dj: int
+    rest: float  # rest length [m]
+    stiffness: float  # k [N/m] per link
+    damping: float  # b [N s/m] per link
+
+
+class Contact(NamedTuple):
+    """Penalty contact of points with floor and sphere.
+
+    law "clipped": normal force max(0, k depth - b v_n), which never pulls (Schwager & Poeschel, cond-mat/0701278),
+    and Coulomb friction. law "lab": the original's k depth n - b v, with the whole velocity and while separating,
+    so that surfaces are sticky and viscous; its sphere scales b by the depth.
+    """
+
+    stiffness: float = 800.0  # [N/m] per point
+    damping: float = 5.0  # [N s/m] per point
+    friction: float = 0.0  # Coulomb coefficient, law "clipped" only
+    law: str = "clipped"
+
+
+class Grab(NamedTuple):
+    """A capped, damped pull of one particle towards a target."""
+
+    row: int
+    col: int
+    target: Vector  # [m]
+    stiffness: float  # [N/m]
+    damping: float  # [N s/m]
+    max_force: float  # [N], of the spring part
+
+
+class PinPath(NamedTuple):
+    """Prescribed motion of a pin: x(s) = c0 + c1 s + c2 s^2 + c3 s^3 with s = t - start."""
+
+    start: float  # [s]
+    coefficients: tuple[Vector, Vector, Vector, Vector]
+
+
+class Forces(NamedTuple):
+    """What the kernels read: flat numbers and arrays, one type for every net, so that each kernel compiles once."""
+
+    rows: int
+    cols: int
+    is_rope: bool  # one row, linked to the next point only
+    weights: NDArray[np.float64]  # (rows cols,) inverse masses [1/kg], 0 where pinned
+    mass: float  # [kg] per point
+    drag: float  # [N s/m] per point
+    gx: float  # gravity [m/s^2]
+    gy: float
+    gz: float
+    offsets: NDArray[np.int64]  # (families, 2)
+    links: NDArray[np.float64]  # (families, 3): rest, stiffness, damping
+    damped: bool  # any link damping
+    axial: bool
+    has_floor: bool
+    floor: float  # [m] where points meet it
+    has_sphere: bool
+    sx: float  # sphere centre at time `epoch` [m]
+    sy: float
+    sz: float
+    sr: float  # radius at which points meet it [m]
+    svx: float  # sphere velocity [m/s]
+    svy: float
+    svz: float
+    epoch: float  # [s]
+    contact_k: float
+    contact_b: float
+    friction: float
+    stop_rate: float  # 1/h [1/s]: friction takes at most the force that stops a point within the step
+    lab_contact: bool
+    pins: NDArray[np.int64]  # (pins,) flat indices of the moving ones
+    paths: NDArray[np.float64]  # (pins, 5, 3): four coefficients, and the start time in [4, 0]
+    grabbed: int  # flat index, -1: none
+    grab_x: float
+    grab_y: float
+    grab_z: float
+    grab_k: float
+    grab_b: float
+    grab_max: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Net:
+    """The immutable description of a spring-mass system; its state is `State`."""
+
+    x0: NDArray[np.float64]  # (3, rows, cols) [m], initial positions
+    families: tuple[Family, ...]
+    mass: float  # [kg] per point
+    drag: float  # [N s/m] per point
+    gravity: Vector  # [m/s^2]
+    pinned: frozenset[tuple[int, int]]
+    damping_model: str = "isotropic"
+    floor: float | None = None  # height [m]
+    sphere: tuple[float, float, float, float] | None = None  # x, y, z, radius [m]
+    sphere_velocity: Vector = (0.0, 0.0, 0.0)  # [m/s]
+    epoch: float = 0.0  # [s], when the sphere is at its centre
+    contact: Contact = Contact()
+    radius: float = 0.0  # [m]: a point touches at this distance
+    pin_paths: tuple[tuple[tuple[int, int], PinPath], ...] = ()
+    grab: Grab | None = None
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(rows, cols)."""
+        return self.x0.shape[1], self.x0.shape[2]
+
+    @property
+    def is_rope(self) -> bool:
+        """One row of points, each linked to the next only."""
+        return self.x0.shape[1] == 1 and [f[:2] for f in self.families] == [(0, 1)]
+
+    def weights(self) -> NDArray[np.float64]:
+        """(rows cols,) inverse masses [1/kg]; 0 where pinned."""
+        w = np.full(self.shape, 1.0 / self.mass)
+        for i, j in self.pinned:
+            w[i, j] = 0.0
+        return w.ravel()
+
+    def forces(self, h: float) -> Forces:
+        """The kernels' view of this net for steps of h [s]."""
+        rows, cols = self.shape
+        paths = np.zeros((len(self.pin_paths), 5, 3))
+        for p, (_, path) in enumerate(self.pin_paths):
+            paths[p, :4] = path.coefficients
+            paths[p, 4, 0] = path.start
+        sx, sy, sz, sr = self.sphere or (0.0, 0.0, 0.0, 0.0)
+        svx, svy, svz = self.sphere_velocity
+        grab = self.grab or Grab(0, 0, (0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
+        return Forces(
+            rows=rows,
+            cols=cols,
+            is_rope=self.is_rope,
+            weights=self.weights(),
+            mass=float(self.mass),
+            drag=float(self.drag),
+            gx=float(self.gravity[0]),
+            gy=float(self.gravity[1]),
+            gz=float(self.gravity[2]),
+            offsets=np.array([f[:2] for f in self.families], dtype=np.int64).reshape(-1, 2),
+            links=np.array([f[2:] for f in self.families], dtype=np.float64).reshape(-1, 3),
+            damped=any(f.damping > 0 for f in self.families),
+            axial=self.damping_model == "axial",
+            has_floor=self.floor is not None,
+            floor=float((self.floor or 0.0) + self.radius),
+            has_sphere=self.sphere is not None,
+            sx=float(sx),
+            sy=float(sy),
+            sz=float(sz),
+            sr=float(sr + self.radius),
+            svx=float(svx),
+            svy=float(svy),
+            svz=float(svz),
+            epoch=float(self.epoch),
+            contact_k=float(self.contact.stiffness),
+            contact_b=float(self.contact.damping),
+            friction=float(self.contact.friction),
+            stop_rate=1.0 / h,
+            lab_contact=self.contact.law == "lab",
+            pins=np.array([i * cols + j for (i, j), _ in self.pin_paths], dtype=np.int64),
+            paths=paths,
+            grabbed=-1 if self.grab is None else int(grab.row * cols + grab.col),
+            grab_x=float(grab.target[0]),
+            grab_y=float(grab.target[1]),
+            grab_z=float(grab.target[2]),
+            grab_k=float(grab.stiffness),
+            grab_b=float(grab.damping),
+            grab_max=float(grab.max_force),
+        )
+
+
+def check_number(name: str, value: object, lo: float, hi: float, unit: str, *, above: bool = False) -> float:
+    """`value` as a float in [lo, hi] (above: in (lo, hi]); raises ValueError with name, value and range."""
+    good = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    if good:
+        number = float(value)  # type: ignore[arg-type]
+        if math.isfinite(number) and lo <= number <= hi and not (above and number == lo):
+            return number
+    low = f"above {lo:g}" if above else f"from {lo:g}"
+    allowed = f"{low}{f' to {hi:g}' if hi < math.inf else ''} {unit}".rstrip()
+    raise refusal(name, value, allowed if allowed != "from -inf" else "a finite number")
+
+
+def check_vector(name: str, value: object, length: int = 3) -> tuple[float, ...]:
+    """`value` as `length` finite floats; raises ValueError otherwise."""
+    try:
+        numbers = tuple(float(c) for c in value)  # type: ignore[attr-defined]
+    except (TypeError, ValueError):
+        numbers = ()
+    if len(numbers) != length or not all(math.isfinite(c) for c in numbers):
+        raise refusal(name, value, f"{length} finite numbers [m]")
+    return numbers
+
+
+def check_choice(name: str, value: str, choices: tuple[str, ...]) -> str:
+    if value not in choices:
+        raise refusal(name, value, "one of " + ", ".join(choices))
+    return value
+
+
+def rope(
+    points: int = 10,
+    length: float = 2.0,
+    mass: float = 1.0,
+    stiffness: float = 800.0,
+    damping: float = 7.0,
+    drag: float = 1.0,
+    gravity: float = 10.0,
+    root: Vector = (0.0, 0.0, 0.0),
+    floor: float | None = None,
+    sphere: tuple[float, float, float, float] | None = None,
+    damping_model: str = "isotropic",
+    *,
+    end: Vector | None = None,
+    contact: Contact | None = None,
+    radius: float = 0.0,
+) -> Net:
+    """A rope in the lab's units, at rest from `root` along -x; point 0 is the fixed root.
+
+    points: from 1. length: rest length of the whole [m]. mass: [kg] per point. stiffness [N/m] and damping [N s/m]
+    per link; drag [N s/m] per point; gravity [m/s^2] along -z. floor: height [m]; sphere: (x, y, z, radius) [m].
+    damping_model: "isotropic", the lab's eq. 4, b (v1 - v2); or "axial", its part along the link only.
+    end: where the last point is pinned too [m]; the points then start on the straight line from root to end.
+    radius: of the points, for contact [m].
+
+    Raises ValueError, naming the argument, its value and what is allowed.
+    """
+    if not isinstance(points, int | np.integer) or isinstance(points, bool) or not 1 <= points <= 1_000_000:
+        raise refusal("points", points, "a whole number from 1 to 1000000")
+    check_number("length", length, 0, math.inf, "m", above=True)
+    check_number("mass", mass, 0, math.inf, "kg", above=True)
+    check_number("stiffness", stiffness, 0, math.inf, "N/m")
+    check_number("damping", damping, 0, math.inf, "N s/m")
+    check_number("drag", drag, 0, math.inf, "N s/m")
+    check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
+    check_number("radius", radius, 0, math.inf, "m")
+    check_vector("root", root)
+    check_choice("damping_model", damping_model, DAMPING_MODELS)
+    contact = contact or Contact()
+    check_number("contact.stiffness", contact.stiffness, 0, math.inf, "N/m")
+    check_number("contact.damping", contact.damping, 0, math.inf, "N s/m")
+    check_number("contact.friction", contact.friction, 0, math.inf, "")
+    check_choice("contact.law", contact.law, CONTACT_LAWS)
+    if floor is not None:
+        check_number("floor", floor, -math.inf, math.inf, "m")
+    if sphere is not None:
+        check_number("sphere radius", check_vector("sphere", sphere, 4)[3], 0, math.inf, "m")
+
+    n = int(points)
+    rest = length / max(n - 1, 1)
+    start = np.asarray(root, dtype=np.float64)
+    stop = start - (length, 0.0, 0.0) if end is None else np.asarray(check_vector("end", end), dtype=np.float64)
+    along = np.linspace(0.0, 1.0, n)
+    x0 = start[:, None] + (stop - start)[:, None] * along
+    return Net(
+        x0=np.ascontiguousarray(x0.reshape(3, 1, n)),
+        families=(Family(0, 1, rest, float(stiffness), float(damping)),),
+        mass=float(mass),
+        drag=float(drag),
+        gravity=(0.0, 0.0, -float(gravity)),
+        pinned=frozenset({(0, 0)} if end is None else {(0, 0), (0, n - 1)}),
+        damping_model=damping_model,
+        floor=None if floor is None else float(floor),
+        sphere=None if sphere is None else tuple(float(c) for c in sphere),  # type: ignore[arg-type]
+        contact=contact,
+        radius=float(radius),
+    )
+
+
+def lab_units(
+    points: int, length: float, axial_stiffness: float, mass_per_length: float, axial_viscosity: float, drag_per_length: float
+) -> dict[str, float]:
+    """`rope`'s per-link and per-point numbers of a rope given in material units, so that points only refine it.
+
+    axial_stiffness EA [N], mass_per_length [kg/m], axial_viscosity [N s], drag_per_length [N s/m^2].
+    With n links: k = EA n / L, m = mu L / n, b = eta n / L, c = drag L / n.
+    """
+    spacing = length / max(points - 1, 1)
+    return {
+        "mass": mass_per_length * spacing,
+        "stiffness": axial_stiffness / spacing,
+        "damping": axial_viscosity / spacing,
+        "drag": drag_per_length * spacing,
+    }

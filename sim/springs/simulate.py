@@ -1,0 +1,96 @@
+"""`simulate`: a net from rest to the end, sampled at equal times."""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.knobs import refusal
+from sim.springs.integrators import Integrator
+from sim.springs.net import Net, check_number
+from sim.springs.state import State, advance, energy, steps_for, velocities
+
+
+class Run(NamedTuple):
+    """A simulated motion. Ropes have (frames, points, 3), other nets (frames, rows, cols, 3)."""
+
+    t: NDArray[np.float64]  # (frames,) [s]
+    x: NDArray[np.float64]  # [m]
+    v: NDArray[np.float64]  # [m/s]
+    energy: NDArray[np.float64]  # (frames, 6) [J]: kinetic, elastic, gravity, contact, dissipated, work
+    force_evals: int
+    diverged_at: float | None  # [s]
+
+
+def simulate(
+    net: Net,
+    integrator: str = "rk4",
+    step: float = 1 / 1200,
+    duration: float = 2.0,
+    frames: int = 61,
+    *,
+    with_ledger: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> Run:
+    """Integrate `net` from rest and sample it at `frames` equal times from 0 to `duration` [s].
+
+    step: [s]; shortened equally where it does not divide a frame interval. with_ledger: also integrate what damping
+    takes and pins put in; the stored energies are always there. progress: called with (frames done, frames).
+    A run that diverges ends there: `diverged_at` is the time of the first step that left any sane bound, and later
+    frames are NaN.
+
+    Raises ValueError, naming the argument, its value and what is allowed.
+    """
+    record = integrator_named(integrator)
+    check_number("step", step, 0, math.inf, "s", above=True)
+    check_number("duration", duration, 0, math.inf, "s", above=True)
+    if not isinstance(frames, int | np.integer) or isinstance(frames, bool) or frames < 2:
+        raise refusal("frames", frames, "a whole number from 2")
+    t = np.linspace(0.0, duration, int(frames))
+    interval = duration / (len(t) - 1)
+    steps = steps_for(interval, step)
+    h = interval / steps
+
+    state = State.at_rest(net)
+    xs = np.full((len(t), *net.x0.shape), np.nan)
+    vs = np.full_like(xs, np.nan)
+    ledger = np.full((len(t), 6), np.nan)
+    diverged_at = None
+    for frame in range(len(t)):
+        if frame:
+            before = state.copy()
+            advance(net, state, record, h, steps, with_ledger=with_ledger)
+            if not state.is_sane:
+                diverged_at = first_insane_time(net, before, record, h, steps)
+                break
+        xs[frame], vs[frame] = state.x, velocities(net, state)
+        ledger[frame] = *energy(net, state), state.dissipated, state.work
+        if progress:
+            progress(frame + 1, len(t))
+    return Run(t, per_point(net, xs), per_point(net, vs), ledger, state.force_evals, diverged_at)
+
+
+def integrator_named(name: str) -> Integrator:
+    """The registered integrator; raises ValueError with the names there are."""
+    from sim.springs import INTEGRATORS
+
+    if name not in INTEGRATORS:
+        raise refusal("integrator", name, "one of " + ", ".join(INTEGRATORS))
+    return INTEGRATORS[name]
+
+
+def first_insane_time(net: Net, state: State, integrator: Integrator, h: float, steps: int) -> float:
+    """Repeat, step by step, the frame in which a run diverged, and return the time of the first bad step [s]."""
+    for _ in range(steps):
+        advance(net, state, integrator, h, 1)
+        if not state.is_sane:
+            break
+    return state.t
+
+
+def per_point(net: Net, frames: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(frames, 3, rows, cols) as the caller's (frames, points, 3) or (frames, rows, cols, 3)."""
+    moved = np.moveaxis(frames, 1, -1)
+    return np.ascontiguousarray(moved[:, 0] if net.is_rope else moved)

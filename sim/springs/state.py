@@ -1,0 +1,86 @@
+"""`State`: what changes while a net moves, and `advance`, which changes it."""
+
+import dataclasses
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.springs.energy import Energy, energies
+from sim.springs.forces import set_acceleration
+from sim.springs.integrators import Integrator
+from sim.springs.net import Net
+
+SANE = 1e9  # [m]: a net that has left this bound has diverged, long before its numbers overflow
+
+
+@dataclasses.dataclass
+class State:
+    """Positions and velocities (3, rows, cols), the time, and the running ledger."""
+
+    x: NDArray[np.float64]  # [m]
+    v: NDArray[np.float64]  # [m/s], at time t - lag
+    t: float = 0.0  # [s]
+    lag: float = 0.0  # [s] by which v trails x
+    dissipated: float = 0.0  # [J]
+    work: float = 0.0  # [J]
+    force_evals: int = 0
+    steps: int = 0
+
+    @classmethod
+    def at_rest(cls, net: Net) -> "State":
+        return cls(net.x0.copy(), np.zeros_like(net.x0))
+
+    def copy(self) -> "State":
+        return dataclasses.replace(self, x=self.x.copy(), v=self.v.copy())
+
+    @property
+    def is_sane(self) -> bool:
+        """False once anything is not finite or is out of any sane bound."""
+        # A NaN fails the comparison too.
+        return bool(np.abs(self.x).max() < SANE) and bool(np.isfinite(self.v).all())
+
+
+def acceleration(net: Net, state: State) -> NDArray[np.float64]:
+    """Accelerations (3, rows, cols) [m/s^2] of the state as stored."""
+    a = np.empty_like(state.x)
+    set_acceleration(state.x.reshape(-1), state.v.reshape(-1), state.t, net.forces(1.0), a.reshape(-1))
+    return a
+
+
+def set_lag(net: Net, state: State, lag: float) -> None:
+    """Move the velocities, in place, to time t - lag [s]: what a change of step or of integrator asks for."""
+    if lag != state.lag:
+        state.v += (state.lag - lag) * acceleration(net, state)
+        state.lag = lag
+        state.force_evals += 1
+
+
+def velocities(net: Net, state: State) -> NDArray[np.float64]:
+    """Velocities at time t (3, rows, cols) [m/s], whether or not the integrator's trail by half a step."""
+    if state.lag == 0.0:
+        return state.v
+    return state.v + state.lag * acceleration(net, state)
+
+
+def advance(net: Net, state: State, integrator: Integrator, h: float, steps: int, *, with_ledger: bool = False) -> None:
+    """Advance `state` in place by `steps` steps of h [s]."""
+    set_lag(net, state, integrator.lag * h)
+    ledger = np.zeros(2)
+    state.force_evals += integrator.advance(
+        state.x.reshape(-1), state.v.reshape(-1), ledger, state.t, h, steps, net.forces(h), with_ledger
+    )
+    state.t += steps * h
+    state.steps += steps
+    state.dissipated += float(ledger[0])
+    state.work += float(ledger[1])
+
+
+def energy(net: Net, state: State) -> Energy:
+    """Stored energies at the state's time [J]."""
+    return Energy(*energies(state.x.reshape(-1), velocities(net, state).reshape(-1), state.t, net.forces(1.0)))
+
+
+def steps_for(interval: float, step: float) -> int:
+    """Steps that fill `interval` [s] with none longer than `step` [s], forgiving round-off in their ratio."""
+    return max(1, math.ceil(interval / step * (1.0 - 1e-9)))

@@ -12,6 +12,9 @@ from typing import Any, NamedTuple, TypeVar
 
 P = TypeVar("P")
 
+TRUE = ("true", "yes", "on", "1")
+FALSE = ("false", "no", "off", "0")
+
 
 class Knob(NamedTuple):
     """What a parameter may be. `choices` is non-empty for named values only; lo and hi bound numbers."""
@@ -123,10 +126,9 @@ def parse_value(name: str, knob: Knob, text: str) -> Any:
     if knob.choices:
         return check_value(name, knob, word)
     if knob.kind is bool:
-        words = {"true": True, "yes": True, "on": True, "1": True, "false": False, "no": False, "off": False, "0": False}
-        if word.lower() not in words:
+        if word.lower() not in TRUE + FALSE:
             raise refusal(name, text, knob.allowed)
-        return words[word.lower()]
+        return word.lower() in TRUE
     try:
         number = float(word)
     except ValueError:

@@ -65,7 +65,8 @@ def accelerate_rope(x, v, p, b, c, f, a):
     n = np.uint64(p.cols)
     m = n + one
     link_forces(
-        x, v, f, np.uint64(0), one, one, n - one, n, m, p.links[0, 1], b * p.links[0, 2], p.links[0, 0], p.axial and b > 0
+        x, v, f, np.uint64(0), one, one, n - one, n, m,
+        p.links[0, 1], b * p.links[0, 2], p.links[0, 0], p.axial and b > 0,
     )  # fmt: skip
     set_from_differences(f, v, p.weights, a, np.uint64(0), np.uint64(0), n, p.mass * p.gx, c)
     set_from_differences(f, v, p.weights, a, n, m, n, p.mass * p.gy, c)

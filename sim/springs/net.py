@@ -43,6 +43,9 @@ class Contact(NamedTuple):
     law: str = "clipped"
 
 
+PLAIN_CONTACT = Contact()
+
+
 class Grab(NamedTuple):
     """A capped, damped pull of one particle towards a target."""
 
@@ -119,7 +122,7 @@ class Net:
     sphere: tuple[float, float, float, float] | None = None  # x, y, z, radius [m]
     sphere_velocity: Vector = (0.0, 0.0, 0.0)  # [m/s]
     epoch: float = 0.0  # [s], when the sphere is at its centre
-    contact: Contact = Contact()
+    contact: Contact = PLAIN_CONTACT
     radius: float = 0.0  # [m]: a point touches at this distance
     pin_paths: tuple[tuple[tuple[int, int], PinPath], ...] = ()
     grab: Grab | None = None
@@ -260,7 +263,7 @@ def rope(
     check_number("radius", radius, 0, math.inf, "m")
     check_vector("root", root)
     check_choice("damping_model", damping_model, DAMPING_MODELS)
-    contact = contact or Contact()
+    contact = contact or PLAIN_CONTACT
     check_number("contact.stiffness", contact.stiffness, 0, math.inf, "N/m")
     check_number("contact.damping", contact.damping, 0, math.inf, "N s/m")
     check_number("contact.friction", contact.friction, 0, math.inf, "")
@@ -292,7 +295,12 @@ def rope(
 
 
 def lab_units(
-    points: int, length: float, axial_stiffness: float, mass_per_length: float, axial_viscosity: float, drag_per_length: float
+    points: int,
+    length: float,
+    axial_stiffness: float,
+    mass_per_length: float,
+    axial_viscosity: float,
+    drag_per_length: float,
 ) -> dict[str, float]:
     """`rope`'s per-link and per-point numbers of a rope given in material units, so that points only refine it.
 

@@ -41,17 +41,17 @@ class State:
         return bool(np.abs(self.x).max() < SANE) and bool(np.isfinite(self.v).all())
 
 
-def acceleration(net: Net, state: State) -> NDArray[np.float64]:
-    """Accelerations (3, rows, cols) [m/s^2] of the state as stored."""
+def acceleration(net: Net, state: State, lag: float) -> NDArray[np.float64]:
+    """Accelerations (3, rows, cols) [m/s^2] of the state as stored; its velocities may trail by half a step."""
     a = np.empty_like(state.x)
-    set_acceleration(state.x.reshape(-1), state.v.reshape(-1), state.t, net.forces(1.0), a.reshape(-1))
+    set_acceleration(state.x.reshape(-1), state.v.reshape(-1), state.t, net.forces(2.0 * lag), a.reshape(-1))
     return a
 
 
 def set_lag(net: Net, state: State, lag: float) -> None:
     """Move the velocities, in place, to time t - lag [s]: what a change of step or of integrator asks for."""
     if lag != state.lag:
-        state.v += (state.lag - lag) * acceleration(net, state)
+        state.v += (state.lag - lag) * acceleration(net, state, max(lag, state.lag))
         state.lag = lag
         state.force_evals += 1
 
@@ -60,7 +60,7 @@ def velocities(net: Net, state: State) -> NDArray[np.float64]:
     """Velocities at time t (3, rows, cols) [m/s], whether or not the integrator's trail by half a step."""
     if state.lag == 0.0:
         return state.v
-    return state.v + state.lag * acceleration(net, state)
+    return state.v + state.lag * acceleration(net, state, state.lag)
 
 
 def advance(net: Net, state: State, integrator: Integrator, h: float, steps: int, *, with_ledger: bool = False) -> None:

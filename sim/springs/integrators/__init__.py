@@ -3,9 +3,9 @@
 To add one, write a module in this folder with
 
 1. `advance(x, v, ledger, t, h, steps, p, with_ledger) -> evals`, one `kernel` that advances the flat x and v
-   (3 rows cols,) in place by `steps` steps of h [s] from time t, calls `accelerate` inside its loop and `set_pins` at every time it
-   evaluates forces, and returns how many force evaluations that took. With `with_ledger` it adds what damping took and
-   what pins put in [J] to ledger[0] and ledger[1], by a quadrature of its own order.
+   (3 rows cols,) in place by `steps` steps of h [s] from time t, calls `accelerate` inside its loop and `set_pins` at
+   every time it evaluates forces, and returns how many force evaluations that took. With `with_ledger` it adds what
+   damping took and what pins put in [J] to ledger[0] and ledger[1], by a quadrature of its own order.
 2. `limit(zeta)`: the largest stable h omega of x'' + 2 zeta omega x' + omega^2 x = 0, in closed form or from
    the largest h omega at which the method's amplification stays within 1.
 3. `RECORD = Integrator(...)`, which declares what the tests then check.

@@ -61,5 +61,4 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
     return 4 * steps
 
 
-
-RECORD = Integrator("rk4", 4, False, 4, limit, advance, "Accuracy: the lab's Runge-Kutta, errors below a tenth of a millimetre.")
+RECORD = Integrator("rk4", 4, False, 4, limit, advance, "For accuracy: the lab's Runge-Kutta, errors under 0.1 mm.")

@@ -1,4 +1,4 @@
-"""Symplectic (semi-implicit) Euler, what the lab's code runs as "Euler": v += h a(x, v), then x += h v with the new v."""
+"""Symplectic (semi-implicit) Euler, the lab code's "Euler": v += h a(x, v), then x += h v with the new v."""
 
 import math
 

@@ -4,7 +4,7 @@ Velocities under v' = -D v for a time s, positions held: each link's relative ve
 exp(-b (w1 + w2) s), link after link, each particle's drag by exp(-c w s). No such step can overshoot, and each
 shrinks the kinetic energy. Applied for h/2 before and, in reverse order, for h/2 after an undamped kick-drift-kick step
 it makes a symmetric composition: second order (Strang 1968), and, as kick-drift-kick keeps
-v^T M v + x^T (K - h^2/4 K M^-1 K) x and damping only lowers its first term, stable for h omega < 2 whatever the damping.
+v^T M v + x^T (K - h^2/4 K M^-1 K) x and damping only lowers its first term, stable for h omega < 2 at any damping.
 """
 
 import math
@@ -59,7 +59,7 @@ def damp_set(x, v, w, ia, ib, stride, count, n, free, held, axial):
 
 @kernel(noalias=True, inline=True)
 def damp_next(v, w, first, count, o, free, held):
-    """`damp_pairs` for links (first, first + 1), (first + 2, first + 3), ...: vectorises, the 2 being in LLVM's sight."""
+    """`damp_pairs` for links (first, first + 1), (first + 2, first + 3), ...: a 2 in LLVM's sight vectorises."""
     for j in range(count):
         a = first + np.uint64(2) * j
         b = a + np.uint64(1)

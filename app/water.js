@@ -34,32 +34,46 @@ const WATER_GLSL = {
     #include <cube_uv_reflection_fragment>
     #include <envmap_common_pars_fragment>
     uniform mat4 fromSea;
-    uniform vec3 skyline; // height of the land in the photograph [sine], blur of the haze, brightness
+    uniform vec3 skyline; // land in the photograph towards the sun and away from it [rad], stretch of the low sky
+    uniform vec3 fold; // share of the photograph's azimuths in use, blur of the haze, brightest radiance kept
     uniform vec3 sunDirection;
     uniform vec3 sunColor;
 
-    vec3 photograph(vec3 d, float blur) {
+    // The photographs were taken on land. Their elevations are remapped so that the land lies below our horizon, and
+    // where tall things stand around, only the azimuths on either side of the sun are used, spread over the circle.
+    vec3 unland(vec3 d, float side) {
+      float bearing = atan(d.y, d.x) - atan(sunDirection.y, sunDirection.x);
+      bearing = mod(bearing + 3.14159265, 6.2831853) - 3.14159265;
+      float land = mix(skyline.x, skyline.y, 0.5 - 0.5 * cos(bearing));
+      float e = asin(clamp(d.z, 0.0, 1.0)) / 1.5707963;
+      float g = skyline.z, l = land / 1.5707963;
+      e = 1.5707963 * (l + e * (g + (1.0 - l - g) * e));
+      float a = bearing * fold.x * side + atan(sunDirection.y, sunDirection.x);
+      return vec3(cos(e) * cos(a), cos(e) * sin(a), sin(e));
+    }
+
+    vec3 lookup(vec3 d, float blur) {
       #if defined(USE_ENVMAP) && defined(ENVMAP_TYPE_CUBE_UV)
         vec3 c = textureCubeUV(envMap, envMapRotation * (mat3(fromSea) * d), blur).rgb;
-        // The sun's own disc is added where it belongs, not through the blurred photograph.
-        return min(c, vec3(14.0)) * envMapIntensity;
+        // Bright places keep their hue; the sun's own disc is drawn where it belongs, not through a blurred photograph.
+        return c / (1.0 + dot(c, vec3(0.3, 0.5, 0.2)) / fold.z) * envMapIntensity;
       #else
         return mix(vec3(0.75, 0.8, 0.85), vec3(0.2, 0.4, 0.7), sqrt(max(d.z, 0.0)));
       #endif
     }
 
-    // What stands at the horizon of that azimuth once the land is lost in haze.
-    vec3 horizon(vec3 d) {
-      vec2 level = d.xy / max(length(d.xy), 1e-4);
-      return photograph(normalize(vec3(level, skyline.x * 1.2)), skyline.y);
+    vec3 sky(vec3 d, float blur) {
+      vec3 c = lookup(unland(d, 1.0), blur);
+      // Behind one's back the two ends of the spread photograph meet: there each is blended with its mirror image.
+      if (fold.x < 1.0) {
+        vec2 s = normalize(sunDirection.xy), l = d.xy / max(length(d.xy), 1e-4);
+        float back = smoothstep(0.3, 1.0, -dot(s, l));
+        if (back > 0.0) c = mix(c, lookup(unland(d, -1.0), blur), 0.5 * back);
+      }
+      return c;
     }
 
-    vec3 sky(vec3 d, float blur) {
-      float clear = smoothstep(skyline.x * 0.4, skyline.x * 1.6, d.z);
-      vec3 c = horizon(d);
-      if (clear > 0.0) c = mix(c, photograph(d, blur), clear);
-      return c;
-    }`,
+    vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), fold.y); }`,
 
   noise: `
     vec2 hash2(vec2 p) {
@@ -90,9 +104,7 @@ const WATER_GLSL = {
     uniform vec3 air; // haze distance [m], exposure, foam scale [m]
     uniform vec3 ripple; // rms slope, longest wave [m], direction [rad]
     uniform vec3 state; // time [s], significant height [m], mean square slope of the mesh
-    varying vec3 vSea;
-    varying vec2 vRest;
-    varying vec3 vAux;
+    uniform vec3 extent; // tiles along a side, dome, wire
 
     float schlick(float f0, float c) { float m = clamp(1.0 - c, 0.0, 1.0); float m2 = m * m; return f0 + (1.0 - f0) * m2 * m2 * m; }
 
@@ -101,12 +113,12 @@ const WATER_GLSL = {
     vec4 ripples(vec2 x, float footprint) {
       vec2 slope = vec2(0.0);
       float lost = 0.0, wave = ripple.y, angle = ripple.z;
-      float each = ripple.x * ripple.x / 4.0;
+      float each = ripple.x * ripple.x / 5.0;
       // Gusts: patches of rougher and smoother water, and nothing in it repeats from tile to tile.
       float gust = 0.65 + 0.5 * ruffle(x / (ripple.y * 24.0) + state.x * 0.02).x
                         + 0.5 * ruffle(x / (ripple.y * 7.0) - state.x * 0.03).x;
       gust = max(gust, 0.15) * 1.3;
-      for (int k = 0; k < 4; k++) {
+      for (int k = 0; k < 5; k++) {
         float seen = 1.0 - smoothstep(0.12, 0.5, footprint / wave);
         lost += each * (1.0 - seen * seen);
         if (seen > 0.0) {
@@ -137,20 +149,21 @@ const WATER_GLSL = {
       return smoothstep(threshold - soft, threshold + soft, 1.0 - n) * smoothstep(0.0, 0.15, asked);
     }
 
-    vec3 shadeSea() {
-      vec3 eye = (inverse(fromSea) * vec4(cameraPosition, 1.0)).xyz;
-      vec3 toEye = eye - vSea;
+    // at: the point [m]; rest: where its water rests; aux: slopes and foam; flat: 1 where no mesh is left.
+    vec3 shadeSea(vec3 at, vec2 rest, vec3 aux, float flatness) {
+      vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
+      vec3 toEye = eye - at;
       float far = length(toEye);
       vec3 V = toEye / far;
-      vec2 fx = dFdx(vSea.xy), fy = dFdy(vSea.xy);
-      float footprint = sqrt(max(dot(fx, fx), dot(fy, fy)));
+      vec2 fx = dFdx(at.xy), fy = dFdy(at.xy);
+      float footprint = pow(max(dot(fx, fx) * dot(fy, fy), 1e-12), 0.25);
 
       // Waves finer than the pixel stop tilting it and make it rough instead.
       float cell = grid.z / max(grid.x, 64.0);
-      float blur = smoothstep(cell * 1.5, cell * 12.0, footprint);
-      vec4 fine = ripples(vSea.xy, footprint);
-      vec2 slope = vAux.xy * (1.0 - blur) + fine.xy;
-      float foam = foamCover(vRest, clamp(vAux.z, 0.0, 1.0), footprint);
+      float blur = max(flatness, smoothstep(cell * 1.5, cell * 12.0, footprint));
+      vec4 fine = ripples(at.xy, footprint);
+      vec2 slope = aux.xy * (1.0 - blur) + fine.xy;
+      float foam = foamCover(rest, clamp(aux.z, 0.0, 1.0), footprint);
       float variance = optics.y * optics.y + 0.5 * (state.z * blur + fine.z);
       float sigma = sqrt(variance);
 
@@ -177,16 +190,16 @@ const WATER_GLSL = {
       glitter *= smoothstep(-0.02, 0.05, sunDirection.z) * optics.z;
 
       // Light that comes back out of the water: the deep, and crests with the sun behind them.
-      vec3 ambient = photograph(vec3(0.0, 0.0, 1.0), 1.0);
+      vec3 ambient = lookup(vec3(0.0, 0.0, 1.0), 1.0);
       float sunUp = max(dot(N, sunDirection), 0.0);
       vec3 lit = ambient + sunColor * sunUp * 0.3183;
-      float crest = clamp(vSea.z / max(state.y, 0.01) + 0.15, 0.0, 1.2);
+      float crest = clamp(at.z / max(state.y, 0.01) + 0.15, 0.0, 1.2);
       float through = pow(clamp(dot(-V, normalize(sunDirection - 0.35 * N)) * 0.5 + 0.5, 0.0, 1.0), 3.0);
       vec3 body = deep * lit;
       body += scatter * (ambient * (0.10 + 0.35 * crest * crest) * facing
                         + sunColor * 0.3183 * crest * through * (0.15 + 0.5 * (1.0 - facing)));
       // Water full of air under and around foam is bright.
-      body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, vAux.z);
+      body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, aux.z);
 
       vec3 color = mix(body, mirrored, F) + sunColor * glitter * (1.0 - foam);
       vec3 froth = foamColor * (ambient * 0.9 + sunColor * 0.3183 * (0.25 + 0.75 * sunUp));
@@ -199,11 +212,21 @@ const WATER_GLSL = {
 
 const WATER_FRAGMENT = `
   #define STANDARD
+  uniform mat4 toSea;
   ${WATER_GLSL.sky}
   ${WATER_GLSL.noise}
   ${WATER_GLSL.surface}
+  varying vec3 vSea;
+  varying vec2 vRest;
+  varying vec3 vAux;
   void main() {
-    gl_FragColor = vec4(shadeSea(), 1.0);
+    // Towards the rim of the last tile the waves go flat, as the sea beyond is.
+    float flatness = 0.0;
+    if (grid.x > 0.0 && extent.y > 0.0) {
+      vec2 out2 = abs(vSea.xy - 0.5 * grid.z) / (0.5 * grid.z * extent.x);
+      flatness = smoothstep(0.8, 1.0, max(out2.x, out2.y));
+    }
+    gl_FragColor = vec4(shadeSea(vSea, vRest, vAux * vec3(1.0, 1.0, 1.0 - flatness), flatness), 1.0);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
   }`;
@@ -219,20 +242,31 @@ const DOME_VERTEX = `
   }`;
 const DOME_FRAGMENT = `
   #define STANDARD
+  uniform mat4 toSea;
   ${WATER_GLSL.sky}
-  uniform vec3 air;
+  ${WATER_GLSL.noise}
+  ${WATER_GLSL.surface}
   varying vec3 vRay;
+  // The disc, half a degree across as the true one, and the glow of the air around it.
+  float sun(vec3 d) {
+    float off = length(d - sunDirection);
+    return 40.0 * smoothstep(0.013, 0.009, off) + 0.25 * exp(-off * 30.0) + 0.06 * exp(-off * 7.0);
+  }
   void main() {
     vec3 d = normalize(vRay);
-    vec3 c = sky(d, 0.0);
-    gl_FragColor = vec4(c * air.y, 1.0);
+    vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
+    float down = max(-d.z, 1e-5);
+    vec3 at = vec3(eye.xy + d.xy * min(max(eye.z, 0.0) / down, 1e5), 0.0);
+    // Below the horizon lies the sea that no mesh reaches.
+    vec3 c = d.z < 0.0 ? shadeSea(at, at.xy, vec3(0.0), 1.0) : (sky(d, 0.04) + sunColor * sun(d)) * air.y;
+    gl_FragColor = vec4(c, 1.0);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
   }`;
 
 const WATER_UNIFORMS = [
   "deep", "scatter", "foamColor", "sunDirection", "sunColor", "optics",
-  "air", "ripple", "skyline", "state", "grid", "extent", "wireColor",
+  "air", "ripple", "skyline", "fold", "state", "grid", "extent", "wireColor",
 ];
 const seas = new Map(); // base name -> what this file has made for it
 

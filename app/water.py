@@ -5,7 +5,6 @@ as the vertices of a third, hidden and tiny. `water.js` (through `app/patch.py`)
 Where the patch does not answer, the same mesh is drawn plainly by viser, with a second mesh for the foam.
 """
 
-import dataclasses
 import math
 from dataclasses import dataclass
 
@@ -30,23 +29,23 @@ class Look:
     1 - 1/e of the sea is lost in the sky. foam_scale [m] is the size of a patch of bubbles.
     """
 
-    deep: RGB = (0.03, 0.16, 0.24)
+    deep: RGB = (0.0, 0.13, 0.22)
     scatter: RGB = (0.10, 0.52, 0.50)
     foam: RGB = (0.93, 0.95, 0.96)
     refractive_index: float = 1.333
     roughness: float = 0.03
     specular: float = 1.0
-    ripple_slope: float = 0.10
+    ripple_slope: float = 0.16
     ripple_length: float = 1.6
     ripple_direction: float = 0.0
     foam_scale: float = 1.5
     sun_direction: tuple[float, float, float] = (0.6, 0.3, 0.5)
     sun_color: RGB = (1.0, 0.9, 0.75)
     sun_strength: float = 6.0
-    haze: float = 600.0
+    haze: float = 3000.0
     exposure: float = 1.0
-    skyline: float = 0.12
-    skyline_blur: float = 0.5
+    skyline: tuple[float, float, float] = (0.06, 0.2, 0.6)
+    fold: tuple[float, float, float] = (1.0, 0.3, 12.0)
     dome: bool = True
     wireframe: bool = False
     wire_color: RGB = (0.95, 0.55, 0.1)
@@ -167,7 +166,8 @@ class Water:
             (look.refractive_index, look.roughness, look.specular),
             (look.haze, look.exposure, look.foam_scale),
             (look.ripple_slope, look.ripple_length, look.ripple_direction),
-            (look.skyline, look.skyline_blur, 1.0),
+            look.skyline,
+            look.fold,
             self._state,
             (rows, cols, self._length),
             (self._tiles, float(look.dome), float(look.wireframe)),
@@ -190,13 +190,52 @@ class Water:
             self._foam.vertices = flat
 
 
+@dataclass(frozen=True)
+class Photograph:
+    """What there is to know of one of viser's environment maps: where its sun is, and how high its land."""
+
+    sun_column: float  # of the sun, 0..1 from the left edge of the panorama
+    sun_height: float  # [deg]
+    sun_color: RGB
+    sun_strength: float
+    land_near: float  # [deg] land below the sun, and opposite to it
+    land_far: float
+    stretch: float  # how fast elevation in the picture grows with elevation in our sky, at the horizon
+    fold: float  # share of the picture's azimuths that are used
+    exposure: float = 1.0
+
+
+SKIES = {
+    "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 13.0, 0.6, 1.0, 0.6),
+    "sunset": Photograph(0.600, 3.3, (1.0, 0.62, 0.30), 4.0, 1.5, 5.0, 0.5, 0.36, 0.5),
+    "dawn": Photograph(0.635, 7.0, (1.0, 0.70, 0.55), 1.5, 7.0, 8.0, 0.7, 1.0, 0.9),
+    "night": Photograph(0.36, 25.0, (0.75, 0.85, 1.0), 0.5, 12.0, 18.0, 0.7, 1.0, 1.2),
+}
+
+
 def sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Look:
     """Set the environment map, lights and camera range; returns a Look lit by that sky. azimuth [rad] of the sun."""
-    turn = azimuth
+    photo = SKIES[name]
+    turn = azimuth - (1.5 * math.pi - 2 * math.pi * (photo.sun_column - 0.5))
     wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
     server.scene.configure_environment_map(
-        name, background=True, background_wxyz=wxyz, environment_wxyz=wxyz  # type: ignore[arg-type]
+        name,  # type: ignore[arg-type]
+        background=True,
+        background_wxyz=wxyz,
+        environment_wxyz=wxyz,
     )
     server.scene.configure_default_lights(enabled=True, cast_shadow=False)
     server.initial_camera.far = 20_000.0
-    return dataclasses.replace(Look())
+    # The elevation e at which the remapped sky shows the sun: land + e (g + (90 - land - 90 g) e / 90^2) = height.
+    high = photo.sun_height - photo.land_near
+    g = photo.stretch
+    q = (90 - photo.land_near - 90 * g) / 8100
+    e = math.radians((-g + math.sqrt(g * g + 4 * q * high)) / (2 * q) if abs(q) > 1e-9 else high / g)
+    return Look(
+        sun_direction=(math.cos(e) * math.cos(azimuth), math.cos(e) * math.sin(azimuth), math.sin(e)),
+        sun_color=photo.sun_color,
+        sun_strength=photo.sun_strength,
+        skyline=(math.radians(photo.land_near), math.radians(photo.land_far), g),
+        fold=(photo.fold, 0.5, 5.0),
+        exposure=photo.exposure,
+    )

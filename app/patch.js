@@ -89,6 +89,7 @@ function tell(alive) {
 }
 
 function beforeRender(renderer, scene, camera) {
+  window.__springtide = { memory: () => ({ ...renderer.info.memory }) }; // what a leak would show in
   const nodes = window.__viserMutable.nodeRefFromName;
   const alive = [];
   for (const name of Object.keys(nodes)) {

@@ -30,7 +30,6 @@ const WATER_GLSL = {
 
   // The sky as seen and as mirrored, in one function, so that sea and sky meet without a line.
   sky: `
-    #include <common>
     #include <cube_uv_reflection_fragment>
     #include <envmap_common_pars_fragment>
     uniform mat4 fromSea;
@@ -38,6 +37,8 @@ const WATER_GLSL = {
     uniform vec3 fold; // share of the photograph's azimuths in use, blur of the haze, brightest radiance kept
     uniform vec3 sunDirection;
     uniform vec3 sunColor;
+    uniform vec3 weather; // cloud cover, size of clouds, direction of the wind [rad]
+    uniform vec3 state; // time [s], significant height [m], mean square slope of the mesh
 
     // The photographs were taken on land. Their elevations are remapped so that the land lies below our horizon, and
     // where tall things stand around, only the azimuths on either side of the sun are used, spread over the circle.
@@ -62,6 +63,36 @@ const WATER_GLSL = {
       #endif
     }
 
+    float billow(vec2 p, int octaves) {
+      vec2 drift = vec2(ruffle(p * 0.6 + 4.0).x, ruffle(p * 0.6 - 9.0).x);
+      p += 0.7 * drift;
+      float n = 0.0, size = 1.0;
+      for (int k = 0; k < octaves; k++) {
+        n += size * ruffle(p).x;
+        p = mat2(1.6, 1.2, -1.2, 1.6) * p + 3.7;
+        size *= 0.52;
+      }
+      return n;
+    }
+
+    // A thin layer of cloud before the photograph, so that no two seas have the same sky.
+    vec3 clouded(vec3 c, vec3 d, float blur) {
+      if (weather.x <= 0.0 || d.z < 0.004) return c;
+      vec2 w = vec2(cos(weather.z), sin(weather.z));
+      vec2 p = d.xy / (d.z + 0.11);
+      p = vec2(dot(p, w) * 0.55 - 0.004 * state.x, dot(p, vec2(-w.y, w.x))) / weather.y;
+      int octaves = blur < 0.1 ? 6 : 3;
+      float n = billow(p, octaves) + 1.3 * (weather.x - 0.5);
+      float cover = smoothstep(-0.12 - blur, 0.55 + blur, n);
+      vec2 s = normalize(sunDirection.xy + 1e-4);
+      float lit = clamp(0.55 + 1.4 * (n - 1.3 * (weather.x - 0.5) - billow(p + 0.22 * vec2(dot(s, w), dot(s, vec2(-w.y, w.x))), 3)), 0.15, 1.2);
+      float near = max(dot(d, sunDirection), 0.0);
+      vec3 ambient = lookup(vec3(0.0, 0.0, 1.0), 1.0);
+      vec3 glow = sunColor * (0.05 + 0.10 * lit + 0.5 * pow(near, 24.0) * (1.2 - cover) + 0.12 * pow(near, 3.0) * lit);
+      vec3 cloud = ambient * (0.55 + 0.45 * lit) + glow;
+      return mix(c, cloud, cover * 0.92 * smoothstep(0.0, 0.09, d.z));
+    }
+
     vec3 sky(vec3 d, float blur) {
       vec3 c = lookup(unland(d, 1.0), blur);
       // Behind one's back the two ends of the spread photograph meet: there each is blended with its mirror image.
@@ -73,9 +104,12 @@ const WATER_GLSL = {
       return c;
     }
 
+    vec3 mirror(vec3 d, float blur) { return clouded(sky(d, blur), d, max(blur, 0.1)); }
+
     vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), fold.y); }`,
 
   noise: `
+    #include <common>
     vec2 hash2(vec2 p) {
       uvec2 q = uvec2(ivec2(p)) * uvec2(1597334673u, 3812015801u);
       uint n = (q.x ^ q.y) * 1597334673u;
@@ -103,7 +137,6 @@ const WATER_GLSL = {
     uniform vec3 optics; // refractive index, roughness, specular scale
     uniform vec3 air; // haze distance [m], exposure, foam scale [m]
     uniform vec3 ripple; // rms slope, longest wave [m], direction [rad]
-    uniform vec3 state; // time [s], significant height [m], mean square slope of the mesh
     uniform vec3 extent; // tiles along a side, dome, wire
 
     float schlick(float f0, float c) { float m = clamp(1.0 - c, 0.0, 1.0); float m2 = m * m; return f0 + (1.0 - f0) * m2 * m2 * m; }
@@ -135,18 +168,45 @@ const WATER_GLSL = {
       return vec4(slope * gust, lost * gust * gust, gust);
     }
 
-    // How much of a pixel is covered, from the coverage the solver asks for: bubbles break it up from its edges.
-    float foamCover(vec2 x, float asked, float footprint) {
-      if (asked <= 0.002) return 0.0;
-      vec2 p = x / air.z;
-      vec2 warp = vec2(ruffle(p * 0.7 + 3.1).x, ruffle(p * 0.7 - 7.7).x);
-      p += warp * 0.9;
-      float n = 0.55 * abs(ruffle(p).x) + 0.3 * abs(ruffle(p * 2.3 + 5.0).x);
-      if (footprint < 0.6 * air.z) n += 0.2 * abs(ruffle(p * 5.9 - 2.0).x) + 0.12 * abs(ruffle(p * 13.0).x);
-      n *= 2.1;
-      float soft = 0.12 + 0.3 * clamp(footprint / air.z, 0.0, 1.0);
-      float threshold = 1.02 - 1.15 * pow(asked, 0.7);
-      return smoothstep(threshold - soft, threshold + soft, 1.0 - n) * smoothstep(0.0, 0.15, asked);
+    // Distance from the walls between the cells around random points: 0 on a wall, up to about 0.5 inside.
+    float cells(vec2 p) {
+      vec2 i = floor(p), f = p - i;
+      float first = 8.0, second = 8.0;
+      for (int a = -1; a <= 1; a++) for (int b = -1; b <= 1; b++) {
+        vec2 o = vec2(a, b);
+        vec2 r = o + hash2(i + o) - f;
+        float d = dot(r, r);
+        second = min(second, max(first, d));
+        first = min(first, d);
+      }
+      return sqrt(second) - sqrt(first);
+    }
+
+    // Foam from the coverage the solver asks for: (cover, thickness). A web of bubble lines that widen with the
+    // coverage and close into a mat, streaked along the wind.
+    vec2 froth(vec2 x, float asked, float footprint) {
+      if (asked <= 0.004) return vec2(0.0);
+      vec2 d = vec2(cos(ripple.z), sin(ripple.z));
+      vec2 p = vec2(dot(x, d) * 0.7, dot(x, vec2(-d.y, d.x))) / air.z;
+      vec2 drift = vec2(ruffle(p * 0.43 + 3.1).x, ruffle(p * 0.43 - 7.7).x);
+      p += drift * 1.1;
+      float big = ruffle(p * 0.5 + 11.0).x;
+      float c = clamp(asked * (1.0 + 0.9 * big), 0.0, 1.0);
+      // Cells: the distance to the nearest bubble wall, coarse ones holding fine ones.
+      float near = smoothstep(0.5, 0.1, footprint / air.z);
+      float wall = cells(p * 1.3), crumb = 0.35;
+      if (near > 0.0) {
+        vec2 q = p + 0.22 * vec2(ruffle(p * 3.1).x, ruffle(p * 3.1 + 9.0).x);
+        crumb = mix(0.35, cells(q * 4.7), near);
+      }
+      float grain = 0.5;
+      if (footprint < 0.06 * air.z) grain = 0.5 + 0.8 * ruffle(p * 31.0).x;
+      float edge = 0.10 + 0.25 * clamp(footprint / air.z, 0.0, 1.0);
+      float width = 0.75 * c * c + 0.22 * c;
+      float web = smoothstep(width + edge, width - edge, min(wall, 0.16 + 0.8 * crumb) + 0.06);
+      float mat = smoothstep(0.35, 0.95, c + 0.35 * (0.4 - crumb) + 0.25 * (grain - 0.5) + 0.3 * big);
+      float cover = max(web * smoothstep(0.02, 0.45, c) * (1.0 - 0.5 * crumb), mat);
+      return vec2(clamp(cover, 0.0, 1.0), clamp(0.35 + 0.65 * mat - 0.5 * crumb + 0.3 * (grain - 0.5), 0.0, 1.0));
     }
 
     // at: the point [m]; rest: where its water rests; aux: slopes and foam; flat: 1 where no mesh is left.
@@ -163,8 +223,26 @@ const WATER_GLSL = {
       float blur = max(flatness, smoothstep(cell * 1.5, cell * 12.0, footprint));
       vec4 fine = ripples(at.xy, footprint);
       vec2 slope = aux.xy * (1.0 - blur) + fine.xy;
-      float foam = foamCover(rest, clamp(aux.z, 0.0, 1.0), footprint);
-      float variance = optics.y * optics.y + 0.5 * (state.z * blur + fine.z);
+      float rough = blur * state.z;
+      // Beyond the mesh, noise of the same slope goes on as swell for as long as a pixel can show it.
+      if (flatness > 0.0) {
+        float wave = max(grid.z, 16.0) * 0.35;
+        for (int k = 0; k < 3; k++) {
+          float seen = flatness * (1.0 - smoothstep(0.1, 0.5, footprint / wave));
+          if (seen > 0.0) {
+            vec2 d = vec2(cos(ripple.z + 0.5 * float(k - 1)), sin(ripple.z + 0.5 * float(k - 1)));
+            float along = dot(at.xy, d) - sqrt(1.56 * wave) * state.x;
+            vec2 n = ruffle(vec2(along, 0.4 * dot(at.xy, vec2(-d.y, d.x))) / wave).yz;
+            slope += seen * sqrt(state.z) * (n.x * d + 0.4 * n.y * vec2(-d.y, d.x));
+            rough -= seen * 0.3 * state.z;
+          }
+          wave *= 0.45;
+        }
+        rough = max(rough, 0.0);
+      }
+      vec2 bubbles = froth(rest, clamp(aux.z, 0.0, 1.0), footprint);
+      float foam = bubbles.x;
+      float variance = optics.y * optics.y + 0.5 * (rough + fine.z);
       float sigma = sqrt(variance);
 
       // At grazing angles the facets that one sees are those tilted towards the eye.
@@ -179,7 +257,7 @@ const WATER_GLSL = {
       F *= optics.z;
       vec3 R = reflect(-V, N);
       R.z = abs(R.z) + 0.01;
-      vec3 mirrored = sky(normalize(R), clamp(sqrt(sigma) * 0.7, 0.0, 0.8));
+      vec3 mirrored = mirror(normalize(R), clamp(sqrt(sigma) * 0.7, 0.0, 0.8));
 
       // Sun glitter: the share of facets that send the sun to the eye, Gaussian in slope (Cox & Munk 1954).
       vec3 H = normalize(V + sunDirection);
@@ -202,8 +280,9 @@ const WATER_GLSL = {
       body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, aux.z);
 
       vec3 color = mix(body, mirrored, F) + sunColor * glitter * (1.0 - foam);
-      vec3 froth = foamColor * (ambient * 0.9 + sunColor * 0.3183 * (0.25 + 0.75 * sunUp));
-      color = mix(color, froth, foam * 0.92);
+      // Foam scatters light many times: it takes it from all sides.
+      vec3 white = foamColor * (ambient * 1.15 + sunColor * 0.3183 * (0.35 + 0.65 * sunUp)) * (0.72 + 0.38 * bubbles.y);
+      color = mix(color, white, foam * (0.6 + 0.4 * bubbles.y));
 
       float lost = 1.0 - exp(-pow(far / air.x, 1.5));
       return mix(color, horizon(-V), lost) * air.y;
@@ -213,8 +292,8 @@ const WATER_GLSL = {
 const WATER_FRAGMENT = `
   #define STANDARD
   uniform mat4 toSea;
-  ${WATER_GLSL.sky}
   ${WATER_GLSL.noise}
+  ${WATER_GLSL.sky}
   ${WATER_GLSL.surface}
   varying vec3 vSea;
   varying vec2 vRest;
@@ -243,8 +322,8 @@ const DOME_VERTEX = `
 const DOME_FRAGMENT = `
   #define STANDARD
   uniform mat4 toSea;
-  ${WATER_GLSL.sky}
   ${WATER_GLSL.noise}
+  ${WATER_GLSL.sky}
   ${WATER_GLSL.surface}
   varying vec3 vRay;
   // The disc, half a degree across as the true one, and the glow of the air around it.
@@ -252,13 +331,21 @@ const DOME_FRAGMENT = `
     float off = length(d - sunDirection);
     return 40.0 * smoothstep(0.013, 0.009, off) + 0.25 * exp(-off * 30.0) + 0.06 * exp(-off * 7.0);
   }
+  // The photographs' colour comes in blocks of some degrees: take the light sharp and the hue soft.
+  vec3 clearSky(vec3 d) {
+    vec3 sharp = sky(d, 0.06), soft = sky(d, 0.28);
+    vec3 w = vec3(0.3, 0.5, 0.2);
+    float light = dot(sharp, w), even = dot(soft, w);
+    float detail = smoothstep(0.04, 0.15, abs(light - even) / even);
+    return mix(soft * (light / even), sharp, detail);
+  }
   void main() {
     vec3 d = normalize(vRay);
     vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
     float down = max(-d.z, 1e-5);
     vec3 at = vec3(eye.xy + d.xy * min(max(eye.z, 0.0) / down, 1e5), 0.0);
     // Below the horizon lies the sea that no mesh reaches.
-    vec3 c = d.z < 0.0 ? shadeSea(at, at.xy, vec3(0.0), 1.0) : (sky(d, 0.04) + sunColor * sun(d)) * air.y;
+    vec3 c = d.z < 0.0 ? shadeSea(at, at.xy, vec3(0.0), 1.0) : clouded(clearSky(d) + sunColor * sun(d), d, 0.0) * air.y;
     gl_FragColor = vec4(c, 1.0);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
@@ -266,7 +353,7 @@ const DOME_FRAGMENT = `
 
 const WATER_UNIFORMS = [
   "deep", "scatter", "foamColor", "sunDirection", "sunColor", "optics",
-  "air", "ripple", "skyline", "fold", "state", "grid", "extent", "wireColor",
+  "air", "ripple", "skyline", "fold", "weather", "state", "grid", "extent", "wireColor",
 ];
 const seas = new Map(); // base name -> what this file has made for it
 

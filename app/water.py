@@ -29,7 +29,7 @@ class Look:
     1 - 1/e of the sea is lost in the sky. foam_scale [m] is the size of a patch of bubbles.
     """
 
-    deep: RGB = (0.0, 0.13, 0.22)
+    deep: RGB = (0.0, 0.17, 0.26)
     scatter: RGB = (0.10, 0.52, 0.50)
     foam: RGB = (0.93, 0.95, 0.96)
     refractive_index: float = 1.333
@@ -38,10 +38,12 @@ class Look:
     ripple_slope: float = 0.16
     ripple_length: float = 1.6
     ripple_direction: float = 0.0
-    foam_scale: float = 1.5
+    foam_scale: float = 2.0
     sun_direction: tuple[float, float, float] = (0.6, 0.3, 0.5)
     sun_color: RGB = (1.0, 0.9, 0.75)
     sun_strength: float = 6.0
+    clouds: float = 0.4
+    cloud_size: float = 2.2
     haze: float = 3000.0
     exposure: float = 1.0
     skyline: tuple[float, float, float] = (0.06, 0.2, 0.6)
@@ -168,6 +170,7 @@ class Water:
             (look.ripple_slope, look.ripple_length, look.ripple_direction),
             look.skyline,
             look.fold,
+            (look.clouds, look.cloud_size, look.ripple_direction),
             self._state,
             (rows, cols, self._length),
             (self._tiles, float(look.dome), float(look.wireframe)),
@@ -206,9 +209,9 @@ class Photograph:
 
 
 SKIES = {
-    "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 13.0, 0.6, 1.0, 0.6),
+    "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 9.0, 0.6, 0.45, 0.6),
     "sunset": Photograph(0.600, 3.3, (1.0, 0.62, 0.30), 4.0, 1.5, 5.0, 0.5, 0.36, 0.5),
-    "dawn": Photograph(0.635, 7.0, (1.0, 0.70, 0.55), 1.5, 7.0, 8.0, 0.7, 1.0, 0.9),
+    "dawn": Photograph(0.635, 9.5, (1.0, 0.66, 0.46), 2.5, 7.0, 8.0, 0.6, 0.5, 0.42),
     "night": Photograph(0.36, 25.0, (0.75, 0.85, 1.0), 0.5, 12.0, 18.0, 0.7, 1.0, 1.2),
 }
 

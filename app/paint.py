@@ -1,0 +1,70 @@
+"""A mesh whose vertices move and change colour every frame, which stock viser does not have.
+
+The colours travel as the vertices of a hidden mesh and reach the material through `app/patch.py`. A browser that the
+patch does not reach draws the mesh in its plain colour.
+"""
+
+from typing import Any
+
+import numpy as np
+import viser
+
+from app.patch import hidden, patch
+from sim.knobs import refusal
+
+SUFFIX = "paint_rgb"  # the recipe's name in patch.js
+
+
+class Painted:
+    """A streaming mesh with a colour at each vertex.
+
+    vertices: (n, 3) [m]. faces: (m, 3). colors: (n, 3), sRGB in 0..1. color: the plain colour, for browsers that the
+    patch does not reach. plain: never patch. Further arguments go to viser's `add_mesh_simple`.
+    Raises ValueError for colours of another length than the vertices.
+    """
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        name: str,
+        vertices: np.ndarray,
+        faces: np.ndarray,
+        colors: np.ndarray,
+        *,
+        color: tuple[int, int, int] = (200, 160, 90),
+        plain: bool = False,
+        **mesh: Any,
+    ) -> None:
+        self.name = name
+        self._count = len(vertices)
+        colors = self._checked(colors)
+        faces = np.asarray(faces, np.uint32)
+        self.mesh = server.scene.add_mesh_simple(name, np.asarray(vertices, np.float32), faces, color=color, **mesh)
+        self._patch = None if plain else patch(server)
+        self._rgb = None if plain else hidden(server, f"{name}/{SUFFIX}", colors)
+        if self._patch is not None:
+            self._patch.expect(name)
+
+    def set(self, vertices: np.ndarray | None = None, colors: np.ndarray | None = None) -> None:
+        """Move the vertices [m], repaint them, or both; call inside `server.atomic()`. Unchanged arrays are not sent."""
+        if vertices is not None:
+            self.mesh.vertices = np.asarray(vertices, np.float32)
+        if colors is not None and self._rgb is not None:
+            self._rgb.vertices = self._checked(colors)
+
+    @property
+    def alive(self) -> bool | None:
+        """True if every browser paints, False if one does not, None while not yet known."""
+        return self._patch.alive(self.name) if self._patch is not None else False
+
+    def remove(self) -> None:
+        """Take the mesh and its colours out of the scene."""
+        if self._patch is not None:
+            self._patch.forget(self.name)
+        self.mesh.remove()
+
+    def _checked(self, colors: np.ndarray) -> np.ndarray:
+        colors = np.asarray(colors, np.float32)
+        if colors.shape != (self._count, 3):
+            raise refusal("colors", colors.shape, f"shape ({self._count}, 3)")
+        return colors

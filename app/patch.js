@@ -1,0 +1,121 @@
+// The material patch: dresses stock viser's meshes from the inside, once per frame, for every node that asks.
+//
+// A mesh asks by having a hidden child mesh whose name ends in a recipe's suffix: "/rope" is painted when there is a
+// "/rope/paint_rgb" whose "vertices" carry three numbers per vertex of "/rope". So new scenes, late joiners and
+// recordings need no further script: everything that changes travels as ordinary vertices, which viser culls.
+//
+// Of viser this file uses window.__viserMutable: nodeRefFromName (the group of a node), scene (its onBeforeRender runs
+// before every frame, so that a material that viser has just made anew is never drawn undressed) and requestRender.
+// Of three it uses Material.onBeforeCompile and the renderer's property map, to see whether a program linked.
+
+const recipes = []; // { suffix, frame(context) -> {"name": material, ...} dressed }
+const failed = new Set(); // materials whose program did not link: left as viser made them
+
+// The mesh of a node is the first child of its group; shadow meshes and child nodes come after it.
+function meshOf(name) {
+  const group = window.__viserMutable.nodeRefFromName[name];
+  return (group && group.children && group.children.find((child) => child.isMesh)) || null;
+}
+
+// Give a mesh the "vertices" of a hidden mesh as one more vertex attribute. Same object, so no copy and no upload of
+// its own: viser swaps the array behind it at each update. False while the two differ in length.
+function share(mesh, attribute, channel) {
+  const source = channel.geometry.attributes.position;
+  if (!source || source.count !== mesh.geometry.attributes.position.count) return false;
+  if (mesh.geometry.attributes[attribute] !== source) mesh.geometry.setAttribute(attribute, source);
+  return true;
+}
+
+// viser makes a new material when wireframe, opacity, flat shading or side change: dress whichever is there.
+function dress(material, key, edit) {
+  if (failed.has(material)) return false;
+  if (material.userData.springtide !== key) {
+    material.userData.springtide = key;
+    material.onBeforeCompile = edit;
+    material.customProgramCacheKey = () => key;
+    material.needsUpdate = true;
+  }
+  return true;
+}
+
+// A driver that refuses the program must not leave a hole in the picture: undress and say nothing of being alive.
+function linked(renderer, material) {
+  const program = renderer.properties.get(material).currentProgram;
+  if (!program) return false; // not drawn yet
+  const gl = renderer.getContext();
+  if (program.__springtide === undefined) {
+    program.__springtide = gl.getProgramParameter(program.program, gl.LINK_STATUS);
+  }
+  if (program.__springtide) return true;
+  failed.add(material);
+  material.onBeforeCompile = () => {};
+  material.customProgramCacheKey = () => "";
+  material.needsUpdate = true;
+  return false;
+}
+
+function splice(shader, stage, chunk, text) {
+  shader[stage] = shader[stage].replace(`#include <${chunk}>`, `#include <${chunk}>\n${text}`);
+}
+
+// Per-vertex colours on any mesh: "<name>/paint_rgb" carries sRGB in 0..1.
+recipes.push({
+  suffix: "/paint_rgb",
+  frame({ mesh, channel }) {
+    if (!share(mesh, "paint", channel)) return null;
+    const edit = (shader) => {
+      splice(shader, "vertexShader", "common", "attribute vec3 paint; varying vec3 vPaint;");
+      splice(shader, "vertexShader", "begin_vertex", "vPaint = pow(max(paint, 0.0), vec3(2.2));");
+      splice(shader, "fragmentShader", "common", "varying vec3 vPaint;");
+      splice(shader, "fragmentShader", "color_fragment", "diffuseColor.rgb = vPaint;");
+    };
+    return dress(mesh.material, "springtide-paint", edit) ? mesh.material : null;
+  },
+});
+
+let told = "";
+
+// The answer to the server: token and names of what is drawn dressed, where viser's Python can read it
+// (ClientHandle.local_storage; the prefix is the one its client puts before such keys). Written when it changes.
+function tell(alive) {
+  const answer = [TOKEN, ...alive.sort()].join("\n");
+  if (answer === told) return;
+  told = answer;
+  try {
+    localStorage.setItem("viser-user:springtide-patch", answer);
+  } catch {
+    // A browser without storage draws as well as any other; the server then believes it plain.
+  }
+}
+
+function beforeRender(renderer, scene, camera) {
+  window.__springtide = { memory: () => ({ ...renderer.info.memory }) }; // what a leak would show in
+  const nodes = window.__viserMutable.nodeRefFromName;
+  const alive = [];
+  for (const name of Object.keys(nodes)) {
+    for (const recipe of recipes) {
+      if (!name.endsWith(recipe.suffix) || !nodes[name]) continue;
+      const base = name.slice(0, -recipe.suffix.length);
+      const mesh = meshOf(base);
+      const channel = meshOf(name);
+      if (!mesh || !channel) continue;
+      const material = recipe.frame({ base, mesh, channel, renderer, scene, camera });
+      if (material && linked(renderer, material)) alive.push(base);
+    }
+  }
+  tell(alive);
+}
+
+// The script may arrive before the canvas is there.
+function install() {
+  const viewer = window.__viserMutable;
+  if (!viewer || !viewer.scene || !viewer.nodeRefFromName) return void setTimeout(install, 50);
+  const earlier = viewer.scene.onBeforeRender.springtideEarlier || viewer.scene.onBeforeRender;
+  const hook = function (renderer, scene, camera, target) {
+    earlier.call(this, renderer, scene, camera, target);
+    beforeRender(renderer, scene, camera);
+  };
+  hook.springtideEarlier = earlier;
+  viewer.scene.onBeforeRender = hook;
+  viewer.requestRender();
+}

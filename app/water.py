@@ -1,0 +1,244 @@
+"""How water looks: a sea mesh with Fresnel mirror, sun glitter, depth colour, foam and haze, in stock viser.
+
+The surface travels as the vertices of one mesh, its slopes and foam as the vertices of a hidden one, everything else
+as the vertices of a third, hidden and tiny. `water.js` (through `app/patch.py`) makes water of them in the browser.
+Where the patch does not answer, the same mesh is drawn plainly by viser, with a second mesh for the foam.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import viser
+
+from app.patch import hidden, patch
+from sim.knobs import refusal
+
+RGB = tuple[float, float, float]
+FOAM_SINKS = 0.5  # [m] how deep the plain foam mesh lies where there is no foam
+FOAM_SHOWS = 0.35  # the foam value from which the plain foam mesh stands above the water
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a fluid looks and how it is lit. Colours are sRGB in 0..1; directions point towards the sun.
+
+    refractive_index sets the Fresnel reflectance; roughness is the rms slope of what neither mesh nor ripples show;
+    specular scales every reflection (1 is physics, the lab's oil is below). ripple_slope [rms], ripple_length [m] of
+    the longest ripple, ripple_direction [rad] towards which ripples run. haze [m] is the distance at which a fraction
+    1 - 1/e of the sea is lost in the sky. foam_scale [m] is the size of a patch of bubbles.
+    """
+
+    deep: RGB = (0.0, 0.17, 0.26)
+    scatter: RGB = (0.10, 0.52, 0.50)
+    foam: RGB = (0.93, 0.95, 0.96)
+    refractive_index: float = 1.333
+    roughness: float = 0.03
+    specular: float = 1.0
+    ripple_slope: float = 0.16
+    ripple_length: float = 1.6
+    ripple_direction: float = 0.0
+    foam_scale: float = 2.0
+    sun_direction: tuple[float, float, float] = (0.6, 0.3, 0.5)
+    sun_color: RGB = (1.0, 0.9, 0.75)
+    sun_strength: float = 6.0
+    clouds: float = 0.4
+    cloud_size: float = 2.2
+    haze: float = 3000.0
+    exposure: float = 1.0
+    skyline: tuple[float, float, float] = (0.06, 0.2, 0.6)
+    fold: tuple[float, float, float] = (1.0, 0.3, 12.0)
+    dome: bool = True
+    wireframe: bool = False
+    wire_color: RGB = (0.95, 0.55, 0.1)
+
+
+def linear(color: RGB) -> np.ndarray:
+    """Linear light of an sRGB colour in 0..1 (IEC 61966-2-1, to within 1 %)."""
+    return np.clip(np.asarray(color, float), 0, 1) ** 2.2
+
+
+class Water:
+    """A sea of rows x cols points on a square tile, or any fixed mesh, that changes every frame.
+
+    length [m]: side of the periodic tile; point [i, j] rests at x = i length/rows, y = j length/cols, and the row and
+    column that close the tile are added here. tiles: odd; tiles x tiles copies, drawn from the same buffers. faces:
+    (m, 3) for a mesh of any other shape: vertices are then (rows * cols, 3) in any order and nothing is added or
+    repeated. plain: never patch, public viser only. Raises ValueError for an even number of tiles.
+    """
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        name: str,
+        rows: int,
+        cols: int,
+        length: float,
+        *,
+        tiles: int = 1,
+        faces: np.ndarray | None = None,
+        look: Look | None = None,
+        plain: bool = False,
+    ) -> None:
+        if tiles < 1 or tiles % 2 == 0:
+            raise refusal("tiles", tiles, "an odd number")
+        self.name = name
+        self._server = server
+        self._shape = (rows, cols)
+        self._length = length
+        self._grid = faces is None
+        self._tiles = tiles if self._grid else 1
+        self._look = look or Look()
+        self._state = (0.0, 1.0, 0.0)  # time [s], significant height [m], mean square slope
+        if faces is None:
+            i, j = np.meshgrid(np.arange(rows + 1), np.arange(cols + 1), indexing="ij")
+            rest = np.stack([i * length / rows, j * length / cols, 0.0 * i], axis=-1)
+            corner = (i * (cols + 1) + j)[:-1, :-1].ravel()
+            a, b, c, d = corner, corner + cols + 1, corner + cols + 2, corner + 1
+            self._faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)]).astype(np.uint32)
+        else:
+            rest = np.zeros((rows, cols, 3))
+            self._faces = np.asarray(faces, np.uint32)
+        self._vertices = rest.astype(np.float32)
+        self._aux = np.zeros_like(self._vertices)
+        color = tuple(int(255 * c) for c in self._look.deep)
+        self.mesh = server.scene.add_mesh_simple(
+            name, self._vertices.reshape(-1, 3), self._faces, color=color, cast_shadow=False, receive_shadow=False
+        )
+        self._foam: viser.MeshHandle | None = None
+        self._wire: viser.MeshHandle | None = None
+        self._patch = None if plain else patch(server)
+        if self._patch is not None:
+            self._aux_mesh = hidden(server, f"{name}/water_aux", self._aux.reshape(-1, 3))
+            self._look_mesh = hidden(server, f"{name}/water_look", self._uniforms())
+            self._patch.expect(name)
+
+    def set_surface(self, vertices: np.ndarray, slopes: np.ndarray, foam: np.ndarray, time: float = 0.0) -> None:
+        """Draw this surface; call inside `server.atomic()`. Arrays are copied.
+
+        vertices: (rows, cols, 3) [m]. slopes: (rows, cols, 2), dz/dx and dz/dy of the displaced surface. foam:
+        (rows, cols), 0..1. time [s] moves the ripples.
+        """
+        rows, cols = self._shape
+        for target, source in ((self._vertices[..., :], vertices), (self._aux[..., :2], slopes), (self._aux[..., 2], foam)):
+            target[:rows, :cols] = source
+            if self._grid:
+                target[rows, :cols] = source[0]
+                target[:, cols] = target[:, 0]
+        if self._grid:
+            self._vertices[rows, :, 0] += self._length
+            self._vertices[:, cols, 1] += self._length
+        self.mesh.vertices = self._vertices.reshape(-1, 3)
+        if self._patch is not None:
+            self._aux_mesh.vertices = self._aux.reshape(-1, 3)
+            height = 4.0 * float(np.std(vertices[..., 2]))
+            self._state = (float(time), height, float(np.vdot(slopes, slopes)) / (rows * cols))
+            self._look_mesh.vertices = self._uniforms()
+        self._draw_plain()
+
+    def set_look(self, look: Look) -> None:
+        """Change how it looks from the next frame on."""
+        self._look = look
+        self.mesh.color = tuple(int(255 * c) for c in look.deep)
+        if self._patch is not None:
+            self._look_mesh.vertices = self._uniforms()
+
+    @property
+    def alive(self) -> bool | None:
+        """True if every browser draws it as water, False if one does not, None while not yet known."""
+        return self._patch.alive(self.name) if self._patch is not None else False
+
+    def remove(self) -> None:
+        """Take it out of the scene."""
+        if self._patch is not None:
+            self._patch.forget(self.name)
+        self.mesh.remove()
+
+    def _uniforms(self) -> np.ndarray:
+        """The look as water.js reads it, three numbers a row, in the order of its WATER_UNIFORMS."""
+        look = self._look
+        sun = np.asarray(look.sun_direction, float)
+        rows, cols = (self._shape[0] + 1, self._shape[1] + 1) if self._grid else (0, 0)
+        table = [
+            linear(look.deep),
+            linear(look.scatter),
+            linear(look.foam),
+            sun / max(float(np.linalg.norm(sun)), 1e-9),
+            linear(look.sun_color) * look.sun_strength,
+            (look.refractive_index, look.roughness, look.specular),
+            (look.haze, look.exposure, look.foam_scale),
+            (look.ripple_slope, look.ripple_length, look.ripple_direction),
+            look.skyline,
+            look.fold,
+            (look.clouds, look.cloud_size, look.ripple_direction),
+            self._state,
+            (rows, cols, self._length),
+            (self._tiles, float(look.dome), float(look.wireframe)),
+            linear(look.wire_color),
+        ]
+        return np.array(table, np.float32)
+
+    def _draw_plain(self) -> None:
+        """The foam mesh of the public API, only where some browser needs it."""
+        if self.alive is not False:
+            return
+        vertices = self._vertices.copy()
+        vertices[..., 2] += np.where(self._aux[..., 2] > FOAM_SHOWS, 0.02, -FOAM_SINKS).astype(np.float32)
+        flat = vertices.reshape(-1, 3)
+        if self._foam is None:
+            self._foam = self._server.scene.add_mesh_simple(
+                f"{self.name}/plain_foam", flat, self._faces, color=(235, 240, 242), cast_shadow=False, receive_shadow=False
+            )
+        else:
+            self._foam.vertices = flat
+
+
+@dataclass(frozen=True)
+class Photograph:
+    """What there is to know of one of viser's environment maps: where its sun is, and how high its land."""
+
+    sun_column: float  # of the sun, 0..1 from the left edge of the panorama
+    sun_height: float  # [deg]
+    sun_color: RGB
+    sun_strength: float
+    land_near: float  # [deg] land below the sun, and opposite to it
+    land_far: float
+    stretch: float  # how fast elevation in the picture grows with elevation in our sky, at the horizon
+    fold: float  # share of the picture's azimuths that are used
+    exposure: float = 1.0
+
+
+SKIES = {
+    "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 9.0, 0.6, 0.45, 0.6),
+    "sunset": Photograph(0.600, 3.3, (1.0, 0.62, 0.30), 4.0, 1.5, 5.0, 0.5, 0.36, 0.5),
+    "dawn": Photograph(0.635, 9.5, (1.0, 0.66, 0.46), 2.5, 7.0, 8.0, 0.6, 0.5, 0.42),
+    "night": Photograph(0.36, 25.0, (0.75, 0.85, 1.0), 0.5, 12.0, 18.0, 0.7, 1.0, 1.2),
+}
+
+
+def sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Look:
+    """Set the environment map, lights and camera range; returns a Look lit by that sky. azimuth [rad] of the sun."""
+    photo = SKIES[name]
+    turn = azimuth - (1.5 * math.pi - 2 * math.pi * (photo.sun_column - 0.5))
+    wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
+    server.scene.configure_environment_map(
+        name,  # type: ignore[arg-type]
+        background=True,
+        background_wxyz=wxyz,
+        environment_wxyz=wxyz,
+    )
+    server.scene.configure_default_lights(enabled=True, cast_shadow=False)
+    server.initial_camera.far = 20_000.0
+    # The elevation e at which the remapped sky shows the sun: land + e (g + (90 - land - 90 g) e / 90^2) = height.
+    high = photo.sun_height - photo.land_near
+    g = photo.stretch
+    q = (90 - photo.land_near - 90 * g) / 8100
+    e = math.radians((-g + math.sqrt(g * g + 4 * q * high)) / (2 * q) if abs(q) > 1e-9 else high / g)
+    return Look(
+        sun_direction=(math.cos(e) * math.cos(azimuth), math.cos(e) * math.sin(azimuth), math.sin(e)),
+        sun_color=photo.sun_color,
+        sun_strength=photo.sun_strength,
+        skyline=(math.radians(photo.land_near), math.radians(photo.land_far), g),
+        fold=(photo.fold, 0.5, 5.0),
+        exposure=photo.exposure,
+    )

@@ -120,7 +120,11 @@ class Water:
         (rows, cols), 0..1. time [s] moves the ripples.
         """
         rows, cols = self._shape
-        for target, source in ((self._vertices[..., :], vertices), (self._aux[..., :2], slopes), (self._aux[..., 2], foam)):
+        for target, source in (
+            (self._vertices[..., :], vertices),
+            (self._aux[..., :2], slopes),
+            (self._aux[..., 2], foam),
+        ):
             target[:rows, :cols] = source
             if self._grid:
                 target[rows, :cols] = source[0]
@@ -187,7 +191,12 @@ class Water:
         flat = vertices.reshape(-1, 3)
         if self._foam is None:
             self._foam = self._server.scene.add_mesh_simple(
-                f"{self.name}/plain_foam", flat, self._faces, color=(235, 240, 242), cast_shadow=False, receive_shadow=False
+                f"{self.name}/plain_foam",
+                flat,
+                self._faces,
+                color=(235, 240, 242),
+                cast_shadow=False,
+                receive_shadow=False,
             )
         else:
             self._foam.vertices = flat

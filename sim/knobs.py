@@ -24,7 +24,7 @@ class Knob(NamedTuple):
     hi: float
     unit: str
     doc: str
-    log: bool = False
+    log_from: float = 0.0
     choices: tuple[str, ...] = ()
     group: str = ""
 
@@ -51,18 +51,21 @@ def knob(
     unit: str = "",
     doc: str = "",
     *,
-    log: bool = False,
+    log_from: float = 0.0,
     choices: tuple[str, ...] = (),
     group: str = "",
 ) -> Any:
-    """A dataclass field that is a knob. log: the slider moves over the logarithm."""
+    """A dataclass field that is a knob.
+
+    log_from: above 0, the slider moves over the logarithm from here to hi; its left end is lo, which may be 0.
+    """
     if choices and default not in choices:
         raise ValueError(f"default: {default!r} is not allowed; allowed: one of {', '.join(choices)}")
     if not choices and not isinstance(default, bool) and not lo <= default <= hi:
         raise ValueError(f"default: {default!r} is not allowed; allowed: {lo:g} to {hi:g}")
-    if log and lo <= 0:
-        raise ValueError(f"lo: {lo!r} is not allowed; allowed: above 0 for a logarithmic knob")
-    meta = Knob(default, lo, hi, unit, doc, log, choices, group)
+    if log_from and not max(lo, 0.0) <= log_from < hi:
+        raise ValueError(f"log_from: {log_from!r} is not allowed; allowed: {max(lo, 0.0):g} to below {hi:g}")
+    meta = Knob(default, lo, hi, unit, doc, log_from, choices, group)
     return dataclasses.field(default=default, metadata={"knob": meta})
 
 

@@ -1,0 +1,109 @@
+"""The command line: `springtide` and `python -m app`."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from app.scenes import NAMES, scene_named
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run one command; returns the exit status: 0, 1 for what went wrong on the way, 2 for a bad argument."""
+    parser = make_parser()
+    arguments = parser.parse_args(argv)
+    try:
+        return arguments.command(arguments)
+    except (ValueError, OSError) as error:
+        print(f"springtide: {error}", file=sys.stderr)
+        return 2 if isinstance(error, ValueError) else 1
+    except KeyboardInterrupt:
+        return 130
+
+
+def make_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="springtide",
+        description="An interactive 3-D lab for spring-mass systems and ocean waves, in a browser tab.",
+    )
+    parser.set_defaults(command=serve)
+    add_serving(parser)
+    commands = parser.add_subparsers(metavar="COMMAND")
+
+    run = commands.add_parser("run", help="the same scene without a browser, into a file")
+    run.add_argument("scene", choices=NAMES, metavar="SCENE", help=", ".join(NAMES))
+    run.add_argument("--seconds", type=float, required=True, metavar="S", help="simulated time")
+    run.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
+    run.add_argument("--rate", type=float, default=30.0, metavar="HZ", help="frames kept per simulated second (30)")
+    add_knobs(run)
+    run.set_defaults(command=run_headless)
+
+    bench = commands.add_parser("bench", help="run time against error, kernels, start-up")
+    bench.add_argument("names", nargs="*", metavar="NAME", help="which benchmarks; all by default")
+    bench.add_argument("--quick", action="store_true", help="within a minute")
+    bench.add_argument("--peers", action="store_true", help="also the peers that are installed")
+    bench.add_argument("--out", type=Path, metavar="DIR", help="write CSV and figures here")
+    bench.set_defaults(command=run_bench)
+
+    warmup = commands.add_parser("warmup", help="compile every kernel and plan every transform, once")
+    warmup.set_defaults(command=run_warmup)
+    return parser
+
+
+def add_serving(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--scene", choices=NAMES, default="rope", metavar="SCENE", help=", ".join(NAMES))
+    parser.add_argument("--host", default="127.0.0.1", help="address to serve on; 0.0.0.0 shows the lab to the network")
+    parser.add_argument("--port", type=int, default=8080, help="0 for any free one")
+    parser.add_argument("--no-open", action="store_true", help="do not open the browser")
+    parser.add_argument("--paused", action="store_true", help="start still")
+    add_knobs(parser)
+
+
+def add_knobs(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--preset", type=Path, metavar="FILE.json", help="knobs of a scene, as JSON")
+    parser.add_argument("--set", nargs="+", default=[], metavar="KNOB=VALUE", help="set knobs of the scene")
+
+
+def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
+    """The scene's parameters from --preset and --set; raises ValueError for what is not allowed."""
+    from app.presets import read_preset
+    from sim.knobs import check, parse
+
+    values = read_preset(arguments.preset, scene) if arguments.preset else {}
+    return check(scene.Params, {**values, **parse(scene.Params, arguments.set)})
+
+
+def serve(arguments: argparse.Namespace) -> int:
+    if not 0 <= arguments.port <= 65535:
+        raise ValueError(f"--port: {arguments.port} is not allowed; allowed: 0 to 65535")
+    scene = scene_named(arguments.scene)
+    params = read_params(scene, arguments)
+    from app.serve import serve_lab
+
+    return serve_lab(
+        arguments.scene, params, arguments.host, arguments.port, browser=not arguments.no_open, paused=arguments.paused
+    )
+
+
+def run_headless(arguments: argparse.Namespace) -> int:
+    scene = scene_named(arguments.scene)
+    params = read_params(scene, arguments)
+    from app.headless import run_to_file
+
+    return run_to_file(arguments.scene, scene, params, arguments.seconds, arguments.rate, arguments.out)
+
+
+def run_bench(arguments: argparse.Namespace) -> int:
+    from app.bench.command import run
+
+    return run(arguments.names, arguments.quick, arguments.peers, arguments.out)
+
+
+def run_warmup(arguments: argparse.Namespace) -> int:
+    from app.warmup import warm_up
+
+    return warm_up()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,200 @@
+"""Who may connect, and what they may say.
+
+viser checks neither the Origin of a websocket nor any value that arrives on it, so any page in the user's browser could
+drive a loopback server, and any client could set a slider out of its range or open the public share tunnel. Everything
+from a browser passes `screen`: a short list of message types, only finite bounded numbers, and GUI values within what
+their control offers. The names with a leading underscore are viser's own and the reason for the pin in pyproject.toml.
+"""
+
+import collections
+import contextlib
+import dataclasses
+import io
+import ipaddress
+import math
+import socket
+from collections.abc import Callable, Iterator
+from http import HTTPStatus
+from typing import Any
+from urllib.parse import urlsplit
+
+import viser
+import websockets.asyncio.server
+from viser import _messages as vm
+
+LARGEST = 1e6  # any number in a message beyond this is refused
+LONGEST_TEXT = 1000
+
+# What a browser of ours sends. No uploads, no forms, no share tunnel.
+ALLOWED = (
+    vm.CommandTriggerMessage,
+    vm.GetRenderResponseMessage,
+    vm.GuiButtonHoldMessage,
+    vm.GuiUpdateMessage,
+    vm.LocalStorageGetItemResponseMessage,
+    vm.SceneNodeClickMessage,
+    vm.SceneNodeDragMessage,
+    vm.ScenePointerMessage,
+    vm.TransformControlsDragEndMessage,
+    vm.TransformControlsDragStartMessage,
+    vm.TransformControlsUpdateMessage,
+    vm.ViewerCameraMessage,
+)
+
+
+def is_own_origin(origin: str | None, host: str | None, bound: str) -> bool:
+    """Whether a websocket with these headers comes from our own page, on a server bound to address `bound`.
+
+    A browser always sends an Origin; programs that send none are not what is defended against. The Host must be a name
+    of this machine, as a page of another name that resolves to it (DNS rebinding) has Origin and Host alike.
+    """
+    if origin is None:
+        return True
+    page = urlsplit(origin)
+    if page.scheme not in ("http", "https") or page.netloc != (host or ""):
+        return False
+    name = page.hostname or ""
+    if name in ("localhost", bound, socket.gethostname()):
+        return True
+    try:
+        address = ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return address.is_loopback or not is_loopback(bound)
+
+
+def is_loopback(host: str) -> bool:
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+@contextlib.contextmanager
+def checked_origins(bound: str) -> Iterator[None]:
+    """While open, a websocket server that starts refuses upgrades from other pages with 403."""
+    serve = websockets.asyncio.server.serve
+
+    def guarded_serve(*args: Any, process_request: Any = None, **options: Any) -> Any:
+        def check(connection: Any, request: Any) -> Any:
+            if not is_own_origin(request.headers.get("Origin"), request.headers.get("Host"), bound):
+                return connection.respond(HTTPStatus.FORBIDDEN, "This page may not connect here.\n")
+            return process_request(connection, request)
+
+        return serve(*args, process_request=check, **options)
+
+    websockets.asyncio.server.serve = guarded_serve  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        websockets.asyncio.server.serve = serve  # type: ignore[assignment]
+
+
+def is_bounded(value: Any) -> bool:
+    """Whether every number in a message is finite and of a sane size, and no text is long."""
+    if isinstance(value, bool) or value is None:
+        return True
+    if isinstance(value, int | float):
+        return math.isfinite(value) and abs(value) <= LARGEST
+    if isinstance(value, str):
+        return len(value) <= LONGEST_TEXT
+    if isinstance(value, bytes | bytearray | memoryview):
+        return True
+    if isinstance(value, dict):
+        return all(is_bounded(k) and is_bounded(v) for k, v in value.items())
+    if isinstance(value, list | tuple):
+        return len(value) <= LONGEST_TEXT and all(is_bounded(v) for v in value)
+    return False
+
+
+def allowed_value(handle: Any, value: Any) -> Any:
+    """`value` within what a GUI control offers, clamped where it has a range; None where it is no such value."""
+    if isinstance(handle, viser.GuiCheckboxHandle | viser.GuiButtonHandle):
+        return value if isinstance(value, bool) else None
+    if isinstance(handle, viser.GuiSliderHandle | viser.GuiNumberHandle):
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            return None
+        low = -LARGEST if handle.min is None else handle.min
+        high = LARGEST if handle.max is None else handle.max
+        bounded = min(max(value, low), high)
+        return round(bounded) if isinstance(handle.value, int) else float(bounded)
+    if isinstance(handle, viser.GuiDropdownHandle | viser.GuiButtonGroupHandle):
+        return value if value in handle.options else None
+    return None
+
+
+class Screen:
+    """Lets through of a browser's messages what is allowed, and counts what is not."""
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self.server = server
+        self.refused: collections.Counter[str] = collections.Counter()
+
+    def __call__(self, message: Any) -> Any:
+        """`judge`, counting what is refused and telling every browser of a value that was mended."""
+        good = self.judge(message)
+        if good is None:
+            self.refused[type(message).__name__] += 1
+        elif isinstance(message, vm.GuiUpdateMessage) and good.updates != message.updates:
+            # The sender shows what it sent; tell it, and everyone, what was made of it.
+            self.server._websock_server.queue_message(good)
+        return good
+
+    def judge(self, message: Any) -> Any:
+        """The message, mended where a value only had to be bounded, or None where it is refused."""
+        if isinstance(message, vm.GuiUpdateMessage):
+            return self.judge_update(message)
+        return message if isinstance(message, ALLOWED) and is_bounded(dataclasses.asdict(message)) else None
+
+    def judge_update(self, message: vm.GuiUpdateMessage) -> vm.GuiUpdateMessage | None:
+        handle = self.server.gui._gui_input_handle_from_uuid.get(message.uuid)
+        if handle is None or set(message.updates) != {"value"}:
+            return None
+        good = allowed_value(handle, message.updates["value"])
+        if good is None or getattr(handle, "disabled", False):
+            return None
+        return vm.GuiUpdateMessage(message.uuid, {"value": good})
+
+
+def put_screen(connection: Any, screen: Callable[[Any], Any]) -> None:
+    """Pass every message that `connection` hands to its handlers through `screen` first."""
+    handle = connection._handle_incoming_message
+
+    async def screened(client_id: Any, message: Any) -> None:
+        good = screen(message)
+        if good is not None:
+            await handle(client_id, good)
+
+    connection._handle_incoming_message = screened
+
+
+def check_port(host: str, port: int) -> None:
+    """Raise OSError where `port` cannot be bound: viser would silently take the next one."""
+    if port == 0:
+        return
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        probe.bind((host, port))
+
+
+def open_server(host: str, port: int) -> tuple[viser.ViserServer, Screen]:
+    """A viser server that only our own page may connect to and that only takes what `Screen` lets through.
+
+    Raises OSError where the port is busy or may not be bound.
+    """
+    check_port(host, port)
+    with checked_origins(host), contextlib.redirect_stdout(io.StringIO()):  # we print our own address
+        server = viser.ViserServer(host=host, port=port, label="Springtide", verbose=False)
+    if port not in (0, server.get_port()):
+        server.stop()
+        raise OSError(f"port {port} was taken while starting")
+    screen = Screen(server)
+    connection = server._websock_server
+    for request in (vm.ShareUrlRequest, vm.ShareUrlDisconnect):
+        connection.unregister_handler(request)
+    put_screen(connection, screen)
+    connection.on_client_connect(lambda client: put_screen(client, screen.judge))  # the server counts
+    return server, screen

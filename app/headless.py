@@ -1,0 +1,66 @@
+"""`springtide run`: a scene without a browser, sampled into one .npz file with units and all knobs."""
+
+import json
+import math
+import os
+import tempfile
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from rich.progress import Progress
+
+from app.messages import DivergenceError
+from sim.knobs import refusal
+
+
+def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate: float, out: Path) -> int:
+    """Run and write; a run that diverges keeps what it had, says so, and returns 1."""
+    if not (math.isfinite(seconds) and 0 < seconds <= 1e6):
+        raise refusal("--seconds", seconds, "above 0 to 1e+06 s")
+    if not (math.isfinite(rate) and 0 < rate <= 1e5):
+        raise refusal("--rate", rate, "above 0 to 100000 Hz")
+    if out.suffix != ".npz":
+        raise refusal("--out", str(out), "a name that ends in .npz")
+    if not out.parent.is_dir():
+        raise refusal("--out", str(out), "a file in a folder that exists")
+    running = scene.Scene(params)
+    frames = max(1, round(seconds * rate))
+    steps = max(1, math.ceil(seconds / frames / running.step * (1 - 1e-9)))
+    times, columns, units = [], {}, {}
+    problem = ""
+    with Progress(transient=True) as progress:
+        task = progress.add_task(f"{name}, {seconds:g} s", total=frames)
+        for frame in range(frames + 1):
+            if frame:
+                try:
+                    running.advance(steps)
+                except DivergenceError as reason:
+                    problem = str(reason)
+                    break
+            times.append(running.time)
+            for key, (array, unit) in running.arrays().items():
+                columns.setdefault(key, []).append(array)
+                units[key] = unit
+            progress.update(task, completed=frame)
+    arrays: dict[str, Any] = {"t": np.array(times), **{key: np.array(values) for key, values in columns.items()}}
+    about = {"scene": name, "knobs": vars(params), "units": {"t": "s", **units}, "diverged": problem}
+    write_whole(out, {**arrays, "about": np.array(json.dumps(about))})
+    print(f"{out}: {len(times)} frames to t = {times[-1]:g} s, {', '.join(arrays)}")
+    if problem:
+        print(f"The run ended early. {problem}")
+        return 1
+    return 0
+
+
+def write_whole(path: Path, arrays: dict[str, Any]) -> None:
+    """Write an .npz so that `path` holds all of it or what it held before."""
+    with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
+        try:
+            np.savez_compressed(file, **arrays)
+            file.flush()
+            os.replace(file.name, path)
+        except BaseException:
+            os.unlink(file.name)
+            raise

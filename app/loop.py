@@ -1,0 +1,192 @@
+"""The simulation thread's loop: drain commands, read knobs, take fixed steps, publish a snapshot.
+
+One accumulator and one wall deadline. Time that cannot be made up is dropped and shown, never owed. `SimLoop.tick` is a
+plain function of elapsed wall time, so that tests, headless runs and benchmarks call it without a thread.
+"""
+
+import collections
+import queue
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+from app.messages import Command, DivergenceError, Pause, Play, Reset, Snapshot, Status, StepOnce, TogglePlay
+
+FRAME = 1 / 60  # [s] between ticks
+BUDGET = 0.7  # part of a frame that solving may take; the rest is for streaming
+IDLE = 0.1  # [s] between looks while there is nothing to do
+LONGEST = 0.25  # [s] of wall time that one tick makes up for
+WINDOW = 1.0  # [s] over which rates are measured
+
+
+class FixedStep:
+    """Turns elapsed wall time into whole steps, dropping what does not fit the budget."""
+
+    def __init__(self) -> None:
+        self.debt = 0.0  # [s] of simulated time not yet stepped
+        self.cost = 0.0  # [s] of wall time a step takes, running mean
+
+    def steps(self, wall: float, speed: float, h: float) -> tuple[int, bool]:
+        """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s]."""
+        self.debt += min(wall, LONGEST) * speed
+        due = int(self.debt / h * (1 + 1e-9))
+        most = max(1, int(BUDGET * FRAME / self.cost)) if self.cost > 0 else due
+        if due > most:
+            self.debt = 0.0
+            return most, True
+        self.debt = max(0.0, self.debt - due * h)
+        return due, False
+
+    def learn(self, steps: int, seconds: float) -> None:
+        """Take note that `steps` steps took `seconds` of wall time."""
+        if steps:
+            each = seconds / steps
+            self.cost = each if self.cost == 0 else 0.8 * self.cost + 0.2 * each
+
+
+class SimLoop:
+    """Owns a scene and its clock."""
+
+    def __init__(
+        self,
+        scene: Any,
+        commands: "queue.SimpleQueue[Command] | None" = None,
+        read_params: Callable[[], Any] | None = None,
+        audience: Callable[[], int] = lambda: 1,
+        *,
+        paused: bool = False,
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        """read_params: the knobs' current values, already clamped; audience: how many browsers look."""
+        self.scene = scene
+        self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
+        self.read_params = read_params or (lambda: scene.params)
+        self.audience = audience
+        self.clock = clock
+        self.running = not paused
+        self.halted = ""
+        self.pacer = FixedStep()
+        self.capped = False
+        self.counts: collections.Counter[str] = collections.Counter()
+        self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
+        self.wall = 0.0
+        self.latest: Snapshot = self.snapshot(0.0)
+
+    def tick(self, wall: float) -> None:
+        """One frame, `wall` seconds after the last."""
+        self.wall += wall
+        # Knobs first: a preset sets them all and then asks for a reset.
+        params = self.read_params()
+        changed = params != self.scene.params
+        if changed:
+            self.guarded(lambda: self.scene.set_params(params))
+        changed |= self.drain()
+        solve = 0.0
+        if self.running and self.audience():
+            n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step)
+            if n:
+                solve = self.advance(n)
+                changed = True
+        else:
+            self.counts["idle ticks"] += 1
+        if changed:
+            self.latest = self.snapshot(solve)
+
+    def advance(self, n: int) -> float:
+        """Take n steps; returns the wall time they took [s]."""
+        start = self.clock()
+        self.guarded(lambda: self.scene.advance(n))
+        seconds = self.clock() - start
+        self.pacer.learn(n, seconds)
+        self.counts["steps"] += n
+        return seconds
+
+    def guarded(self, action: Callable[[], None]) -> None:
+        """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say."""
+        try:
+            action()
+        except DivergenceError as reason:
+            self.halt(str(reason))
+        except Exception as error:
+            traceback.print_exc()
+            self.halt(f"The scene stopped with {type(error).__name__}: {error}")
+
+    def halt(self, reason: str) -> None:
+        self.running = False
+        self.halted = reason
+
+    def drain(self) -> bool:
+        """Obey every waiting command; True where there was one."""
+        changed = False
+        while True:
+            try:
+                command = self.commands.get_nowait()
+            except queue.Empty:
+                return changed
+            changed = True
+            self.obey(command)
+
+    def obey(self, command: Command) -> None:
+        match command:
+            case Play():
+                self.running, self.halted = True, ""
+            case Pause():
+                self.running = False
+            case TogglePlay():
+                self.obey(Pause() if self.running else Play())
+            case StepOnce():
+                self.running = False
+                self.advance(1)
+            case Reset():
+                self.running, self.halted = self.running or bool(self.halted), ""
+                self.pacer.debt = 0.0
+                self.guarded(self.scene.reset)
+            case _:
+                self.guarded(lambda: self.scene.obey(command))
+
+    def snapshot(self, solve: float) -> Snapshot:
+        self.counts["snapshots"] += 1
+        simulated = self.scene.time
+        self.history.append((self.wall, simulated))
+        while len(self.history) > 2 and self.history[0][0] < self.wall - WINDOW:
+            self.history.popleft()
+        elapsed = self.wall - self.history[0][0]
+        status = Status(
+            running=self.running,
+            time=simulated,
+            steps=self.counts["steps"],
+            speed=self.scene.params.speed,
+            actual=max(0.0, (simulated - self.history[0][1]) / elapsed) if elapsed > 0 and self.running else 0.0,
+            capped=self.capped and self.running,
+            solve=solve,
+            rate=(len(self.history) - 1) / elapsed if elapsed > 0 else 0.0,
+            halted=self.halted,
+        )
+        return Snapshot(
+            self.counts["snapshots"], self.scene.picture(), status, self.scene.gauge(), self.scene.take_samples()
+        )
+
+    def run(self, stop: threading.Event) -> None:
+        """Tick until `stop` is set, at the frame rate while there is something to do."""
+        last = self.clock()
+        while not stop.is_set():
+            busy = self.running and self.audience() > 0
+            now = self.clock()
+            self.tick(now - last)
+            last = now
+            rest = (FRAME if busy else IDLE) - (self.clock() - now)
+            if rest > 0:
+                self.wait(rest, stop, busy)
+
+    def wait(self, seconds: float, stop: threading.Event, busy: bool) -> None:
+        """Sleep; while idle, a command ends the sleep at once."""
+        if busy:
+            stop.wait(seconds)
+            return
+        try:
+            self.obey(self.commands.get(timeout=seconds))
+            self.latest = self.snapshot(0.0)
+        except queue.Empty:
+            pass

@@ -1,0 +1,88 @@
+"""All that crosses a thread: commands to the simulation, snapshots from it. Both are immutable."""
+
+import math
+from typing import Any, NamedTuple
+
+Vector = tuple[float, float, float]
+
+REACH = 100.0  # [m] from the origin: nothing from a browser is placed farther out
+
+
+def finite_vector(values: Any) -> Vector | None:
+    """Three finite numbers within REACH, or None where it is not three finite numbers."""
+    try:
+        x, y, z = (float(c) for c in values)
+    except (TypeError, ValueError):
+        return None
+    if not all(math.isfinite(c) for c in (x, y, z)):
+        return None
+    return min(max(x, -REACH), REACH), min(max(y, -REACH), REACH), min(max(z, -REACH), REACH)
+
+
+class Play(NamedTuple):
+    """Run on."""
+
+
+class Pause(NamedTuple):
+    """Hold still."""
+
+
+class TogglePlay(NamedTuple):
+    """Run on if still, hold still if running."""
+
+
+class StepOnce(NamedTuple):
+    """Hold still and advance by one time step."""
+
+
+class Reset(NamedTuple):
+    """Back to the start of the scene, parameters and camera kept."""
+
+
+class Place(NamedTuple):
+    """Put a named thing of the scene (its root, its sphere) at a position [m]."""
+
+    thing: str
+    position: Vector
+
+
+class Grab(NamedTuple):
+    """Pull a particle, by flat index, towards a target [m]."""
+
+    index: int
+    target: Vector
+
+
+class Release(NamedTuple):
+    """Let go of the grabbed particle."""
+
+
+Command = Play | Pause | TogglePlay | StepOnce | Reset | Place | Grab | Release
+
+
+class Status(NamedTuple):
+    """How the loop fares."""
+
+    running: bool
+    time: float  # [s] simulated
+    steps: int
+    speed: float  # target real-time factor
+    actual: float  # real-time factor over the last second
+    capped: bool  # time that could not be made up is being dropped
+    solve: float  # [s] per frame spent solving
+    rate: float  # frames per second published
+    halted: str  # why the run stopped by itself, or ""
+
+
+class Snapshot(NamedTuple):
+    """One frame: what the scene shows (frozen, float32), how the loop fares, and numbers for the plots."""
+
+    serial: int
+    picture: Any
+    status: Status
+    gauge: Any
+    samples: tuple[tuple[float, ...], ...]  # new plot rows, (t, ...) each
+
+
+class DivergenceError(Exception):
+    """A run left any sane bound; the text says which h omega did it and which step would hold."""

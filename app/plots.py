@@ -1,0 +1,70 @@
+"""Live plots in a dock of their own, made when first asked for. Long histories thin out; they never grow."""
+
+import time
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import viser
+from viser import uplot
+
+from app.messages import Snapshot
+
+EVERY = 0.12  # [s] between two sends
+LENGTH = 600  # points kept
+COLOURS = ("#4c6ef5", "#f76707", "#12b886", "#ae3ec9", "#868e96", "#e03131", "#1c7ed6")
+
+
+class Plots:
+    """What a scene's `PLOTS` declares: knob -> (title, unit, names of the series in SERIES)."""
+
+    def __init__(self, server: viser.ViserServer, scene: ModuleType) -> None:
+        self.server, self.scene = server, scene
+        self.rows: list[tuple[float, ...]] = []
+        self.charts: dict[str, Any] = {}
+        self.panel: Any = None
+        self.sent_at = 0.0
+
+    def update(self, snapshot: Snapshot, params: Any) -> None:
+        """Take the snapshot's new rows and, now and then, send what is open."""
+        wanted = {knob for knob in self.scene.PLOTS if getattr(params, knob)}
+        for knob in self.scene.PLOTS:
+            if knob in self.charts:
+                self.charts[knob].visible = knob in wanted
+            elif knob in wanted:
+                self.charts[knob] = self.add(knob)
+        if self.panel is not None:
+            self.panel.visible = bool(wanted)
+        for row in snapshot.samples:
+            if row[0] != row[0]:  # a NaN time: the run starts over
+                self.rows.clear()
+            else:
+                self.rows.append(row)
+        if len(self.rows) > LENGTH:
+            self.rows = self.rows[-LENGTH:]
+        now = time.monotonic()
+        if wanted and len(self.rows) > 1 and now - self.sent_at >= EVERY:
+            self.sent_at = now
+            table = np.array(self.rows).T
+            for knob in wanted:
+                columns = [1 + self.scene.SERIES.index(name) for name in self.scene.PLOTS[knob][2]]
+                self.charts[knob].data = (table[0], *(table[c] for c in columns))
+
+    def add(self, knob: str) -> Any:
+        """The chart of one knob, in the dock."""
+        if self.panel is None:
+            self.panel = self.server.gui.add_panel()
+            self.tab = self.panel.add_tab("Plots")
+            self.panel.dock_left()
+        title, unit, names = self.scene.PLOTS[knob]
+        series: list[uplot.Series] = [uplot.Series(label="t [s]")]
+        for name, colour in zip(names, COLOURS, strict=False):
+            series.append(uplot.Series(label=name, stroke=colour, width=2))
+        with self.tab:
+            return self.server.gui.add_uplot(
+                tuple(np.array([0.0, 1.0]) for _ in series),
+                tuple(series),
+                title=f"{title} [{unit}]",
+                scales={"x": uplot.Scale(time=False, auto=True)},
+                height=220,
+            )

@@ -1,0 +1,32 @@
+"""The scenes: one module each, found by being here, imported on first use.
+
+To add one, write a module here, and its drawing under the same name in `app/pictures`: the two sides of the thread, so
+that a headless run imports no viewer. The module has
+
+1. `Params`, a frozen dataclass of knobs with at least `speed` (target real-time factor): from it come the panel, the
+   command line, presets and the clamp;
+2. `TITLE`, `HELP` (two lines on how to use it), `SERIES` and `PLOTS` (the plot rows' columns, and the charts of each
+   plot knob), `PRESETS`: name -> {knob: value}, the first being the defaults;
+3. `Scene(params)`, the simulation, on the simulation thread only: `params`, `step` [s], `time` [s], `set_params`,
+   `advance(steps)` (raises `DivergenceError`), `reset()`, `obey(command)`, `picture()` (frozen, float32), `gauge()`,
+   `take_samples()`, `arrays()` for headless runs;
+4. `hidden(params)`, the knobs that mean nothing just now.
+
+The drawing has `Picture(server, post)` with `show(picture, gauge)`, on the viewer's thread only, whose callbacks only
+`post` commands, and `readout(snapshot)`, the lines of HTML under the panel's buttons.
+"""
+
+import importlib
+import pkgutil
+from types import ModuleType
+
+from sim.knobs import refusal
+
+NAMES = tuple(module.name for module in pkgutil.iter_modules(__path__))
+
+
+def scene_named(name: str) -> ModuleType:
+    """The scene's module; raises ValueError with the names there are."""
+    if name not in NAMES:
+        raise refusal("scene", name, "one of " + ", ".join(NAMES))
+    return importlib.import_module(f"{__name__}.{name}")

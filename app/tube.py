@@ -1,0 +1,94 @@
+"""A tube of fixed topology around a moving line: a smooth rope."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.jit import kernel
+
+SIDES = 10
+
+
+def faces(rings: int, sides: int = SIDES) -> NDArray[np.uint32]:
+    """Triangles (2 sides rings, 3) of a tube of `rings` rings, closed by a fan at each end's centre."""
+    quads = []
+    for r in range(rings - 1):
+        for s in range(sides):
+            a, b = r * sides + s, r * sides + (s + 1) % sides
+            quads += [(a, b, a + sides), (b, b + sides, a + sides)]
+    first, last = rings * sides, rings * sides + 1
+    end = (rings - 1) * sides
+    for s in range(sides):
+        quads += [((s + 1) % sides, s, first), (end + s, end + (s + 1) % sides, last)]
+    return np.array(quads, dtype=np.uint32)
+
+
+@kernel
+def smooth_line(points, between, line):
+    """Catmull-Rom curve through points (n, 3), `between` samples a link, into line ((n - 1) between + 1, 3)."""
+    n = points.shape[0]
+    for i in range(n - 1):
+        before, after = max(i - 1, 0), min(i + 2, n - 1)
+        for s in range(between):
+            t = s / between
+            for e in range(3):
+                p0, p1, p2, p3 = points[before, e], points[i, e], points[i + 1, e], points[after, e]
+                line[i * between + s, e] = 0.5 * (
+                    2.0 * p1
+                    + t * (p2 - p0 + t * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 + t * (3.0 * (p1 - p2) + p3 - p0)))
+                )
+    line[(n - 1) * between] = points[n - 1]
+
+
+@kernel
+def sweep(line, radius, sides, vertices):
+    """Rings of `sides` vertices around line (rings, 3), then the two end centres, into vertices (float32).
+
+    The frame is carried from ring to ring by the double reflection method (Wang et al. 2008, ACM TOG 27(1):2, table 1),
+    so that the tube does not twist.
+    """
+    rings = line.shape[0]
+    tx, ty, tz = 1.0, 0.0, 0.0
+    rx, ry, rz = 0.0, 1.0, 0.0
+    for i in range(rings):
+        a, b = max(i - 1, 0), min(i + 1, rings - 1)
+        ux, uy, uz = line[b, 0] - line[a, 0], line[b, 1] - line[a, 1], line[b, 2] - line[a, 2]
+        length = math.sqrt(ux * ux + uy * uy + uz * uz)
+        if length > 1e-12:
+            ux, uy, uz = ux / length, uy / length, uz / length
+        else:
+            ux, uy, uz = tx, ty, tz
+        if i == 0:
+            # Any direction across the first tangent.
+            rx, ry, rz = (0.0, 0.0, 1.0) if abs(uz) < 0.9 else (1.0, 0.0, 0.0)
+        else:
+            vx, vy, vz = line[i, 0] - line[i - 1, 0], line[i, 1] - line[i - 1, 1], line[i, 2] - line[i - 1, 2]
+            c = vx * vx + vy * vy + vz * vz
+            if c > 1e-24:
+                d, e = 2.0 * (vx * rx + vy * ry + vz * rz) / c, 2.0 * (vx * tx + vy * ty + vz * tz) / c
+                rx, ry, rz = rx - d * vx, ry - d * vy, rz - d * vz
+                tx, ty, tz = tx - e * vx, ty - e * vy, tz - e * vz
+                wx, wy, wz = ux - tx, uy - ty, uz - tz
+                c = wx * wx + wy * wy + wz * wz
+                if c > 1e-24:
+                    d = 2.0 * (wx * rx + wy * ry + wz * rz) / c
+                    rx, ry, rz = rx - d * wx, ry - d * wy, rz - d * wz
+        dot = rx * ux + ry * uy + rz * uz
+        rx, ry, rz = rx - dot * ux, ry - dot * uy, rz - dot * uz
+        norm = math.sqrt(rx * rx + ry * ry + rz * rz)
+        if norm < 1e-12:
+            rx, ry, rz, norm = (0.0, 0.0, 1.0, 1.0) if abs(uz) < 0.9 else (1.0, 0.0, 0.0, 1.0)
+        rx, ry, rz = rx / norm, ry / norm, rz / norm
+        tx, ty, tz = ux, uy, uz
+        sx, sy, sz = uy * rz - uz * ry, uz * rx - ux * rz, ux * ry - uy * rx
+        for s in range(sides):
+            angle = 2.0 * math.pi * s / sides
+            c, d = radius * math.cos(angle), radius * math.sin(angle)
+            v = i * sides + s
+            vertices[v, 0] = line[i, 0] + c * rx + d * sx
+            vertices[v, 1] = line[i, 1] + c * ry + d * sy
+            vertices[v, 2] = line[i, 2] + c * rz + d * sz
+    for e in range(3):
+        vertices[rings * sides, e] = line[0, e]
+        vertices[rings * sides + 1, e] = line[rings - 1, e]

@@ -1,0 +1,90 @@
+"""Owns the server: runs one scene's loop in a thread and pumps its latest snapshot into the handles."""
+
+import queue
+import threading
+import time
+from typing import Any
+
+from app.guard import open_server
+from app.loop import SimLoop
+from app.messages import Command
+from app.panel import Panel
+from app.pictures import picture_named
+from app.scenes import NAMES, scene_named
+
+PUMP = 1 / 60  # [s] between looks for a new snapshot; a scene's picture may ask for less
+
+
+class Viewer:
+    """The lab in a browser. Everything drawn is assigned on the pump thread, everything simulated on the loop's."""
+
+    def __init__(self, host: str, port: int) -> None:
+        """Raises OSError where the port cannot be bound."""
+        self.server, self.screen = open_server(host, port)
+        self.port = self.server.get_port()
+        self.stop = threading.Event()
+        self.threads: list[threading.Thread] = []
+        self.shown = 0
+        self.sent = 0.0  # [s] that the last frame took to hand over
+        self.changing = threading.Lock()
+        gui = self.server.gui
+        gui.configure_theme(
+            show_logo=False, show_share_button=False, control_width="medium", brand_color=(28, 106, 168)
+        )
+        gui.set_panel_label("Springtide")
+
+    def open(self, name: str, params: Any = None, *, paused: bool = False) -> None:
+        """Show a scene, in place of the one that is open."""
+        with self.changing:
+            self.close()
+            scene, picture = scene_named(name), picture_named(name)
+            self.server.gui.reset()
+            self.server.scene.reset()
+            self.scene = scene.Scene(params or scene.Params())
+            commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+            self.picture = picture.Picture(self.server, commands.put)
+            position, target = self.picture.CAMERA
+            self.server.initial_camera.position, self.server.initial_camera.look_at = position, target
+            self.panel = Panel(
+                self.server, scene, picture, self.scene.params, commands.put, scenes=NAMES, open_scene=self.open
+            )
+            self.loop = SimLoop(self.scene, commands, self.panel.read, self.audience, paused=paused)
+            self.stop = threading.Event()
+            self.threads = [
+                threading.Thread(target=self.loop.run, args=(self.stop,), name="simulation", daemon=True),
+                threading.Thread(target=self.pump, args=(self.stop,), name="viewer", daemon=True),
+            ]
+            for thread in self.threads:
+                thread.start()
+
+    def audience(self) -> int:
+        """How many browsers look."""
+        return len(self.server._connected_clients)
+
+    def pump(self, stop: threading.Event) -> None:
+        """Show each new snapshot once."""
+        while not stop.wait(PUMP if self.audience() else 0.1):
+            self.show_latest()
+
+    def show_latest(self) -> None:
+        snapshot = self.loop.latest
+        if snapshot.serial == self.shown:
+            return
+        self.shown = snapshot.serial
+        start = time.perf_counter()
+        with self.server.atomic():
+            self.picture.show(snapshot.picture)
+        self.server.flush()
+        self.sent = time.perf_counter() - start
+        self.panel.update(snapshot, self.sent)
+
+    def close(self) -> None:
+        """Stop the threads of the open scene."""
+        self.stop.set()
+        for thread in self.threads:
+            thread.join()
+        self.threads = []
+
+    def shut(self) -> None:
+        self.close()
+        self.server.stop()

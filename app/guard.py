@@ -120,9 +120,20 @@ def allowed_value(handle: Any, value: Any) -> Any:
         high = LARGEST if handle.max is None else handle.max
         bounded = min(max(value, low), high)
         return round(bounded) if isinstance(handle.value, int) else float(bounded)
+    if isinstance(handle, viser.GuiMultiSliderHandle):
+        if not isinstance(value, list | tuple) or len(value) != len(handle.value) or not is_bounded(value):
+            return None
+        if not all(isinstance(v, int | float) and not isinstance(v, bool) for v in value):
+            return None
+        return tuple(float(min(max(v, handle.min), handle.max)) for v in value)
     if isinstance(handle, viser.GuiDropdownHandle | viser.GuiButtonGroupHandle):
         return value if value in handle.options else None
     return None
+
+
+def same(good: Any, sent: Any) -> bool:
+    """Whether a browser already shows the value that was made of what it sent."""
+    return list(good) == list(sent) if isinstance(good, tuple) else good == sent
 
 
 class Screen:
@@ -137,7 +148,7 @@ class Screen:
         good = self.judge(message)
         if good is None:
             self.refused[type(message).__name__] += 1
-        elif isinstance(message, vm.GuiUpdateMessage) and good.updates != message.updates:
+        elif isinstance(message, vm.GuiUpdateMessage) and not same(good.updates["value"], message.updates["value"]):
             # The sender shows what it sent; tell it, and everyone, what was made of it.
             self.server._websock_server.queue_message(good)
         return good

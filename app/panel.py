@@ -30,9 +30,16 @@ def title(name: str, knob: Knob) -> str:
 
 
 def decade_marks(low: float, high: float) -> tuple[tuple[float, str], ...]:
-    """A mark at every third decade of a logarithmic slider, written short."""
-    names = {-6: "µ", -3: "m", 0: "1", 3: "k", 6: "M", 9: "G"}
-    return tuple((float(d), names[d]) for d in names if math.log10(low) <= d <= math.log10(high))
+    """Marks at decades between two logarithms, about four of them, written short."""
+    prefixes = {-6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+    decades = range(math.ceil(low - 1e-9), math.floor(high + 1e-9) + 1)
+    every = max(1, math.ceil((high - low) / 4))
+    marks = []
+    for d in decades[:: every if every < 3 else 3]:
+        power = 3 * math.floor(d / 3)
+        plain = -2 <= d <= 2
+        marks.append((float(d), f"{10.0**d:g}" if plain else f"{10 ** (d - power)}{prefixes[power]}"))
+    return tuple(marks)
 
 
 def nice_step(low: float, high: float) -> float:
@@ -63,13 +70,14 @@ class Control:
                 label, value, min=knob.lo, max=knob.hi, step=1 if whole else self.precision(), hint=hint
             )
             low, high = math.log10(knob.log_from), math.log10(knob.hi)
-            self.slider = gui.add_slider(
+            # A multi-slider with one handle: it has no number box, which would show the logarithm.
+            self.slider = gui.add_multi_slider(
                 " ",
                 low,
                 high,
                 step=(high - low) / 400,
-                initial_value=self.place(value),
-                marks=decade_marks(knob.log_from, knob.hi) if high - low > 3 else None,
+                initial_value=(self.place(value),),
+                marks=decade_marks(low, high),
                 hint=f"{label}, logarithmic",
             )
             self.slider.on_update(self.on_slider)
@@ -93,7 +101,7 @@ class Control:
         self.take(event.target.value)
 
     async def on_slider(self, event: Any) -> None:
-        at = float(event.target.value)
+        at = float(event.target.value[0])
         # At its left end the slider means the least value, which may be 0.
         value = self.knob.lo if at <= math.log10(self.knob.log_from) + 1e-9 else float(f"{10.0**at:.3g}")
         if abs(self.place(self.value) - at) > 1e-3:
@@ -109,7 +117,7 @@ class Control:
         # Assigning runs the callbacks again; they find nothing new.
         self.field.value = good
         if self.slider is not None:
-            self.slider.value = self.place(good)
+            self.slider.value = (self.place(good),)
 
     def show(self, visible: bool) -> None:
         for widget in (self.field, self.slider, self.mark):
@@ -244,7 +252,7 @@ class Panel:
 
     def notify(self, text: str) -> None:
         for client in self.server.get_clients().values():
-            client.add_notification("Paused", text, color="red", auto_close_seconds=None)
+            client.add_notification("Paused", text, color="red", auto_close_seconds=10.0)
 
 
 def status_line(snapshot: Snapshot, sent: float) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 
 from app.guard import is_loopback
 from app.viewer import Viewer
+from app.warmup import prepare
 
 
 def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, paused: bool) -> int:
@@ -17,6 +18,7 @@ def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, pa
     except OSError as error:
         print(f"springtide: cannot serve on {host}:{port}: {error.strerror or error}; try --port 0", file=sys.stderr)
         return 1
+    prepare(name)
     viewer.open(name, params, paused=paused)
     shown = "localhost" if is_loopback(host) or host == "0.0.0.0" else f"[{host}]" if ":" in host else host
     address = f"http://{shown}:{viewer.port}"

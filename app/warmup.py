@@ -1,20 +1,32 @@
-"""`springtide warmup`: compile every kernel once, with a progress bar, so that the first scene opens at once."""
+"""Compile kernels ahead, with a progress bar: `springtide warmup`, and the first start of each scene."""
 
-from rich.progress import Progress
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+from app.pictures import picture_named
+from app.scenes import NAMES, scene_named
 from sim.jit import CACHE
 
 
 def warm_up() -> int:
-    """Run every integrator over a short rope, with floor, sphere and ledger."""
-    from sim.springs import INTEGRATORS, rope, simulate
-
-    net = rope(4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2))
-    with Progress() as progress:
-        task = progress.add_task("compiling", total=len(INTEGRATORS))
-        for name in INTEGRATORS:
-            progress.update(task, description=name)
-            simulate(net, name, 1e-3, 2e-3, 2, with_ledger=True)
-            progress.advance(task)
+    """Compile every scene's kernels and plan its transforms; returns the exit status."""
+    for name in NAMES:
+        compile_scene(name)
     print(f"Kept in {CACHE}" if CACHE else "Nothing could be kept: no cache directory is writable")
     return 0
+
+
+def prepare(name: str) -> None:
+    """Compile a scene's kernels unless this version of them has been compiled before."""
+    if CACHE is None or not (CACHE / f"{name}.warm").exists():
+        compile_scene(name)
+
+
+def compile_scene(name: str) -> None:
+    columns = SpinnerColumn(), TextColumn("compiling {task.description} (once)"), TimeElapsedColumn()
+    with Progress(*columns, transient=True) as progress:
+        task = progress.add_task(name, total=None)
+        for side in (scene_named(name), picture_named(name)):
+            for part in side.warm_up():
+                progress.update(task, description=f"{name}: {part}")
+    if CACHE is not None:
+        (CACHE / f"{name}.warm").touch()

@@ -1,7 +1,7 @@
 """The rope as a tube coloured by tension, its points as beads to be grabbed, root and sphere on gizmos."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -172,6 +172,14 @@ class Picture:
             gizmo.position, position, atol=1e-4
         ):
             gizmo.position = position
+
+
+def warm_up() -> Iterator[str]:
+    """Compile what the drawing calls; yields what comes next."""
+    yield "drawing"
+    line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
+    smooth_line(np.zeros((2, 3), np.float32), 2, line)
+    sweep(line, THICKNESS, SIDES, vertices)
 
 
 def readout(snapshot: Snapshot) -> str:

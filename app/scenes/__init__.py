@@ -10,10 +10,11 @@ that a headless run imports no viewer. The module has
 3. `Scene(params)`, the simulation, on the simulation thread only: `params`, `step` [s], `time` [s], `set_params`,
    `advance(steps)` (raises `DivergenceError`), `reset()`, `obey(command)`, `picture()` (frozen, float32), `gauge()`,
    `take_samples()`, `arrays()` for headless runs;
-4. `hidden(params)`, the knobs that mean nothing just now.
+4. `hidden(params)`, the knobs that mean nothing just now, and `warm_up()`, which compiles what the scene may call.
 
 The drawing has `Picture(server, post)` with `show(picture, gauge)`, on the viewer's thread only, whose callbacks only
-`post` commands, and `readout(snapshot)`, the lines of HTML under the panel's buttons.
+`post` commands, `readout(snapshot)`, the HTML under the panel's
+buttons, `marks(snapshot)`, knob -> the line under it, and `warm_up()`.
 """
 
 import importlib

@@ -1,0 +1,236 @@
+"""How large a step a net allows: its extreme modes, and each integrator's limit at their damping.
+
+Explicit integrators blow up from the top of the spectrum, a sawtooth along the links. An integrator declares the
+largest stable h omega of an oscillator of damping ratio zeta, so a net's largest stable step is the least of
+limit(zeta)/omega over the modes that can be the first to leave: the stiffest, the most damped, and, where damping is
+axial, the stiffest across the links. Each mode's damping is its Rayleigh quotient, exact where D is a combination
+of K and M, as along a straight rope. Contact or crossing links couple the modes: the step is then right to some per
+cent, except explicit Euler's, which hangs on the least damped of all modes and is a guide only.
+"""
+
+import dataclasses
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.springs.integrators import Integrator
+from sim.springs.net import Forces, Net, check_number
+from sim.springs.simulate import integrator_named
+from sim.springs.state import State
+from sim.springs.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos
+
+VECTORS = 32  # of Lanczos: the stiffest frequency to 0.1 % on nets of any size
+MOST_DAMPED = 1000.0  # zeta above which only the rate matters, not the frequency
+NEARLY = 1e-7  # relative width at which the search for a stiffness ends
+
+
+class Mode(NamedTuple):
+    """A vibration that may be the first to leave an integrator's limit."""
+
+    stiffness: float  # u K u / u M u = omega^2 [1/s^2]
+    links: float  # the links' part of it [1/s^2]
+    rate: float  # gamma = u D u / u M u = 2 zeta omega [1/s]
+
+    @property
+    def omega(self) -> float:
+        """[rad/s]; at least what makes zeta MOST_DAMPED."""
+        return max(math.sqrt(max(self.stiffness, 0.0)), 0.5 * self.rate / MOST_DAMPED)
+
+    @property
+    def zeta(self) -> float:
+        return 0.5 * self.rate / self.omega if self.omega > 0.0 else 0.0
+
+    def with_links(self, scale: float) -> "Mode":
+        """The same vibration with every link `scale` times as stiff."""
+        return Mode(self.stiffness + (scale - 1.0) * self.links, scale * self.links, self.rate)
+
+
+class Gauge(NamedTuple):
+    """The mode nearest to its limit, for the live display."""
+
+    omega: float  # [rad/s]
+    zeta: float
+    h_omega: float
+    limit: float  # largest stable h omega at this zeta
+    critical_step: float  # [s]
+
+
+def gershgorin(net: Net) -> tuple[float, float]:
+    """Upper bounds of frequency [rad/s] and damping rate [1/s] in any state, from Gershgorin's discs.
+
+    omega^2 <= max_i (2 sum_j k_ij + contact + grab)/m and gamma <= max_i (2 sum_j b_ij + drag + contact + grab)/m,
+    the first tight for a long uniform rope, 4 k/m.
+    """
+    rows, cols = net.shape
+    stiffness, damping = np.zeros((2, rows, cols))
+    for f in net.families:
+        i, j = slice(0, max(0, rows - f.di)), slice(max(0, -f.dj), max(0, cols - max(0, f.dj)))
+        far = slice(f.di, rows), slice(j.start + f.dj, max(0, j.stop + f.dj))
+        for end in ((i, j), far):
+            stiffness[end] += 2.0 * f.stiffness
+            damping[end] += 2.0 * f.damping
+    # The lab's sphere multiplies its damping by the depth, which no bound holds below the radius.
+    depth = max(1.0, net.sphere[3] + net.radius) if net.sphere and net.contact.law == "lab" else 1.0
+    touched = (net.floor is not None) + (net.sphere is not None) * depth
+    damping += net.drag + touched * net.contact.damping
+    stiffness += ((net.floor is not None) + (net.sphere is not None)) * net.contact.stiffness
+    if net.grab is not None:
+        stiffness[net.grab.row, net.grab.col] += net.grab.stiffness
+        damping[net.grab.row, net.grab.col] += net.grab.damping
+    free = net.weights().reshape(rows, cols) > 0.0
+    if not free.any():
+        return 0.0, 0.0
+    return math.sqrt(float(stiffness[free].max()) / net.mass), float(damping[free].max()) / net.mass
+
+
+def sawtooth(net: Net, x: NDArray[np.float64], p: Forces) -> NDArray[np.float64]:
+    """A unit vector (3 rows cols,) near the stiffest mode: neighbours move against each other along their links.
+
+    A rope's top mode is one almost exactly, so that Lanczos starts where it is to end. The fixed noise keeps anything
+    else that is stiff, such as a point in contact, from being orthogonal to the start.
+    """
+    rows, cols = net.shape
+    u = 0.1 * np.random.default_rng(0).standard_normal(x.shape)
+    alternating = (-1.0) ** np.add.outer(np.arange(rows), np.arange(cols))
+    for axis, count in ((1, rows), (2, cols)):
+        if count > 1:
+            along = np.gradient(x, axis=axis)
+            u += alternating * along / np.sqrt((along * along).sum(axis=0) + 1e-300)
+    flat = u.reshape(3, -1) * (p.weights > 0.0)
+    return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
+
+
+def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Forces, part: int):
+    """The unit vector (3 rows cols,) of the largest eigenvalue of `part` of the tangent about x."""
+    basis = np.zeros((min(VECTORS, x.size), x.size))
+    basis[0] = start
+    diagonal, beside = np.zeros((2, len(basis)))
+    filled = set_lanczos(x, t, p, part, basis, diagonal, beside)
+    across = np.diag(beside[: filled - 1], 1)
+    _, vectors = np.linalg.eigh(np.diag(diagonal[:filled]) + across + across.T)
+    return vectors[:, -1] @ basis[:filled]
+
+
+def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) -> list[Mode]:
+    """The stiffest mode about positions x (3, rows, cols) [m] (None: x0) at time t [s], then the most damped one and,
+    of axially damped nets, the stiffest across the links.
+
+    Points that touch floor or sphere, and the grab, count; friction does not (see `sim.springs.tangent`).
+    Empty where nothing is free to move.
+    """
+    x = net.x0 if x is None else x
+    if not np.isfinite(x).all():
+        return []
+    p = net.forces(1.0)
+    start = sawtooth(net, x, p)
+    flat = np.ascontiguousarray(x).reshape(-1)
+    if not start.any():
+        return []
+    parts = [STIFFNESS]
+    if p.damped or p.has_floor or p.has_sphere or p.grabbed >= 0:
+        parts.append(DAMPING)
+    if p.damped and p.axial:
+        parts.append(TRANSVERSE)
+    found = [quotients(flat, top_vector(flat, start, t, p, part), t, p) for part in parts]
+    # Slack links are not stiff across by more than round-off: no frequency is better than a wrong one.
+    floor = 1e-12 * abs(found[0][0])
+    return [Mode(stiffness if stiffness > floor else 0.0, links, rate) for stiffness, links, rate in found]
+
+
+def step_limit(mode: Mode, integrator: Integrator) -> float:
+    """Largest stable step [s] of one mode; inf where nothing moves it."""
+    return integrator.limit(mode.zeta) / mode.omega if mode.omega > 0.0 else math.inf
+
+
+def chosen(integrator: str | Integrator) -> Integrator:
+    return integrator_named(integrator) if isinstance(integrator, str) else integrator
+
+
+def modes_at(net: Net, state: State | None) -> list[Mode]:
+    return top_modes(net) if state is None else top_modes(net, state.x, state.t)
+
+
+def critical_step(net: Net, integrator: str | Integrator, state: State | None = None) -> float:
+    """The largest step [s] at which small disturbances of `state` (None: the start x0) do not grow.
+
+    0 where every step is unstable (undamped explicit Euler), inf where none is. Raises ValueError for an unknown
+    integrator.
+    """
+    record = chosen(integrator)
+    return min((step_limit(mode, record) for mode in modes_at(net, state)), default=math.inf)
+
+
+def critical_stiffness(net: Net, integrator: str | Integrator, h: float, state: State | None = None) -> float:
+    """The largest stiffness [N/m] of the stiffest links that is stable at step h [s], all families scaled together.
+
+    0 where none is (h too long for the damping or the contacts), inf where all are; positions are taken as they are.
+    Raises ValueError for an unknown integrator or a step that is not above 0.
+    """
+    record = chosen(integrator)
+    check_number("h", h, 0, math.inf, "s", above=True)
+    stiffest = max((f.stiffness for f in net.families), default=0.0)
+    if stiffest == 0.0:
+        net = dataclasses.replace(net, families=tuple(f._replace(stiffness=1.0) for f in net.families))
+        stiffest = 1.0
+    scale = 1.0
+    for _ in range(3):
+        modes = modes_at(scaled(net, scale), state)
+        found = largest_scale(modes, record, h)
+        scale *= found
+        # Beside a contact the vectors change with the links' stiffness: once more from the new ones.
+        if scale == 0.0 or math.isinf(scale) or all(math.isclose(mode.links, mode.stiffness) for mode in modes):
+            break
+    return scale * stiffest
+
+
+def scaled(net: Net, scale: float) -> Net:
+    """Every link `scale` times as stiff."""
+    families = tuple(f._replace(stiffness=scale * f.stiffness) for f in net.families)
+    return dataclasses.replace(net, families=families)
+
+
+def largest_scale(modes: list[Mode], integrator: Integrator, h: float) -> float:
+    """How many times as stiff the links of `modes` may be at step h [s]: 0 for under 1e-12, inf for over 1e12."""
+
+    def margin(scale: float) -> float:
+        step = min((step_limit(mode.with_links(scale), integrator) for mode in modes), default=math.inf)
+        return math.log(step / h) if step > 0.0 else -math.inf
+
+    low = high = 1.0
+    above = below = margin(1.0)
+    while above < 0.0:
+        high, below = low, above
+        low *= 0.25
+        above = margin(low)
+        if low < 1e-12:
+            return 0.0
+    while below >= 0.0:
+        low, above = high, below
+        high *= 4.0
+        below = margin(high)
+        if high > 1e12:
+            return math.inf
+    # Steps go nearly as a power of the stiffness, so false position in the logarithms (its Illinois form) is quick.
+    a, b = math.log(low), math.log(high)
+    while b - a > NEARLY:
+        smooth = math.isfinite(above) and math.isfinite(below)
+        middle = (a * below - b * above) / (below - above) if smooth else 0.5 * (a + b)
+        middle = min(max(middle, a + 0.4 * NEARLY), b - 0.4 * NEARLY)
+        value = margin(math.exp(middle))
+        if value >= 0.0:
+            a, above, below = middle, value, 0.5 * below
+        else:
+            b, below, above = middle, value, 0.5 * above
+    return math.exp(a)
+
+
+def gauge(net: Net, integrator: str | Integrator, h: float, state: State) -> Gauge:
+    """h omega of the mode nearest to its limit at step h [s], and that limit."""
+    record = chosen(integrator)
+    modes = modes_at(net, state)
+    if not modes:
+        return Gauge(0.0, 0.0, 0.0, math.inf, math.inf)
+    mode = min(modes, key=lambda mode: step_limit(mode, record))
+    return Gauge(mode.omega, mode.zeta, h * mode.omega, record.limit(mode.zeta), step_limit(mode, record))

@@ -1,0 +1,141 @@
+"""Exact equilibria of ropes: the chain of links itself, not a continuum. Whatever an integrator does, it ends here."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.knobs import refusal
+from sim.springs.net import Net, check_number
+
+ITERATIONS = 200  # of Newton: a dozen is usual
+
+
+class Equilibrium(NamedTuple):
+    """A rope at rest."""
+
+    x: NDArray[np.float64]  # (points, 3) [m]
+    tension: NDArray[np.float64]  # (points - 1,) [N] of each link, from point 0 on
+
+
+def hanging_chain(net: Net) -> Equilibrium:
+    """The rope `net` hanging from its pinned point 0, away from floor and sphere: link i of n carries the n - i + 1
+    points below it, and stretches by m g (n - i + 1)/k.
+
+    Raises ValueError where the net is no rope, is pinned elsewhere too, or has links without stiffness.
+    """
+    family = single_family(net)
+    if net.pinned != {(0, 0)}:
+        raise refusal("net", sorted(net.pinned), "a rope pinned at point 0 only")
+    links = net.shape[1] - 1
+    weight = net.mass * np.asarray(net.gravity)
+    g = math.sqrt(float(weight @ weight))
+    # Without gravity any straight shape is at rest: along -x, as `rope` lays it.
+    down = weight / g if g > 0.0 else np.array([-1.0, 0.0, 0.0])
+    tension = g * np.arange(links, 0, -1.0)
+    depth = np.concatenate([[0.0], np.cumsum(family.rest + tension / family.stiffness)])
+    return Equilibrium(net.x0[:, 0, 0] + depth[:, None] * down, tension)
+
+
+def catenary(
+    points: int, length: float, span: float, rise: float, stiffness: float, mass: float, gravity: float
+) -> Equilibrium:
+    """The discrete elastic catenary between pins at (0, 0, 0) and (span, 0, rise) [m], hanging in the x-z plane.
+
+    length: rest length of the whole [m]; stiffness [N/m] per link; mass [kg] per point; gravity [m/s^2] along -z, above
+    0 where the rope is not stretched straight.
+
+    With the first link's tension (H, V) the others carry (H, V + (i - 1) m g), each link is the vector
+    (l0 + T_i/k) (H, V_i)/T_i, and H and V follow from where the last one ends (H. M. Irvine, Cable Structures, 1981,
+    for the continuum). The end is the gradient of sum_i (l0 T_i + T_i^2/(2k)), which is convex: Newton's method with a
+    line search on that, less (span, rise) . (H, V), comes down to the one answer from any start.
+
+    Raises ValueError, naming the argument, its value and what is allowed.
+    """
+    if not isinstance(points, int | np.integer) or isinstance(points, bool) or points < 2:
+        raise refusal("points", points, "a whole number from 2")
+    check_number("length", length, 0, math.inf, "m", above=True)
+    check_number("span", span, -math.inf, math.inf, "m")
+    check_number("rise", rise, -math.inf, math.inf, "m")
+    check_number("stiffness", stiffness, 0, math.inf, "N/m", above=True)
+    check_number("mass", mass, 0, math.inf, "kg")
+    check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
+    links = int(points) - 1
+    rest = length / links
+    load = mass * gravity * np.arange(links)
+    end = np.array([span, rise])
+
+    def value(force):
+        T = np.hypot(force[0], force[1] + load)
+        return float((rest * T + T * T / (2.0 * stiffness)).sum() - end @ force)
+
+    def gap_and_jacobian(force):
+        H, V = force[0], force[1] + load
+        T = np.maximum(np.hypot(H, V), 1e-300)
+        per_force = rest / T + 1.0 / stiffness
+        # d(per_force H)/dH = 1/k + l0 V^2/T^3 and so on: each link's compliance, along it and across.
+        hh, vv = (rest * V * V / T**3 + 1.0 / stiffness).sum(), (rest * H * H / T**3 + 1.0 / stiffness).sum()
+        hv = -(rest * H * V / T**3).sum()
+        return np.array([(per_force * H).sum(), (per_force * V).sum()]) - end, np.array([[hh, hv], [hv, vv]])
+
+    # Half the weight hangs on each end; the pull is that of a rope as steep as it is long, or of the stretch.
+    stretch = max(math.hypot(span, rise) / length - 1.0, 0.0) * stiffness * rest
+    force = np.array([math.copysign(abs(load[-1]) / 4.0 + stretch + 1e-9 * stiffness * rest, span), -load[-1] / 2.0])
+    gap, jacobian = gap_and_jacobian(force)
+    for _ in range(ITERATIONS):
+        step = -np.linalg.solve(jacobian, gap)
+        slope, before = float(gap @ step), value(force)
+        share = 1.0
+        while True:
+            new = force + share * step
+            new_gap, new_jacobian = gap_and_jacobian(new)
+            # Near the end the values differ by less than round-off, and the gap decides.
+            if np.hypot(*new_gap) < np.hypot(*gap) or value(new) <= before + 1e-4 * share * slope:
+                break
+            share *= 0.5
+            if share < 1e-12:
+                break
+        if np.hypot(*new_gap) >= np.hypot(*gap) and np.hypot(*gap) <= 1e-12 * (length + math.hypot(span, rise)):
+            break
+        force, gap, jacobian = new, new_gap, new_jacobian
+    if not np.hypot(*gap) <= 1e-11 * (length + math.hypot(span, rise)):
+        raise refusal("span", span, "a distance at which gravity or stretch keeps every link taut")
+    H, V = force[0], force[1] + load
+    T = np.hypot(H, V)
+    links_xz = (rest / T + 1.0 / stiffness)[:, None] * np.stack([np.full_like(V, H), V], axis=1)
+    x = np.zeros((links + 1, 3))
+    x[1:, 0], x[1:, 2] = np.cumsum(links_xz, axis=0).T
+    x[-1] = span, 0.0, rise
+    return Equilibrium(x, T)
+
+
+def equilibrium(net: Net) -> Equilibrium:
+    """Where the rope `net` comes to rest, hanging from point 0 or from both its ends; floor and sphere apart.
+
+    Raises ValueError as `hanging_chain` and `catenary` do, and where gravity is not along z.
+    """
+    family = single_family(net)
+    last = net.shape[1] - 1
+    if net.pinned == {(0, 0)}:
+        return hanging_chain(net)
+    if last == 0 or net.pinned != {(0, 0), (0, last)}:
+        raise refusal("net", sorted(net.pinned), "a rope pinned at point 0, and at the last one or not")
+    if net.gravity[:2] != (0.0, 0.0):
+        raise refusal("gravity", net.gravity, "along z")
+    start, chord = net.x0[:, 0, 0], net.x0[:, 0, last] - net.x0[:, 0, 0]
+    span = math.hypot(chord[0], chord[1])
+    flat = catenary(
+        last + 1, family.rest * last, span, float(chord[2]), family.stiffness, net.mass, -net.gravity[2]
+    )  # fmt: skip
+    away = np.array([chord[0] / span, chord[1] / span, 0.0]) if span > 0.0 else np.array([1.0, 0.0, 0.0])
+    return Equilibrium(start + flat.x[:, :1] * away + flat.x[:, 2:] * (0.0, 0.0, 1.0), flat.tension)
+
+
+def single_family(net: Net):
+    """The links of a rope; raises ValueError for any other net, or where they have no stiffness."""
+    if not net.is_rope:
+        raise refusal("net", net.shape, "a rope")
+    family = net.families[0]
+    check_number("stiffness", family.stiffness, 0, math.inf, "N/m", above=True)
+    return family

@@ -1,0 +1,97 @@
+"""Slow, obvious references: the forces of a net, particle by particle and link by link, straight from the formulas."""
+
+import math
+
+import numpy as np
+
+
+def neighbours(net):
+    """((i, j), (i', j'), family) of every link."""
+    rows, cols = net.shape
+    for family in net.families:
+        for i in range(rows):
+            for j in range(cols):
+                a, b = i + family.di, j + family.dj
+                if 0 <= a < rows and 0 <= b < cols:
+                    yield (i, j), (a, b), family
+
+
+def link_force(net, family, r, vr):
+    """Force [N] on the first end of a link that spans r [m] and opens at vr [m/s]: lab eq. 4."""
+    length = math.sqrt(r @ r)
+    n = r / length
+    if net.damping_model == "axial":
+        vr = (vr @ n) * n
+    return family.stiffness * (length - family.rest) * n + family.damping * vr
+
+
+def surfaces(net, x, t):
+    """(depth, normal, surface velocity, is the sphere) of every surface that a point at x touches."""
+    if net.floor is not None and x[2] < net.floor + net.radius:
+        yield net.floor + net.radius - x[2], np.array([0.0, 0.0, 1.0]), np.zeros(3), False
+    if net.sphere is not None:
+        velocity = np.array(net.sphere_velocity)
+        offset = x - (np.array(net.sphere[:3]) + (t - net.epoch) * velocity)
+        distance = math.sqrt(offset @ offset)
+        if distance < net.sphere[3] + net.radius:
+            yield net.sphere[3] + net.radius - distance, offset / distance, velocity, True
+
+
+def contact_force(net, depth, normal, vr, on_sphere, h):
+    """Force [N] on a touching point that moves at vr relative to the surface."""
+    law = net.contact
+    if law.law == "lab":
+        return law.stiffness * depth * normal - law.damping * (depth if on_sphere else 1.0) * vr
+    vn = vr @ normal
+    push = max(0.0, law.stiffness * depth - law.damping * vn)
+    slide = vr - vn * normal
+    speed = math.sqrt(slide @ slide)
+    drag = np.zeros(3)
+    if speed > 0.0:
+        drag = min(law.friction * push, net.mass * speed / h) * slide / speed
+    return push * normal - drag
+
+
+def grab_force(grab, x, v):
+    pull = np.array(grab.target) - x
+    distance = math.sqrt(pull @ pull)
+    spring = min(grab.stiffness * distance, grab.max_force)
+    return (spring / distance) * pull - grab.damping * v if distance > 0.0 else -grab.damping * v
+
+
+def acceleration(net, x, v, t=0.0, h=1.0):
+    """Accelerations (3, rows, cols) [m/s^2]; h [s] is the step that regularises friction."""
+    rows, cols = net.shape
+    force = np.zeros((rows, cols, 3))
+    xs, vs = np.moveaxis(x, 0, -1), np.moveaxis(v, 0, -1)
+    for a, b, family in neighbours(net):
+        f = link_force(net, family, xs[b] - xs[a], vs[b] - vs[a])
+        force[a] += f
+        force[b] -= f
+    for i in range(rows):
+        for j in range(cols):
+            force[i, j] += net.mass * np.array(net.gravity) - net.drag * vs[i, j]
+            for depth, normal, velocity, on_sphere in surfaces(net, xs[i, j], t):
+                force[i, j] += contact_force(net, depth, normal, vs[i, j] - velocity, on_sphere, h)
+            if net.grab is not None and (i, j) == (net.grab.row, net.grab.col):
+                force[i, j] += grab_force(net.grab, xs[i, j], vs[i, j])
+            if (i, j) in net.pinned:
+                force[i, j] = 0.0
+    return np.moveaxis(force / net.mass, -1, 0)
+
+
+def tangent(net, x, t=0.0):
+    """M^-1 K and M^-1 D, (3 rows cols, 3 rows cols), about x at rest, by central differences of the forces."""
+    size = x.size
+    stiffness, damping = np.zeros((2, size, size))
+    still = np.zeros_like(x)
+    for j in range(size):
+        _, row, col = np.unravel_index(j, x.shape)
+        if (int(row), int(col)) in net.pinned:
+            continue
+        e = np.zeros(size)
+        e[j] = 1e-6
+        e = e.reshape(x.shape)
+        stiffness[:, j] = (acceleration(net, x - e, still, t) - acceleration(net, x + e, still, t)).ravel() / 2e-6
+        damping[:, j] = (acceleration(net, x, still - e, t) - acceleration(net, x, still + e, t)).ravel() / 2e-6
+    return stiffness, damping

@@ -1,0 +1,53 @@
+"""Nets that several tests share."""
+
+import dataclasses
+
+import numpy as np
+
+from sim.springs import Contact, Grab, Net, rope
+from sim.springs.net import Family
+
+FAMILIES = (
+    Family(0, 1, 0.2, 800.0, 4.0),
+    Family(1, 0, 0.2, 700.0, 3.0),
+    Family(1, 1, 0.3, 300.0, 2.0),
+    Family(1, -1, 0.3, 250.0, 1.0),
+    Family(0, 2, 0.45, 90.0, 0.5),
+    Family(2, 0, 0.45, 80.0, 0.5),
+    Family(2, -1, 0.5, 40.0, 0.25),
+)
+
+
+def patch(model="axial", contact=None, *, rows=3, cols=4, seed=0, floor=None, sphere=None, grab=None, **more) -> Net:
+    """A crumpled, stretched net of seven families, one corner pinned."""
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(0.25 * np.arange(rows), 0.25 * np.arange(cols), indexing="ij")
+    x0 = np.stack([x, y, np.zeros_like(x)]) + 0.03 * rng.standard_normal((3, rows, cols))
+    return dataclasses.replace(
+        rope(2, gravity=9.81),
+        x0=np.ascontiguousarray(x0),
+        families=FAMILIES,
+        mass=0.7,
+        drag=0.3,
+        damping_model=model,
+        pinned=frozenset({(0, 0)}),
+        floor=floor,
+        sphere=sphere,
+        contact=contact or Contact(),
+        grab=grab,
+        **more,
+    )
+
+
+def touching_patch(model="axial", contact=None, **more) -> Net:
+    """The same on the floor and a moving sphere, pulled at one particle."""
+    return patch(
+        model,
+        contact,
+        floor=0.01,
+        sphere=(0.3, 0.4, -0.95, 1.0),
+        sphere_velocity=(0.3, -0.2, 0.1),
+        epoch=-0.1,
+        grab=Grab(2, 2, (1.0, 1.0, 1.0), 200.0, 5.0, 30.0),
+        **more,
+    )

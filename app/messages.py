@@ -49,7 +49,7 @@ class Place(NamedTuple):
 class Grab(NamedTuple):
     """Pull a particle, by flat index, towards a target [m]."""
 
-    index: int
+    particle: int
     target: Vector
 
 

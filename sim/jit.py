@@ -15,6 +15,7 @@ from typing import Any
 
 import numba
 import platformdirs
+from numba.core.compiler import Flags
 from numba.core.options import TargetOptions
 from numba.core.registry import cpu_target
 
@@ -25,7 +26,7 @@ STALE_AFTER = 30 * 24 * 3600  # [s] a cache directory unused for this long belon
 
 # numba knows this flag (numba.core.compiler.Flags) but offers no spelling of it in njit. Without it each loop
 # starts with run-time overlap checks on every pair of arrays, a third of the time at 128 points.
-_HAS_NOALIAS = hasattr(numba.core.compiler.Flags, "noalias")
+_HAS_NOALIAS = hasattr(Flags, "noalias")
 if _HAS_NOALIAS:
     cpu_target.options.noalias = TargetOptions.Mapping("noalias")  # type: ignore[attr-defined]
 

@@ -146,7 +146,7 @@ class Picture:
         self.beads.visible = picture.show_points
         if picture.show_points:
             self.beads.batched_positions = picture.points
-        held = -1 if picture.pull is None else picture.pull.index
+        held = -1 if picture.pull is None else picture.pull.particle
         if held != self.held:
             colours = np.tile(np.array(BEAD_COLOUR, np.uint8), (self.count, 1))
             if held >= 0:

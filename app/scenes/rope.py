@@ -116,7 +116,7 @@ def hidden(params: Params) -> set[str]:
 class PullShown(NamedTuple):
     """The drawn pull: from a point to its target [m], and the part of the largest force it takes."""
 
-    index: int
+    particle: int
     target: Vector
     load: float
 
@@ -145,21 +145,24 @@ class RopeGauge(NamedTuple):
 
 def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
     """The net that the knobs describe."""
-    if params.units == "material":
-        lab = lab_units(
-            params.points,
-            params.length,
-            params.axial_stiffness,
-            params.mass_per_length,
-            params.axial_viscosity,
-            params.drag_per_length,
-        )
-    else:
+    lab = lab_units(
+        params.points,
+        params.length,
+        params.axial_stiffness,
+        params.mass_per_length,
+        params.axial_viscosity,
+        params.drag_per_length,
+    )
+    if params.units == "lab":
         lab = {name: getattr(params, name) for name in LAB_ONLY}
     contact = Contact(params.contact_stiffness, params.contact_damping, params.friction, params.contact_law)
     return rope(
         params.points,
         params.length,
+        mass=lab["mass"],
+        stiffness=lab["stiffness"],
+        damping=lab["damping"],
+        drag=lab["drag"],
         gravity=params.gravity,
         root=root,
         floor=0.0 if params.floor else None,
@@ -167,7 +170,6 @@ def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
         damping_model=params.damping_model,
         contact=contact,
         radius=THICKNESS,
-        **lab,
     )
 
 
@@ -330,9 +332,7 @@ class Scene:
 
     def sample(self) -> None:
         e = energy(self.net, self.state)
-        error = (
-            e.total + self.state.dissipated - self.state.work - self.initial.total if self.params.plot_energy else 0.0
-        )
+        error = e.total + self.state.dissipated - self.state.work - self.initial.total
         tip = float(self.state.x[2, 0, -1])
         row = (e.kinetic, e.elastic, e.gravity - self.initial.gravity, e.contact, self.state.dissipated, error, tip)
         self.samples.append((self.state.t, *row))
@@ -358,7 +358,7 @@ class Scene:
             index, hand = self.held
             reach = np.linalg.norm(np.asarray(hand.position) - self.state.x[:, 0, index])
             rate = min(30.0, 0.5 / self.step)
-            pull = PullShown(index, hand.position, min(1.0, reach * self.net.mass * rate**2 / self.params.pull))
+            pull = PullShown(index, hand.position, min(1.0, float(reach) * self.net.mass * rate**2 / self.params.pull))
         return RopePicture(
             points=self.state.x[:, 0].T.astype(np.float32),
             tension=self.tension().astype(np.float32),

@@ -5,6 +5,8 @@ xi2 come from a hash of (seed, nx, ny): no generator state, no loop order. Full 
 n = 0 ... N/2 - 1, -N/2 ... -1. The mean and the two Nyquist lines, which cannot travel on the grid, are 0.
 """
 
+from typing import Any
+
 import numpy as np
 
 KINDS = ("random", "fixed")
@@ -51,7 +53,7 @@ def fold(h0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return onward + backward, -1j * (onward - backward)
 
 
-def _mixed(z: np.ndarray) -> np.ndarray:
+def _mixed(z: Any) -> Any:
     z = (z ^ (z >> np.uint64(30))) * _MIX1
     z = (z ^ (z >> np.uint64(27))) * _MIX2
     return z ^ (z >> np.uint64(31))

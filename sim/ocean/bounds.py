@@ -44,11 +44,26 @@ def finite(name: str, value: Any, unit: str = "") -> float:
     return number
 
 
+def is_whole(value: Any) -> bool:
+    """Whether `value` is an integer (and no bool)."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+
+
 def as_number(name: str, value: Any, allowed: str) -> float:
     """`value` as a float. Raises ValueError for what is no real number."""
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
         raise refusal(name, value, allowed)
     return float(value)
+
+
+def positions(name: str, value: Any) -> np.ndarray:
+    """`value` as contiguous float64 of shape (n, 2). Raises ValueError for another shape or what is not finite."""
+    array = np.ascontiguousarray(value, np.float64)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise refusal(name, array.shape, "positions of shape (n, 2) [m]")
+    if not np.isfinite(array).all():
+        raise refusal(name, float(array[~np.isfinite(array)][0]), "finite positions [m]")
+    return array
 
 
 def wavenumbers(name: str, value: Any) -> np.ndarray:

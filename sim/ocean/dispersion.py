@@ -14,7 +14,7 @@ from sim.knobs import refusal
 from sim.ocean.bounds import above_zero, not_negative, wavenumbers
 
 INF = math.inf
-CRITICAL = 1.3114687221932  # nu k^2 / omega0 above which a viscous wave no longer oscillates (the quartic's double root)
+CRITICAL = 1.3114687221932  # nu k^2/omega0 above which a wave no longer oscillates: the quartic's double root
 EVANESCENT = 18.0  # kd beyond which the far mode is under 2e-8 of the near one and lost in rounding
 
 
@@ -29,14 +29,18 @@ def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.
     return np.sqrt((gravity * k + s * k**3) * _tanh(k, depth))[()]
 
 
-def phase_speed(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0) -> Any:
+def phase_speed(
+    k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0
+) -> Any:
     """Phase speed omega/k [m/s]; sqrt(g depth) at k = 0. Arguments and errors as for `omega`."""
     k, s = _checked(k, gravity, depth, tension, density)
     k = np.maximum(k, _smallest(depth))
     return np.sqrt((gravity / k + s * k) * _tanh(k, depth))[()]
 
 
-def group_speed(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0) -> Any:
+def group_speed(
+    k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0
+) -> Any:
     """Group speed d omega/dk [m/s]; sqrt(g depth) at k = 0. Arguments and errors as for `omega`."""
     k, s = _checked(k, gravity, depth, tension, density)
     k = np.maximum(k, _smallest(depth))
@@ -183,7 +187,7 @@ def _two_layer_roots(
     return k, X_surface, X_interface, G1
 
 
-def _oscillating(theta: np.ndarray) -> np.ndarray:
+def _oscillating(theta: np.ndarray) -> Any:
     """The root s/omega0 with Im s > 0, for theta below CRITICAL."""
     inverse = 1.0 / theta**2
     m = np.sqrt(1j / theta - 1.0)

@@ -22,15 +22,19 @@ def query(surface: "Surface", points: np.ndarray, exact: bool) -> tuple[np.ndarr
     sea = surface.sea
     height, residual = np.empty(len(points)), np.empty(len(points))
     cell = sea.length / sea.size
-    if exact:
-        spectrum = sea.heights_spectrum(surface.t)
-        find_exact(points, spectrum, 2.0 * np.pi / sea.length, surface.choppiness, cell, height, residual)
-    elif surface.choppiness == 0.0:
+    if surface.choppiness == 0.0 and not exact:
         sample(points, surface.height, cell, height)
         residual[:] = 0.0
+        return height, residual
+    unread = np.zeros((4, 4), sea.rows["1"].dtype)
+    if exact:
+        h = dx = dy = unread
+        spectrum = sea.heights_spectrum(surface.t)
     else:
-        D = surface.displacement
-        find(points, surface.height, D[..., 0], D[..., 1], cell, height, residual)
+        h, dx, dy = surface.height, surface.displacement[..., 0], surface.displacement[..., 1]
+        spectrum = unread
+    dk = 2.0 * np.pi / sea.length
+    find(points, exact, h, dx, dy, spectrum, dk, surface.choppiness, cell, height, residual)
     return height, residual
 
 
@@ -81,38 +85,45 @@ def sample(points, field, cell, out):
 
 
 @kernel
-def find(points, h, dx, dy, cell, height, residual):
-    """Heights and residuals of all points with bicubic fields."""
+def evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x, y):
+    """(height, Dx, Dy, Dxx, Dxy, Dyx, Dyy) at label x, y [m]."""
+    if exact:
+        z, a, b, xx, yy, xy = sum_waves(spectrum, dk, choppiness, x, y)
+        return z, a, b, xx, xy, xy, yy
+    z = bicubic(h, x / cell, y / cell)[0]
+    a, xx, xy = bicubic(dx, x / cell, y / cell)
+    b, yx, yy = bicubic(dy, x / cell, y / cell)
+    return z, a, b, xx / cell, xy / cell, yx / cell, yy / cell
+
+
+@kernel
+def find(points, exact, h, dx, dy, spectrum, dk, choppiness, cell, height, residual):
+    """Heights and residuals of all points; `spectrum` is read where exact, the grids h, dx, dy where not."""
     for p in range(points.shape[0]):
         X, Y = points[p, 0], points[p, 1]
         x, y = X, Y
+        z, a, b, xx, xy, yx, yy = evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x, y)
         for _ in range(FIXED_POINT_STEPS):
-            ex, ey = bicubic(dx, x / cell, y / cell)[0], bicubic(dy, x / cell, y / cell)[0]
-            x, y = X - ex, Y - ey
-        a, axx, axy = bicubic(dx, x / cell, y / cell)
-        b, byx, byy = bicubic(dy, x / cell, y / cell)
+            x, y = X - a, Y - b
+            z, a, b, xx, xy, yx, yy = evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x, y)
         fx, fy = x + a - X, y + b - Y
         miss = np.hypot(fx, fy)
         for _ in range(NEWTON_STEPS):
             if miss <= TOLERANCE * cell:
                 break
-            sx, sy = newton_step(fx, fy, axx / cell, axy / cell, byx / cell, byy / cell)
+            sx, sy = newton_step(fx, fy, xx, xy, yx, yy)
             better = False
             for _ in range(HALVINGS):
-                tx, ty = x + sx, y + sy
-                a, pxx, pxy = bicubic(dx, tx / cell, ty / cell)
-                b, pyx, pyy = bicubic(dy, tx / cell, ty / cell)
-                gx, gy = tx + a - X, ty + b - Y
+                trial = evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x + sx, y + sy)
+                gx, gy = x + sx + trial[1] - X, y + sy + trial[2] - Y
                 if np.hypot(gx, gy) < miss:
-                    better = True
+                    x, y, fx, fy, miss, better = x + sx, y + sy, gx, gy, np.hypot(gx, gy), True
+                    z, a, b, xx, xy, yx, yy = trial
                     break
                 sx, sy = 0.5 * sx, 0.5 * sy
             if not better:
                 break
-            x, y, fx, fy, axx, axy, byx, byy = tx, ty, gx, gy, pxx, pxy, pyx, pyy
-            miss = np.hypot(fx, fy)
-        height[p] = bicubic(h, x / cell, y / cell)[0]
-        residual[p] = miss
+        height[p], residual[p] = z, miss
 
 
 @kernel
@@ -152,35 +163,3 @@ def sum_waves(h, dk, choppiness, x, y):
             c, s = c * stepc - s * steps, s * stepc + c * steps
     g = choppiness
     return height, g * Dx, g * Dy, g * Dxx, g * Dyy, g * Dxy
-
-
-@kernel
-def find_exact(points, h, dk, choppiness, cell, height, residual):
-    """Heights and residuals of all points by the sum over all waves."""
-    for p in range(points.shape[0]):
-        X, Y = points[p, 0], points[p, 1]
-        x, y = X, Y
-        for _ in range(FIXED_POINT_STEPS):
-            _, a, b, _, _, _ = sum_waves(h, dk, choppiness, x, y)
-            x, y = X - a, Y - b
-        z, a, b, xx, yy, xy = sum_waves(h, dk, choppiness, x, y)
-        fx, fy = x + a - X, y + b - Y
-        miss = np.hypot(fx, fy)
-        for _ in range(NEWTON_STEPS):
-            if miss <= TOLERANCE * cell:
-                break
-            sx, sy = newton_step(fx, fy, xx, xy, xy, yy)
-            better = False
-            for _ in range(HALVINGS):
-                tx, ty = x + sx, y + sy
-                tz, a, b, txx, tyy, txy = sum_waves(h, dk, choppiness, tx, ty)
-                gx, gy = tx + a - X, ty + b - Y
-                if np.hypot(gx, gy) < miss:
-                    better = True
-                    break
-                sx, sy = 0.5 * sx, 0.5 * sy
-            if not better:
-                break
-            x, y, z, fx, fy, xx, yy, xy = tx, ty, tz, gx, gy, txx, tyy, txy
-            miss = np.hypot(fx, fy)
-        height[p], residual[p] = z, miss

@@ -10,10 +10,11 @@ left. A disturbance narrower than two cells is cut off by the grid and shows the
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sim.jit import kernel
 from sim.knobs import refusal
-from sim.ocean.bounds import above_zero, finite, not_negative
+from sim.ocean.bounds import above_zero, finite, not_negative, positions
 from sim.ocean.evolve import add_heights, turn
 
 QUIET = 1e-6  # [m] root mean square height below which rings are dropped
@@ -21,7 +22,7 @@ EVALUATIONS_BETWEEN_CHECKS = 64
 
 
 class Ripples:
-    """The rings on one tile. Made by `Sea.ripples`; times are the sea's and may not run back before the last impulse."""
+    """The rings on one tile, made by `Sea.ripples`. Times are the sea's and do not run back before the last impulse."""
 
     def __init__(self, size: int, length: float, real: type) -> None:
         """size: cells a side; length [m]; real: float32 or float64."""
@@ -37,13 +38,15 @@ class Ripples:
         self._checks = 0
 
     def set_medium(self, t: float, rate: np.ndarray, decay: np.ndarray, push: np.ndarray) -> None:
-        """From time t [s] propagate with rate [turns/s], decay [1/s] and push = k tanh(kh)/(rho omega), quarter planes."""
+        """From time t [s] propagate with quarter planes rate [turns/s], decay [1/s], push = k tanh(kh)/(rho omega)."""
         if self.alive:
             self.advance(t)
         self.time = t
         self._rate, self._decay, self._push = rate, decay, push.astype(self.real)
 
-    def add(self, t: float, points: np.ndarray, width: np.ndarray | float, volume=0.0, impulse=0.0) -> None:  # noqa: ANN001
+    def add(
+        self, t: float, points: ArrayLike, width: ArrayLike, volume: ArrayLike = 0.0, impulse: ArrayLike = 0.0
+    ) -> None:
         """Disturb the surface at time t [s], at points (n, 2) [m], each spread as a Gaussian of width [m].
 
         volume [m3]: put onto the surface at rest; its integral stays on the tile to rounding.
@@ -51,10 +54,8 @@ class Ripples:
         width, volume and impulse are one number or one a point. Raises ValueError for shapes that do not fit, a width
         not above 0, anything not finite, or a time before that of the last change.
         """
-        points = np.ascontiguousarray(points, np.float64)
-        if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
-            raise refusal("points", points.shape, "finite positions, shape (n, 2) [m]")
-        n = len(points)
+        at = positions("points", points)
+        n = len(at)
         widths, volumes, impulses = (
             _one_a_point(name, value, n) for name, value in (("width", width), ("volume", volume), ("impulse", impulse))
         )
@@ -67,8 +68,8 @@ class Ripples:
         shape = (n, self.size // 2)
         waves = [np.empty(shape, self.real) for _ in range(4)]
         dk = 2.0 * math.pi / self.length
-        set_shapes(points[:, 0].copy(), widths, dk, waves[0], waves[1])
-        set_shapes(points[:, 1].copy(), widths, dk, waves[2], waves[3])
+        set_shapes(at[:, 0].copy(), widths, dk, waves[0], waves[1])
+        set_shapes(at[:, 1].copy(), widths, dk, waves[2], waves[3])
         sums = [np.empty(self.size // 2, self.real) for _ in range(4)]
         ones = np.ones_like(self._push)
         if volumes.any():
@@ -117,7 +118,7 @@ class Ripples:
 
     @property
     def rms(self) -> float:
-        """Root mean square height [m] of the rings at `time`, averaged over a period; monotone where nothing is added."""
+        """Root mean square height [m] of the rings at `time`, over a period: it only falls between impulses."""
         # Column 0 (ky = 0) holds both of a pair, the others one of two.
         squares = np.square(self._even, dtype=np.float64) + np.square(self._odd, dtype=np.float64)
         return math.sqrt(squares[:, 2:].sum() + 0.5 * squares[:, :2].sum())
@@ -137,7 +138,7 @@ def gaussian_volume(depth: float, width: float) -> float:
     return 2.0 * math.pi * depth * above_zero("width", width, "m") ** 2
 
 
-def _one_a_point(name: str, value, n: int) -> np.ndarray:  # noqa: ANN001
+def _one_a_point(name: str, value: ArrayLike, n: int) -> np.ndarray:
     array = np.asarray(value, np.float64)
     if array.shape not in ((), (n,)) or not np.isfinite(array).all():
         raise refusal(name, value, f"one finite number, or {n} of them")

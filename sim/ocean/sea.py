@@ -11,10 +11,11 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sim.knobs import refusal
 from sim.ocean.amplitudes import KINDS, fold, integers, resolved, unit_amplitudes
-from sim.ocean.bounds import above_zero, finite, not_negative
+from sim.ocean.bounds import above_zero, finite, is_whole, not_negative, positions
 from sim.ocean.dispersion import damped_root
 from sim.ocean.evolve import set_heights
 from sim.ocean.query import query
@@ -88,11 +89,11 @@ class Sea:
         viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of `Conditions` and `Medium`.
         Raises ValueError for a value that is not allowed, TypeError for an unknown name.
         """
-        if isinstance(size, bool) or not isinstance(size, int | np.integer) or size % 2 or not SIZES[0] <= size <= SIZES[1]:
+        if not is_whole(size) or size % 2 or not SIZES[0] <= size <= SIZES[1]:
             raise refusal("size", size, f"an even whole number from {SIZES[0]} to {SIZES[1]}")
         if amplitudes not in KINDS:
             raise refusal("amplitudes", amplitudes, "one of " + ", ".join(KINDS))
-        if isinstance(seed, bool) or not isinstance(seed, int | np.integer):
+        if not is_whole(seed):
             raise refusal("seed", seed, "a whole number")
         if precision not in PRECISIONS:
             raise refusal("precision", precision, "one of " + ", ".join(PRECISIONS))
@@ -153,17 +154,14 @@ class Sea:
         self._last = t
         return self._latest[1]
 
-    def height_at(self, points: np.ndarray, t: float, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    def height_at(self, points: ArrayLike, t: float, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Height (n,) [m] of the displaced surface above points (n, 2) [m] at time t, and the residual (n,) [m].
 
         The residual is the horizontal miss |x + D(x) - point| of the solution found; it is at rounding wherever the
         surface does not fold, and where it stays large the surface above the point is folded. Between grid points
         fields are bicubic; exact: the sum over all waves instead, slow. Raises ValueError for another shape.
         """
-        points = np.ascontiguousarray(points, np.float64)
-        if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
-            raise refusal("points", points.shape, "finite positions, shape (n, 2) [m]")
-        return query(self.surface(t), points, exact)
+        return query(self.surface(t), positions("points", points), exact)
 
     def change(self, t: float, relax: float = 0.0, spectrum: str | None = None, **changes: Any) -> None:
         """From time t [s] on, other conditions: any of the constructor's that describe wind, gravity or the medium.
@@ -203,6 +201,10 @@ class Sea:
         """
         return self._unit * self._magnitude(t)
 
+    def energy_at(self, t: float) -> np.ndarray:
+        """S(k) dk^2 of each wave at time t, relaxed and decayed, (size, size) [m2], 0 where the tile has no wave."""
+        return self._magnitude(t) ** 2 * resolved(self.size)
+
     @property
     def frequencies(self) -> np.ndarray:
         """omega(k) [rad/s] as propagated, (size, size), FFT order; 0 on the mean and the Nyquist lines."""
@@ -222,7 +224,7 @@ class Sea:
         return self._ripples
 
     def heights_spectrum(self, t: float) -> np.ndarray:
-        """h(k, t) with rings, the real view (N, N + 2) of the half plane ky >= 0. Kept until another time is asked for."""
+        """h(k, t) with rings on the half plane ky >= 0, as its real view (N, N + 2). Kept until another t is asked."""
         key = self._key(t)
         if self._evolved != key:
             even, odd = self._planes_at(t)

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 class Multiple(Protocol):
     """A kernel that writes a multiple of the height's spectrum."""
 
-    def __call__(self, h: np.ndarray, row: np.ndarray, column: np.ndarray, radial: np.ndarray, out: np.ndarray) -> None: ...
+    def __call__(
+        self, h: np.ndarray, row: np.ndarray, column: np.ndarray, radial: np.ndarray, out: np.ndarray
+    ) -> None: ...
 
 
 class Surface:

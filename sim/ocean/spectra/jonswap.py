@@ -1,4 +1,4 @@
-"""The fetch-limited sea of JONSWAP (Hasselmann and others 1973). Choose it for a wind that blows over a known distance."""
+"""The fetch-limited sea of JONSWAP (Hasselmann and others 1973). Choose it for wind over a known distance."""
 
 import numpy as np
 

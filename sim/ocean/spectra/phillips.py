@@ -1,4 +1,4 @@
-"""The lab's spectrum: Phillips as Tessendorf (2001) writes it, over the full circle: waves run with and against the wind."""
+"""The lab's spectrum: Phillips as Tessendorf (2001) writes it, with waves that run along the wind both ways."""
 
 import math
 

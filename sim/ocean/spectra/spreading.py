@@ -57,7 +57,7 @@ def _donelan_banner(ratio: np.ndarray, theta: np.ndarray) -> np.ndarray:
     return beta / (2.0 * np.tanh(beta * math.pi)) / np.cosh(beta * theta) ** 2
 
 
-def _narrowed(base, ratio: np.ndarray, theta: np.ndarray, swell: float) -> np.ndarray:  # noqa: ANN001
+def _narrowed(base, ratio: np.ndarray, theta: np.ndarray, swell: float) -> np.ndarray:
     """base times |cos(theta/2)|^(2 s_xi), normalised by a sum over the circle tabulated in log(omega/omega_p)."""
     grid = np.linspace(math.log(0.05), math.log(100.0), 400)
     circle = np.linspace(-math.pi, math.pi, 256, endpoint=False)

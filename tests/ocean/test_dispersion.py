@@ -38,7 +38,9 @@ def wavenumber(length: float) -> float:
     ],
 )
 def test_omega_is_lambs(length, options, expected):
-    assert omega(wavenumber(length), **options) == pytest.approx(expected, rel=1e-6, abs=5e-4 if expected > 100.0 else 0.0)
+    assert omega(wavenumber(length), **options) == pytest.approx(
+        expected, rel=1e-6, abs=5e-4 if expected > 100.0 else 0.0
+    )
 
 
 def test_speeds_are_those_of_the_table():

@@ -279,8 +279,8 @@ def test_exact_height_query_lies_on_the_sum_of_waves():
 
 
 def test_height_query_says_where_the_surface_folds():
-    """Where it does not reach the point, the residual is large; where it does, the height is one of the sheets."""
-    sea = Sea(64, 60.0, wind_speed=12.0, choppiness=3.0)
+    """Where the search is caught in a fold the residual is large; nothing is ever made up or not a number."""
+    sea = Sea(128, 60.0, wind_speed=10.0, choppiness=5.0)
     surface = sea.surface(0.0)
     assert surface.jacobian.min() < 0.0
     points = np.random.default_rng(0).uniform(0.0, 60.0, (4000, 2))
@@ -335,7 +335,7 @@ def test_unknown_condition_is_a_type_error():
 def test_bad_change_leaves_the_sea_alone():
     sea = Sea(16, 50.0)
     before = sea.surface(1.0).height.copy()
-    with pytest.raises(ValueError, match="^depth"):
+    with pytest.raises(ValueError, match=r"^depth"):
         sea.change(1.0, depth=-1.0)
     np.testing.assert_array_equal(sea.surface(1.0).height, before)
     assert sea.version == 0
@@ -343,13 +343,13 @@ def test_bad_change_leaves_the_sea_alone():
 
 def test_bad_times_and_points_are_refused():
     sea = Sea(16, 50.0, viscosity=1e-3)
-    with pytest.raises(ValueError, match="^t: "):
+    with pytest.raises(ValueError, match=r"^t: "):
         sea.surface(math.nan)
-    with pytest.raises(ValueError, match="^t: "):
+    with pytest.raises(ValueError, match=r"^t: "):
         sea.surface(-1.0)
-    with pytest.raises(ValueError, match="^points: "):
+    with pytest.raises(ValueError, match=r"^points: "):
         sea.height_at([[1.0, 2.0, 3.0]], 0.0)
-    with pytest.raises(ValueError, match="^points: "):
+    with pytest.raises(ValueError, match=r"^points: "):
         sea.height_at([[1.0, math.nan]], 0.0)
 
 

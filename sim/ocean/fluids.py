@@ -24,20 +24,13 @@ class Fluid(NamedTuple):
     viscosity: float  # dynamic [Pa s]
     surface_tension: float | None  # against air [N/m]; None: not measured
     interface_tension: float | None  # against sea water [N/m]
+    refractive_index: float
     colour: str  # "#rrggbb" of a thick layer, for drawing
 
     @property
     def kinematic_viscosity(self) -> float:
         """nu = mu/rho [m2/s]."""
         return self.viscosity / self.density
-
-    @property
-    def refractive_index(self) -> float:
-        """1.333 for what is as dense as water or denser, else by the one-third rule of oils."""
-        return WATER_INDEX if "water" in self.name else oil_index(self.density)
-
-
-WATER_INDEX = 1.333
 
 
 @cache
@@ -47,8 +40,10 @@ def fluids() -> dict[str, Fluid]:
     found = {}
     for row in csv.DictReader(line for line in lines if not line.startswith("#")):
         tensions = [float(row[c]) * 1e-3 if row[c] else None for c in ("surface_tension", "interface_tension")]
+        density = float(row["density"])
+        index = float(row["refractive_index"]) if row["refractive_index"] else oil_index(density)
         found[row["name"]] = Fluid(
-            row["name"], float(row["density"]), float(row["viscosity"]) * 1e-3, tensions[0], tensions[1], row["colour"]
+            row["name"], density, float(row["viscosity"]) * 1e-3, tensions[0], tensions[1], index, row["colour"]
         )
     return found
 
@@ -106,7 +101,7 @@ MIXTURE_LAWS = {"arrhenius": arrhenius, "kendall_monroe": kendall_monroe, "taylo
 
 
 def mixed(first: Fluid, second: Fluid, fraction: float, law: str = "taylor") -> Fluid:
-    """The two entirely mixed, `fraction` by volume of the first; tension and colour of the more plentiful one.
+    """The two entirely mixed, `fraction` by volume of the first; tensions, index and colour of the more plentiful one.
 
     law: one of MIXTURE_LAWS. Raises ValueError for another, or a fraction outside 0 to 1.
     """

@@ -24,7 +24,7 @@ EVALUATIONS_BETWEEN_CHECKS = 64
 class Ripples:
     """The rings on one tile, made by `Sea.ripples`. Times are the sea's and do not run back before the last impulse."""
 
-    def __init__(self, size: int, length: float, real: type) -> None:
+    def __init__(self, size: int, length: float, real: type[np.floating]) -> None:
         """size: cells a side; length [m]; real: float32 or float64."""
         self.size, self.length, self.real = size, length, real
         self.time = 0.0  # [s] at which even and odd are the height and its rate over omega
@@ -42,7 +42,7 @@ class Ripples:
         if self.alive:
             self.advance(t)
         self.time = t
-        self._rate, self._decay, self._push = rate, decay, push.astype(self.real)
+        self._rate, self._fall, self._push = rate, (-decay).astype(self.real), push.astype(self.real)
 
     def add(
         self, t: float, points: ArrayLike, width: ArrayLike, volume: ArrayLike = 0.0, impulse: ArrayLike = 0.0
@@ -85,7 +85,7 @@ class Ripples:
 
     def advance(self, t: float) -> None:
         """Bring the state to time t [s]. Raises ValueError for a time before that of the last change."""
-        self._check_time(t)
+        self.check_time(t)
         if self.alive and t != self.time:
             turn(self._even, self._odd, self._rate, self._fade(t), t - self.time, *self._scratch)
             self.version += 1
@@ -93,7 +93,7 @@ class Ripples:
 
     def add_to(self, h: np.ndarray, t: float) -> None:
         """Add the rings at time t [s] to a half spectrum given as its real view (N, N + 2)."""
-        self._check_time(t)
+        self.check_time(t)
         if self.alive:
             self._checks += 1
             if self._checks % EVALUATIONS_BETWEEN_CHECKS == 0:
@@ -116,6 +116,15 @@ class Ripples:
         if level:
             self.mean = 0.0
 
+    def take_over(self, other: "Ripples") -> None:
+        """Go on with the rings of another size of the same tile, as far as wavenumbers are shared."""
+        half = min(self.size, other.size) // 2
+        n = np.arange(1 - half, half)
+        for mine, theirs in ((self._even, other._even), (self._odd, other._odd)):
+            mine[n, : 2 * half] = theirs[n, : 2 * half]
+        self.time, self.alive, self.mean, self.leak = other.time, other.alive, other.mean, other.leak
+        self.version += 1
+
     @property
     def rms(self) -> float:
         """Root mean square height [m] of the rings at `time`, over a period: it only falls between impulses."""
@@ -124,9 +133,10 @@ class Ripples:
         return math.sqrt(squares[:, 2:].sum() + 0.5 * squares[:, :2].sum())
 
     def _fade(self, t: float) -> np.ndarray:
-        return np.exp(-(self._decay + self.leak) * (t - self.time)).astype(self.real)
+        return np.exp((self._fall - self.real(self.leak)) * self.real(t - self.time))
 
-    def _check_time(self, t: float) -> None:
+    def check_time(self, t: float) -> None:
+        """Raises ValueError for a time [s] before that of the last change of the rings."""
         finite("t", t, "s")
         if t < self.time and (self.alive or self.mean):
             raise refusal("t", t, f"{self.time:g} s or later: rings do not run back before the last impulse")

@@ -7,7 +7,6 @@ Limits: linear waves, made sharper by the choppy displacement; a tile shorter th
 
 import dataclasses
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,8 +15,8 @@ from numpy.typing import ArrayLike
 from sim.knobs import refusal
 from sim.ocean.amplitudes import KINDS, fold, integers, resolved, unit_amplitudes
 from sim.ocean.bounds import above_zero, finite, is_whole, not_negative, positions
-from sim.ocean.dispersion import damped_root
 from sim.ocean.evolve import set_heights
+from sim.ocean.medium import Medium
 from sim.ocean.query import query
 from sim.ocean.ripples import Ripples
 from sim.ocean.spectra import SPECTRA, Conditions
@@ -26,37 +25,6 @@ from sim.ocean.transforms import PRECISIONS, Transforms
 
 SETTLED = 1e-7  # share of a change still to come below which it counts as done
 SIZES = (8, 4096)
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Medium:
-    """What the waves propagate in, besides the conditions."""
-
-    viscosity: float = 0.0  # [m2/s] kinematic
-    film: bool = False  # decay as under an inextensible film instead of a clean surface
-    dispersion_scale: float = 1.0  # factor on every frequency
-    loop_period: float | None = None  # [s] after which the sea repeats: omega is floored to multiples of 2 pi/period
-    frequency: Callable[[np.ndarray], np.ndarray] | None = None  # omega(k) in place of the conditions' own
-
-    def __post_init__(self) -> None:
-        not_negative("viscosity", self.viscosity, "m2/s")
-        not_negative("dispersion_scale", self.dispersion_scale, "")
-        if self.loop_period is not None:
-            above_zero("loop_period", self.loop_period, "s")
-
-    def roots(self, k: np.ndarray, conditions: Conditions) -> tuple[np.ndarray, np.ndarray]:
-        """omega [rad/s] and decay rate [1/s] of wavenumbers k [rad/m]."""
-        natural = conditions.omega(k) if self.frequency is None else np.asarray(self.frequency(k), np.float64)
-        if self.film:
-            # Lamb, Art. 351: gamma = k sqrt(nu omega/8)
-            omega, decay = natural, k * np.sqrt(self.viscosity * natural / 8.0)
-        else:
-            omega, decay = damped_root(natural, self.viscosity * k**2)
-        omega = omega * self.dispersion_scale
-        if self.loop_period is not None:
-            base = 2.0 * math.pi / self.loop_period
-            omega = np.floor(omega / base) * base
-        return omega, decay
 
 
 _CONDITIONS = frozenset(f.name for f in dataclasses.fields(Conditions))
@@ -173,6 +141,8 @@ class Sea:
         not_negative("relax", relax, "s")
         if t < self._base and (self._relax > 0.0 or self._decays):
             raise refusal("t", t, f"{self._base:g} s or later")
+        if self._ripples is not None:
+            self._ripples.check_time(t)
         before = self._rate, self._decay, self._magnitude(t)
         self._set_conditions(spectrum or self.spectrum.name, changes, self.conditions, self.medium)
         turns = before[0] * (t - self._base)
@@ -185,6 +155,33 @@ class Sea:
         if self._ripples is not None:
             self._ripples.set_medium(t, self._rate, self._decay, self._push())
 
+    def resized(self, size: int) -> "Sea":
+        """The same sea on a grid of another size: shared waves and rings go on as they are.
+
+        Raises ValueError for a size that is not allowed.
+        """
+        parts = (self.conditions, self.medium)
+        other = Sea(
+            size,
+            self.length,
+            self.spectrum.name,
+            choppiness=self.choppiness,
+            amplitudes=self.amplitudes,
+            seed=self.seed,
+            precision=self.precision,
+            **{f.name: getattr(part, f.name) for part in parts for f in dataclasses.fields(part)},
+        )
+        half = min(self.size, other.size) // 2
+        n = np.arange(1 - half, half)
+        shared = np.ix_(n, n)  # negative indices count from the end, as FFT order does
+        other._start = other._target.copy()
+        other._unit[shared], other._start[shared] = self._unit[shared], self._start[shared]
+        other._base, other._relax, other._last = self._base, self._relax, self._last
+        other._set_planes()
+        if self._ripples is not None:
+            other.ripples.take_over(self._ripples)
+        return other
+
     @property
     def significant_height(self) -> float:
         """Hs = 4 sqrt(m0) [m] of the amplitudes as drawn, at the time of the last surface asked for."""
@@ -195,9 +192,9 @@ class Sea:
         return 4.0 * math.sqrt(2.0 * float((np.abs(self.amplitudes_at(t)) ** 2).sum()))
 
     def amplitudes_at(self, t: float) -> np.ndarray:
-        """|h0(k)| with the phase it has at the last change, complex (size, size) [m], FFT order.
+        """h0(k), complex (size, size) [m], FFT order: as large as at time t, with the phase of the last change.
 
-        The sea is Re sum 2 h0 exp(i(k.x - omega (t - base))): at base = 0 these are the amplitudes as drawn.
+        The sea is Re sum 2 h0 exp(i(k.x - omega (t - change))); without a change these are the amplitudes as drawn.
         """
         return self._unit * self._magnitude(t)
 
@@ -230,7 +227,7 @@ class Sea:
             even, odd = self._planes_at(t)
             fade = self.radial["1"]
             if self._decays:
-                fade = np.exp(-self._decay * (t - self._base)).astype(self._real)
+                fade = np.exp(self._fall * self._real(t - self._base))
             set_heights(even, odd, self._rate, fade, t - self._base, *self._scratch, self._heights)
             if self._ripples is not None:
                 self._ripples.add_to(self._heights, t)
@@ -252,6 +249,7 @@ class Sea:
         omega, decay = medium.roots(self._k, conditions)
         self.spectrum, self.conditions, self.medium = SPECTRA[spectrum], conditions, medium
         self._rate, self._decay, self._decays = omega / (2.0 * np.pi), decay, bool(decay.any())
+        self._fall = (-decay).astype(self._real)
         S = self.spectrum(self.k[:, None], self.k[None, :], conditions)
         self._target = np.sqrt(S) * (2.0 * math.pi / self.length)
 

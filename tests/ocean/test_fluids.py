@@ -52,7 +52,7 @@ def test_nothing_mixed_in_changes_nothing(law):
     for fraction, same in ((0.0, water), (1.0, oil)):
         blend = mixed(oil, water, fraction, law)
         assert (blend.density, blend.viscosity) == pytest.approx((same.density, same.viscosity), rel=1e-12)
-        assert blend.colour == same.colour
+        assert (blend.colour, blend.refractive_index) == (same.colour, same.refractive_index)
 
 
 def test_einstein_is_taylors_limit_of_stiff_drops():
@@ -86,7 +86,7 @@ def test_fresnel_limits():
 def test_index_of_oils_by_the_one_third_rule():
     assert oil_index(866.0) == pytest.approx(1.488, abs=2e-3)
     assert oil_index(932.0) == pytest.approx(1.534, abs=2e-3)
-    assert fluids()["sea water"].refractive_index == 1.333
+    assert fluids()["fresh water"].refractive_index == 1.333
     assert fluids()["Maya"].refractive_index == oil_index(932.0)
 
 

@@ -238,6 +238,21 @@ def test_change_back_at_the_start_is_the_old_sea():
     assert relative(sea.surface(5.0).height, plain.surface(5.0).height) < 1e-12
 
 
+def test_resizing_keeps_what_both_grids_hold():
+    sea = Sea(32, 200.0, precision="double", seed=4)
+    sea.change(3.0, gravity=5.0, relax=4.0)
+    sea.ripples.add(4.0, [[50.0, 60.0]], 20.0, volume=500.0)
+    up = sea.resized(64)
+    back = up.resized(32)
+    assert up.size == 64
+    for t in (4.0, 9.0):
+        assert relative(back.surface(t).height, sea.surface(t).height) < 1e-12
+    # The waves of the smaller grid are those of the larger one below its Nyquist line.
+    fine = np.fft.rfft2(up.surface(9.0).height)[np.r_[0:16, 49:64], :16] / 64**2
+    coarse = np.fft.rfft2(sea.surface(9.0).height)[np.r_[0:16, 17:32], :16] / 32**2
+    assert np.abs(fine - coarse).max() < 1e-12 * np.abs(coarse).max()
+
+
 def test_a_custom_dispersion_replaces_the_seas_own():
     sea = Sea(16, 60.0, frequency=lambda k: 2.0 * k, precision="double")
     shift = Sea(16, 60.0, precision="double")

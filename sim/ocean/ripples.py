@@ -85,7 +85,7 @@ class Ripples:
 
     def advance(self, t: float) -> None:
         """Bring the state to time t [s]. Raises ValueError for a time before that of the last change."""
-        self.check_time(t)
+        t = self.check_time(t)
         if self.alive and t != self.time:
             turn(self._even, self._odd, self._rate, self._fade(t), t - self.time, *self._scratch)
             self.version += 1
@@ -93,7 +93,7 @@ class Ripples:
 
     def add_to(self, h: np.ndarray, t: float) -> None:
         """Add the rings at time t [s] to a half spectrum given as its real view (N, N + 2)."""
-        self.check_time(t)
+        t = self.check_time(t)
         if self.alive:
             self._checks += 1
             if self._checks % EVALUATIONS_BETWEEN_CHECKS == 0:
@@ -135,12 +135,13 @@ class Ripples:
     def _fade(self, t: float) -> np.ndarray:
         return np.exp((self._fall - self.real(self.leak)) * self.real(t - self.time))
 
-    def check_time(self, t: float) -> None:
-        """Raises ValueError for a time [s] before that of the last change of the rings."""
-        finite("t", t, "s")
+    def check_time(self, t: float) -> float:
+        """t [s] as a float. Raises ValueError for a time before that of the last change of the rings."""
+        t = finite("t", t, "s")
         if t < self.time and (self.alive or self.mean):
             raise refusal("t", t, f"{self.time:g} s or later: rings do not run back before the last impulse")
         not_negative("leak", self.leak, "1/s")
+        return t
 
 
 def gaussian_volume(depth: float, width: float) -> float:

@@ -73,7 +73,7 @@ class Sea:
         self._base, self._last, self._relax = 0.0, 0.0, 0.0
         self.version = 0  # counts changes of the conditions
         self._evolved: tuple | None = None
-        self._latest: tuple | None = None
+        self._latest: tuple[tuple, dict[str, np.ndarray]] | None = None
         self._ripples: Ripples | None = None
 
         n = integers(self.size)
@@ -113,14 +113,14 @@ class Sea:
     def surface(self, t: float) -> Surface:
         """The surface at time t [s]; each field is computed when first read. Raises ValueError for a time not allowed:
         not finite, or before the last change where waves decay or relax."""
-        finite("t", t, "s")
+        t = finite("t", t, "s")
         if t < self._base and (self._relax > 0.0 or self._decays):
             raise refusal("t", t, f"{self._base:g} s or later: decaying and relaxing waves do not run back")
         key = self._key(t)
         if self._latest is None or self._latest[0] != key:
-            self._latest = key, Surface(self, t)
+            self._latest = key, {}
         self._last = t
-        return self._latest[1]
+        return Surface(self, t, self._latest[1])
 
     def height_at(self, points: ArrayLike, t: float, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Height (n,) [m] of the displaced surface above points (n, 2) [m] at time t, and the residual (n,) [m].
@@ -137,8 +137,7 @@ class Sea:
         Phases go on without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
         relax = 0. Raises ValueError for a value that is not allowed, TypeError for an unknown name.
         """
-        finite("t", t, "s")
-        not_negative("relax", relax, "s")
+        t, relax = finite("t", t, "s"), not_negative("relax", relax, "s")
         if t < self._base and (self._relax > 0.0 or self._decays):
             raise refusal("t", t, f"{self._base:g} s or later")
         if self._ripples is not None:
@@ -149,7 +148,7 @@ class Sea:
         # h0(k) e^(-i omega t): the phase so far goes into the unit amplitudes, in double.
         self._unit = self._unit * self._full(np.exp(-2j * np.pi * (turns - np.rint(turns))))
         self._start = before[2] if relax > 0.0 else self._target
-        self._base, self._relax = float(t), float(relax)
+        self._base, self._relax = t, relax
         self.version += 1
         self._set_planes()
         if self._ripples is not None:

@@ -1,6 +1,6 @@
 """One moment of a sea: fields on the grid, each computed when first read and by the transforms it needs."""
 
-from functools import cached_property
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -19,17 +19,29 @@ class Multiple(Protocol):
     ) -> None: ...
 
 
+def field(make: Callable[["Surface"], np.ndarray]) -> property:
+    """A property that is computed when first read and kept with the other fields of its moment."""
+
+    def read(surface: "Surface") -> np.ndarray:
+        if make.__name__ not in surface.fields:
+            surface.fields[make.__name__] = make(surface)
+        return surface.fields[make.__name__]
+
+    return property(read, doc=make.__doc__)
+
+
 class Surface:
     """The sea at `t` [s]. Read a field before the sea is changed; one read later is that of the changed sea.
 
     Two-component fields are views of two planes: field[..., 0] is contiguous.
     """
 
-    def __init__(self, sea: "Sea", t: float) -> None:
-        self.sea, self.t = sea, t
+    def __init__(self, sea: "Sea", t: float, fields: dict[str, np.ndarray]) -> None:
+        """fields: those already computed; the sea keeps the same dict, but no Surface: a cycle would hold memory."""
+        self.sea, self.t, self.fields = sea, t, fields
         self.choppiness = sea.choppiness
 
-    @cached_property
+    @field
     def height(self) -> np.ndarray:
         """Height (size, size) [m] of the surface point labelled x, y. One transform."""
         transforms = self.sea.transforms
@@ -38,7 +50,7 @@ class Surface:
         transforms.set_grid(grid)
         return grid
 
-    @cached_property
+    @field
     def displacement(self) -> np.ndarray:
         """Horizontal displacement (size, size, 2) [m], choppiness included. Two transforms; none at choppiness 0.
 
@@ -54,7 +66,7 @@ class Surface:
             out[...] = 0.0
         return out
 
-    @cached_property
+    @field
     def slope(self) -> np.ndarray:
         """Slope (size, size, 2) of the height along x and y, by label. Two transforms."""
         rows, out = self.sea.rows, self._two_planes()
@@ -62,7 +74,7 @@ class Surface:
         self._set_field(set_imaginary_multiple, rows["1"], rows["k"], "1", out[..., 1])
         return out
 
-    @cached_property
+    @field
     def strain(self) -> np.ndarray:
         """(Dxx, Dyy, Dxy), shape (3, size, size): how the displacement stretches the grid. Three transforms."""
         rows, out = self.sea.rows, self.sea.transforms.grids.take(3)
@@ -73,7 +85,7 @@ class Surface:
                 self._set_field(set_real_multiple, chop * rows[row], rows[column], "1/k", out[i])
         return out
 
-    @cached_property
+    @field
     def jacobian(self) -> np.ndarray:
         """J (size, size) = (1 + Dxx)(1 + Dyy) - Dxy^2 of the displacement: below 0 the surface folds."""
         Dxx, Dyy, Dxy = self.strain

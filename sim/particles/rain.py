@@ -114,11 +114,14 @@ class Rain:
         """Let the drops fall for dt [s] onto the surface as it is at the end of the step.
 
         height (m, m) [m]; displacement (m, m, 2) [m] or None: of the mesh as drawn. Drops that hit start anew on top.
+        Raises ValueError for a dt that is negative or not finite.
         """
+        if not 0.0 <= dt < math.inf:
+            raise refusal("dt", dt, "0 or above, finite s")
         if displacement is None:
             displacement = np.zeros((1, 1, 2), height.dtype)
         moved = fall(
-            self.position, self.speed, self._gap, self.wind, dt, self.length, self.ceiling,
+            self.position, self.speed, self._gap, self.wind, float(dt), self.length, self.ceiling,
             float(height.max()), height, displacement[..., 0], displacement[..., 1], self._found,
         )  # fmt: skip
         found = self._found[:moved].copy()

@@ -94,8 +94,9 @@ def mode_ratios(
     k, X_surface, X_interface, G1 = _two_layer_roots(
         k, upper_density, thickness, lower_density, gravity, depth, surface_tension, interface_tension
     )
-    kd = np.minimum(k * thickness, EVANESCENT)
-    seen = (k * thickness < EVANESCENT) & (k > 0.0)
+    kd = np.where(k > 0.0, k, 1.0) * thickness
+    seen = (kd < EVANESCENT) & (k > 0.0)
+    kd = np.minimum(kd, EVANESCENT)
     # From the upper potential: eta_int/eta_surf = cosh kd - (k G1 / omega^2) sinh kd
     with np.errstate(divide="ignore", invalid="ignore"):
         down = np.cosh(kd) - k * G1 / X_surface * np.sinh(kd)

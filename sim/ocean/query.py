@@ -1,8 +1,8 @@
 """Height of the displaced surface above a point: which label x has x + D(x) = X, and what height it carries.
 
 Fixed-point steps x <- X - D(x) bring the label near (they contract only where |grad D| < 1), then Newton steps with
-halving finish. Between grid points fields are bicubic (Catmull-Rom), exact at grid points and elsewhere off by the waves of a few
-cells (measured: at most 2 % of Hs at 2 m cells under a 10 m/s wind); `exact` sums all waves.
+halving finish. Between grid points fields are bicubic (Catmull-Rom), which smooths the waves of a few cells (measured:
+off by at most 2 % of Hs at 2 m cells under a 10 m/s wind); `exact` sums all waves.
 """
 
 from typing import TYPE_CHECKING

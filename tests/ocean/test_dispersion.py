@@ -74,6 +74,7 @@ def test_limits_neither_overflow_nor_divide():
         assert speed(0.0, depth=10.0) == pytest.approx(math.sqrt(98.1), rel=1e-12)
     assert np.isfinite(two_layer(np.array([0.0, 1e5]), 850.0, 1e3, 1025.0)).all()
     assert np.isfinite(two_layer(1.0, 850.0, INF, 1025.0)).all()
+    assert mode_ratios([0.0, 1.0], 850.0, INF, 1025.0).surface == pytest.approx([0.0, 0.0])
     assert viscous_root(0.0, 1e-3) == (0.0, 0.0)
     assert viscous_root(2.0, 0.0) == (omega(2.0), 0.0)
 

@@ -19,7 +19,7 @@ def spread(
     """D [1/rad]. ratio: omega/omega_p; theta [rad] from the wind, in [-pi, pi]; exponent: s of cos2s;
     swell: xi of Horvath, 0 to 1; inverse_age: U/c_p. Raises KeyError for an unknown name.
     """
-    # Horvath (2015), eq. 44: swell adds s_xi = 16 tanh(omega_p/omega) xi^2 to the exponent of cos^2s(theta/2).
+    # Horvath (2015), eq. 44: swell adds s_xi = 16.1 tanh(omega_p/omega) xi^2 to the exponent of cos^2s(theta/2).
     s_swell = 16.1 * np.tanh(1.0 / ratio) * swell**2
     if name == "cos2s":
         return cos2s(exponent + s_swell, theta)

@@ -1,0 +1,64 @@
+"""Random wave amplitudes tied to the integer wavenumber, so that another resolution draws the same sea.
+
+h0(k) = (xi1 + i xi2)/2 sqrt(S(k) dk^2) (Tessendorf 2001, eq. 42, with the dk^2 that makes Var = sum S dk^2), where xi1,
+xi2 come from a hash of (seed, nx, ny): no generator state, no loop order. Full planes are in FFT order, k_n = n dk,
+n = 0 ... N/2 - 1, -N/2 ... -1. The mean and the two Nyquist lines, which cannot travel on the grid, are 0.
+"""
+
+from typing import Any
+
+import numpy as np
+
+KINDS = ("random", "fixed")
+
+# Finaliser of splitmix64 (Steele, Lea, Flood 2014) and its increment.
+_STEP, _MIX1, _MIX2 = np.uint64(0x9E3779B97F4A7C15), np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
+
+
+def integers(size: int) -> np.ndarray:
+    """The integer wavenumbers in FFT order: 0 ... N/2 - 1, -N/2 ... -1, shape (size,)."""
+    return np.fft.fftfreq(size, 1.0 / size).round().astype(np.int64)
+
+
+def resolved(size: int) -> np.ndarray:
+    """(size, size) bool: neither the mean nor on a Nyquist line."""
+    n = integers(size)
+    inner = n != -size // 2
+    mask = inner[:, None] & inner[None, :]
+    mask[0, 0] = False
+    return mask
+
+
+def unit_amplitudes(size: int, seed: int, kind: str) -> np.ndarray:
+    """(xi1 + i xi2)/2 of each wavenumber, complex (size, size); |.|^2 is 1/2 on average, or exactly for "fixed"."""
+    n = integers(size)
+    with np.errstate(over="ignore"):
+        key = _mixed(np.uint64(seed % 2**64) + _STEP)
+        row = _mixed(key ^ n.astype(np.uint64))[:, None]
+        cell = _mixed(row + _STEP * n.astype(np.uint64)[None, :])
+        first, second = _uniform(_mixed(cell + _STEP)), _uniform(_mixed(cell + _STEP + _STEP))
+    # Box-Muller; "fixed" keeps the phase and replaces the radius by its root mean square.
+    radius = np.sqrt(-2.0 * np.log(first)) if kind == "random" else np.sqrt(2.0)
+    return np.where(resolved(size), 0.5 * radius * np.exp(2j * np.pi * second), 0.0)
+
+
+def fold(h0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(even, odd), complex (N, N/2 + 1), with h(k, t) = even cos(omega t) + odd sin(omega t) on the half plane ky >= 0.
+
+    h(k, t) = h0(k) e^(-i omega t) + conj(h0(-k)) e^(i omega t): Hermitian whatever h0 is.
+    """
+    half = h0.shape[1] // 2 + 1
+    onward = h0[:, :half]
+    backward = np.conj(np.roll(h0[::-1, ::-1], 1, axis=(0, 1))[:, :half])
+    return onward + backward, -1j * (onward - backward)
+
+
+def _mixed(z: Any) -> Any:
+    z = (z ^ (z >> np.uint64(30))) * _MIX1
+    z = (z ^ (z >> np.uint64(27))) * _MIX2
+    return z ^ (z >> np.uint64(31))
+
+
+def _uniform(z: np.ndarray) -> np.ndarray:
+    """The top 53 bits as a number in (0, 1]."""
+    return ((z >> np.uint64(11)).astype(np.float64) + 1.0) * 2.0**-53

@@ -1,0 +1,216 @@
+"""Linear dispersion: one fluid, two layers, viscosity, films. Pure numpy; every function takes arrays of k.
+
+Choose `omega` for water, `two_layer` for oil on water, `viscous_root` for how fast a wave dies. Limits: small slopes
+(Stokes's third order adds (ka)^2/2 to the speed); the viscous root is that of deep fluid.
+Sources: H. Lamb, Hydrodynamics (1932), articles named at each function.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sim.knobs import refusal
+from sim.ocean.bounds import above_zero, not_negative, wavenumbers
+
+INF = math.inf
+CRITICAL = 1.3114687221932  # nu k^2/omega0 above which a wave no longer oscillates: the quartic's double root
+EVANESCENT = 18.0  # kd beyond which the far mode is under 2e-8 of the near one and lost in rounding
+
+
+def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0) -> Any:
+    """Angular frequency [rad/s] of waves of wavenumber k [rad/m], any shape.
+
+    gravity [m/s2] and density [kg/m3] above 0; depth [m] above 0 or inf; tension [N/m] 0 or above.
+    Raises ValueError otherwise. Lamb, Art. 228-229 and 266-267.
+    """
+    k, s = _checked(k, gravity, depth, tension, density)
+    # omega^2 = (g k + (sigma/rho) k^3) tanh(k h)
+    return np.sqrt((gravity * k + s * k**3) * _tanh(k, depth))[()]
+
+
+def phase_speed(
+    k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0
+) -> Any:
+    """Phase speed omega/k [m/s]; sqrt(g depth) at k = 0. Arguments and errors as for `omega`."""
+    k, s = _checked(k, gravity, depth, tension, density)
+    k = np.maximum(k, _smallest(depth))
+    return np.sqrt((gravity / k + s * k) * _tanh(k, depth))[()]
+
+
+def group_speed(
+    k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0
+) -> Any:
+    """Group speed d omega/dk [m/s]; sqrt(g depth) at k = 0. Arguments and errors as for `omega`."""
+    k, s = _checked(k, gravity, depth, tension, density)
+    k = np.maximum(k, _smallest(depth))
+    th = _tanh(k, depth)
+    w = np.sqrt((gravity * k + s * k**3) * th)
+    # cg = [(g + 3 s k^2) tanh kh + (g + s k^2) kh sech^2 kh] / (2 omega), sech^2 = (1 - tanh)(1 + tanh)
+    shallow = 0.0 if math.isinf(depth) else k * depth * (1.0 - th) * (1.0 + th)
+    return (((gravity + 3.0 * s * k**2) * th + (gravity + s * k**2) * shallow) / (2.0 * w))[()]
+
+
+def two_layer(
+    k: Any,
+    upper_density: float,
+    thickness: float,
+    lower_density: float,
+    gravity: float = 9.81,
+    depth: float = INF,
+    surface_tension: float = 0.0,
+    interface_tension: float = 0.0,
+) -> tuple[Any, Any]:
+    """(surface, interface) angular frequencies [rad/s] of a layer of fluid on another.
+
+    upper_density, lower_density [kg/m3]; thickness [m] of the upper layer; depth [m] of the lower one, or inf;
+    tensions [N/m]. Raises ValueError where a value is not allowed or the upper fluid is the heavier.
+    Reduces to Lamb, Art. 231, without tension.
+    """
+    k, X_surface, X_interface, _ = _two_layer_roots(
+        k, upper_density, thickness, lower_density, gravity, depth, surface_tension, interface_tension
+    )
+    return np.sqrt(X_surface)[()], np.sqrt(X_interface)[()]
+
+
+class ModeRatios(NamedTuple):
+    """How much of a mode shows at its far boundary. Negative: the two boundaries move oppositely."""
+
+    surface: Any  # interface height over surface height, in the surface mode
+    interface: Any  # surface height over interface height, in the interfacial mode
+
+
+def mode_ratios(
+    k: Any,
+    upper_density: float,
+    thickness: float,
+    lower_density: float,
+    gravity: float = 9.81,
+    depth: float = INF,
+    surface_tension: float = 0.0,
+    interface_tension: float = 0.0,
+) -> ModeRatios:
+    """Amplitude ratios of the two modes; arguments and errors as for `two_layer`. 0 beyond k thickness = 18."""
+    k, X_surface, X_interface, G1 = _two_layer_roots(
+        k, upper_density, thickness, lower_density, gravity, depth, surface_tension, interface_tension
+    )
+    kd = np.where(k > 0.0, k, 1.0) * thickness
+    seen = (kd < EVANESCENT) & (k > 0.0)
+    kd = np.minimum(kd, EVANESCENT)
+    # From the upper potential: eta_int/eta_surf = cosh kd - (k G1 / omega^2) sinh kd
+    with np.errstate(divide="ignore", invalid="ignore"):
+        down = np.cosh(kd) - k * G1 / X_surface * np.sinh(kd)
+        up = 1.0 / (np.cosh(kd) - k * G1 / X_interface * np.sinh(kd))
+    return ModeRatios(np.where(seen, down, 0.0)[()], np.where(seen, up, 0.0)[()])
+
+
+def viscous_root(k: Any, viscosity: float, gravity: float = 9.81) -> tuple[Any, Any]:
+    """(omega [rad/s], decay rate [1/s]) of a wave on deep fluid of kinematic viscosity [m2/s].
+
+    omega is 0 where the motion creeps without oscillating; the rate is then that of the slower root.
+    Raises ValueError for a negative or non-finite argument, or gravity not above 0. Lamb, Art. 349.
+    """
+    k = wavenumbers("k", k)
+    not_negative("viscosity", viscosity, "m2/s")
+    w, rate = damped_root(omega(k, gravity), viscosity * k**2)
+    return w[()], rate[()]
+
+
+def damped_root(natural: Any, rate: Any) -> tuple[np.ndarray, np.ndarray]:
+    """(omega, decay rate) from the inviscid frequency omega0 [rad/s] and nu k^2 [1/s], arrays of one shape.
+
+    s solves (s + 2 nu k^2)^2 + omega0^2 = 4 nu^2 k^4 sqrt(1 + s/(nu k^2)) with Re s < 0 (Lamb, Art. 349, eq. 13).
+    With theta = nu k^2/omega0 and m = sqrt(1 + s/(nu k^2)) it is the quartic (m^2 + 1)^2 - 4 m + 1/theta^2 = 0.
+    """
+    natural, rate = np.broadcast_arrays(np.asarray(natural, np.float64), np.asarray(rate, np.float64))
+    w, decay = natural.copy(), np.zeros_like(natural)
+    moving = (natural > 0.0) & (rate > 0.0)
+    theta = np.divide(rate, natural, out=np.zeros_like(natural), where=moving)
+    waves, creeping = moving & (theta < CRITICAL), moving & (theta >= CRITICAL)
+    if waves.any():
+        s = _oscillating(theta[waves])
+        w[waves], decay[waves] = natural[waves] * s.imag, -natural[waves] * s.real
+    if creeping.any():
+        w[creeping], decay[creeping] = 0.0, natural[creeping] * _aperiodic(theta[creeping])
+    return w, decay
+
+
+def film_decay(k: Any, viscosity: float, gravity: float = 9.81) -> Any:
+    """Decay rate [1/s] under an inextensible film, "oil on troubled waters": k sqrt(nu omega/8). Lamb, Art. 351.
+
+    viscosity: kinematic, of the water [m2/s]. Errors as for `viscous_root`.
+    """
+    k = wavenumbers("k", k)
+    not_negative("viscosity", viscosity, "m2/s")
+    return (k * np.sqrt(viscosity * omega(k, gravity) / 8.0))[()]
+
+
+def _checked(k: Any, gravity: float, depth: float, tension: float, density: float) -> tuple[np.ndarray, float]:
+    """k as an array and s = sigma/rho, every argument checked."""
+    above_zero("gravity", gravity, "m/s2")
+    above_zero("depth", depth, "m", infinite=True)
+    return wavenumbers("k", k), not_negative("tension", tension, "N/m") / above_zero("density", density, "kg/m3")
+
+
+def _tanh(k: np.ndarray, depth: float) -> np.ndarray:
+    """tanh(k depth), exactly 1 on infinite depth (where 0 * inf would not be a number)."""
+    return np.ones_like(k) if math.isinf(depth) else np.tanh(k * depth)
+
+
+def _smallest(depth: float) -> float:
+    """A wavenumber that stands for 0 in speeds: the limit is reached to rounding, and nothing divides by 0."""
+    return 1e-100 if math.isinf(depth) else 1e-10 / depth
+
+
+def _two_layer_roots(
+    k: Any, rho1: float, d: float, rho2: float, g: float, h2: float, s1: float, s12: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """k, X = omega^2 of the surface and of the interfacial mode, and G1 = g + s1 k^2/rho1."""
+    k = wavenumbers("k", k)
+    above_zero("upper_density", rho1, "kg/m3")
+    above_zero("thickness", d, "m", infinite=True)
+    above_zero("gravity", g, "m/s2")
+    above_zero("depth", h2, "m", infinite=True)
+    not_negative("surface_tension", s1, "N/m")
+    not_negative("interface_tension", s12, "N/m")
+    above_zero("lower_density", rho2, "kg/m3")
+    if rho2 < rho1:
+        raise refusal("lower_density", rho2, f"at least the upper density, {rho1:g} kg/m3")
+    G1, G2 = g + s1 * k**2 / rho1, (rho2 - rho1) * g + s12 * k**2
+    t1, t2 = _tanh(k, d), _tanh(k, h2)
+    # X^2 (rho2 + rho1 t1 t2) - X k [rho2 G1 t1 + (rho1 G1 + G2) t2] + k^2 G1 G2 t1 t2 = 0,
+    # ocean.md 3.2 divided by cosh kd coth kh2, so that nothing overflows. The small root by Vieta.
+    A = rho2 + rho1 * t1 * t2
+    B = k * (rho2 * G1 * t1 + (rho1 * G1 + G2) * t2)
+    C = k**2 * G1 * G2 * t1 * t2
+    X_surface = (B + np.sqrt(np.maximum(B**2 - 4.0 * A * C, 0.0))) / (2.0 * A)
+    X_interface = np.divide(C, A * X_surface, out=np.zeros_like(k), where=X_surface > 0.0)
+    return k, X_surface, X_interface, G1
+
+
+def _oscillating(theta: np.ndarray) -> Any:
+    """The root s/omega0 with Im s > 0, for theta below CRITICAL."""
+    inverse = 1.0 / theta**2
+    m = np.sqrt(1j / theta - 1.0)
+    for _ in range(80):  # Newton: 4 to 6 turns, more only where the double root is near
+        change = ((m * m + 1.0) ** 2 - 4.0 * m + inverse) / (4.0 * m * (m * m + 1.0) - 4.0)
+        m = m - change
+        if np.all(np.abs(change) <= 1e-15 * np.abs(m)):
+            break
+    # s = -2 theta + i sqrt(1 - e), e = 4 theta^2 m, written so that a small decay keeps its digits.
+    e = 4.0 * theta**2 * m
+    return -2.0 * theta + 1j - 1j * e / (1.0 + np.sqrt(1.0 - e))
+
+
+def _aperiodic(theta: np.ndarray) -> np.ndarray:
+    """The slower decay rate over omega0, for theta above CRITICAL: m = 1 - delta, delta small when theta is large."""
+    inverse = 1.0 / theta**2
+    delta = 0.25 * inverse
+    for _ in range(80):
+        # (m^2 + 1)^2 - 4 m + 1/theta^2 in delta, and its derivative
+        f = delta * (-4.0 + delta * (8.0 + delta * (-4.0 + delta))) + inverse
+        change = f / (-4.0 + delta * (16.0 + delta * (-12.0 + 4.0 * delta)))
+        delta = delta - change
+        if np.all(np.abs(change) <= 1e-15 * delta):
+            break
+    return theta * delta * (2.0 - delta)

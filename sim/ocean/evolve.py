@@ -1,0 +1,106 @@
+"""Kernels of the half-plane spectrum: evolve it to a time, turn rings, derive fields.
+
+Spectra (N, N/2 + 1) complex are passed as their real views (N, N + 2): real and imaginary parts side by side, so that
+loops vectorise. Frequencies depend on |kx|, |ky| only: `rate` [turns/s], `fade` and `radial` are quarter planes
+(N/2, N/2) and rows i and N - i share one sine and cosine. The Nyquist row and column are never written: they stay 0.
+"""
+
+import numpy as np
+
+from sim.jit import kernel
+
+
+@kernel
+def sincos_turns(turns):
+    """(cos, sin) of 2 pi turns. turns is brought to [-1/2, 1/2] in double, so that it is exact after days."""
+    x = np.pi * (turns - np.rint(turns))
+    y = x * x
+    # Taylor series of sin x, cos x on |x| <= pi/2, remainders x^21/21! and x^22/22! under 3e-16 and 2e-17; then 2x.
+    s = 1 / 355687428096000 - y / 121645100408832000
+    s = -1 / 39916800 + y * (1 / 6227020800 + y * (-1 / 1307674368000 + y * s))
+    s = x * (1.0 + y * (-1 / 6 + y * (1 / 120 + y * (-1 / 5040 + y * (1 / 362880 + y * s)))))
+    c = -1 / 6402373705728000 + y / 2432902008176640000
+    c = 1 / 479001600 + y * (-1 / 87178291200 + y * (1 / 20922789888000 + y * c))
+    c = 1.0 + y * (-1 / 2 + y * (1 / 24 + y * (-1 / 720 + y * (1 / 40320 + y * (-1 / 3628800 + y * c)))))
+    return 1.0 - 2.0 * s * s, 2.0 * s * c
+
+
+@kernel
+def set_rotation(rate, fade, t, i, cosine, sine):
+    """Row i of fade cos(omega t), fade sin(omega t), each value twice: for the real and for the imaginary part."""
+    for j in range(rate.shape[1]):
+        c, s = sincos_turns(rate[i, j] * t)
+        cosine[2 * j] = cosine[2 * j + 1] = c * fade[i, j]
+        sine[2 * j] = sine[2 * j + 1] = s * fade[i, j]
+
+
+@kernel(noalias=True)
+def set_heights(even, odd, rate, fade, t, cosine, sine, h):
+    """h(k, t) = fade (even cos(omega t) + odd sin(omega t)); cosine, sine: scratch (N,)."""
+    half, n = rate.shape[0], h.shape[0]
+    for i in range(half):
+        set_rotation(rate, fade, t, i, cosine, sine)
+        for j in range(2 * half):
+            h[i, j] = even[i, j] * cosine[j] + odd[i, j] * sine[j]
+        if i > 0:
+            for j in range(2 * half):
+                h[n - i, j] = even[n - i, j] * cosine[j] + odd[n - i, j] * sine[j]
+
+
+@kernel(noalias=True)
+def add_heights(even, odd, rate, fade, t, cosine, sine, h):
+    """The same, added to h."""
+    half, n = rate.shape[0], h.shape[0]
+    for i in range(half):
+        set_rotation(rate, fade, t, i, cosine, sine)
+        for j in range(2 * half):
+            h[i, j] += even[i, j] * cosine[j] + odd[i, j] * sine[j]
+        if i > 0:
+            for j in range(2 * half):
+                h[n - i, j] += even[n - i, j] * cosine[j] + odd[n - i, j] * sine[j]
+
+
+@kernel(noalias=True)
+def turn(even, odd, rate, fade, t, cosine, sine):
+    """Move the origin of time by t: even' = fade (even cos + odd sin), odd' = fade (odd cos - even sin), in place."""
+    half, n = rate.shape[0], even.shape[0]
+    for i in range(half):
+        set_rotation(rate, fade, t, i, cosine, sine)
+        for row in range(2 if i > 0 else 1):
+            m = n - i if row else i
+            for j in range(2 * half):
+                e, o = even[m, j], odd[m, j]
+                even[m, j] = e * cosine[j] + o * sine[j]
+                odd[m, j] = o * cosine[j] - e * sine[j]
+
+
+@kernel(noalias=True)
+def set_real_multiple(h, row, column, radial, out):
+    """out(k) = row(kx) column(ky) radial(|k|) h(k): second derivatives."""
+    half, n = radial.shape[0], h.shape[0]
+    for i in range(n):
+        a = min(i, n - i)
+        if a < half:
+            for j in range(half):
+                f = row[i] * column[j] * radial[a, j]
+                out[i, 2 * j] = f * h[i, 2 * j]
+                out[i, 2 * j + 1] = f * h[i, 2 * j + 1]
+        else:
+            out[i, :] = 0.0
+        out[i, 2 * half] = out[i, 2 * half + 1] = 0.0
+
+
+@kernel(noalias=True)
+def set_imaginary_multiple(h, row, column, radial, out):
+    """out(k) = i row(kx) column(ky) radial(|k|) h(k): first derivatives, displacements."""
+    half, n = radial.shape[0], h.shape[0]
+    for i in range(n):
+        a = min(i, n - i)
+        if a < half:
+            for j in range(half):
+                f = row[i] * column[j] * radial[a, j]
+                out[i, 2 * j] = -f * h[i, 2 * j + 1]
+                out[i, 2 * j + 1] = f * h[i, 2 * j]
+        else:
+            out[i, :] = 0.0
+        out[i, 2 * half] = out[i, 2 * half + 1] = 0.0

@@ -1,0 +1,289 @@
+"""The square sea: a periodic tile of linear waves, evaluated at any time by real FFTs (Tessendorf 2001).
+
+Choose it for a surface that fills a tile; the radial sum of `radial.py` for one that reaches the horizon. Time is
+analytic: nothing accumulates, and a frame costs the transforms it reads plus one pass over half the spectrum.
+Limits: linear waves, made sharper by the choppy displacement; a tile shorter than the dominant wave loses its energy.
+"""
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sim.knobs import refusal
+from sim.ocean.amplitudes import KINDS, fold, integers, resolved, unit_amplitudes
+from sim.ocean.bounds import above_zero, finite, is_whole, not_negative, positions
+from sim.ocean.evolve import set_heights
+from sim.ocean.medium import Medium
+from sim.ocean.query import query
+from sim.ocean.ripples import Ripples
+from sim.ocean.spectra import SPECTRA, Conditions
+from sim.ocean.surface import Surface
+from sim.ocean.transforms import PRECISIONS, Transforms
+
+SETTLED = 1e-7  # share of a change still to come below which it counts as done
+SIZES = (8, 4096)
+
+
+_CONDITIONS = frozenset(f.name for f in dataclasses.fields(Conditions))
+_MEDIUM = frozenset(f.name for f in dataclasses.fields(Medium))
+
+
+class Sea:
+    """A tile of sea. Index [i, j] of a field is x = i length/size, y = j length/size. Not for two threads at once."""
+
+    def __init__(
+        self,
+        size: int = 256,
+        length: float = 500.0,
+        spectrum: str = "pierson_moskowitz",
+        wind_speed: float = 10.0,
+        wind_direction: float = 0.0,
+        gravity: float = 9.81,
+        depth: float = math.inf,
+        tension: float = 0.0,
+        viscosity: float = 0.0,
+        choppiness: float = 1.0,
+        amplitudes: str = "random",
+        seed: int = 0,
+        precision: str = "single",
+        **more: Any,
+    ) -> None:
+        """size: cells a side, even, 8 to 4096; length [m] of the tile; the wind is U10, U19.5 for pierson_moskowitz.
+
+        amplitudes: "random" (Gaussian) or "fixed" (random phase only); choppiness: factor on the displacement;
+        viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of `Conditions` and `Medium`.
+        Raises ValueError for a value that is not allowed, TypeError for an unknown name.
+        """
+        if not is_whole(size) or size % 2 or not SIZES[0] <= size <= SIZES[1]:
+            raise refusal("size", size, f"an even whole number from {SIZES[0]} to {SIZES[1]}")
+        if amplitudes not in KINDS:
+            raise refusal("amplitudes", amplitudes, "one of " + ", ".join(KINDS))
+        if not is_whole(seed):
+            raise refusal("seed", seed, "a whole number")
+        if precision not in PRECISIONS:
+            raise refusal("precision", precision, "one of " + ", ".join(PRECISIONS))
+        self.size, self.length, self.seed = int(size), above_zero("length", length, "m"), int(seed)
+        self.precision, self.amplitudes = precision, amplitudes
+        self.choppiness = choppiness
+        self._real = PRECISIONS[precision][0]
+        self._unit = unit_amplitudes(self.size, self.seed, amplitudes)
+        self._base, self._last, self._relax = 0.0, 0.0, 0.0
+        self.version = 0  # counts changes of the conditions
+        self._evolved: tuple | None = None
+        self._latest: tuple[tuple, dict[str, np.ndarray]] | None = None
+        self._ripples: Ripples | None = None
+
+        n = integers(self.size)
+        self.k = n * (2.0 * math.pi / self.length)  # [rad/m], FFT order
+        self._folded = np.abs(n) % (self.size // 2)  # |n|, with the Nyquist index (whose amplitude is 0) sent to 0
+        quarter = self.k[: self.size // 2]
+        self._k = np.hypot(quarter[:, None], quarter[None, :])
+        inverse = np.divide(1.0, self._k, out=np.zeros_like(self._k), where=self._k > 0.0)
+        self.radial = {"1": np.ones_like(self._k, self._real), "1/k": inverse.astype(self._real)}
+        self.rows = {"1": np.ones(self.size, self._real), "k": self.k.astype(self._real)}
+        self.rows["k2"] = (self.k**2).astype(self._real)
+
+        self.transforms = Transforms(self.size, precision)
+        self._heights = np.zeros((self.size, self.size + 2), self._real)
+        self._scratch = (np.empty(self.size, self._real), np.empty(self.size, self._real))
+        given = {
+            "wind_speed": wind_speed,
+            "wind_direction": wind_direction,
+            "gravity": gravity,
+            "depth": depth,
+            "tension": tension,
+            "viscosity": viscosity,
+        }
+        self._set_conditions(spectrum, given | more, Conditions(), Medium())
+        self._start = self._target
+        self._set_planes()
+
+    @property
+    def choppiness(self) -> float:
+        """Factor on the horizontal displacement, 0 or above; 0 costs no transform."""
+        return self._choppiness
+
+    @choppiness.setter
+    def choppiness(self, value: float) -> None:
+        self._choppiness = not_negative("choppiness", value, "")
+
+    def surface(self, t: float) -> Surface:
+        """The surface at time t [s]; each field is computed when first read. Raises ValueError for a time not allowed:
+        not finite, or before the last change where waves decay or relax."""
+        t = finite("t", t, "s")
+        if t < self._base and (self._relax > 0.0 or self._decays):
+            raise refusal("t", t, f"{self._base:g} s or later: decaying and relaxing waves do not run back")
+        key = self._key(t)
+        if self._latest is None or self._latest[0] != key:
+            self._latest = key, {}
+        self._last = t
+        return Surface(self, t, self._latest[1])
+
+    def height_at(self, points: ArrayLike, t: float, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """Height (n,) [m] of the displaced surface above points (n, 2) [m] at time t, and the residual (n,) [m].
+
+        The residual is the horizontal miss |x + D(x) - point| of the solution found; it is at rounding wherever the
+        surface does not fold, and where it stays large the surface above the point is folded. Between grid points
+        fields are bicubic; exact: the sum over all waves instead, slow. Raises ValueError for another shape.
+        """
+        return query(self.surface(t), positions("points", points), exact)
+
+    def change(self, t: float, relax: float = 0.0, spectrum: str | None = None, **changes: Any) -> None:
+        """From time t [s] on, other conditions: any of the constructor's that describe wind, gravity or the medium.
+
+        Phases go on without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
+        relax = 0. Raises ValueError for a value that is not allowed, TypeError for an unknown name.
+        """
+        t, relax = finite("t", t, "s"), not_negative("relax", relax, "s")
+        if t < self._base and (self._relax > 0.0 or self._decays):
+            raise refusal("t", t, f"{self._base:g} s or later")
+        if self._ripples is not None:
+            self._ripples.check_time(t)
+        before = self._rate, self._decay, self._magnitude(t)
+        self._set_conditions(spectrum or self.spectrum.name, changes, self.conditions, self.medium)
+        turns = before[0] * (t - self._base)
+        # h0(k) e^(-i omega t): the phase so far goes into the unit amplitudes, in double.
+        self._unit = self._unit * self._full(np.exp(-2j * np.pi * (turns - np.rint(turns))))
+        self._start = before[2] if relax > 0.0 else self._target
+        self._base, self._relax = t, relax
+        self.version += 1
+        self._set_planes()
+        if self._ripples is not None:
+            self._ripples.set_medium(t, self._rate, self._decay, self._push())
+
+    def resized(self, size: int) -> "Sea":
+        """The same sea on a grid of another size: shared waves and rings go on as they are.
+
+        Raises ValueError for a size that is not allowed.
+        """
+        parts = (self.conditions, self.medium)
+        other = Sea(
+            size,
+            self.length,
+            self.spectrum.name,
+            choppiness=self.choppiness,
+            amplitudes=self.amplitudes,
+            seed=self.seed,
+            precision=self.precision,
+            **{f.name: getattr(part, f.name) for part in parts for f in dataclasses.fields(part)},
+        )
+        half = min(self.size, other.size) // 2
+        n = np.arange(1 - half, half)
+        shared = np.ix_(n, n)  # negative indices count from the end, as FFT order does
+        other._start = other._target.copy()
+        other._unit[shared], other._start[shared] = self._unit[shared], self._start[shared]
+        other._base, other._relax, other._last = self._base, self._relax, self._last
+        other._set_planes()
+        if self._ripples is not None:
+            other.ripples.take_over(self._ripples)
+        return other
+
+    @property
+    def significant_height(self) -> float:
+        """Hs = 4 sqrt(m0) [m] of the amplitudes as drawn, at the time of the last surface asked for."""
+        return self.significant_height_at(self._last)
+
+    def significant_height_at(self, t: float) -> float:
+        """Hs = 4 sqrt(m0) [m] of the amplitudes at time t [s]; rings are not counted."""
+        return 4.0 * math.sqrt(2.0 * float((np.abs(self.amplitudes_at(t)) ** 2).sum()))
+
+    def amplitudes_at(self, t: float) -> np.ndarray:
+        """h0(k), complex (size, size) [m], FFT order: as large as at time t, with the phase of the last change.
+
+        The sea is Re sum 2 h0 exp(i(k.x - omega (t - change))); without a change these are the amplitudes as drawn.
+        """
+        return self._unit * self._magnitude(t)
+
+    def energy_at(self, t: float) -> np.ndarray:
+        """S(k) dk^2 of each wave at time t, relaxed and decayed, (size, size) [m2], 0 where the tile has no wave."""
+        return self._magnitude(t) ** 2 * resolved(self.size)
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """omega(k) [rad/s] as propagated, (size, size), FFT order; 0 on the mean and the Nyquist lines."""
+        return self._full(2.0 * np.pi * self._rate) * resolved(self.size)
+
+    @property
+    def decay_rates(self) -> np.ndarray:
+        """Decay rate [1/s] of each wave, (size, size), FFT order."""
+        return self._full(self._decay) * resolved(self.size)
+
+    @property
+    def ripples(self) -> Ripples:
+        """The rings on this sea, made when first asked for."""
+        if self._ripples is None:
+            self._ripples = Ripples(self.size, self.length, self._real)
+            self._ripples.set_medium(-math.inf, self._rate, self._decay, self._push())
+        return self._ripples
+
+    def heights_spectrum(self, t: float) -> np.ndarray:
+        """h(k, t) with rings on the half plane ky >= 0, as its real view (N, N + 2). Kept until another t is asked."""
+        key = self._key(t)
+        if self._evolved != key:
+            even, odd = self._planes_at(t)
+            fade = self.radial["1"]
+            if self._decays:
+                fade = np.exp(self._fall * self._real(t - self._base))
+            set_heights(even, odd, self._rate, fade, t - self._base, *self._scratch, self._heights)
+            if self._ripples is not None:
+                self._ripples.add_to(self._heights, t)
+            self._evolved = self._key(t)
+        return self._heights
+
+    def _key(self, t: float) -> tuple:
+        return t, self.version, self._choppiness, self._ripples.version if self._ripples is not None else -1
+
+    def _set_conditions(self, spectrum: str, values: dict[str, Any], conditions: Conditions, medium: Medium) -> None:
+        """Check everything, then set spectrum, conditions, medium, and what follows from them."""
+        if spectrum not in SPECTRA:
+            raise refusal("spectrum", spectrum, "one of " + ", ".join(SPECTRA))
+        for name in values:
+            if name not in _CONDITIONS | _MEDIUM:
+                raise TypeError(f"{name}: no such condition; there are {', '.join(sorted(_CONDITIONS | _MEDIUM))}")
+        conditions = dataclasses.replace(conditions, **{n: v for n, v in values.items() if n in _CONDITIONS})
+        medium = dataclasses.replace(medium, **{n: v for n, v in values.items() if n in _MEDIUM})
+        omega, decay = medium.roots(self._k, conditions)
+        self.spectrum, self.conditions, self.medium = SPECTRA[spectrum], conditions, medium
+        self._rate, self._decay, self._decays = omega / (2.0 * np.pi), decay, bool(decay.any())
+        self._fall = (-decay).astype(self._real)
+        S = self.spectrum(self.k[:, None], self.k[None, :], conditions)
+        self._target = np.sqrt(S) * (2.0 * math.pi / self.length)
+
+    def _magnitude(self, t: float) -> np.ndarray:
+        """sqrt(S dk^2) of each wave at time t, relaxed and decayed, (size, size) [m]."""
+        size = self._target + self._share(t) * (self._start - self._target)
+        return size * self._full(np.exp(-self._decay * (t - self._base))) if self._decays else size
+
+    def _share(self, t: float) -> float:
+        """Share of the last change that is still to come at time t."""
+        share = math.exp(-(t - self._base) / self._relax) if self._relax > 0.0 else 0.0
+        return share if share > SETTLED else 0.0
+
+    def _set_planes(self) -> None:
+        """Fold the amplitudes into even and odd half planes: the target, and what the start lacks of it."""
+        self._settled = self._planes(self._unit * self._target)
+        self._to_come = self._planes(self._unit * (self._start - self._target)) if self._relax > 0.0 else None
+
+    def _planes(self, h0: np.ndarray) -> list[np.ndarray]:
+        wide = PRECISIONS[self.precision][1]
+        return [np.ascontiguousarray(plane, wide).view(self._real) for plane in fold(h0)]
+
+    def _planes_at(self, t: float) -> list[np.ndarray]:
+        share = self._share(t)
+        if self._to_come is None or share == 0.0:
+            return self._settled
+        weight = self._real(share)
+        return [plane + weight * rest for plane, rest in zip(self._settled, self._to_come, strict=True)]
+
+    def _push(self) -> np.ndarray:
+        """k tanh(kh)/(rho omega) of the quarter plane: what an impulse does, see ripples.py."""
+        c, omega = self.conditions, 2.0 * np.pi * self._rate
+        tanh = np.tanh(self._k * c.depth) if math.isfinite(c.depth) else 1.0
+        return np.divide(self._k * tanh, c.density * omega, out=np.zeros_like(omega), where=omega > 0.0)
+
+    def _full(self, quarter: np.ndarray) -> np.ndarray:
+        """A quarter plane of |kx|, |ky| laid out over the full plane."""
+        return quarter[self._folded[:, None], self._folded[None, :]]

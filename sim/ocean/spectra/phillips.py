@@ -1,0 +1,35 @@
+"""The lab's spectrum: Phillips as Tessendorf (2001) writes it, with waves that run along the wind both ways."""
+
+import math
+
+import numpy as np
+
+from sim.ocean.spectra.record import Conditions, Spectrum
+
+
+def density(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
+    """S(kx, ky) [m4] = A exp(-1/(kL)^2)/k^4 cos^2(theta), L = U^2/g (Tessendorf, eq. 40, with S in the plane)."""
+    k2 = kx**2 + ky**2
+    L = c.wind_speed**2 / c.gravity
+    along = kx * math.cos(c.wind_direction) + ky * math.sin(c.wind_direction)
+    return c.phillips_constant * np.exp(-1.0 / (k2 * L**2)) / k2**2 * along**2 / k2
+
+
+def significant_height(c: Conditions) -> float:
+    """Hs = 4 L sqrt(pi A/2) [m]."""
+    return 4.0 * c.wind_speed**2 / c.gravity * math.sqrt(0.5 * math.pi * c.phillips_constant)
+
+
+def peak(c: Conditions) -> float:
+    """Of S(omega) ~ k^-5/2 exp(-1/(kL)^2), deep water: k_p = sqrt(4/5)/L, omega_p = sqrt(g k_p) [rad/s]."""
+    return math.sqrt(math.sqrt(0.8)) * c.gravity / c.wind_speed
+
+
+SPECTRUM = Spectrum(
+    "phillips",
+    "Phillips after Tessendorf 2001: the lab's, both ways along the wind",
+    density,
+    significant_height,
+    peak,
+    ("wind_speed", "wind_direction", "phillips_constant", "low_pass"),
+)

@@ -1,0 +1,146 @@
+"""What a sea measures up to: Hs, Tp, mean square slope and direction, in theory and on a drawn field, with its band.
+
+One tile is a sample: even a perfect one differs from its spectrum. `height_scatter` says by how much to expect.
+"""
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from sim.knobs import refusal
+from sim.ocean.bounds import not_negative
+from sim.ocean.spectra import Conditions, Spectrum
+
+if TYPE_CHECKING:
+    from sim.ocean.sea import Sea
+
+# Lower bounds of forces 1 to 12 [m/s] (WMO No. 306) and the names of 0 to 12.
+BEAUFORT_FROM = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
+BEAUFORT_NAMES = (
+    "calm", "light air", "light breeze", "gentle breeze", "moderate breeze", "fresh breeze", "strong breeze",
+    "near gale", "gale", "strong gale", "storm", "violent storm", "hurricane force",
+)  # fmt: skip
+
+
+class Statistics(NamedTuple):
+    """Of a sea. nan where it is flat, or where one snapshot cannot tell (direction)."""
+
+    significant_height: float  # [m] 4 sqrt(m0)
+    peak_period: float  # [s]
+    mean_square_slope: float
+    direction: float  # [rad] where the energy goes to
+
+
+def beaufort(wind_speed: float) -> tuple[int, str]:
+    """Beaufort force 0 to 12 and its name, of U10 [m/s]. Raises ValueError for a negative or non-finite speed."""
+    force = int(np.searchsorted(BEAUFORT_FROM, not_negative("wind_speed", wind_speed, "m/s"), side="right"))
+    return force, BEAUFORT_NAMES[force]
+
+
+def theory(spectrum: Spectrum, conditions: Conditions, k_max: float = 1e4, k_min: float = 1e-6) -> Statistics:
+    """Statistics of the spectrum itself between two wavenumbers [rad/m], by a sum over log k and direction."""
+    log_k, step = np.linspace(math.log(k_min), math.log(k_max), 3000, retstep=True)
+    theta = np.arange(180) * (2.0 * math.pi / 180)
+    k = np.exp(log_k)
+    S = spectrum(k[:, None] * np.cos(theta), k[:, None] * np.sin(theta), conditions)
+    energy = S * k[:, None] ** 2 * (step * 2.0 * math.pi / theta.size)  # S k dk dtheta = S k^2 dlog(k) dtheta
+    along = energy.sum(axis=1)
+    if not along.any():
+        return Statistics(0.0, math.nan, 0.0, math.nan)
+    # S(omega) = S(log k) dlog(k)/domega = S(log k)/(k cg)
+    omega = conditions.omega(k)
+    peak = omega[np.argmax(along / (k * conditions.group_speed(k)))]
+    east, north = (energy * np.cos(theta)).sum(), (energy * np.sin(theta)).sum()
+    return Statistics(
+        4.0 * math.sqrt(along.sum()), 2.0 * math.pi / peak, float((along * k**2).sum()), _direction(east, north)
+    )
+
+
+def expected(sea: "Sea", t: float = 0.0) -> Statistics:
+    """Statistics of the spectrum as the tile resolves it: sums of S dk^2 over its waves."""
+    return _of_energy(sea, sea.energy_at(t))
+
+
+def drawn(sea: "Sea", t: float = 0.0) -> Statistics:
+    """Statistics of the amplitudes as drawn: sums of 2 |h0|^2 over the tile's waves."""
+    return _of_energy(sea, 2.0 * np.abs(sea.amplitudes_at(t)) ** 2)
+
+
+def measured(
+    height: np.ndarray, length: float, conditions: Conditions, earlier: np.ndarray | None = None
+) -> Statistics:
+    """Statistics of a drawn field: height (n, n) [m] on a tile of length [m], by its FFT.
+
+    earlier: the field a little before (well under half a period of the shortest wave that counts); tells direction.
+    Raises ValueError where the fields do not fit.
+    """
+    if height.ndim != 2 or height.shape[0] != height.shape[1]:
+        raise refusal("height", height.shape, "a square field")
+    n = height.shape[0]
+    k1 = np.fft.fftfreq(n, length / n) * 2.0 * math.pi
+    kx, ky = k1[:, None], k1[None, : n // 2 + 1]
+    k = np.hypot(kx, ky)
+    h = np.fft.rfft2(np.asarray(height, np.float64)) / n**2
+    twice = np.full(h.shape, 2.0)
+    twice[:, 0] = 1.0
+    if n % 2 == 0:
+        twice[:, -1] = 1.0
+    energy = twice * np.abs(h) ** 2
+    energy[0, 0] = 0.0
+    direction = math.nan
+    if earlier is not None:
+        if earlier.shape != height.shape:
+            raise refusal("earlier", earlier.shape, f"a field of shape {height.shape}")
+        # h = P e^(-i omega t) + Q e^(i omega t): the phase of h falls where the wave runs along k, rises against it.
+        turned = twice * np.imag(np.fft.rfft2(np.asarray(earlier, np.float64)) / n**2 * np.conj(h))
+        direction = _direction(float((turned * kx).sum()), float((turned * ky).sum()))
+    return Statistics(
+        4.0 * math.sqrt(energy.sum()),
+        _peak_period(conditions.omega(k), energy),
+        float((energy * k**2).sum()),
+        direction,
+    )
+
+
+def height_scatter(sea: "Sea", t: float = 0.0) -> float:
+    """Relative standard deviation of the Hs of one snapshot of this tile, over seeds.
+
+    m0 of a snapshot is sum |h(k)|^2. Random amplitudes: each |h|^2 of a pair +-k is exponential with mean
+    s = (S(k) + S(-k)) dk^2/2, so Var m0 = 2 sum s^2. Fixed ones: only the beat of S(k) with S(-k), Var = sum S S' dk^4.
+    """
+    energy = sea.energy_at(t)
+    opposite = np.roll(energy[::-1, ::-1], 1, axis=(0, 1))
+    if not energy.any():
+        return 0.0
+    variance = 0.5 * ((energy + opposite) ** 2).sum() if sea.amplitudes == "random" else (energy * opposite).sum()
+    return 0.5 * math.sqrt(variance) / float(energy.sum())
+
+
+def _of_energy(sea: "Sea", energy: np.ndarray) -> Statistics:
+    kx, ky = sea.k[:, None], sea.k[None, :]
+    k = np.hypot(kx, ky)
+    inverse = np.divide(1.0, k, out=np.zeros_like(k), where=k > 0.0)
+    return Statistics(
+        4.0 * math.sqrt(energy.sum()),
+        _peak_period(sea.frequencies, energy),
+        float((energy * k**2).sum()),
+        _direction((energy * kx * inverse).sum(), (energy * ky * inverse).sum()),
+    )
+
+
+def _direction(east: float, north: float) -> float:
+    return math.atan2(north, east) if math.hypot(east, north) > 0.0 else math.nan
+
+
+def _peak_period(omega: np.ndarray, energy: np.ndarray) -> float:
+    """2 pi/omega_p with omega_p = sum omega S^4/sum S^4 (Young 1995, Ocean Eng. 22:669), S in bins 6 % wide."""
+    waves = (energy > 0.0) & (omega > 0.0)
+    if not waves.any():
+        return math.nan
+    low, high = omega[waves].min(), omega[waves].max()
+    edges = np.geomspace(0.98 * low, 1.02 * high, max(int(math.log(high / low + 1.0) / 0.06), 4))
+    held, _ = np.histogram(omega[waves], edges, weights=energy[waves])
+    density = held / np.diff(edges)
+    weight = (density / density.max()) ** 4 * np.diff(edges)
+    return 2.0 * math.pi * float(weight.sum() / (weight * np.sqrt(edges[1:] * edges[:-1])).sum())

@@ -1,0 +1,101 @@
+"""One moment of a sea: fields on the grid, each computed when first read and by the transforms it needs."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from sim.ocean.evolve import set_imaginary_multiple, set_real_multiple
+
+if TYPE_CHECKING:
+    from sim.ocean.sea import Sea
+
+
+class Multiple(Protocol):
+    """A kernel that writes a multiple of the height's spectrum."""
+
+    def __call__(
+        self, h: np.ndarray, row: np.ndarray, column: np.ndarray, radial: np.ndarray, out: np.ndarray
+    ) -> None: ...
+
+
+def field(make: Callable[["Surface"], np.ndarray]) -> property:
+    """A property that is computed when first read and kept with the other fields of its moment."""
+
+    def read(surface: "Surface") -> np.ndarray:
+        if make.__name__ not in surface.fields:
+            surface.fields[make.__name__] = make(surface)
+        return surface.fields[make.__name__]
+
+    return property(read, doc=make.__doc__)
+
+
+class Surface:
+    """The sea at `t` [s]. Read a field before the sea is changed; one read later is that of the changed sea.
+
+    Two-component fields are views of two planes: field[..., 0] is contiguous.
+    """
+
+    def __init__(self, sea: "Sea", t: float, fields: dict[str, np.ndarray]) -> None:
+        """fields: those already computed; the sea keeps the same dict, but no Surface: a cycle would hold memory."""
+        self.sea, self.t, self.fields = sea, t, fields
+        self.choppiness = sea.choppiness
+
+    @field
+    def height(self) -> np.ndarray:
+        """Height (size, size) [m] of the surface point labelled x, y. One transform."""
+        transforms = self.sea.transforms
+        transforms.spectrum.view(self.sea.rows["1"].dtype)[...] = self.sea.heights_spectrum(self.t)
+        grid = transforms.grids.take(1)[0]
+        transforms.set_grid(grid)
+        return grid
+
+    @field
+    def displacement(self) -> np.ndarray:
+        """Horizontal displacement (size, size, 2) [m], choppiness included. Two transforms; none at choppiness 0.
+
+        D(k) = -i choppiness (k/|k|) h(k): Tessendorf (2001), eq. 44.
+        """
+        out = self._two_planes()
+        if self.choppiness > 0.0:
+            rows = self.sea.rows
+            chop = -rows["k"] * rows["k"].dtype.type(self.choppiness)
+            self._set_field(set_imaginary_multiple, chop, rows["1"], "1/k", out[..., 0])
+            self._set_field(set_imaginary_multiple, rows["1"], chop, "1/k", out[..., 1])
+        else:
+            out[...] = 0.0
+        return out
+
+    @field
+    def slope(self) -> np.ndarray:
+        """Slope (size, size, 2) of the height along x and y, by label. Two transforms."""
+        rows, out = self.sea.rows, self._two_planes()
+        self._set_field(set_imaginary_multiple, rows["k"], rows["1"], "1", out[..., 0])
+        self._set_field(set_imaginary_multiple, rows["1"], rows["k"], "1", out[..., 1])
+        return out
+
+    @field
+    def strain(self) -> np.ndarray:
+        """(Dxx, Dyy, Dxy), shape (3, size, size): how the displacement stretches the grid. Three transforms."""
+        rows, out = self.sea.rows, self.sea.transforms.grids.take(3)
+        out[...] = 0.0
+        if self.choppiness > 0.0:
+            chop = rows["1"].dtype.type(self.choppiness)
+            for i, (row, column) in enumerate((("k2", "1"), ("1", "k2"), ("k", "k"))):
+                self._set_field(set_real_multiple, chop * rows[row], rows[column], "1/k", out[i])
+        return out
+
+    @field
+    def jacobian(self) -> np.ndarray:
+        """J (size, size) = (1 + Dxx)(1 + Dyy) - Dxy^2 of the displacement: below 0 the surface folds."""
+        Dxx, Dyy, Dxy = self.strain
+        return (1.0 + Dxx) * (1.0 + Dyy) - Dxy * Dxy
+
+    def _two_planes(self) -> np.ndarray:
+        return np.moveaxis(self.sea.transforms.grids.take(2), 0, -1)
+
+    def _set_field(self, multiple: Multiple, row: np.ndarray, column: np.ndarray, radial: str, out: np.ndarray) -> None:
+        sea = self.sea
+        spectrum = sea.transforms.spectrum.view(row.dtype)
+        multiple(sea.heights_spectrum(self.t), row, column, sea.radial[radial], spectrum)
+        sea.transforms.set_grid(out)

@@ -1,0 +1,104 @@
+"""Half spectrum to grid: one complex-to-real FFT plan a size and precision, made once, its wisdom kept on disk.
+
+pyfftw is imported here and only when the first plan is made. No 1/N^2: the grid is the plain sum of its waves.
+"""
+
+import base64
+import binascii
+import contextlib
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import platformdirs
+
+from sim.ocean.grids import Grids
+
+PRECISIONS = {"single": (np.float32, np.complex64), "double": (np.float64, np.complex128)}
+
+_loaded: set[Path] = set()
+
+
+class Transforms:
+    """The transform of one grid size. Not for two threads at once."""
+
+    def __init__(self, size: int, precision: str) -> None:
+        import pyfftw
+
+        real, complex_ = PRECISIONS[precision]
+        self.count = 0  # transforms run so far
+        self.spectrum = pyfftw.zeros_aligned((size, size // 2 + 1), dtype=complex_)  # input; destroyed by each run
+        self.grids = Grids(size, real)
+        self._plan = make_plan(self.spectrum, self.grids.take(1)[0])
+        self.spectrum[...] = 0.0
+
+    def set_grid(self, grid: np.ndarray) -> None:
+        """`spectrum` as the sum of its waves on `grid` (size, size); the spectrum is gone afterwards."""
+        import pyfftw
+
+        # Planes of a size that is no multiple of 4 do not all begin where vector instructions like them to.
+        aligned = grid if pyfftw.is_byte_aligned(grid) else self.grids.take(1)[0]
+        self._plan.update_arrays(self.spectrum, aligned)
+        self._plan.execute()
+        self.count += 1
+        if aligned is not grid:
+            grid[...] = aligned
+
+
+def make_plan(spectrum: np.ndarray, grid: np.ndarray) -> Any:
+    """The measured plan from wisdom where there is some, else measured now (up to a second) and remembered."""
+    import pyfftw
+
+    path = wisdom_path()
+    if path not in _loaded:
+        load_wisdom(path)
+        _loaded.add(path)
+    options: dict[str, Any] = {"axes": (0, 1), "direction": "FFTW_BACKWARD", "threads": 1}
+    flags = ("FFTW_MEASURE", "FFTW_DESTROY_INPUT")
+    try:
+        return pyfftw.FFTW(spectrum, grid, flags=(*flags, "FFTW_WISDOM_ONLY"), **options)
+    except RuntimeError:  # pyfftw's way to say that there is no wisdom for this plan
+        plan = pyfftw.FFTW(spectrum, grid, flags=flags, **options)
+        save_wisdom(path)
+        return plan
+
+
+def wisdom_path() -> Path:
+    """Where wisdom is kept: beside the compiled kernels, in the user's cache directory."""
+    return Path(os.environ.get("SPRINGTIDE_CACHE") or platformdirs.user_cache_dir("springtide")) / "fftw-wisdom.json"
+
+
+def load_wisdom(path: Path) -> bool:
+    """Hand FFTW what `path` holds. False, and no harm done, where it is missing, unreadable or not wisdom."""
+    import pyfftw
+
+    try:
+        texts = [base64.b64decode(text, validate=True) for text in json.loads(path.read_text())["wisdom"]]
+    except (OSError, ValueError, KeyError, TypeError, binascii.Error):
+        return False
+    if len(texts) != 3 or not all(text.isascii() for text in texts):
+        return False
+    return any(pyfftw.import_wisdom(tuple(texts)))
+
+
+def save_wisdom(path: Path) -> bool:
+    """Write what FFTW has learned to `path`, in one step. False where nothing can be written there."""
+    import pyfftw
+
+    text = json.dumps({"wisdom": [base64.b64encode(w).decode() for w in pyfftw.export_wisdom()]})
+    part = None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=path.name, delete=False) as file:
+            part = file.name
+            file.write(text)
+        os.replace(part, path)
+    except OSError:
+        if part:
+            with contextlib.suppress(OSError):
+                os.unlink(part)
+        return False
+    return True

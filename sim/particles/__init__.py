@@ -1,0 +1,1 @@
+"""Particles that move through air and meet the surface."""

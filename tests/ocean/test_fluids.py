@@ -1,0 +1,105 @@
+"""Fluids: the oil table, the mixture laws and the optics against the published numbers."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sim.ocean.fluids import (
+    MIXTURE_LAWS,
+    arrhenius,
+    brewster_angle,
+    diffuse_reflectance,
+    emulsion,
+    fluids,
+    fresnel,
+    grunberg_nissan,
+    kendall_monroe,
+    mixed,
+    mixed_density,
+    normal_reflectance,
+    oil_index,
+    taylor,
+)
+
+
+def test_water_and_eleven_oils_are_there_in_si():
+    found = fluids()
+    assert len(found) == 13
+    maya = found["Maya"]
+    assert (maya.density, maya.viscosity) == (932.0, pytest.approx(0.58))
+    assert maya.kinematic_viscosity == pytest.approx(6.2e-4, rel=0.01)
+    assert maya.surface_tension == pytest.approx(0.0284)
+    assert found["Brent"].surface_tension is None
+    for fluid in found.values():
+        assert 600.0 < fluid.density < 1100.0
+        assert 0.0 < fluid.viscosity < 100.0
+        assert len(fluid.colour) == 7
+
+
+def test_mixture_laws_of_the_table():
+    assert arrhenius(50.0, 1.0, 0.3) == pytest.approx(3.234, abs=5e-4)
+    assert kendall_monroe(50.0, 1.0, 0.3) == pytest.approx(5.883, abs=5e-4)
+    assert taylor(50.0, 1.0, 0.3) == pytest.approx(1.741, abs=5e-4)
+    assert taylor(1.0, 50.0, 0.7) == pytest.approx(86.0, abs=0.05)
+    assert grunberg_nissan(50.0, 1.0, 0.3, 1.0) == pytest.approx(arrhenius(50.0, 1.0, 0.3) * math.exp(0.21))
+    assert mixed_density(850.0, 1025.0, 0.2) == pytest.approx(990.0)
+
+
+@pytest.mark.parametrize("law", MIXTURE_LAWS)
+def test_nothing_mixed_in_changes_nothing(law):
+    water, oil = fluids()["sea water"], fluids()["Maya"]
+    for fraction, same in ((0.0, water), (1.0, oil)):
+        blend = mixed(oil, water, fraction, law)
+        assert (blend.density, blend.viscosity) == pytest.approx((same.density, same.viscosity), rel=1e-12)
+        assert (blend.colour, blend.refractive_index) == (same.colour, same.refractive_index)
+
+
+def test_einstein_is_taylors_limit_of_stiff_drops():
+    assert taylor(1e9, 1.0, 0.1) == pytest.approx(1.25, rel=1e-8)
+
+
+def test_emulsion_inverts_at_half():
+    assert emulsion(50.0, 1.0, 0.3) == taylor(50.0, 1.0, 0.3)
+    assert emulsion(50.0, 1.0, 0.7) == pytest.approx(taylor(1.0, 50.0, 0.3))
+
+
+def test_optics_of_the_table():
+    assert normal_reflectance(1.333) == pytest.approx(0.02037, abs=5e-6)
+    assert normal_reflectance(1.34) == pytest.approx(0.02111, abs=5e-6)
+    assert normal_reflectance(1.47) == pytest.approx(0.03621, abs=5e-6)
+    assert (diffuse_reflectance(1.333), diffuse_reflectance(1.47)) == pytest.approx((0.0664, 0.0873), abs=5e-5)
+    grazing = [fresnel(math.radians(75.0), n).mean for n in (1.333, 1.47)]
+    assert grazing == pytest.approx([0.212, 0.247], abs=5e-4)
+    assert [math.degrees(brewster_angle(n)) for n in (1.333, 1.47)] == pytest.approx([53.12, 55.77], abs=5e-3)
+
+
+def test_fresnel_limits():
+    angle = np.linspace(0.0, math.pi / 2, 50)
+    found = fresnel(angle, 1.333)
+    assert found.s[0] == pytest.approx(found.p[0]) == pytest.approx(normal_reflectance(1.333))
+    assert found.mean[-1] == pytest.approx(1.0)
+    assert fresnel(brewster_angle(1.333), 1.333).p == pytest.approx(0.0, abs=1e-30)
+    assert fresnel(angle[:-1], 1.0).mean.max() < 1e-28
+
+
+def test_index_of_oils_by_the_one_third_rule():
+    assert oil_index(866.0) == pytest.approx(1.488, abs=2e-3)
+    assert oil_index(932.0) == pytest.approx(1.534, abs=2e-3)
+    assert fluids()["fresh water"].refractive_index == 1.333
+    assert fluids()["Maya"].refractive_index == oil_index(932.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "name"),
+    [
+        (lambda: arrhenius(1.0, 1.0, 1.5), "fraction"),
+        (lambda: arrhenius(0.0, 1.0, 0.5), "first"),
+        (lambda: mixed(fluids()["Maya"], fluids()["Mars"], 0.5, "stirred"), "law"),
+        (lambda: fresnel(0.0, 0.9), "index"),
+        (lambda: oil_index(math.nan), "density"),
+    ],
+)
+def test_bad_arguments_are_refused_by_name(call, name):
+    with pytest.raises(ValueError, match=rf"^{name}: "):
+        call()

@@ -1,0 +1,47 @@
+"""Planets: gravity from mass under each rule, and what it does to a sea."""
+
+import math
+
+import pytest
+
+from sim.ocean import Sea
+from sim.ocean.planets import EARTH_GRAVITY, RADIUS_RULES, SOLAR_SYSTEM, gravity_of, mass_for
+
+
+@pytest.mark.parametrize(
+    ("rule", "light", "heavy"),
+    [("same_radius", 0.0981, 981.0), ("same_density", 2.114, 45.5), ("rocky", 1.18, 81.6)],
+)
+def test_a_hundredth_and_a_hundred_earths(rule, light, heavy):
+    assert gravity_of(0.01, rule) == pytest.approx(light, rel=1e-3)
+    assert gravity_of(100.0, rule) == pytest.approx(heavy, rel=1e-3)
+    assert gravity_of(1.0, rule) == EARTH_GRAVITY
+    assert mass_for(gravity_of(7.0, rule), rule) == pytest.approx(7.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("body", "gravity"), [("Earth", 9.82), ("Moon", 1.62), ("Mars", 3.73), ("Titan", 1.354), ("Jupiter", 25.92)]
+)
+def test_presets_have_the_gravity_of_their_fact_sheet(body, gravity):
+    assert SOLAR_SYSTEM[body].gravity == pytest.approx(gravity, rel=3e-3)
+
+
+@pytest.mark.parametrize("gravity", [0.0981, 2.114, 9.81, 45.5, 981.0])
+def test_seas_of_all_planets_are_one_sea_scaled(gravity):
+    """Hs g/U^2 is the same where the tile scales as U^2/g, and so is the whole surface."""
+    here, earth = (Sea(512, 9000.0 / g, gravity=g, amplitudes="fixed", precision="double") for g in (gravity, 9.81))
+    ratio = gravity / 9.81
+    assert here.significant_height * ratio == pytest.approx(earth.significant_height, rel=1e-12)
+    assert here.significant_height * gravity / 100.0 == pytest.approx(0.20925, rel=5e-3)
+    assert here.surface(3.0 / ratio).height * ratio == pytest.approx(earth.surface(3.0).height, abs=1e-10)
+
+
+@pytest.mark.parametrize("mass", [0.0, -1.0, math.nan, math.inf])
+def test_bad_masses_are_refused(mass):
+    with pytest.raises(ValueError, match=r"^mass: "):
+        gravity_of(mass)
+
+
+def test_unknown_rule_is_refused():
+    with pytest.raises(ValueError, match=r"^rule: .*" + ", ".join(RADIUS_RULES)):
+        gravity_of(1.0, "hollow")

@@ -1,0 +1,91 @@
+"""Theory, drawn amplitudes and drawn fields agree, within the band one tile allows."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sim.ocean import Sea
+from sim.ocean.spectra import SPECTRA, Conditions
+from sim.ocean.statistics import beaufort, drawn, expected, height_scatter, measured, theory
+
+
+def test_theory_of_pierson_moskowitz():
+    found = theory(SPECTRA["pierson_moskowitz"], Conditions(wind_direction=0.5))
+    assert found.significant_height == pytest.approx(2.13298, rel=1e-4)
+    assert found.peak_period == pytest.approx(2 * math.pi / 0.86050, rel=4e-3)
+    assert found.direction == pytest.approx(0.5, abs=1e-3)
+
+
+def test_the_tile_that_holds_the_peak_has_the_theorys_statistics():
+    sea = Sea(512, 900.0, amplitudes="fixed", wind_direction=-1.0)
+    k_max = math.pi * 512 / 900.0
+    whole, tile = theory(sea.spectrum, sea.conditions, k_max=k_max), expected(sea)
+    assert tile.significant_height == pytest.approx(whole.significant_height, rel=5e-3)
+    assert tile.peak_period == pytest.approx(whole.peak_period, rel=0.05)
+    assert tile.direction == pytest.approx(-1.0, abs=0.02)
+    # The corners of the square hold a little more than the circle.
+    assert whole.mean_square_slope < tile.mean_square_slope < 1.2 * whole.mean_square_slope
+
+
+def test_a_drawn_field_measures_as_its_amplitudes():
+    sea = Sea(256, 600.0, seed=2, wind_direction=2.0, precision="double")
+    of_field = measured(sea.surface(5.0).height, 600.0, sea.conditions, sea.surface(4.9).height)
+    of_waves = drawn(sea)
+    assert of_field.significant_height == pytest.approx(of_waves.significant_height, rel=0.15)
+    assert of_field.peak_period == pytest.approx(of_waves.peak_period, rel=0.15)
+    assert of_field.direction == pytest.approx(2.0, abs=0.15)
+    assert of_waves.direction == pytest.approx(2.0, abs=0.15)
+    slope = sea.surface(5.0).slope
+    assert of_field.mean_square_slope == pytest.approx(float(np.square(slope).sum(-1).mean()), rel=1e-9)
+    assert of_field.significant_height == pytest.approx(4 * sea.surface(5.0).height.std(), rel=1e-9)
+
+
+def test_one_snapshot_tells_no_direction():
+    sea = Sea(32, 300.0)
+    assert math.isnan(measured(sea.surface(0.0).height, 300.0, sea.conditions).direction)
+
+
+@pytest.mark.parametrize(("length", "scatter"), [(250.0, 0.073), (500.0, 0.036)])
+def test_scatter_of_a_tile_is_the_published_one(length, scatter):
+    assert height_scatter(Sea(256, length, "pierson_moskowitz")) == pytest.approx(scatter, rel=0.06)
+
+
+@pytest.mark.parametrize("amplitudes", ["random", "fixed"])
+def test_scatter_is_what_seeds_show(amplitudes):
+    options = {"spectrum": "phillips", "wind_speed": 8.0, "amplitudes": amplitudes}
+    heights = [4.0 * Sea(32, 120.0, seed=seed, **options).surface(3.0).height.std() for seed in range(400)]
+    predicted = height_scatter(Sea(32, 120.0, **options))
+    assert np.std(heights) / np.mean(heights) == pytest.approx(predicted, rel=0.15)
+
+
+def test_flat_sea_has_no_period_and_no_scatter():
+    sea = Sea(16, 50.0, wind_speed=0.0)
+    for found in (expected(sea), drawn(sea), theory(sea.spectrum, sea.conditions)):
+        assert found.significant_height == found.mean_square_slope == 0.0
+        assert math.isnan(found.peak_period)
+        assert math.isnan(found.direction)
+    assert height_scatter(sea) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("speed", "force", "name"),
+    [
+        (0.0, 0, "calm"),
+        (0.3, 1, "light air"),
+        (10.0, 5, "fresh breeze"),
+        (20.7, 8, "gale"),
+        (60.0, 12, "hurricane force"),
+    ],
+)
+def test_beaufort(speed, force, name):
+    assert beaufort(speed) == (force, name)
+
+
+def test_fields_that_do_not_fit_are_refused():
+    with pytest.raises(ValueError, match=r"^height: "):
+        measured(np.zeros((4, 5)), 1.0, Conditions())
+    with pytest.raises(ValueError, match=r"^earlier: "):
+        measured(np.zeros((4, 4)), 1.0, Conditions(), np.zeros((5, 5)))
+    with pytest.raises(ValueError, match=r"^wind_speed: "):
+        beaufort(-1.0)

@@ -1,0 +1,102 @@
+"""Rain against Gunn and Kinzer's speeds, Marshall and Palmer's integrals, and honest counting."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sim.ocean import Sea
+from sim.particles.rain import LARGEST, SMALLEST, Rain, rainfall, slope_parameter, terminal_speed
+
+FLAT = np.zeros((8, 8))
+
+
+@pytest.mark.parametrize(
+    ("millimetres", "speed"),
+    [(0.5, 2.06), (1.0, 4.03), (2.0, 6.49), (3.2, 8.26), (4.0, 8.83), (5.2, 9.12), (6.0, 9.17)],
+)
+def test_speeds_are_gunn_and_kinzers(millimetres, speed):
+    assert terminal_speed(millimetres * 1e-3) == pytest.approx(speed, rel=0.02)
+    assert terminal_speed(millimetres * 1e-3, 4 * 9.81) == pytest.approx(2 * speed, rel=0.02)
+
+
+def test_integrals_of_the_table():
+    assert slope_parameter(25.0) == pytest.approx(2086.0, abs=1.0)
+    moderate, heavy = rainfall(25.0), rainfall(100.0)
+    assert (moderate.flux, heavy.flux) == pytest.approx((5036.0, 9747.0), rel=1e-3)
+    assert moderate.water == pytest.approx(1.33e-3, rel=0.03)
+    assert moderate.rate == pytest.approx(28.2, rel=0.01)
+    assert moderate.energy == pytest.approx(0.173, rel=0.01)
+    assert heavy.energy == pytest.approx(0.806, rel=0.05)
+
+
+def test_as_many_drops_fall_as_the_rate_says():
+    rain = Rain(25.0, 64.0, 20.0, count=5000, wind=(8.0, -3.0))
+    duration, dt = 40.0, 1 / 30
+    for _ in range(round(duration / dt)):
+        rain.step(dt, FLAT)
+    due = rain.rainfall.flux * 64.0**2 * duration
+    assert rain.weight > 1000.0
+    assert rain.fallen == rain.hits * rain.weight
+    assert rain.fallen == pytest.approx(due, rel=4.0 / math.sqrt(rain.hits))
+
+
+def test_the_mean_drop_in_the_air_stays_the_same():
+    rain = Rain(25.0, 30.0, 15.0, count=20000, seed=3)
+    before = rain.diameter.mean()
+    for _ in range(300):
+        rain.step(1 / 30, FLAT)
+    assert rain.diameter.mean() == pytest.approx(before, rel=0.02)
+    assert rain.diameter.min() >= SMALLEST
+    assert rain.diameter.max() <= LARGEST
+
+
+def test_few_drops_are_all_drawn():
+    rain = Rain(0.1, 2.0, 1.0, count=10**6)
+    assert rain.weight == pytest.approx(1.0, rel=1e-3)
+    assert len(rain.diameter) == round(rain.rainfall.concentration * 4.0)
+
+
+def test_hits_lie_on_the_surface_and_upwind():
+    sea = Sea(64, 40.0, wind_speed=8.0, precision="double")
+    surface = sea.surface(0.0)
+    rain = Rain(25.0, 40.0, 20.0, count=5000)
+    for _ in range(60):
+        hits = rain.step(0.02, surface.height, surface.displacement)
+        if len(hits.speed) == 0:
+            continue
+        height, _ = sea.height_at(hits.position[:, :2], 0.0)
+        assert np.abs(hits.position[:, 2] - height).max() < 0.05
+        assert (hits.speed > 0.0).all()
+    assert rain.hits > 100
+
+
+def test_wind_carries_drops_downwind():
+    rain = Rain(25.0, 100.0, 50.0, count=100, wind=(3.0, 0.0))
+    x, z = rain.position[0].copy(), rain.position[2].copy()
+    speed = rain.speed.copy()
+    rain.step(0.01, np.full((4, 4), -1e3))
+    assert rain.position[0] == pytest.approx((x + 0.03) % 100.0)
+    assert rain.position[2] == pytest.approx(z - 0.01 * speed)
+
+
+def test_drops_begun_under_a_wave_do_not_count():
+    rain = Rain(25.0, 10.0, 10.0, count=1000)
+    assert len(rain.step(1e-6, np.full((4, 4), 5.0)).speed) == 0
+    assert (rain.position[2] > 5.0).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("rate", 0.0),
+        ("rate", math.nan),
+        ("length", -1.0),
+        ("ceiling", math.inf),
+        ("count", 0),
+        ("wind", (1.0, math.nan)),
+    ],
+)
+def test_bad_arguments_are_refused_by_name(name, value):
+    with pytest.raises(ValueError, match=rf"^{name}: .* is not allowed; allowed: "):
+        Rain(**{"rate": 10.0, "length": 50.0, "ceiling": 20.0, name: value})

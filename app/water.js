@@ -37,6 +37,7 @@ const WATER_GLSL = {
     uniform vec3 fold; // share of the photograph's azimuths in use, blur of the haze, brightest radiance kept
     uniform vec3 sunDirection;
     uniform vec3 sunColor;
+    uniform vec3 tint; // a filter before the photograph
     uniform vec3 weather; // cloud cover, size of clouds, direction of the wind [rad]
     uniform vec3 state; // time [s], significant height [m], mean square slope of the mesh
 
@@ -57,7 +58,9 @@ const WATER_GLSL = {
       #if defined(USE_ENVMAP) && defined(ENVMAP_TYPE_CUBE_UV)
         vec3 c = textureCubeUV(envMap, envMapRotation * (mat3(fromSea) * d), blur).rgb;
         // Bright places keep their hue; the sun's own disc is drawn where it belongs, not through a blurred photograph.
-        return c / (1.0 + dot(c, vec3(0.3, 0.5, 0.2)) / fold.z) * envMapIntensity;
+        float light = dot(c, vec3(0.3, 0.5, 0.2));
+        c = max(mix(vec3(light), c, 1.15), 0.0) * tint;
+        return c / (1.0 + light / fold.z) * envMapIntensity;
       #else
         return mix(vec3(0.75, 0.8, 0.85), vec3(0.2, 0.4, 0.7), sqrt(max(d.z, 0.0)));
       #endif
@@ -194,9 +197,10 @@ const WATER_GLSL = {
       float c = clamp(asked * (1.0 + 0.9 * big), 0.0, 1.0);
       // Cells: the distance to the nearest bubble wall, coarse ones holding fine ones.
       float near = smoothstep(0.5, 0.1, footprint / air.z);
-      float wall = cells(p * 1.3), crumb = 0.35;
+      float crumb = 0.35;
+      vec2 q = p + 0.30 * vec2(ruffle(p * 2.3).x, ruffle(p * 2.3 + 9.0).x);
+      float wall = cells(q * 1.4);
       if (near > 0.0) {
-        vec2 q = p + 0.22 * vec2(ruffle(p * 3.1).x, ruffle(p * 3.1 + 9.0).x);
         crumb = mix(0.35, cells(q * 4.7), near);
       }
       float grain = 0.5;
@@ -205,7 +209,8 @@ const WATER_GLSL = {
       float width = 0.75 * c * c + 0.22 * c;
       float web = smoothstep(width + edge, width - edge, min(wall, 0.16 + 0.8 * crumb) + 0.06);
       float mat = smoothstep(0.35, 0.95, c + 0.35 * (0.4 - crumb) + 0.25 * (grain - 0.5) + 0.3 * big);
-      float cover = max(web * smoothstep(0.02, 0.45, c) * (1.0 - 0.5 * crumb), mat);
+      float torn = smoothstep(-0.25, 0.25, ruffle(p * 1.9 + 21.0).x + 1.2 * c - 0.35);
+      float cover = max(web * torn * smoothstep(0.02, 0.5, c) * (1.0 - 0.5 * crumb), mat);
       return vec2(clamp(cover, 0.0, 1.0), clamp(0.35 + 0.65 * mat - 0.5 * crumb + 0.3 * (grain - 0.5), 0.0, 1.0));
     }
 
@@ -265,7 +270,7 @@ const WATER_GLSL = {
       float spread = variance + 0.0004;
       float facets = exp(-0.5 * dot(tilt, tilt) / spread) / (6.2832 * spread);
       float glitter = schlick(f0, dot(V, H)) * facets / (4.0 * pow(max(H.z, 0.1), 4.0) * max(facing, 0.12));
-      glitter *= smoothstep(-0.02, 0.05, sunDirection.z) * optics.z;
+      glitter *= 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z;
 
       // Light that comes back out of the water: the deep, and crests with the sun behind them.
       vec3 ambient = lookup(vec3(0.0, 0.0, 1.0), 1.0);
@@ -329,14 +334,14 @@ const DOME_FRAGMENT = `
   // The disc, half a degree across as the true one, and the glow of the air around it.
   float sun(vec3 d) {
     float off = length(d - sunDirection);
-    return 40.0 * smoothstep(0.013, 0.009, off) + 0.25 * exp(-off * 30.0) + 0.06 * exp(-off * 7.0);
+    return 30.0 * smoothstep(0.014, 0.006, off) + 1.6 * exp(-off * 55.0) + 0.22 * exp(-off * 14.0) + 0.05 * exp(-off * 4.0);
   }
   // The photographs' colour comes in blocks of some degrees: take the light sharp and the hue soft.
   vec3 clearSky(vec3 d) {
-    vec3 sharp = sky(d, 0.06), soft = sky(d, 0.28);
+    vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
     vec3 w = vec3(0.3, 0.5, 0.2);
     float light = dot(sharp, w), even = dot(soft, w);
-    float detail = smoothstep(0.04, 0.15, abs(light - even) / even);
+    float detail = 0.6 * smoothstep(0.15, 0.5, abs(light - even) / even);
     return mix(soft * (light / even), sharp, detail);
   }
   void main() {
@@ -353,7 +358,7 @@ const DOME_FRAGMENT = `
 
 const WATER_UNIFORMS = [
   "deep", "scatter", "foamColor", "sunDirection", "sunColor", "optics",
-  "air", "ripple", "skyline", "fold", "weather", "state", "grid", "extent", "wireColor",
+  "air", "ripple", "skyline", "fold", "tint", "weather", "state", "grid", "extent", "wireColor",
 ];
 const seas = new Map(); // base name -> what this file has made for it
 

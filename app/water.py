@@ -35,13 +35,14 @@ class Look:
     refractive_index: float = 1.333
     roughness: float = 0.03
     specular: float = 1.0
-    ripple_slope: float = 0.16
+    ripple_slope: float = 0.2
     ripple_length: float = 1.6
     ripple_direction: float = 0.0
     foam_scale: float = 2.0
     sun_direction: tuple[float, float, float] = (0.6, 0.3, 0.5)
     sun_color: RGB = (1.0, 0.9, 0.75)
     sun_strength: float = 6.0
+    tint: RGB = (1.0, 1.0, 1.0)
     clouds: float = 0.4
     cloud_size: float = 2.2
     haze: float = 3000.0
@@ -174,6 +175,7 @@ class Water:
             (look.ripple_slope, look.ripple_length, look.ripple_direction),
             look.skyline,
             look.fold,
+            look.tint,
             (look.clouds, look.cloud_size, look.ripple_direction),
             self._state,
             (rows, cols, self._length),
@@ -215,13 +217,15 @@ class Photograph:
     stretch: float  # how fast elevation in the picture grows with elevation in our sky, at the horizon
     fold: float  # share of the picture's azimuths that are used
     exposure: float = 1.0
+    limit: float = 5.0  # radiance at which bright places of the picture are held back to half
+    tint: RGB = (1.0, 1.0, 1.0)  # a filter before the lens
 
 
 SKIES = {
-    "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 9.0, 0.6, 0.45, 0.6),
-    "sunset": Photograph(0.600, 3.3, (1.0, 0.62, 0.30), 4.0, 1.5, 5.0, 0.5, 0.36, 0.5),
-    "dawn": Photograph(0.635, 9.5, (1.0, 0.66, 0.46), 2.5, 7.0, 8.0, 0.6, 0.5, 0.42),
-    "night": Photograph(0.36, 25.0, (0.75, 0.85, 1.0), 0.5, 12.0, 18.0, 0.7, 1.0, 1.2),
+    "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 10.0, 0.6, 0.65, 0.62, 1.6, (0.80, 0.94, 1.22)),
+    "sunset": Photograph(0.600, 3.3, (1.0, 0.62, 0.30), 4.0, 1.5, 5.0, 0.42, 0.36, 0.36, 9.0, (1.0, 0.9, 0.84)),
+    "dawn": Photograph(0.635, 9.5, (1.0, 0.66, 0.46), 2.5, 7.0, 8.0, 0.6, 0.5, 0.45, 2.0, (1.0, 0.86, 0.9)),
+    "night": Photograph(0.36, 25.0, (0.75, 0.85, 1.0), 0.5, 12.0, 18.0, 0.7, 0.8, 0.6, 5.0, (0.35, 0.6, 1.0)),
 }
 
 
@@ -248,6 +252,7 @@ def sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Look:
         sun_color=photo.sun_color,
         sun_strength=photo.sun_strength,
         skyline=(math.radians(photo.land_near), math.radians(photo.land_far), g),
-        fold=(photo.fold, 0.5, 5.0),
+        fold=(photo.fold, 0.5, photo.limit),
         exposure=photo.exposure,
+        tint=photo.tint,
     )

@@ -40,7 +40,18 @@ def test_volume_and_centre_match_slicing(seed):
     assert below.volume == pytest.approx(volume, abs=1e-9 * hull.volume)
     assert below.area == pytest.approx(area, abs=1e-6 * size**2)
     if volume > 1e-6 * hull.volume:
-        assert volume * (below.centre[:2] - moment / volume) == pytest.approx(0, abs=1e-9 * hull.volume * size)
+        assert volume * (below.centre - moment / volume)[:2] == pytest.approx(0, abs=1e-9 * hull.volume * size)
+
+
+@pytest.mark.parametrize("seed", range(100, 140))
+def test_centre_of_buoyancy_under_a_level_surface_matches_slicing(seed):
+    hull, position, rotation, place, _ = random_case(seed)
+    below = submerged(hull, position, rotation, surface=0.1)
+    volume, moment, _ = sliced(place, hull.faces, 0.1 - place[:, 2])
+    assert below.volume == pytest.approx(volume, abs=1e-9 * hull.volume)
+    if volume > 1e-6 * hull.volume:
+        expected = moment / volume + [0, 0, 0.1]
+        assert volume * (below.centre - expected) == pytest.approx(0, abs=1e-9 * hull.volume)
 
 
 @pytest.mark.parametrize("seed", range(0, 60, 2))

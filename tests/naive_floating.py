@@ -85,13 +85,15 @@ def lumpy(rng: np.random.Generator, vertices: np.ndarray) -> np.ndarray:
 
 
 def naive_step(hull: Hull, density: float, state, upper, lower, flow, lift, laws: Laws, h: float):
-    """One semi-implicit step of one body from motion.py's equations, in matrices and world axes.
+    """One leapfrog step of one body from motion.py's equations, in matrices and world axes.
 
-    state: position, rotation, velocity, spin; upper and lower: (density, height below or above the origin, slope) of
-    the planes z = height + slope . (x, y); flow (3,) and lift: velocity and upward acceleration of the surface.
+    state: position, rotation, velocity, spin, and the wet skin of the last step or None; upper and lower: (density,
+    height at the origin, slope) of the planes z = height + slope . (x, y); flow (3,) and lift: velocity and upward
+    acceleration of the surface.
     The drag is integrated in many small steps instead of in closed form.
     """
-    position, rotation, velocity, spin = state
+    position, rotation, velocity, spin, before = state
+    position, rotation, spin = naive_drift(hull, position, rotation, velocity, spin, h / 2)
     turn = rotation_matrix(rotation)
     place = hull.vertices @ turn.T + position
     g = laws.gravity + lift
@@ -112,6 +114,9 @@ def naive_step(hull: Hull, density: float, state, upper, lower, flow, lift, laws
     fluid = np.array([*(-g * upper[2]), lift])
     carried = turn @ np.diag(mass - hull.volume * density) @ turn.T
     total = force + hull.volume * density * np.array([0, 0, -laws.gravity]) + carried @ fluid
+    if before is not None:
+        kept = hull.volume * density + laws.added_mass * along * np.minimum(before, wet) / skin
+        velocity = flow + turn @ np.diag(kept / mass) @ turn.T @ (velocity - flow)
     velocity = velocity + h * turn @ np.diag(1 / mass) @ turn.T @ total
     inertia = density * hull.inertia + laws.added_mass * np.diag(about * (np.roll(share, 1) + np.roll(share, 2)) / 2)
     spin = spin + h * turn @ np.linalg.inv(inertia) @ turn.T @ moment
@@ -127,13 +132,21 @@ def naive_step(hull: Hull, density: float, state, upper, lower, flow, lift, laws
         wider = (wet[j] * arm[k] ** 3 + wet[k] * arm[j] ** 3) / 2 / inertia[i, i]
         w[i] = dragged(w[i], wide, wider, laws, h)
     velocity, spin = flow + turn @ v, turn @ w
-    position = position + h * velocity
-    angle = np.linalg.norm(spin) * h
-    half = np.append(math.cos(angle / 2), math.sin(angle / 2) * spin / np.linalg.norm(spin))
-    rotation = hamilton(half, rotation)
-    new = rotation_matrix(rotation)
-    spin = new @ np.linalg.inv(hull.inertia) @ new.T @ turn @ hull.inertia @ turn.T @ spin
-    return position, rotation, velocity, spin
+    position, rotation, spin = naive_drift(hull, position, rotation, velocity, spin, h / 2)
+    return position, rotation, velocity, spin, wet
+
+
+def naive_drift(hull: Hull, position, rotation, velocity, spin, h: float):
+    """Motion without forces: the angular momentum stays, the turn is by the spin at its middle."""
+    turn = rotation_matrix(rotation)
+    momentum = turn @ hull.inertia @ turn.T @ spin
+    for length in (h / 2, h):
+        angle = np.linalg.norm(spin) * length
+        half = np.append(math.cos(angle / 2), math.sin(angle / 2) * spin / np.linalg.norm(spin))
+        new = hamilton(half, rotation)
+        turn = rotation_matrix(new)
+        spin = turn @ np.linalg.inv(hull.inertia) @ turn.T @ momentum
+    return position + h * velocity, new, spin
 
 
 def wet_share(depth: np.ndarray) -> float:

@@ -50,12 +50,13 @@ class Shapes(NamedTuple):
 
 
 class Fleet(NamedTuple):
-    """n bodies. The first eight arrays are the state and change; the rest is fixed."""
+    """n bodies. The first six arrays are the state that `step` changes; pulls come from outside; the rest is fixed."""
 
     position: np.ndarray  # (n, 3) [m]
     rotation: np.ndarray  # (n, 4) quaternion (w, x, y, z)
     velocity: np.ndarray  # (n, 3) [m/s]
     spin: np.ndarray  # (n, 3) [rad/s] in world axes
+    wet: np.ndarray  # (n, 3) [kg/m] wet skin across each body axis times density, at the last step; -1 before the first
     buoyancy: np.ndarray  # (n,) [N] upward force of the fluids at the last step
     pull_point: np.ndarray  # (n, 3) [m] where each is pulled, in body axes
     pull_target: np.ndarray  # (n, 3) [m] where to, in world axes
@@ -88,6 +89,7 @@ def make_fleet(bodies: Sequence[Body]) -> Fleet:
         rotation=rotation / np.linalg.norm(rotation, axis=1, keepdims=True),
         velocity=np.array([body.velocity for body in bodies], dtype=float).reshape(n, 3),
         spin=np.array([body.spin for body in bodies], dtype=float).reshape(n, 3),
+        wet=np.full((n, 3), -1.0),
         buoyancy=np.zeros(n),
         pull_point=np.zeros((n, 3)),
         pull_target=np.zeros((n, 3)),

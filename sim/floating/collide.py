@@ -42,7 +42,7 @@ def collide(fleet, restitution):
             dz = position[j, 2] - position[i, 2]
             near = shapes.radius[fleet.hull[i]] + shapes.radius[fleet.hull[j]]
             square = dx * dx + dy * dy + dz * dz
-            if square >= near * near:
+            if not square < near * near:
                 continue
             distance = np.sqrt(square)
             if distance > 0.0:
@@ -52,7 +52,7 @@ def collide(fleet, restitution):
             a, b = rotation[i], rotation[j]
             width = reach(shapes, fleet.hull[i], a[0], a[1], a[2], a[3], dx, dy, dz)
             width += reach(shapes, fleet.hull[j], b[0], b[1], b[2], b[3], dx, dy, dz)
-            if distance >= width:
+            if not distance < width:
                 continue
             touched += 1
             lightness = 1.0 / fleet.mass[i] + 1.0 / fleet.mass[j]

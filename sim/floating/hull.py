@@ -46,7 +46,7 @@ class Hull:
 
         Raises ValueError for a radius that is not 0.001 to 10000 m or a frequency that is not 1 to 64.
         """
-        check_length("radius", radius)
+        radius = check_length("radius", radius)
         if not isinstance(frequency, int) or not 1 <= frequency <= 64:
             raise refusal("frequency", frequency, "a whole number from 1 to 64")
         vertices, faces = geodesic(frequency)
@@ -57,8 +57,7 @@ class Hull:
     @staticmethod
     def cylinder(radius: float, height: float) -> "Hull":
         """A cylinder [m] with its axis along z, as a prism. Raises ValueError for what is not 0.001 to 10000 m."""
-        check_length("radius", radius)
-        check_length("height", height)
+        radius, height = check_length("radius", radius), check_length("height", height)
         n = CYLINDER_SIDES
         angle = 2 * math.pi / n * np.arange(n)
         r = radius * math.sqrt(2 * math.pi / n / math.sin(2 * math.pi / n))  # n/2 r^2 sin(2 pi/n) = pi radius^2

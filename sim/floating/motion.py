@@ -10,16 +10,18 @@ there accelerates at a_f = (-(g + a) slope, a), as linear waves do at their surf
 displaces its weight moves as the fluid does: its response to a long wave is 1. A, J are the added masses in the
 proportion the hull's skin is wet; drag per axis is rho S/2 (b v + C |v| v/2) with S the wet skin.
 
-**Step.** Semi-implicit (symplectic) Euler: forces at the old place change the velocity, the new velocity the place.
-Drag is solved exactly over the step and the pull implicitly, so neither limits it. What does is the stiffness of
-buoyancy: stable for omega h < 2, with a period short by (omega h)^2/24 and an energy error that stays bounded. Since
-F_p and A shrink together as a hull leaves the water, omega is bounded whatever the density (`stiffest`), and `step`
-divides the frame until omega h <= PHASE for each body on its own.
+A hull that wets more skin shares its momentum with the fluid it begins to carry, (m + A)(v - u) = const (von Karman
+1929, NACA TN 321); one that leaves gets nothing back. So the change of A takes energy and never gives any.
 
-Turning is free of the step's size: angular momentum of the solid is carried over exactly, so spin stays bounded.
+**Step.** Leapfrog, half a drift, the kick, half a drift: forces at the middle of the substep change the velocity.
+Explicit in buoyancy alone; drag is solved exactly over the step and the pull implicitly, so neither limits it. The
+limit is omega h < 2 with omega the fastest heave or roll, the period is short by (omega h)^2/24, and the energy
+error stays bounded. Since F_p and A shrink together as a hull leaves the water, omega is bounded whatever the density
+(`stiffest`), and `step` divides the frame until omega h <= PHASE, for each body on its own. Turning has no limit:
+each drift keeps the angular momentum of the solid, so that spin stays bounded.
 
 Not modelled: memory of radiated waves (the linear drag stands for it), the decay of the wave's pressure with depth
-beyond first order, coupling of added masses between axes, air.
+beyond first order, coupling of added masses between axes and their moment at steady speed (Munk), air.
 """
 
 import math
@@ -62,14 +64,15 @@ def stiffest(fleet: Fleet, density: float, laws: Laws) -> np.ndarray:
 
     Along axis i the force changes with depth by at most rho g S_i/2, S_i the skin, and no less fluid than in
     proportion to the skin that is wet is carried along: omega^2 <= rho g S_i/2 / (m + rho a_i/2). About it the same
-    with the bound of the twist. The sum bounds any coupling of the two.
+    with the bound of the twist, where the mean of two shares may be half the greater one. The sum bounds any
+    coupling of the two.
     """
     shapes, q = fleet.shapes, fleet.hull
     weight = density * laws.gravity
     carried = laws.added_mass * density / 2
     along = weight * shapes.skin[q] / 2 / (fleet.mass[:, None] + carried * shapes.along[q])
     inertia = fleet.density[:, None] * np.einsum("qii->qi", shapes.inertia)[q]
-    about = weight * shapes.twist[q] / (inertia + carried * shapes.about[q])
+    about = weight * shapes.twist[q] / (inertia + carried * shapes.about[q] / 2)
     return np.sqrt(along.max(axis=1, initial=0.0) + about.max(axis=1, initial=0.0))
 
 
@@ -99,20 +102,23 @@ def step(fleet: Fleet, water: Water, duration: float, laws: Laws = STANDARD, sub
         counts = np.full(len(fleet.mass), int(substeps), dtype=np.int64)
     else:
         raise refusal("substeps", substeps, "a whole number from 1")
-    state = (fleet.position, fleet.rotation, fleet.velocity, fleet.spin, fleet.buoyancy)
+    state = fleet[:6]
     before = [array.copy() for array in state]
-    failed, touched = advance(fleet, water, Laws(*(float(value) for value in laws)), counts, float(duration))
-    if failed >= 0:
+    advance(fleet, water, Laws(*(float(value) for value in laws)), counts, float(duration))
+    # here and not in the kernel: its compiler may take x - x for 0, and with that a NaN for finite
+    finite = np.isfinite(np.column_stack(state)).all(axis=1)
+    if not finite.all():
+        failed = int(np.argmin(finite))
+        place = before[0][failed].tolist()
         for array, old in zip(state, before, strict=True):
             array[:] = old
-        place = before[0][failed].tolist()
         raise FloatingPointError(f"body {failed}: its state is no longer finite; it was at {place} m")
-    return touched
+    return collide(fleet, float(laws.restitution))
 
 
 @kernel
 def advance(fleet, water, laws, counts, duration):
-    """One frame: each body its substeps, then collisions. Returns (first body not finite or -1, pairs touched)."""
+    """One frame of every body on its own, each in as many substeps as counts (n,) says."""
     n = fleet.mass.size
     depth = np.empty((2, fleet.shapes.x.shape[1]))
     turn, heavy, light, work = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
@@ -121,15 +127,10 @@ def advance(fleet, water, laws, counts, duration):
         h = duration / counts[i]
         for s in range(counts[i]):
             set_turn(fleet.rotation, i, turn)
-            set_load(fleet, water, i, s * h, laws.gravity, turn, depth, load)
+            drift(fleet, i, h / 2.0, turn, light, work)
+            set_load(fleet, water, i, (s + 0.5) * h, laws.gravity, turn, depth, load)
             kick(fleet, water, laws, i, h, turn, load, heavy, light, work)
-            drift(fleet, i, h, turn, light, work)
-        total = 0.0
-        for c in range(3):
-            total += fleet.position[i, c] + fleet.velocity[i, c] + fleet.spin[i, c] + fleet.rotation[i, c]
-        if not np.isfinite(total + fleet.rotation[i, 3]):
-            return i, 0
-    return -1, collide(fleet, laws.restitution)
+            drift(fleet, i, h / 2.0, turn, light, work)
 
 
 @kernel
@@ -201,11 +202,14 @@ def kick(fleet, water, laws, i, h, turn, load, heavy, light, work):
     fleet.buoyancy[i] = turn[2, 0] * load[0] + turn[2, 1] * load[1] + turn[2, 2] * load[2]
     v, w, mass = work[0], work[1], work[2]
     for c in range(3):
-        mass[c] = m + laws.added_mass * shapes.along[q, c] * load[6 + c] / shapes.skin[q, c]
+        carried = laws.added_mass * shapes.along[q, c] / shapes.skin[q, c]
+        mass[c] = m + carried * load[6 + c]
+        kept = (m + carried * fleet.wet[i, c]) / mass[c] if 0.0 <= fleet.wet[i, c] < load[6 + c] else 1.0
+        fleet.wet[i, c] = load[6 + c]
         fluid = turn[0, c] * ax + turn[1, c] * ay + turn[2, c] * az
         force = load[c] - m * laws.gravity * turn[2, c] + (mass[c] - m) * fluid
         flow = turn[0, c] * u0 + turn[1, c] * u1 + turn[2, c] * u2
-        past = turn[0, c] * v0 + turn[1, c] * v1 + turn[2, c] * v2 + h * force / mass[c] - flow
+        past = kept * (turn[0, c] * v0 + turn[1, c] * v1 + turn[2, c] * v2 - flow) + h * force / mass[c]
         drag = load[6 + c] / 2.0 / mass[c]
         v[c] = flow + slowed(past, laws.linear_drag * drag, laws.quadratic_drag / 2.0 * drag, h)
     for c in range(3):

@@ -84,41 +84,54 @@ def add_pull(fleet, i, h, rate, turn, mass, light, v, w):
 
 @kernel
 def drift(fleet, i, h, turn, light, work):
-    """Move and turn body i for h [s]; turn becomes the new one, light and work (3, 3) are scratch."""
-    q = fleet.hull[i]
-    for c in range(3):
-        fleet.position[i, c] += h * fleet.velocity[i, c]
-    inertia = fleet.shapes.inertia[q]
-    w = fleet.spin[i]
+    """Move and turn body i for h [s] without forces; turn becomes the new one, light and work (3, 3) are scratch.
+
+    The solid keeps its angular momentum L: w = R I^-1 R^T L at the middle of the turn, and again at its end.
+    """
+    inertia = fleet.shapes.inertia[fleet.hull[i]]
+    w, r = fleet.spin[i], fleet.rotation[i]
     momentum, body = work[0], work[1]
     for c in range(3):
+        fleet.position[i, c] += h * fleet.velocity[i, c]
         body[c] = turn[0, c] * w[0] + turn[1, c] * w[1] + turn[2, c] * w[2]
     for c in range(3):
         momentum[c] = 0.0
         for d in range(3):
             for e in range(3):
                 momentum[c] += turn[c, d] * inertia[d, e] * body[e]
-    # q <- exp(h w/2) q
-    speed = np.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
-    c0 = math.cos(speed * h / 2.0)
-    k = math.sin(speed * h / 2.0) / speed if speed > 0.0 else h / 2.0
-    x, y, z = k * w[0], k * w[1], k * w[2]
-    r = fleet.rotation[i]
-    q0 = c0 * r[0] - x * r[1] - y * r[2] - z * r[3]
-    q1 = c0 * r[1] + x * r[0] + y * r[3] - z * r[2]
-    q2 = c0 * r[2] + y * r[0] + z * r[1] - x * r[3]
-    q3 = c0 * r[3] + z * r[0] + x * r[2] - y * r[1]
-    size = np.sqrt(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3)
-    r[0], r[1], r[2], r[3] = q0 / size, q1 / size, q2 / size, q3 / size
-    # the solid keeps its angular momentum while it turns: w = R1 I^-1 R1^T L
-    set_turn(fleet.rotation, i, turn)
     set_inverse(inertia, light)
+    r0, r1, r2, r3 = r[0], r[1], r[2], r[3]
+    add_turn(r, w, h / 2.0)
+    set_turn(fleet.rotation, i, turn)
+    set_spin(turn, light, momentum, body, w)
+    r[0], r[1], r[2], r[3] = r0, r1, r2, r3
+    add_turn(r, w, h)
+    set_turn(fleet.rotation, i, turn)
+    set_spin(turn, light, momentum, body, w)
+
+
+@kernel
+def set_spin(turn, light, momentum, body, w):
+    """w = R I^-1 R^T L with light = I^-1; body (3,) is scratch."""
     for c in range(3):
-        body[c] = 0.0
-        for d in range(3):
-            body[c] += turn[d, c] * momentum[d]
+        body[c] = turn[0, c] * momentum[0] + turn[1, c] * momentum[1] + turn[2, c] * momentum[2]
     for c in range(3):
         w[c] = 0.0
         for d in range(3):
             for e in range(3):
                 w[c] += turn[c, d] * light[d, e] * body[e]
+
+
+@kernel
+def add_turn(r, w, h):
+    """Turn the quaternion r by w h: r <- exp(h w/2) r."""
+    speed = np.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    c = math.cos(speed * h / 2.0)
+    k = math.sin(speed * h / 2.0) / speed if speed > 0.0 else h / 2.0
+    x, y, z = k * w[0], k * w[1], k * w[2]
+    q0 = c * r[0] - x * r[1] - y * r[2] - z * r[3]
+    q1 = c * r[1] + x * r[0] + y * r[3] - z * r[2]
+    q2 = c * r[2] + y * r[0] + z * r[1] - x * r[3]
+    q3 = c * r[3] + z * r[0] + x * r[2] - y * r[1]
+    size = np.sqrt(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3)
+    r[0], r[1], r[2], r[3] = q0 / size, q1 / size, q2 / size, q3 / size

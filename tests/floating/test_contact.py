@@ -7,6 +7,7 @@ import pytest
 
 from sim.floating import Body, Hull, Laws, make_fleet, make_water, pull, step, still_water
 from sim.floating.collide import collide
+from sim.floating.motion import advance
 from tests.naive_floating import quaternion
 
 FRAME = 1 / 60
@@ -162,15 +163,14 @@ def test_a_state_that_is_not_finite_is_reported_and_undone(field, bad):
     fleet = make_fleet([Body(Hull.sphere(0.5, 2), 500.0, (3.0 * i, 0, 0)) for i in range(3)])
     getattr(fleet, field)[1, 1] = bad
     before = fleet.position.copy()
-    try:
+    if bad == 1e300 and field in ("position", "velocity"):  # far away is a place, and drag stops any speed
         step(fleet, still_water(fleet, WATER), FRAME)
-    except FloatingPointError as error:
-        assert "body 1" in str(error)
-        assert np.array_equal(fleet.position, before, equal_nan=True)
-    else:
-        state = (fleet.position, fleet.rotation, fleet.velocity, fleet.spin)
-        assert all(np.isfinite(array).all() for array in state)
-        assert bad == 1e300
+        assert np.isfinite(fleet.position).all()
+        assert np.isfinite(fleet.velocity).all()
+        return
+    with pytest.raises(FloatingPointError, match="body 1"):
+        step(fleet, still_water(fleet, WATER), FRAME)
+    assert np.array_equal(fleet.position, before, equal_nan=True)
 
 
 @pytest.mark.parametrize("field", ["height", "slope", "velocity", "acceleration", "interface", "relief"])
@@ -225,3 +225,15 @@ def test_bad_arguments_are_refused_by_name():
 def test_no_bodies_is_a_fleet_too():
     fleet = make_fleet([])
     assert step(fleet, still_water(fleet, WATER), FRAME) == 0
+
+
+def test_whatever_the_arguments_one_signature_is_compiled():
+    """Another dtype or layout would stop a running scene for seconds while it compiles."""
+    for bodies in ([Body(Hull.box(1, 1, 1), 500)], [Body(Hull.sphere(1, 2))] * 3, []):
+        fleet = make_fleet(bodies)
+        n = len(bodies)
+        step(fleet, still_water(fleet, WATER, level=1), 1, Laws(gravity=10))
+        water = make_water(fleet, [(850, 1), (1025, math.inf)], np.zeros(n, dtype=np.float32), slope=np.zeros((2, n)).T)
+        step(fleet, water, FRAME, substeps=2)
+    assert len(advance.signatures) == 1
+    assert len(collide.signatures) == 1

@@ -52,7 +52,7 @@ def test_a_pull_at_a_corner_turns_the_body_and_never_exceeds_its_limit():
 
 @pytest.mark.parametrize("seed", range(10))
 def test_collisions_keep_momentum_and_make_no_energy(seed):
-    """Many hulls thrown at each other: momentum, angular momentum and centre of mass stay, energy does not grow."""
+    """Many hulls thrown at each other: momentum and centre of mass stay, energy does not grow."""
     rng = np.random.default_rng(seed)
     hulls = [Hull.box(1.0, 0.5, 0.7), Hull.sphere(0.5), Hull.cylinder(0.4, 1.0), Hull.sphere(0.3, 2)]
     hulls[3] = Hull.from_arrays(hulls[3].vertices * [2, 1, 1], hulls[3].faces)
@@ -66,21 +66,29 @@ def test_collisions_keep_momentum_and_make_no_energy(seed):
 
     def totals():
         push = (m * fleet.velocity).sum(axis=0)
-        turn = (m * np.cross(fleet.position, fleet.velocity)).sum(axis=0)
         centre = (m * fleet.position).sum(axis=0) / m.sum()
-        return push, turn, centre, (m * fleet.velocity**2).sum() / 2
+        return push, centre, (m * fleet.velocity**2).sum() / 2
 
     before = totals()
-    start = fleet.position.copy()
     touched = collide(fleet, 0.5)
-    fleet.position[:], moved = start, fleet.position.copy()
     after = totals()
-    scale = m.sum()
     assert touched > 5
-    assert after[0] == pytest.approx(before[0], abs=1e-12 * scale)
-    assert after[1] == pytest.approx(before[1], abs=0.5 * scale)  # pairs that moved apart act along a new line
-    assert after[3] <= before[3] * (1 + 1e-12)
-    assert (m * moved).sum(axis=0) / m.sum() == pytest.approx(before[2], abs=1e-12)
+    assert after[0] == pytest.approx(before[0], abs=1e-12 * m.sum())
+    assert after[1] == pytest.approx(before[1], abs=1e-12)
+    assert after[2] <= before[2] * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_pair_keeps_its_angular_momentum(seed):
+    rng = np.random.default_rng(seed)
+    hulls = [Hull.box(1.0, 0.5, 0.7), Hull.cylinder(0.4, 1.0)]
+    fleet = make_fleet([Body(h, 10 ** rng.uniform(1, 4), tuple(rng.uniform(-0.2, 0.2, 3))) for h in hulls])
+    fleet.velocity[:] = -10 * fleet.position + rng.normal(0, 0.1, (2, 3))
+    place, before = fleet.position.copy(), fleet.velocity.copy()
+    assert collide(fleet, 0.5) == 1
+    change = fleet.mass[:, None] * np.cross(place, fleet.velocity - before)
+    assert np.abs(fleet.velocity - before).max() > 0.1
+    assert change.sum(axis=0) == pytest.approx(np.zeros(3), abs=1e-12 * np.abs(change).max() + 1e-12)
 
 
 def test_two_spheres_exchange_their_speeds():

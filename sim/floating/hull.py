@@ -3,7 +3,8 @@
 A hull is immutable and has no density: that belongs to the body. Its vertices are relative to its centre of mass,
 with z up in the pose it is launched in. A round primitive is a polyhedron scaled to the true volume of the shape
 (sphere: the whole mesh; cylinder: its cross-section), so that weight and buoyancy of the mesh are those of the
-shape; what is asked of the shape itself (`equilibrium_draft`) uses its closed form and `extents`.
+shape; what is asked of the shape itself (`equilibrium_draft`) uses its closed form and `extents`. A sphere of 1280
+triangles floats within 1.5e-4 of its radius of where the true one does, in any pose; one of 500 within 4e-4.
 """
 
 import dataclasses
@@ -41,7 +42,7 @@ class Hull:
         return from_mesh("box", corners, faces, np.stack([-edges / 2, edges / 2], axis=1))
 
     @staticmethod
-    def sphere(radius: float, frequency: int = 5) -> "Hull":
+    def sphere(radius: float, frequency: int = 8) -> "Hull":
         """A sphere [m] as an icosahedron whose edges are divided by `frequency`: 20 frequency^2 triangles.
 
         Raises ValueError for a radius that is not 0.001 to 10000 m or a frequency that is not 1 to 64.

@@ -20,7 +20,8 @@ def test_box_has_its_closed_forms():
 
 def test_round_primitives_have_the_true_volume_and_nearly_the_true_inertia():
     sphere = Hull.sphere(0.5)
-    assert len(sphere.faces) == 500
+    assert len(sphere.faces) == 1280
+    assert len(Hull.sphere(0.5, frequency=5).faces) == 500
     assert sphere.volume == pytest.approx(4 / 3 * math.pi * 0.125, rel=1e-13)
     assert np.diag(sphere.inertia) == pytest.approx(0.4 * sphere.volume * 0.25, rel=1e-4)
     cylinder = Hull.cylinder(0.5, 2.0)

@@ -80,6 +80,17 @@ def test_pressure_under_a_bumpy_surface_matches_point_sums(seed):
     assert moment == pytest.approx(-sum_moment, abs=1e-3 * reach**2 * size**2)
 
 
+@pytest.mark.parametrize(("frequency", "error"), [(5, 4e-4), (8, 1.5e-4)])
+def test_a_sphere_of_triangles_floats_where_the_sphere_does(frequency, error):
+    """Cap volume against the mesh in 1000 poses, as a difference of height on the true waterplane, over the radius."""
+    rng, hull = np.random.default_rng(0), Hull.sphere(1.0, frequency)
+    for _ in range(1000):
+        z = rng.uniform(-0.8, 0.8)
+        below = submerged(hull, (0, 0, z), quaternion(rng))
+        h = 1 - z
+        assert abs(below.volume - math.pi * h * h * (3 - h) / 3) / (math.pi * h * (2 - h)) < error
+
+
 def test_a_wholly_submerged_hull_feels_archimedes_and_no_waterplane():
     hull = Hull.cylinder(0.3, 1.0)
     below = submerged(hull, (0.0, 0.0, -5.0), (0.3, 0.1, 0.9, 0.2))

@@ -159,6 +159,8 @@ class Picture:
             self.pull.thickness = 2.0 + 5.0 * picture.pull.load
         self.hook.position = tuple(picture.points[0])
         self.floor.visible = picture.floor
+        self.floor.cell_thickness = 1.0 if picture.grid else 0.0
+        self.floor.section_thickness = 1.0 if picture.grid else 0.0
         self.ball.visible = self.gizmos["sphere"].visible = picture.sphere is not None
         self.follow("root", picture.root)
         if picture.sphere is not None:

@@ -69,7 +69,6 @@ def wait(page, condition, seconds: float = 60.0) -> bool:
 def pixels(page) -> np.ndarray:
     """What the canvas shows, (height, width, 3), 0..255."""
 
-
     page.add_style_tag(content=".mantine-Paper-root, [class*=Notif] { display: none !important }")
     page.wait_for_timeout(700)
     return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(float)

@@ -9,7 +9,7 @@ from sim.knobs import check, clamp, clamp_value, knob, knobs, parse, refusal
 @dataclasses.dataclass(frozen=True)
 class Params:
     points: int = knob(10, 2, 200, "", "points of the rope")
-    stiffness: float = knob(800.0, 1.0, 1e6, "N/m", "of each link", log=True)
+    stiffness: float = knob(800.0, 1.0, 1e6, "N/m", "of each link", log_from=1.0)
     floor: bool = knob(True, doc="is there a floor")
     integrator: str = knob("rk4", choices=("rk4", "leapfrog"))
 
@@ -104,7 +104,7 @@ def test_assignments_of_nonsense_are_refused(text):
     [
         lambda: knob(5.0, 0.0, 1.0),
         lambda: knob("c", choices=("a", "b")),
-        lambda: knob(1.0, 0.0, 2.0, log=True),
+        lambda: knob(1.0, 0.5, 2.0, log_from=0.1),
         lambda: knob(math.nan, 0.0, 1.0),
     ],
 )

@@ -32,6 +32,7 @@ class Picture:
         self.tube: Painted | None = None
         self.beads: viser.BatchedMeshHandle | None = None
         self.count = 0
+        self.nearest = 0
         self.dragged_at = {"root": 0.0, "sphere": 0.0}
         scene = server.scene
         scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
@@ -107,20 +108,31 @@ class Picture:
             lod="off",
         )
         self.beads.on_drag("left")(self.on_bead)
+        self.tube.mesh.on_drag("left")(self.on_tube)
+        self.points = picture.points
         self.held = -1
         self.count = n
 
     def bead_radius(self, picture: RopePicture) -> float:
         n = len(picture.points)
         spacing = float(np.abs(np.diff(picture.points, axis=0)).sum()) / max(n - 1, 1)
-        return float(np.clip(0.35 * spacing, 1.15 * THICKNESS, 1.9 * THICKNESS))
+        return float(np.clip(0.4 * spacing, 0.5 * THICKNESS, 1.9 * THICKNESS))
 
     async def on_bead(self, event: Any) -> None:
+        self.drag(event, event.instance_index)
+
+    async def on_tube(self, event: Any) -> None:
+        """The same between beads, where they are close or hidden: the point nearest to where the drag began."""
+        if event.phase == "start":
+            self.nearest = int(np.argmin(np.linalg.norm(self.points - event.start_position, axis=1)))
+        self.drag(event, self.nearest)
+
+    def drag(self, event: Any, particle: int | None) -> None:
         target = finite_vector(event.end_position)
-        if event.phase == "end" or target is None or event.instance_index is None:
+        if event.phase == "end" or target is None or particle is None:
             self.post(Release())
         else:
-            self.post(Grab(int(event.instance_index), target))
+            self.post(Grab(particle, target))
 
     def sweep(self, picture: RopePicture) -> None:
         smooth_line(picture.points, self.between, self.line)
@@ -141,6 +153,7 @@ class Picture:
             self.build(picture)
         assert self.tube is not None
         assert self.beads is not None
+        self.points = picture.points
         self.sweep(picture)
         self.tube.set(self.vertices, self.colours(picture))
         self.beads.visible = picture.show_points

@@ -5,14 +5,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-import trimesh
 import viser
 
 from app.colour import css_scale, scale_colours
 from app.messages import Command, Grab, Place, Release, Snapshot, finite_vector
 from app.paint import Painted
 from app.scenes.rope import ROOT, SPHERE, THICKNESS, RopePicture
-from app.tube import SIDES, faces, smooth_line, sweep
+from app.shapes import SIDES, ball, smooth_line, sweep, tube_faces
 
 ROPE_COLOUR = (196, 154, 92)
 BEAD_COLOUR = (58, 68, 86)
@@ -50,16 +49,13 @@ class Picture:
             fade_distance=26.0,
             shadow_opacity=0.3,
         )
-        ball = trimesh.creation.icosphere(subdivisions=4)
-        self.ball = scene.add_mesh_simple(
-            "/sphere/ball", ball.vertices, ball.faces, color=(92, 140, 190), visible=False
-        )
+        self.ball = scene.add_mesh_simple("/sphere/ball", *ball(32), color=(92, 140, 190), visible=False)
         self.gizmos = {
             "root": self.add_gizmo("root", ROOT, 0.34),
             "sphere": self.add_gizmo("sphere", SPHERE, 1.1),
         }
         self.gizmos["sphere"].visible = False
-        self.hook = scene.add_icosphere("/hook", radius=1.9 * THICKNESS, color=(60, 66, 80))
+        self.hook = scene.add_mesh_simple("/hook", *ball(8), scale=1.9 * THICKNESS, color=(60, 66, 80))
         # One segment for the pull; its ends move while a point is held.
         self.pull = scene.add_line_segments(
             "/pull", np.zeros((1, 2, 3), np.float32), colors=HELD_COLOUR, thickness=4.0, visible=False
@@ -94,13 +90,17 @@ class Picture:
         if self.beads is not None:
             self.beads.remove()
         self.tube = Painted(
-            self.server, "/rope", self.vertices, faces(rings), self.colours(picture), color=ROPE_COLOUR, side="double"
+            self.server,
+            "/rope",
+            self.vertices,
+            tube_faces(rings),
+            self.colours(picture),
+            color=ROPE_COLOUR,
+            side="double",
         )
-        ball = trimesh.creation.icosphere(subdivisions=2 if n <= 200 else 1, radius=1.0)
         self.beads = self.server.scene.add_batched_meshes_simple(
             "/points",
-            ball.vertices,
-            ball.faces,
+            *ball(8 if n <= 200 else 4),
             batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)),
             batched_positions=picture.points,
             batched_scales=np.full(n, self.bead_radius(picture), np.float32),

@@ -116,4 +116,4 @@ def test_a_headless_rope_imports_no_viewer_and_no_transforms(tmp_path: Path) -> 
 
 def test_serving_the_rope_imports_no_transforms() -> None:
     code = "from app.viewer import Viewer; v = Viewer('127.0.0.1', 0); v.open('rope'); v.shut()"
-    assert imported(code, ("pyfftw", "matplotlib")) == "[]"
+    assert imported(code, ("pyfftw", "matplotlib", "trimesh")) == "[]"

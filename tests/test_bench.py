@@ -8,6 +8,7 @@ from app.bench import command, report, rope
 from app.bench.kernels import task_rope
 from app.bench.rope_peers import PEERS, is_installed
 from sim.springs.stability import critical_step
+from tests.springs.reference import exact
 
 
 def ladder(order: int, method: str) -> report.Rows:
@@ -70,6 +71,8 @@ def test_the_reference_is_as_good_as_it_says():
     net = task_rope(16)
     truth = rope.reference(net)
     assert truth.uncertainty < 1e-10
+    x, _ = exact(net, 1.0)
+    assert np.abs(truth.end - x).max() < 1e-10
     rung = rope.rung(net, "rk4", 0.1)
     assert rope.error_of(rung, truth)[1] == pytest.approx(3.5e-8, rel=0.05)
 

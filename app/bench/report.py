@@ -90,7 +90,8 @@ def slope_mark(axes: Any, x: float, y: float, order: int) -> None:
 
 
 def mark_slopes(axes: Any, curves: Iterable[tuple[list[float], list[float]]]) -> None:
-    """A mark of the nearest whole order below the middle of each curve, where that order is plain to see."""
+    """A mark of each whole order that a curve plainly has, below the middle of the first such curve."""
+    marked = set()
     for x, y in curves:
         good = [(a, b) for a, b in zip(x, y, strict=True) if b > 0.0 and np.isfinite(b)]
         if len(good) < 3:
@@ -98,8 +99,10 @@ def mark_slopes(axes: Any, curves: Iterable[tuple[list[float], list[float]]]) ->
         logs = np.log(np.array(good))
         slope = -float(np.polyfit(logs[:, 0], logs[:, 1], 1)[0])
         middle = good[len(good) // 2]
-        if abs(slope - round(slope)) < 0.3 and round(slope) > 0:
-            slope_mark(axes, middle[0], middle[1] / 4.0, round(slope))
+        order = round(slope)
+        if abs(slope - order) < 0.3 and order > 0 and order not in marked:
+            slope_mark(axes, middle[0], middle[1] / 4.0, order)
+            marked.add(order)
 
 
 def work_precision(rows: Rows, title: str) -> Any:
@@ -111,11 +114,14 @@ def work_precision(rows: Rows, title: str) -> Any:
     panels = figure.subplots(1, 2, sharey=True)
     methods = list(dict.fromkeys(row["method"] for row in rows))
     for axes, column, label in zip(
-        panels, ("time [ms]", "force evaluations"), ("run time [ms]", "force evaluations"), strict=True
+        panels,
+        ("least [ms]", "force evaluations"),
+        ("run time, the least of repeats [ms]", "force evaluations"),
+        strict=True,
     ):
         curves = []
         for index, method in enumerate(methods):
-            own = sorted((row for row in rows if row["method"] == method), key=lambda row: row[column])
+            own = sorted((row for row in rows if row["method"] == method), key=lambda row: row["force evaluations"])
             x, y = [row[column] for row in own], [row["error at 1 s [m]"] for row in own]
             style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 8], "markersize": 5}
             axes.loglog(x, y, label=method.replace("_", " "), **style)

@@ -66,7 +66,7 @@ class Scene:
 def make(cost: float = 0.0, **options) -> tuple[SimLoop, Scene]:
     clock = Clock()
     scene = Scene(clock, cost)
-    return SimLoop(scene, clock=clock, **options), scene
+    return SimLoop(scene, clock=clock, effort=clock, **options), scene
 
 
 def test_simulated_time_follows_wall_time() -> None:

@@ -491,6 +491,13 @@ function chooseLevels(sea, camera) {
 
 recipes.push({
   suffix: "/water_look",
+  sweep() {
+    for (const [base, sea] of seas) {
+      if (meshOf(base)) continue;
+      unmakeSea(sea);
+      seas.delete(base);
+    }
+  },
   frame({ base, mesh, channel, renderer, camera }) {
     const aux = meshOf(`${base}/water_aux`);
     if (!aux || !share(mesh, "aux", aux)) return null;

@@ -64,6 +64,12 @@ def linear(color: RGB) -> np.ndarray:
     return np.clip(np.asarray(color, float), 0, 1) ** 2.2
 
 
+def as_bytes(color: RGB) -> tuple[int, int, int]:
+    """An sRGB colour in 0..1 as 0..255."""
+    red, green, blue = (round(255 * min(max(c, 0.0), 1.0)) for c in color)
+    return red, green, blue
+
+
 class Water:
     """A sea of rows x cols points that changes every frame.
 
@@ -108,9 +114,13 @@ class Water:
             self._faces = np.asarray(faces, np.uint32)
         self._vertices = rest.astype(np.float32)
         self._aux = np.zeros_like(self._vertices)
-        color = tuple(int(255 * c) for c in self._look.deep)
         self.mesh = server.scene.add_mesh_simple(
-            name, self._vertices.reshape(-1, 3), self._faces, color=color, cast_shadow=False, receive_shadow=False
+            name,
+            self._vertices.reshape(-1, 3),
+            self._faces,
+            color=as_bytes(self._look.deep),
+            cast_shadow=False,
+            receive_shadow=False,
         )
         self._stand_ins: dict[str, viser.MeshHandle] = {}
         self._patch = None if plain else patch(server)
@@ -146,7 +156,7 @@ class Water:
     def set_look(self, look: Look) -> None:
         """Change how it looks from the next frame on."""
         self._look = look
-        self.mesh.color = tuple(int(255 * c) for c in look.deep)
+        self.mesh.color = as_bytes(look.deep)
         if self._patch is not None:
             self._look_mesh.vertices = self._uniforms()
 

@@ -45,6 +45,8 @@ class Viewer:
             self.picture = picture.Picture(self.server, commands.put)
             position, target = self.picture.CAMERA
             self.server.initial_camera.position, self.server.initial_camera.look_at = position, target
+            for client in self.server.get_clients().values():
+                client.camera.position, client.camera.look_at = position, target
             self.panel = Panel(
                 self.server, scene, picture, self.scene.params, commands.put, scenes=NAMES, open_scene=self.open
             )

@@ -1,6 +1,5 @@
 """The rope scene in a real browser, driven by mouse and keyboard."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -9,14 +8,6 @@ import pytest
 from app.messages import Pause, Play
 from app.scenes.rope import ROOT
 from app.viewer import Viewer
-
-
-@pytest.fixture
-def lab() -> Iterator[Viewer]:
-    viewer = Viewer("127.0.0.1", 0)
-    viewer.open("rope")
-    yield viewer
-    viewer.shut()
 
 
 def pixel(viewer: Viewer, point: Any) -> tuple[float, float]:

@@ -5,7 +5,6 @@ These tests fail when one of viser's inner names that `app/patch.py` leans on ch
 
 import dataclasses
 import io
-import shutil
 import time
 from collections.abc import Iterator
 
@@ -18,24 +17,8 @@ from app.paint import Painted
 from app.patch import patch
 from app.water import Look, Water, sky
 
-playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on the search path"),
-]
-# Software rendering: slow, and the same everywhere.
-FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
 SIZE = 32
 LENGTH = 64.0  # [m]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator:
-    with playwright.sync_playwright() as driver:
-        chromium = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield chromium
-        chromium.close()
 
 
 @pytest.fixture
@@ -47,9 +30,9 @@ def server() -> Iterator[viser.ViserServer]:
     server.stop()
 
 
-def visit(browser, server: viser.ViserServer):
+def visit(chromium, server: viser.ViserServer):
     """A page on the server and the list that its errors go to."""
-    page = browser.new_page(viewport={"width": 320, "height": 200})
+    page = chromium.new_page(viewport={"width": 320, "height": 200})
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
     page.on("pageerror", lambda error: errors.append(str(error)))
@@ -112,18 +95,18 @@ def materials(page) -> dict[str, str]:
     )
 
 
-def test_the_patch_answers_and_its_programs_link(browser, server):
+def test_the_patch_answers_and_its_programs_link(chromium, server):
     water = make_water(server, tiles=3, dome=True)
-    page, errors = visit(browser, server)
+    page, errors = visit(chromium, server)
     assert wait(page, lambda: water.alive is True)
     assert materials(page) == {"/sea": "springtide-water/sea"}
     assert errors == []
     page.close()
 
 
-def test_foam_whitens_the_sea(browser, server):
+def test_foam_whitens_the_sea(chromium, server):
     water = make_water(server)
-    page, errors = visit(browser, server)
+    page, errors = visit(chromium, server)
     assert wait(page, lambda: water.alive is True)
     sea = (slice(120, 200), slice(60, 260))
     calm = settled(page)[sea].mean()
@@ -135,9 +118,9 @@ def test_foam_whitens_the_sea(browser, server):
     page.close()
 
 
-def test_a_new_look_arrives_without_a_new_script(browser, server):
+def test_a_new_look_arrives_without_a_new_script(chromium, server):
     water = make_water(server)
-    page, errors = visit(browser, server)
+    page, errors = visit(chromium, server)
     assert wait(page, lambda: water.alive is True)
 
     def redness(picture: np.ndarray) -> float:
@@ -152,11 +135,11 @@ def test_a_new_look_arrives_without_a_new_script(browser, server):
     page.close()
 
 
-def test_a_late_joiner_and_a_reload_are_dressed_too(browser, server):
+def test_a_late_joiner_and_a_reload_are_dressed_too(chromium, server):
     water = make_water(server)
-    first, _ = visit(browser, server)
+    first, _ = visit(chromium, server)
     assert wait(first, lambda: water.alive is True)
-    second, errors = visit(browser, server)
+    second, errors = visit(chromium, server)
     assert wait(second, lambda: len(server.get_clients()) == 2 and water.alive is True)
     second.reload()
     assert wait(second, lambda: materials(second) != {})
@@ -165,9 +148,9 @@ def test_a_late_joiner_and_a_reload_are_dressed_too(browser, server):
     second.close()
 
 
-def test_a_material_that_viser_makes_anew_is_dressed_again(browser, server):
+def test_a_material_that_viser_makes_anew_is_dressed_again(chromium, server):
     water = make_water(server)
-    page, errors = visit(browser, server)
+    page, errors = visit(chromium, server)
     assert wait(page, lambda: water.alive is True)
     page.evaluate("window.was = window.__viserMutable.nodeRefFromName['/sea'].children[0].material.uuid")
     water.mesh.side = "double"
@@ -179,9 +162,9 @@ def test_a_material_that_viser_makes_anew_is_dressed_again(browser, server):
     page.close()
 
 
-def test_sizes_change_live_and_nothing_is_left_behind(browser, server):
+def test_sizes_change_live_and_nothing_is_left_behind(chromium, server):
     look = sky(server, "park")
-    page, errors = visit(browser, server)
+    page, errors = visit(chromium, server)
     assert wait(page, lambda: page.evaluate("window.__viserMutable?.scene?.environment != null"))
 
     def held() -> dict[str, int]:
@@ -206,7 +189,7 @@ def test_sizes_change_live_and_nothing_is_left_behind(browser, server):
     page.close()
 
 
-def test_a_mesh_of_any_shape_is_water_too(browser, server):
+def test_a_mesh_of_any_shape_is_water_too(chromium, server):
     rings, spokes = 8, 24
     r, a = np.meshgrid(np.linspace(1, 60, rings), np.arange(spokes) * 2 * np.pi / spokes, indexing="ij")
     i, j = (index.ravel() for index in np.meshgrid(np.arange(rings - 1), np.arange(spokes), indexing="ij"))
@@ -217,19 +200,19 @@ def test_a_mesh_of_any_shape_is_water_too(browser, server):
     water = Water(server, "/disc", rings, spokes, 60.0, faces=faces, look=sky(server, "park"))
     vertices = np.stack([r * np.cos(a), r * np.sin(a), 0 * r], -1)
     water.set_surface(vertices, np.zeros((rings, spokes, 2)), np.ones((rings, spokes)))
-    page, errors = visit(browser, server)
+    page, errors = visit(chromium, server)
     assert wait(page, lambda: water.alive is True)
     assert materials(page) == {"/disc": "springtide-water/disc"}
     assert errors == []
     page.close()
 
 
-def test_colours_reach_the_vertices_of_a_streaming_mesh(browser, server):
+def test_colours_reach_the_vertices_of_a_streaming_mesh(chromium, server):
     corners = np.array([[0, 0, 0], [64, 0, 0], [64, 64, 0], [0, 64, 0]], float)
     faces = np.array([[0, 1, 2], [0, 2, 3]])
     red = np.tile([0.5, 0.0, 0.0], (4, 1))
     painted = Painted(server, "/quad", corners, faces, red, color=(0, 0, 255))
-    page, errors = visit(browser, server)
+    page, errors = visit(chromium, server)
     assert wait(page, lambda: painted.alive is True)
 
     def excess(this: int, other: int) -> float:
@@ -245,11 +228,11 @@ def test_colours_reach_the_vertices_of_a_streaming_mesh(browser, server):
     page.close()
 
 
-def test_without_an_answer_the_plain_foam_is_drawn(browser, server, monkeypatch):
+def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, monkeypatch):
     monkeypatch.setattr("app.patch.GRACE", 1.0)
     monkeypatch.setattr("app.patch.Patch.script", lambda self: "/* a viser whose inner names have changed */")
     water = make_water(server)
-    page, errors = visit(browser, server)
+    page, errors = visit(chromium, server)
     assert wait(page, lambda: water.alive is False)
     before = settled(page)[130:190, 60:260].mean()
     water.set_surface(*surface(foam=1.0))
@@ -259,9 +242,9 @@ def test_without_an_answer_the_plain_foam_is_drawn(browser, server, monkeypatch)
     page.close()
 
 
-def test_plain_water_sends_no_script(browser, server):
+def test_plain_water_sends_no_script(chromium, server):
     water = make_water(server, plain=True)
-    page, errors = visit(browser, server)
+    page, errors = visit(chromium, server)
     assert wait(page, lambda: len(server.get_clients()) == 1)
     page.wait_for_timeout(2000)
     assert water.alive is False
@@ -270,11 +253,11 @@ def test_plain_water_sends_no_script(browser, server):
     page.close()
 
 
-def test_the_exported_page_is_dressed_without_a_server(browser, server, tmp_path):
+def test_the_exported_page_is_dressed_without_a_server(chromium, server, tmp_path):
     make_water(server, tiles=3)
     file = tmp_path / "sea.html"
     file.write_text(server.get_scene_serializer().as_html(), encoding="utf-8")
-    page = browser.new_page(viewport={"width": 320, "height": 200})
+    page = chromium.new_page(viewport={"width": 320, "height": 200})
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
     page.goto(file.as_uri())

@@ -50,7 +50,9 @@ class Patch:
 
     def script(self) -> str:
         """The script as it is sent: one function scope, the token first, the hook last."""
-        parts = [(resources.files("app") / name).read_text("utf-8") for name in ("patch.js", "water_shader.js", "water.js")]
+        parts = [
+            (resources.files("app") / name).read_text("utf-8") for name in ("patch.js", "water_shader.js", "water.js")
+        ]
         return f'(() => {{ "use strict"; const TOKEN = "{self._token}";\n' + "\n".join(parts) + "\ninstall(); })();"
 
     def expect(self, name: str) -> None:

@@ -176,7 +176,8 @@ class SimLoop:
             now = self.clock()
             self.tick(now - last)
             last = now
-            rest = (FRAME if busy else IDLE) - (self.clock() - now)
+            frame = getattr(self.scene, "frame", FRAME)
+            rest = (frame if busy else IDLE) - (self.clock() - now)
             if rest > 0:
                 self.wait(rest, stop, busy)
 

@@ -31,7 +31,7 @@ def title(name: str, knob: Knob) -> str:
 
 def decade_marks(low: float, high: float) -> tuple[tuple[float, str], ...]:
     """Marks at decades between two logarithms, about four of them, written short."""
-    prefixes = {-6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+    prefixes = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
     decades = range(math.ceil(low - 1e-9), math.floor(high + 1e-9) + 1)
     every = max(1, math.ceil((high - low) / 4))
     marks = []

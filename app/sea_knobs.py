@@ -19,9 +19,7 @@ class Params:
     """The square sea's knobs; the defaults are the first preset."""
 
     spectrum: str = knob("pierson_moskowitz", choices=tuple(SPECTRA), doc="Law of the waves' energy", group="Weather")
-    wind_speed: float = knob(
-        9.0, 0.0, 60.0, "m/s", "Wind 10 m up, 19.5 m up for pierson_moskowitz", group="Weather"
-    )
+    wind_speed: float = knob(9.0, 0.0, 60.0, "m/s", "Wind 10 m up, 19.5 m up for pierson_moskowitz", group="Weather")
     wind_direction: float = knob(20.0, -180.0, 180.0, "°", "Where the wind goes to, from x towards y", group="Weather")
     rain: float = knob(0.0, 0.0, 200.0, "mm/h", "Rain; 0 is none", log_from=0.1, group="Weather")
     transition: float = knob(

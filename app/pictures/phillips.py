@@ -1,4 +1,4 @@
-"""The square sea as water, with its probe, rain and grid."""
+"""The square sea as water, with its rain, its probe and its grid."""
 
 import dataclasses
 import math
@@ -6,29 +6,47 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
+import trimesh
 import viser
 
-from app.messages import Command, Snapshot
+from app.messages import Command, Point, Snapshot, finite_vector
+from app.rain_mesh import RainMesh
 from app.scenes.phillips import Params, SeaPicture
+from app.sea_report import lab_says, low_pass_line, planet_line, span, table, viscosity_line, wind_line
 from app.water import Look, Water, sky
 
-EYE = (0.44, 0.5, 0.028)  # of the tile's length
-TARGET = (0.62, 0.5, 0.004)
+LENGTH = 256.0  # [m] tile of the first view
+EYE, TARGET = (0.44, 0.5, 0.024), (0.62, 0.5, 0.004)  # of the tile's length
 TILES = 5
+FARTHEST = 1e5  # [m] from which a click is taken
+RIPPLE_CELLS = 2.5  # longest ripple of the shader, in cells of the mesh: where the mesh leaves off
+
+
+def scaled(place: tuple[float, float, float], factor: float) -> tuple[float, float, float]:
+    return place[0] * factor, place[1] * factor, place[2] * factor
 
 
 class Picture:
     """Draws `SeaPicture`s."""
 
-    CAMERA = (tuple(256.0 * c for c in EYE), tuple(256.0 * c for c in TARGET))
+    CAMERA = scaled(EYE, LENGTH), scaled(TARGET, LENGTH)
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
         self.water: Water | None = None
-        self.shape: tuple[int, float] = (0, 256.0)
+        self.rain: RainMesh | None = None
+        self.buoy: viser.FrameHandle | None = None
+        self.shape: tuple[int, float] = (0, LENGTH)
         self.lit: tuple[Any, ...] = ()
         self.look = Look()
         self.last: SeaPicture | None = None
+        server.scene.remove_click_callback("all")  # of the scene that was open before
+        server.scene.on_click()(self.on_click)
+
+    async def on_click(self, event: Any) -> None:
+        origin, direction = finite_vector(event.ray_origin, FARTHEST), finite_vector(event.ray_direction)
+        if origin is not None and direction is not None:
+            self.post(Point(origin, direction))
 
     def show(self, picture: SeaPicture) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
@@ -49,6 +67,8 @@ class Picture:
         self.look = look
         if self.last is None or picture.vertices is not self.last.vertices:
             self.water.set_surface(picture.vertices, picture.slopes, picture.foam, picture.time)
+            self.show_rain(picture)
+            self.show_probe(picture)
         self.last = picture
 
     def dress(self, picture: SeaPicture) -> Look:
@@ -59,12 +79,33 @@ class Picture:
             self.light,
             clouds=p.clouds,
             haze=p.visibility,
-            ripple_slope=round(min(math.sqrt(missing), 0.25), 3),
-            ripple_length=2.5 * p.length / len(picture.vertices),
+            ripple_slope=round(min(math.sqrt(missing), 0.25), 2),
+            ripple_length=RIPPLE_CELLS * p.length / len(picture.vertices),
             ripple_direction=math.radians(p.wind_direction),
             foam_scale=max(0.008 * p.length, 0.4),
             wireframe=p.overlay,
         )
+
+    def show_rain(self, picture: SeaPicture) -> None:
+        rain = picture.rain
+        if self.rain is not None and (rain is None or len(rain.drops) != self.rain.count):
+            self.rain.remove()
+            self.rain = None
+        if rain is not None:
+            if self.rain is None:
+                self.rain = RainMesh(self.server, rain)
+            self.rain.show(rain)
+
+    def show_probe(self, picture: SeaPicture) -> None:
+        if picture.probe is None:
+            if self.buoy is not None:
+                self.buoy.visible = False
+            return
+        if self.buoy is None:
+            self.buoy = add_buoy(self.server)
+        self.buoy.visible = True
+        self.buoy.position = picture.probe
+        self.buoy.scale = picture.params.length / LENGTH
 
     def fly(self, factor: float) -> None:
         """Take every camera along to a tile `factor` times as long."""
@@ -76,17 +117,67 @@ class Picture:
             camera.look_at = np.asarray(camera.look_at) * factor
 
 
+def add_buoy(server: viser.ViserServer) -> viser.FrameHandle:
+    """A spar with a ball, about 4 m high on a tile of `LENGTH`."""
+    frame = server.scene.add_frame("/probe", show_axes=False)
+    for name, mesh, color in (
+        ("spar", trimesh.creation.cylinder(0.10, segment=((0, 0, -1.2), (0, 0, 3.0)), sections=12), (245, 245, 240)),
+        ("ring", trimesh.creation.torus(0.55, 0.2, major_sections=32, minor_sections=12), (240, 96, 32)),
+        ("ball", trimesh.creation.icosphere(2, 0.32).apply_translation((0, 0, 3.0)), (240, 96, 32)),
+    ):
+        server.scene.add_mesh_simple(
+            f"/probe/{name}", mesh.vertices, mesh.faces, color=color, cast_shadow=False, receive_shadow=False
+        )
+    return frame
+
+
 def warm_up() -> Iterator[str]:
     """Nothing here is compiled."""
     yield from ()
 
 
 def readout(snapshot: Snapshot) -> str:
-    """What of the sea can be said in numbers, as HTML."""
+    """The statistics, the foam and the rain, as HTML."""
     g = snapshot.gauge
-    return f"g = {g.gravity:.3g} m/s² · foam {g.foam:.1%} (Monahan {g.foam_asked:.1%})"
+    lines = [table(g.report)] if g.report is not None else []
+    if snapshot.picture.params.foam:
+        lines.append(f"Foam on {g.foam:.1%} of the sea; Monahan measured {g.foam_asked:.1%}.")
+    if g.rain is not None:
+        r = g.rain
+        rings = (
+            f"a ring is as of {r.drops_a_ring:.1e} drops at once" if r.drops_a_ring else "no rings on so wide a grid"
+        )
+        lines.append(
+            f"Rain: {r.fallen:.3g} drops have fallen on {r.span:.0f} m × {r.span:.0f} m. Drawn: {r.drawn} in the air, "
+            f"each for {r.weight:.3g}; {r.hits} have hit; {rings}."
+        )
+    if snapshot.picture.probe is not None:
+        x, y, z = snapshot.picture.probe
+        lines.append(f"Probe at ({x:.1f}, {y:.1f}) m: {z:+.2f} m, found to {g.residual:.0e} m.")
+    return "".join(f'<div style="margin-top:4px">{line}</div>' for line in lines)
 
 
 def marks(snapshot: Snapshot) -> dict[str, str]:
     """What is written under a knob."""
-    return {}
+    p, g = snapshot.picture.params, snapshot.gauge
+    cell = p.length / int(p.size)
+    return {
+        "wind_speed": wind_line(p),
+        "planet_mass": planet_line(p),
+        "low_pass": low_pass_line(p),
+        "viscosity": viscosity_line(p, g.age),
+        "loop_period": f"repeats every {span(p.loop_period)}" if p.loop_period else "never repeats",
+        "size": f"cells of {cell:.3g} m, shortest wave {2 * cell:.3g} m",
+        "mesh": f"drawn every {p.length / len(snapshot.picture.vertices):.3g} m",
+        "foam_by_wind": f"Jacobian below {g.threshold:.2f}" if math.isfinite(g.threshold) else "no foam",
+    }
+
+
+def notes(snapshot: Snapshot) -> dict[str, str]:
+    """What folds out below the controls."""
+    g = snapshot.gauge
+    done = ", ".join(f"{count} {name}" for name, count in sorted(g.counts.items()))
+    return {
+        "Lab says, physics says": lab_says(snapshot.picture.params, g.report),
+        "Work done": f"{done or 'none'}. What a picture does not need is not computed.",
+    }

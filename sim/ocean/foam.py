@@ -41,7 +41,7 @@ def threshold(coverage: float, slope: float, frequency: float, choppiness: float
     sigma = choppiness * math.sqrt(slope)
     if not (sigma > 0.0 and coverage > 0.0):
         return 0.0
-    low, high = -4.0, 8.0
+    low, high, z = -4.0, 8.0, 0.0
     for _ in range(50):
         z = 0.5 * (low + high)
         rate = frequency / (2.0 * math.pi) * math.exp(-0.5 * z * z)

@@ -8,10 +8,10 @@ import viser
 
 from app.shower import LASTING, SPLASHES, RainPicture
 
-EXPOSURE = 1 / 45  # [s] over which a falling drop leaves its streak
-THIN = 0.00024  # of the window's side: half the width of a streak
+EXPOSURE = 1 / 25  # [s] over which a falling drop leaves its streak
+THIN = 0.00014  # of the window's side: half the width of a streak
 CROWN = 6  # points of a splash
-HEIGHT, SPREAD = 0.009, 0.006  # of the window's side: how high and how wide a crown goes
+HEIGHT, SPREAD = 0.0045, 0.0022  # of the window's side: how high and how wide a crown goes
 BURIED = -1e3  # [m] where points wait that are not shown
 
 
@@ -38,7 +38,7 @@ class RainMesh:
             "/rain/splashes",
             np.full((SPLASHES * CROWN, 3), BURIED, np.float32),
             (238, 244, 248),
-            point_size=0.0016 * picture.span,
+            point_size=0.0002 * picture.span,
             point_shape="circle",
             precision="float32",
         )

@@ -10,6 +10,7 @@ from sim.ocean.spectra import SPECTRA
 
 SIZES = ("64", "128", "256", "512")
 MESHES = ("32", "64", "128", "256")
+VIEWS = ("deck", "bow", "mast", "gull")
 TENSION = 0.0728  # [N/m] of water against air
 CALM = 0.05  # [m/s] wind below which there are no waves: squares of smaller numbers run out of range
 
@@ -19,7 +20,7 @@ class Params:
     """The square sea's knobs; the defaults are the first preset."""
 
     spectrum: str = knob("pierson_moskowitz", choices=tuple(SPECTRA), doc="Law of the waves' energy", group="Weather")
-    wind_speed: float = knob(9.0, 0.0, 60.0, "m/s", "Wind 10 m up, 19.5 m up for pierson_moskowitz", group="Weather")
+    wind_speed: float = knob(8.0, 0.0, 60.0, "m/s", "Wind 10 m up, 19.5 m up for pierson_moskowitz", group="Weather")
     wind_direction: float = knob(20.0, -180.0, 180.0, "°", "Where the wind goes to, from x towards y", group="Weather")
     rain: float = knob(0.0, 0.0, 200.0, "mm/h", "Rain; 0 is none", log_from=0.1, group="Weather")
     transition: float = knob(
@@ -67,7 +68,7 @@ class Params:
         group="Water",
     )  # fmt: skip
 
-    length: float = knob(256.0, 32.0, 4096.0, "m", "Side of the tile that repeats", log_from=32.0, group="Grid")
+    length: float = knob(192.0, 32.0, 4096.0, "m", "Side of the tile that repeats", log_from=32.0, group="Grid")
     size: str = knob("256", choices=SIZES, doc="Waves solved along a side", group="Grid")
     mesh: str = knob("128", choices=MESHES, doc="Points drawn along a side, at most as many as solved", group="Grid")
     overlay: bool = knob(False, doc="Show the grid (key G)", group="Grid")
@@ -82,9 +83,11 @@ class Params:
     drops: int = knob(1500, 1, 5000, "", "Drops drawn at most", log_from=1, group="Foam and rain")
     rings: float = knob(1.0, 0.0, 5.0, "", "Strength of the rings; 0 is none", group="Foam and rain")
 
+    view: str = knob("deck", choices=VIEWS, doc="Where to look from", group="Look")
     sky: str = knob("park", choices=("park", "sunset", "dawn", "night"), doc="Sky and light", group="Look")
     sun: float = knob(0.0, -180.0, 180.0, "°", "Bearing of the sun", group="Look")
     clouds: float = knob(0.4, 0.0, 1.0, "", "Cloud cover", group="Look")
+    daylight: float = knob(1.0, 0.05, 3.0, "", "Brightness", group="Look")
     visibility: float = knob(3000.0, 50.0, 20000.0, "m", "Distance at which haze hides", log_from=50.0, group="Look")
 
     statistics: bool = knob(True, doc="Measure the drawn sea and hold it against theory", group="Plots")

@@ -26,13 +26,13 @@ def difference(field, i, j, di, dj):
 
 @kernel
 def set_mesh(height, dx, dy, choppy, scale, stride, cell, threshold, soft, fade, vertices, slopes, foam):
-    """Set the mesh and fade its foam; returns (share of the mesh that is foam, highest point [m]).
+    """Set the mesh and fade its foam; returns (share of the mesh that is foam, rms of J - 1).
 
     height, dx, dy: (n, n) [m], dx and dy unread unless `choppy`; scale: factor on the height; cell [m] of the grid.
     foam: (n/stride, n/stride), 0 to 1, kept from the last frame: times `fade`, and at least (threshold - J)/soft.
     """
     inverse = 1.0 / cell
-    foamy, crest = 0.0, -1e30
+    foamy, strain = 0.0, 0.0
     for i in range(vertices.shape[0]):
         for j in range(vertices.shape[1]):
             m, n = i * stride, j * stride
@@ -59,5 +59,6 @@ def set_mesh(height, dx, dy, choppy, scale, stride, cell, threshold, soft, fade,
             white = min(max((threshold - J) / soft, 0.0), 1.0)
             foam[i, j] = max(foam[i, j] * fade, white)
             foamy += foam[i, j]
-            crest = max(crest, z)
-    return foamy / (vertices.shape[0] * vertices.shape[1]), crest
+            strain += (J - 1.0) * (J - 1.0)
+    count = vertices.shape[0] * vertices.shape[1]
+    return foamy / count, np.sqrt(strain / count)

@@ -16,12 +16,12 @@ from sim.particles.rain import Hits, Rain
 WINDOW = 48.0  # [m] side of the square in the middle of the tile that drops are drawn over
 ROOM = 0.4  # of the window's side: how far above the highest waves drops begin
 COARSEST = 0.35  # [m] cell above which no ring is drawn
-WIDTH = 1.3  # cells: Gaussian width of a ring's beginning
-STEEPNESS = 0.22  # depth of the first trough over that width, for an average drop
+WIDTH = 1.6  # cells: Gaussian width of a ring's beginning
+STEEPNESS = 0.16  # depth of the first trough over that width, for an average drop
 BLOW = (
     0.160  # the trough of an impulse J on a width a is BLOW J/(rho a^(5/2) sqrt(g)) deep, deep water (Lamb, Art. 255)
 )
-LEAK = 0.7  # [1/s] at which rings fade, for what would have left the tile
+LEAK = 1.0  # [1/s] at which rings fade, for what would have left the tile
 LASTING = 0.22  # [s] that a splash is drawn
 SPLASHES = 400  # drawn at once at most
 DENSITY = 1000.0  # [kg/m3]

@@ -15,9 +15,16 @@ from app.scenes.phillips import Params, SeaPicture
 from app.sea_report import lab_says, low_pass_line, planet_line, span, table, viscosity_line, wind_line
 from app.water import Look, Water, sky
 
-LENGTH = 256.0  # [m] tile of the first view
-EYE, TARGET = (0.44, 0.5, 0.024), (0.62, 0.5, 0.004)  # of the tile's length
+LENGTH = Params().length  # [m] tile of the first view
+VIEWS = {  # eye and target, of the tile's length: over the middle of the tile, into the sun
+    "deck": ((0.47, 0.5, 0.013), (0.53, 0.5, 0.0113)),
+    "bow": ((0.38, 0.5, 0.05), (0.56, 0.5, 0.0)),
+    "mast": ((0.42, 0.5, 0.06), (0.53, 0.5, 0.035)),
+    "gull": ((0.2, 0.5, 0.2), (0.55, 0.5, 0.0)),
+}
 TILES = 5
+FAR = 20_000.0  # [m] where the view ends
+OVERCAST = (0.80, 0.92, 1.02)  # filter before the sky under a closed cover of clouds
 FARTHEST = 1e5  # [m] from which a click is taken
 RIPPLE_CELLS = 2.5  # longest ripple of the shader, in cells of the mesh: where the mesh leaves off
 
@@ -29,7 +36,8 @@ def scaled(place: tuple[float, float, float], factor: float) -> tuple[float, flo
 class Picture:
     """Draws `SeaPicture`s."""
 
-    CAMERA = scaled(EYE, LENGTH), scaled(TARGET, LENGTH)
+    CAMERA = scaled(VIEWS["deck"][0], LENGTH), scaled(VIEWS["deck"][1], LENGTH)
+    FOV = 0.75  # [rad]
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
@@ -37,6 +45,7 @@ class Picture:
         self.rain: RainMesh | None = None
         self.buoy: viser.FrameHandle | None = None
         self.shape: tuple[int, float] = (0, LENGTH)
+        self.view = "deck"
         self.lit: tuple[Any, ...] = ()
         self.look = Look()
         self.last: SeaPicture | None = None
@@ -60,11 +69,15 @@ class Picture:
             if self.water is not None:
                 self.water.remove()
             self.water = Water(self.server, "/sea", shape[0], shape[0], p.length, tiles=TILES, look=look)
-            self.fly(p.length / self.shape[1])
+            self.follow(p.length / self.shape[1])
             self.shape = shape
         elif look != self.look:
             self.water.set_look(look)
         self.look = look
+        if p.view != self.view:
+            self.view = p.view
+            for camera in self.cameras():
+                camera.position, camera.look_at = (scaled(place, p.length) for place in VIEWS[p.view])
         if self.last is None or picture.vertices is not self.last.vertices:
             self.water.set_surface(picture.vertices, picture.slopes, picture.foam, picture.time)
             self.show_rain(picture)
@@ -75,9 +88,15 @@ class Picture:
         """The look under this sky: ripples carry what of Cox and Munk's slope the mesh does not."""
         p: Params = picture.params
         missing = max(0.003 + 0.00512 * p.wind_speed - picture.slope_resolved, 0.001)
+        # Under a closed cover there is no sun, and its colour is gone from the sky.
+        overcast = min(max((p.clouds - 0.6) / 0.4, 0.0), 1.0)
+        grey = np.array(OVERCAST) * overcast + np.array(self.light.tint) * (1.0 - overcast)
         return dataclasses.replace(
             self.light,
             clouds=p.clouds,
+            tint=tuple(float(c) for c in grey),
+            sun_strength=self.light.sun_strength * (1.0 - 0.93 * overcast),
+            exposure=self.light.exposure * p.daylight,
             haze=p.visibility,
             ripple_slope=round(min(math.sqrt(missing), 0.25), 2),
             ripple_length=RIPPLE_CELLS * p.length / len(picture.vertices),
@@ -107,18 +126,21 @@ class Picture:
         self.buoy.position = picture.probe
         self.buoy.scale = picture.params.length / LENGTH
 
-    def fly(self, factor: float) -> None:
+    def cameras(self) -> list[Any]:
+        """The camera of each browser, and the one that new browsers begin with."""
+        return [self.server.initial_camera, *(client.camera for client in self.server.get_clients().values())]
+
+    def follow(self, factor: float) -> None:
         """Take every camera along to a tile `factor` times as long."""
-        if factor == 1.0:
-            return
-        first = self.server.initial_camera
-        for camera in (first, *(client.camera for client in self.server.get_clients().values())):
-            camera.position = np.asarray(camera.position) * factor
-            camera.look_at = np.asarray(camera.look_at) * factor
+        for camera in self.cameras():
+            camera.far = FAR
+            if factor != 1.0:
+                camera.position = np.asarray(camera.position) * factor
+                camera.look_at = np.asarray(camera.look_at) * factor
 
 
 def add_buoy(server: viser.ViserServer) -> viser.FrameHandle:
-    """A spar with a ball, about 4 m high on a tile of `LENGTH`."""
+    """A spar with a ball, 3 m high on a tile of `LENGTH`."""
     frame = server.scene.add_frame("/probe", show_axes=False)
     for name, mesh, color in (
         ("spar", trimesh.creation.cylinder(0.10, segment=((0, 0, -1.2), (0, 0, 3.0)), sections=12), (245, 245, 240)),

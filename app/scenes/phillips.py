@@ -40,15 +40,18 @@ SEEN = 1.2  # part of the fading time for which foam counts as seen
 PRESETS: dict[str, dict[str, Any]] = {
     "Earth breeze": {},
     "Storm arriving": {
-        "wind_speed": 21.0, "start": "calm", "transition": 20.0, "length": 512.0, "rain": 8.0, "clouds": 0.9,
-        "sky": "dawn",
+        "spectrum": "jonswap", "wind_speed": 24.0, "fetch": 150e3, "start": "calm", "transition": 20.0, "rain": 15.0,
+        "length": 512.0, "choppiness": 1.2, "clouds": 1.0, "daylight": 0.7, "visibility": 1200.0, "drops": 3000,
     },
     "Storm over": {
-        "wind_speed": 5.0, "start": "storm", "transition": 20.0, "length": 512.0, "sky": "sunset", "clouds": 0.5,
+        "wind_speed": 7.0, "start": "storm", "transition": 20.0, "length": 384.0, "sky": "sunset", "clouds": 0.45,
     },
-    "Light planet": {"planet_mass": 0.01, "length": 1024.0, "wind_speed": 10.0},
-    "Heavy planet": {"planet_mass": 100.0, "length": 64.0, "wind_speed": 10.0},
-    "Rain shower": {"rain": 30.0, "length": 32.0, "wind_speed": 4.0, "clouds": 0.8},
+    "Light planet": {"planet_mass": 0.01, "length": 1024.0, "wind_speed": 10.0, "visibility": 6000.0, "sky": "dawn"},
+    "Heavy planet": {"planet_mass": 100.0, "length": 64.0, "wind_speed": 10.0, "visibility": 1500.0},
+    "Rain shower": {
+        "rain": 30.0, "length": 32.0, "wind_speed": 1.5, "wind_direction": 70.0, "clouds": 1.0, "size": "512",
+        "mesh": "256", "view": "bow", "drops": 1200, "visibility": 500.0, "foam": False, "sun": 65.0,
+    },
 }  # fmt: skip
 
 
@@ -177,7 +180,7 @@ class Scene:
         self.paced_at = -math.inf
         self.measured_at = -math.inf
         self.earlier: NDArray[np.floating] | None = None
-        self.covered, self.trim = 0.0, TRIM
+        self.covered, self.trim, self.spread = 0.0, TRIM, 0.0
 
     def set_params(self, params: Params) -> None:
         """Take new knobs: new weather grows out of the sea as it is, another grid shows the same sea."""
@@ -258,7 +261,7 @@ class Scene:
         limit, soft = self.foam_limit(self.time, dt)
         vertices, slopes = np.empty((n, n, 3), np.float32), np.empty((n, n, 2), np.float32)
         self.foam = self.foam.copy()
-        self.covered, _ = set_mesh(
+        self.covered, self.spread = set_mesh(
             height, D[..., 0], D[..., 1], displacement is not None, p.amplitude, self.sea.size // n,
             self.sea.length / self.sea.size, limit, soft, math.exp(-dt / p.foam_fade), vertices, slopes, self.foam,
         )  # fmt: skip
@@ -289,11 +292,11 @@ class Scene:
 
     def foam_limit(self, t: float, dt: float) -> tuple[float, float]:
         """(Jacobian below which there is foam, how far below it is full)."""
-        p, chop = self.params, self.sea.choppiness
+        p = self.params
         if abs(t - self.paced_at) >= PACE_EVERY:
             self.paced_at = t
             self.pace = pace(self.sea, t)
-        spread = max(chop * math.sqrt(self.pace[0]), 1e-6)
+        spread = self.spread or max(self.sea.choppiness * math.sqrt(self.pace[0]), 1e-6)
         self.threshold = p.foam_threshold
         if not p.foam:
             self.threshold = -math.inf
@@ -302,7 +305,7 @@ class Scene:
             # The formula is for small slopes; what it misses is learned slowly from the foam as drawn.
             missing = math.log((asked + LEAST_FOAM) / (self.covered + LEAST_FOAM))
             self.trim = min(max(self.trim + LEARN * dt * min(max(missing, -1.0), 1.0), -1.0), 2.0)
-            guess = threshold(asked, self.pace[0], self.pace[1], chop, SEEN * p.foam_fade)
+            guess = threshold(asked, spread, self.pace[1], SEEN * p.foam_fade)
             self.threshold = guess + self.trim * spread if asked > 0.0 and guess > 0.0 else -math.inf
         return self.threshold, SOFT * spread
 

@@ -31,15 +31,15 @@ def pace(sea: "Sea", t: float) -> tuple[float, float]:
     return slope, math.sqrt(float((sea.frequencies**2 * steepness).sum()) / slope)
 
 
-def threshold(coverage: float, slope: float, frequency: float, choppiness: float, lasting: float) -> float:
+def threshold(coverage: float, spread: float, frequency: float, lasting: float) -> float:
     """The Jacobian below which foam is made so that the share `coverage` of the sea is foam. 0 where there is none.
 
-    slope, frequency: of `pace`; lasting [s]: for how long foam is seen after its crest has passed.
+    spread: standard deviation of J, choppiness sqrt(mss); frequency [rad/s]: of `pace`; lasting [s]: for how long foam
+    is seen after its crest has passed.
     Excursions of a Gaussian process below -z sigma last Phi(-z)/rate on average, with rate = (omega/2 pi) exp(-z^2/2)
     of them a second (Rice 1944), so the covered share is Phi(-z) + rate lasting.
     """
-    sigma = choppiness * math.sqrt(slope)
-    if not (sigma > 0.0 and coverage > 0.0):
+    if not (spread > 0.0 and coverage > 0.0):
         return 0.0
     low, high, z = -4.0, 8.0, 0.0
     for _ in range(50):
@@ -48,4 +48,4 @@ def threshold(coverage: float, slope: float, frequency: float, choppiness: float
         # Passages come at random, so that covered shares do not add but fill up.
         share = 1.0 - (1.0 - NormalDist().cdf(-z)) * math.exp(-rate * lasting)
         low, high = (z, high) if share > coverage else (low, z)
-    return 1.0 - z * sigma
+    return 1.0 - z * spread

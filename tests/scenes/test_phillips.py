@@ -58,7 +58,9 @@ def test_a_preset_runs_three_seconds_and_everything_drawn_is_finite(name):
     assert scene.gauge().report.measured.significant_height > 0.0
 
 
-@pytest.mark.parametrize("change", [{"wind_speed": 22.0}, {"spectrum": "jonswap"}, {"planet_mass": 10.0}, {"deep": False}])
+@pytest.mark.parametrize(
+    "change", [{"wind_speed": 22.0}, {"spectrum": "jonswap"}, {"planet_mass": 10.0}, {"deep": False}]
+)
 def test_new_weather_grows_out_of_the_sea_without_a_jump(change):
     scene = Scene(Params(**SMALL, foam=False, transition=10.0))
     scene.advance(180)

@@ -26,7 +26,7 @@ class FixedStep:
 
     def __init__(self) -> None:
         self.debt = 0.0  # [s] of simulated time not yet stepped
-        self.cost = 0.0  # [s] of wall time a step takes, running mean
+        self.cost = 0.0  # [s] of processor time a step takes, lately
 
     def steps(self, wall: float, speed: float, h: float) -> tuple[int, bool]:
         """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s]."""
@@ -40,10 +40,11 @@ class FixedStep:
         return due, False
 
     def learn(self, steps: int, seconds: float) -> None:
-        """Take note that `steps` steps took `seconds` of wall time."""
+        """Take note that `steps` steps took `seconds` of processor time."""
         if steps:
             each = seconds / steps
-            self.cost = each if self.cost == 0 else 0.8 * self.cost + 0.2 * each
+            # Down at once, up slowly: the first step of a method loads its kernel.
+            self.cost = each if not 0 < self.cost < each else 0.8 * self.cost + 0.2 * each
 
 
 class SimLoop:
@@ -58,13 +59,18 @@ class SimLoop:
         *,
         paused: bool = False,
         clock: Callable[[], float] = time.perf_counter,
+        effort: Callable[[], float] = time.thread_time,
     ) -> None:
-        """read_params: the knobs' current values, already clamped; audience: how many browsers look."""
+        """read_params: the knobs' current values, already clamped; audience: how many browsers look.
+
+        clock: wall time [s]. effort: what solving is charged by, this thread's processor time [s], so that a busy
+        machine that takes the processor away does not make the scene look expensive.
+        """
         self.scene = scene
         self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
         self.read_params = read_params or (lambda: scene.params)
         self.audience = audience
-        self.clock = clock
+        self.clock, self.effort = clock, effort
         self.running = not paused
         self.halted = ""
         self.pacer = FixedStep()
@@ -95,10 +101,10 @@ class SimLoop:
             self.latest = self.snapshot(solve)
 
     def advance(self, n: int) -> float:
-        """Take n steps; returns the wall time they took [s]."""
-        start = self.clock()
+        """Take n steps; returns the processor time they took [s]."""
+        start = self.effort()
         self.guarded(lambda: self.scene.advance(n))
-        seconds = self.clock() - start
+        seconds = self.effort() - start
         self.pacer.learn(n, seconds)
         self.counts["steps"] += n
         return seconds

@@ -160,7 +160,8 @@ class Panel:
             chooser.on_update(lambda event: open_scene(event.target.value))
         gui.add_html(
             '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">'
-            f"{scene.HELP}<br><b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots</div>"
+            f"{scene.HELP}<br><b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · "
+            "<b>G</b> grid · <b>1-9</b> presets</div>"
         )
         self.preset = gui.add_dropdown("Preset", tuple(scene.PRESETS), hint="Sets every knob and starts over")
         self.preset.on_update(self.on_preset)
@@ -187,11 +188,8 @@ class Panel:
             ("Single step", "N", lambda: self.post(StepOnce())),
             ("Reset", "R", lambda: self.post(Reset())),
             ("Plots", "P", self.toggle_plots),
+            ("Grid", "G", self.toggle_grid),
         ]
-        for key, name in getattr(self.scene, "KEYS", {}).items():
-            control = self.controls[name]
-            label = title(name, control.knob)
-            actions.append((label, key, lambda control=control: control.take(not control.value)))
         for number, preset in enumerate(list(self.scene.PRESETS)[:9], 1):
             actions.append((f"Preset: {preset}", str(number), lambda preset=preset: self.load(preset)))
         for label, key, action in actions:
@@ -235,6 +233,10 @@ class Panel:
         on = not any(c.value for c in shown)
         for control in shown:
             control.take(on)
+
+    def toggle_grid(self) -> None:
+        control = self.controls["grid"]
+        control.take(not control.value)
 
     def update(self, snapshot: Snapshot, sent: float) -> None:
         """Show how the loop fares, and that a frame took `sent` [s] to hand over; at a few hertz, as it is HTML."""

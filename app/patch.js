@@ -8,7 +8,7 @@
 // before every frame, so that a material that viser has just made anew is never drawn undressed) and requestRender.
 // Of three it uses Material.onBeforeCompile and the renderer's property map, to see whether a program linked.
 
-const recipes = []; // { suffix, frame(context) -> {"name": material, ...} dressed }
+const recipes = []; // { suffix, frame(context) -> the material it dressed or null, sweep() what is left of removed nodes }
 const failed = new Set(); // materials whose program did not link: left as viser made them
 
 // The mesh of a node is the first child of its group; shadow meshes and child nodes come after it.
@@ -103,6 +103,7 @@ function beforeRender(renderer, scene, camera) {
       if (material && linked(renderer, material)) alive.push(base);
     }
   }
+  for (const recipe of recipes) if (recipe.sweep) recipe.sweep();
   tell(alive);
 }
 

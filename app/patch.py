@@ -40,7 +40,7 @@ class Patch:
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = weakref.ref(server)
         self._token = secrets.token_hex(8)
-        self._names: set[str] = set()
+        self._names: dict[str, float] = {}  # node -> when it was first expected [s]
         self._since: dict[int, float] = {}  # client id -> time it was first asked [s]
         self._drawn: dict[int, frozenset[str]] = {}  # client id -> the nodes it says it draws dressed
         self._work = threading.Event()
@@ -50,17 +50,21 @@ class Patch:
 
     def script(self) -> str:
         """The script as it is sent: one function scope, the token first, the hook last."""
-        parts = [(resources.files("app") / name).read_text("utf-8") for name in ("patch.js", "water.js")]
+        parts = [
+            (resources.files("app") / name).read_text("utf-8") for name in ("patch.js", "water_shader.js", "water.js")
+        ]
         return f'(() => {{ "use strict"; const TOKEN = "{self._token}";\n' + "\n".join(parts) + "\ninstall(); })();"
 
     def expect(self, name: str) -> None:
-        """Ask every browser for an answer about this node."""
-        self._names.add(name)
+        """Ask every browser for an answer about this node, whatever it said of an earlier one of that name."""
+        self.forget(name)
+        self._names[name] = time.monotonic()
         self._work.set()
 
     def forget(self, name: str) -> None:
         """Stop asking about a removed node."""
-        self._names.discard(name)
+        self._names.pop(name, None)
+        self._drawn = {client: drawn - {name} for client, drawn in self._drawn.items()}
 
     def alive(self, name: str) -> bool | None:
         """True if every connected browser draws the node dressed, False if one does not, None while not yet known."""
@@ -71,23 +75,22 @@ class Patch:
         if all(name in self._drawn.get(client, frozenset()) for client in clients):
             return True
         now = time.monotonic()
-        late = any(
-            name not in self._drawn.get(client, frozenset()) and now - self._since.get(client, now) > GRACE
-            for client in clients
-        )
-        return False if late else None
+        expected = self._names.get(name, now)
+        slow = [client for client in clients if name not in self._drawn.get(client, frozenset())]
+        return False if any(now - max(expected, self._since.get(client, now)) > GRACE for client in slow) else None
 
     def _ask(self) -> None:
         """Ask each connected browser until it has answered for every name. The one thread of this module."""
         while True:
-            self._work.wait()
+            self._work.wait(timeout=60.0)  # a server that is gone wakes nobody
+            self._work.clear()
             server = self._server()
             if server is None:
                 return
             clients = server.get_clients()
             waiting = False
             for number, client in clients.items():
-                if self._names <= self._drawn.get(number, frozenset()):
+                if set(self._names) <= self._drawn.get(number, frozenset()):
                     continue
                 self._since.setdefault(number, time.monotonic())
                 waiting = True
@@ -100,8 +103,8 @@ class Patch:
                 if number not in clients:
                     self._drawn.pop(number, None)
                     self._since.pop(number, None)
-            if not waiting:
-                self._work.clear()
+            if waiting:
+                self._work.set()
             del server, clients
             time.sleep(ASK_EVERY)
 

@@ -71,7 +71,7 @@ class Params:
     length: float = knob(192.0, 32.0, 4096.0, "m", "Side of the tile that repeats", log_from=32.0, group="Grid")
     size: str = knob("256", choices=SIZES, doc="Waves solved along a side", group="Grid")
     mesh: str = knob("128", choices=MESHES, doc="Points drawn along a side, at most as many as solved", group="Grid")
-    overlay: bool = knob(False, doc="Show the grid (key G)", group="Grid")
+    grid: bool = knob(False, doc="Show the grid of the drawn mesh (key G)", group="Grid")
     frame_rate: float = knob(30.0, 5.0, 60.0, "Hz", "Pictures a second", group="Grid")
     speed: float = knob(1.0, 0.01, 8.0, "", "Simulated per real time", log_from=0.01, group="Grid")
     seed: int = knob(1, 0, 999, "", "Another sea under the same weather", group="Grid")

@@ -5,6 +5,9 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
+from app.bench.sea_peers import PEERS, is_installed, student
 from sim.ocean import Sea
 from sim.ocean.transforms import Transforms
 
@@ -21,6 +24,55 @@ def rows(quick: bool) -> list[dict[str, Any]]:
     for size in (128, 256) if quick else (64, 128, 256, 512):
         found += [row(name, size, fields, QUICK_REPEATS if quick else REPEATS) for name, fields in FRAMES.items()]
     return found
+
+
+def peer_rows(quick: bool) -> list[dict[str, Any]]:
+    """Height and displacement at a new time, by us and by each peer that is installed, in turn.
+
+    ms: median. times as long: as our single precision. error: the largest difference from a double-precision frame over
+    the standard deviation of the heights; empty for a peer that draws another sea.
+    """
+    found = []
+    for size in (256,) if quick else (256, 512):
+        sea = Sea(size=size, length=500.0, spectrum="phillips")
+        truth = student(Sea(size=size, length=500.0, spectrum="phillips", precision="double"))
+        there = [peer for peer in PEERS if is_installed(peer)]
+        frames: dict[str, Callable[[float], Any]] = {"ours": lambda t, sea=sea: ours_at(sea, t)}
+        frames |= {peer.name: peer.make(sea) for peer in there}
+        exact = truth(5.0)
+        errors = {name: error(frame(5.0), exact) for name, frame in frames.items()}
+        times = interleaved(tuple(map(running, frames.values())), 12 if quick else 60)
+        for name, seconds in zip(frames, times, strict=True):
+            found.append(
+                {
+                    "peer": name,
+                    "size": size,
+                    "ms": seconds * 1e3,
+                    "times as long": seconds / times[0],
+                    "error": errors[name],
+                }
+            )
+        found += [{"peer": f"{p.name} (not installed)", "size": size} for p in PEERS if p not in there]
+    return found
+
+
+def running(frame: Callable[[float], Any]) -> Callable[[], Any]:
+    """Call by call, the frame at ever new times."""
+    times = iter(range(1, 10**9))
+    return lambda: frame(next(times) / 60.0)
+
+
+def ours_at(sea: Sea, t: float) -> tuple[np.ndarray, ...]:
+    surface = sea.surface(t)
+    displacement = surface.displacement
+    return surface.height, displacement[..., 0], displacement[..., 1]
+
+
+def error(frame: Any, exact: np.ndarray) -> float:
+    """Largest difference from the exact fields over the standard deviation of the heights; NaN where not comparable."""
+    if frame is None:
+        return float("nan")
+    return max(float(np.abs(a - b).max()) for a, b in zip(frame, exact, strict=True)) / float(exact[0].std())
 
 
 FRAMES: dict[str, tuple[str, ...]] = {

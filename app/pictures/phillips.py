@@ -6,11 +6,10 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-import trimesh
 import viser
 
 from app.messages import Command, Point, Snapshot, finite_vector
-from app.rain_mesh import RainMesh
+from app.pictures.rain import RainMesh
 from app.scenes.phillips import Params, SeaPicture
 from app.sea_report import lab_says, low_pass_line, planet_line, span, table, viscosity_line, wind_line
 from app.water import Look, Water, sky
@@ -25,6 +24,7 @@ VIEWS = {  # eye and target, of the tile's length: over the middle of the tile, 
 TILES = 5
 FAR = 20_000.0  # [m] where the view ends
 OVERCAST = (0.80, 0.92, 1.02)  # filter before the sky under a closed cover of clouds
+BUOY = (240, 96, 32)
 FARTHEST = 1e5  # [m] from which a click is taken
 RIPPLE_CELLS = 2.5  # longest ripple of the shader, in cells of the mesh: where the mesh leaves off
 
@@ -102,7 +102,7 @@ class Picture:
             ripple_length=RIPPLE_CELLS * p.length / len(picture.vertices),
             ripple_direction=math.radians(p.wind_direction),
             foam_scale=max(0.008 * p.length, 0.4),
-            wireframe=p.overlay,
+            wireframe=p.grid,
         )
 
     def show_rain(self, picture: SeaPicture) -> None:
@@ -141,15 +141,11 @@ class Picture:
 
 def add_buoy(server: viser.ViserServer) -> viser.FrameHandle:
     """A spar with a ball, 3 m high on a tile of `LENGTH`."""
-    frame = server.scene.add_frame("/probe", show_axes=False)
-    for name, mesh, color in (
-        ("spar", trimesh.creation.cylinder(0.10, segment=((0, 0, -1.2), (0, 0, 3.0)), sections=12), (245, 245, 240)),
-        ("ring", trimesh.creation.torus(0.55, 0.2, major_sections=32, minor_sections=12), (240, 96, 32)),
-        ("ball", trimesh.creation.icosphere(2, 0.32).apply_translation((0, 0, 3.0)), (240, 96, 32)),
-    ):
-        server.scene.add_mesh_simple(
-            f"/probe/{name}", mesh.vertices, mesh.faces, color=color, cast_shadow=False, receive_shadow=False
-        )
+    scene = server.scene
+    frame = scene.add_frame("/probe", show_axes=False)
+    scene.add_cylinder("/probe/spar", radius=0.09, height=4.2, color=(245, 245, 240), position=(0, 0, 0.9))
+    scene.add_cylinder("/probe/float", radius=0.5, height=0.5, color=BUOY)
+    scene.add_icosphere("/probe/ball", radius=0.3, color=BUOY, position=(0, 0, 3.0))
     return frame
 
 

@@ -3,8 +3,8 @@
 To add one, write a module here, and its drawing under the same name in `app/pictures`: the two sides of the thread, so
 that a headless run imports no viewer. The module has
 
-1. `Params`, a frozen dataclass of knobs with at least `speed` (target real-time factor): from it come the panel, the
-   command line, presets and the clamp;
+1. `Params`, a frozen dataclass of knobs with at least `speed` (target real-time factor) and `grid`: from it come the
+   panel, the command line, presets and the clamp;
 2. `TITLE`, `HELP` (two lines on how to use it), `SERIES` and `PLOTS` (the plot rows' columns, and the charts of each
    plot knob), `PRESETS`: name -> {knob: value}, the first being the defaults;
 3. `Scene(params)`, the simulation, on the simulation thread only: `params`, `step` [s], `time` [s], `set_params`,
@@ -12,8 +12,7 @@ that a headless run imports no viewer. The module has
    `take_samples()`, `arrays()` for headless runs;
 4. `hidden(params)`, the knobs that mean nothing just now, and `warm_up()`, which compiles what the scene may call.
 
-It may have `KEYS`, hotkey -> switch, and `CURVES` (see `app/plots.py`) with `Scene.curves()`; and `Scene.frame` [s],
-the time between pictures.
+It may have `CURVES` (see `app/plots.py`) with `Scene.curves()`, and `Scene.frame` [s], the time between pictures.
 
 The drawing has `Picture(server, post)` with `show(picture, gauge)`, on the viewer's thread only, whose callbacks only
 `post` commands, `readout(snapshot)`, the HTML under the panel's

@@ -17,14 +17,13 @@ from app.shower import RainPicture, Shower
 from sim.ocean import Sea
 from sim.ocean.foam import pace, threshold, whitecaps
 
-__all__ = ["CURVES", "HELP", "KEYS", "PLOTS", "PRESETS", "SERIES", "TITLE", "Params", "Scene", "hidden", "warm_up"]
+__all__ = ["CURVES", "HELP", "PLOTS", "PRESETS", "SERIES", "TITLE", "Params", "Scene", "hidden", "warm_up"]
 
 TITLE = "Square sea"
-HELP = "<b>Click the water</b> to place the probe. <b>G</b> shows the grid. Drag to look around, scroll to fly."
+HELP = "<b>Click the water</b> to place the probe. Drag to look around, scroll to fly."
 SERIES = ("probe",)
 PLOTS = {"plot_probe": ("Height at the probe", "m", ("probe",))}
 CURVES = {"plot_spectrum": ("Spectrum at the probe [m²/Hz]", "f [Hz]", ("measured", "theory"))}
-KEYS = {"G": "overlay"}
 STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
 STARTS = {"calm": 3.0, "storm": 24.0}  # [m/s] wind of the sea that a reset may begin with
 SOFT = 0.35  # how far below the threshold the Jacobian of full foam is, in parts of the sea's own spread

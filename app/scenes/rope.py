@@ -18,7 +18,7 @@ from sim.springs.state import State, advance, energy, velocities
 
 TITLE = "Rope"
 ROOT: Vector = (0.0, 0.0, 3.0)  # [m]
-SPHERE: Vector = (-0.45, 0.0, 1.6)  # [m]
+SPHERE: Vector = (-0.45, 0.12, 1.6)  # [m], a little behind the rope, which then slides off in view
 THICKNESS = 0.035  # [m] radius of the drawn rope, and of its points for contact
 GAUGE_EVERY = 0.2  # [s] of simulated time between two looks at the stability of the state
 SAMPLE_EVERY = 1 / 30  # [s] between two plot rows
@@ -78,6 +78,7 @@ class Params:
 
     colour: str = knob("tension", choices=("tension", "plain"), doc="What the rope's colour shows", group="Look")
     show_points: bool = knob(True, doc="Draw the points, to be grabbed", group="Look")
+    grid: bool = knob(True, doc="Lines on the floor", group="Look")
     plot_energy: bool = knob(False, doc="Energy ledger over time", group="Plots")
     plot_tip: bool = knob(False, doc="Height of the tip over time", group="Plots")
 
@@ -130,6 +131,7 @@ class RopePicture(NamedTuple):
     root: Vector
     sphere: tuple[float, float, float, float] | None
     floor: bool
+    grid: bool
     colour: str
     show_points: bool
     pull: PullShown | None
@@ -366,6 +368,7 @@ class Scene:
             root=self.root.target,
             sphere=(*self.sphere.position, self.params.sphere_radius) if self.params.sphere else None,
             floor=self.params.floor,
+            grid=self.params.grid,
             colour=self.params.colour,
             show_points=self.params.show_points,
             pull=pull,

@@ -1,0 +1,33 @@
+"""Floating bodies: hulls, where they float, and how they move in one or two fluids under waves.
+
+fleet = make_fleet([Body(Hull.box(1.0, 1.0, 1.0), density=500.0)])
+step(fleet, still_water(fleet, [(850.0, 0.2), (1025.0, math.inf)]), 1 / 60)
+"""
+
+from sim.floating.body import Body, Fleet, lowest, make_fleet, pull, vertices
+from sim.floating.equilibrium import equilibrium_draft, heave_period, roll_period
+from sim.floating.hull import Hull
+from sim.floating.hydrostatics import Submerged, pressure_force, submerged
+from sim.floating.motion import Laws, step
+from sim.floating.water import Water, make_water, still_water
+
+__all__ = [
+    "Body",
+    "Fleet",
+    "Hull",
+    "Laws",
+    "Submerged",
+    "Water",
+    "equilibrium_draft",
+    "heave_period",
+    "lowest",
+    "make_fleet",
+    "make_water",
+    "pressure_force",
+    "pull",
+    "roll_period",
+    "step",
+    "still_water",
+    "submerged",
+    "vertices",
+]

@@ -1,0 +1,188 @@
+"""Bodies: what each is made of, and the arrays in which many of them move.
+
+`Body` describes one body and where it starts; `make_fleet` packs many into a `Fleet`, whose state arrays `step`
+(motion.py) advances in place. A hull used by several bodies is packed once.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from sim.floating.added_mass import added_mass
+from sim.floating.hull import Hull
+from sim.floating.hydrostatics import rotation_matrix
+from sim.floating.polyhedron import area_vectors
+from sim.knobs import refusal
+
+KINDS = ("mesh", "box", "cylinder", "sphere")  # by number in Shapes.kind: how a hull meets another
+
+
+class Body(NamedTuple):
+    """One body and how it starts."""
+
+    hull: Hull
+    density: float = 500.0  # [kg/m3], uniform
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m] of the centre of mass
+    rotation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)  # quaternion (w, x, y, z) from body to world
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m/s]
+    spin: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [rad/s] in world axes
+
+
+class Shapes(NamedTuple):
+    """Packed hulls, q of them. Vertices and faces of hull i are columns start[i] to start[i + 1]."""
+
+    vertex_start: np.ndarray  # (q + 1,) int
+    face_start: np.ndarray  # (q + 1,) int
+    x: np.ndarray  # (3, vertices) [m]
+    faces: np.ndarray  # (3, faces) int, columns of x
+    area: np.ndarray  # (3, faces) [m2] outward
+    kind: np.ndarray  # (q,) int, index in KINDS
+    half: np.ndarray  # (q, 3) [m] half extents of the true shape
+    radius: np.ndarray  # (q,) [m] of the sphere about the centre of mass that holds the mesh
+    inertia: np.ndarray  # (q, 3, 3) [m5]
+    skin: np.ndarray  # (q, 3) [m2]: int |n_i| dA over the whole hull
+    arm: np.ndarray  # (q, 3) [m]: root mean square of x_i over the surface
+    along: np.ndarray  # (q, 3) [m3]: added mass per skin density, see added_mass.py
+    about: np.ndarray  # (q, 3) [m5]: added inertia
+    twist: np.ndarray  # (q, 3) [m4]: bound of the moment about axis i per turn about it, over weight density
+
+
+class Fleet(NamedTuple):
+    """n bodies. The first six arrays are the state that `step` changes; pulls come from outside; the rest is fixed."""
+
+    position: np.ndarray  # (n, 3) [m]
+    rotation: np.ndarray  # (n, 4) quaternion (w, x, y, z)
+    velocity: np.ndarray  # (n, 3) [m/s]
+    spin: np.ndarray  # (n, 3) [rad/s] in world axes
+    wet: np.ndarray  # (n, 3) [kg/m] wet skin across each body axis times density, at the last step; -1 before the first
+    buoyancy: np.ndarray  # (n,) [N] upward force of the fluids at the last step
+    pull_point: np.ndarray  # (n, 3) [m] where each is pulled, in body axes
+    pull_target: np.ndarray  # (n, 3) [m] where to, in world axes
+    pull_limit: np.ndarray  # (n,) [N] greatest pull; 0 is none
+    hull: np.ndarray  # (n,) int, column of shapes
+    density: np.ndarray  # (n,) [kg/m3]
+    mass: np.ndarray  # (n,) [kg]
+    vertex_start: np.ndarray  # (n + 1,) int: where each body's vertices begin in arrays of all vertices
+    shapes: Shapes
+
+
+def make_fleet(bodies: Sequence[Body]) -> Fleet:
+    """The arrays of many bodies. Raises ValueError, naming the body, for what is not finite or has no mass."""
+    for i, body in enumerate(bodies):
+        if not isinstance(body.density, int | float | np.number) or not 0 < body.density < math.inf:
+            raise refusal(f"bodies[{i}].density", body.density, "above 0 kg/m3, finite")
+        for name, length in (("position", 3), ("rotation", 4), ("velocity", 3), ("spin", 3)):
+            value = np.asarray(getattr(body, name), dtype=float)
+            if value.shape != (length,) or not np.isfinite(value).all():
+                raise refusal(f"bodies[{i}].{name}", getattr(body, name), f"{length} finite numbers")
+        if not np.linalg.norm(body.rotation) > 0:
+            raise refusal(f"bodies[{i}].rotation", body.rotation, "a quaternion that is not zero")
+    n = len(bodies)
+    hulls = list({id(body.hull): body.hull for body in bodies}.values())
+    number = {id(hull): i for i, hull in enumerate(hulls)}
+    rotation = np.array([body.rotation for body in bodies], dtype=float).reshape(n, 4)
+    counts = [len(body.hull.vertices) for body in bodies]
+    return Fleet(
+        position=np.array([body.position for body in bodies], dtype=float).reshape(n, 3),
+        rotation=rotation / np.linalg.norm(rotation, axis=1, keepdims=True),
+        velocity=np.array([body.velocity for body in bodies], dtype=float).reshape(n, 3),
+        spin=np.array([body.spin for body in bodies], dtype=float).reshape(n, 3),
+        wet=np.full((n, 3), -1.0),
+        buoyancy=np.zeros(n),
+        pull_point=np.zeros((n, 3)),
+        pull_target=np.zeros((n, 3)),
+        pull_limit=np.zeros(n),
+        hull=np.array([number[id(body.hull)] for body in bodies], dtype=np.int64),
+        density=np.array([body.density for body in bodies], dtype=float),
+        mass=np.array([body.density * body.hull.volume for body in bodies], dtype=float),
+        vertex_start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        shapes=pack(hulls),
+    )
+
+
+def pack(hulls: Sequence[Hull]) -> Shapes:
+    """The hulls, one after another, with what a step needs to know of each."""
+    q = len(hulls)
+    vertex_start = np.concatenate([[0], np.cumsum([len(hull.vertices) for hull in hulls])]).astype(np.int64)
+    face_start = np.concatenate([[0], np.cumsum([len(hull.faces) for hull in hulls])]).astype(np.int64)
+    masses = [added_mass(hull) for hull in hulls]
+    areas = [area_vectors(hull.vertices, hull.faces) for hull in hulls]
+    surfaces = [surface_moments(hull, area) for hull, area in zip(hulls, areas, strict=True)]
+    return Shapes(
+        vertex_start=vertex_start,
+        face_start=face_start,
+        x=columns([hull.vertices for hull in hulls], float),
+        faces=columns([hull.faces + start for hull, start in zip(hulls, vertex_start, strict=False)], np.int64),
+        area=columns(areas, float),
+        kind=np.array([KINDS.index(hull.kind) for hull in hulls], dtype=np.int64),
+        half=np.array([np.abs(hull.extents).max(axis=1) for hull in hulls]).reshape(q, 3),
+        radius=np.array([np.linalg.norm(hull.vertices, axis=1).max() for hull in hulls], dtype=float),
+        inertia=np.array([hull.inertia for hull in hulls]).reshape(q, 3, 3),
+        skin=np.array([np.abs(area).sum(axis=0) for area in areas]).reshape(q, 3),
+        arm=np.array([arm for arm, _ in surfaces]).reshape(q, 3),
+        along=np.array([along for along, _ in masses]).reshape(q, 3),
+        about=np.array([about for _, about in masses]).reshape(q, 3),
+        twist=np.array([twist for _, twist in surfaces]).reshape(q, 3),
+    )
+
+
+def columns(arrays: Sequence[np.ndarray], dtype: type) -> np.ndarray:
+    """(3, total) from many (m, 3)."""
+    return np.ascontiguousarray(np.concatenate([np.zeros((0, 3)), *arrays]).T.astype(dtype))
+
+
+def surface_moments(hull: Hull, area: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Root mean square of x_i over the surface, (3,) [m]; and the bound of the twist, (3,) [m4].
+
+    Turning by a small angle about axis i changes the depth of a point by at most its distance r_i from the axis
+    times the angle, so the moment changes by at most int |(x cross n)_i| r_i dA times the weight density; a hull
+    afloat wets about half of that. Both by the rule of the mid-edge points, exact to second order.
+    """
+    corners = hull.vertices[hull.faces]
+    edges = (corners + np.roll(corners, -1, axis=1)) / 2
+    size = np.linalg.norm(area, axis=1)
+    arm = np.sqrt(np.einsum("f,fei->i", size, edges**2) / 3 / size.sum())
+    squares = (edges**2).sum(axis=2, keepdims=True) - edges**2
+    twist = np.abs(np.cross(edges, area[:, None, :])) * np.sqrt(squares)
+    return arm, twist.sum(axis=(0, 1)) / 3 / 2
+
+
+def vertices(fleet: Fleet) -> np.ndarray:
+    """Vertices of all bodies where they are now, one body after another, (vertices, 3) [m]."""
+    places = []
+    for i, q in enumerate(fleet.hull):
+        x = fleet.shapes.x[:, fleet.shapes.vertex_start[q] : fleet.shapes.vertex_start[q + 1]]
+        places.append((rotation_matrix(fleet.rotation[i]) @ x).T + fleet.position[i])
+    return np.concatenate([np.zeros((0, 3)), *places])
+
+
+def lowest(fleet: Fleet) -> np.ndarray:
+    """Height of the lowest point of each body, (n,) [m]; of the true shape for spheres, else of the mesh."""
+    result = np.empty(len(fleet.mass))
+    for i, q in enumerate(fleet.hull):
+        if fleet.shapes.kind[q] == KINDS.index("sphere"):
+            result[i] = fleet.position[i, 2] - fleet.shapes.half[q, 2]
+        else:
+            x = fleet.shapes.x[:, fleet.shapes.vertex_start[q] : fleet.shapes.vertex_start[q + 1]]
+            result[i] = fleet.position[i, 2] + (rotation_matrix(fleet.rotation[i])[2] @ x).min()
+    return result
+
+
+def pull(fleet: Fleet, body: int, point: Sequence[float], target: Sequence[float], limit: float) -> None:
+    """Pull a point of a body (3,) [m], in body axes, towards a target (3,) [m] with at most `limit` [N]; 0 lets go.
+
+    Raises ValueError for a body that is not there and for what is not finite.
+    """
+    if not 0 <= body < len(fleet.mass):
+        raise refusal("body", body, f"0 to {len(fleet.mass) - 1}")
+    for name, value in (("point", point), ("target", target)):
+        array = np.asarray(value, dtype=float)
+        if array.shape != (3,) or not np.isfinite(array).all():
+            raise refusal(name, value, "three finite numbers [m]")
+    if not 0 <= limit < math.inf:
+        raise refusal("limit", limit, "0 N or more, finite")
+    fleet.pull_point[body] = point
+    fleet.pull_target[body] = target
+    fleet.pull_limit[body] = limit

@@ -1,0 +1,162 @@
+"""Where a hull floats upright in layered fluids, and its periods of heave and roll there.
+
+Archimedes through layers of densities rho_1, rho_2, ... whose tops lie at depths D_1 = 0, D_2, ... is a sum over
+interfaces, since each one adds the pressure (rho_i - rho_{i-1}) g (depth below it):
+
+  rho V = sum_i (rho_i - rho_{i-1}) V(h - D_i),   rho_0 = 0
+
+with V(h) the hull's volume up to h above its lowest point: monotone in h, solved by bisection to the last bit.
+Box, sphere and cylinder use closed forms of their true shape, meshes the exact integrals over their triangles.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from sim.floating.added_mass import added_mass
+from sim.floating.hull import Hull
+from sim.floating.hydrostatics import Submerged, add_pressure, submerged
+from sim.floating.polyhedron import area_vectors
+from sim.knobs import refusal
+
+Layers = Sequence[tuple[float, float]]
+OIL_ON_WATER: Layers = ((850.0, 0.2), (1025.0, math.inf))
+
+
+def equilibrium_draft(hull: Hull, density: float, layers: Layers = OIL_ON_WATER, gravity: float = 9.81) -> float:
+    """Depth [m] of the lowest point of the upright hull below the top surface, at rest in the layers.
+
+    layers: (density [kg/m3], thickness [m]) from the top, the last of thickness inf. The result is inf for a hull
+    denser than the last layer (it sinks for ever), and the least of the depths where many are in equilibrium.
+    Gravity does not matter and is only checked. Raises ValueError for a bad density, layers or gravity.
+    """
+    check_number("density", density, "kg/m3")
+    check_number("gravity", gravity, "m/s2")
+    steps = density_steps(layers)
+    if density > layers[-1][0]:
+        return math.inf
+    weight = density * hull.volume
+
+    def lift(draft: float) -> float:
+        return sum(change * upright(hull, draft - top).volume for change, top in steps)
+
+    low, high = 0.0, steps[-1][1] + float(hull.extents[2, 1] - hull.extents[2, 0])
+    while True:
+        middle = (low + high) / 2
+        if not low < middle < high:
+            return high
+        if lift(middle) < weight:
+            low = middle
+        else:
+            high = middle
+
+
+def heave_period(
+    hull: Hull, density: float, layers: Layers = OIL_ON_WATER, gravity: float = 9.81, added: float = 1.0
+) -> float:
+    """Period [s] of small heave of the upright hull about its equilibrium: 2 pi sqrt((m + A33)/C33).
+
+    C33 = g sum (rho_i - rho_{i-1}) A_i over the waterplanes at surface and interfaces, which are taken to stay level
+    (Newman 1977, section 6.16). added scales the added mass. inf where nothing restores: sunk or wholly submerged
+    in one fluid. Raises ValueError as `equilibrium_draft`.
+    """
+    draft = equilibrium_draft(hull, density, layers, gravity)
+    if math.isinf(draft):
+        return math.inf
+    cuts = [(change, upright(hull, draft - top)) for change, top in density_steps(layers)]
+    stiffness = gravity * sum(change * cut.area for change, cut in cuts)
+    along, _ = wet_added_mass(hull, draft, layers)
+    return period(density * hull.volume + added * along[2], stiffness)
+
+
+def roll_period(
+    hull: Hull, density: float, layers: Layers = OIL_ON_WATER, gravity: float = 9.81, added: float = 1.0, axis: int = 0
+) -> float:
+    """Period [s] of small roll (axis 0, about x) or pitch (axis 1, about y) of the upright hull.
+
+    2 pi sqrt((I + A44)/(rho g V GM)) with rho g V GM = g sum (rho_i - rho_{i-1}) (I_i + V_i (z_B - z_G)) over the
+    interfaces (Newman 1977, section 6.16). inf where the upright pose is not stable, or sunk. added scales the added
+    inertia. Raises ValueError as `equilibrium_draft`, and for another axis.
+    """
+    if axis not in (0, 1):
+        raise refusal("axis", axis, "0 (roll) or 1 (pitch)")
+    draft = equilibrium_draft(hull, density, layers, gravity)
+    if math.isinf(draft):
+        return math.inf
+    stiffness = 0.0
+    for change, top in density_steps(layers):
+        cut = upright(hull, draft - top)
+        if cut.volume > 0:
+            stiffness += gravity * change * (cut.second[1 - axis] + cut.volume * cut.centre[2])
+    _, about = wet_added_mass(hull, draft, layers)
+    return period(density * hull.inertia[axis, axis] + added * about[axis], stiffness)
+
+
+def upright(hull: Hull, height: float) -> Submerged:
+    """What of the true shape, upright, lies up to `height` [m] above its lowest point, about its centre of mass."""
+    bottom, top = hull.extents[2]
+    h = min(max(height, 0.0), top - bottom)
+    if hull.kind == "mesh":
+        # all or nothing where the surface would lie in a flat top or bottom
+        within = 0 < height < top - bottom
+        return submerged(hull, surface=bottom + height if within else (bottom - 1, top + 1)[height > 0])
+    x, y = hull.extents[0, 1] * 2, hull.extents[1, 1] * 2
+    if hull.kind == "box":
+        volume, depth, area, second = x * y * h, h / 2, x * y, (x**3 * y / 12, x * y**3 / 12)
+    elif hull.kind == "cylinder":
+        area = math.pi * x * x / 4
+        volume, depth, second = area * h, h / 2, (area * x * x / 16,) * 2
+    else:
+        r = x / 2  # cap of height h: V = pi h^2 (3r - h)/3, its centroid 3 (2r - h)^2/(4 (3r - h)) from the centre
+        area = math.pi * h * (2 * r - h)
+        volume, second = math.pi * h * h * (3 * r - h) / 3, (area * area / (4 * math.pi),) * 2
+        depth = r - 3 * (2 * r - h) ** 2 / (4 * (3 * r - h))
+    if not 0 < height < top - bottom:
+        area, second = 0.0, (0.0, 0.0)
+    centre = np.array([0.0, 0.0, bottom + depth]) if volume > 0 else np.full(3, np.nan)
+    return Submerged(volume, centre, area, np.array([*second, 0.0]))
+
+
+def wet_added_mass(hull: Hull, draft: float, layers: Layers) -> tuple[np.ndarray, np.ndarray]:
+    """Added mass (3,) [kg] along and (3,) [kg m2] about the axes of the upright hull at a draft [m]."""
+    x, faces = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(hull.faces.T)
+    area = np.ascontiguousarray(area_vectors(hull.vertices, hull.faces).T)
+    wet = np.zeros(9)
+    for change, top in density_steps(layers):
+        add_pressure(x, faces, area, 0, len(hull.faces), hull.extents[2, 0] + draft - top - x[2], change, wet)
+    share = wet[6:9] / np.abs(area).sum(axis=1)
+    along, about = added_mass(hull)
+    return along * share, about * (np.roll(share, -1) + np.roll(share, -2)) / 2
+
+
+def period(inertia: float, stiffness: float) -> float:
+    """2 pi sqrt(inertia/stiffness) [s]; inf where nothing restores."""
+    return 2 * math.pi * math.sqrt(inertia / stiffness) if stiffness > 0 else math.inf
+
+
+def density_steps(layers: Layers) -> list[tuple[float, float]]:
+    """(rho_i - rho_{i-1}, depth of the top of layer i) of each layer. Raises ValueError for bad layers."""
+    wanted = "(density, thickness) pairs from the top, densities not falling, the last thickness inf and only that"
+    try:
+        pairs = [(float(density), float(thickness)) for density, thickness in layers]
+    except (TypeError, ValueError):
+        raise refusal("layers", layers, wanted) from None
+    good = bool(pairs) and math.isinf(pairs[-1][1])
+    steps, above, top = [], 0.0, 0.0
+    for i, (density, thickness) in enumerate(pairs):
+        last = i == len(pairs) - 1
+        good = good and 0 < density < math.inf and density >= above
+        good = good and thickness >= 0 and (last or thickness < math.inf)
+        steps.append((density - above, top))
+        above, top = density, top + thickness
+    if not good:
+        raise refusal("layers", layers, wanted)
+    return steps
+
+
+def check_number(name: str, value: float, unit: str) -> None:
+    """Raises ValueError for what is not a positive, finite number."""
+    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    if not number or not 0 < value < math.inf:
+        raise refusal(name, value, f"above 0 {unit}, finite")

@@ -1,0 +1,97 @@
+"""A real Chromium for the tests that look, rendering in software: slow, and the same everywhere."""
+
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Everything in this folder needs a browser."""
+    for item in items:
+        if "/tests/browser/" in item.path.as_posix():
+            item.add_marker(pytest.mark.browser)
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Any]:
+    """A running Chromium; the test is skipped where there is none."""
+    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    if CHROMIUM is None:
+        pytest.skip("no Chromium on the search path")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+class Tab:
+    """One page on a server, and what went wrong on it."""
+
+    def __init__(self, chromium: Any, port: int, width: int = 900, height: int = 560) -> None:
+        self.page = chromium.new_page(viewport={"width": width, "height": height})
+        self.errors: list[str] = []
+        self.page.on("console", self.note)
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.goto(f"http://127.0.0.1:{port}/?hideViserLogo&fixedDpr=1")
+
+    def note(self, message: Any) -> None:
+        # viser's own drag layer logs this at each drag of a node; it changes nothing.
+        if message.type == "error" and "preventDefault inside passive" not in message.text:
+            self.errors.append(message.text)
+
+    def wait(self, condition: Callable[[], Any], seconds: float = 120.0) -> Any:
+        """Run the page until the condition holds; its value, or fail."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            value = condition()
+            if value:
+                return value
+            self.page.wait_for_timeout(50)
+        pytest.fail(f"not within {seconds:g} s; page errors: {self.errors}")
+
+    def vertices(self, node: str) -> np.ndarray:
+        """The vertices (n, 3) that the page holds of a mesh, empty where it has none."""
+        numbers = self.page.evaluate(
+            """name => { const ref = window.__viserMutable?.nodeRefFromName?.[name]; let found = null;
+               if (ref) ref.traverse(o => { if (o.isMesh && !found) found = o; });
+               return found ? Array.from(found.geometry.attributes.position.array) : []; }""",
+            node,
+        )
+        return np.array(numbers).reshape(-1, 3)
+
+    def drag(self, start: tuple[float, float], end: tuple[float, float], pause: int = 80) -> None:
+        """Press at one pixel, move to another in steps, and hold; `release` lets go."""
+        mouse = self.page.mouse
+        mouse.move(*start)
+        self.page.wait_for_timeout(800)  # a slow page must notice what is hovered
+        mouse.down()
+        for step in range(1, 9):
+            mouse.move(
+                start[0] + (end[0] - start[0]) * step / 8,
+                start[1] + (end[1] - start[1]) * step / 8,
+            )
+            self.page.wait_for_timeout(pause)
+
+    def release(self) -> None:
+        self.page.mouse.up()
+
+
+@pytest.fixture
+def open_tab(chromium: Any) -> Iterator[Callable[..., Tab]]:
+    """Opens tabs and closes them after the test."""
+    tabs: list[Tab] = []
+
+    def new(port: int, **size: int) -> Tab:
+        tabs.append(Tab(chromium, port, **size))
+        return tabs[-1]
+
+    yield new
+    for tab in tabs:
+        tab.page.close()

@@ -1,0 +1,150 @@
+"""The rope scene in a real browser, driven by mouse and keyboard."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.messages import Pause, Play
+from app.scenes.rope import ROOT
+from app.viewer import Viewer
+
+
+@pytest.fixture
+def lab() -> Iterator[Viewer]:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("rope")
+    yield viewer
+    viewer.shut()
+
+
+def pixel(viewer: Viewer, point: Any) -> tuple[float, float]:
+    """Where a point [m] is on the only page."""
+    (client,) = viewer.server.get_clients().values()
+    camera = client.camera
+    forward = np.asarray(camera.look_at) - camera.position
+    forward /= np.linalg.norm(forward)
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    up = np.cross(right, forward)
+    away = np.asarray(point) - camera.position
+    focal = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
+    x, y, z = away @ right, away @ up, away @ forward
+    return 0.5 * camera.image_width + focal * x / z, 0.5 * camera.image_height - focal * y / z
+
+
+def watching(viewer: Viewer) -> bool:
+    return viewer.audience() == 1 and viewer.loop.counts["steps"] > 0
+
+
+def test_the_rope_is_drawn_and_swings_without_console_errors(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    tab.wait(lambda: len(tab.vertices("/rope")) > 0)
+    first = tab.vertices("/rope")
+    tab.wait(lambda: np.abs(tab.vertices("/rope") - first).max() > 0.2)
+    assert np.isfinite(tab.vertices("/rope")).all()
+    assert tab.errors == []
+
+
+def test_nothing_steps_until_somebody_looks(lab: Viewer, open_tab) -> None:
+    assert lab.loop.counts["steps"] == 0
+    tab = open_tab(lab.port)
+    tab.wait(lambda: lab.loop.counts["steps"] > 10)
+    tab.page.close()
+    while lab.audience():
+        pass
+    steps = lab.loop.counts["steps"]
+    lab.stop.wait(0.5)
+    assert lab.loop.counts["steps"] <= steps + 2
+
+
+def test_dragging_the_gizmo_moves_the_root(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    tab.wait(lambda: watching(lab))
+    tab.page.wait_for_timeout(1500)
+    arrow = np.array(ROOT) + (0.0, 0.0, 0.2)
+    tab.drag(pixel(lab, arrow), pixel(lab, arrow + (0.0, 0.0, 0.5)))
+    tab.release()
+    tab.wait(lambda: lab.scene.root.position[2] > ROOT[2] + 0.2)
+    assert lab.scene.state.x[2, 0, 0] == pytest.approx(lab.scene.root.position[2], abs=0.2)
+    assert tab.errors == []
+
+
+def test_dragging_a_bead_pulls_it_and_lets_go(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    tab.wait(lambda: watching(lab) and lab.loop.scene.time > 6)
+    lab.loop.commands.put(Pause())
+    tab.page.wait_for_timeout(1200)
+    particle = 6
+    bead = lab.scene.state.x[:, 0, particle].copy()
+    start = pixel(lab, bead)
+    tab.page.mouse.move(*start)
+    lab.loop.commands.put(Play())
+    tab.drag(start, (start[0] + 70, start[1] - 40))
+    tab.wait(lambda: lab.scene.held is not None)
+    held, _ = lab.scene.held
+    assert abs(held - particle) <= 1
+    tab.wait(lambda: np.linalg.norm(lab.scene.state.x[:, 0, held] - bead) > 0.15)
+    assert lab.loop.latest.picture.pull is not None
+    tab.release()
+    tab.wait(lambda: lab.scene.held is None)
+    assert tab.errors == []
+
+
+def test_a_number_typed_in_the_panel_reaches_the_simulation(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port, width=1000, height=800)
+    tab.wait(lambda: watching(lab))
+    field = tab.page.get_by_label("Stiffness [N/m]").first
+    field.fill("1234")
+    field.press("Enter")
+    tab.wait(lambda: lab.scene.params.stiffness == 1234.0)
+    assert lab.scene.net.families[0].stiffness == 1234.0
+
+
+def test_keys_play_pause_and_load_presets(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    tab.wait(lambda: watching(lab))
+    tab.page.keyboard.press("Space")
+    tab.wait(lambda: not lab.loop.running)
+    steps = lab.loop.counts["steps"]
+    tab.page.keyboard.press("n")
+    tab.wait(lambda: lab.loop.counts["steps"] == steps + 1)
+    tab.page.keyboard.press("2")
+    tab.wait(lambda: lab.scene.params.points == 50)
+
+
+def test_an_explosion_pauses_with_a_finite_picture_and_says_why(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    tab.wait(lambda: watching(lab))
+    tab.page.keyboard.press("3")
+    tab.wait(lambda: lab.loop.halted)
+    assert "explicit_euler" in lab.loop.halted
+    assert "h ω" in lab.loop.halted
+    tab.wait(lambda: tab.page.get_by_text("left its bounds").count() > 0)
+    assert np.isfinite(tab.vertices("/rope")).all()
+    assert not lab.loop.running
+
+
+def test_reload_and_a_second_tab_show_the_same_rope(lab: Viewer, open_tab) -> None:
+    first = open_tab(lab.port)
+    first.wait(lambda: watching(lab) and lab.scene.time > 1)
+    lab.loop.commands.put(Pause())
+    first.page.wait_for_timeout(800)
+    shown = first.vertices("/rope")
+    second = open_tab(lab.port)
+    second.wait(lambda: len(second.vertices("/rope")) > 0)
+    second.page.wait_for_timeout(800)
+    np.testing.assert_array_equal(second.vertices("/rope"), shown)
+    first.page.reload()
+    first.wait(lambda: len(first.vertices("/rope")) > 0)
+    first.page.wait_for_timeout(800)
+    np.testing.assert_array_equal(first.vertices("/rope"), shown)
+
+
+def test_handles_are_assigned_to_and_never_added_again(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    tab.wait(lambda: watching(lab))
+    before = set(lab.server.scene._handle_from_node_name)
+    tab.wait(lambda: lab.scene.time > 2)
+    assert set(lab.server.scene._handle_from_node_name) == before

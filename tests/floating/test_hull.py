@@ -1,0 +1,106 @@
+"""Hulls: closed forms of volume, centre and inertia; what a mesh file must be."""
+
+import math
+
+import numpy as np
+import pytest
+import trimesh
+
+from sim.floating import Hull
+from sim.floating.hull import geodesic
+from tests.naive_floating import lumpy, quaternion
+
+
+def test_box_has_its_closed_forms():
+    hull = Hull.box(1.0, 2.0, 3.0)
+    assert hull.volume == pytest.approx(6.0, rel=1e-14)
+    assert hull.inertia == pytest.approx(np.diag([6 * 13 / 12, 6 * 10 / 12, 6 * 5 / 12]), abs=1e-13)
+    assert hull.centre == pytest.approx(np.zeros(3), abs=1e-15)
+
+
+def test_round_primitives_have_the_true_volume_and_nearly_the_true_inertia():
+    sphere = Hull.sphere(0.5)
+    assert len(sphere.faces) == 1280
+    assert len(Hull.sphere(0.5, frequency=5).faces) == 500
+    assert sphere.volume == pytest.approx(4 / 3 * math.pi * 0.125, rel=1e-13)
+    assert np.diag(sphere.inertia) == pytest.approx(0.4 * sphere.volume * 0.25, rel=1e-4)
+    cylinder = Hull.cylinder(0.5, 2.0)
+    assert cylinder.volume == pytest.approx(math.pi * 0.25 * 2, rel=1e-13)
+    across = cylinder.volume * (3 * 0.25 + 4) / 12
+    assert np.diag(cylinder.inertia) == pytest.approx([across, across, cylinder.volume * 0.125], rel=1e-4)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_integrals_of_a_lumpy_mesh_match_its_tetrahedra_drawn_by_chance(seed):
+    """Against an independent library, in a random frame far from the origin."""
+    rng = np.random.default_rng(seed)
+    vertices, faces = geodesic(3)
+    turn = trimesh.transformations.quaternion_matrix(quaternion(rng))[:3, :3]
+    vertices = lumpy(rng, vertices) @ turn.T + rng.uniform(-30, 30, 3)
+    hull = Hull.from_arrays(vertices, faces)
+    peer = trimesh.Trimesh(vertices, faces, process=False)
+    assert hull.volume == pytest.approx(peer.volume, rel=1e-9)
+    assert hull.centre == pytest.approx(peer.center_mass, abs=1e-9)
+    peer = trimesh.Trimesh(hull.vertices, faces, process=False)
+    assert hull.inertia == pytest.approx(peer.moment_inertia, rel=1e-9, abs=1e-9)
+    assert np.abs(hull.vertices - (vertices - hull.centre)).max() < 1e-12
+
+
+@pytest.mark.parametrize("ending", ["stl", "obj", "ply", "glb"])
+def test_mesh_files_load_as_what_was_saved(tmp_path, ending):
+    path = tmp_path / f"hull.{ending}"
+    trimesh.creation.icosphere(subdivisions=2, radius=0.7).apply_translation([1, 2, 3]).export(path)
+    hull = Hull.load(path)
+    assert len(hull.faces) == 320
+    assert hull.volume == pytest.approx(trimesh.creation.icosphere(subdivisions=2, radius=0.7).volume, rel=1e-5)
+    assert hull.centre == pytest.approx([1, 2, 3], abs=1e-5)
+
+
+def test_a_mesh_inside_out_is_turned():
+    box = Hull.box(1.0, 1.0, 1.0)
+    assert Hull.from_arrays(box.vertices, box.faces[:, ::-1]).volume == pytest.approx(1.0)
+
+
+def broken_meshes():
+    box = Hull.box(1.0, 1.0, 1.0)
+    turned = box.faces.copy()
+    turned[3] = turned[3, ::-1]
+    infinite = box.vertices.copy()
+    infinite[2, 1] = math.inf
+    return {
+        "open": (box.vertices, box.faces[:-1], "edges without their one opposite"),
+        "one face turned": (box.vertices, turned, "edges without their one opposite"),
+        "doubled": (box.vertices, np.concatenate([box.faces, box.faces]), "edges without their one opposite"),
+        "not finite": (infinite, box.faces, "not finite"),
+        "flat": (box.vertices * [1, 1, 0], box.faces, "extents"),
+        "no such vertex": (box.vertices, box.faces + 1, "faces of vertices 0 to 7"),
+        "empty": (np.zeros((0, 3)), np.zeros((0, 3), dtype=int), "m at least 4"),
+        "huge": (box.vertices * 1e200, box.faces, "extents"),
+    }
+
+
+@pytest.mark.parametrize("fault", list(broken_meshes()))
+def test_a_mesh_that_is_no_hull_is_refused(fault):
+    vertices, faces, message = broken_meshes()[fault]
+    with pytest.raises(ValueError, match=message):
+        Hull.from_arrays(vertices, faces)
+
+
+def test_a_file_that_is_no_hull_is_refused(tmp_path):
+    with pytest.raises(ValueError, match=r"path: .*nothing\.stl.* is not allowed"):
+        Hull.load(tmp_path / "nothing.stl")
+    (tmp_path / "noise.stl").write_bytes(b"\x00\xff" * 100)
+    with pytest.raises(ValueError, match=r"noise\.stl"):
+        Hull.load(tmp_path / "noise.stl")
+    cap = trimesh.creation.icosphere(subdivisions=1)
+    cap.update_faces(np.arange(len(cap.faces)) > 5)
+    cap.export(tmp_path / "open.stl")
+    with pytest.raises(ValueError, match=r"open\.stl.*closed mesh"):
+        Hull.load(tmp_path / "open.stl")
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf, 1e9, "1", None, True])
+def test_lengths_out_of_range_are_refused(bad):
+    for make in (lambda: Hull.box(1.0, bad, 1.0), lambda: Hull.sphere(bad), lambda: Hull.cylinder(1.0, bad)):
+        with pytest.raises(ValueError, match=r"is not allowed; allowed: 0\.001 to 10000 m"):
+            make()

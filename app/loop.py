@@ -170,9 +170,10 @@ class SimLoop:
             rate=(len(self.history) - 1) / elapsed if elapsed > 0 else 0.0,
             halted=self.halted,
         )
-        return Snapshot(
-            self.counts["snapshots"], self.scene.picture(), status, self.scene.gauge(), self.scene.take_samples()
-        )
+        picture = self.scene.picture()
+        curves = self.scene.curves() if hasattr(self.scene, "curves") else None
+        samples = self.scene.take_samples()
+        return Snapshot(self.counts["snapshots"], picture, status, self.scene.gauge(), samples, curves)
 
     def run(self, stop: threading.Event) -> None:
         """Tick until `stop` is set, at the frame rate while there is something to do."""
@@ -182,7 +183,8 @@ class SimLoop:
             now = self.clock()
             self.tick(now - last)
             last = now
-            rest = (FRAME if busy else IDLE) - (self.clock() - now)
+            frame = getattr(self.scene, "frame", FRAME)  # [s] a scene may ask for fewer pictures
+            rest = (frame if busy else IDLE) - (self.clock() - now)
             if rest > 0:
                 self.wait(rest, stop, busy)
 

@@ -8,15 +8,15 @@ Vector = tuple[float, float, float]
 REACH = 100.0  # [m] from the origin: nothing from a browser is placed farther out
 
 
-def finite_vector(values: Any) -> Vector | None:
-    """Three finite numbers within REACH, or None where it is not three finite numbers."""
+def finite_vector(values: Any, reach: float = REACH) -> Vector | None:
+    """Three finite numbers within `reach`, or None where it is not three finite numbers."""
     try:
         x, y, z = (float(c) for c in values)
     except (TypeError, ValueError):
         return None
     if not all(math.isfinite(c) for c in (x, y, z)):
         return None
-    return min(max(x, -REACH), REACH), min(max(y, -REACH), REACH), min(max(z, -REACH), REACH)
+    return min(max(x, -reach), reach), min(max(y, -reach), reach), min(max(z, -reach), reach)
 
 
 class Play(NamedTuple):
@@ -57,7 +57,14 @@ class Release(NamedTuple):
     """Let go of the grabbed particle."""
 
 
-Command = Play | Pause | TogglePlay | StepOnce | Reset | Place | Grab | Release
+class Point(NamedTuple):
+    """Point at what lies on a ray: from `origin` [m] along `direction`."""
+
+    origin: Vector
+    direction: Vector
+
+
+Command = Play | Pause | TogglePlay | StepOnce | Reset | Place | Grab | Release | Point
 
 
 class Status(NamedTuple):
@@ -82,6 +89,7 @@ class Snapshot(NamedTuple):
     status: Status
     gauge: Any
     samples: tuple[tuple[float, ...], ...]  # new plot rows, (t, ...) each
+    curves: Any = None  # knob -> columns of its chart, where a chart is not a course in time
 
 
 class DivergenceError(Exception):

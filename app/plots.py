@@ -16,19 +16,25 @@ COLOURS = ("#4c6ef5", "#f76707", "#12b886", "#ae3ec9", "#868e96", "#e03131", "#1
 
 
 class Plots:
-    """What a scene's `PLOTS` declares: knob -> (title, unit, names of the series in SERIES)."""
+    """What a scene's `PLOTS` declares: knob -> (title, unit, names of the series in SERIES).
+
+    `CURVES`, where a scene has it, declares charts over something else than time: knob -> (title, label of the first
+    column, names of the others); each snapshot brings their columns whole.
+    """
 
     def __init__(self, server: viser.ViserServer, scene: ModuleType) -> None:
         self.server, self.scene = server, scene
+        self.curves: dict[str, tuple[str, str, tuple[str, ...]]] = getattr(scene, "CURVES", {})
         self.rows: list[tuple[float, ...]] = []
         self.charts: dict[str, Any] = {}
+        self.sent: dict[str, Any] = {}  # the columns each curve shows
         self.panel: Any = None
         self.sent_at = 0.0
 
     def update(self, snapshot: Snapshot, params: Any) -> None:
         """Take the snapshot's new rows and, now and then, send what is open."""
-        wanted = {knob for knob in self.scene.PLOTS if getattr(params, knob)}
-        for knob in self.scene.PLOTS:
+        wanted = {knob for knob in (*self.scene.PLOTS, *self.curves) if getattr(params, knob)}
+        for knob in (*self.scene.PLOTS, *self.curves):
             if knob in self.charts:
                 self.charts[knob].visible = knob in wanted
             elif knob in wanted:
@@ -43,10 +49,17 @@ class Plots:
         if len(self.rows) > LENGTH:
             self.rows = self.rows[-LENGTH:]
         now = time.monotonic()
-        if wanted and len(self.rows) > 1 and now - self.sent_at >= EVERY:
+        if wanted and now - self.sent_at >= EVERY:
             self.sent_at = now
+            for knob in wanted & set(snapshot.curves or {}):
+                columns = snapshot.curves[knob]
+                if self.sent.get(knob) is not columns:
+                    self.sent[knob] = columns
+                    self.charts[knob].data = columns
+            if len(self.rows) < 2:
+                return
             table = np.array(self.rows).T
-            for knob in wanted:
+            for knob in wanted & set(self.scene.PLOTS):
                 columns = [1 + self.scene.SERIES.index(name) for name in self.scene.PLOTS[knob][2]]
                 self.charts[knob].data = (table[0], *(table[c] for c in columns))
 
@@ -56,15 +69,19 @@ class Plots:
             self.panel = self.server.gui.add_panel()
             self.tab = self.panel.add_tab("Plots")
             self.panel.dock_left()
-        title, unit, names = self.scene.PLOTS[knob]
-        series: list[uplot.Series] = [uplot.Series(label="t [s]")]
+        if knob in self.curves:
+            heading, first, names = self.curves[knob]
+        else:
+            title, unit, names = self.scene.PLOTS[knob]
+            heading, first = f"{title} [{unit}]", "t [s]"
+        series: list[uplot.Series] = [uplot.Series(label=first)]
         for name, colour in zip(names, COLOURS, strict=False):
             series.append(uplot.Series(label=name, stroke=colour, width=2))
         with self.tab:
             return self.server.gui.add_uplot(
                 tuple(np.array([0.0, 1.0]) for _ in series),
                 tuple(series),
-                title=f"{title} [{unit}]",
+                title=heading,
                 scales={"x": uplot.Scale(time=False, auto=True)},
                 height=220,
             )

@@ -12,6 +12,7 @@ from app.panel import Panel
 from app.pictures import picture_named
 from app.scenes import NAMES, scene_named
 
+FOV = 1.3  # [rad] vertical field of view, unless a picture has its own
 PUMP = 1 / 60  # [s] between looks for a new snapshot; a scene's picture may ask for less
 
 
@@ -44,9 +45,9 @@ class Viewer:
             commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
             self.picture = picture.Picture(self.server, commands.put)
             position, target = self.picture.CAMERA
-            self.server.initial_camera.position, self.server.initial_camera.look_at = position, target
-            for client in self.server.get_clients().values():
-                client.camera.position, client.camera.look_at = position, target
+            fov = getattr(self.picture, "FOV", FOV)
+            for camera in (self.server.initial_camera, *(c.camera for c in self.server.get_clients().values())):
+                camera.position, camera.look_at, camera.fov = position, target, fov
             self.panel = Panel(
                 self.server, scene, picture, self.scene.params, commands.put, scenes=NAMES, open_scene=self.open
             )

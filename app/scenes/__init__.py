@@ -12,9 +12,12 @@ that a headless run imports no viewer. The module has
    `take_samples()`, `arrays()` for headless runs;
 4. `hidden(params)`, the knobs that mean nothing just now, and `warm_up()`, which compiles what the scene may call.
 
+It may have `CURVES` (see `app/plots.py`) with `Scene.curves()`, and `Scene.frame` [s], the time between pictures.
+
 The drawing has `Picture(server, post)` with `show(picture, gauge)`, on the viewer's thread only, whose callbacks only
 `post` commands, `readout(snapshot)`, the HTML under the panel's
-buttons, `marks(snapshot)`, knob -> the line under it, and `warm_up()`.
+buttons, `marks(snapshot)`, knob -> the line under it, and `warm_up()`; it may have `notes(snapshot)`, heading -> HTML
+to fold out.
 """
 
 import importlib

@@ -1,0 +1,51 @@
+"""Foam where the displaced surface folds together: which Jacobian is foam, so that the sea is as white as measured.
+
+The Jacobian J is 1 + Dxx + Dyy to first order, and Dxx + Dyy is Gaussian with variance choppiness^2 mss. A point below
+the threshold 1 - z sigma is breaking; it stays there for Rice's mean excursion, and its foam outlasts that.
+"""
+
+import math
+from statistics import NormalDist
+from typing import TYPE_CHECKING
+
+from sim.ocean.bounds import not_negative
+
+if TYPE_CHECKING:
+    from sim.ocean.sea import Sea
+
+MOST = 0.6  # share of the sea that is foam at most: beyond 35 m/s the law has no measurements and passes 1
+
+
+def whitecaps(wind_speed: float) -> float:
+    """Share of the sea that is foam, W = 3.84e-6 U10^3.41 (Monahan and O'Muircheartaigh 1980), at most MOST."""
+    return min(3.84e-6 * not_negative("wind_speed", wind_speed, "m/s") ** 3.41, MOST)
+
+
+def pace(sea: "Sea", t: float) -> tuple[float, float]:
+    """(mean square slope, rms frequency [rad/s] of it) of the sea as its tile resolves it at time t [s]."""
+    energy = sea.energy_at(t)
+    steepness = (sea.k[:, None] ** 2 + sea.k[None, :] ** 2) * energy
+    slope = float(steepness.sum())
+    if not slope > 0.0:
+        return 0.0, 0.0
+    return slope, math.sqrt(float((sea.frequencies**2 * steepness).sum()) / slope)
+
+
+def threshold(coverage: float, spread: float, frequency: float, lasting: float) -> float:
+    """The Jacobian below which foam is made so that the share `coverage` of the sea is foam. 0 where there is none.
+
+    spread: standard deviation of J, choppiness sqrt(mss); frequency [rad/s]: of `pace`; lasting [s]: for how long foam
+    is seen after its crest has passed.
+    Excursions of a Gaussian process below -z sigma last Phi(-z)/rate on average, with rate = (omega/2 pi) exp(-z^2/2)
+    of them a second (Rice 1944), so the covered share is Phi(-z) + rate lasting.
+    """
+    if not (spread > 0.0 and coverage > 0.0):
+        return 0.0
+    low, high, z = -4.0, 8.0, 0.0
+    for _ in range(50):
+        z = 0.5 * (low + high)
+        rate = frequency / (2.0 * math.pi) * math.exp(-0.5 * z * z)
+        # Passages come at random, so that covered shares do not add but fill up.
+        share = 1.0 - (1.0 - NormalDist().cdf(-z)) * math.exp(-rate * lasting)
+        low, high = (z, high) if share > coverage else (low, z)
+    return 1.0 - z * spread

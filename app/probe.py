@@ -40,7 +40,7 @@ class Probe:
         while self.trace[-1][0] - self.trace[0][0] > KEPT:
             self.trace.popleft()
 
-    def spectrum(self, sea: Sea, t: float, scale: float) -> tuple[NDArray[np.float64], ...]:
+    def spectrum(self, sea: Sea, t: float, scale: float) -> tuple[NDArray[np.floating], ...]:
         """(frequency [Hz], measured, theory [m2/Hz]) by Welch's method (1967, IEEE Trans. Audio 15:70); empty if short.
 
         Theory is the energy of the tile's waves, in the same bins.

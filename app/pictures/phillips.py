@@ -52,7 +52,7 @@ class Picture:
         server.scene.remove_click_callback("all")  # of the scene that was open before
         server.scene.on_click()(self.on_click)
 
-    async def on_click(self, event: Any) -> None:
+    def on_click(self, event: Any) -> None:
         origin, direction = finite_vector(event.ray_origin, FARTHEST), finite_vector(event.ray_direction)
         if origin is not None and direction is not None:
             self.post(Point(origin, direction))

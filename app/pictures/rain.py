@@ -72,5 +72,5 @@ def needles(picture: RainPicture, out: np.ndarray) -> np.ndarray:
     thin = THIN * picture.span
     out[:, 0] = picture.drops - EXPOSURE * picture.velocity
     for corner, angle in enumerate((0.0, 2.094, 4.189), 1):
-        out[:, corner] = picture.drops + np.float32([thin * np.cos(angle), thin * np.sin(angle), 0.0])
+        out[:, corner] = picture.drops + np.array([thin * np.cos(angle), thin * np.sin(angle), 0.0], np.float32)
     return out

@@ -143,7 +143,7 @@ class Scene:
     def begin_plots(self) -> None:
         self.samples.append((math.nan,) * (len(SERIES) + 1))  # a gap in the plots
         self.sampled_at = -math.inf
-        self.curve: dict[str, tuple[NDArray[np.float64], ...]] | None = None
+        self.curve: dict[str, tuple[NDArray[np.floating], ...]] | None = None
         self.probe.trace.clear()
 
     def make_sea(self) -> None:
@@ -331,11 +331,11 @@ class Scene:
             counts=dict(self.counts),
         )
 
-    def curves(self) -> dict[str, tuple[NDArray[np.float64], ...]] | None:
+    def curves(self) -> dict[str, tuple[NDArray[np.floating], ...]] | None:
         """The columns of `CURVES`."""
         return self.curve
 
-    def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
+    def arrays(self) -> dict[str, tuple[NDArray[np.floating], str]]:
         """The state for a file: name -> (array, unit)."""
         picture = self.picture()
         return {

@@ -63,6 +63,7 @@ def add_serving(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=int, default=8080, help="0 for any free one")
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
     parser.add_argument("--paused", action="store_true", help="start still")
+    parser.add_argument("--plain-water", action="store_true", help="draw by viser's public interface alone")
     add_knobs(parser)
 
 
@@ -88,7 +89,13 @@ def serve(arguments: argparse.Namespace) -> int:
     from app.serve import serve_lab
 
     return serve_lab(
-        arguments.scene, params, arguments.host, arguments.port, browser=not arguments.no_open, paused=arguments.paused
+        arguments.scene,
+        params,
+        arguments.host,
+        arguments.port,
+        browser=not arguments.no_open,
+        paused=arguments.paused,
+        plain=arguments.plain_water,
     )
 
 

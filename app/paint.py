@@ -41,7 +41,7 @@ class Painted:
         faces = np.asarray(faces, np.uint32)
         self.mesh = server.scene.add_mesh_simple(name, np.asarray(vertices, np.float32), faces, color=color, **mesh)
         self._patch = None if plain else patch(server)
-        self._rgb = None if plain else hidden(server, f"{name}/{SUFFIX}", colors)
+        self._rgb = None if self._patch is None else hidden(server, f"{name}/{SUFFIX}", colors)
         if self._patch is not None:
             self._patch.expect(name)
 

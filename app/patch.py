@@ -32,6 +32,7 @@ GRACE = 20.0  # [s] until a browser without an answer counts as plain; the first
 LONGEST_ANSWER = 10_000  # [characters] what a browser sends is bounded before it is read
 
 _patches: "weakref.WeakKeyDictionary[viser.ViserServer, Patch]" = weakref.WeakKeyDictionary()
+_plain: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()
 
 
 class Patch:
@@ -114,8 +115,15 @@ class Patch:
         return frozenset(names) & frozenset(self._names) if token == self._token else frozenset()
 
 
-def patch(server: viser.ViserServer) -> Patch:
-    """The patch of a server, sent on the first call."""
+def decline(server: viser.ViserServer) -> None:
+    """Draw everything on this server by the public API alone; to be said before anything is drawn."""
+    _plain.add(server)
+
+
+def patch(server: viser.ViserServer) -> Patch | None:
+    """The patch of a server, sent on the first call; None where it was declined."""
+    if server in _plain:
+        return None
     if server not in _patches:
         _patches[server] = Patch(server)
     return _patches[server]

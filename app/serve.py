@@ -11,10 +11,10 @@ from app.viewer import Viewer
 from app.warmup import prepare
 
 
-def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, paused: bool) -> int:
+def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, paused: bool, plain: bool) -> int:
     """Open the scene, print the address that is bound, and wait. Returns the exit status."""
     try:
-        viewer = Viewer(host, port)
+        viewer = Viewer(host, port, plain=plain)
     except OSError as error:
         print(f"springtide: cannot serve on {host}:{port}: {error.strerror or error}; try --port 0", file=sys.stderr)
         return 1

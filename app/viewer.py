@@ -9,6 +9,7 @@ from app.guard import open_server
 from app.loop import SimLoop
 from app.messages import Command
 from app.panel import Panel
+from app.patch import decline
 from app.pictures import picture_named
 from app.scenes import NAMES, scene_named
 
@@ -19,9 +20,11 @@ PUMP = 1 / 60  # [s] between looks for a new snapshot; a scene's picture may ask
 class Viewer:
     """The lab in a browser. Everything drawn is assigned on the pump thread, everything simulated on the loop's."""
 
-    def __init__(self, host: str, port: int) -> None:
-        """Raises OSError where the port cannot be bound."""
+    def __init__(self, host: str, port: int, *, plain: bool = False) -> None:
+        """plain: draw by viser's public API alone. Raises OSError where the port cannot be bound."""
         self.server, self.screen = open_server(host, port)
+        if plain:
+            decline(self.server)
         self.port = self.server.get_port()
         self.stop = threading.Event()
         self.threads: list[threading.Thread] = []

@@ -65,7 +65,8 @@ def scipy_half(sea: Sea) -> Frame:
     def frame(t: float) -> np.ndarray:
         turn = np.exp(-1j * (omega * t)).astype(np.complex64)
         h = h0 * turn + other * np.conj(turn)
-        return np.stack([fft.irfft2(g, s=(sea.size, sea.size), norm="forward") for g in (h, x * h, y * h)])
+        fields = (fft.irfft2(g, s=(sea.size, sea.size), norm="forward") for g in (h, x * h, y * h))
+        return np.stack([np.asarray(field) for field in fields])
 
     return frame
 

@@ -1,5 +1,6 @@
 """The lab as served: until it answers, until a browser draws, and the processor time of each state of a scene."""
 
+import importlib.util
 import os
 import shutil
 import statistics
@@ -73,14 +74,10 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
     answers = [answer_time() for _ in range(3 if quick else 7)]
     table: list[dict[str, Any]] = [{"what": "the command to the page's answer", "s": statistics.median(answers)}]
     chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    try:
-        from playwright.sync_api import sync_playwright  # type: ignore[import-not-found]
-    except ModuleNotFoundError:
-        chromium = None
-    if chromium is None:
-        for name in NAMES:
-            table += scene_rows(name, None, 3.0)
-        return table
+    if chromium is None or importlib.util.find_spec("playwright") is None:
+        return table + [row for name in NAMES for row in scene_rows(name, None, 3.0)]
+    from playwright.sync_api import sync_playwright  # type: ignore[import-not-found]
+
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=chromium, args=BROWSER_FLAGS)
         for name in NAMES:

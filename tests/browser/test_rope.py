@@ -144,3 +144,15 @@ def test_handles_are_assigned_to_and_never_added_again(lab: Viewer, open_tab) ->
     before = set(lab.server.scene._handle_from_node_name)
     tab.wait(lambda: lab.scene.time > 2)
     assert set(lab.server.scene._handle_from_node_name) == before
+
+
+def test_without_the_script_the_rope_is_drawn_in_its_plain_colour(open_tab) -> None:
+    viewer = Viewer("127.0.0.1", 0, plain=True)
+    try:
+        viewer.open("rope")
+        tab = open_tab(viewer.port)
+        tab.wait(lambda: len(tab.vertices("/rope")) > 0)
+        assert len(tab.vertices("/rope/paint_rgb")) == 0
+        assert tab.errors == []
+    finally:
+        viewer.shut()

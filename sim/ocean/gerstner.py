@@ -82,7 +82,7 @@ def peak_wavenumber(spectrum: Spectrum, conditions: Conditions) -> float:
     low, high = 1e-9, 1e6
     for _ in range(200):
         middle = math.sqrt(low * high)
-        if float(conditions.omega(np.float64(middle))) < omega:
+        if float(conditions.omega(np.asarray(middle))) < omega:
             low = middle
         else:
             high = middle

@@ -177,7 +177,8 @@ class SimLoop:
             now = self.clock()
             self.tick(now - last)
             last = now
-            rest = (FRAME if busy else IDLE) - (self.clock() - now)
+            frame = getattr(self.scene, "frame", FRAME)  # [s] a scene may ask for fewer pictures
+            rest = (frame if busy else IDLE) - (self.clock() - now)
             if rest > 0:
                 self.wait(rest, stop, busy)
 

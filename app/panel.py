@@ -177,6 +177,7 @@ class Panel:
             with groups[knob.group]:
                 value = getattr(params, knob_name)
                 self.controls[knob_name] = Control(gui, groups[knob.group], knob_name, knob, value, self.on_change)
+        self.notes: dict[str, Any] = {}
         self.hide()
         self.add_keys()
 
@@ -255,6 +256,16 @@ class Panel:
             self.marks_at = now
             for name, text in self.picture.marks(snapshot).items():
                 self.controls[name].write(text)
+            if hasattr(self.picture, "notes"):
+                self.write_notes(self.picture.notes(snapshot))
+
+    def write_notes(self, notes: dict[str, str]) -> None:
+        """Foldable texts below the controls, as HTML: made once, then kept up to date."""
+        for heading, text in notes.items():
+            if heading not in self.notes:
+                with self.gui.add_folder(heading, expand_by_default=False):
+                    self.notes[heading] = self.gui.add_html("")
+            set_content(self.notes[heading], f'<div style="padding:2px 12px 8px;font-size:12px">{text}</div>')
 
     def notify(self, text: str) -> None:
         for client in self.server.get_clients().values():

@@ -44,7 +44,8 @@ class Viewer:
             commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
             self.picture = picture.Picture(self.server, commands.put)
             position, target = self.picture.CAMERA
-            self.server.initial_camera.position, self.server.initial_camera.look_at = position, target
+            for camera in (self.server.initial_camera, *(c.camera for c in self.server.get_clients().values())):
+                camera.position, camera.look_at = position, target
             self.panel = Panel(
                 self.server, scene, picture, self.scene.params, commands.put, scenes=NAMES, open_scene=self.open
             )

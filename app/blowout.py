@@ -13,11 +13,12 @@ from sim.ocean.tile_sea import TileSea
 from sim.particles.fire import Fire
 from sim.particles.jet import Jet
 
-RIG = (24.0, 62.0)  # [m] where the rig stands
+RIG = (48.0, 100.0)  # [m] where the rig stands
 FIRE = (RIG[0] + 3.0, RIG[1] + 3.0, 26.5)  # [m] at the foot of the derrick
 FIRE_WIDTH = 9.0  # [m]
 NOZZLE = (RIG[0] - 12.0, RIG[1] - 17.0, 20.0)  # [m] on the edge of the deck towards the buoys
-GUSH = (-5.5, -8.5, 6.5)  # [m/s]
+GUSH = (-9.0, -7.0, 9.5)  # [m/s]
+SMOKE = 13.0  # [s] that a parcel lives
 FLIGHT = 4.0  # [s] about as long as a parcel is in the air
 PATCH, PATCH_CELL = 16, 3.0  # points a side, and their distance [m], of the sea that parcels are compared with
 OUTLINE = ((3, 0.10, 0.4), (5, 0.06, 2.0), (9, 0.03, 1.0))  # lobes of the slick: number, size, phase
@@ -67,12 +68,12 @@ class Blowout:
         if not burning:
             self.fire = None
         elif self.fire is None or fire != (old.fire_power, old.particles, wind_of(old)):
-            self.fire = Fire(FIRE, params.fire_power * 1e6, FIRE_WIDTH, params.particles, wind=wind)
+            self.fire = Fire(FIRE, params.fire_power * 1e6, FIRE_WIDTH, params.particles, SMOKE, wind)
         if not gushing:
             self.close()
         elif self.jet is None or (params.jet_flow, params.particles) != (old.jet_flow, old.particles):
             self.close()
-            self.jet = Jet(NOZZLE, GUSH, params.jet_flow, 0.07, max(params.particles // 2, 50), flight=FLIGHT)
+            self.jet = Jet(NOZZLE, GUSH, params.jet_flow, 0.05, max(params.particles // 2, 50), flight=FLIGHT)
 
     def close(self) -> None:
         """Shut the jet; what was in the air counts as fallen."""

@@ -6,9 +6,9 @@ A splat is eight words: centre (3 x float32), one of the renderer's own, covaria
 import numpy as np
 import viser
 
-FLAMES, PARCELS = 1500, 500  # splats of fire and smoke, and of oil
-HEAT = (0.0, 0.06, 0.16, 0.30, 0.48, 0.72, 1.0)  # of a parcel, and the colour it has
-RGB = ((58, 54, 52), (44, 40, 38), (54, 34, 24), (170, 44, 10), (246, 112, 18), (255, 184, 60), (255, 240, 170))
+FLAMES, PARCELS = 2000, 900  # splats of fire and smoke, and of oil
+HEAT = (0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0)  # of a parcel, and the colour it has
+RGB = ((52, 48, 46), (38, 34, 32), (60, 32, 20), (214, 62, 10), (255, 132, 22), (255, 196, 70), (255, 246, 190))
 OIL = (34, 22, 12)
 
 
@@ -37,14 +37,14 @@ class Flames:
             rgb = np.stack([np.interp(heat, HEAT, [c[i] for c in RGB]) for i in range(3)], axis=1)
             # Flames are dense and small, smoke widens as it thins.
             young = np.clip(age / 0.04, 0.0, 1.0)
-            opacity = young * np.interp(heat, (0.0, 0.15, 0.4, 1.0), (0.13, 0.26, 0.5, 0.85)) * (1.0 - age**3)
-            width = 0.5 + 1.1 * (1.0 - heat) ** 1.5 + 3.2 * np.clip(age, 0.0, 1.0) ** 1.2
+            opacity = young * np.interp(heat, (0.0, 0.08, 0.2, 1.0), (0.16, 0.3, 0.7, 0.95)) * (1.0 - age**3)
+            width = 0.8 + 0.9 * (1.0 - heat) + 5.0 * np.clip(age, 0.0, 1.0) ** 1.2
             tall = width * np.interp(heat, (0.0, 0.3, 1.0), (1.0, 1.3, 1.8))
             self.put(0, x, width, tall, rgb, np.where(age < 0.0, 0.0, opacity))
         if jet is not None and len(jet):
             chosen = jet[:: max(1, -(-len(jet) // PARCELS))]
             n = len(chosen)
-            self.put(FLAMES, chosen, np.full(n, 0.16), np.full(n, 0.3), np.tile(OIL, (n, 1)), np.full(n, 0.95))
+            self.put(FLAMES, chosen, np.full(n, 0.26), np.full(n, 0.42), np.tile(OIL, (n, 1)), np.full(n, 0.95))
         self.handle.buffer = self.buffer.copy()
 
     def put(

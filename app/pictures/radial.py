@@ -22,7 +22,7 @@ HANDLE = 0.75  # [m] radius of what is dragged, at size 1
 HELD_COLOUR = (255, 90, 60)
 EYE_EVERY = 0.2  # [s] between looks at where the camera is
 VIEWS = {  # camera and target [m] when one of them is followed
-    "rig": ((RIG[0] - 52.0, RIG[1] - 62.0, 13.0), (RIG[0] + 6.0, RIG[1], 24.0)),
+    "rig": ((RIG[0] - 50.0, RIG[1] - 66.0, 14.0), (RIG[0] + 10.0, RIG[1] - 4.0, 27.0)),
 }
 BODY_VIEW = (-5.2, -6.2, 2.4)  # [m] from a followed body at size 1.5
 FOLLOWED = {"first buoy": 0, "second buoy": 1, "box": 2}
@@ -36,7 +36,7 @@ def model(name: str) -> bytes:
 class Picture:
     """Draws `RadialPicture`s."""
 
-    CAMERA = ((-8.5, -9.5, 3.6), (3.5, 6.5, 1.2))  # position, target [m]
+    CAMERA = ((-6.5, -7.5, 2.7), (2.5, 4.0, 1.1))  # position, target [m]
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
@@ -57,7 +57,7 @@ class Picture:
         self.glow = scene.add_light_point(
             "/glow", color=(255, 140, 50), intensity=0.0, distance=160.0, decay=1.2, position=FIRE, visible=False
         )
-        self.flames = Flames(server, "/flames")
+        self.flames: Flames | None = None
         self.pull = scene.add_line_segments(
             "/pull", np.zeros((1, 2, 3), np.float32), colors=HELD_COLOUR, thickness=4.0, visible=False
         )
@@ -73,7 +73,10 @@ class Picture:
         self.show_bodies(picture)
         if self.rig.visible != p.rig:
             self.rig.visible = p.rig
-        self.flames.show(picture.fire, picture.jet)
+        if self.flames is None and (picture.fire is not None or picture.jet is not None):
+            self.flames = Flames(self.server, "/flames")
+        if self.flames is not None:
+            self.flames.show(picture.fire, picture.jet)
         burning = picture.fire is not None
         if self.glow.visible != burning:
             self.glow.visible = burning

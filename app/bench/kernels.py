@@ -18,17 +18,17 @@ from sim.springs.net import Net
 FLAGS = ["-O3", "-march=native", "-ffast-math", "-shared", "-fPIC"]
 
 
-def build() -> ctypes.CDLL | None:
-    """The C loops, or None where there is no compiler."""
+def build(name: str = "kernels") -> ctypes.CDLL | None:
+    """The C loops of a source beside this file, or None where there is no compiler."""
     compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
     if compiler is None:
         return None
-    source = importlib.resources.files("app.bench").joinpath("kernels.c").read_text()
+    source = importlib.resources.files("app.bench").joinpath(f"{name}.c").read_text()
     folder = Path(tempfile.mkdtemp(prefix="springtide-"))
     try:
-        (folder / "kernels.c").write_text(source)
-        subprocess.run([compiler, *FLAGS, "kernels.c", "-o", "kernels.so", "-lm"], cwd=folder, check=True)
-        return ctypes.CDLL(str(folder / "kernels.so"))
+        (folder / f"{name}.c").write_text(source)
+        subprocess.run([compiler, *FLAGS, f"{name}.c", "-o", f"{name}.so", "-lm"], cwd=folder, check=True)
+        return ctypes.CDLL(str(folder / f"{name}.so"))
     finally:
         shutil.rmtree(folder)
 

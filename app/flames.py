@@ -1,0 +1,64 @@
+"""Fire, smoke and gushing oil as soft blobs: viser's Gaussian splats, of which one buffer a frame is sent.
+
+A splat is eight words: centre (3 x float32), one of the renderer's own, covariance (6 x float16), colour (4 x uint8).
+"""
+
+import numpy as np
+import viser
+
+FLAMES, PARCELS = 2000, 900  # splats of fire and smoke, and of oil
+HEAT = (0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0)  # of a parcel, and the colour it has
+RGB = ((52, 48, 46), (38, 34, 32), (60, 32, 20), (214, 62, 10), (255, 132, 22), (255, 196, 70), (255, 246, 190))
+OIL = (34, 22, 12)
+
+
+class Flames:
+    """One node of splats; those not in use are clear."""
+
+    def __init__(self, server: viser.ViserServer, name: str) -> None:
+        n = FLAMES + PARCELS
+        still = np.tile(0.01 * np.eye(3, dtype=np.float32), (n, 1, 1))
+        self.handle = server.scene.add_gaussian_splats(
+            name, np.zeros((n, 3)), still, np.zeros((n, 3)), np.zeros((n, 1)), visible=False
+        )
+        self.buffer = np.array(self.handle.buffer)
+
+    def show(self, fire: tuple[np.ndarray, np.ndarray] | None, jet: np.ndarray | None) -> None:
+        """fire: positions (3, n) [m], and heat and age over life (2, n); jet: positions (m, 3) [m]."""
+        visible = fire is not None or jet is not None
+        if self.handle.visible != visible:
+            self.handle.visible = visible
+        if not visible:
+            return
+        self.buffer[:, 7] = 0
+        if fire is not None:
+            every = max(1, -(-fire[0].shape[1] // FLAMES))
+            x, (heat, age) = fire[0][:, ::every].T, fire[1][:, ::every]
+            rgb = np.stack([np.interp(heat, HEAT, [c[i] for c in RGB]) for i in range(3)], axis=1)
+            # Flames are dense and small, smoke widens as it thins.
+            young = np.clip(age / 0.04, 0.0, 1.0)
+            opacity = young * np.interp(heat, (0.0, 0.08, 0.2, 1.0), (0.16, 0.3, 0.7, 0.95)) * (1.0 - age**3)
+            width = 0.8 + 0.9 * (1.0 - heat) + 5.0 * np.clip(age, 0.0, 1.0) ** 1.2
+            tall = width * np.interp(heat, (0.0, 0.3, 1.0), (1.0, 1.3, 1.8))
+            self.put(0, x, width, tall, rgb, np.where(age < 0.0, 0.0, opacity))
+        if jet is not None and len(jet):
+            chosen = jet[:: max(1, -(-len(jet) // PARCELS))]
+            n = len(chosen)
+            self.put(FLAMES, chosen, np.full(n, 0.26), np.full(n, 0.42), np.tile(OIL, (n, 1)), np.full(n, 0.95))
+        self.handle.buffer = self.buffer.copy()
+
+    def put(
+        self, start: int, x: np.ndarray, width: np.ndarray, tall: np.ndarray, rgb: np.ndarray, opacity: np.ndarray
+    ) -> None:
+        """Set splats from `start` on: centres (n, 3), standard deviations across and upwards (n,) [m]."""
+        n = len(x)
+        rows = self.buffer[start : start + n]
+        rows[:, :3] = np.ascontiguousarray(x, np.float32).view(np.uint32)
+        cov = np.zeros((n, 6), np.float16)
+        cov[:, 0] = cov[:, 3] = width**2
+        cov[:, 5] = tall**2
+        rows[:, 4:7] = cov.view(np.uint32)
+        rgba = np.empty((n, 4), np.uint8)
+        rgba[:, :3] = np.clip(rgb, 0, 255)
+        rgba[:, 3] = np.clip(255.0 * opacity, 0, 255)
+        rows[:, 7] = rgba.view(np.uint32)[:, 0]

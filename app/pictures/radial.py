@@ -1,0 +1,238 @@
+"""The radial sea as water, its bodies as models, the rig with its fire, and a slick."""
+
+import importlib.resources
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import viser
+
+from app.blowout import FIRE, RIG
+from app.flames import Flames
+from app.fluid_look import look_of, slick_look
+from app.messages import Command, Grab, Place, Release, Snapshot, finite_vector
+from app.radial_report import compared_html, counts_html, fluids_html, lab_says, marks_of, table
+from app.scenes.radial import RADIUS, SLICK_RADIUS, RadialPicture
+from app.shapes import ball
+from app.water import Look, Water, sky
+
+SUN = 1.25  # [rad] bearing of the sun, beyond the buoys as the camera starts
+HANDLE = 0.75  # [m] radius of what is dragged, at size 1
+HELD_COLOUR = (255, 90, 60)
+EYE_EVERY = 0.2  # [s] between looks at where the camera is
+VIEWS = {  # camera and target [m] when one of them is followed
+    "rig": ((RIG[0] - 50.0, RIG[1] - 66.0, 14.0), (RIG[0] + 10.0, RIG[1] - 4.0, 27.0)),
+}
+BODY_VIEW = (-5.2, -6.2, 2.4)  # [m] from a followed body at size 1.5
+FOLLOWED = {"first buoy": 0, "second buoy": 1, "box": 2}
+
+
+def model(name: str) -> bytes:
+    """A GLB of the assets."""
+    return importlib.resources.files("assets").joinpath(f"{name}.glb").read_bytes()
+
+
+class Picture:
+    """Draws `RadialPicture`s."""
+
+    CAMERA = ((-6.5, -7.5, 2.7), (2.5, 4.0, 1.1))  # position, target [m]
+
+    def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
+        self.server, self.post = server, post
+        self.water: Water | None = None
+        self.slick: Water | None = None
+        self.grid: Any = None
+        self.lit = ""
+        self.light = self.look = self.oil = Look()
+        self.last: RadialPicture | None = None
+        self.groups: dict[str, tuple[Any, np.ndarray]] = {}
+        self.handles: viser.BatchedMeshHandle | None = None
+        self.kinds: tuple[str, ...] = ()
+        self.size = 0.0
+        self.follow, self.followed = "free", np.zeros(3)
+        self.eye_at = 0.0
+        scene = server.scene
+        self.rig = scene.add_glb("/rig", model("rig"), position=(*RIG, 0.0), cast_shadow=False, receive_shadow=False)
+        self.glow = scene.add_light_point(
+            "/glow", color=(255, 140, 50), intensity=0.0, distance=160.0, decay=1.2, position=FIRE, visible=False
+        )
+        self.flames: Flames | None = None
+        self.pull = scene.add_line_segments(
+            "/pull", np.zeros((1, 2, 3), np.float32), colors=HELD_COLOUR, thickness=4.0, visible=False
+        )
+
+    def show(self, picture: RadialPicture) -> None:
+        """Assign a new frame to the handles; call inside `server.atomic()`."""
+        p = picture.params
+        if self.lit != p.sky:
+            self.lit = p.sky
+            self.light = sky(self.server, p.sky, SUN)
+        self.show_sea(picture)
+        self.show_slick(picture)
+        self.show_bodies(picture)
+        if self.rig.visible != p.rig:
+            self.rig.visible = p.rig
+        if self.flames is None and (picture.fire is not None or picture.jet is not None):
+            self.flames = Flames(self.server, "/flames")
+        if self.flames is not None:
+            self.flames.show(picture.fire, picture.jet)
+        burning = picture.fire is not None
+        if self.glow.visible != burning:
+            self.glow.visible = burning
+        if burning:
+            self.glow.intensity = 900.0 * (1.0 + 0.25 * float(np.sin(23.0 * picture.time) * np.sin(8.3 * picture.time)))
+        self.move_camera(picture)
+        self.last = picture
+
+    def show_sea(self, picture: RadialPicture) -> None:
+        look = look_of(self.light, picture.params, picture.spill)
+        if self.water is None or picture.grid is not self.grid:
+            if self.water is not None:
+                self.water.remove()
+            self.grid = picture.grid
+            self.water = Water(self.server, "/sea", 1, len(self.grid), RADIUS, faces=self.grid.faces, look=look)
+            if self.slick is not None:
+                self.slick.remove()
+                self.slick = None
+        elif look != self.look:
+            self.water.set_look(look)
+        self.look = look
+        s = picture.surface
+        if self.last is None or s is not self.last.surface:
+            self.water.set_surface(s.vertices[None], s.slope[None], picture.foam[None], picture.time)
+
+    def show_slick(self, picture: RadialPicture) -> None:
+        shape = picture.slick
+        if shape is None:
+            if self.slick is not None:
+                self.slick.remove()
+                self.slick = None
+            return
+        look = slick_look(self.light, picture.params, picture.spill)
+        if self.slick is None:
+            n = len(shape.vertices)
+            faces = self.grid.faces.astype(np.int64)
+            last = len(self.grid) - 1
+            inside = ((faces < n - 1) | (faces == last)).all(axis=1)
+            mine = np.where(faces == last, n - 1, faces)[inside]
+            self.slick = Water(self.server, "/slick", 1, n, SLICK_RADIUS, faces=mine, look=look)
+        elif look != self.oil:
+            self.slick.set_look(look)
+        self.oil = look
+        foam = np.zeros((1, len(shape.vertices)), np.float32)
+        self.slick.set_surface(shape.vertices[None], shape.slopes[None], foam, picture.time)
+
+    def show_bodies(self, picture: RadialPicture) -> None:
+        if picture.kinds != self.kinds or picture.params.size != self.size:
+            for handle, _ in self.groups.values():
+                handle.remove()
+            self.groups = {}
+            self.kinds, self.size = picture.kinds, picture.params.size
+            for kind in sorted(set(self.kinds)):
+                chosen = np.array([i for i, other in enumerate(self.kinds) if other == kind])
+                handle = self.server.scene.add_batched_glb(
+                    f"/bodies/{kind}",
+                    model(kind),
+                    batched_wxyzs=picture.rotations[chosen],
+                    batched_positions=picture.positions[chosen],
+                    batched_scales=np.full(len(chosen), self.size, np.float32),
+                    lod="off",
+                    cast_shadow=False,
+                    receive_shadow=False,
+                )
+                self.groups[kind] = handle, chosen
+            self.add_handles(picture)
+        for handle, chosen in self.groups.values():
+            handle.batched_positions = picture.positions[chosen]
+            handle.batched_wxyzs = picture.rotations[chosen]
+        if self.handles is not None:
+            self.handles.batched_positions = picture.positions
+        self.pull.visible = picture.pull is not None
+        if picture.pull is not None:
+            self.pull.points = np.array([picture.pull], np.float32)
+
+    def add_handles(self, picture: RadialPicture) -> None:
+        """Clear balls about the bodies, to be dragged: viser loses a page that drags instances of a GLB (1.1)."""
+        if self.handles is not None:
+            self.handles.remove()
+            self.handles = None
+        n = len(picture.positions)
+        if n == 0:
+            return
+        vertices, faces = ball(4)
+        self.handles = self.server.scene.add_batched_meshes_simple(
+            "/handles",
+            HANDLE * vertices,
+            faces,
+            batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)),
+            batched_positions=picture.positions,
+            batched_scales=np.full(n, self.size, np.float32),
+            opacity=0.0,
+            lod="off",
+            cast_shadow=False,
+            receive_shadow=False,
+        )
+        self.handles.on_drag("left")(self.on_body)
+
+    async def on_body(self, event: Any) -> None:
+        target = finite_vector(event.end_position)
+        if event.phase == "end" or target is None or event.instance_index is None:
+            self.post(Release())
+        else:
+            self.post(Grab(int(event.instance_index), target))
+
+    def move_camera(self, picture: RadialPicture) -> None:
+        """Fly to what is followed when it is chosen, then go along with it; and tell the scene where the camera is."""
+        p = picture.params
+        body = FOLLOWED.get(p.follow, -1)
+        here = picture.positions[body].astype(float) if 0 <= body < len(picture.positions) else None
+        cameras = [client.camera for client in self.server.get_clients().values()]
+        if p.follow != self.follow:
+            self.follow = p.follow
+            if here is not None:
+                view = tuple(here + np.array(BODY_VIEW) * p.size / 1.5), tuple(here)
+                self.followed = here
+            else:
+                view = VIEWS.get(p.follow, self.CAMERA)
+            first = self.server.initial_camera
+            for camera in (first, *cameras):
+                camera.position, camera.look_at = view
+        elif here is not None:
+            step = here - self.followed
+            if np.abs(step).max() > 0.02:
+                for camera in cameras:
+                    camera.position = np.asarray(camera.position) + step
+                    camera.look_at = np.asarray(camera.look_at) + step
+                self.followed = here
+        now = time.monotonic()
+        if p.centre == "camera" and cameras and now - self.eye_at > EYE_EVERY:
+            self.eye_at = now
+            eye = finite_vector(cameras[0].position)
+            if eye is not None:
+                self.post(Place("eye", eye))
+
+
+def warm_up() -> Iterator[str]:
+    """Nothing here is compiled."""
+    yield from ()
+
+
+def readout(snapshot: Snapshot) -> str:
+    """The bodies' drafts and periods, as HTML."""
+    return table(snapshot)
+
+
+def marks(snapshot: Snapshot) -> dict[str, str]:
+    """What is written under a knob."""
+    return marks_of(snapshot)
+
+
+def notes(snapshot: Snapshot) -> dict[str, str]:
+    """What folds out below the controls."""
+    return {
+        "Lab says, physics says": lab_says(snapshot),
+        "Fluids": fluids_html(snapshot),
+        "Radial or square": compared_html(snapshot),
+        "Work done": counts_html(snapshot),
+    }

@@ -1,0 +1,364 @@
+"""The radial sea: buoys and a box on water, on oil, or on both mixed, near a rig that may burn."""
+
+import dataclasses
+import math
+import time
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.blowout import Blowout, Tally, slick_reach
+from app.crowd import Crowd, Reading
+from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
+from app.radial_knobs import PRESETS, Params, conditions_of, exposure_of, hidden, spill_of
+from app.wakes import LENGTH as WAKES_LENGTH
+from app.wakes import Wakes
+from sim.floating import Laws
+from sim.ocean import Sea
+from sim.ocean.gerstner import draw_waves
+from sim.ocean.radial import RadialSea, RadialSurface
+from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.spectra import SPECTRA
+from sim.ocean.spill import Spill
+from sim.ocean.tile_sea import TileSea
+
+__all__ = ["PRESETS", "Params", "Scene", "hidden"]
+
+TITLE = "Radial sea"
+HELP = (
+    "<b>Drag</b> a buoy or the box under and let go, or throw it. <b>Pour oil</b> and compare each draft with "
+    "Archimedes' in the table."
+)
+SERIES = ("red buoy", "yellow buoy", "box", "surface", "red buoy's height")
+PLOTS = {
+    "plot_draft": ("Draft", "m", ("red buoy", "yellow buoy", "box")),
+    "plot_surface": ("Surface and red buoy", "m", ("surface", "red buoy's height")),
+}
+FRAME = 1 / 30  # [s] between pictures
+RADIUS = 5000.0  # [m] of the grid
+INNER = 0.35  # [m] its first ring
+SLICK_RADIUS = 220.0  # [m] as far as the slick is drawn
+SLICK_HIGH, SLICK_SOFT = 0.3, 8.0  # [m] above the water, and from how far inside its edge
+TILE, TILE_LENGTH = 128, 256.0  # the square sea: as many vertices as the rings
+SAMPLE_EVERY = 1 / 15  # [s] between plot rows
+COMPARE_EVERY = 2.0  # [s] of wall time between two timings of the other surface
+FOAM_FROM, FOAM_OVER = 0.58, 0.35  # Jacobian below which there is foam, and over which it fills up
+
+
+class SlickShape(NamedTuple):
+    """The slick as a mesh over the first rings of the sea's."""
+
+    vertices: NDArray[np.float32]  # (m, 3) [m]
+    slopes: NDArray[np.float32]  # (m, 2)
+    rings: int
+
+
+class RadialPicture(NamedTuple):
+    """What the viewer draws."""
+
+    params: Params
+    time: float  # [s]
+    grid: RadialGrid
+    surface: RadialSurface
+    foam: NDArray[np.float32]  # (n,)
+    slick: SlickShape | None
+    kinds: tuple[str, ...]  # of the bodies
+    positions: NDArray[np.float32]  # (bodies, 3) [m]
+    rotations: NDArray[np.float32]  # (bodies, 4) quaternions (w, x, y, z)
+    pull: tuple[Vector, Vector] | None  # from a held body to where it is pulled [m]
+    fire: tuple[NDArray[np.float32], NDArray[np.float32]] | None  # (3, n) [m], (2, n) heat and age over life
+    jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
+    spill: Spill
+
+
+class Compared(NamedTuple):
+    """One way to make the surface, for the same vertices."""
+
+    cost: float  # [s] a frame
+    waves: int
+    smallest: float  # [m] shortest wave at the viewer
+    extent: float  # [m] across, before it repeats
+    height: float  # Hs [m] of its waves
+    slope: float  # mean square slope of its waves
+
+
+class RadialGauge(NamedTuple):
+    """Numbers for the panel."""
+
+    readings: tuple[Reading, ...]
+    spill: Spill
+    height: float  # Hs [m] of the waves as they are
+    height_clean: float  # without the oil
+    slope: float  # mean square slope as it is
+    slope_clean: float
+    peak_period: float  # [s] of the wave in the middle of the energy
+    tally: Tally
+    compared: dict[str, Compared]
+    counts: dict[str, int]
+
+
+def warm_up() -> Iterator[str]:
+    """Compile everything the scene may call, piece by piece; yields what comes next."""
+    for name, changes in (
+        ("bodies", {}),
+        ("fire", {"fire": True, "jet": True, "spill": "layer"}),
+        ("square sea", {"surface": "fft"}),
+    ):
+        yield name
+        scene = Scene(Params(**changes))
+        scene.obey(Grab(0, (0.0, 0.0, 0.0)))
+        for _ in range(8):
+            scene.advance(1)
+        scene.picture()
+        scene.gauge()
+
+
+class Scene:
+    """The radial sea on the simulation thread."""
+
+    frame = FRAME
+
+    def __init__(self, params: Params) -> None:
+        self.params = params
+        self.samples: list[tuple[float, ...]] = []
+        self.reset()
+
+    @property
+    def step(self) -> float:
+        return self.params.time_step
+
+    def reset(self) -> None:
+        """The bodies at rest in their places, and no oil but the layer the knobs ask for."""
+        p = self.params
+        self.time = 0.0
+        self.spill = spill_of(p)
+        self.sum = RadialSea(self.waves(), self.spill, exposure_of(p), p.choppiness)
+        self.tile: TileSea | None = None
+        self.grid = self.make_grid()
+        self.crowd = Crowd(p.bodies, p.size, p.density, self.spill)
+        self.wakes = Wakes()
+        self.blowout = Blowout(p)
+        self.eye = (0.0, 0.0)
+        self.target: Vector | None = None
+        self.costs: dict[str, float] = {}
+        self.compared_at = self.sampled_at = -math.inf
+        self.drawn: tuple[object, ...] = ()
+        self.samples.append((math.nan,) * (len(SERIES) + 1))
+
+    def waves(self):
+        p = self.params
+        return draw_waves(SPECTRA[p.spectrum], conditions_of(p), p.wave_count)
+
+    def make_grid(self) -> RadialGrid:
+        p = self.params
+        return RadialGrid(p.rings, p.spokes, INNER, RADIUS, p.ring_law)
+
+    def make_tile(self) -> TileSea:
+        """The square sea under the same wind and oil; what oil took of a wave, exp(-2 nu k^2 T), is its low-pass."""
+        p, fluid = self.params, self.spill.surface
+        low_pass = 2.0 * math.sqrt(fluid.kinematic_viscosity * exposure_of(p))
+        conditions = dataclasses.replace(conditions_of(p), low_pass=low_pass)
+        sea = Sea(TILE, TILE_LENGTH, p.spectrum, choppiness=p.choppiness, frequency=self.spill.omega,
+                  **{name: getattr(conditions, name) for name in ("wind_speed", "wind_direction", "low_pass")})  # fmt: skip
+        return TileSea(sea)
+
+    @property
+    def sea(self) -> RadialSea | TileSea:
+        """The surface in force."""
+        if self.params.surface == "sum":
+            return self.sum
+        if self.tile is None:
+            self.tile = self.make_tile()
+        return self.tile
+
+    def set_params(self, params: Params) -> None:
+        """Take new knobs; what need not start over goes on."""
+        old, self.params = self.params, params
+
+        def changed(*names: str) -> bool:
+            return any(getattr(params, name) != getattr(old, name) for name in names)
+
+        self.spill = spill_of(params)
+        sea = changed("waves", "wind_speed", "wind_direction", "spectrum", "wave_count")
+        fluids = changed("spill", "oil", "thickness", "fraction", "mixture_law", "film", "exposure")
+        if sea or fluids:
+            self.sum.change(self.time, self.waves() if sea else None, self.spill, exposure_of(params))
+        self.sum.choppiness = params.choppiness
+        if sea or fluids or changed("choppiness"):
+            self.tile = None
+        if changed("rings", "spokes", "ring_law"):
+            self.grid = self.make_grid()
+        if changed("bodies", "size"):
+            self.crowd = Crowd(params.bodies, params.size, params.density, self.spill)
+            self.target = None
+        elif fluids or changed("density"):
+            self.crowd.restate(params.density, self.spill)
+        if not params.ripples and old.ripples:
+            self.wakes = Wakes()
+        self.blowout.set_params(params, old)
+        self.costs = {}
+
+    def obey(self, command: Command) -> None:
+        match command:
+            case Grab(index, target):
+                self.crowd.release()
+                self.crowd.hold(index, target, self.params.pull)
+                self.target = target if self.crowd.held else None
+            case Release():
+                self.crowd.release()
+                self.target = None
+            case Place("eye", (x, y, _)):
+                self.eye = (x, y)
+
+    def advance(self, steps: int) -> None:
+        """Take steps; raises DivergenceError where a body's state is no longer finite."""
+        crowd, sea, h = self.crowd, self.sea, self.step
+        laws = Laws()
+        for _ in range(steps):
+            if crowd.count:
+                at = sea.at(crowd.fleet.position[:, :2], self.time, crowd.widths)
+                crowd.measure(self.time, at, h)
+                if self.params.mooring:
+                    crowd.moor()
+                try:
+                    crowd.step(self.spill, at, self.time, h, self.layer(), laws)
+                except FloatingPointError as error:
+                    raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
+                if (self.params.plot_draft or self.params.plot_surface) and self.time - self.sampled_at >= SAMPLE_EVERY:
+                    self.sample(float(at.height[0]))
+            self.time += h
+        if self.params.ripples and crowd.count:
+            self.wakes.press(self.time, crowd.fleet.position[:, :2], crowd.widths, crowd.impulse)
+        crowd.impulse[:] = 0.0
+        self.blowout.step(sea, self.time, steps * h)
+
+    def layer(self) -> NDArray[np.float64]:
+        """Thickness (bodies,) [m] of oil under the surface at each body."""
+        found = np.full(self.crowd.count, self.spill.thickness)
+        slick = self.blowout.slick(self.spill)
+        if slick is not None and self.spill.kind != "mixed":
+            position = self.crowd.fleet.position
+            found[slick_reach(slick, position[:, 0], position[:, 1]) > 0.0] += slick.thickness
+        return found
+
+    def sample(self, surface: float) -> None:
+        draft = np.full(3, math.nan)
+        draft[: min(3, self.crowd.count)] = self.crowd.draft[:3]
+        self.samples.append((self.time, *draft.tolist(), surface, float(self.crowd.fleet.position[0, 2])))
+        self.sampled_at = self.time
+
+    def take_samples(self) -> tuple[tuple[float, ...], ...]:
+        taken, self.samples = tuple(self.samples), []
+        return taken
+
+    def picture(self) -> RadialPicture:
+        p, crowd = self.params, self.crowd
+        key = (self.time, self.grid, p, self.eye)
+        if key != self.drawn:
+            self.draw()
+            self.drawn = key
+        pull = None
+        if self.target is not None and crowd.held:
+            x, y, z = crowd.fleet.position[next(iter(crowd.held))].tolist()
+            pull = ((x, y, z), self.target)
+        fire, jet = self.blowout.fire, self.blowout.jet
+        flames = None
+        if fire is not None:
+            flames = fire.position.copy(), np.stack([fire.heat, fire.age / np.maximum(fire.life, 1e-3)])
+        return RadialPicture(
+            params=p,
+            time=self.time,
+            grid=self.grid,
+            surface=self.surface,
+            foam=self.foam,
+            slick=self.slick,
+            kinds=tuple(crowd.kinds),
+            positions=crowd.fleet.position.astype(np.float32),
+            rotations=crowd.fleet.rotation.astype(np.float32),
+            pull=pull,
+            fire=flames,
+            jet=None if jet is None else jet.position[:, jet.flying].T.astype(np.float32),
+            spill=self.spill,
+        )
+
+    def draw(self) -> None:
+        """The surface, its foam and the slick on it, as they are now."""
+        p = self.params
+        centre = self.eye if p.centre == "camera" else (0.0, 0.0)
+        self.surface = self.timed(p.surface, self.sea, centre)
+        wall = time.monotonic()
+        if wall - self.compared_at > COMPARE_EVERY:
+            self.compared_at = wall
+            other = "fft" if p.surface == "sum" else "sum"
+            if other == "fft" and self.tile is None:
+                self.tile = self.make_tile()
+            other_sea = self.tile if other == "fft" else self.sum
+            assert other_sea is not None
+            self.timed(other, other_sea, centre)
+        vertices, slopes = self.surface.vertices, self.surface.slope
+        if p.ripples:
+            near = int((self.grid.radii < WAKES_LENGTH).sum()) * self.grid.spokes
+            for part in (slice(0, len(self.grid) - 1 if p.centre == "camera" else near), slice(-1, None)):
+                self.wakes.lay(self.time, vertices[part], slopes[part], len(vertices))
+        self.foam = np.clip((FOAM_FROM - self.surface.jacobian) / FOAM_OVER, 0.0, 1.0)
+        self.slick = self.shape_slick(vertices, slopes)
+
+    def timed(self, name: str, sea: RadialSea | TileSea, centre: tuple[float, float]) -> RadialSurface:
+        start = time.perf_counter()
+        surface = sea.on(self.grid, self.time, centre)
+        taken = time.perf_counter() - start
+        self.costs[name] = taken if name not in self.costs else 0.9 * self.costs[name] + 0.1 * taken
+        return surface
+
+    def shape_slick(self, vertices: NDArray[np.float32], slopes: NDArray[np.float32]) -> SlickShape | None:
+        """The first rings and the centre once more, just above the water within the slick and below it outside."""
+        slick = self.blowout.slick(self.spill)
+        if slick is None or self.spill.kind != "water":
+            return None
+        rings = int((self.grid.radii < SLICK_RADIUS).sum())
+        count = rings * self.grid.spokes
+        mine = np.concatenate([vertices[:count], vertices[-1:]])
+        inside = slick_reach(slick, mine[:, 0], mine[:, 1])
+        mine[:, 2] += np.clip(inside / SLICK_SOFT, -8.0, 1.0) * np.float32(SLICK_HIGH)
+        return SlickShape(mine, np.concatenate([slopes[:count], slopes[-1:]]), rings)
+
+    def gauge(self) -> RadialGauge:
+        s, grid = self.sum, self.grid
+        clean = s.waves
+        compared = {}
+        if "sum" in self.costs:
+            compared["sum"] = Compared(self.costs["sum"], len(clean.kx), 2 * float(grid.spacing[0]),
+                                       2 * float(grid.radii[-1]), s.significant_height, s.mean_square_slope)  # fmt: skip
+        if "fft" in self.costs and self.tile is not None:
+            compared["fft"] = Compared(self.costs["fft"], TILE * TILE // 2, 2 * TILE_LENGTH / TILE, TILE_LENGTH,
+                                       self.tile.significant_height, self.tile.mean_square_slope)  # fmt: skip
+        return RadialGauge(
+            readings=self.crowd.readings(self.time),
+            spill=self.spill,
+            height=s.significant_height,
+            height_clean=clean.significant_height,
+            slope=s.mean_square_slope,
+            slope_clean=0.5 * float(np.square(clean.k * clean.amplitude).sum()),
+            peak_period=2 * math.pi / float(s.rate[len(s.rate) // 2]),
+            tally=self.blowout.tally(self.spill),
+            compared=compared,
+            counts={
+                "wave-vertex pairs evaluated": s.evaluated,
+                "pairs skipped": s.skipped,
+                "body steps": self.crowd.stepped,
+                "collisions": self.crowd.touched,
+                "presses on the water": self.wakes.pressed,
+            },
+        )
+
+    def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
+        """The state for a file: name -> (array, unit)."""
+        fleet = self.crowd.fleet
+        return {
+            "position": (fleet.position.copy(), "m"),
+            "rotation": (fleet.rotation.copy(), "quaternion (w, x, y, z)"),
+            "velocity": (fleet.velocity.copy(), "m/s"),
+            "draft": (self.crowd.draft.copy(), "m"),
+        }

@@ -1,0 +1,99 @@
+"""Single waves drawn from a spectrum, each with an equal share of its energy, so that their sum's Hs is the spectrum's.
+
+A sum of n waves sees nothing that carries less than 1/n of the energy: its slopes are those of the long waves, and
+what is shorter belongs to the material (roughness, ripples). For the whole spectrum at once there is the FFT sea.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from sim.knobs import refusal
+from sim.ocean.bounds import is_whole, within
+from sim.ocean.spectra import Conditions, Spectrum
+
+MOST = 4096
+DECADES = (-1.7, 4.0)  # of wavenumber about the peak that are looked at: beyond lie 1e-8 of the energy
+CELLS, BEARINGS = 1500, 120  # of the polar grid over which energy is shared out
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
+
+
+class Waves(NamedTuple):
+    """n waves a cos(k.X - omega t + 2 pi phase), the longest first. All (n,)."""
+
+    kx: np.ndarray  # [rad/m]
+    ky: np.ndarray  # [rad/m]
+    amplitude: np.ndarray  # [m]
+    phase: np.ndarray  # [turns] at t = 0
+
+    @property
+    def k(self) -> np.ndarray:
+        """Wavenumber (n,) [rad/m]."""
+        return np.hypot(self.kx, self.ky)
+
+    @property
+    def significant_height(self) -> float:
+        """Hs = 4 sqrt(sum a^2/2) [m]."""
+        return 4.0 * math.sqrt(0.5 * float(np.square(self.amplitude).sum()))
+
+
+def draw_waves(spectrum: Spectrum, conditions: Conditions, count: int = 64, seed: int = 0) -> Waves:
+    """`count` waves of equal energy m0/count from a spectrum: a = sqrt(2 m0/count).
+
+    The energy, as a function of wavenumber, is cut into `count` equal parts; each gives the wavenumber of its middle
+    and a bearing drawn from the spreading there (by a golden-ratio sequence, so that few waves already spread evenly).
+    Without wind all amplitudes are 0. Raises ValueError for a count that is not 1 to 4096 or a seed that is not whole.
+    """
+    if not is_whole(count) or not 1 <= count <= MOST:
+        raise refusal("count", count, f"a whole number from 1 to {MOST}")
+    if not is_whole(seed):
+        raise refusal("seed", seed, "a whole number")
+    random = np.random.default_rng(seed)
+    peak = peak_wavenumber(spectrum, conditions)
+    k = peak * np.logspace(*DECADES, CELLS)
+    theta = np.arange(BEARINGS) * (2.0 * math.pi / BEARINGS)
+    S = spectrum(k[:, None] * np.cos(theta), k[:, None] * np.sin(theta), conditions)
+    # m0 = int int S k dk dtheta = int int S k^2 dln k dtheta
+    cells = S * (k**2)[:, None] * (math.log(k[1] / k[0]) * 2.0 * math.pi / BEARINGS)
+    below = np.concatenate([[0.0], np.cumsum(0.5 * (cells.sum(axis=1)[1:] + cells.sum(axis=1)[:-1]))])
+    m0 = float(below[-1])
+    phase = random.uniform(size=count)
+    if m0 <= 0.0:
+        return Waves(np.full(count, peak), np.zeros(count), np.zeros(count), phase)
+    middles = (np.arange(count) + 0.5) / count * m0
+    log_k = np.interp(middles, below, np.log(k))
+    rows = np.clip(np.searchsorted(k, np.exp(log_k)), 0, CELLS - 1)
+    # Bearings are cells centred on theta: cumulative energy at their edges.
+    share = np.concatenate([np.zeros((count, 1)), np.cumsum(cells[rows], axis=1)], axis=1)
+    edges = (np.arange(BEARINGS + 1) - 0.5) * (2.0 * math.pi / BEARINGS)
+    at = (random.uniform() + np.arange(count) * GOLDEN) % 1.0
+    bearing = np.array([np.interp(u * row[-1], row, edges) for u, row in zip(at, share, strict=True)])
+    wavenumber = np.exp(log_k)
+    amplitude = np.full(count, math.sqrt(2.0 * m0 / count))
+    return Waves(wavenumber * np.cos(bearing), wavenumber * np.sin(bearing), amplitude, phase)
+
+
+def peak_wavenumber(spectrum: Spectrum, conditions: Conditions) -> float:
+    """Wavenumber [rad/m] about which the spectrum's energy lies; of 10 m/s where there is no wind to tell."""
+    if spectrum.peak is None or conditions.wind_speed == 0.0:
+        return conditions.gravity / 10.0**2
+    omega = spectrum.peak(conditions)
+    low, high = 1e-9, 1e6
+    for _ in range(200):
+        middle = math.sqrt(low * high)
+        if float(conditions.omega(np.asarray(middle))) < omega:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def widened(waves: Waves, length: float) -> np.ndarray:
+    """Factor (n,) by which waves are lower when averaged over a disc of diameter `length` [m].
+
+    The mean of a wave over a disc of radius r is 2 J1(kr)/(kr) = 1 - (kr)^2/8 + ...; exp(-(kr)^2/8) begins alike and
+    does not oscillate.
+    """
+    r = 0.5 * within("length", length, 0.0, 1e4, "m")
+    return np.exp(-((waves.k * r) ** 2) / 8.0)

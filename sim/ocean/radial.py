@@ -1,0 +1,211 @@
+"""A sea that is a sum of Gerstner waves, drawn on a radial grid and asked at points.
+
+sea = RadialSea(draw_waves(SPECTRA["jonswap"], Conditions(wind_speed=8.0), 64), Spill(thickness=0.2))
+surface = sea.on(RadialGrid(), t=12.0)
+water = sea.at([[0.0, 0.0]], t=12.0)
+
+A wave shorter than twice the local spacing of the grid is skipped, one up to four times it is faded, so that nothing
+pops as the grid moves; `evaluated` and `skipped` count (wave, vertex) pairs. At points all waves are there.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sim.ocean.bounds import finite, not_negative, positions
+from sim.ocean.gerstner import Waves, widened
+from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.spill import Spill
+from sim.ocean.wave_sum import add_waves, find_labels, set_mesh, set_motion
+
+CLEAN = Spill()
+
+
+class RadialSurface(NamedTuple):
+    """The sea on a grid of n points at one moment."""
+
+    vertices: np.ndarray  # (n, 3) float32 [m] from the origin of the sea
+    slope: np.ndarray  # (n, 2) float32: dz/dx, dz/dy of the displaced surface
+    jacobian: np.ndarray  # (n,) float32: below 0 the surface folds
+
+
+class SurfaceAt(NamedTuple):
+    """The sea above n points at one moment, and the interface below it (where there is one, of mean height 0)."""
+
+    height: np.ndarray  # (n,) [m]
+    slope: np.ndarray  # (n, 2)
+    velocity: np.ndarray  # (n, 3) [m/s] of the fluid at the surface
+    acceleration: np.ndarray  # (n,) [m/s2], upwards
+    interface: np.ndarray  # (n,) [m] about its mean
+    interface_slope: np.ndarray  # (n, 2)
+    interface_rise: np.ndarray  # (n,) [m/s]
+    label: np.ndarray  # (n, 2) [m] the points of the resting surface that are there now
+    residual: np.ndarray  # (n,) [m] horizontal miss, at rounding unless the surface folds
+
+
+class RadialSea:
+    """Waves on a medium. Not for two threads at once."""
+
+    def __init__(self, waves: Waves, spill: Spill = CLEAN, exposure: float = 0.0, choppiness: float = 1.0) -> None:
+        """exposure [s]: how long the waves have run on this medium, and decayed; choppiness: factor on Gerstner's
+        horizontal motion. Raises ValueError for a negative one."""
+        self.evaluated = self.skipped = 0  # (wave, vertex) pairs
+        self.choppiness = not_negative("choppiness", choppiness, "")
+        self._base, self._fade = 0.0, 0.0
+        self._old: tuple[np.ndarray, ...] | None = None
+        self._grid: RadialGrid | None = None
+        self._set(waves, spill, not_negative("exposure", exposure, "s"), waves.phase)
+
+    def change(
+        self, t: float, waves: Waves | None = None, spill: Spill | None = None, exposure: float | None = None,
+        fade: float = 2.0,
+    ) -> None:  # fmt: skip
+        """From time t [s] on another medium, or other waves: phases go on without a jump, and other waves take over
+        the energy of the old ones within `fade` [s]."""
+        t, fade = finite("t", t, "s"), not_negative("fade", fade, "s")
+        turned = self.phases(t)
+        if waves is None:
+            n = len(self.waves.kx)
+            self._old = None if self._share(t) >= 1.0 else self._old
+            self._turn_old(t)
+            self._set(self.waves, spill or self.spill, self.exposure if exposure is None else exposure, turned[-n:], t)
+            return
+        n = len(self.waves.kx)
+        self._old = (self.waves.kx, self.waves.ky, self.amplitude, self.rate, turned[-n:], self.ratio)
+        self._set(waves, spill or self.spill, self.exposure if exposure is None else exposure, waves.phase, t)
+        self._began, self._fade = t, fade
+
+    def _turn_old(self, t: float) -> None:
+        """Bring the phases of the waves that fade out to time t."""
+        if self._old is not None:
+            kx, ky, amplitude, rate, phase, ratio = self._old
+            self._old = (kx, ky, amplitude, rate, turn(phase, rate, t - self._base), ratio)
+
+    def _set(self, waves: Waves, spill: Spill, exposure: float, phase: np.ndarray, t: float = 0.0) -> None:
+        self.waves, self.spill, self.exposure, self._base = waves, spill, exposure, t
+        k = waves.k
+        omega, decay = spill.roots(k)
+        self.rate, self.decay, self.ratio = omega, decay, spill.interface_ratio(k)
+        self.amplitude = waves.amplitude * np.exp(-decay * exposure)
+        self._phase = phase
+        self._grid = None
+        self._weights: dict[bytes, np.ndarray] = {}
+
+    @property
+    def significant_height(self) -> float:
+        """Hs = 4 sqrt(sum a^2/2) [m] of the waves as they are, decayed."""
+        return 4.0 * math.sqrt(0.5 * float(np.square(self.amplitude).sum()))
+
+    @property
+    def mean_square_slope(self) -> float:
+        """sum (ka)^2/2 of the waves as they are."""
+        return 0.5 * float(np.square(self.waves.k * self.amplitude).sum())
+
+    def _share(self, t: float) -> float:
+        return 1.0 if self._old is None or self._fade == 0.0 else min(max((t - self._began) / self._fade, 0.0), 1.0)
+
+    def phases(self, t: float) -> np.ndarray:
+        """Phase (n,) [turns], within half a turn, of all waves at time t [s] at the origin; old ones first."""
+        parts = [] if self._old is None else [turn(self._old[4], self._old[3], t - self._base)]
+        return np.concatenate([*parts, turn(self._phase, self.rate, t - self._base)])
+
+    def current(self, t: float) -> tuple[np.ndarray, ...]:
+        """(kx, ky, amplitude, omega, phase at t, interface ratio) of all waves at time t."""
+        share = self._share(t)
+        if self._old is not None and share >= 1.0:
+            self._old, self._grid, self._weights = None, None, {}
+        if self._old is None:
+            return self.waves.kx, self.waves.ky, self.amplitude, self.rate, self.phases(t), self.ratio
+        kx, ky, amplitude, rate, _, ratio = self._old
+        # Energies add, as the two seas are independent.
+        return (
+            np.concatenate([kx, self.waves.kx]),
+            np.concatenate([ky, self.waves.ky]),
+            np.concatenate([amplitude * math.sqrt(1.0 - share), self.amplitude * math.sqrt(share)]),
+            np.concatenate([rate, self.rate]),
+            self.phases(t),
+            np.concatenate([ratio, self.ratio]),
+        )
+
+    def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
+        """The sea on a grid about `centre` (x, y) [m] at time t [s]."""
+        kx, ky, amplitude, _, phase, _ = self.current(finite("t", t, "s"))
+        if self._grid is not grid:
+            self._plan(grid, np.hypot(kx, ky))
+        order, weight, active = self._order, self._weight, self._active
+        kx, ky, a = kx[order], ky[order], amplitude[order]
+        k = np.maximum(np.hypot(kx, ky), 1e-30)
+        ex, ey = self.choppiness * kx / k, self.choppiness * ky / k
+        turns = phase[order] + (kx * centre[0] + ky * centre[1]) / (2.0 * math.pi)
+        wave = np.zeros((weight.shape[1], 11), np.float32)
+        wave[: len(a)] = np.column_stack([
+            kx / (2.0 * math.pi), ky / (2.0 * math.pi), turns - np.rint(turns), a, -ex * a, -ey * a, -kx * a, -ky * a,
+            -ex * kx * a, -ey * ky * a, -ex * ky * a,
+        ])  # fmt: skip
+        n = len(grid)
+        sums = np.zeros((8, n), np.float32)
+        rows = [sums[i] for i in range(8)]
+        add_waves(grid.x, grid.y, grid.start, active, weight.reshape(-1), np.uint64(weight.shape[1]), wave.reshape(-1),
+                  *rows)  # fmt: skip
+        self.evaluated += self._pairs
+        self.skipped += n * len(a) - self._pairs
+        vertices, slope = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32)
+        jacobian = np.empty(n, np.float32)
+        set_mesh(grid.x, grid.y, *rows, vertices.reshape(-1), slope.reshape(-1), jacobian)
+        if centre != (0.0, 0.0):
+            vertices[:, 0] += np.float32(centre[0])
+            vertices[:, 1] += np.float32(centre[1])
+        return RadialSurface(vertices, slope, jacobian)
+
+    def _plan(self, grid: RadialGrid, k: np.ndarray) -> None:
+        """Which waves each band shows: the longest first, in pairs."""
+        self._order = np.argsort(k, kind="stable")
+        shown = grid.weights(k[self._order])
+        even = len(k) + len(k) % 2
+        self._weight = np.zeros((len(shown), even), np.float32)
+        self._weight[:, : len(k)] = shown
+        count = (shown > 0.0).sum(axis=1)
+        self._active = (count + count % 2).astype(np.uint64)
+        self._pairs = int((count * np.diff(grid.start.astype(np.int64))).sum())
+        self._grid = grid
+
+    def at(self, points: ArrayLike, t: float, size: ArrayLike = 0.0) -> SurfaceAt:
+        """The sea above points (n, 2) [m] at time t [s].
+
+        size [m]: one number or one a point: diameter over which the surface is averaged, as a hull of that size feels
+        it. Raises ValueError for points of another shape or not finite.
+        """
+        where = positions("points", points)
+        n = len(where)
+        kx, ky, amplitude, rate, phase, ratio = self.current(finite("t", t, "s"))
+        weight = self._footprint(np.broadcast_to(np.asarray(size, np.float64), (n,)), kx, ky)
+        chop = self.choppiness
+        label, found, residual = np.zeros((n, 2)), np.zeros((n, 8)), np.zeros(n)
+        find_labels(where, kx, ky, phase, amplitude, chop, weight, label, found, residual)
+        velocity, acceleration, interface = np.zeros((n, 3)), np.zeros(n), np.zeros((n, 4))
+        set_motion(label, kx, ky, rate, phase, amplitude, chop, weight, ratio, velocity, acceleration, interface)
+        a, b, c = 1.0 + found[:, 5], 1.0 + found[:, 6], found[:, 7]
+        inverse = 1.0 / np.maximum(a * b - c * c, 0.1)
+        hx, hy = found[:, 3], found[:, 4]
+        slope = np.column_stack([(hx * b - hy * c) * inverse, (hy * a - hx * c) * inverse])
+        return SurfaceAt(found[:, 0].copy(), slope, velocity, acceleration, interface[:, 0].copy(),
+                         interface[:, 1:3].copy(), interface[:, 3].copy(), label, residual)  # fmt: skip
+
+    def _footprint(self, size: np.ndarray, kx: np.ndarray, ky: np.ndarray) -> np.ndarray:
+        """Factors (points, waves) of hulls of these sizes; kept, as the same hulls ask at every step."""
+        key = size.tobytes() + len(kx).to_bytes(4, "little")
+        if key not in self._weights:
+            if len(self._weights) > 8:
+                self._weights.clear()
+            probe = Waves(kx, ky, kx, kx)
+            unique, which = np.unique(size, return_inverse=True)
+            self._weights[key] = np.array([widened(probe, float(s)) for s in unique]).reshape(-1, len(kx))[which]
+        return self._weights[key]
+
+
+def turn(phase: np.ndarray, omega: np.ndarray, t: float) -> np.ndarray:
+    """phase - omega t/(2 pi) within half a turn, in double: a month of seconds leaves an error of 1e-9 turns."""
+    turns = phase - omega / (2.0 * math.pi) * t
+    return turns - np.rint(turns)

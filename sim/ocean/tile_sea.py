@@ -1,0 +1,94 @@
+"""The square FFT sea asked as the radial one is: on a radial grid and at points, so that the two can be compared.
+
+The tile repeats every `length`, which is seen from high up; its shortest wave is two cells everywhere, however near
+the viewer. Towards the horizon, where rings are wider apart than waves are long, the surface is lowered to the share
+of the energy that the rings can show.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sim.jit import kernel
+from sim.ocean.bounds import positions
+from sim.ocean.query import bicubic
+from sim.ocean.radial import RadialSurface, SurfaceAt
+from sim.ocean.radial_grid import FADE, RadialGrid
+from sim.ocean.sea import Sea
+
+INSTANT = 1 / 60  # [s] between the three heights from which rise and acceleration are differences
+REACH = 0.05  # [m] of the differences that give the slope at a point
+
+
+class TileSea:
+    """A `Sea` with the questions of `RadialSea`."""
+
+    def __init__(self, sea: Sea) -> None:
+        self.sea = sea
+        self.evaluated = self.skipped = 0  # (wave, vertex) pairs: a transform has no such thing
+        self._grid: RadialGrid | None = None
+        self._share = np.zeros(0, np.float32)
+
+    def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
+        """The sea on a grid about `centre` (x, y) [m] at time t [s]."""
+        if self._grid is not grid:
+            self._share = np.repeat(self.shares(grid), np.diff(grid.start.astype(np.int64))).astype(np.float32)
+            self._grid = grid
+        surface = self.sea.surface(t)
+        D, slope = surface.displacement, surface.slope
+        n = len(grid)
+        vertices, slopes = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32)
+        cell = self.sea.length / self.sea.size
+        sample_mesh(grid.x, grid.y, self._share, centre[0], centre[1], cell, surface.height, D[..., 0], D[..., 1],
+                    slope[..., 0], slope[..., 1], vertices, slopes)  # fmt: skip
+        return RadialSurface(vertices, slopes, np.ones(n, np.float32))
+
+    def shares(self, grid: RadialGrid) -> np.ndarray:
+        """Amplitude (bands,) that the rings can show: root of the energy in waves of enough cells."""
+        energy = self.sea.energy_at(0.0).ravel()
+        k = np.hypot(self.sea.k[:, None], self.sea.k[None, :]).ravel()
+        order = np.argsort(k)
+        below = np.concatenate([[0.0], np.cumsum(energy[order])])
+        limit = 2.0 * math.pi / (0.5 * sum(FADE) * grid.spacing)
+        found = below[np.searchsorted(k[order], limit)]
+        return np.sqrt(found / max(float(below[-1]), 1e-30))
+
+    @property
+    def significant_height(self) -> float:
+        return self.sea.significant_height
+
+    @property
+    def mean_square_slope(self) -> float:
+        """Of the amplitudes as drawn: sum k^2 S dk^2."""
+        k = np.hypot(self.sea.k[:, None], self.sea.k[None, :])
+        return float((k**2 * self.sea.energy_at(0.0)).sum())
+
+    def at(self, points: ArrayLike, t: float, size: ArrayLike = 0.0) -> SurfaceAt:
+        """The sea above points (n, 2) [m] at time t [s]; `size` is not used, the tile has no shorter waves than its
+        cells. The current along the surface is left out: velocity is that of a surface that only rises."""
+        where = positions("points", points)
+        n = len(where)
+        around = np.concatenate([where + REACH * np.array(d) for d in ((1, 0), (-1, 0), (0, 1), (0, -1), (0, 0))])
+        height, residual = self.sea.height_at(around, t)
+        slope = np.column_stack([height[:n] - height[n : 2 * n], height[2 * n : 3 * n] - height[3 * n : 4 * n]]) / (2 * REACH)
+        now = height[4 * n :]
+        before, after = (self.sea.height_at(where, t + s)[0] for s in (-INSTANT, INSTANT))
+        velocity = np.zeros((n, 3))
+        velocity[:, 2] = (after - before) / (2 * INSTANT)
+        acceleration = (after - 2 * now + before) / INSTANT**2
+        return SurfaceAt(now, slope, velocity, acceleration, now.copy(), slope.copy(), velocity[:, 2].copy(), where,
+                         residual[4 * n :])  # fmt: skip
+
+
+@kernel
+def sample_mesh(x, y, share, x0, y0, cell, height, dx, dy, sx, sy, vertices, slopes):
+    """The tile's fields at the points of a grid about (x0, y0), each lowered to its share."""
+    for i in range(x.size):
+        X, Y = x[i] + x0, y[i] + y0
+        u, v, s = X / cell, Y / cell, share[i]
+        vertices[i, 0] = X + s * bicubic(dx, u, v)[0]
+        vertices[i, 1] = Y + s * bicubic(dy, u, v)[0]
+        vertices[i, 2] = s * bicubic(height, u, v)[0]
+        slopes[i, 0] = s * bicubic(sx, u, v)[0]
+        slopes[i, 1] = s * bicubic(sy, u, v)[0]

@@ -1,0 +1,108 @@
+"""The radial scene in a real browser: every preset as water, a buoy dragged under, oil poured on."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.messages import Pause, Play, Reset
+from app.radial_knobs import PRESETS
+from app.viewer import Viewer
+from tests.browser.test_rope import pixel
+
+
+@pytest.fixture
+def lab() -> Iterator[Viewer]:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("radial")
+    yield viewer
+    viewer.shut()
+
+
+def drawn(lab: Viewer) -> bool:
+    """The sea is there, as water, and moves."""
+    return lab.picture.water is not None and lab.picture.water.alive is True and lab.scene.time > 0.3
+
+
+def load(lab: Viewer, **changes: Any) -> None:
+    """Set knobs as the panel would."""
+    for name, value in changes.items():
+        lab.panel.controls[name].take(value)
+
+
+@pytest.mark.parametrize("preset", list(PRESETS))
+def test_each_preset_is_drawn_as_water_without_console_errors(lab: Viewer, open_tab, preset: str) -> None:
+    lab.panel.load(preset)
+    tab = open_tab(lab.port, width=700, height=440)
+    tab.wait(lambda: drawn(lab), 120)
+    first = tab.vertices("/sea")
+    assert len(first) == len(lab.scene.grid)
+    tab.wait(lambda: np.abs(tab.vertices("/sea") - first).max() > 0.02, 120)
+    assert np.isfinite(tab.vertices("/sea")).all()
+    assert lab.loop.halted == ""
+    if preset == "Burning rig":
+        tab.wait(lambda: lab.picture.flames is not None and lab.picture.flames.handle.visible, 60)
+        tab.wait(lambda: len(tab.vertices("/slick")) > 0, 120)
+    assert tab.errors == []
+
+
+def test_a_buoy_dragged_under_bobs_back(lab: Viewer, open_tab) -> None:
+    load(lab, waves=False, rig=False, rings=32, spokes=32)
+    lab.loop.commands.put(Reset())
+    tab = open_tab(lab.port, width=700, height=440)
+    tab.wait(lambda: drawn(lab), 120)
+    lab.loop.commands.put(Pause())
+    tab.page.wait_for_timeout(1500)
+    rest = lab.scene.crowd.fleet.position[0].copy()
+    start = pixel(lab, rest)
+    tab.page.mouse.move(*start)
+    lab.loop.commands.put(Play())
+    tab.drag(start, (start[0], start[1] + 110), pause=200)
+    tab.wait(lambda: bool(lab.scene.crowd.held), 60)
+    tab.wait(lambda: lab.scene.crowd.fleet.position[0, 2] < rest[2] - 0.15, 60)
+    tab.release()
+    tab.wait(lambda: not lab.scene.crowd.held, 60)
+    tab.wait(lambda: abs(lab.scene.crowd.fleet.position[0, 2] - rest[2]) < 0.02, 120)
+    assert tab.errors == []
+
+
+def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(lab: Viewer, open_tab) -> None:
+    load(lab, waves=False, rig=False, rings=32, spokes=32, ripples=False)
+    lab.loop.commands.put(Reset())
+    tab = open_tab(lab.port, width=700, height=440)
+    tab.wait(lambda: drawn(lab), 120)
+
+    def brightness() -> float:
+        deep = np.asarray(lab.picture.look.deep)
+        held = tab.vertices("/sea/water_look")
+        assert held[0] == pytest.approx(deep**2.2, abs=1e-3)  # the page has the colours that were sent
+        return float(held[:2].sum())
+
+    tab.wait(lambda: len(tab.vertices("/sea/water_look")) > 0)
+    clear, before = brightness(), lab.scene.crowd.draft.copy()
+    load(lab, spill="layer", thickness=0.3, speed=4.0)
+    tab.wait(lambda: lab.picture.look.refractive_index > 1.4, 60)
+    tab.page.wait_for_timeout(1500)
+    assert brightness() < 0.3 * clear
+    theory = lab.scene.gauge().readings[0].theory
+    tab.wait(lambda: np.abs(lab.scene.crowd.draft - theory.draft).max() < 2e-3, 180)
+    assert (lab.scene.crowd.draft > before + 0.03).all()
+    tab.wait(lambda: tab.page.get_by_text(f"{theory.draft:.3f}").count() > 0, 60)
+    assert tab.errors == []
+
+
+def test_hostile_values_clamp(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port, width=1000, height=800)
+    tab.wait(lambda: drawn(lab), 120)
+    lab.panel.controls["wind_speed"].take(1e30)
+    lab.panel.controls["bodies"].take(-5)
+    lab.panel.controls["oil"].take("<script>")
+    field = tab.page.get_by_label("Wave count").first
+    field.fill("1000000000")
+    field.press("Enter")
+    tab.wait(lambda: lab.scene.params.wave_count == 512, 60)
+    params = lab.scene.params
+    assert (params.wind_speed, params.bodies, params.oil) == (25.0, 0, "Alaska North Slope 2002")
+    assert lab.loop.halted == ""
+    assert tab.errors == []

@@ -1,0 +1,257 @@
+"""The radial scene without a browser: bodies settle where Archimedes says, oil adds what it should, nothing breaks."""
+
+import dataclasses
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from app.blowout import Blowout, slick_reach
+from app.crowd import HeaveMeter, hull_of, place_of
+from app.messages import Grab, Place, Release
+from app.radial_knobs import PRESETS, Params, hidden, spill_of
+from app.scenes import radial
+from app.scenes.radial import SLICK_HIGH, SLICK_SOFT, Scene
+from sim.floating import equilibrium_draft, heave_period
+from sim.knobs import check, clamp, knobs
+from sim.ocean.fluids import fluids
+
+CALM = {"waves": False, "rig": False, "ripples": False}
+
+
+def run(scene: Scene, seconds: float) -> Scene:
+    for _ in range(round(seconds / scene.step / 6)):
+        scene.advance(6)
+    return scene
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"spill": "layer", "thickness": 0.2},
+        {"spill": "layer", "thickness": 2.0, "density": 300.0},
+        {"spill": "layer", "thickness": 0.05, "oil": "IFO 180"},
+        {"spill": "mixed", "fraction": 0.4, "oil": "Arabian Light"},
+    ],
+)
+def test_bodies_let_go_too_high_settle_at_the_drafts_of_the_readout(changes: dict) -> None:
+    scene = Scene(Params(**CALM, **changes))
+    scene.crowd.fleet.position[:, 2] += 0.1
+    run(scene, 110.0)
+    for reading in scene.gauge().readings:
+        assert reading.draft == pytest.approx(reading.theory.draft, abs=1e-4)
+
+
+def test_oil_poured_on_adds_d_times_one_minus_the_ratio() -> None:
+    scene = Scene(Params(**CALM))
+    run(scene, 10.0)
+    before = scene.crowd.draft.copy()
+    scene.set_params(Params(**CALM, spill="layer", thickness=0.2))
+    run(scene, 110.0)
+    extra = 0.2 * (1.0 - fluids()["Alaska North Slope 2002"].density / 1025.0)
+    np.testing.assert_allclose(scene.crowd.draft - before, extra, atol=1e-4)
+    theory = scene.gauge().readings[0].theory
+    assert theory.draft - theory.in_water == pytest.approx(extra, abs=1e-9)
+
+
+def test_theory_is_that_of_the_hulls() -> None:
+    params = Params(spill="layer", density=700.0, size=2.0)
+    scene, spill = Scene(params), spill_of(params)
+    for reading in scene.gauge().readings:
+        hull = hull_of(reading.kind, 2.0)
+        assert reading.theory.draft == equilibrium_draft(hull, 700.0, spill.layers)
+        assert reading.theory.period == heave_period(hull, 700.0, spill.layers)
+
+
+def test_a_body_pushed_under_bobs_at_the_predicted_period() -> None:
+    scene = Scene(Params(**CALM, time_step=1 / 120))
+    scene.crowd.fleet.position[:, 2] -= 0.1
+    run(scene, 7.0)
+    for reading in scene.gauge().readings:
+        assert reading.period == pytest.approx(reading.theory.period, rel=0.04)
+
+
+def test_the_heave_meter_times_a_sine() -> None:
+    meter = HeaveMeter(1)
+    for i in range(1200):
+        meter.take(i / 60, np.array([0.5 + 0.1 * math.sin(2 * math.pi * i / 60 / 1.7)]), 1 / 60)
+    assert meter.period(0, 20.0) == pytest.approx(1.7, rel=0.01)
+    assert math.isnan(meter.period(0, 100.0))
+
+
+def test_what_is_denser_than_the_fluid_sinks_and_comes_to_rest_deep() -> None:
+    scene = Scene(Params(**CALM, density=1010.0, spill="mixed", fraction=0.6))
+    assert math.isinf(scene.gauge().readings[0].theory.draft)
+    run(scene, 90.0)
+    assert (scene.crowd.fleet.position[:, 2] >= -61.0).all()
+    assert (scene.crowd.fleet.position[:, 2] < -20.0).all()
+
+
+def test_a_grabbed_buoy_goes_under_and_comes_back() -> None:
+    scene = Scene(Params(**CALM))
+    rest = scene.crowd.fleet.position[0].copy()
+    for _ in range(60):
+        scene.obey(Grab(0, (rest[0], rest[1], rest[2] - 0.8)))
+        scene.advance(2)
+    assert scene.crowd.fleet.position[0, 2] < rest[2] - 0.4
+    assert scene.picture().pull is not None
+    scene.obey(Release())
+    run(scene, 80.0)
+    assert scene.crowd.fleet.position[0, 2] == pytest.approx(rest[2], abs=1e-3)
+    assert scene.picture().pull is None
+
+
+def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
+    scene = Scene(Params(**CALM))
+    home = scene.crowd.home[2]
+    scene.crowd.fleet.velocity[2] = (6.0, 0.0, 5.0)
+    run(scene, 1.0)
+    assert np.hypot(*(scene.crowd.fleet.position[2, :2] - home)) > 3.0
+    run(scene, 60.0)
+    assert np.hypot(*(scene.crowd.fleet.position[2, :2] - home)) < 3.0
+
+
+def test_a_nonsense_grab_is_no_grab() -> None:
+    scene = Scene(Params())
+    scene.obey(Grab(10**6, (0.0, 0.0, 0.0)))
+    scene.obey(Grab(-1, (0.0, 0.0, 0.0)))
+    scene.advance(2)
+    assert scene.picture().pull is None
+
+
+@pytest.mark.parametrize("name", list(PRESETS))
+def test_each_preset_runs_and_its_picture_is_finite(name: str) -> None:
+    scene = Scene(check(Params, PRESETS[name]))
+    run(scene, 4.0)
+    picture = scene.picture()
+    for array in (picture.surface.vertices, picture.surface.slope, picture.foam, picture.positions, picture.rotations):
+        assert np.isfinite(array).all()
+        assert array.dtype == np.float32
+    gauge = scene.gauge()
+    assert len(gauge.readings) == min(6, scene.params.bodies)
+    assert gauge.counts["wave-vertex pairs evaluated"] > 0
+    assert gauge.counts["pairs skipped"] > 0
+    assert set(gauge.compared) == {"sum", "fft"}
+
+
+def test_presets_are_those_that_were_asked_for() -> None:
+    assert list(PRESETS) == [
+        "Clear water", "Light crude spill 0.2 m", "Heavy fuel oil", "Entirely mixed", "Storm with buoys", "Burning rig",
+    ]  # fmt: skip
+    assert PRESETS["Clear water"] == {}
+
+
+def test_hostile_values_are_clamped_to_what_runs() -> None:
+    low = clamp(
+        dataclasses.replace(Params(), **{n: -1e30 for n, k in knobs(Params()).items() if k.kind in (int, float)})
+    )
+    high = clamp(
+        dataclasses.replace(Params(), **{n: 1e30 for n, k in knobs(Params()).items() if k.kind in (int, float)})
+    )
+    odd = clamp(dataclasses.replace(Params(), oil="; rm -rf", surface=7, wind_speed=math.nan, waves="yes"))  # type: ignore[arg-type]
+    assert odd == Params()
+    for params in (low, dataclasses.replace(high, bodies=20, rings=40, spokes=40, wave_count=32)):
+        scene = Scene(params)
+        run(scene, 20 * params.time_step)
+        assert np.isfinite(scene.picture().surface.vertices).all()
+
+
+def test_knobs_change_under_way_without_a_jump_of_the_bodies() -> None:
+    scene = run(Scene(Params()), 2.0)
+    changes = [
+        {"wind_speed": 12.0}, {"spill": "layer"}, {"oil": "Maya"}, {"surface": "fft"}, {"surface": "sum"},
+        {"density": 700.0}, {"fire": True, "jet": True}, {"fire_power": 50.0}, {"rings": 60}, {"choppiness": 0.3},
+        {"film": True}, {"jet": False}, {"spill": "mixed"}, {"waves": False}, {"centre": "camera"},
+    ]  # fmt: skip
+    params = Params()
+    for change in changes:
+        before = scene.crowd.fleet.position.copy()
+        params = dataclasses.replace(params, **change)
+        scene.set_params(params)
+        scene.advance(2)
+        assert np.abs(scene.crowd.fleet.position - before).max() < 0.3
+        assert np.isfinite(scene.picture().surface.vertices).all()
+
+
+def test_the_surface_drawn_is_the_one_the_bodies_float_on() -> None:
+    scene = run(Scene(Params(ripples=False)), 3.0)
+    vertices = scene.picture().surface.vertices[: 4 * 128]
+    at = scene.sea.at(vertices[:, :2], scene.time)
+    np.testing.assert_allclose(at.height, vertices[:, 2], atol=2e-5)
+
+
+def test_the_camera_takes_the_rings_along() -> None:
+    scene = run(Scene(Params(centre="camera")), 0.2)
+    scene.obey(Place("eye", (30.0, -12.0, 4.0)))
+    scene.advance(1)
+    vertices = scene.picture().surface.vertices
+    assert np.abs(vertices[-1, :2] - (30.0, -12.0)).max() < 3.0
+
+
+def test_bodies_that_bob_make_rings_and_bodies_at_rest_make_none() -> None:
+    still = run(Scene(Params(waves=False, rig=False)), 8.0)
+    level = np.abs(still.picture().surface.vertices[:, 2]).max()
+    bobbing = Scene(Params(waves=False, rig=False))
+    bobbing.crowd.fleet.position[:, 2] -= 0.3
+    run(bobbing, 1.5)
+    assert np.abs(bobbing.picture().surface.vertices[:, 2]).max() > 5e-3
+    assert level < 1e-3
+
+
+def test_oil_from_the_jet_makes_a_slick_that_grows() -> None:
+    scene = run(Scene(Params(jet=True)), 6.0)
+    early = scene.gauge().tally
+    run(scene, 12.0)
+    late = scene.gauge().tally
+    assert late.radius > early.radius > 0.0
+    assert late.ejected == pytest.approx(late.in_flight + late.fed)
+    assert late.fed == pytest.approx(math.pi * late.radius**2 * late.thickness)
+    assert late.hits > early.hits > 0
+    shape = scene.picture().slick
+    assert shape is not None
+    slick = scene.blowout.slick(scene.spill)
+    assert slick is not None
+    above = slick_reach(slick, shape.vertices[:, 0], shape.vertices[:, 1]) > SLICK_SOFT
+    water = np.concatenate([scene.surface.vertices[: len(shape.vertices) - 1], scene.surface.vertices[-1:]])
+    lift = shape.vertices[:, 2] - water[:, 2]
+    np.testing.assert_allclose(lift[above], SLICK_HIGH, atol=1e-5)
+    assert lift[~above].min() < -0.1
+
+
+def test_closing_the_jet_keeps_its_oil() -> None:
+    scene = run(Scene(Params(jet=True)), 6.0)
+    ejected = scene.gauge().tally.ejected
+    scene.set_params(Params(jet=False))
+    tally = scene.gauge().tally
+    assert tally.fed == pytest.approx(ejected)
+    assert tally.in_flight == 0.0
+    assert isinstance(scene.blowout, Blowout)
+
+
+def test_square_and_radial_surfaces_are_as_high_under_the_same_wind() -> None:
+    radial_sea = Scene(Params())
+    square = Scene(Params(surface="fft"))
+    assert square.sea.significant_height == pytest.approx(radial_sea.sea.significant_height, rel=0.15)
+    run(square, 2.0)
+    assert np.isfinite(square.crowd.fleet.position).all()
+
+
+def test_bodies_start_apart() -> None:
+    places = [place_of(i, 1.0) for i in range(200)]
+    closest = min(math.dist(a, b) for a, b in itertools.combinations(places, 2))
+    assert closest > 1.8
+
+
+def test_hidden_knobs_are_knobs() -> None:
+    for changes in PRESETS.values():
+        assert hidden(check(Params, changes)) <= set(knobs(Params()))
+    assert "thickness" in hidden(Params())
+    assert "thickness" not in hidden(Params(spill="layer"))
+
+
+def test_arrays_have_units() -> None:
+    for array, unit in radial.Scene(Params()).arrays().values():
+        assert np.isfinite(array).all()
+        assert unit

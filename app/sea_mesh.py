@@ -14,38 +14,39 @@ STEEPEST = 1.5  # largest slope drawn, in magnitude
 
 
 @kernel
-def difference(field, i, j, di, dj):
-    """Fourth-order central difference of a periodic field along (di, dj), per cell."""
-    n = field.shape[0]
-    a, b = (i + di) % n, (j + dj) % n
-    c, d = (i - di) % n, (j - dj) % n
-    e, f = (i + 2 * di) % n, (j + 2 * dj) % n
-    g, h = (i - 2 * di) % n, (j - 2 * dj) % n
-    return (8.0 * (field[a, b] - field[c, d]) - (field[e, f] - field[g, h])) / 12.0
+def neighbours(i, n):
+    """i - 2, i - 1, i + 1, i + 2 on a circle of n."""
+    a, b, c, d = i - 2, i - 1, i + 1, i + 2
+    return a + n if a < 0 else a, b + n if b < 0 else b, c - n if c >= n else c, d - n if d >= n else d
 
 
-@kernel
+@kernel(noalias=True)
 def set_mesh(height, dx, dy, choppy, scale, stride, cell, threshold, soft, fade, vertices, slopes, foam):
     """Set the mesh and fade its foam; returns (share of the mesh that is foam, rms of J - 1).
 
     height, dx, dy: (n, n) [m], dx and dy unread unless `choppy`; scale: factor on the height; cell [m] of the grid.
     foam: (n/stride, n/stride), 0 to 1, kept from the last frame: times `fade`, and at least (threshold - J)/soft.
+    Differences are (8 (f1 - f-1) - (f2 - f-2))/12 per cell.
     """
-    inverse = 1.0 / cell
+    inverse, n = 1.0 / (12.0 * cell), height.shape[0]
     foamy, strain = 0.0, 0.0
     for i in range(vertices.shape[0]):
+        p = i * stride
+        p_2, p_1, p1, p2 = neighbours(p, n)
         for j in range(vertices.shape[1]):
-            m, n = i * stride, j * stride
-            z = scale * height[m, n]
-            zx = scale * inverse * difference(height, m, n, 1, 0)
-            zy = scale * inverse * difference(height, m, n, 0, 1)
-            x, y, J = m * cell, n * cell, 1.0
+            q = j * stride
+            q_2, q_1, q1, q2 = neighbours(q, n)
+            h = height
+            z = scale * h[p, q]
+            zx = scale * inverse * (8.0 * (h[p1, q] - h[p_1, q]) - (h[p2, q] - h[p_2, q]))
+            zy = scale * inverse * (8.0 * (h[p, q1] - h[p, q_1]) - (h[p, q2] - h[p, q_2]))
+            x, y, J = p * cell, q * cell, 1.0
             if choppy:
-                x += dx[m, n]
-                y += dy[m, n]
-                a = 1.0 + inverse * difference(dx, m, n, 1, 0)
-                d = 1.0 + inverse * difference(dy, m, n, 0, 1)
-                b = inverse * difference(dx, m, n, 0, 1)
+                x += dx[p, q]
+                y += dy[p, q]
+                a = 1.0 + inverse * (8.0 * (dx[p1, q] - dx[p_1, q]) - (dx[p2, q] - dx[p_2, q]))
+                b = inverse * (8.0 * (dx[p, q1] - dx[p, q_1]) - (dx[p, q2] - dx[p, q_2]))
+                d = 1.0 + inverse * (8.0 * (dy[p, q1] - dy[p, q_1]) - (dy[p, q2] - dy[p, q_2]))
                 J = a * d - b * b
                 # The slope by place: (zx, zy) by label, times the inverse of the displacement's gradient.
                 J_safe = max(J, LEAST_STRETCH)

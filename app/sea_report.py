@@ -14,32 +14,45 @@ BAND = 2.0  # standard deviations: 95 of 100 seas lie within
 WATER, HEAVY_OIL = 1e-6, 1e-3  # [m2/s] kinematic viscosities to compare with
 
 
-class Report(NamedTuple):
-    """The sea as drawn, and as theory has it."""
+class Theory(NamedTuple):
+    """What the spectrum says."""
 
-    measured: Statistics  # of the drawn heights
-    expected: Statistics  # of the spectrum as the tile resolves it
+    statistics: Statistics  # as the tile resolves it
     scatter: float  # relative standard deviation of one sea's Hs
-    whole: float  # Hs [m] of the whole spectrum on an endless sea, nan where no closed form is known
+    whole: float  # Hs [m] on an endless sea, nan where no closed form is known
     wave: tuple[float, float]  # length [m] and speed [m/s] of the dominant wave
 
 
-def report(sea: Sea, t: float, height: np.ndarray, earlier: np.ndarray | None, params: Params) -> Report:
-    """Measure heights (n, n) [m] of time t [s] as drawn, and the sea's own energy."""
-    a = params.amplitude
-    found = measured(height, sea.length, sea.conditions, earlier)
-    stretch = params.dispersion_scale or math.nan
-    found = Statistics(
-        a * found.significant_height, found.peak_period / stretch, a * a * found.mean_square_slope, found.direction
+class Report(NamedTuple):
+    """The sea as drawn, and as theory has it."""
+
+    measured: Statistics
+    theory: Theory
+
+
+def scaled(s: Statistics, factor: float) -> Statistics:
+    """The statistics of heights `factor` times as high."""
+    return s._replace(
+        significant_height=factor * s.significant_height, mean_square_slope=factor**2 * s.mean_square_slope
     )
-    theory = expected(sea, t)
-    theory = Statistics(
-        a * theory.significant_height, theory.peak_period, a * a * theory.mean_square_slope, theory.direction
-    )
+
+
+def theory(sea: Sea, t: float, params: Params) -> Theory:
+    """Theory of the sea at time t [s] as drawn."""
+    found = expected(sea, t)
     c = sea.conditions
     closed = sea.spectrum.significant_height
-    whole = a * closed(c) if closed is not None and c.wind_speed > 0.0 else math.nan
-    return Report(found, theory, height_scatter(sea, t), whole, dominant(sea, t, theory.peak_period))
+    whole = closed(c) if closed is not None and c.wind_speed > 0.0 else math.nan
+    wave = dominant(sea, t, found.peak_period)
+    return Theory(scaled(found, params.amplitude), height_scatter(sea, t), params.amplitude * whole, wave)
+
+
+def measure(sea: Sea, height: np.ndarray, earlier: np.ndarray | None, params: Params) -> Statistics:
+    """Statistics of heights (n, n) [m]; earlier: those of the picture before."""
+    found = measured(height, sea.length, sea.conditions, earlier)
+    # A scale on the dispersion makes every period shorter by as much.
+    period = found.peak_period / params.dispersion_scale if params.dispersion_scale > 0.0 else math.nan
+    return scaled(found, params.amplitude)._replace(peak_period=period)
 
 
 def dominant(sea: Sea, t: float, period: float) -> tuple[float, float]:
@@ -65,8 +78,8 @@ def table(r: Report) -> str:
             f"<td style='text-align:right'>{theory}</td></tr>"
         )
 
-    m, e = r.measured, r.expected
-    band = BAND * r.scatter * e.significant_height
+    m, e, whole = r.measured, r.theory.statistics, r.theory.whole
+    band = BAND * r.theory.scatter * e.significant_height
     inside = abs(m.significant_height - e.significant_height) <= band + 1e-9
     rows = [
         row("H<sub>s</sub> [m]", f"{m.significant_height:.3g}", f"{e.significant_height:.3g} ± {band:.2g}", inside),
@@ -74,9 +87,9 @@ def table(r: Report) -> str:
         row("mean square slope", f"{m.mean_square_slope:.3g}", f"{e.mean_square_slope:.3g}"),
         row("direction [°]", number(math.degrees(m.direction), ".0f"), number(math.degrees(e.direction), ".0f")),
     ]
-    share = "" if math.isnan(r.whole) or r.whole == 0.0 else (
-        f"<div style='opacity:.75'>The tile holds {min(e.significant_height / r.whole, 9.99):.0%} of the "
-        f"{r.whole:.3g} m of an endless, undamped sea.</div>"
+    share = "" if math.isnan(whole) or whole == 0.0 else (
+        f"<div style='opacity:.75'>The tile holds {min(e.significant_height / whole, 9.99):.0%} of the "
+        f"{whole:.3g} m of an endless, undamped sea.</div>"
     )  # fmt: skip
     return (
         "<table style='width:100%;border-spacing:0;font-size:12px'><tr style='opacity:.75'><td></td>"
@@ -133,7 +146,11 @@ def lab_says(params: Params, r: Report | None) -> str:
             "In a storm waves are higher and move faster.",
             f"Both. A full-grown sea has H<sub>s</sub> = 0.209 U²/g and crests at c = U/0.877: for {U:.3g} m/s "
             f"{0.20925 * U * U / g:.3g} m and {U / 0.877:.3g} m/s."
-            + (f" The dominant waves here are {r.wave[0]:.3g} m long and run at {r.wave[1]:.3g} m/s." if r else ""),
+            + (
+                f" The dominant waves here are {r.theory.wave[0]:.3g} m long and run at {r.theory.wave[1]:.3g} m/s."
+                if r
+                else ""
+            ),
         ),
         (
             "On a planet of 100 times the mass waves are different.",

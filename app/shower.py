@@ -14,10 +14,11 @@ from sim.ocean import Sea
 from sim.particles.rain import Hits, Rain
 
 WINDOW = 48.0  # [m] side of the square in the middle of the tile that drops are drawn over
-ROOM = 0.4  # of the window's side: how far above the highest waves drops begin
+ROOM = 0.6  # of the window's side: how far above the highest waves drops begin
 COARSEST = 0.35  # [m] cell above which no ring is drawn
-WIDTH = 1.6  # cells: Gaussian width of a ring's beginning
-STEEPNESS = 0.16  # depth of the first trough over that width, for an average drop
+WIDTH = 1.5  # cells: Gaussian width of a ring's beginning
+STEEPNESS = 0.3  # depth of the first trough over that width, for an average drop
+LARGEST = 3.0  # average drops that a ring is as strong as at most: the largest drops would break the surface
 BLOW = (
     0.160  # the trough of an impulse J on a width a is BLOW J/(rho a^(5/2) sqrt(g)) deep, deep water (Lamb, Art. 255)
 )
@@ -58,7 +59,7 @@ class Shower:
         self.next = 0
         self.rung = 0
         r = self.rain
-        self.momentum = 1000.0 * math.pi / 6.0 * float((r.diameter**3 * r.speed).mean())  # [kg m/s] of a drawn drop
+        self.momentum = DENSITY * math.pi / 6.0 * float((r.diameter**3 * r.speed).mean())  # [kg m/s] of a drawn drop
         blow = DENSITY * self.width**2.5 * math.sqrt(sea.conditions.gravity) / BLOW  # [N s] a metre of depth
         self.drops_a_ring = self.rings * STEEPNESS * self.width * blow / self.momentum
 
@@ -79,9 +80,9 @@ class Shower:
         self.splash(hits, dt)
         if self.rings == 0.0 or not len(hits.label):
             return 0
-        mass = 1000.0 * math.pi / 6.0 * hits.diameter**3
+        momentum = np.minimum(DENSITY * math.pi / 6.0 * hits.diameter**3 * hits.speed, LARGEST * self.momentum)
         sea.ripples.leak = LEAK
-        sea.ripples.add(t, hits.label + self.corner, self.width, impulse=self.drops_a_ring * mass * hits.speed)
+        sea.ripples.add(t, hits.label + self.corner, self.width, impulse=self.drops_a_ring * momentum)
         self.rung += len(hits.label)
         return len(hits.label)
 

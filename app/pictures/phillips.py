@@ -17,7 +17,7 @@ from app.water import Look, Water, sky
 LENGTH = Params().length  # [m] tile of the first view
 VIEWS = {  # eye and target, of the tile's length: over the middle of the tile, into the sun
     "deck": ((0.47, 0.5, 0.013), (0.53, 0.5, 0.0113)),
-    "bow": ((0.38, 0.5, 0.05), (0.56, 0.5, 0.0)),
+    "bow": ((0.36, 0.5, 0.055), (0.56, 0.5, 0.006)),
     "mast": ((0.42, 0.5, 0.06), (0.53, 0.5, 0.035)),
     "gull": ((0.2, 0.5, 0.2), (0.55, 0.5, 0.0)),
 }
@@ -37,7 +37,7 @@ class Picture:
     """Draws `SeaPicture`s."""
 
     CAMERA = scaled(VIEWS["deck"][0], LENGTH), scaled(VIEWS["deck"][1], LENGTH)
-    FOV = 0.75  # [rad]
+    FOV = 0.65  # [rad]
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
@@ -87,7 +87,7 @@ class Picture:
     def dress(self, picture: SeaPicture) -> Look:
         """The look under this sky: ripples carry what of Cox and Munk's slope the mesh does not."""
         p: Params = picture.params
-        missing = max(0.003 + 0.00512 * p.wind_speed - picture.slope_resolved, 0.001)
+        missing = max(min(0.003, 0.0015 * p.wind_speed) + 0.00512 * p.wind_speed - picture.slope_resolved, 0.001)
         # Under a closed cover there is no sun, and its colour is gone from the sky.
         overcast = min(max((p.clouds - 0.6) / 0.4, 0.0), 1.0)
         grey = np.array(OVERCAST) * overcast + np.array(self.light.tint) * (1.0 - overcast)

@@ -12,7 +12,7 @@ from app.messages import Command, Point
 from app.probe import Probe, where_hit
 from app.sea_knobs import Params, conditions, gravity, hidden
 from app.sea_mesh import set_mesh
-from app.sea_report import Report, report
+from app.sea_report import Report, Theory, measure, theory
 from app.shower import RainPicture, Shower
 from sim.ocean import Sea
 from sim.ocean.foam import pace, threshold, whitecaps
@@ -28,6 +28,7 @@ STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
 STARTS = {"calm": 3.0, "storm": 24.0}  # [m/s] wind of the sea that a reset may begin with
 SOFT = 0.35  # how far below the threshold the Jacobian of full foam is, in parts of the sea's own spread
 MEASURE_EVERY = 0.5  # [s] between two looks at the statistics of the sea
+SETTLED = 16.0  # transition times after which nothing is left of a change
 SAMPLE_EVERY = 0.1  # [s] between two plot rows
 AHEAD = (0.56, 0.485)  # of the tile: where the probe is before it is placed
 PACE_EVERY = 0.5  # [s] between two looks at how steep and how fast the sea is
@@ -48,8 +49,8 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Light planet": {"planet_mass": 0.01, "length": 1024.0, "wind_speed": 10.0, "visibility": 6000.0, "sky": "dawn"},
     "Heavy planet": {"planet_mass": 100.0, "length": 64.0, "wind_speed": 10.0, "visibility": 1500.0},
     "Rain shower": {
-        "rain": 30.0, "length": 32.0, "wind_speed": 1.5, "wind_direction": 70.0, "clouds": 1.0, "size": "512",
-        "mesh": "256", "view": "bow", "drops": 1200, "visibility": 500.0, "foam": False, "sun": 65.0,
+        "rain": 30.0, "length": 32.0, "wind_speed": 0.8, "wind_direction": 70.0, "clouds": 1.0, "view": "bow",
+        "drops": 1200, "visibility": 500.0, "foam": False, "sun": 30.0, "daylight": 1.3,
     },
 }  # fmt: skip
 
@@ -157,6 +158,7 @@ class Scene:
             self.sea.change(self.time, p.transition, **conditions(p))
         self.changed_at = self.time
         self.report: Report | None = None
+        self.theory: Theory | None = None
         self.clear_mesh()
         self.make_shower()
 
@@ -185,6 +187,7 @@ class Scene:
         """Take new knobs: new weather grows out of the sea as it is, another grid shows the same sea."""
         old, white = self.params, self.whiteness(self.time)
         self.params = params
+        self.theory = None
         if params.length != old.length:
             x, y = self.probe.at
             self.probe.put((x * params.length / old.length, y * params.length / old.length))
@@ -247,7 +250,7 @@ class Scene:
             self.probe.read(self.sea, t, p.amplitude)
             self.counts["probe readings"] += 1
             probe = (*self.probe.at, self.probe.height)
-        self.measure(height)
+        self.look(height)
         self.earlier = height if p.statistics else None
         self.counts["pictures"] += 1
         self.counts["transforms"] += self.sea.transforms.count - before
@@ -266,13 +269,15 @@ class Scene:
         )  # fmt: skip
         return SeaPicture(p, self.time, vertices, slopes, self.foam, self.pace[0], None, None)
 
-    def measure(self, height: NDArray[np.floating]) -> None:
+    def look(self, height: NDArray[np.floating]) -> None:
         """Statistics and the probe's spectrum, at a few hertz and only where they are shown; plot rows."""
         p, t = self.params, self.time
         if abs(t - self.measured_at) >= MEASURE_EVERY:
             self.measured_at = t
             if p.statistics:
-                self.report = report(self.sea, t, height, self.earlier, p)
+                if self.theory is None or p.viscosity > 0.0 or t - self.changed_at < SETTLED * p.transition:
+                    self.theory = theory(self.sea, t, p)
+                self.report = Report(measure(self.sea, height, self.earlier, p), self.theory)
                 self.counts["statistics"] += 1
             if p.plot_spectrum:
                 columns = self.probe.spectrum(self.sea, t, p.amplitude)

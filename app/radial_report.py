@@ -15,6 +15,7 @@ from sim.ocean.spill import Spill
 
 NAMES = {"buoy_red": "Red buoy", "buoy_yellow": "Yellow buoy", "crate": "Box", "ball": "Ball"}
 SAMPLE_WAVE = 10.0  # [m] the wave that stands for all where one must
+TABLE = "border-collapse:collapse;font-size:11px"
 CELL = 'style="padding:1px 6px 1px 0;text-align:right"'
 HEAD = 'style="padding:1px 6px 1px 0;text-align:right;font-weight:600;opacity:.7"'
 
@@ -52,10 +53,10 @@ def table(snapshot: Snapshot) -> str:
             ])
         )  # fmt: skip
     lines = [
-        f'<table style="border-collapse:collapse;font-size:11px;font-variant-numeric:tabular-nums">{"".join(rows)}</table>',
+        f'<table style="{TABLE};font-variant-numeric:tabular-nums">{"".join(rows)}</table>',
         '<div style="opacity:.7;font-size:11px">m and s; at rest: Archimedes in these fluids; mean over 8 s</div>',
         archimedes(g.spill),
-        f"<div>Waves: Hs {g.height:.2f} m, {g.height_clean:.2f} m without oil; steepness {math.sqrt(g.slope):.3f} rms</div>",
+        f"<div>Waves: Hs {g.height:.2f} m, {g.height_clean:.2f} m without oil; slope {math.sqrt(g.slope):.3f} rms</div>",
     ]
     if g.tally.ejected > 0.0:
         t = g.tally
@@ -77,7 +78,10 @@ def archimedes(spill: Spill) -> str:
         )
     if spill.kind == "mixed":
         mixed = spill.surface.density
-        return f"<div>draft × {water / mixed:.4f} where sides are straight: ρ = {mixed:.1f} instead of {water:g} kg/m³</div>"
+        return (
+            f"<div>draft × {water / mixed:.4f} where sides are straight: "
+            f"ρ = {mixed:.1f} instead of {water:g} kg/m³</div>"
+        )
     return f"<div>ρ V = {water:g} V<sub>wet</sub>: the weight of the water displaced (Archimedes)</div>"
 
 
@@ -100,7 +104,8 @@ def lab_says(snapshot: Snapshot) -> str:
     claims = [
         (
             "1. Which fluid is on top?",
-            f"The lighter: {spill.oil.density:g} < {water.density:g} kg/m³. p = ρ g z; a swap would lift the centre of mass.",
+            f"The lighter: {spill.oil.density:g} < {water.density:g} kg/m³. p = ρ g z; "
+            "a swap would lift the centre of mass.",
         ),
         (
             "2, 4. The bodies sink deeper into oil.",
@@ -109,8 +114,8 @@ def lab_says(snapshot: Snapshot) -> str:
         (
             "5. The mixture's viscosity.",
             f"{surface.viscosity * 1e3:.3g} mPa s ({p.mixture_law if spill.kind == 'mixed' else surface.name}); water "
-            f"{water.viscosity * 1e3:.3g}. Oil and water do not dissolve: Taylor's emulsion is what happens, Arrhenius' "
-            "law the reading of 'entirely mixed'.",
+            f"{water.viscosity * 1e3:.3g}. Oil and water do not dissolve: Taylor's emulsion is what happens, "
+            "Arrhenius' law the reading of 'entirely mixed'.",
         ),
         (
             "6a. Viscosity changes the speed of waves.",
@@ -124,8 +129,8 @@ def lab_says(snapshot: Snapshot) -> str:
         ),
         (
             "7. Oil reflects less.",
-            f"More, at every angle: straight down {r_oil:.2%} against {r_water:.2%}, under a whole sky {d_oil:.2%} against "
-            f"{d_water:.2%} (n = {surface.refractive_index:.3f}). It looks dark for no light comes up from below, and "
+            f"More, at every angle: straight down {r_oil:.2%} against {r_water:.2%}, under a whole sky {d_oil:.2%} "
+            f"against {d_water:.2%} (n = {surface.refractive_index:.3f}). It looks dark for no light comes up from below, and "
             f"smooth. Shown: {'as the lab asks, reflections × 0.4' if p.optics == 'lab' else 'physics'}.",
         ),
     ]
@@ -145,7 +150,7 @@ def fluids_html(snapshot: Snapshot) -> str:
                 f"{f.refractive_index:.3f}",
             ])
         )  # fmt: skip
-    return f'<table style="border-collapse:collapse;font-size:11px">{"".join(rows)}</table>15 °C; NOAA\'s oil records.'
+    return f'<table style="{TABLE}">{"".join(rows)}</table>15 °C; NOAA\'s oil records.'
 
 
 def compared_html(snapshot: Snapshot) -> str:
@@ -162,10 +167,10 @@ def compared_html(snapshot: Snapshot) -> str:
                 ])
             )  # fmt: skip
     verdict = (
-        "Same vertices, timed just now. The rings reach the horizon and never repeat, dense where one looks, but each wave "
-        "costs a pass; the transform gives every wave of its tile at once, repeats, and is as fine far off as near by."
+        "Same vertices, timed just now. The rings reach the horizon and never repeat, dense where one looks, but each "
+        "wave costs a pass; the transform gives every wave of its tile at once, repeats, and is as fine far off as near by."
     )
-    return f'<table style="border-collapse:collapse;font-size:11px">{"".join(rows)}</table>{verdict}'
+    return f'<table style="{TABLE}">{"".join(rows)}</table>{verdict}'
 
 
 def counts_html(snapshot: Snapshot) -> str:

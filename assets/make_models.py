@@ -5,10 +5,12 @@ Parts are gathered by colour, one mesh and one material each. z is up, metres; a
 
 import math
 from collections import defaultdict
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import trimesh
+from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 Point = tuple[float, float, float]
@@ -62,7 +64,7 @@ class Model:
         levels = [a + (b - a) * s for s in np.linspace(0.0, 1.0, bays + 1)]
         for i in range(n):
             self.bar(paint, tuple(a[i]), tuple(b[i]), 1.6 * radius)
-        for level, (p, q) in enumerate(zip(levels[:-1], levels[1:], strict=True)):
+        for level, (p, q) in enumerate(pairwise(levels)):
             for i in range(n):
                 j = (i + 1) % n
                 self.bar(paint, tuple(q[i]), tuple(q[j]), radius, 4)
@@ -78,7 +80,7 @@ class Model:
             linear = [*((np.array(color) / 255.0) ** 2.2).tolist(), 1.0]
             factor = (np.array(linear) * 255).round().astype(np.uint8)
             material = PBRMaterial(name=paint, baseColorFactor=factor, roughnessFactor=rough, metallicFactor=metal)
-            whole.visual = trimesh.visual.TextureVisuals(material=material)
+            whole.visual = TextureVisuals(material=material)
             scene.add_geometry(whole, node_name=paint, geom_name=paint)
             count += len(whole.faces)
         path.write_bytes(scene.export(file_type="glb"))  # type: ignore[arg-type]

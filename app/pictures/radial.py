@@ -18,6 +18,7 @@ from app.shapes import ball
 from app.water import Look, Water, sky
 
 SUN = 1.25  # [rad] bearing of the sun, beyond the buoys as the camera starts
+SUNLIGHT = 2.2  # intensity of the lamp that stands for a sun of strength 5
 HANDLE = 0.75  # [m] radius of what is dragged, at size 1
 HELD_COLOUR = (255, 90, 60)
 EYE_EVERY = 0.2  # [s] between looks at where the camera is
@@ -36,7 +37,7 @@ def model(name: str) -> bytes:
 class Picture:
     """Draws `RadialPicture`s."""
 
-    CAMERA = ((-6.5, -7.5, 2.7), (2.5, 4.0, 1.1))  # position, target [m]
+    CAMERA = ((-6.5, -7.5, 3.0), (3.9, 3.2, 1.0))  # position, target [m]
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
@@ -68,6 +69,7 @@ class Picture:
         if self.lit != p.sky:
             self.lit = p.sky
             self.light = sky(self.server, p.sky, SUN)
+            self.shine()
         self.show_sea(picture)
         self.show_slick(picture)
         self.show_bodies(picture)
@@ -84,6 +86,17 @@ class Picture:
             self.glow.intensity = 900.0 * (1.0 + 0.25 * float(np.sin(23.0 * picture.time) * np.sin(8.3 * picture.time)))
         self.move_camera(picture)
         self.last = picture
+
+    def shine(self) -> None:
+        """Light bodies and rig by the sun of this sky; viser's own lamps stand elsewhere."""
+        self.server.scene.configure_default_lights(enabled=False, cast_shadow=False)
+        x, y, z = self.light.sun_direction
+        red, green, blue = (int(255 * c) for c in self.light.sun_color)
+        strength = SUNLIGHT * self.light.sun_strength / 5.0
+        for name, place, share in (("sun", (x, y, z + 0.35), 1.0), ("fill", (-0.6, -0.7, 0.5), 0.45)):
+            self.server.scene.add_light_directional(
+                f"/{name}", color=(red, green, blue), intensity=share * strength, position=place, cast_shadow=False
+            )
 
     def show_sea(self, picture: RadialPicture) -> None:
         look = look_of(self.light, picture.params, picture.spill)

@@ -16,8 +16,9 @@ from app.radial_knobs import PRESETS, Params, conditions_of, exposure_of, hidden
 from app.wakes import LENGTH as WAKES_LENGTH
 from app.wakes import Wakes
 from sim.floating import Laws
+from sim.knobs import check
 from sim.ocean import Sea
-from sim.ocean.gerstner import draw_waves
+from sim.ocean.gerstner import Waves, draw_waves
 from sim.ocean.radial import RadialSea, RadialSurface
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.spectra import SPECTRA
@@ -44,7 +45,10 @@ SLICK_HIGH, SLICK_SOFT = 0.3, 8.0  # [m] above the water, and from how far insid
 TILE, TILE_LENGTH = 128, 256.0  # the square sea: as many vertices as the rings
 SAMPLE_EVERY = 1 / 15  # [s] between plot rows
 COMPARE_EVERY = 2.0  # [s] of wall time between two timings of the other surface
-FOAM_FROM, FOAM_OVER = 0.58, 0.35  # Jacobian below which there is foam, and over which it fills up
+FOAM_NEAR = 80.0  # [m] within which the Jacobian is looked at for foam
+FOAM_OVER = 0.07  # of the Jacobian, over which foam fills up
+FOAM_CALM = 0.97  # Jacobian above which nothing is foam
+WARM = {"bodies": {}, "fire": {"fire": True, "jet": True, "spill": "layer"}, "square sea": {"surface": "fft"}}
 
 
 class SlickShape(NamedTuple):
@@ -101,13 +105,9 @@ class RadialGauge(NamedTuple):
 
 def warm_up() -> Iterator[str]:
     """Compile everything the scene may call, piece by piece; yields what comes next."""
-    for name, changes in (
-        ("bodies", {}),
-        ("fire", {"fire": True, "jet": True, "spill": "layer"}),
-        ("square sea", {"surface": "fft"}),
-    ):
+    for name, changes in WARM.items():
         yield name
-        scene = Scene(Params(**changes))
+        scene = Scene(check(Params, changes))
         scene.obey(Grab(0, (0.0, 0.0, 0.0)))
         for _ in range(8):
             scene.advance(1)
@@ -142,12 +142,14 @@ class Scene:
         self.blowout = Blowout(p)
         self.eye = (0.0, 0.0)
         self.target: Vector | None = None
+        self.threshold = 0.0  # Jacobian below which there is foam, a running mean
         self.costs: dict[str, float] = {}
         self.compared_at = self.sampled_at = -math.inf
         self.drawn: tuple[object, ...] = ()
         self.samples.append((math.nan,) * (len(SERIES) + 1))
 
-    def waves(self):
+    def waves(self) -> Waves:
+        """The waves that the knobs ask for."""
         p = self.params
         return draw_waves(SPECTRA[p.spectrum], conditions_of(p), p.wave_count)
 
@@ -160,8 +162,8 @@ class Scene:
         p, fluid = self.params, self.spill.surface
         low_pass = 2.0 * math.sqrt(fluid.kinematic_viscosity * exposure_of(p))
         conditions = dataclasses.replace(conditions_of(p), low_pass=low_pass)
-        sea = Sea(TILE, TILE_LENGTH, p.spectrum, choppiness=p.choppiness, frequency=self.spill.omega,
-                  **{name: getattr(conditions, name) for name in ("wind_speed", "wind_direction", "low_pass")})  # fmt: skip
+        wind = {name: getattr(conditions, name) for name in ("wind_speed", "wind_direction", "low_pass")}
+        sea = Sea(TILE, TILE_LENGTH, p.spectrum, choppiness=p.choppiness, frequency=self.spill.omega, **wind)
         return TileSea(sea)
 
     @property
@@ -226,7 +228,8 @@ class Scene:
                     crowd.step(self.spill, at, self.time, h, self.layer(), laws)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
-                if (self.params.plot_draft or self.params.plot_surface) and self.time - self.sampled_at >= SAMPLE_EVERY:
+                plotted = self.params.plot_draft or self.params.plot_surface
+                if plotted and self.time - self.sampled_at >= SAMPLE_EVERY:
                     self.sample(float(at.height[0]))
             self.time += h
         if self.params.ripples and crowd.count:
@@ -266,7 +269,10 @@ class Scene:
         fire, jet = self.blowout.fire, self.blowout.jet
         flames = None
         if fire is not None:
-            flames = fire.position.copy(), np.stack([fire.heat, fire.age / np.maximum(fire.life, 1e-3)])
+            flames = (
+                fire.position.copy(),
+                np.stack([fire.heat, fire.age / np.maximum(fire.life, np.float32(1e-3))]).astype(np.float32),
+            )
         return RadialPicture(
             params=p,
             time=self.time,
@@ -302,8 +308,24 @@ class Scene:
             near = int((self.grid.radii < WAKES_LENGTH).sum()) * self.grid.spokes
             for part in (slice(0, len(self.grid) - 1 if p.centre == "camera" else near), slice(-1, None)):
                 self.wakes.lay(self.time, vertices[part], slopes[part], len(vertices))
-        self.foam = np.clip((FOAM_FROM - self.surface.jacobian) / FOAM_OVER, 0.0, 1.0)
+        self.foam = self.whitecaps()
         self.slick = self.shape_slick(vertices, slopes)
+
+    def whitecaps(self) -> NDArray[np.float32]:
+        """Foam (n,), 0 to 1, where the surface is pressed together most: as much of the sea as Monahan measured.
+
+        W = 3.84e-6 U^3.41 (Monahan and O'Muircheartaigh 1980), less by what oil took of the mean square slope.
+        """
+        p, jacobian = self.params, self.surface.jacobian
+        clean = 0.5 * float(np.square(self.sum.waves.k * self.sum.waves.amplitude).sum())
+        kept = self.sum.mean_square_slope / clean if clean > 0.0 else 0.0
+        share = 3.84e-6 * p.wind_speed**3.41 * kept if p.waves else 0.0
+        near = jacobian[: int((self.grid.radii < FOAM_NEAR).sum()) * self.grid.spokes]
+        now = float(np.quantile(near, share)) if len(near) else 0.0
+        self.threshold += 0.05 * (now - self.threshold) if self.threshold else now
+        if self.threshold > FOAM_CALM:
+            return np.zeros_like(jacobian)
+        return np.clip((self.threshold - jacobian) / np.float32(FOAM_OVER) + 0.5, 0.0, 1.0).astype(np.float32)
 
     def timed(self, name: str, sea: RadialSea | TileSea, centre: tuple[float, float]) -> RadialSurface:
         start = time.perf_counter()
@@ -327,13 +349,14 @@ class Scene:
     def gauge(self) -> RadialGauge:
         s, grid = self.sum, self.grid
         clean = s.waves
-        compared = {}
+        compared, tile = {}, self.tile
         if "sum" in self.costs:
-            compared["sum"] = Compared(self.costs["sum"], len(clean.kx), 2 * float(grid.spacing[0]),
-                                       2 * float(grid.radii[-1]), s.significant_height, s.mean_square_slope)  # fmt: skip
-        if "fft" in self.costs and self.tile is not None:
-            compared["fft"] = Compared(self.costs["fft"], TILE * TILE // 2, 2 * TILE_LENGTH / TILE, TILE_LENGTH,
-                                       self.tile.significant_height, self.tile.mean_square_slope)  # fmt: skip
+            shortest, extent = 2 * float(grid.spacing[0]), 2 * float(grid.radii[-1])
+            numbers = shortest, extent, s.significant_height, s.mean_square_slope
+            compared["sum"] = Compared(self.costs["sum"], len(clean.kx), *numbers)
+        if "fft" in self.costs and tile is not None:
+            numbers = 2 * TILE_LENGTH / TILE, TILE_LENGTH, tile.significant_height, tile.mean_square_slope
+            compared["fft"] = Compared(self.costs["fft"], TILE * TILE // 2, *numbers)
         return RadialGauge(
             readings=self.crowd.readings(self.time),
             spill=self.spill,

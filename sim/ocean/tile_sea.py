@@ -71,8 +71,8 @@ class TileSea:
         n = len(where)
         around = np.concatenate([where + REACH * np.array(d) for d in ((1, 0), (-1, 0), (0, 1), (0, -1), (0, 0))])
         height, residual = self.sea.height_at(around, t)
-        slope = np.column_stack([height[:n] - height[n : 2 * n], height[2 * n : 3 * n] - height[3 * n : 4 * n]]) / (2 * REACH)
-        now = height[4 * n :]
+        east, west, north, south, now = height.reshape(5, n)
+        slope = np.column_stack([east - west, north - south]) / (2 * REACH)
         before, after = (self.sea.height_at(where, t + s)[0] for s in (-INSTANT, INSTANT))
         velocity = np.zeros((n, 3))
         velocity[:, 2] = (after - before) / (2 * INSTANT)

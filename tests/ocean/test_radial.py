@@ -152,7 +152,7 @@ def test_waves_on_a_layer_are_the_exact_surface_mode() -> None:
     oil = fluids()["Maya"]
     sea = sea_of(oil=oil, thickness=0.5)
     k = sea.waves.k
-    tensions = (oil.surface_tension, oil.interface_tension)
+    tensions = (oil.surface_tension or 0.0, oil.interface_tension or 0.0)
     exact, _ = two_layer(k, oil.density, 0.5, 1025.0, 9.81, math.inf, *tensions)
     np.testing.assert_allclose(sea.rate, exact, rtol=1e-4)  # viscosity lowers it a little
     at = sea.at([[1.0, 2.0]], 0.0)

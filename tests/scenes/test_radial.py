@@ -3,6 +3,7 @@
 import dataclasses
 import itertools
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +19,10 @@ from sim.knobs import check, clamp, knobs
 from sim.ocean.fluids import fluids
 
 CALM = {"waves": False, "rig": False, "ripples": False}
+
+
+def with_knobs(**changes: Any) -> Params:
+    return check(Params, changes)
 
 
 def run(scene: Scene, seconds: float) -> Scene:
@@ -37,7 +42,7 @@ def run(scene: Scene, seconds: float) -> Scene:
     ],
 )
 def test_bodies_let_go_too_high_settle_at_the_drafts_of_the_readout(changes: dict) -> None:
-    scene = Scene(Params(**CALM, **changes))
+    scene = Scene(with_knobs(**CALM, **changes))
     scene.crowd.fleet.position[:, 2] += 0.1
     run(scene, 110.0)
     for reading in scene.gauge().readings:
@@ -45,10 +50,10 @@ def test_bodies_let_go_too_high_settle_at_the_drafts_of_the_readout(changes: dic
 
 
 def test_oil_poured_on_adds_d_times_one_minus_the_ratio() -> None:
-    scene = Scene(Params(**CALM))
+    scene = Scene(with_knobs(**CALM))
     run(scene, 10.0)
     before = scene.crowd.draft.copy()
-    scene.set_params(Params(**CALM, spill="layer", thickness=0.2))
+    scene.set_params(with_knobs(**CALM, spill="layer", thickness=0.2))
     run(scene, 110.0)
     extra = 0.2 * (1.0 - fluids()["Alaska North Slope 2002"].density / 1025.0)
     np.testing.assert_allclose(scene.crowd.draft - before, extra, atol=1e-4)
@@ -66,7 +71,7 @@ def test_theory_is_that_of_the_hulls() -> None:
 
 
 def test_a_body_pushed_under_bobs_at_the_predicted_period() -> None:
-    scene = Scene(Params(**CALM, time_step=1 / 120))
+    scene = Scene(with_knobs(**CALM, time_step=1 / 120))
     scene.crowd.fleet.position[:, 2] -= 0.1
     run(scene, 7.0)
     for reading in scene.gauge().readings:
@@ -82,7 +87,7 @@ def test_the_heave_meter_times_a_sine() -> None:
 
 
 def test_what_is_denser_than_the_fluid_sinks_and_comes_to_rest_deep() -> None:
-    scene = Scene(Params(**CALM, density=1010.0, spill="mixed", fraction=0.6))
+    scene = Scene(with_knobs(**CALM, density=1010.0, spill="mixed", fraction=0.6))
     assert math.isinf(scene.gauge().readings[0].theory.draft)
     run(scene, 90.0)
     assert (scene.crowd.fleet.position[:, 2] >= -61.0).all()
@@ -90,7 +95,7 @@ def test_what_is_denser_than_the_fluid_sinks_and_comes_to_rest_deep() -> None:
 
 
 def test_a_grabbed_buoy_goes_under_and_comes_back() -> None:
-    scene = Scene(Params(**CALM))
+    scene = Scene(with_knobs(**CALM))
     rest = scene.crowd.fleet.position[0].copy()
     for _ in range(60):
         scene.obey(Grab(0, (rest[0], rest[1], rest[2] - 0.8)))
@@ -104,7 +109,7 @@ def test_a_grabbed_buoy_goes_under_and_comes_back() -> None:
 
 
 def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
-    scene = Scene(Params(**CALM))
+    scene = Scene(with_knobs(**CALM))
     home = scene.crowd.home[2]
     scene.crowd.fleet.velocity[2] = (6.0, 0.0, 5.0)
     run(scene, 1.0)

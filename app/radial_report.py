@@ -131,7 +131,7 @@ def lab_says(snapshot: Snapshot) -> str:
         (
             "7. Oil reflects less.",
             f"More, at every angle: straight down {r_oil:.2%} against {r_water:.2%}, under a whole sky {d_oil:.2%} "
-            f"against {d_water:.2%} (n = {surface.refractive_index:.3f}). It looks dark for no light comes up from below, "
+            f"against {d_water:.2%} (n = {surface.refractive_index:.3f}). It looks dark as no light comes from below, "
             f"and smooth. Shown: {'as the lab asks, reflections × 0.4' if p.optics == 'lab' else 'physics'}.",
         ),
     ]
@@ -169,7 +169,7 @@ def compared_html(snapshot: Snapshot) -> str:
             )  # fmt: skip
     verdict = (
         "Same vertices, timed just now. The rings reach the horizon and never repeat, dense where one looks, but each "
-        "wave costs a pass; the transform gives every wave of its tile at once, repeats, and is as fine far off as near."
+        "wave costs a pass; the transform gives every wave of its tile at once, repeats, and is as fine far off."
     )
     return f'<table style="{TABLE}">{"".join(rows)}</table>{verdict}'
 

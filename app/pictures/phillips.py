@@ -17,7 +17,7 @@ from app.water import Look, Water, sky
 LENGTH = Params().length  # [m] tile of the first view
 VIEWS = {  # eye and target, of the tile's length: over the middle of the tile, into the sun
     "deck": ((0.47, 0.5, 0.013), (0.53, 0.5, 0.0113)),
-    "bow": ((0.36, 0.5, 0.055), (0.56, 0.5, 0.006)),
+    "bow": ((0.36, 0.5, 0.042), (0.56, 0.5, 0.004)),
     "mast": ((0.42, 0.5, 0.06), (0.53, 0.5, 0.035)),
     "gull": ((0.2, 0.5, 0.2), (0.55, 0.5, 0.0)),
 }

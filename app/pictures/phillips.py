@@ -144,7 +144,7 @@ def add_buoy(server: viser.ViserServer) -> viser.FrameHandle:
     scene = server.scene
     frame = scene.add_frame("/probe", show_axes=False)
     scene.add_cylinder("/probe/spar", radius=0.09, height=4.2, color=(245, 245, 240), position=(0, 0, 0.9))
-    scene.add_cylinder("/probe/float", radius=0.5, height=0.5, color=BUOY)
+    scene.add_cylinder("/probe/float", radius=0.45, height=0.6, color=BUOY, position=(0, 0, 0.2))
     scene.add_icosphere("/probe/ball", radius=0.3, color=BUOY, position=(0, 0, 3.0))
     return frame
 

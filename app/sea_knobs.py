@@ -74,7 +74,7 @@ class Params:
     grid: bool = knob(False, doc="Show the grid of the drawn mesh (key G)", group="Grid")
     frame_rate: float = knob(30.0, 5.0, 60.0, "Hz", "Pictures a second", group="Grid")
     speed: float = knob(1.0, 0.01, 8.0, "", "Simulated per real time", log_from=0.01, group="Grid")
-    seed: int = knob(1, 0, 999, "", "Another sea under the same weather", group="Grid")
+    seed: int = knob(4, 0, 999, "", "Another sea under the same weather", group="Grid")
 
     foam: bool = knob(True, doc="Foam where crests fold", group="Foam and rain")
     foam_by_wind: bool = knob(True, doc="As much as Monahan measured at this wind", group="Foam and rain")
@@ -85,9 +85,9 @@ class Params:
 
     view: str = knob("deck", choices=VIEWS, doc="Where to look from", group="Look")
     sky: str = knob("park", choices=("park", "sunset", "dawn", "night"), doc="Sky and light", group="Look")
-    sun: float = knob(0.0, -180.0, 180.0, "°", "Bearing of the sun", group="Look")
+    sun: float = knob(-14.0, -180.0, 180.0, "°", "Bearing of the sun", group="Look")
     clouds: float = knob(0.4, 0.0, 1.0, "", "Cloud cover", group="Look")
-    daylight: float = knob(1.0, 0.05, 3.0, "", "Brightness", group="Look")
+    daylight: float = knob(0.85, 0.05, 3.0, "", "Brightness", group="Look")
     visibility: float = knob(3000.0, 50.0, 20000.0, "m", "Distance at which haze hides", log_from=50.0, group="Look")
 
     statistics: bool = knob(True, doc="Measure the drawn sea and hold it against theory", group="Plots")

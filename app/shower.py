@@ -22,7 +22,7 @@ LARGEST = 3.0  # average drops that a ring is as strong as at most: the largest 
 BLOW = (
     0.160  # the trough of an impulse J on a width a is BLOW J/(rho a^(5/2) sqrt(g)) deep, deep water (Lamb, Art. 255)
 )
-LEAK = 1.0  # [1/s] at which rings fade, for what would have left the tile
+LEAK = 0.5  # [1/s] at which rings fade, for what would have left the tile
 LASTING = 0.22  # [s] that a splash is drawn
 SPLASHES = 400  # drawn at once at most
 DENSITY = 1000.0  # [kg/m3]

@@ -17,7 +17,7 @@ from app.water import Look, Water, sky
 LENGTH = Params().length  # [m] tile of the first view
 VIEWS = {  # eye and target, of the tile's length: over the middle of the tile, into the sun
     "deck": ((0.47, 0.5, 0.013), (0.53, 0.5, 0.0113)),
-    "bow": ((0.36, 0.5, 0.055), (0.56, 0.5, 0.006)),
+    "bow": ((0.36, 0.5, 0.042), (0.56, 0.5, 0.004)),
     "mast": ((0.42, 0.5, 0.06), (0.53, 0.5, 0.035)),
     "gull": ((0.2, 0.5, 0.2), (0.55, 0.5, 0.0)),
 }
@@ -144,7 +144,7 @@ def add_buoy(server: viser.ViserServer) -> viser.FrameHandle:
     scene = server.scene
     frame = scene.add_frame("/probe", show_axes=False)
     scene.add_cylinder("/probe/spar", radius=0.09, height=4.2, color=(245, 245, 240), position=(0, 0, 0.9))
-    scene.add_cylinder("/probe/float", radius=0.5, height=0.5, color=BUOY)
+    scene.add_cylinder("/probe/float", radius=0.45, height=0.6, color=BUOY, position=(0, 0, 0.2))
     scene.add_icosphere("/probe/ball", radius=0.3, color=BUOY, position=(0, 0, 3.0))
     return frame
 

@@ -49,8 +49,9 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Light planet": {"planet_mass": 0.01, "length": 1024.0, "wind_speed": 10.0, "visibility": 6000.0, "sky": "dawn"},
     "Heavy planet": {"planet_mass": 100.0, "length": 64.0, "wind_speed": 10.0, "visibility": 1500.0},
     "Rain shower": {
-        "rain": 30.0, "length": 32.0, "wind_speed": 0.8, "wind_direction": 70.0, "clouds": 1.0, "view": "bow",
-        "drops": 1200, "visibility": 500.0, "foam": False, "sun": 30.0, "daylight": 1.3,
+        "rain": 30.0, "length": 32.0, "wind_speed": 0.5, "wind_direction": 70.0, "mesh": "256", "rings": 1.3,
+        "frame_rate": 24.0, "view": "bow", "drops": 600, "visibility": 500.0, "foam": False, "sky": "dawn",
+        "clouds": 0.8, "sun": 8.0,
     },
 }  # fmt: skip
 

@@ -18,6 +18,7 @@ FIRE = (RIG[0] + 3.0, RIG[1] + 3.0, 26.5)  # [m] at the foot of the derrick
 FIRE_WIDTH = 9.0  # [m]
 NOZZLE = (RIG[0] - 12.0, RIG[1] - 17.0, 20.0)  # [m] on the edge of the deck towards the buoys
 GUSH = (-9.0, -7.0, 9.5)  # [m/s]
+UPDRAFT = 3.0  # [m/s] of the air that the fire draws up
 SMOKE = 13.0  # [s] that a parcel lives
 FLIGHT = 4.0  # [s] about as long as a parcel is in the air
 PATCH, PATCH_CELL = 16, 3.0  # points a side, and their distance [m], of the sea that parcels are compared with
@@ -68,7 +69,7 @@ class Blowout:
         if not burning:
             self.fire = None
         elif self.fire is None or fire != (old.fire_power, old.particles, wind_of(old)):
-            self.fire = Fire(FIRE, params.fire_power * 1e6, FIRE_WIDTH, params.particles, SMOKE, wind)
+            self.fire = Fire(FIRE, params.fire_power * 1e6, FIRE_WIDTH, params.particles, SMOKE, wind, updraft=UPDRAFT)
         if not gushing:
             self.close()
         elif self.jet is None or (params.jet_flow, params.particles) != (old.jet_flow, old.particles):

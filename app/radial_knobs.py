@@ -83,10 +83,10 @@ class Params:
 PRESETS: dict[str, dict[str, Any]] = {
     "Clear water": {},
     "Light crude spill 0.2 m": {"spill": "layer", "thickness": 0.2, "exposure": 60.0},
-    "Heavy fuel oil": {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 600.0, "sky": "sunset"},
+    "Heavy fuel oil": {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 600.0},
     "Entirely mixed": {"spill": "mixed", "oil": "Arabian Light", "fraction": 0.4, "sky": "dawn"},
     "Storm with buoys": {"wind_speed": 17.0, "bodies": 12, "wave_count": 160, "sky": "dawn", "size": 2.0},
-    "Burning rig": {"fire": True, "jet": True, "follow": "rig", "sky": "sunset", "wind_speed": 6.0},
+    "Burning rig": {"fire": True, "jet": True, "follow": "rig", "sky": "dawn", "wind_speed": 6.0},
 }
 
 

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from app.fluid_look import LAB_SPECULAR
 from app.messages import Snapshot
 from app.radial_knobs import conditions_of
 from sim.ocean.dispersion import viscous_root
@@ -56,8 +57,7 @@ def table(snapshot: Snapshot) -> str:
         f'<table style="{TABLE};font-variant-numeric:tabular-nums">{"".join(rows)}</table>',
         '<div style="opacity:.7;font-size:11px">m and s; at rest: Archimedes in these fluids; mean over 8 s</div>',
         archimedes(g.spill),
-        f"<div>Waves: Hs {g.height:.2f} m, {g.height_clean:.2f} m without oil; "
-        f"slope {math.sqrt(g.slope):.3f} rms</div>",
+        f"<div>Waves: Hs {g.height:.2f} m, {g.height_clean:.2f} m without; slope {math.sqrt(g.slope):.3f} rms</div>",
     ]
     if g.tally.ejected > 0.0:
         t = g.tally
@@ -102,6 +102,7 @@ def lab_says(snapshot: Snapshot) -> str:
     shift = 1.0 - float(viscous_root(2.0 * math.pi, surface.kinematic_viscosity)[0] / math.sqrt(9.81 * 2.0 * math.pi))
     buoy = g.readings[0].theory if g.readings else None
     sink = "" if buoy is None or math.isinf(buoy.draft) else f" Here: {buoy.draft - buoy.in_water:+.4f} m."
+    shown = f"as the lab asks, reflections × {LAB_SPECULAR:g}" if p.optics == "lab" else "physics"
     claims = [
         (
             "1. Which fluid is on top?",
@@ -131,8 +132,8 @@ def lab_says(snapshot: Snapshot) -> str:
         (
             "7. Oil reflects less.",
             f"More, at every angle: straight down {r_oil:.2%} against {r_water:.2%}, under a whole sky {d_oil:.2%} "
-            f"against {d_water:.2%} (n = {surface.refractive_index:.3f}). It looks dark as no light comes from below, "
-            f"and smooth. Shown: {'as the lab asks, reflections × 0.4' if p.optics == 'lab' else 'physics'}.",
+            f"against {d_water:.2%} (n = {surface.refractive_index:.3f}). It looks dark for no light comes up from "
+            f"below, and smooth. Shown: {shown}.",
         ),
     ]
     return "".join(f'<div style="margin-bottom:6px"><b>{question}</b><br>{answer}</div>' for question, answer in claims)
@@ -169,7 +170,8 @@ def compared_html(snapshot: Snapshot) -> str:
             )  # fmt: skip
     verdict = (
         "Same vertices, timed just now. The rings reach the horizon and never repeat, dense where one looks, but each "
-        "wave costs a pass; the transform gives every wave of its tile at once, repeats, and is as fine far off."
+        "wave costs a pass; the transform gives every wave of its tile at once, repeats, and is as fine far off "
+        "as near by."
     )
     return f'<table style="{TABLE}">{"".join(rows)}</table>{verdict}'
 

@@ -23,7 +23,7 @@ HANDLE = 0.75  # [m] radius of what is dragged, at size 1
 HELD_COLOUR = (255, 90, 60)
 EYE_EVERY = 0.2  # [s] between looks at where the camera is
 VIEWS = {  # camera and target [m] when one of them is followed
-    "rig": ((RIG[0] - 50.0, RIG[1] - 66.0, 14.0), (RIG[0] + 10.0, RIG[1] - 4.0, 27.0)),
+    "rig": ((RIG[0] - 58.0, RIG[1] - 78.0, 32.0), (RIG[0] + 12.0, RIG[1] - 4.0, 21.0)),
 }
 BODY_VIEW = (-5.2, -6.2, 2.4)  # [m] from a followed body at size 1.5
 FOLLOWED = {"first buoy": 0, "second buoy": 1, "box": 2}

@@ -40,8 +40,10 @@ class Fire:
         life: float = 9.0,
         wind: tuple[float, float] = (0.0, 0.0),
         eddies: float = 1.0,
+        updraft: float = 0.0,
     ) -> None:
-        """position [m] of the fire's middle; power [W]; life [s] of a parcel; wind (x, y) [m/s]; eddies: 0 for none.
+        """position [m] of the fire's middle; power [W]; life [s] of a parcel; wind (x, y) [m/s]; eddies: 0 for none;
+        updraft [m/s]: of the air about the plume, which smoke rises with when it is cold.
 
         Parcels start spread over their lives, as if the fire had burnt for long. Raises ValueError for what is not
         allowed.
@@ -56,7 +58,10 @@ class Fire:
             raise refusal("count", count, "a whole number from 1")
         if not (math.isfinite(eddies) and eddies >= 0.0):
             raise refusal("eddies", eddies, "0 or above, finite")
+        if not math.isfinite(updraft):
+            raise refusal("updraft", updraft, "a finite number")
         self.place, self.diameter, self.wind, self.eddies = position, diameter, wind, eddies
+        self.updraft = float(updraft)
         self.height = flame_height(power, diameter)
         self.cooling = math.sqrt(2.0 * self.height / RISE)  # [s] c
         self.position = np.zeros((3, count), np.float32)
@@ -80,7 +85,7 @@ class Fire:
             self.position, self.velocity, self.age, self.life, self.heat, self.turn, np.float32(dt), np.float32(x),
             np.float32(y), np.float32(z), np.float32(0.5 * self.diameter), np.float32(self.wind[0]),
             np.float32(self.wind[1]), np.float32(self.cooling), np.float32(self.mean_life),
-            np.float32(EDDY * self.eddies),
+            np.float32(EDDY * self.eddies), np.float32(self.updraft),
         )  # fmt: skip
 
     @property
@@ -90,7 +95,9 @@ class Fire:
 
 
 @kernel(noalias=True)
-def burn(position, velocity, age, life, heat, turn, dt, x, y, z, radius, wind_x, wind_y, cooling, mean_life, eddy):
+def burn(
+    position, velocity, age, life, heat, turn, dt, x, y, z, radius, wind_x, wind_y, cooling, mean_life, eddy, updraft
+):
     """One step of all parcels; returns how many started anew."""
     tau, rise = np.float32(DRAG_TIME), np.float32(RISE)
     one, zero, tiny = np.float32(1.0), np.float32(0.0), np.float32(1e-6)
@@ -123,13 +130,13 @@ def burn(position, velocity, age, life, heat, turn, dt, x, y, z, radius, wind_x,
             started += 1
             continue
         theta = heat[i]
-        vx, vy, vz = velocity[0, i] - wind_x, velocity[1, i] - wind_y, velocity[2, i]
+        vx, vy, vz = velocity[0, i] - wind_x, velocity[1, i] - wind_y, velocity[2, i] - updraft
         position[0, i] += wind_x * dt + vx * coast
         position[1, i] += wind_y * dt + vy * coast
-        position[2, i] += vz * coast + theta * way
+        position[2, i] += updraft * dt + vz * coast + theta * way
         velocity[0, i] = wind_x + vx * keep
         velocity[1, i] = wind_y + vy * keep
-        velocity[2, i] = vz * keep + theta * gain
+        velocity[2, i] = updraft + vz * keep + theta * gain
         heat[i] = theta * fade
         if eddy > zero:
             # Swirl: a circle at a pace and a phase of its own, as fast as a share of the rise.

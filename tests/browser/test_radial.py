@@ -74,17 +74,13 @@ def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(lab: Viewer, ope
     tab.wait(lambda: drawn(lab), 120)
 
     def brightness() -> float:
-        deep = np.asarray(lab.picture.look.deep)
-        held = tab.vertices("/sea/water_look")
-        assert held[0] == pytest.approx(deep**2.2, abs=1e-3)  # the page has the colours that were sent
-        return float(held[:2].sum())
+        """Of the colours, deep and scattered, that the page holds of the water."""
+        return float(tab.vertices("/sea/water_look")[:2].sum())
 
     tab.wait(lambda: len(tab.vertices("/sea/water_look")) > 0)
     clear, before = brightness(), lab.scene.crowd.draft.copy()
     load(lab, spill="layer", thickness=0.3, speed=4.0)
-    tab.wait(lambda: lab.picture.look.refractive_index > 1.4, 60)
-    tab.page.wait_for_timeout(1500)
-    assert brightness() < 0.3 * clear
+    tab.wait(lambda: brightness() < 0.3 * clear, 60)
     theory = lab.scene.gauge().readings[0].theory
     tab.wait(lambda: np.abs(lab.scene.crowd.draft - theory.draft).max() < 2e-3, 180)
     assert (lab.scene.crowd.draft > before + 0.03).all()

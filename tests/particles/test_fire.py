@@ -62,7 +62,13 @@ def test_eddies_move_parcels_sideways_only() -> None:
     assert np.abs(calm.position[:2] - wild.position[:2]).max() > 0.5
 
 
-@pytest.mark.parametrize("bad", [{"power": -1.0}, {"count": 0}, {"life": math.inf}, {"wind": (math.nan, 0.0)}])
+@pytest.mark.parametrize(
+    "bad", [{"power": -1.0}, {"count": 0}, {"life": math.inf}, {"wind": (math.nan, 0.0)}, {"updraft": math.nan}]
+)
 def test_what_is_not_allowed_is_refused_by_name(bad: dict) -> None:
     with pytest.raises(ValueError, match=next(iter(bad))):
         Fire((0.0, 0.0, 0.0), **bad)
+
+
+def test_cold_smoke_rises_with_the_air() -> None:
+    np.testing.assert_allclose(one_parcel(60, 60.0, updraft=2.5).velocity[:, 0], [0.0, 0.0, 2.5], atol=1e-3)

@@ -1,0 +1,53 @@
+"""The radial scene: many bodies on its waves, and a frame of each preset, as shares of one core."""
+
+import math
+from typing import Any
+
+from app.bench.radial import default_sea, interleaved
+from app.crowd import place_of
+from app.radial_knobs import PRESETS, Params
+from app.scenes.radial import Scene
+from sim.floating import Body, Hull, make_fleet, make_water, step
+from sim.knobs import check
+
+BODIES = 200
+
+
+def rows(quick: bool = False) -> list[dict[str, Any]]:
+    """Rows of name, ms, share of a core in real time."""
+    repeats = 31 if quick else 201
+    return [bodies_row(repeats), *scene_rows(repeats)]
+
+
+def bodies_row(repeats: int) -> dict[str, Any]:
+    """200 bodies of 500 triangles on 64 waves, one step of 1/60 s: query, pressure, motion, collisions."""
+    sea, hull = default_sea(), Hull.sphere(0.5, 5)
+    places = [place_of(i, 1.0) for i in range(BODIES)]
+    fleet = make_fleet([Body(hull, 500.0, (x, y, 0.0)) for x, y in places])
+    times = iter(range(1, 10**9))
+
+    def frame() -> None:
+        at = sea.at(fleet.position[:, :2], next(times) / 60.0, 1.0)
+        water = make_water(fleet, [(1025.0, math.inf)], at.height, slope=at.slope, velocity=at.velocity,
+                           acceleration=at.acceleration)  # fmt: skip
+        step(fleet, water, 1 / 60)
+
+    (seconds,) = interleaved((frame,), repeats)
+    name = f"{BODIES} bodies of {len(hull.faces)} triangles, 1/60 s"
+    return {"name": name, "ms": seconds * 1e3, "share of a core": seconds * 60.0}
+
+
+def scene_rows(repeats: int) -> list[dict[str, Any]]:
+    """The scene itself, by preset, without the sending: two steps and a picture every 1/30 s."""
+    found = []
+    for preset, changes in PRESETS.items():
+        scene = Scene(check(Params, changes))
+
+        def frame(scene: Scene = scene) -> None:
+            scene.advance(2)
+            scene.picture()
+            scene.gauge()
+
+        (seconds,) = interleaved((frame,), repeats)
+        found.append({"name": f"scene: {preset}", "ms": seconds * 1e3, "share of a core": seconds / scene.frame})
+    return found

@@ -160,8 +160,8 @@ def lab_says(params: Params, r: Report | None) -> str:
         (
             "The damping parameter is viscosity.",
             "It is a length l that cuts off short waves once, exp(−k²l²). A fluid of viscosity ν does the same in a "
-            f"time T = l²/4ν{': ' + low_pass_line(params) if params.low_pass else ''}. Viscosity itself takes 2νk² a second from each wave: texture "
-            "first, height last, speed hardly at all.",
+            f"time T = l²/4ν{': ' + low_pass_line(params) if params.low_pass else ''}. "
+            "Viscosity itself takes 2νk² a second from each wave: texture first, height last, speed hardly at all.",
         ),
         (
             "When the storm is over, change the dispersion.",

@@ -12,8 +12,9 @@ from app.blowout import FIRE, RIG
 from app.fluid_look import look_of, slick_look
 from app.messages import Command, Grab, Place, Release, Snapshot, finite_vector
 from app.pictures.flames import Flames
+from app.radial_records import RadialPicture
 from app.radial_report import compared_html, counts_html, fluids_html, lab_says, marks_of, table
-from app.scenes.radial import RADIUS, SLICK_RADIUS, RadialPicture
+from app.scenes.radial import RADIUS, SLICK_RADIUS
 from app.shapes import ball
 from app.water import Look, Water, sky
 

@@ -4,15 +4,15 @@ import dataclasses
 import math
 import time
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.blowout import Blowout, Tally, slick_reach
-from app.crowd import Crowd, Reading
+from app.blowout import Blowout, slick_reach
+from app.crowd import Crowd
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
 from app.radial_knobs import PRESETS, Params, conditions_of, exposure_of, hidden, spill_of
+from app.radial_records import Compared, RadialGauge, RadialPicture, SlickShape
 from app.wakes import LENGTH as WAKES_LENGTH
 from app.wakes import Wakes
 from sim.floating import Laws
@@ -22,7 +22,6 @@ from sim.ocean.gerstner import Waves, draw_waves
 from sim.ocean.radial import RadialSea, RadialSurface
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.spectra import SPECTRA
-from sim.ocean.spill import Spill
 from sim.ocean.tile_sea import TileSea
 
 __all__ = ["PRESETS", "Params", "Scene", "hidden"]
@@ -41,7 +40,7 @@ FRAME = 1 / 30  # [s] between pictures
 RADIUS = 5000.0  # [m] of the grid
 INNER = 0.35  # [m] its first ring
 SLICK_RADIUS = 220.0  # [m] as far as the slick is drawn
-SLICK_HIGH, SLICK_SOFT = 0.3, 8.0  # [m] above the water, and from how far inside its edge
+SLICK_HIGH, SLICK_SOFT = 0.2, 10.0  # [m] above the water, and from how far inside its edge
 TILE, TILE_LENGTH = 128, 256.0  # the square sea: as many vertices as the rings
 SAMPLE_EVERY = 1 / 15  # [s] between plot rows
 COMPARE_EVERY = 2.0  # [s] of wall time between two timings of the other surface
@@ -49,58 +48,6 @@ FOAM_NEAR = 80.0  # [m] within which the Jacobian is looked at for foam
 FOAM_OVER = 0.07  # of the Jacobian, over which foam fills up
 FOAM_CALM = 0.97  # Jacobian above which nothing is foam
 WARM = {"bodies": {}, "fire": {"fire": True, "jet": True, "spill": "layer"}, "square sea": {"surface": "fft"}}
-
-
-class SlickShape(NamedTuple):
-    """The slick as a mesh over the first rings of the sea's."""
-
-    vertices: NDArray[np.float32]  # (m, 3) [m]
-    slopes: NDArray[np.float32]  # (m, 2)
-    rings: int
-
-
-class RadialPicture(NamedTuple):
-    """What the viewer draws."""
-
-    params: Params
-    time: float  # [s]
-    grid: RadialGrid
-    surface: RadialSurface
-    foam: NDArray[np.float32]  # (n,)
-    slick: SlickShape | None
-    kinds: tuple[str, ...]  # of the bodies
-    positions: NDArray[np.float32]  # (bodies, 3) [m]
-    rotations: NDArray[np.float32]  # (bodies, 4) quaternions (w, x, y, z)
-    pull: tuple[Vector, Vector] | None  # from a held body to where it is pulled [m]
-    fire: tuple[NDArray[np.float32], NDArray[np.float32]] | None  # (3, n) [m], (2, n) heat and age over life
-    jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
-    spill: Spill
-
-
-class Compared(NamedTuple):
-    """One way to make the surface, for the same vertices."""
-
-    cost: float  # [s] a frame
-    waves: int
-    smallest: float  # [m] shortest wave at the viewer
-    extent: float  # [m] across, before it repeats
-    height: float  # Hs [m] of its waves
-    slope: float  # mean square slope of its waves
-
-
-class RadialGauge(NamedTuple):
-    """Numbers for the panel."""
-
-    readings: tuple[Reading, ...]
-    spill: Spill
-    height: float  # Hs [m] of the waves as they are
-    height_clean: float  # without the oil
-    slope: float  # mean square slope as it is
-    slope_clean: float
-    peak_period: float  # [s] of the wave in the middle of the energy
-    tally: Tally
-    compared: dict[str, Compared]
-    counts: dict[str, int]
 
 
 def warm_up() -> Iterator[str]:

@@ -58,7 +58,12 @@ class Picture:
         self.hook = scene.add_mesh_simple("/hook", *ball(8), scale=1.9 * THICKNESS, color=(60, 66, 80))
         # One segment for the pull; its ends move while a point is held.
         self.pull = scene.add_line_segments(
-            "/pull", np.zeros((1, 2, 3), np.float32), colors=HELD_COLOUR, thickness=4.0, visible=False
+            "/pull",
+            np.zeros((1, 2, 3), np.float32),
+            colors=HELD_COLOUR,
+            thickness=4.0,
+            thickness_units="screen",
+            visible=False,
         )
 
     def add_gizmo(

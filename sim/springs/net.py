@@ -137,6 +137,13 @@ class Net:
         """One row of points, each linked to the next only."""
         return self.x0.shape[1] == 1 and [f[:2] for f in self.families] == [(0, 1)]
 
+    @property
+    def is_damped(self) -> bool:
+        """Whether anything but a grab takes energy out."""
+        touched = self.floor is not None or self.sphere is not None
+        rough = self.contact.damping > 0.0 or (self.contact.friction > 0.0 and self.contact.law == "clipped")
+        return self.drag > 0.0 or any(f.damping > 0.0 for f in self.families) or (touched and rough)
+
     def weights(self) -> NDArray[np.float64]:
         """(rows cols,) inverse masses [1/kg]; 0 where pinned."""
         w = np.full(self.shape, 1.0 / self.mass)

@@ -3,7 +3,7 @@
 import argparse
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from app.scenes import NAMES, scene_named
 
@@ -21,8 +21,15 @@ def main(argv: list[str] | None = None) -> int:
         return 130
 
 
+class Parser(argparse.ArgumentParser):
+    """Ends at a bad argument with one line, as every refusal does."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"springtide: {message}\n")
+
+
 def make_parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="springtide",
         description="An interactive 3-D lab for spring-mass systems and ocean waves, in a browser tab.",
     )

@@ -11,6 +11,7 @@ import contextlib
 import dataclasses
 import io
 import ipaddress
+import logging
 import math
 import socket
 from collections.abc import Callable, Iterator
@@ -197,6 +198,8 @@ def open_server(host: str, port: int) -> tuple[viser.ViserServer, Screen]:
     Raises OSError where the port is busy or may not be bound.
     """
     check_port(host, port)
+    # A message that cannot be decoded ends its connection, and would print a traceback each time.
+    logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
     with checked_origins(host), contextlib.redirect_stdout(io.StringIO()):  # we print our own address
         server = viser.ViserServer(host=host, port=port, label="Springtide", verbose=False)
     if port not in (0, server.get_port()):

@@ -26,7 +26,7 @@ class FixedStep:
 
     def __init__(self) -> None:
         self.debt = 0.0  # [s] of simulated time not yet stepped
-        self.cost = 0.0  # [s] of wall time a step takes, running mean
+        self.cost = 0.0  # [s] of wall time a step takes, lately
 
     def steps(self, wall: float, speed: float, h: float) -> tuple[int, bool]:
         """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s]."""
@@ -43,7 +43,8 @@ class FixedStep:
         """Take note that `steps` steps took `seconds` of wall time."""
         if steps:
             each = seconds / steps
-            self.cost = each if self.cost == 0 else 0.8 * self.cost + 0.2 * each
+            # Down at once, up slowly: the first step of a method loads its kernel.
+            self.cost = each if not 0 < self.cost < each else 0.8 * self.cost + 0.2 * each
 
 
 class SimLoop:

@@ -46,7 +46,7 @@ class Painted:
             self._patch.expect(name)
 
     def set(self, vertices: np.ndarray | None = None, colors: np.ndarray | None = None) -> None:
-        """Move the vertices [m], repaint them, or both; inside `server.atomic()`. Unchanged arrays are not sent."""
+        """Move the vertices [m], repaint them, or both; call inside `server.atomic()`."""
         if vertices is not None:
             self.mesh.vertices = np.asarray(vertices, np.float32)
         if colors is not None and self._rgb is not None:

@@ -160,7 +160,8 @@ class Panel:
             chooser.on_update(lambda event: open_scene(event.target.value))
         gui.add_html(
             '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">'
-            f"{scene.HELP}<br><b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · <b>G</b> grid</div>"
+            f"{scene.HELP}<br><b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · "
+            "<b>G</b> grid · <b>1-9</b> presets</div>"
         )
         self.preset = gui.add_dropdown("Preset", tuple(scene.PRESETS), hint="Sets every knob and starts over")
         self.preset.on_update(self.on_preset)

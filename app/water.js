@@ -7,7 +7,7 @@ const WATER_GLSL = {
   vertex: `
     attribute vec3 aux;
     uniform mat4 toSea;
-    uniform vec3 grid; // rows, columns (0: no grid), side of a tile [m]
+    uniform vec3 grid; // rows, columns (0: no grid), side of a tile or radius of the mesh [m]
     varying vec3 vSea;
     varying vec2 vRest;
     varying vec3 vAux;
@@ -43,14 +43,16 @@ const WATER_GLSL = {
 
     // The photographs were taken on land. Their elevations are remapped so that the land lies below our horizon, and
     // where tall things stand around, only the azimuths on either side of the sun are used, spread over the circle.
+    float sunBearing() { return atan(sunDirection.y, sunDirection.x + 1e-6); }
+
     vec3 unland(vec3 d, float side) {
-      float bearing = atan(d.y, d.x) - atan(sunDirection.y, sunDirection.x);
+      float bearing = atan(d.y, d.x) - sunBearing();
       bearing = mod(bearing + 3.14159265, 6.2831853) - 3.14159265;
       float land = mix(skyline.x, skyline.y, 0.5 - 0.5 * cos(bearing));
       float e = asin(clamp(d.z, 0.0, 1.0)) / 1.5707963;
       float g = skyline.z, l = land / 1.5707963;
       e = 1.5707963 * (l + e * (g + (1.0 - l - g) * e));
-      float a = bearing * fold.x * side + atan(sunDirection.y, sunDirection.x);
+      float a = bearing * fold.x * side + sunBearing();
       return vec3(cos(e) * cos(a), cos(e) * sin(a), sin(e));
     }
 
@@ -79,7 +81,7 @@ const WATER_GLSL = {
     }
 
     // A thin layer of cloud before the photograph, so that no two seas have the same sky.
-    vec3 clouded(vec3 c, vec3 d, float blur) {
+    vec3 clouded(vec3 c, vec3 d, float blur, vec3 ambient) {
       if (weather.x <= 0.0 || d.z < 0.004) return c;
       vec2 w = vec2(cos(weather.z), sin(weather.z));
       vec2 p = d.xy / (d.z + 0.11);
@@ -88,9 +90,13 @@ const WATER_GLSL = {
       float n = billow(p, octaves) + 1.3 * (weather.x - 0.5);
       float cover = smoothstep(-0.12 - blur, 0.55 + blur, n);
       vec2 s = normalize(sunDirection.xy + 1e-4);
-      float lit = clamp(0.55 + 1.4 * (n - 1.3 * (weather.x - 0.5) - billow(p + 0.22 * vec2(dot(s, w), dot(s, vec2(-w.y, w.x))), 3)), 0.15, 1.2);
+      if (cover <= 0.003) return c;
+      float lit = 0.6; // mirrored clouds are not modelled in relief
+      if (blur < 0.1) {
+        float sunward = billow(p + 0.22 * vec2(dot(s, w), dot(s, vec2(-w.y, w.x))), 3);
+        lit = clamp(0.55 + 1.4 * (n - 1.3 * (weather.x - 0.5) - sunward), 0.15, 1.2);
+      }
       float near = max(dot(d, sunDirection), 0.0);
-      vec3 ambient = lookup(vec3(0.0, 0.0, 1.0), 1.0);
       vec3 glow = sunColor * (0.05 + 0.10 * lit + 0.5 * pow(near, 24.0) * (1.2 - cover) + 0.12 * pow(near, 3.0) * lit);
       vec3 cloud = ambient * (0.55 + 0.45 * lit) + glow;
       return mix(c, cloud, cover * 0.92 * smoothstep(0.0, 0.09, d.z));
@@ -100,14 +106,14 @@ const WATER_GLSL = {
       vec3 c = lookup(unland(d, 1.0), blur);
       // Behind one's back the two ends of the spread photograph meet: there each is blended with its mirror image.
       if (fold.x < 1.0) {
-        vec2 s = normalize(sunDirection.xy), l = d.xy / max(length(d.xy), 1e-4);
+        vec2 s = normalize(sunDirection.xy + 1e-6), l = d.xy / max(length(d.xy), 1e-4);
         float back = smoothstep(0.3, 1.0, -dot(s, l));
         if (back > 0.0) c = mix(c, lookup(unland(d, -1.0), blur), 0.5 * back);
       }
       return c;
     }
 
-    vec3 mirror(vec3 d, float blur) { return clouded(sky(d, blur), d, max(blur, 0.1)); }
+    vec3 ambientLight() { return lookup(vec3(0.0, 0.0, 1.0), 1.0); }
 
     vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), fold.y); }`,
 
@@ -196,7 +202,7 @@ const WATER_GLSL = {
       float big = ruffle(p * 0.5 + 11.0).x;
       float c = clamp(asked * (1.0 + 0.9 * big), 0.0, 1.0);
       // Cells: the distance to the nearest bubble wall, coarse ones holding fine ones.
-      float near = smoothstep(0.5, 0.1, footprint / air.z);
+      float near = 1.0 - smoothstep(0.1, 0.5, footprint / air.z);
       float crumb = 0.35;
       vec2 q = p + 0.30 * vec2(ruffle(p * 2.3).x, ruffle(p * 2.3 + 9.0).x);
       float wall = cells(q * 1.4);
@@ -207,7 +213,7 @@ const WATER_GLSL = {
       if (footprint < 0.06 * air.z) grain = 0.5 + 0.8 * ruffle(p * 31.0).x;
       float edge = 0.10 + 0.25 * clamp(footprint / air.z, 0.0, 1.0);
       float width = 0.75 * c * c + 0.22 * c;
-      float web = smoothstep(width + edge, width - edge, min(wall, 0.16 + 0.8 * crumb) + 0.06);
+      float web = 1.0 - smoothstep(width - edge, width + edge, min(wall, 0.16 + 0.8 * crumb) + 0.06);
       float mat = smoothstep(0.35, 0.95, c + 0.35 * (0.4 - crumb) + 0.25 * (grain - 0.5) + 0.3 * big);
       float torn = smoothstep(-0.25, 0.25, ruffle(p * 1.9 + 21.0).x + 1.2 * c - 0.35);
       float cover = max(web * torn * smoothstep(0.02, 0.5, c) * (1.0 - 0.5 * crumb), mat);
@@ -220,6 +226,9 @@ const WATER_GLSL = {
       vec3 toEye = eye - at;
       float far = length(toEye);
       vec3 V = toEye / far;
+      float lost = 1.0 - exp(-pow(far / air.x, 1.5));
+      vec3 haze = horizon(-V);
+      if (lost > 0.995) return haze * air.y;
       vec2 fx = dFdx(at.xy), fy = dFdy(at.xy);
       float footprint = pow(max(dot(fx, fx) * dot(fy, fy), 1e-12), 0.25);
 
@@ -254,7 +263,7 @@ const WATER_GLSL = {
       vec2 level = V.xy / max(length(V.xy), 1e-4);
       float graze = 1.0 - V.z;
       vec3 N = normalize(vec3(-slope + level * sigma * 0.9 * graze * graze, 1.0));
-      float facing = max(dot(N, V), 0.02);
+      float facing = clamp(dot(N, V), 0.02, 1.0);
 
       // Fresnel over a rough surface: Bruneton, Neyret & Holzschuch 2010, eq. 18.
       float f0 = pow((optics.x - 1.0) / (optics.x + 1.0), 2.0);
@@ -262,7 +271,10 @@ const WATER_GLSL = {
       F *= optics.z;
       vec3 R = reflect(-V, N);
       R.z = abs(R.z) + 0.01;
-      vec3 mirrored = mirror(normalize(R), clamp(sqrt(sigma) * 0.7, 0.0, 0.8));
+      R = normalize(R);
+      float dim = clamp(sqrt(sigma) * 0.7, 0.0, 0.8);
+      vec3 ambient = ambientLight();
+      vec3 mirrored = clouded(sky(R, dim), R, max(dim, 0.1), ambient);
 
       // Sun glitter: the share of facets that send the sun to the eye, Gaussian in slope (Cox & Munk 1954).
       vec3 H = normalize(V + sunDirection);
@@ -273,7 +285,6 @@ const WATER_GLSL = {
       glitter *= 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z;
 
       // Light that comes back out of the water: the deep, and crests with the sun behind them.
-      vec3 ambient = lookup(vec3(0.0, 0.0, 1.0), 1.0);
       float sunUp = max(dot(N, sunDirection), 0.0);
       vec3 lit = ambient + sunColor * sunUp * 0.3183;
       float crest = clamp(at.z / max(state.y, 0.01) + 0.15, 0.0, 1.2);
@@ -289,8 +300,7 @@ const WATER_GLSL = {
       vec3 white = foamColor * (ambient * 1.15 + sunColor * 0.3183 * (0.35 + 0.65 * sunUp)) * (0.72 + 0.38 * bubbles.y);
       color = mix(color, white, foam * (0.6 + 0.4 * bubbles.y));
 
-      float lost = 1.0 - exp(-pow(far / air.x, 1.5));
-      return mix(color, horizon(-V), lost) * air.y;
+      return mix(color, haze, lost) * air.y;
     }`,
 };
 
@@ -306,21 +316,22 @@ const WATER_FRAGMENT = `
   void main() {
     // Towards the rim of the last tile the waves go flat, as the sea beyond is.
     float flatness = 0.0;
-    if (grid.x > 0.0 && extent.y > 0.0) {
-      vec2 out2 = abs(vSea.xy - 0.5 * grid.z) / (0.5 * grid.z * extent.x);
-      flatness = smoothstep(0.8, 1.0, max(out2.x, out2.y));
+    if (extent.y > 0.0) {
+      vec2 outward = abs(vSea.xy - 0.5 * grid.z) / (0.5 * grid.z * extent.x);
+      flatness = smoothstep(0.8, 1.0, grid.x > 0.0 ? max(outward.x, outward.y) : length(vSea.xy) / grid.z);
     }
     gl_FragColor = vec4(shadeSea(vSea, vRest, vAux * vec3(1.0, 1.0, 1.0 - flatness), flatness), 1.0);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
   }`;
 
-// The dome is drawn first and at no depth: a triangle that covers the view.
+// A triangle that covers the view at the far plane, drawn after everything opaque: only what is left is shaded.
 const DOME_VERTEX = `
   uniform mat4 toSea;
+  uniform float farDepth;
   varying vec3 vRay;
   void main() {
-    gl_Position = vec4(position.xy, 0.5, 1.0);
+    gl_Position = vec4(position.xy, farDepth, 1.0);
     vec4 view = inverse(projectionMatrix) * vec4(position.xy, 0.5, 1.0);
     vRay = mat3(toSea) * (inverse(mat3(viewMatrix)) * (view.xyz / view.w));
   }`;
@@ -331,10 +342,10 @@ const DOME_FRAGMENT = `
   ${WATER_GLSL.sky}
   ${WATER_GLSL.surface}
   varying vec3 vRay;
-  // The disc, half a degree across as the true one, and the glow of the air around it.
+  // The disc, twice as wide as the true one, and the glow of the air around it.
   float sun(vec3 d) {
     float off = length(d - sunDirection);
-    return 30.0 * smoothstep(0.014, 0.006, off) + 1.6 * exp(-off * 55.0) + 0.22 * exp(-off * 14.0) + 0.05 * exp(-off * 4.0);
+    return 30.0 * (1.0 - smoothstep(0.006, 0.014, off)) + 1.6 * exp(-off * 55.0) + 0.22 * exp(-off * 14.0) + 0.05 * exp(-off * 4.0);
   }
   // The photographs' colour comes in blocks of some degrees: take the light sharp and the hue soft.
   vec3 clearSky(vec3 d) {
@@ -350,7 +361,7 @@ const DOME_FRAGMENT = `
     float down = max(-d.z, 1e-5);
     vec3 at = vec3(eye.xy + d.xy * min(max(eye.z, 0.0) / down, 1e5), 0.0);
     // Below the horizon lies the sea that no mesh reaches.
-    vec3 c = d.z < 0.0 ? shadeSea(at, at.xy, vec3(0.0), 1.0) : clouded(clearSky(d) + sunColor * sun(d), d, 0.0) * air.y;
+    vec3 c = d.z < 0.0 ? shadeSea(at, at.xy, vec3(0.0), 1.0) : clouded(clearSky(d) + sunColor * sun(d), d, 0.0, ambientLight()) * air.y;
     gl_FragColor = vec4(c, 1.0);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
@@ -433,10 +444,10 @@ function makeDome(sea) {
   const Attribute = sea.geometry.attributes.position.constructor;
   geometry.setAttribute("position", new Attribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
   const material = new sea.mesh.material.constructor();
-  material.depthTest = material.depthWrite = false;
+  material.depthWrite = false;
   const dome = new sea.mesh.constructor(geometry, material);
   dome.frustumCulled = false;
-  dome.renderOrder = -1e6;
+  dome.renderOrder = 1e6;
   dome.raycast = () => {};
   sea.mesh.parent.add(dome);
   return dome;
@@ -529,7 +540,9 @@ recipes.push({
     if (sea.dome) {
       sea.dome.visible = domed > 0;
       dress(sea.dome.material, "springtide-dome", (shader) => {
-        Object.assign(shader.uniforms, sea.uniforms);
+        // viser asks three for a reversed depth buffer; a browser without clip control does not get one.
+        const farDepth = { value: renderer.state.buffers.depth.getReversed() ? 0 : 1 };
+        Object.assign(shader.uniforms, sea.uniforms, { farDepth });
         shader.vertexShader = DOME_VERTEX;
         shader.fragmentShader = DOME_FRAGMENT;
       });
@@ -547,7 +560,7 @@ recipes.push({
       });
     }
     // The plain stand-ins that other browsers may need are not for this one.
-    for (const name of [`${base}/plain_foam`, `${base}/plain_wire`]) {
+    for (const name of [`${base}/plain_foam`, `${base}/plain_wire`, `${base}/plain_sea`]) {
       const standIn = meshOf(name);
       if (standIn) standIn.visible = false;
     }

@@ -7,6 +7,7 @@ Where the patch does not answer, the same mesh is drawn plainly by viser, with a
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import viser
@@ -15,8 +16,12 @@ from app.patch import hidden, patch
 from sim.knobs import refusal
 
 RGB = tuple[float, float, float]
+RIPPLE_TIME = 1024.0  # [s] after which ripples start over: their phases are single precision in the browser
+HAZE = 3000.0  # [m]
+FAR = 20_000.0  # [m] where the camera's view ends; viser's own 1000 m cuts the horizon off
 FOAM_SINKS = 0.5  # [m] how deep the plain foam mesh lies where there is no foam
-FOAM_SHOWS = 0.35  # the foam value from which the plain foam mesh stands above the water
+FOAM_RISES = 0.02  # [m] how high it stands above the water where there is
+FOAM_SHOWS = 0.35  # the foam value from which the plain mesh shows it
 
 
 @dataclass(frozen=True)
@@ -29,7 +34,7 @@ class Look:
     1 - 1/e of the sea is lost in the sky. foam_scale [m] is the size of a patch of bubbles.
     """
 
-    deep: RGB = (0.0, 0.17, 0.26)
+    deep: RGB = (0.0, 0.20, 0.31)
     scatter: RGB = (0.10, 0.52, 0.50)
     foam: RGB = (0.93, 0.95, 0.96)
     refractive_index: float = 1.333
@@ -45,7 +50,7 @@ class Look:
     tint: RGB = (1.0, 1.0, 1.0)
     clouds: float = 0.4
     cloud_size: float = 2.2
-    haze: float = 3000.0
+    haze: float = HAZE
     exposure: float = 1.0
     skyline: tuple[float, float, float] = (0.06, 0.2, 0.6)
     fold: tuple[float, float, float] = (1.0, 0.3, 12.0)
@@ -60,12 +65,13 @@ def linear(color: RGB) -> np.ndarray:
 
 
 class Water:
-    """A sea of rows x cols points on a square tile, or any fixed mesh, that changes every frame.
+    """A sea of rows x cols points that changes every frame.
 
-    length [m]: side of the periodic tile; point [i, j] rests at x = i length/rows, y = j length/cols, and the row and
-    column that close the tile are added here. tiles: odd; tiles x tiles copies, drawn from the same buffers. faces:
-    (m, 3) for a mesh of any other shape: vertices are then (rows * cols, 3) in any order and nothing is added or
-    repeated. plain: never patch, public viser only. Raises ValueError for an even number of tiles.
+    Without `faces` the points are a square periodic tile of side length [m]: [i, j] rests at x = i length/rows,
+    y = j length/cols, the row and column that close the tile are added here, and tiles x tiles (odd) copies of it are
+    drawn from the same buffers. With `faces`, (m, 3) indices into the rows * cols points, it is a mesh of any shape
+    about the origin, drawn once, whose radius is length [m]. plain: never patch, public viser only.
+    Raises ValueError for an even number of tiles.
     """
 
     def __init__(
@@ -106,8 +112,7 @@ class Water:
         self.mesh = server.scene.add_mesh_simple(
             name, self._vertices.reshape(-1, 3), self._faces, color=color, cast_shadow=False, receive_shadow=False
         )
-        self._foam: viser.MeshHandle | None = None
-        self._wire: viser.MeshHandle | None = None
+        self._stand_ins: dict[str, viser.MeshHandle] = {}
         self._patch = None if plain else patch(server)
         if self._patch is not None:
             self._aux_mesh = hidden(server, f"{name}/water_aux", self._aux.reshape(-1, 3))
@@ -118,14 +123,11 @@ class Water:
         """Draw this surface; call inside `server.atomic()`. Arrays are copied.
 
         vertices: (rows, cols, 3) [m]. slopes: (rows, cols, 2), dz/dx and dz/dy of the displaced surface. foam:
-        (rows, cols), 0..1. time [s] moves the ripples.
+        (rows, cols), 0..1. time [s] moves ripples and clouds.
         """
         rows, cols = self._shape
-        for target, source in (
-            (self._vertices[..., :], vertices),
-            (self._aux[..., :2], slopes),
-            (self._aux[..., 2], foam),
-        ):
+        fields = ((self._vertices, vertices), (self._aux[..., :2], slopes), (self._aux[..., 2], foam))
+        for target, source in fields:
             target[:rows, :cols] = source
             if self._grid:
                 target[rows, :cols] = source[0]
@@ -137,7 +139,7 @@ class Water:
         if self._patch is not None:
             self._aux_mesh.vertices = self._aux.reshape(-1, 3)
             height = 4.0 * float(np.std(vertices[..., 2]))
-            self._state = (float(time), height, float(np.vdot(slopes, slopes)) / (rows * cols))
+            self._state = (float(time) % RIPPLE_TIME, height, float(np.vdot(slopes, slopes)) / (rows * cols))
             self._look_mesh.vertices = self._uniforms()
         self._draw_plain()
 
@@ -185,23 +187,38 @@ class Water:
         return np.array(table, np.float32)
 
     def _draw_plain(self) -> None:
-        """The foam mesh of the public API, only where some browser needs it."""
+        """What the public API alone can draw of foam, grid and far sea; nothing while every browser is patched."""
         if self.alive is not False:
             return
-        vertices = self._vertices.copy()
-        vertices[..., 2] += np.where(self._aux[..., 2] > FOAM_SHOWS, 0.02, -FOAM_SINKS).astype(np.float32)
-        flat = vertices.reshape(-1, 3)
-        if self._foam is None:
-            self._foam = self._server.scene.add_mesh_simple(
-                f"{self.name}/plain_foam",
-                flat,
-                self._faces,
-                color=(235, 240, 242),
+        z = self._vertices[..., 2]
+        foam = self._vertices.copy()
+        foam[..., 2] += np.where(self._aux[..., 2] > FOAM_SHOWS, FOAM_RISES, -FOAM_SINKS)
+        self._stand_in("plain_foam", foam.reshape(-1, 3), self._faces, color=(235, 240, 242))
+        if self._look.wireframe or "plain_wire" in self._stand_ins:
+            wire = self._stand_in("plain_wire", self._vertices.reshape(-1, 3), self._faces, wireframe=True)
+            wire.visible = self._look.wireframe
+        if self._grid and "plain_sea" not in self._stand_ins:
+            x, y = np.array([[-1, 1, 1, -1], [-1, -1, 1, 1]]) * FAR / 4
+            low = np.full(4, 2 * float(z.min()) - FOAM_SINKS)
+            self._stand_in(
+                "plain_sea", np.stack([x, y, low], 1), np.array([[0, 1, 2], [0, 2, 3]]), color=self.mesh.color
+            )
+
+    def _stand_in(self, suffix: str, vertices: np.ndarray, faces: np.ndarray, **mesh: Any) -> viser.MeshHandle:
+        """A mesh for browsers without the patch; the others hide it (water.js)."""
+        vertices = vertices.astype(np.float32)
+        if suffix in self._stand_ins:
+            self._stand_ins[suffix].vertices = vertices
+        else:
+            self._stand_ins[suffix] = self._server.scene.add_mesh_simple(
+                f"{self.name}/{suffix}",
+                vertices,
+                faces.astype(np.uint32),
                 cast_shadow=False,
                 receive_shadow=False,
+                **mesh,
             )
-        else:
-            self._foam.vertices = flat
+        return self._stand_ins[suffix]
 
 
 @dataclass(frozen=True)
@@ -219,13 +236,20 @@ class Photograph:
     exposure: float = 1.0
     limit: float = 5.0  # radiance at which bright places of the picture are held back to half
     tint: RGB = (1.0, 1.0, 1.0)  # a filter before the lens
+    horizon: tuple[int, int, int] = (205, 215, 222)  # what distance fades things to, as drawn
 
 
 SKIES = {
     "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 10.0, 0.6, 0.65, 0.62, 1.6, (0.80, 0.94, 1.22)),
-    "sunset": Photograph(0.600, 3.3, (1.0, 0.62, 0.30), 4.0, 1.5, 5.0, 0.42, 0.36, 0.36, 9.0, (1.0, 0.9, 0.84)),
-    "dawn": Photograph(0.635, 9.5, (1.0, 0.66, 0.46), 2.5, 7.0, 8.0, 0.6, 0.5, 0.45, 2.0, (1.0, 0.86, 0.9)),
-    "night": Photograph(0.36, 25.0, (0.75, 0.85, 1.0), 0.5, 12.0, 18.0, 0.7, 0.8, 0.6, 5.0, (0.35, 0.6, 1.0)),
+    "sunset": Photograph(
+        0.600, 3.3, (1.0, 0.62, 0.30), 4.0, 1.5, 5.0, 0.42, 0.36, 0.36, 9.0, (1.0, 0.9, 0.84), (232, 196, 150)
+    ),
+    "dawn": Photograph(
+        0.635, 9.5, (1.0, 0.66, 0.46), 2.5, 7.0, 8.0, 0.6, 0.5, 0.45, 2.0, (1.0, 0.86, 0.9), (232, 190, 196)
+    ),
+    "night": Photograph(
+        0.36, 25.0, (0.75, 0.85, 1.0), 0.5, 12.0, 18.0, 0.7, 0.8, 0.6, 5.0, (0.35, 0.6, 1.0), (34, 44, 52)
+    ),
 }
 
 
@@ -237,11 +261,13 @@ def sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Look:
     server.scene.configure_environment_map(
         name,  # type: ignore[arg-type]
         background=True,
+        background_blurriness=0.3,
         background_wxyz=wxyz,
         environment_wxyz=wxyz,
     )
     server.scene.configure_default_lights(enabled=True, cast_shadow=False)
-    server.initial_camera.far = 20_000.0
+    server.scene.configure_fog(0.1 * HAZE, 1.6 * HAZE, color=photo.horizon)  # everything but the sea
+    server.initial_camera.far = FAR
     # The elevation e at which the remapped sky shows the sun: land + e (g + (90 - land - 90 g) e / 90^2) = height.
     high = photo.sun_height - photo.land_near
     g = photo.stretch

@@ -82,7 +82,7 @@ def clamp_value(knob: Knob, value: Any) -> Any:
         return value if isinstance(value, bool) else knob.default
     if isinstance(value, bool) or not isinstance(value, int | float):
         return knob.default
-    if math.isnan(value):
+    if value != value:  # NaN; a whole number may be too long for math.isnan
         return knob.default
     bounded = min(max(value, knob.lo), knob.hi)
     return round(bounded) if knob.kind is int else float(bounded)
@@ -107,7 +107,7 @@ def check_value(name: str, knob: Knob, value: Any) -> Any:
             raise refusal(name, value, knob.allowed)
         return good
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or math.isnan(value) or not knob.lo <= value <= knob.hi:
+    if not number or not knob.lo <= value <= knob.hi:
         raise refusal(name, value, knob.allowed)
     if knob.kind is int and value != int(value):
         raise refusal(name, value, knob.allowed)

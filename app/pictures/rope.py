@@ -5,14 +5,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-import trimesh
 import viser
 
 from app.colour import css_scale, scale_colours
 from app.messages import Command, Grab, Place, Release, Snapshot, finite_vector
 from app.paint import Painted
 from app.scenes.rope import ROOT, SPHERE, THICKNESS, RopePicture
-from app.tube import SIDES, faces, smooth_line, sweep
+from app.shapes import SIDES, ball, smooth_line, sweep, tube_faces
 
 ROPE_COLOUR = (196, 154, 92)
 BEAD_COLOUR = (58, 68, 86)
@@ -32,6 +31,7 @@ class Picture:
         self.tube: Painted | None = None
         self.beads: viser.BatchedMeshHandle | None = None
         self.count = 0
+        self.nearest = 0
         self.dragged_at = {"root": 0.0, "sphere": 0.0}
         scene = server.scene
         scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
@@ -49,16 +49,13 @@ class Picture:
             fade_distance=26.0,
             shadow_opacity=0.3,
         )
-        ball = trimesh.creation.icosphere(subdivisions=4)
-        self.ball = scene.add_mesh_simple(
-            "/sphere/ball", ball.vertices, ball.faces, color=(92, 140, 190), visible=False
-        )
+        self.ball = scene.add_mesh_simple("/sphere/ball", *ball(32), color=(92, 140, 190), visible=False)
         self.gizmos = {
             "root": self.add_gizmo("root", ROOT, 0.34),
             "sphere": self.add_gizmo("sphere", SPHERE, 1.1),
         }
         self.gizmos["sphere"].visible = False
-        self.hook = scene.add_icosphere("/hook", radius=1.9 * THICKNESS, color=(60, 66, 80))
+        self.hook = scene.add_mesh_simple("/hook", *ball(8), scale=1.9 * THICKNESS, color=(60, 66, 80))
         # One segment for the pull; its ends move while a point is held.
         self.pull = scene.add_line_segments(
             "/pull", np.zeros((1, 2, 3), np.float32), colors=HELD_COLOUR, thickness=4.0, visible=False
@@ -93,13 +90,17 @@ class Picture:
         if self.beads is not None:
             self.beads.remove()
         self.tube = Painted(
-            self.server, "/rope", self.vertices, faces(rings), self.colours(picture), color=ROPE_COLOUR, side="double"
+            self.server,
+            "/rope",
+            self.vertices,
+            tube_faces(rings),
+            self.colours(picture),
+            color=ROPE_COLOUR,
+            side="double",
         )
-        ball = trimesh.creation.icosphere(subdivisions=2 if n <= 200 else 1, radius=1.0)
         self.beads = self.server.scene.add_batched_meshes_simple(
             "/points",
-            ball.vertices,
-            ball.faces,
+            *ball(8 if n <= 200 else 4),
             batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)),
             batched_positions=picture.points,
             batched_scales=np.full(n, self.bead_radius(picture), np.float32),
@@ -107,20 +108,31 @@ class Picture:
             lod="off",
         )
         self.beads.on_drag("left")(self.on_bead)
+        self.tube.mesh.on_drag("left")(self.on_tube)
+        self.points = picture.points
         self.held = -1
         self.count = n
 
     def bead_radius(self, picture: RopePicture) -> float:
         n = len(picture.points)
         spacing = float(np.abs(np.diff(picture.points, axis=0)).sum()) / max(n - 1, 1)
-        return float(np.clip(0.35 * spacing, 1.15 * THICKNESS, 1.9 * THICKNESS))
+        return float(np.clip(0.4 * spacing, 0.5 * THICKNESS, 1.9 * THICKNESS))
 
     async def on_bead(self, event: Any) -> None:
+        self.drag(event, event.instance_index)
+
+    async def on_tube(self, event: Any) -> None:
+        """The same between beads, where they are close or hidden: the point nearest to where the drag began."""
+        if event.phase == "start":
+            self.nearest = int(np.argmin(np.linalg.norm(self.points - event.start_position, axis=1)))
+        self.drag(event, self.nearest)
+
+    def drag(self, event: Any, particle: int | None) -> None:
         target = finite_vector(event.end_position)
-        if event.phase == "end" or target is None or event.instance_index is None:
+        if event.phase == "end" or target is None or particle is None:
             self.post(Release())
         else:
-            self.post(Grab(int(event.instance_index), target))
+            self.post(Grab(particle, target))
 
     def sweep(self, picture: RopePicture) -> None:
         smooth_line(picture.points, self.between, self.line)
@@ -141,6 +153,7 @@ class Picture:
             self.build(picture)
         assert self.tube is not None
         assert self.beads is not None
+        self.points = picture.points
         self.sweep(picture)
         self.tube.set(self.vertices, self.colours(picture))
         self.beads.visible = picture.show_points

@@ -3,8 +3,8 @@
 To add one, write a module here, and its drawing under the same name in `app/pictures`: the two sides of the thread, so
 that a headless run imports no viewer. The module has
 
-1. `Params`, a frozen dataclass of knobs with at least `speed` (target real-time factor) and `grid`: from it come the panel, the
-   command line, presets and the clamp;
+1. `Params`, a frozen dataclass of knobs with at least `speed` (target real-time factor) and `grid`: from it come the
+   panel, the command line, presets and the clamp;
 2. `TITLE`, `HELP` (two lines on how to use it), `SERIES` and `PLOTS` (the plot rows' columns, and the charts of each
    plot knob), `PRESETS`: name -> {knob: value}, the first being the defaults;
 3. `Scene(params)`, the simulation, on the simulation thread only: `params`, `step` [s], `time` [s], `set_params`,

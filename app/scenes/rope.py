@@ -18,7 +18,7 @@ from sim.springs.state import State, advance, energy, velocities
 
 TITLE = "Rope"
 ROOT: Vector = (0.0, 0.0, 3.0)  # [m]
-SPHERE: Vector = (-0.45, 0.0, 1.6)  # [m]
+SPHERE: Vector = (-0.45, 0.12, 1.6)  # [m], a little behind the rope, which then slides off in view
 THICKNESS = 0.035  # [m] radius of the drawn rope, and of its points for contact
 GAUGE_EVERY = 0.2  # [s] of simulated time between two looks at the stability of the state
 SAMPLE_EVERY = 1 / 30  # [s] between two plot rows

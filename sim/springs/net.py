@@ -6,6 +6,7 @@ Links are families of neighbour offsets, never index lists: every particle of th
 
 import dataclasses
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -203,13 +204,21 @@ class Net:
         )
 
 
+def as_float(value: object) -> float:
+    """A real number of any kind as a float; NaN for anything else, True and "1" included."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
+        return math.nan
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
 def check_number(name: str, value: object, lo: float, hi: float, unit: str, *, above: bool = False) -> float:
     """`value` as a float in [lo, hi] (above: in (lo, hi]); raises ValueError with name, value and range."""
-    good = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    if good:
-        number = float(value)  # type: ignore[arg-type]
-        if math.isfinite(number) and lo <= number <= hi and not (above and number == lo):
-            return number
+    number = as_float(value)
+    if math.isfinite(number) and lo <= number <= hi and not (above and number == lo):
+        return number
     low = f"above {lo:g}" if above else f"from {lo:g}"
     allowed = f"{low}{f' to {hi:g}' if hi < math.inf else ''} {unit}".rstrip()
     raise refusal(name, value, allowed if allowed != "from -inf" else "a finite number")
@@ -217,17 +226,14 @@ def check_number(name: str, value: object, lo: float, hi: float, unit: str, *, a
 
 def check_vector(name: str, value: object, length: int = 3) -> tuple[float, ...]:
     """`value` as `length` finite floats; raises ValueError otherwise."""
-    try:
-        numbers = tuple(float(c) for c in value)  # type: ignore[attr-defined]
-    except (TypeError, ValueError):
-        numbers = ()
+    numbers = tuple(as_float(c) for c in value) if isinstance(value, Iterable) else ()
     if len(numbers) != length or not all(math.isfinite(c) for c in numbers):
         raise refusal(name, value, f"{length} finite numbers [m]")
     return numbers
 
 
-def check_choice(name: str, value: str, choices: tuple[str, ...]) -> str:
-    if value not in choices:
+def check_choice(name: str, value: object, choices: Iterable[str]) -> str:
+    if not isinstance(value, str) or value not in choices:
         raise refusal(name, value, "one of " + ", ".join(choices))
     return value
 
@@ -270,7 +276,9 @@ def rope(
     check_number("radius", radius, 0, math.inf, "m")
     check_vector("root", root)
     check_choice("damping_model", damping_model, DAMPING_MODELS)
-    contact = contact or PLAIN_CONTACT
+    contact = PLAIN_CONTACT if contact is None else contact
+    if not isinstance(contact, Contact):
+        raise refusal("contact", contact, "a Contact, or None")
     check_number("contact.stiffness", contact.stiffness, 0, math.inf, "N/m")
     check_number("contact.damping", contact.damping, 0, math.inf, "N s/m")
     check_number("contact.friction", contact.friction, 0, math.inf, "")

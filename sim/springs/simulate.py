@@ -9,8 +9,11 @@ from numpy.typing import NDArray
 
 from sim.knobs import refusal
 from sim.springs.integrators import Integrator
-from sim.springs.net import Net, check_number
-from sim.springs.state import State, advance, energy, steps_for, velocities
+from sim.springs.net import Net, check_choice, check_number
+from sim.springs.state import SANE, State, advance, energy, steps_for, velocities
+
+CALM = 1e-3 * SANE  # [m]: a net within this has not yet been out of the sane bound
+MOST_FRAMES = 10_000_000  # what memory may hold, of a small net
 
 
 class Run(NamedTuple):
@@ -46,25 +49,30 @@ def simulate(
     record = integrator_named(integrator)
     check_number("step", step, 0, math.inf, "s", above=True)
     check_number("duration", duration, 0, math.inf, "s", above=True)
-    if not isinstance(frames, int | np.integer) or isinstance(frames, bool) or frames < 2:
-        raise refusal("frames", frames, "a whole number from 2")
+    if not isinstance(frames, int | np.integer) or isinstance(frames, bool) or not 2 <= frames <= MOST_FRAMES:
+        raise refusal("frames", frames, f"a whole number from 2 to {MOST_FRAMES}")
     t = np.linspace(0.0, duration, int(frames))
     interval = duration / (len(t) - 1)
     steps = steps_for(interval, step)
     h = interval / steps
 
     state = State.at_rest(net)
+    calm, calm_frame = state.copy(), 0
     xs = np.full((len(t), *net.x0.shape), np.nan)
     vs = np.full_like(xs, np.nan)
     ledger = np.full((len(t), 6), np.nan)
     diverged_at = None
     for frame in range(len(t)):
         if frame:
-            before = state.copy()
             advance(net, state, record, h, steps, with_ledger=with_ledger)
             if not state.is_sane:
-                diverged_at = first_insane_time(net, before, record, h, steps)
+                diverged_at = first_insane_time(net, calm, record, h, steps * (frame - calm_frame))
+                # What blows up may have passed the bound between frames, and come back for one.
+                for rows in (xs, vs, ledger):
+                    rows[t >= diverged_at] = np.nan
                 break
+            if np.abs(state.x).max() < CALM:
+                calm, calm_frame = state.copy(), frame
         xs[frame], vs[frame] = state.x, velocities(net, state)
         ledger[frame] = *energy(net, state), state.dissipated, state.work
         if progress:
@@ -76,13 +84,11 @@ def integrator_named(name: str) -> Integrator:
     """The registered integrator; raises ValueError with the names there are."""
     from sim.springs import INTEGRATORS
 
-    if name not in INTEGRATORS:
-        raise refusal("integrator", name, "one of " + ", ".join(INTEGRATORS))
-    return INTEGRATORS[name]
+    return INTEGRATORS[check_choice("integrator", name, INTEGRATORS)]
 
 
 def first_insane_time(net: Net, state: State, integrator: Integrator, h: float, steps: int) -> float:
-    """Repeat, step by step, the frame in which a run diverged, and return the time of the first bad step [s]."""
+    """Repeat, step by step, the end of a run that diverged, and return the time of the first bad step [s]."""
     for _ in range(steps):
         advance(net, state, integrator, h, 1)
         if not state.is_sane:

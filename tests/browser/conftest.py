@@ -46,7 +46,7 @@ class Tab:
         if message.type == "error" and "preventDefault inside passive" not in message.text:
             self.errors.append(message.text)
 
-    def wait(self, condition: Callable[[], Any], seconds: float = 60.0) -> Any:
+    def wait(self, condition: Callable[[], Any], seconds: float = 120.0) -> Any:
         """Run the page until the condition holds; its value, or fail."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:

@@ -82,13 +82,13 @@ def test_dragging_a_bead_pulls_it_and_lets_go(lab: Viewer, open_tab) -> None:
     tab.page.mouse.move(*start)
     lab.loop.commands.put(Play())
     tab.drag(start, (start[0] + 70, start[1] - 40))
-    tab.wait(lambda: lab.scene.held is not None, 20)
+    tab.wait(lambda: lab.scene.held is not None)
     held, _ = lab.scene.held
     assert abs(held - particle) <= 1
-    tab.wait(lambda: np.linalg.norm(lab.scene.state.x[:, 0, held] - bead) > 0.15, 20)
+    tab.wait(lambda: np.linalg.norm(lab.scene.state.x[:, 0, held] - bead) > 0.15)
     assert lab.loop.latest.picture.pull is not None
     tab.release()
-    tab.wait(lambda: lab.scene.held is None, 20)
+    tab.wait(lambda: lab.scene.held is None)
     assert tab.errors == []
 
 
@@ -98,7 +98,7 @@ def test_a_number_typed_in_the_panel_reaches_the_simulation(lab: Viewer, open_ta
     field = tab.page.get_by_label("Stiffness [N/m]").first
     field.fill("1234")
     field.press("Enter")
-    tab.wait(lambda: lab.scene.params.stiffness == 1234.0, 20)
+    tab.wait(lambda: lab.scene.params.stiffness == 1234.0)
     assert lab.scene.net.families[0].stiffness == 1234.0
 
 
@@ -106,22 +106,22 @@ def test_keys_play_pause_and_load_presets(lab: Viewer, open_tab) -> None:
     tab = open_tab(lab.port)
     tab.wait(lambda: watching(lab))
     tab.page.keyboard.press("Space")
-    tab.wait(lambda: not lab.loop.running, 20)
+    tab.wait(lambda: not lab.loop.running)
     steps = lab.loop.counts["steps"]
     tab.page.keyboard.press("n")
-    tab.wait(lambda: lab.loop.counts["steps"] == steps + 1, 20)
+    tab.wait(lambda: lab.loop.counts["steps"] == steps + 1)
     tab.page.keyboard.press("2")
-    tab.wait(lambda: lab.scene.params.points == 50, 20)
+    tab.wait(lambda: lab.scene.params.points == 50)
 
 
 def test_an_explosion_pauses_with_a_finite_picture_and_says_why(lab: Viewer, open_tab) -> None:
     tab = open_tab(lab.port)
     tab.wait(lambda: watching(lab))
     tab.page.keyboard.press("3")
-    tab.wait(lambda: lab.loop.halted, 30)
+    tab.wait(lambda: lab.loop.halted)
     assert "explicit_euler" in lab.loop.halted
     assert "h ω" in lab.loop.halted
-    tab.wait(lambda: tab.page.get_by_text("left its bounds").count() > 0, 20)
+    tab.wait(lambda: tab.page.get_by_text("left its bounds").count() > 0)
     assert np.isfinite(tab.vertices("/rope")).all()
     assert not lab.loop.running
 

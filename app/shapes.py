@@ -1,4 +1,7 @@
-"""A tube of fixed topology around a moving line: a smooth rope."""
+"""Meshes made of a few numbers: a ball, and a tube of fixed topology around a moving line.
+
+trimesh has both, but takes half a second to import, as long as all the rest of the rope scene.
+"""
 
 import math
 
@@ -10,7 +13,32 @@ from sim.jit import kernel
 SIDES = 10
 
 
-def faces(rings: int, sides: int = SIDES) -> NDArray[np.uint32]:
+def ball(rows: int = 16) -> tuple[NDArray[np.float64], NDArray[np.uint32]]:
+    """Vertices and triangles of a unit sphere with `rows` rows of quads from pole to pole."""
+    sides = 2 * rows
+    theta = np.pi * np.arange(1, rows) / rows
+    phi = 2 * np.pi * np.arange(sides) / sides
+    belts = np.stack(
+        [
+            np.outer(np.sin(theta), np.cos(phi)),
+            np.outer(np.sin(theta), np.sin(phi)),
+            np.outer(np.cos(theta), phi * 0 + 1),
+        ],
+        axis=-1,
+    )
+    vertices = np.concatenate([belts.reshape(-1, 3), [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]])
+    top, bottom = len(vertices) - 2, len(vertices) - 1
+    triangles = []
+    for s in range(sides):
+        t = (s + 1) % sides
+        triangles += [(top, s, t), (bottom, (rows - 2) * sides + t, (rows - 2) * sides + s)]
+        for r in range(rows - 2):
+            a, b, c, d = r * sides + s, r * sides + t, (r + 1) * sides + s, (r + 1) * sides + t
+            triangles += [(a, c, b), (b, c, d)]
+    return vertices, np.array(triangles, dtype=np.uint32)
+
+
+def tube_faces(rings: int, sides: int = SIDES) -> NDArray[np.uint32]:
     """Triangles (2 sides rings, 3) of a tube of `rings` rings, closed by a fan at each end's centre."""
     quads = []
     for r in range(rings - 1):

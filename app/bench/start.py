@@ -1,0 +1,44 @@
+"""How long a fresh interpreter takes until a rope moves, with compiled kernels in the cache and without."""
+
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from typing import Any
+
+STEPS = {
+    "numpy and numba alone": "import numpy, numba",
+    "sim.springs": "import sim.springs",
+    "first frame, leapfrog": "from sim.springs import rope, simulate; simulate(rope(), 'leapfrog', 1/1200, 1/60, 2)",
+    "first frame, rk4": "from sim.springs import rope, simulate; simulate(rope(), 'rk4', 1/1200, 1/60, 2)",
+    "first critical step": (
+        "from sim.springs import rope; from sim.springs.stability import critical_step; critical_step(rope(), 'rk4')"
+    ),
+}
+TIMED = "import time; start = time.perf_counter(); {}; print(time.perf_counter() - start)"
+
+
+def measured(code: str, cache: str | None = None) -> float:
+    """Seconds that `code` takes in a fresh interpreter; cache: a folder to keep kernels in instead of the user's."""
+    environment = dict(os.environ) if cache is None else {**os.environ, "SPRINGTIDE_CACHE": cache}
+    done = subprocess.run(
+        [sys.executable, "-c", TIMED.format(code)], env=environment, capture_output=True, text=True, check=True
+    )
+    return float(done.stdout.split()[-1])
+
+
+def rows(quick: bool = False) -> list[dict[str, Any]]:
+    """Seconds with a warm cache, the median of repeats after one that fills it; unless quick, with an empty one too."""
+    table = []
+    for name, code in STEPS.items():
+        measured(code)
+        row: dict[str, Any] = {
+            "what": name,
+            "warm [s]": statistics.median(measured(code) for _ in range(3 if quick else 7)),
+        }
+        if not quick:
+            with tempfile.TemporaryDirectory(prefix="springtide-") as folder:
+                row["cold [s]"] = measured(code, folder)
+        table.append(row)
+    return table

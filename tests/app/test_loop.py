@@ -1,0 +1,183 @@
+"""The loop, ticked with a clock of the test's own."""
+
+import dataclasses
+
+import pytest
+
+from app.loop import BUDGET, FRAME, FixedStep, SimLoop
+from app.messages import DivergenceError, Pause, Play, Reset, StepOnce, TogglePlay
+from sim.knobs import knob
+
+
+@dataclasses.dataclass(frozen=True)
+class Params:
+    speed: float = knob(1.0, 0.01, 8.0)
+    stiffness: float = knob(1.0, 0.0, 10.0)
+
+
+class Clock:
+    """Wall time that only moves when the test or a step moves it."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+class Scene:
+    """A scene that counts."""
+
+    step = 0.01
+
+    def __init__(self, clock: Clock, cost: float = 0.0) -> None:
+        self.params = Params()
+        self.clock, self.cost = clock, cost
+        self.time = 0.0
+        self.resets = 0
+        self.fails: Exception | None = None
+        self.seen: list[float] = []
+
+    def set_params(self, params: Params) -> None:
+        self.params = params
+
+    def advance(self, steps: int) -> None:
+        if self.fails:
+            raise self.fails
+        self.clock.now += steps * self.cost
+        self.time += steps * self.step
+        self.seen.append(self.params.stiffness)
+
+    def reset(self) -> None:
+        self.time = 0.0
+        self.resets += 1
+        self.fails = None
+
+    def picture(self) -> float:
+        return self.time
+
+    def gauge(self) -> None:
+        return None
+
+    def take_samples(self) -> tuple:
+        return ()
+
+
+def make(cost: float = 0.0, **options) -> tuple[SimLoop, Scene]:
+    clock = Clock()
+    scene = Scene(clock, cost)
+    return SimLoop(scene, clock=clock, **options), scene
+
+
+def test_simulated_time_follows_wall_time() -> None:
+    loop, scene = make()
+    for _ in range(600):
+        loop.tick(FRAME)
+    assert scene.time == pytest.approx(10.0, abs=scene.step)
+
+
+def test_steps_are_whole_and_owe_less_than_one() -> None:
+    pacer = FixedStep()
+    taken = sum(pacer.steps(0.007, 1.0, 0.01)[0] for _ in range(1000))
+    assert taken == 700 or (taken == 699 and pacer.debt < 0.01 * (1 + 1e-9))
+
+
+def test_speed_scales_time() -> None:
+    loop, scene = make()
+    scene.params = Params(speed=0.25)
+    for _ in range(240):
+        loop.tick(FRAME)
+    assert scene.time == pytest.approx(1.0, abs=scene.step)
+
+
+def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
+    loop, scene = make(cost=0.02)  # a step of 10 ms takes 20 ms
+    for _ in range(100):
+        loop.tick(FRAME)
+    assert loop.latest.status.capped
+    assert loop.pacer.debt <= scene.step
+    assert scene.time <= 100 * scene.step * 1.01
+    scene.cost = 0.0
+    loop.pacer.cost = 0.0
+    before = scene.time
+    loop.tick(FRAME)
+    assert scene.time - before <= 2 * scene.step  # no catching up
+
+
+def test_a_frame_never_solves_longer_than_its_budget_allows() -> None:
+    pacer = FixedStep()
+    pacer.learn(10, 0.01)
+    steps, capped = pacer.steps(0.25, 8.0, 1e-5)
+    assert capped
+    assert steps <= BUDGET * FRAME / 0.001
+
+
+def test_a_slider_reaches_the_simulation_in_the_next_frame() -> None:
+    values = Params()
+    loop, scene = make(read_params=lambda: values)
+    loop.tick(FRAME)
+    values = Params(stiffness=7.0)
+    loop.tick(FRAME)
+    assert scene.seen[-1] == 7.0
+
+
+def test_paused_takes_no_step_and_publishes_nothing() -> None:
+    loop, scene = make(paused=True)
+    shown = loop.latest
+    for _ in range(50):
+        loop.tick(FRAME)
+    assert scene.seen == []
+    assert loop.latest is shown
+    assert loop.counts["idle ticks"] == 50
+
+
+def test_nobody_looking_takes_no_step() -> None:
+    loop, scene = make(audience=lambda: 0)
+    for _ in range(50):
+        loop.tick(FRAME)
+    assert scene.seen == []
+    assert loop.counts["snapshots"] == 1
+
+
+def test_commands_play_pause_step_and_reset() -> None:
+    loop, scene = make(paused=True)
+    loop.commands.put(StepOnce())
+    loop.tick(FRAME)
+    assert scene.time == pytest.approx(scene.step)
+    loop.commands.put(Play())
+    loop.tick(FRAME)
+    assert loop.running
+    loop.commands.put(TogglePlay())
+    loop.tick(FRAME)
+    assert not loop.running
+    loop.commands.put(Play())
+    loop.commands.put(Pause())
+    loop.commands.put(Reset())
+    loop.tick(FRAME)
+    assert not loop.running
+    assert scene.resets == 1
+
+
+@pytest.mark.parametrize("error", [DivergenceError("h omega 3 over 2"), ZeroDivisionError("float division")])
+def test_what_goes_wrong_pauses_the_run_and_is_said(error: Exception, capsys: pytest.CaptureFixture) -> None:
+    loop, scene = make()
+    loop.tick(FRAME)
+    good = loop.latest.picture
+    scene.fails = error
+    loop.tick(FRAME)
+    assert not loop.running
+    assert str(error) in loop.latest.status.halted
+    assert loop.latest.picture == good
+    loop.commands.put(Reset())
+    loop.tick(FRAME)
+    assert loop.running
+    assert loop.latest.status.halted == ""
+    capsys.readouterr()
+
+
+def test_the_real_time_factor_is_measured() -> None:
+    loop, scene = make()
+    scene.params = Params(speed=0.5)
+    for _ in range(120):
+        loop.tick(FRAME)
+    assert loop.latest.status.actual == pytest.approx(0.5, abs=0.02)

@@ -1,0 +1,98 @@
+import math
+
+import numpy as np
+import pytest
+
+from sim.springs import Contact, lab_units, rope
+from sim.springs.statics import hanging_chain
+
+NOT_NUMBERS = [math.nan, math.inf, -math.inf, True, "1", None, [1.0], 10**400, 1j]
+REFUSED = {
+    "points": [*NOT_NUMBERS, 0, -1, 2.5, 10.0, 1_000_001],
+    "length": [*NOT_NUMBERS, 0.0, -1.0],
+    "mass": [*NOT_NUMBERS, 0.0, -1.0],
+    "stiffness": [*NOT_NUMBERS, -1.0],
+    "damping": [*NOT_NUMBERS, -1e-9],
+    "drag": [*NOT_NUMBERS, -1.0],
+    "gravity": NOT_NUMBERS,
+    "radius": [*NOT_NUMBERS, -0.1],
+    "root": [None, 1.0, "123", (1.0, 2.0), (1.0, 2.0, 3.0, 4.0), (1.0, 2.0, math.nan), (True, 0.0, 0.0), ("1", 0, 0)],
+    "end": [1.0, "123", (1.0, 2.0), (1.0, 2.0, math.inf)],
+    "floor": [bad for bad in NOT_NUMBERS if bad is not None],
+    "sphere": [1.0, (0.0, 0.0, 0.0), (0.0, 0.0, math.nan, 1.0), (0.0, 0.0, 0.0, -1.0)],
+    "damping_model": ["", "Axial", None, 1, ["axial"]],
+    "contact": [1.0, (800.0, 5.0), "clipped"],
+}
+REFUSED_CONTACT = {
+    "stiffness": [*NOT_NUMBERS, -1.0],
+    "damping": [*NOT_NUMBERS, -1.0],
+    "friction": [*NOT_NUMBERS, -1.0],
+    "law": ["", "coulomb", None, 1],
+}
+
+
+@pytest.mark.parametrize(("name", "value"), [(name, value) for name, values in REFUSED.items() for value in values])
+def test_a_bad_argument_is_refused_by_name_value_and_what_is_allowed(name, value):
+    with pytest.raises(ValueError, match=rf"^{name}.*: .* is not allowed; allowed: \S") as refusal:
+        rope(**{name: value})
+    assert repr(value) in str(refusal.value) or name == "sphere"
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [(name, value) for name, values in REFUSED_CONTACT.items() for value in values]
+)
+def test_a_bad_contact_is_refused_by_name(name, value):
+    with pytest.raises(ValueError, match=rf"^contact\.{name}: .* is not allowed; allowed: \S"):
+        rope(contact=Contact()._replace(**{name: value}))
+
+
+def test_a_rope_starts_at_rest_from_its_root_along_minus_x():
+    net = rope(5, 2.0, root=(1.0, 2.0, 3.0))
+    assert net.x0.shape == (3, 1, 5)
+    assert net.x0[0, 0] == pytest.approx([1.0, 0.5, 0.0, -0.5, -1.0])
+    assert (net.x0[1] == 2.0).all()
+    assert (net.x0[2] == 3.0).all()
+    assert net.pinned == {(0, 0)}
+    assert net.families[0].rest == 0.5
+
+
+def test_the_defaults_are_the_lab_s():
+    net = rope()
+    assert net.x0.shape[2] == 10
+    assert (net.mass, net.drag, net.gravity) == (1.0, 1.0, (0.0, 0.0, -10.0))
+    assert net.families == ((0, 1, 2.0 / 9, 800.0, 7.0),)
+    assert net.damping_model == "isotropic"
+
+
+def test_a_rope_of_two_ends_is_straight_between_them():
+    net = rope(3, 2.0, root=(0.0, 0.0, 1.0), end=(1.0, 2.0, 3.0))
+    assert net.pinned == {(0, 0), (0, 2)}
+    assert net.x0[:, 0, 1] == pytest.approx([0.5, 1.0, 2.0])
+
+
+def test_one_point_is_a_rope():
+    assert rope(1).x0.tolist() == [[[0.0]], [[0.0]], [[0.0]]]
+
+
+def test_numpy_numbers_are_numbers():
+    net = rope(np.int64(4), np.float32(2.0), mass=np.int32(1))
+    assert net.x0.shape == (3, 1, 4)
+    assert isinstance(net.mass, float)
+
+
+def test_in_lab_units_a_rope_stretches_with_its_points_and_in_material_units_it_does_not():
+    """The lab's trap: ten points hang 2.56 m deep, fifty 17.3 m, of the same 2 m rope."""
+    assert -hanging_chain(rope(10)).x[-1, 2] == pytest.approx(2.5625)
+    assert -hanging_chain(rope(50)).x[-1, 2] == pytest.approx(17.3125)
+    material = [hanging_chain(rope(n, 2.0, **lab_units(n, 2.0, 500.0, 1.0, 0.1, 0.2))).x[-1, 2] for n in (10, 50, 1000)]
+    assert np.ptp(material) < 5e-3
+
+
+def test_material_units_stretch_as_the_continuum_but_for_the_end_point_s_surplus_half():
+    """A hanging bar stretches by w L^2/(2 EA). Every point has a whole spacing's mass, the last one too, which stands
+    for half a spacing only: its surplus m/2 stretches each of n links by m g/(2 k), and nothing else differs."""
+    for links in (8, 16, 64):
+        net = rope(links + 1, 2.0, gravity=10.0, **lab_units(links + 1, 2.0, 500.0, 1.0, 0.0, 0.0))
+        surplus = links * net.mass / 2 * 10.0 / net.families[0].stiffness
+        stretch = -hanging_chain(net).x[-1, 2] - 2.0
+        assert stretch - surplus == pytest.approx(10.0 * 2.0**2 / (2.0 * 500.0), rel=1e-12)

@@ -1,0 +1,79 @@
+import dataclasses
+import functools
+
+import numpy as np
+import pytest
+
+from sim.springs import INTEGRATORS, PinPath, rope
+from sim.springs.net import Net
+from tests.springs.nets import patch
+from tests.springs.reference import exact, integrated, slope
+
+SECONDS = 0.5
+COARSEST = {1: 400, 2: 50, 4: 50, 5: 50}  # steps that are well inside the asymptotic range, by order
+PATH = PinPath(-0.1, ((0.01, -0.02, 0.03), (0.2, -0.1, 0.5), (-0.6, 0.4, 2.0), (1.0, 0.5, -3.0)))
+ROPES = {
+    "isotropic": rope(10),
+    "axial": rope(10, damping_model="axial"),
+    "undamped": rope(10, damping=0.0, drag=0.0),
+    "moving root": dataclasses.replace(rope(10), pin_paths=(((0, 0), PATH),)),
+    "moving root, axial": dataclasses.replace(rope(10, damping_model="axial"), pin_paths=(((0, 0), PATH),)),
+}
+
+
+@functools.cache
+def reference(name: str):
+    return exact(ROPES[name], SECONDS)
+
+
+def errors_of(net: Net, name: str, counts, truth, seconds: float = SECONDS):
+    """Largest error of any position [m] or velocity [m/s] at the end, for each number of steps."""
+    found = []
+    for steps in counts:
+        state = integrated(net, name, seconds, steps)
+        found.append(max(np.abs(state.x - truth[0]).max(), np.abs(state.v - truth[1]).max()))
+    return found
+
+
+def expected(name: str, *, damped: bool) -> int:
+    record = INTEGRATORS[name]
+    return record.order if damped else record.undamped_order or record.order
+
+
+@pytest.mark.parametrize("case", ROPES)
+@pytest.mark.parametrize("name", INTEGRATORS)
+def test_the_error_falls_at_the_declared_order_over_five_halvings(name, case):
+    counts = [COARSEST[INTEGRATORS[name].order] * 2**i for i in range(6)]
+    errors = errors_of(ROPES[case], name, counts, reference(case))
+    assert slope(counts, errors) == pytest.approx(expected(name, damped=case != "undamped"), abs=0.1)
+
+
+@pytest.mark.parametrize("name", INTEGRATORS)
+def test_a_net_of_many_families_converges_at_the_declared_order(name):
+    net = patch("axial")
+    counts = [max(100, COARSEST[INTEGRATORS[name].order]) * 2**i for i in range(6)]
+    errors = errors_of(net, name, counts, exact(net, 0.2), 0.2)
+    assert slope(counts, errors) == pytest.approx(expected(name, damped=True), abs=0.1)
+
+
+def test_a_moving_root_is_exactly_where_its_path_is():
+    net = ROPES["moving root"]
+    state = integrated(net, "leapfrog", SECONDS, 97)
+    s = SECONDS - PATH.start
+    c = np.array(PATH.coefficients)
+    assert state.x[:, 0, 0] == pytest.approx(c[0] + c[1] * s + c[2] * s**2 + c[3] * s**3, rel=1e-14)
+    assert state.v[:, 0, 0] == pytest.approx(c[1] + 2 * c[2] * s + 3 * c[3] * s**2, rel=1e-14)
+
+
+def test_the_lab_s_own_figures_of_error_come_out():
+    # Lab defaults from horizontal, two seconds: RK4 at 1/60 s is off by 2.0e-6 m and the damped leapfrog is second
+    # order where the lab's Euler at the same cost is a hundred times as far off.
+    net = rope(10)
+    truth = exact(net, 2.0)
+    rk4, leapfrog, euler = (
+        np.abs(integrated(net, name, 2.0, steps).x - truth[0]).max()
+        for name, steps in (("rk4", 120), ("leapfrog", 240), ("symplectic_euler", 240))
+    )
+    assert rk4 == pytest.approx(2.0e-6, rel=0.1)
+    assert leapfrog < 0.02 * euler
+    assert euler == pytest.approx(8.4e-3, rel=0.1)

@@ -53,7 +53,8 @@ def is_sane(x):
 def march(eighth, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
     """Fill xs, vs (frames, 3 rows cols) and ledgers (frames, 2) at `times`, starting from x, v at the first.
 
-    Returns force evaluations, steps taken, and frames filled: fewer than there are where no step was short enough.
+    Returns force evaluations, steps taken, frames filled, fewer than there are where no step was short enough or the state
+    left any sane bound, and the time reached [s].
     """
     five, eight = dopri5.make_stages(x, p), dop853.make_stages(x, p)
     f = make_scratch(p)
@@ -111,4 +112,4 @@ def march(eighth, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
         # A step cut short to land says little about the next.
         h = max(h, step * factor) if landing else step * max(SHRINK, factor)
         grow = GROW
-    return evals, steps, frame
+    return evals, steps, frame, t

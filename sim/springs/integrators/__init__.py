@@ -32,7 +32,7 @@ class Integrator(NamedTuple):
     implicit: bool = False  # a force evaluation is then one correction of Newton's method, `evals` the least number
     l_stable: bool = False  # what it cannot follow decays within a step
     undamped_only: bool = False  # refuses nets with damping
-    march: Callable[..., tuple[int, int, int]] | None = None  # adaptive methods: with steps of its own choosing
+    march: Callable[..., tuple[int, int, int, float]] | None = None  # adaptive methods: with steps of its own choosing
 
     @property
     def adaptive(self) -> bool:

@@ -10,7 +10,7 @@ import math
 
 from sim.jit import kernel
 from sim.springs.contact import surface_velocity, touching
-from sim.springs.forces import TINY
+from sim.springs.links import TINY
 
 KEPT = 0.4  # part of the mass that pressed links may take from a particle
 

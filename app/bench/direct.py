@@ -28,6 +28,10 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
             times[n].append((time.perf_counter() - start) / (repeats * n))
     least = min(statistics.median(each) for each in times.values())
     return [
-        {"points": n, "ns per point": 1e9 * statistics.median(times[n]), "of the least": statistics.median(times[n]) / least}
+        {
+            "points": n,
+            "ns per point": 1e9 * statistics.median(times[n]),
+            "of the least": statistics.median(times[n]) / least,
+        }
         for n in COUNTS
     ]

@@ -33,7 +33,7 @@ def faces(rows: int, cols: int) -> np.ndarray:
 class Picture:
     """Draws `ClothPicture`s."""
 
-    CAMERA = ((1.6, -3.6, 2.3), (0.0, 0.0, 1.15))  # position, target [m]
+    CAMERA = ((1.25, -2.85, 2.0), (0.3, 0.0, 1.15))  # position, target [m]
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server = server
@@ -68,11 +68,16 @@ class Picture:
             scene.add_mesh_simple(f"/grip_{name}", *ball(12), scale=GRIP, color=(60, 66, 80)) for name in ("a", "b")
         ]
         self.pole = scene.add_line_segments(
-            "/pole", np.zeros((1, 2, 3), np.float32), colors=(96, 88, 80), thickness=7.0, visible=False
+            "/pole", np.zeros((1, 2, 3), np.float32), colors=(96, 88, 80), thickness=0.03, visible=False
         )
         # One segment for the pull; its ends move while a particle is held.
         self.pull = scene.add_line_segments(
-            "/pull", np.zeros((1, 2, 3), np.float32), colors=HELD_COLOUR, thickness=4.0, visible=False
+            "/pull",
+            np.zeros((1, 2, 3), np.float32),
+            colors=HELD_COLOUR,
+            thickness=4.0,
+            thickness_units="screen",
+            visible=False,
         )
 
     def add_gizmo(self, thing: str, scale: float) -> viser.TransformControlsHandle:

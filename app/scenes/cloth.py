@@ -1,4 +1,4 @@
-"""The cloth: a curtain, a flag, a drape, a trampoline; its pins and a sphere on gizmos, every particle to be grabbed."""
+"""The cloth: curtain, flag, drape, trampoline; pins and a sphere on gizmos, every particle to be grabbed."""
 
 import dataclasses
 import math
@@ -24,6 +24,7 @@ LOOK_EVERY = 0.5  # [s] of simulated time between two looks at the stability of 
 LOOKED_THROUGH = 1100  # particles up to which that is quick; of larger cloths Gershgorin's bound is shown
 SAMPLE_EVERY = 1 / 30  # [s]
 BOUND = 60.0  # [m] from the origin, beyond which the run has diverged
+PLEATS = 4
 STARTS = ("hanging", "level", "flag")
 HELP = "<b>Drag the cloth</b> anywhere to pull it. <b>Drag the arrows</b> to move its pins and the sphere."
 SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "largest strain")
@@ -41,21 +42,27 @@ class Params:
     time_step: float = knob(1 / 2400, 1e-5, 0.05, "s", "Step h of the integrator", log_from=1e-5, group="Time")
     speed: float = knob(1.0, 0.01, 4.0, "", "Simulated per real time", log_from=0.01, group="Time")
 
-    start: str = knob("hanging", choices=STARTS, doc="How it starts: below its first row, level, or off a pole", group="Cloth")
+    start: str = knob(
+        "hanging", choices=STARTS, doc="How it starts: below its first row, level, or off a pole", group="Cloth"
+    )
     pinned: str = knob("edge", choices=HOLDS, doc="What is held: corners, an edge, the rim, nothing", group="Cloth")
     rows: int = knob(32, 4, 128, "", "Particles down the cloth", group="Cloth")
     cols: int = knob(32, 4, 128, "", "Particles across the cloth", group="Cloth")
     width: float = knob(1.6, 0.2, 4.0, "m", "Width at rest", group="Cloth")
     length: float = knob(1.6, 0.2, 4.0, "m", "Length at rest", group="Cloth")
-    gather: float = knob(0.62, 0.4, 1.0, "", "Part of its width that a hanging cloth starts on, in pleats", group="Cloth")
+    gather: float = knob(
+        0.62, 0.4, 1.0, "", "Part of its width that a hanging cloth starts on, in pleats", group="Cloth"
+    )
     density: float = knob(0.3, 0.02, 5.0, "kg/m^2", "Mass of a square metre", log_from=0.02, group="Cloth")
-    stiffness: float = knob(800.0, 1.0, 1e5, "N/m", "Structural springs, to the next particle", log_from=1.0, group="Cloth")
+    stiffness: float = knob(
+        800.0, 1.0, 1e5, "N/m", "Structural springs, to the next particle", log_from=1.0, group="Cloth"
+    )
     shear: float = knob(200.0, 0.0, 1e5, "N/m", "Shear springs, across a cell", log_from=1.0, group="Cloth")
     bend: float = knob(6.0, 0.0, 1e4, "N/m", "Bend springs, to the next particle but one", log_from=0.1, group="Cloth")
     damping: float = knob(0.02, 0.0, 1.0, "N s/m", "Damping of every spring", log_from=1e-4, group="Cloth")
 
     gravity: float = knob(9.81, 0.0, 30.0, "m/s^2", "Gravity, downwards", group="Surroundings")
-    wind: float = knob(0.0, 0.0, 25.0, "m/s", "Speed of the wind", group="Surroundings")
+    wind: float = knob(1.5, 0.0, 25.0, "m/s", "Speed of the wind", group="Surroundings")
     wind_direction: float = knob(
         math.pi / 2, -math.pi, math.pi, "rad", "Where the wind goes to, from +x towards +y", group="Surroundings"
     )
@@ -69,7 +76,12 @@ class Params:
     contact_stiffness: float = knob(300.0, 1.0, 1e5, "N/m", "Contact stiffness", log_from=1.0, group="Surroundings")
     contact_damping: float = knob(0.2, 0.0, 100.0, "N s/m", "Contact damping", log_from=1e-3, group="Surroundings")
     thickness: float = knob(
-        0.0, 0.0, 0.1, "m", "Particles nearer than this push each other; 0: the cloth passes itself", group="Surroundings"
+        0.0,
+        0.0,
+        0.1,
+        "m",
+        "Particles nearer than this push each other; 0: the cloth passes itself",
+        group="Surroundings",
     )
     pull: float = knob(8.0, 0.1, 1e3, "N", "Largest force of a drag", log_from=0.1, group="Surroundings")
 
@@ -83,16 +95,16 @@ class Params:
 PRESETS: dict[str, dict[str, Any]] = {
     "Curtain": {},
     "Flag in wind": {
-        "start": "flag", "rows": 48, "cols": 32, "width": 1.0, "length": 1.6, "density": 0.15, "wind": 8.0, "wind_direction": 0.25,
-        "bend": 1.0, "shear": 100.0, "damping": 0.005, "gust": 0.6, "time_step": 1 / 3600,
+        "start": "flag", "rows": 48, "cols": 32, "width": 1.0, "length": 1.6, "density": 0.15, "wind": 8.0,
+        "wind_direction": 0.25, "bend": 1.0, "shear": 100.0, "damping": 0.005, "full_strain": 1.0, "gust": 0.6, "time_step": 1 / 4200,
     },
     "Drape over the sphere": {
         "start": "level", "pinned": "free", "rows": 64, "cols": 64, "sphere": True, "thickness": 0.02, "bend": 3.0,
-        "integrator": "symplectic_euler", "time_step": 1 / 4200, "damping": 0.01,
+        "integrator": "symplectic_euler", "time_step": 1 / 4800, "damping": 0.01, "wind": 0.0, "full_strain": 2.0,
     },
     "Trampoline": {
         "start": "level", "pinned": "rim", "rows": 48, "cols": 48, "sphere": True, "sphere_radius": 0.25, "bob": 0.45,
-        "damping": 0.005, "full_strain": 20.0, "time_step": 1 / 3600, "friction": 0.0, "density": 0.4,
+        "damping": 0.005, "full_strain": 20.0, "time_step": 1 / 3600, "friction": 0.0, "density": 0.4, "wind": 0.0,
     },
 }  # fmt: skip
 
@@ -159,8 +171,8 @@ def corner(params: Params) -> Vector:
 def sphere_home(params: Params) -> Vector:
     """Where the sphere starts: under a level cloth, before a hanging one."""
     if params.start == "level":
-        low = 1.5 - SKIN - params.sphere_radius - (params.bob if params.bob > 0.0 else 0.15)
-        return 0.0, 0.0, max(low, params.sphere_radius)
+        below = 0.15 if params.bob > 0.0 else SKIN + 0.15
+        return 0.0, 0.0, max(1.5 - params.sphere_radius - below, params.sphere_radius)
     return 0.0, -params.sphere_radius - 0.5, 1.2
 
 
@@ -198,14 +210,20 @@ def build(params: Params, sphere: Vector) -> Net:
 
 
 def pleated(net: Net, gather: float) -> Net:
-    """A hanging cloth on `gather` of its width, in waves that keep its length: 1 + (k a)^2/4 = 1/gather."""
+    """A hanging cloth on `gather` of its width, in waves as long as its width at rest."""
     x, y, z = net.x0
-    width = x[0, -1] - x[0, 0]
-    waves = max(2, round(4.0 * width / 1.6 / gather**0.5))
-    k = 2.0 * math.pi * waves / (gather * width)
-    at = gather * (x - x[0, 0])
-    depth = 2.0 / k * math.sqrt(1.0 / gather - 1.0)
-    return dataclasses.replace(net, x0=np.ascontiguousarray(np.stack([x[0, 0] + at, y + depth * np.sin(k * at), z])))
+    width = float(x[0, -1] - x[0, 0])
+    s = np.linspace(0.0, gather * width, 2001)
+    phase = 2.0 * math.pi * PLEATS * s / s[-1]
+    low, high = 0.0, width
+    for _ in range(50):
+        depth = 0.5 * (low + high)
+        along = np.concatenate([[0.0], np.hypot(np.diff(s), np.diff(depth * np.sin(phase))).cumsum()])
+        low, high = (depth, high) if along[-1] < width else (low, depth)
+    # Particles at equal lengths along the wave
+    at = np.interp(np.linspace(0.0, along[-1], x.shape[1]), along, s)
+    out = depth * np.sin(2.0 * math.pi * PLEATS * at / s[-1])
+    return dataclasses.replace(net, x0=np.ascontiguousarray(np.stack([x[0, 0] + at + 0.0 * y, y + out, z])))
 
 
 def resample(values: NDArray[np.float64], rows: int, cols: int) -> NDArray[np.float64]:
@@ -229,8 +247,8 @@ def warm_up() -> Iterator[str]:
     net = cloth(4, 4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2), thickness=0.1)
     for name, record in INTEGRATORS.items():
         yield name
-        if not record.undamped_only:
-            simulate(net, name, 1e-4, 2e-4, 2, with_ledger=True)
+        quiet = cloth(4, 4, damping=0.0)
+        simulate(quiet if record.undamped_only else net, name, 1e-4, 2e-4, 2, with_ledger=True)
     yield "stability"
     Scene(Params(rows=4, cols=4))
 
@@ -309,7 +327,9 @@ class Scene:
         """Take steps with pins, sphere and pull on their ways; raises DivergenceError, keeping the last good state."""
         integrator = INTEGRATORS[self.params.integrator]
         if integrator.undamped_only and self.net.is_damped:
-            raise DivergenceError(f"{integrator.name} takes no damping: set damping and air to 0, floor and sphere off.")
+            raise DivergenceError(
+                f"{integrator.name} takes no damping: set damping and air to 0, floor and sphere off."
+            )
         duration = steps * self.step
         good = self.state.copy()
         net = self.net_under_way(self.state.t, duration)
@@ -348,7 +368,7 @@ class Scene:
         )
 
     def grip(self) -> tuple[float, float]:
-        """Stiffness [N/m] and damping [N s/m] of a pull: all its force within a tenth of a metre, if the step allows."""
+        """Stiffness [N/m] and damping [N s/m] of a pull: all its force within 0.1 m, if the step allows."""
         stiffest = 0.1 * self.net.mass / self.step**2
         stiffness = min(10.0 * self.params.pull, stiffest)
         return stiffness, 0.5 * math.sqrt(stiffness * self.net.mass)

@@ -12,5 +12,6 @@ INTEGRATORS: dict[str, Integrator] = discover()
 from sim.springs.simulate import Run, simulate  # noqa: E402  (it looks integrators up)
 
 __all__ = [
-    "INTEGRATORS", "Air", "Contact", "Grab", "Integrator", "Net", "PinPath", "Run", "cloth", "lab_units", "rope", "simulate",
+    "INTEGRATORS", "Air", "Contact", "Grab", "Integrator", "Net", "PinPath", "Run", "cloth", "lab_units", "rope",
+    "simulate",
 ]  # fmt: skip

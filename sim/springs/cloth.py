@@ -61,8 +61,8 @@ def cloth(
 ) -> Net:
     """A cloth at rest in a level plane: particle (i, j) is at origin + (j width/(cols-1), i length/(rows-1), 0).
 
-    width, length: [m]. density: [kg/m^2], shared equally by all particles. stiffness, shear, bend: [N/m] of a link to the next
-    particle, across a cell, and to the next but one; damping [N s/m] of every link; drag [N s/m] of a particle.
+    width, length: [m]. density: [kg/m^2], shared equally by all particles. stiffness, shear, bend: [N/m] of a link to
+    the next particle, across a cell, and to the next but one; damping [N s/m] of a link; drag [N s/m] of a particle.
     pinned: "corners" (0, 0) and (0, cols - 1), "edge" between them, "all corners", "rim", "free", or the particles.
     thickness: particles nearer to each other push with the contact's stiffness [m], 0: they pass. air: drag and lift
     by wind. floor, sphere, damping_model, contact, radius: as of `rope`.
@@ -106,8 +106,7 @@ def cloth(
     rests = (dx, dy, math.hypot(dx, dy), math.hypot(dx, dy), 2.0 * dx, 2.0 * dy)
     springs = (stiffness, stiffness, shear, shear, bend, bend)
     families = tuple(
-        Family(di, dj, rest, float(k), float(damping))
-        for (di, dj), rest, k in zip(CLOTH, rests, springs, strict=True)
+        Family(di, dj, rest, float(k), float(damping)) for (di, dj), rest, k in zip(CLOTH, rests, springs, strict=True)
     )
     j, i = np.meshgrid(dx * np.arange(cols), dy * np.arange(rows))
     x0 = np.stack([j, i, np.zeros_like(i)]) + np.asarray(origin, dtype=np.float64)[:, None, None]

@@ -66,7 +66,9 @@ def find_pairs(x, p):
                 if dx * dx + dy * dy + dz * dz >= reach * reach:
                     continue
                 # Two cells of the 27 may share a bucket: take the pair from the cell that b is in.
-                other = cell(x[b], inverse) == cx and cell(x[n + b], inverse) == cy and cell(x[2 * n + b], inverse) == cz
+                other = (
+                    cell(x[b], inverse) == cx and cell(x[n + b], inverse) == cy and cell(x[2 * n + b], inverse) == cz
+                )
                 if other and count < most:
                     p.pairs[count, 0], p.pairs[count, 1] = a, b
                     count += 1
@@ -76,11 +78,20 @@ def find_pairs(x, p):
 
 
 @kernel(noalias=True, inline=True)
+def mean_shift(x, seen, o, n):
+    total = 0.0
+    for j in range(n):
+        total += x[o + j] - seen[o + j]
+    return total / n
+
+
+@kernel(noalias=True, inline=True)
 def farthest(x, seen, n):
-    """Largest squared distance of any particle from where it was seen."""
+    """Largest squared distance of any particle from where it was seen, but for what all have moved together."""
+    mx, my, mz = mean_shift(x, seen, np.uint64(0), n), mean_shift(x, seen, n, n), mean_shift(x, seen, n + n, n)
     most = 0.0
     for j in range(n):
-        dx, dy, dz = x[j] - seen[j], x[n + j] - seen[n + j], x[n + n + j] - seen[n + n + j]
+        dx, dy, dz = x[j] - seen[j] - mx, x[n + j] - seen[n + j] - my, x[n + n + j] - seen[n + n + j] - mz
         most = max(most, dx * dx + dy * dy + dz * dz)
     return most
 
@@ -89,9 +100,10 @@ def farthest(x, seen, n):
 def refresh_pairs(x, p):
     """Find the pairs anew where something has moved by half the skin; returns their number."""
     half = 0.5 * SKIN * p.thickness
-    if not farthest(x, p.seen, np.uint64(p.rows * p.cols)) < half * half:
+    last = p.pairs.shape[0] - 1
+    if p.pairs[last, 0] < 0 or not farthest(x, p.seen, np.uint64(p.rows * p.cols)) < half * half:
         find_pairs(x, p)
-    return p.pairs[p.pairs.shape[0] - 1, 0]
+    return p.pairs[last, 0]
 
 
 @kernel(allocates=False)

@@ -202,15 +202,18 @@ def damp_motion(x, v, decay, p, reverse):
 
 
 @kernel(allocates=False)
-def blow(x, v, s, p, a, middle):
-    """The air's push for a time s [s], by the explicit midpoint rule. a, middle: scratch (3 rows cols,)."""
+def blow(x, v, s, p, f, a, middle):
+    """The air's push for a time s [s], by the explicit midpoint rule.
+
+    a, middle: scratch (3 rows cols,); f: of `make_scratch`.
+    """
     for j in range(v.shape[0]):
         a[j], middle[j] = 0.0, v[j]
-    add_wind(x, v, p, a)
+    add_wind(x, v, p, f, a)
     for j in range(v.shape[0]):
         middle[j] += 0.5 * s * a[j]
         a[j] = 0.0
-    add_wind(x, middle, p, a)
+    add_wind(x, middle, p, f, a)
     for j in range(v.shape[0]):
         v[j] += s * a[j]
 

@@ -14,8 +14,8 @@ from sim.jit import kernel
 from sim.springs.cloth_forces import accelerate_cloth, cloth_scratch
 from sim.springs.collide import add_self_contacts
 from sim.springs.contact import add_contacts
-from sim.springs.links import TINY, link_forces
-from sim.springs.wind import add_wind
+from sim.springs.links import link_forces
+from sim.springs.wind import add_wind, wind_scratch
 
 
 @kernel(noalias=True, inline=True)
@@ -119,9 +119,8 @@ def accelerate(x, v, t, p, with_damping, f, a):
         accelerate_cloth(x, v, p, b, b * p.drag, f, a)
     else:
         accelerate_grid(x, v, p, b, b * p.drag, f, a)
-    if p.has_air:
-        if with_damping:
-            add_wind(x, v, p, a)
+    if p.has_air and with_damping:
+        add_wind(x, v, p, f, a)
     if p.thickness > 0.0:
         add_self_contacts(x, v, p, with_damping, a)
     if p.has_floor or p.has_sphere:
@@ -132,7 +131,7 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 @kernel
 def make_scratch(p):
-    return np.zeros(cloth_scratch(p.cols) if p.is_cloth else 3 * (p.cols + 1))
+    return np.zeros((cloth_scratch(p.cols) if p.is_cloth else 3 * (p.cols + 1)) + wind_scratch(p.cols))
 
 
 @kernel(inline=True)

@@ -129,7 +129,7 @@ class Forces(NamedTuple):
     air_drag: float  # rho C_D / 2 [kg/m^3]
     air_lift: float
     thickness: float  # [m] at which particles of the net push each other, 0: never
-    pairs: NDArray[np.int64]  # (most + 1, 2): those within reach, their number in [-1, 0]
+    pairs: NDArray[np.int64]  # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
 
 
@@ -170,7 +170,12 @@ class Net:
         """Whether anything but a grab takes energy out."""
         touched = self.floor is not None or self.sphere is not None or self.thickness > 0.0
         rough = self.contact.damping > 0.0 or (self.contact.friction > 0.0 and self.contact.law == "clipped")
-        return self.drag > 0.0 or self.air is not None or any(f.damping > 0.0 for f in self.families) or (touched and rough)
+        return (
+            self.drag > 0.0
+            or self.air is not None
+            or any(f.damping > 0.0 for f in self.families)
+            or (touched and rough)
+        )
 
     def weights(self) -> NDArray[np.float64]:
         """(rows cols,) inverse masses [1/kg]; 0 where pinned."""
@@ -237,8 +242,8 @@ class Net:
             air_drag=0.5 * float(air.density * air.drag),
             air_lift=0.5 * float(air.density * air.lift),
             thickness=float(self.thickness),
-            pairs=np.zeros((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), dtype=np.int64),
-            seen=np.full(3 * rows * cols if self.thickness > 0 else 3, np.inf),
+            pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1, dtype=np.int64),
+            seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
         )
 
 

@@ -118,7 +118,8 @@ def largest(u):
 def solve_stage(x0, v0, g, t, p, x, v, work):
     """Solve for v, from the guess in v, with x = x0 + g v; returns the corrections taken, each one force evaluation."""
     n = p.rows * p.cols
-    for count in range(MOST):
+    taken = 0
+    while taken < MOST:
         set_sum(x, x0, g, v)
         set_pins(x, v, t, p)
         accelerate(x, v, t, p, True, work.f, work.a)
@@ -132,10 +133,11 @@ def solve_stage(x0, v0, g, t, p, x, v, work):
             correct_net(x, v, t, g, p, work)
         for i in range(3 * n):
             v[i] += work.u[i]
+        taken += 1
         size = largest(work.u)
         # A NaN ends the search too: it only spreads.
         if not size > SETTLED * largest(v) + ROUND_OFF * largest(x) / g:
             break
     set_sum(x, x0, g, v)
     set_pins(x, v, t, p)
-    return count + 1
+    return taken

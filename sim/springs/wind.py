@@ -6,54 +6,76 @@ the cross product of its diagonals, so the force keeps the symmetries of a squar
 
 import math
 
+import numpy as np
+
 from sim.jit import kernel
+
+STILL = 1e-300  # under the roots: no air or no area gives no force instead of 0/0
 
 
 @kernel(inline=True)
-def cell_force(x, v, p, j):
-    """Force [N] on the cell with corner j, (i, j) to (i + 1, j + 1): rho/2 A s [C_D u + C_L (|u| n - s u/|u|)]."""
-    n = p.rows * p.cols
-    b, c, d = j + 1, j + p.cols, j + p.cols + 1
-    px, py, pz = x[d] - x[j], x[n + d] - x[n + j], x[2 * n + d] - x[2 * n + j]
-    qx, qy, qz = x[c] - x[b], x[n + c] - x[n + b], x[2 * n + c] - x[2 * n + b]
-    ax, ay, az = 0.5 * (py * qz - pz * qy), 0.5 * (pz * qx - px * qz), 0.5 * (px * qy - py * qx)
-    u = p.wind_x - 0.25 * (v[j] + v[b] + v[c] + v[d])
-    k = p.wind_y - 0.25 * (v[n + j] + v[n + b] + v[n + c] + v[n + d])
-    w = p.wind_z - 0.25 * (v[2 * n + j] + v[2 * n + b] + v[2 * n + c] + v[2 * n + d])
-    flow = u * ax + k * ay + w * az  # A s, of the sign of n
-    area = math.sqrt(ax * ax + ay * ay + az * az)
-    speed = math.sqrt(u * u + k * k + w * w)
-    if area == 0.0 or speed == 0.0:
-        return 0.0, 0.0, 0.0
-    s = abs(flow) / area
-    along = abs(flow) * (p.air_drag - p.air_lift * s / speed)
-    normal = flow / area * p.air_lift * speed
-    return along * u + normal * ax, along * k + normal * ay, along * w + normal * az
+def wind_scratch(cols):
+    """Numbers that a row of cells takes at the end of the scratch."""
+    return 3 * (cols + 1)
+
+
+@kernel(noalias=True, inline=True)
+def set_cell_forces(x, v, ia, ic, count, n, m, wind_x, wind_y, wind_z, drag, lift, f, of):
+    """Force [N] on the cells between two rows: rho/2 A s [C_D u + C_L (|u| n - s u/|u|)], with s = |u . n|.
+
+    ia, ic: first particles of the rows; f (3, m) from `of`.
+    """
+    one = np.uint64(1)
+    for j in range(count):
+        a, c = ia + j, ic + j
+        b, d = a + one, c + one
+        px, py, pz = x[d] - x[a], x[n + d] - x[n + a], x[n + n + d] - x[n + n + a]
+        qx, qy, qz = x[c] - x[b], x[n + c] - x[n + b], x[n + n + c] - x[n + n + b]
+        ax, ay, az = 0.5 * (py * qz - pz * qy), 0.5 * (pz * qx - px * qz), 0.5 * (px * qy - py * qx)
+        ux = wind_x - 0.25 * (v[a] + v[b] + v[c] + v[d])
+        uy = wind_y - 0.25 * (v[n + a] + v[n + b] + v[n + c] + v[n + d])
+        uz = wind_z - 0.25 * (v[n + n + a] + v[n + n + b] + v[n + n + c] + v[n + n + d])
+        flow = ux * ax + uy * ay + uz * az  # A u . n
+        area = math.sqrt(ax * ax + ay * ay + az * az + STILL)
+        speed = math.sqrt(ux * ux + uy * uy + uz * uz + STILL)
+        s = abs(flow) / area
+        along = abs(flow) * (drag - lift * s / speed)
+        normal = flow / area * lift * speed
+        f[of + j] = along * ux + normal * ax
+        f[of + m + j] = along * uy + normal * ay
+        f[of + m + m + j] = along * uz + normal * az
+
+
+@kernel(noalias=True, inline=True)
+def add_quarter(f, of, count, w, ow, a, o):
+    for j in range(count):
+        a[o + j] += 0.25 * w[ow + j] * f[of + j]
 
 
 @kernel(noalias=True, allocates=False)
-def add_wind(x, v, p, a):
-    """Add the accelerations by the air."""
-    n = p.rows * p.cols
+def add_wind(x, v, p, f, a):
+    """Add the accelerations by the air; f: scratch whose last (wind_scratch,) are free."""
+    n, m, cols = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1), np.uint64(p.cols)
+    count = np.uint64(p.cols - 1)
+    start = np.uint64(f.shape[0] - wind_scratch(p.cols))
     for i in range(p.rows - 1):
-        for j in range(i * p.cols, i * p.cols + p.cols - 1):
-            fx, fy, fz = cell_force(x, v, p, j)
-            for corner in (j, j + 1, j + p.cols, j + p.cols + 1):
-                w = 0.25 * p.weights[corner]
-                a[corner] += w * fx
-                a[n + corner] += w * fy
-                a[2 * n + corner] += w * fz
+        ia = np.uint64(i * p.cols)
+        set_cell_forces(
+            x, v, ia, ia + cols, count, n, m, p.wind_x, p.wind_y, p.wind_z, p.air_drag, p.air_lift, f, start
+        )  # fmt: skip
+        for e in range(3):
+            of, o = start + np.uint64(e) * m, np.uint64(e) * n
+            for corner in range(4):
+                at = ia + np.uint64(corner % 2) + np.uint64(corner // 2) * cols
+                add_quarter(f, of, count, p.weights, at, a, o + at)
 
 
-@kernel(allocates=False)
+@kernel
 def wind_power(x, v, p):
     """What the air puts into the free particles [W]; negative where it takes."""
-    n = p.rows * p.cols
+    a = np.zeros(v.shape[0])
+    add_wind(x, v, p, np.zeros(wind_scratch(p.cols)), a)
     total = 0.0
-    for i in range(p.rows - 1):
-        for j in range(i * p.cols, i * p.cols + p.cols - 1):
-            fx, fy, fz = cell_force(x, v, p, j)
-            for c in (j, j + 1, j + p.cols, j + p.cols + 1):
-                if p.weights[c] > 0.0:
-                    total += 0.25 * (fx * v[c] + fy * v[n + c] + fz * v[2 * n + c])
+    for j in range(v.shape[0]):
+        total += p.mass * a[j] * v[j]
     return total

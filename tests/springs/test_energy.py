@@ -6,8 +6,8 @@ import pytest
 
 from sim.springs import INTEGRATORS, Contact, Grab, PinPath, rope, simulate
 from sim.springs.state import State, advance, energy
-from tests.springs.reference import integrated, slope
 from tests.springs.nets import DAMPABLE
+from tests.springs.reference import integrated, slope
 
 OSCILLATOR = rope(2, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0)  # omega = 1 rad/s
 PATH = PinPath(0.0, ((0.0, 0.0, 0.0), (0.5, 0.2, 0.3), (-0.5, 0.4, 1.0), (0.4, 0.5, -1.0)))

@@ -57,7 +57,13 @@ def test_the_midpoint_method_keeps_what_it_cannot_follow_within_bounds():
 
 @pytest.mark.parametrize(
     ("name", "stiffness"),
-    [("implicit_euler", 800.0), ("implicit_euler", 1e9), ("tr_bdf2", 800.0), ("tr_bdf2", 1e9), ("implicit_midpoint", 800.0)],
+    [
+        ("implicit_euler", 800.0),
+        ("implicit_euler", 1e9),
+        ("tr_bdf2", 800.0),
+        ("tr_bdf2", 1e9),
+        ("implicit_midpoint", 800.0),
+    ],
 )
 def test_the_equilibrium_is_the_exact_one_even_in_long_steps(name, stiffness):
     """The midpoint method keeps what it cannot follow, so it only settles where it can."""

@@ -15,7 +15,12 @@ from sim.springs.energy import add_power
 from sim.springs.forces import accelerate, make_scratch, set_pins
 
 C = (  # times of the stages
-    0.0, 0.2, 0.3, 0.8, 0.8888888888888888, 1.0,
+    0.0,
+    0.2,
+    0.3,
+    0.8,
+    0.8888888888888888,
+    1.0,
 )
 A = (  # slopes of the stages
     (0.0,),
@@ -26,11 +31,21 @@ A = (  # slopes of the stages
     (2.8462752525252526, -10.757575757575758, 8.906422717743473, 0.2784090909090909, -0.2735313036020583),
 )
 B = (  # weights
-    0.09114583333333333, 0.0, 0.44923629829290207, 0.6510416666666666, -0.322376179245283, 0.13095238095238096,
+    0.09114583333333333,
+    0.0,
+    0.44923629829290207,
+    0.6510416666666666,
+    -0.322376179245283,
+    0.13095238095238096,
 )
 E = (  # the fifth-order weights less the embedded fourth-order ones, the new state included
-    0.0012326388888888888, 0.0, -0.0042527702905061394, 0.03697916666666667, -0.05086379716981132,
-    0.0419047619047619, -0.025,
+    0.0012326388888888888,
+    0.0,
+    -0.0042527702905061394,
+    0.03697916666666667,
+    -0.05086379716981132,
+    0.0419047619047619,
+    -0.025,
 )
 
 
@@ -73,8 +88,16 @@ class Stages(NamedTuple):
 @kernel
 def make_stages(x, p):
     return Stages(
-        np.empty_like(x), np.empty_like(x), np.empty_like(x), np.empty_like(x), np.empty_like(x), np.empty_like(x),
-        np.empty_like(x), np.empty_like(x), np.empty_like(x), make_scratch(p),
+        np.empty_like(x),
+        np.empty_like(x),
+        np.empty_like(x),
+        np.empty_like(x),
+        np.empty_like(x),
+        np.empty_like(x),
+        np.empty_like(x),
+        np.empty_like(x),
+        np.empty_like(x),
+        make_scratch(p),
     )
 
 
@@ -88,53 +111,36 @@ def set_stage_1(x, v, h, a0, xs, vs):
 @kernel(noalias=True, inline=True)
 def set_stage_2(x, v, h, a0, a1, xs, vs):
     for j in range(x.shape[0]):
-        xs[j] = x[j] + h * (
-            C[2] * v[j]
-            + h * (G[2][0] * a0[j])
-        )
+        xs[j] = x[j] + h * (C[2] * v[j] + h * (G[2][0] * a0[j]))
         vs[j] = v[j] + h * (A[2][0] * a0[j] + A[2][1] * a1[j])
 
 
 @kernel(noalias=True, inline=True)
 def set_stage_3(x, v, h, a0, a1, a2, xs, vs):
     for j in range(x.shape[0]):
-        xs[j] = x[j] + h * (
-            C[3] * v[j]
-            + h * (G[3][0] * a0[j] + G[3][1] * a1[j])
-        )
+        xs[j] = x[j] + h * (C[3] * v[j] + h * (G[3][0] * a0[j] + G[3][1] * a1[j]))
         vs[j] = v[j] + h * (A[3][0] * a0[j] + A[3][1] * a1[j] + A[3][2] * a2[j])
 
 
 @kernel(noalias=True, inline=True)
 def set_stage_4(x, v, h, a0, a1, a2, a3, xs, vs):
     for j in range(x.shape[0]):
-        xs[j] = x[j] + h * (
-            C[4] * v[j]
-            + h * (G[4][0] * a0[j] + G[4][1] * a1[j] + G[4][2] * a2[j])
-        )
+        xs[j] = x[j] + h * (C[4] * v[j] + h * (G[4][0] * a0[j] + G[4][1] * a1[j] + G[4][2] * a2[j]))
         vs[j] = v[j] + h * (A[4][0] * a0[j] + A[4][1] * a1[j] + A[4][2] * a2[j] + A[4][3] * a3[j])
 
 
 @kernel(noalias=True, inline=True)
 def set_stage_5(x, v, h, a0, a1, a2, a3, a4, xs, vs):
     for j in range(x.shape[0]):
-        xs[j] = x[j] + h * (
-            C[5] * v[j]
-            + h * (G[5][0] * a0[j] + G[5][1] * a1[j] + G[5][2] * a2[j] + G[5][3] * a3[j])
-        )
+        xs[j] = x[j] + h * (C[5] * v[j] + h * (G[5][0] * a0[j] + G[5][1] * a1[j] + G[5][2] * a2[j] + G[5][3] * a3[j]))
         vs[j] = v[j] + h * (A[5][0] * a0[j] + A[5][1] * a1[j] + A[5][2] * a2[j] + A[5][3] * a3[j] + A[5][4] * a4[j])
 
 
 @kernel(noalias=True, inline=True)
 def finish(x, v, h, a0, a1, a2, a3, a4, a5, xs, vs):
     for j in range(x.shape[0]):
-        xs[j] = x[j] + h * (
-            v[j]
-            + h * (BG[0] * a0[j] + BG[1] * a1[j] + BG[2] * a2[j] + BG[3] * a3[j] + BG[4] * a4[j])
-        )
-        vs[j] = v[j] + h * (
-            B[0] * a0[j] + B[2] * a2[j] + B[3] * a3[j] + B[4] * a4[j] + B[5] * a5[j]
-        )
+        xs[j] = x[j] + h * (v[j] + h * (BG[0] * a0[j] + BG[1] * a1[j] + BG[2] * a2[j] + BG[3] * a3[j] + BG[4] * a4[j]))
+        vs[j] = v[j] + h * (B[0] * a0[j] + B[2] * a2[j] + B[3] * a3[j] + B[4] * a4[j] + B[5] * a5[j])
 
 
 @kernel(noalias=True, allocates=False)
@@ -183,13 +189,8 @@ def add_errors(x, v, xn, vn, h, a0, a1, a2, a3, a4, a5, a6, rtol, atol):
     for j in range(x.shape[0]):
         wx = 1.0 / (atol + rtol * max(abs(x[j]), abs(xn[j])))
         wv = 1.0 / (atol + rtol * max(abs(v[j]), abs(vn[j])))
-        ex = wx * (
-            EG[0] * a0[j] + EG[1] * a1[j] + EG[2] * a2[j] + EG[3] * a3[j] + EG[4] * a4[j]
-            + EG[5] * a5[j]
-        )
-        ev = wv * (
-            E[0] * a0[j] + E[2] * a2[j] + E[3] * a3[j] + E[4] * a4[j] + E[5] * a5[j] + E[6] * a6[j]
-        )
+        ex = wx * (EG[0] * a0[j] + EG[1] * a1[j] + EG[2] * a2[j] + EG[3] * a3[j] + EG[4] * a4[j] + EG[5] * a5[j])
+        ev = wv * (E[0] * a0[j] + E[2] * a2[j] + E[3] * a3[j] + E[4] * a4[j] + E[5] * a5[j] + E[6] * a6[j])
         sum0 += h * h * ex * ex + ev * ev
     return sum0
 

@@ -53,8 +53,8 @@ def is_sane(x):
 def march(eighth, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
     """Fill xs, vs (frames, 3 rows cols) and ledgers (frames, 2) at `times`, starting from x, v at the first.
 
-    Returns force evaluations, steps taken, frames filled, fewer than there are where no step was short enough or the state
-    left any sane bound, and the time reached [s].
+    Returns force evaluations, steps taken, frames filled, and the time reached [s]; fewer frames than there are where
+    no step was short enough or the state left any sane bound.
     """
     five, eight = dopri5.make_stages(x, p), dop853.make_stages(x, p)
     f = make_scratch(p)

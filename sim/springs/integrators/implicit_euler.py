@@ -36,6 +36,6 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
 
 
 RECORD = Integrator(
-    "implicit_euler", 1, False, 1, limit, advance, "For looks at any stiffness: never explodes, damps what it cannot follow.",
+    "implicit_euler", 1, False, 1, limit, advance, "For looks at any stiffness: damps what it cannot follow.",
     implicit=True, l_stable=True,
 )  # fmt: skip

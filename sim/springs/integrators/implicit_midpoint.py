@@ -40,6 +40,6 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
 
 
 RECORD = Integrator(
-    "implicit_midpoint", 2, True, 1, limit, advance, "For energy at any stiffness: symplectic, damps nothing, forgets nothing.",
+    "implicit_midpoint", 2, True, 1, limit, advance, "For energy at any stiffness: symplectic, damps nothing.",
     implicit=True,
 )  # fmt: skip

@@ -1,8 +1,10 @@
-"""PEFRL, a symplectic splitting of fourth order with small errors (Omelyan, Mryglod & Folk 2002, eq. 20), undamped only.
+"""PEFRL, a symplectic splitting of fourth order with small errors (Omelyan, Mryglod & Folk 2002, eq. 20).
 
 Drifts and kicks in turn, symmetric: X(xi) K((1-2 lambda)/2) X(chi) K(lambda) X(1-2(chi+xi)) K(lambda) X(chi) ...
 Some of them run backwards, where damping would drive: a damped net is refused.
 """
+
+import numpy as np
 
 from sim.jit import kernel
 from sim.springs.amplification import limit_of
@@ -10,8 +12,6 @@ from sim.springs.energy import add_power
 from sim.springs.forces import accelerate, make_scratch, set_pins
 from sim.springs.integrators import Integrator
 from sim.springs.rows import add_scaled
-
-import numpy as np
 
 XI = 0.1786178958448091
 LAMBDA = -0.2123418310626054

@@ -1,7 +1,7 @@
 """TR-BDF2: a trapezoidal stage to t + gamma h, then BDF2 to t + h, gamma = 2 - sqrt 2 (Hosea & Shampine 1996).
 
-Both stages have the same g = gamma h/2. L-stable and second order: what a mode loses a step is 0.0037 (h omega)^4 of its
-amplitude, where implicit Euler takes (h omega)^2/2.
+Both stages have the same g = gamma h/2. L-stable and second order: what a mode loses a step is 0.0037 (h omega)^4 of
+its amplitude, where implicit Euler takes (h omega)^2/2.
 """
 
 import math

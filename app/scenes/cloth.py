@@ -96,7 +96,8 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Curtain": {},
     "Flag in wind": {
         "start": "flag", "rows": 48, "cols": 32, "width": 1.0, "length": 1.6, "density": 0.15, "wind": 8.0,
-        "wind_direction": 0.25, "bend": 1.0, "shear": 100.0, "damping": 0.005, "full_strain": 1.0, "gust": 0.6, "time_step": 1 / 4200,
+        "wind_direction": 0.25, "bend": 1.0, "shear": 100.0, "damping": 0.005, "full_strain": 1.0, "gust": 0.6,
+        "time_step": 1 / 4200,
     },
     "Drape over the sphere": {
         "start": "level", "pinned": "free", "rows": 64, "cols": 64, "sphere": True, "thickness": 0.02, "bend": 3.0,

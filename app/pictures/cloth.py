@@ -124,7 +124,7 @@ class Picture:
         """(particles, 3) sRGB in 0..1: strain, or plain."""
         if picture.colour == "plain":
             return np.tile(np.array(CLOTH_COLOUR, np.float32) / 255, (picture.strain.size, 1))
-        return scale_colours(picture.strain.ravel(), 0.0, picture.full_strain)
+        return scale_colours(picture.strain.ravel().astype(np.float64), 0.0, picture.full_strain)
 
     def show(self, picture: ClothPicture) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""

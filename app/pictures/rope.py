@@ -58,7 +58,12 @@ class Picture:
         self.hook = scene.add_mesh_simple("/hook", *ball(8), scale=1.9 * THICKNESS, color=(60, 66, 80))
         # One segment for the pull; its ends move while a point is held.
         self.pull = scene.add_line_segments(
-            "/pull", np.zeros((1, 2, 3), np.float32), colors=HELD_COLOUR, thickness=4.0, visible=False
+            "/pull",
+            np.zeros((1, 2, 3), np.float32),
+            colors=HELD_COLOUR,
+            thickness=4.0,
+            thickness_units="screen",
+            visible=False,
         )
 
     def add_gizmo(
@@ -225,6 +230,8 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     g = snapshot.gauge
     step, stiffness = g.stability.critical_step, g.largest_stiffness
     unit = "N/m" if g.knob == "stiffness" else "N"
+    if step == float("inf"):
+        return {"time_step": "any step holds", g.knob: "any stiffness holds"}
     return {
         "time_step": f"holds up to {step:.3g} s" if step > 0 else "no step holds with this method",
         g.knob: f"holds up to {stiffness:.3g} {unit}" if stiffness > 0 else "no stiffness holds at this step",

@@ -216,7 +216,7 @@ def pleated(net: Net, gather: float) -> Net:
     width = float(x[0, -1] - x[0, 0])
     s = np.linspace(0.0, gather * width, 2001)
     phase = 2.0 * math.pi * PLEATS * s / s[-1]
-    low, high = 0.0, width
+    low, high, depth, along = 0.0, width, 0.0, s
     for _ in range(50):
         depth = 0.5 * (low + high)
         along = np.concatenate([[0.0], np.hypot(np.diff(s), np.diff(depth * np.sin(phase))).cumsum()])
@@ -232,7 +232,9 @@ def resample(values: NDArray[np.float64], rows: int, cols: int) -> NDArray[np.fl
     r, c = (np.linspace(0.0, 1.0, count) for count in values.shape[1:])
     i, j = np.linspace(0.0, 1.0, rows), np.linspace(0.0, 1.0, cols)
     across = np.array([[np.interp(j, c, row) for row in part] for part in values])
-    return np.ascontiguousarray(np.moveaxis([[np.interp(i, r, col) for col in part.T] for part in across], 1, 2))
+    return np.ascontiguousarray(
+        np.moveaxis(np.array([[np.interp(i, r, col) for col in part.T] for part in across]), 1, 2)
+    )
 
 
 def gusty(params: Params, t: float) -> Vector:

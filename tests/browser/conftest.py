@@ -11,12 +11,8 @@ import pytest
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
 # What viser itself logs and what changes nothing: its drag layer at each drag of a node, and its splats, whose quads
-# have corners of two coordinates; and its panel, when a scene is changed while a line of the old one is on its way.
-HARMLESS = (
-    "preventDefault inside passive",
-    "computeBoundingSphere(): Computed radius is NaN",
-    "Tried to update non-existent component",
-)
+# have corners of two coordinates.
+HARMLESS = ("preventDefault inside passive", "computeBoundingSphere(): Computed radius is NaN")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

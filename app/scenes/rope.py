@@ -199,6 +199,7 @@ class Scene:
         self.root = Follower(ROOT)
         self.sphere = Follower(SPHERE)
         self.held: tuple[int, Follower] | None = None
+        self.lost = False  # has left its bounds since the last reset
         self.samples: list[tuple[float, ...]] = []
         self.reset()
 
@@ -211,7 +212,9 @@ class Scene:
         return self.state.t
 
     def reset(self) -> None:
-        """The rope at rest, level from where its root is going."""
+        """The rope at rest, level from where its root is going; from home where it was lost, in the floor perhaps."""
+        if self.lost:
+            self.root.target, self.sphere.target, self.lost = ROOT, SPHERE, False
         self.root.put(self.root.target)
         self.sphere.put(self.sphere.target)
         self.held = None
@@ -267,6 +270,7 @@ class Scene:
         )
         if not (self.state.is_sane and self.extent() < self.bound):
             self.state = good
+            self.lost = True
             raise DivergenceError(self.diagnosis())
         if self.root.at_rest:
             self.state.x[:, 0, 0] = self.root.position

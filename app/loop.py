@@ -12,6 +12,7 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
+from app.ledger import Work
 from app.messages import (
     Command,
     DivergenceError,
@@ -40,6 +41,7 @@ class FixedStep:
     def __init__(self) -> None:
         self.debt = 0.0  # [s] of simulated time not yet stepped
         self.cost = 0.0  # [s] of processor time a step takes, lately
+        self.dropped = 0  # steps that were due and never taken
 
     def steps(self, wall: float, speed: float, h: float) -> tuple[int, bool]:
         """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s]."""
@@ -48,6 +50,7 @@ class FixedStep:
         most = max(1, int(BUDGET * FRAME / self.cost)) if self.cost > 0 else due
         if due > most:
             self.debt = 0.0
+            self.dropped += due - most
             return most, True
         self.debt = max(0.0, self.debt - due * h)
         return due, False
@@ -119,6 +122,7 @@ class SimLoop:
                 changed = True
         else:
             self.counts["idle ticks"] += 1
+        self.counts["ticks"] += 1
         if changed:
             self.latest = self.snapshot(solve)
 
@@ -135,9 +139,19 @@ class SimLoop:
             n -= part
             part = self.pacer.next_part(part, spent)
         self.untried = False
-        if n > 0:
+        if n > 0 and self.running:
             self.capped, self.pacer.debt = True, 0.0
+            self.pacer.dropped += n
         return spent
+
+    def work(self) -> dict[str, Work]:
+        """For the ledger: what ran against what had no need to, paused or unwatched, or no time to."""
+        c = self.counts
+        return {
+            "ticks": Work(c["ticks"] - c["idle ticks"], c["idle ticks"]),
+            "steps": Work(c["steps"], self.pacer.dropped),
+            "snapshots": Work(c["snapshots"], max(c["ticks"] - c["snapshots"], 0)),
+        }
 
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
@@ -199,18 +213,19 @@ class SimLoop:
         shown: list[Any] = []
         self.guarded(lambda: shown.extend(self.look()))
         if not shown:
-            shown = [self.latest.picture, self.latest.gauge, (), None]
-        picture, gauge, samples, curves = shown
-        return Snapshot(self.counts["snapshots"], picture, self.status(solve), gauge, samples, curves)
+            shown = [self.latest.picture, self.latest.gauge, (), self.latest.work, None]
+        picture, gauge, samples, work, curves = shown
+        return Snapshot(self.counts["snapshots"], picture, self.status(solve), gauge, samples, work, curves)
 
     def look(self) -> tuple[Any, ...]:
-        """The scene's picture, gauge, plot rows and curves; raises ArithmeticError for a number that is none."""
+        """The scene's picture, gauge, plot rows, ledger and curves; ArithmeticError for a number that is none."""
         scene = self.scene
         picture = scene.picture()
         where = where_not_finite(picture)
         if where:
             raise ArithmeticError(f"{where} of its picture is no longer a number; reset it, or take a smaller step")
-        return picture, scene.gauge(), scene.take_samples(), scene.curves() if hasattr(scene, "curves") else None
+        gauge, work = scene.gauge(), getattr(scene, "work", dict)()
+        return picture, gauge, scene.take_samples(), work, scene.curves() if hasattr(scene, "curves") else None
 
     def status(self, solve: float) -> Status:
         simulated = self.scene.time

@@ -5,6 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from app.ledger import Works
+
 Vector = tuple[float, float, float]
 
 REACH = 100.0  # [m] from the origin: nothing from a browser is placed farther out
@@ -112,6 +114,7 @@ class Snapshot(NamedTuple):
     status: Status
     gauge: Any
     samples: tuple[tuple[float, ...], ...]  # new plot rows, (t, ...) each
+    work: Works  # what the scene did and what it skipped, since it was opened
     curves: Any = None  # knob -> columns of its chart, where a chart is not a course in time
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from app.ledger import Work
 from app.loop import BUDGET, FRAME, FixedStep, SimLoop
 from app.messages import DivergenceError, Halt, Pause, Play, Reset, StepOnce, TogglePlay, where_not_finite
 from sim.knobs import knob
@@ -64,6 +65,9 @@ class Scene:
 
     def take_samples(self) -> tuple:
         return ()
+
+    def work(self) -> dict[str, Work]:
+        return {"advances": Work(len(self.seen))}
 
 
 def make(cost: float = 0.0, **options) -> tuple[SimLoop, Scene]:

@@ -181,12 +181,15 @@ def resample(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
     return np.ascontiguousarray([[np.interp(new, old, row[0])] for row in values])
 
 
+UNDAMPED = rope(4, damping=0.0, drag=0.0)
+
+
 def warm_up() -> Iterator[str]:
     """Compile everything the scene may call, piece by piece; yields what comes next."""
     net = rope(4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2))
-    for name in INTEGRATORS:
+    for name, record in INTEGRATORS.items():
         yield name
-        simulate(net, name, 1e-3, 2e-3, 2, with_ledger=True)
+        simulate(UNDAMPED if record.undamped_only else net, name, 1e-3, 2e-3, 2, with_ledger=True)
     yield "stability"
     Scene(Params())
 
@@ -259,6 +262,11 @@ class Scene:
 
     def advance(self, steps: int) -> None:
         """Take steps with root, sphere and pull on their ways; raises DivergenceError, keeping the last good state."""
+        integrator = INTEGRATORS[self.params.integrator]
+        if integrator.undamped_only and self.net.is_damped:
+            raise DivergenceError(
+                f"{integrator.name} takes no damping: set damping and drag to 0, floor and sphere off."
+            )
         duration = steps * self.step
         good = self.state.copy()
         net = self.net_under_way(self.state.t, duration)

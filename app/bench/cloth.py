@@ -108,7 +108,8 @@ def task_rows(n: int, repeats: int) -> list[dict[str, Any]]:
 
 def drape_row(frames: int) -> dict[str, Any]:
     """The drape preset with self-collision, as the scene runs it, picture and all."""
-    from app.scenes.cloth import PRESETS, Params, Scene
+    from app.cloth_knobs import PRESETS, Params
+    from app.scenes.cloth import Scene
 
     scene = Scene(Params(**PRESETS["Drape over the sphere"]))
     steps = round(1 / 60 / scene.step)

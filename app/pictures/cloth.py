@@ -200,4 +200,4 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     """What is written under a knob: the largest step that holds with the others as they are."""
     step = snapshot.gauge.stability.critical_step
     text = "any step holds" if step == float("inf") else f"holds up to {step:.3g} s" if step > 0 else "no step holds"
-    return {"time_step": text}
+    return {"integrator": snapshot.gauge.note, "time_step": text}

@@ -3,129 +3,35 @@
 import dataclasses
 import math
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.cloth_knobs import PRESETS, Params, hidden
+from app.cloth_start import build, resample, sphere_home
 from app.follow import Follower
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
-from sim.knobs import knob
-from sim.springs import INTEGRATORS, Air, Contact, Net, cloth, simulate
+from app.method import method_for
+from sim.springs import INTEGRATORS, Air, Net, cloth, simulate
 from sim.springs import Grab as Pull
-from sim.springs.cloth import HOLDS, turned_down
 from sim.springs.net import PinPath
 from sim.springs.stability import Gauge, gauge, gershgorin
 from sim.springs.state import State, advance, energy, velocities
 
+__all__ = ["HELP", "PLOTS", "PRESETS", "SERIES", "TITLE", "Params", "Scene", "hidden", "warm_up"]
+
 TITLE = "Cloth"
-SKIN = 0.012  # [m] that the cloth keeps from sphere and floor, so that it is drawn outside them
 LOOK_EVERY = 0.5  # [s] of simulated time between two looks at the stability of the state
 LOOKED_THROUGH = 1100  # particles up to which that is quick; of larger cloths Gershgorin's bound is shown
 SAMPLE_EVERY = 1 / 30  # [s]
 BOUND = 60.0  # [m] from the origin, beyond which the run has diverged
-PLEATS = 4
-STARTS = ("hanging", "level", "flag")
 HELP = "<b>Drag the cloth</b> anywhere to pull it. <b>Drag the arrows</b> to move its pins and the sphere."
 SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "largest strain")
 PLOTS = {
     "plot_energy": ("Energy", "J", ("kinetic", "elastic", "gravity", "contact", "dissipated")),
     "plot_strain": ("Largest strain", "%", ("largest strain",)),
 }
-
-
-@dataclasses.dataclass(frozen=True)
-class Params:
-    """The cloth's knobs."""
-
-    integrator: str = knob("leapfrog", choices=tuple(INTEGRATORS), doc="Method of integration", group="Time")
-    time_step: float = knob(1 / 2400, 1e-5, 0.05, "s", "Step h of the integrator", log_from=1e-5, group="Time")
-    speed: float = knob(1.0, 0.01, 4.0, "", "Simulated per real time", log_from=0.01, group="Time")
-
-    start: str = knob(
-        "hanging", choices=STARTS, doc="How it starts: below its first row, level, or off a pole", group="Cloth"
-    )
-    pinned: str = knob("edge", choices=HOLDS, doc="What is held: corners, an edge, the rim, nothing", group="Cloth")
-    rows: int = knob(32, 4, 128, "", "Particles down the cloth", group="Cloth")
-    cols: int = knob(32, 4, 128, "", "Particles across the cloth", group="Cloth")
-    width: float = knob(1.6, 0.2, 4.0, "m", "Width at rest", group="Cloth")
-    length: float = knob(1.6, 0.2, 4.0, "m", "Length at rest", group="Cloth")
-    gather: float = knob(
-        0.62, 0.4, 1.0, "", "Part of its width that a hanging cloth starts on, in pleats", group="Cloth"
-    )
-    density: float = knob(0.3, 0.02, 5.0, "kg/m^2", "Mass of a square metre", log_from=0.02, group="Cloth")
-    stiffness: float = knob(
-        800.0, 1.0, 1e5, "N/m", "Structural springs, to the next particle", log_from=1.0, group="Cloth"
-    )
-    shear: float = knob(200.0, 0.0, 1e5, "N/m", "Shear springs, across a cell", log_from=1.0, group="Cloth")
-    bend: float = knob(6.0, 0.0, 1e4, "N/m", "Bend springs, to the next particle but one", log_from=0.1, group="Cloth")
-    damping: float = knob(0.02, 0.0, 1.0, "N s/m", "Damping of every spring", log_from=1e-4, group="Cloth")
-
-    gravity: float = knob(9.81, 0.0, 30.0, "m/s^2", "Gravity, downwards", group="Surroundings")
-    wind: float = knob(1.5, 0.0, 25.0, "m/s", "Speed of the wind", group="Surroundings")
-    wind_direction: float = knob(
-        math.pi / 2, -math.pi, math.pi, "rad", "Where the wind goes to, from +x towards +y", group="Surroundings"
-    )
-    gust: float = knob(0.5, 0.0, 1.0, "", "How much the wind wavers", group="Surroundings")
-    air: float = knob(1.2, 0.0, 5.0, "kg/m^3", "Density of the air; 0: none", group="Surroundings")
-    floor: bool = knob(True, doc="Floor at height 0", group="Surroundings")
-    sphere: bool = knob(False, doc="Sphere, on a gizmo of its own", group="Surroundings")
-    sphere_radius: float = knob(0.4, 0.05, 1.5, "m", "Radius of the sphere", group="Surroundings")
-    bob: float = knob(0.0, 0.0, 1.0, "m", "How far the sphere moves up and down", group="Surroundings")
-    friction: float = knob(0.4, 0.0, 2.0, "", "Coulomb friction coefficient", group="Surroundings")
-    contact_stiffness: float = knob(300.0, 1.0, 1e5, "N/m", "Contact stiffness", log_from=1.0, group="Surroundings")
-    contact_damping: float = knob(0.2, 0.0, 100.0, "N s/m", "Contact damping", log_from=1e-3, group="Surroundings")
-    thickness: float = knob(
-        0.0,
-        0.0,
-        0.1,
-        "m",
-        "Particles nearer than this push each other; 0: the cloth passes itself",
-        group="Surroundings",
-    )
-    pull: float = knob(8.0, 0.1, 1e3, "N", "Largest force of a drag", log_from=0.1, group="Surroundings")
-
-    colour: str = knob("strain", choices=("strain", "plain"), doc="What the cloth's colour shows", group="Look")
-    full_strain: float = knob(5.0, 0.1, 100.0, "%", "Strain at the end of the colour scale", log_from=0.1, group="Look")
-    grid: bool = knob(True, doc="Lines on the floor", group="Look")
-    plot_energy: bool = knob(False, doc="Energy ledger over time", group="Plots")
-    plot_strain: bool = knob(False, doc="Largest strain over time", group="Plots")
-
-
-PRESETS: dict[str, dict[str, Any]] = {
-    "Curtain": {},
-    "Flag in wind": {
-        "start": "flag", "rows": 48, "cols": 32, "width": 1.0, "length": 1.6, "density": 0.15, "wind": 8.0,
-        "wind_direction": 0.25, "bend": 1.0, "shear": 100.0, "damping": 0.005, "full_strain": 1.0, "gust": 0.6,
-        "time_step": 1 / 4200,
-    },
-    "Drape over the sphere": {
-        "start": "level", "pinned": "free", "rows": 64, "cols": 64, "sphere": True, "thickness": 0.02, "bend": 3.0,
-        "integrator": "symplectic_euler", "time_step": 1 / 4800, "damping": 0.01, "wind": 0.0, "full_strain": 2.0,
-    },
-    "Trampoline": {
-        "start": "level", "pinned": "rim", "rows": 48, "cols": 48, "sphere": True, "sphere_radius": 0.25, "bob": 0.45,
-        "damping": 0.005, "full_strain": 20.0, "time_step": 1 / 3600, "friction": 0.0, "density": 0.4, "wind": 0.0,
-    },
-}  # fmt: skip
-
-
-def hidden(params: Params) -> set[str]:
-    """The knobs that mean nothing with the others as they are."""
-    names: set[str] = set()
-    if params.start != "hanging":
-        names.add("gather")
-    if params.wind == 0.0:
-        names |= {"wind_direction", "gust"}
-    if not params.sphere:
-        names |= {"sphere_radius", "bob"}
-    if not (params.sphere or params.floor):
-        names.add("friction")
-        if params.thickness == 0.0:
-            names |= {"contact_stiffness", "contact_damping"}
-    if params.colour != "strain":
-        names.add("full_strain")
-    return names
 
 
 class PullShown(NamedTuple):
@@ -158,83 +64,7 @@ class ClothGauge(NamedTuple):
     stability: Gauge
     exact: bool  # of the state as it is; else a bound for any
     corrections: float  # of Newton's method a step, of implicit methods
-
-
-def corner(params: Params) -> Vector:
-    """Where particle (0, 0) starts [m]."""
-    if params.start == "flag":
-        return -0.9, 0.0, 2.1
-    if params.start == "hanging":
-        return -0.5 * params.width * params.gather, 0.0, 2.1
-    return -0.5 * params.width, -0.5 * params.length, 1.5
-
-
-def sphere_home(params: Params) -> Vector:
-    """Where the sphere starts: under a level cloth, before a hanging one."""
-    if params.start == "level":
-        below = 0.15 if params.bob > 0.0 else SKIN + 0.15
-        return 0.0, 0.0, max(1.5 - params.sphere_radius - below, params.sphere_radius)
-    return 0.0, -params.sphere_radius - 0.5, 1.2
-
-
-def build(params: Params, sphere: Vector) -> Net:
-    """The net that the knobs describe, as it starts."""
-    net = cloth(
-        params.rows,
-        params.cols,
-        params.width,
-        params.length,
-        params.density,
-        params.stiffness,
-        params.shear,
-        params.bend,
-        params.damping,
-        gravity=params.gravity,
-        origin=corner(params),
-        pinned=params.pinned,
-        floor=0.0 if params.floor else None,
-        sphere=(*sphere, params.sphere_radius) if params.sphere else None,
-        contact=Contact(params.contact_stiffness, params.contact_damping, params.friction),
-        radius=SKIN,
-        air=Air(density=params.air) if params.air > 0.0 else None,
-        thickness=params.thickness,
-    )
-    if params.start == "hanging":
-        return pleated(turned_down(net), params.gather)
-    if params.start == "flag":
-        # Rows along the wind, columns down the pole, and a breath out of plane, as nothing flies quite straight.
-        x, y, z = net.x0
-        along, down = y - y[0, 0], x - x[0, 0]
-        wave = 0.01 * np.sin(7.0 * along) * along
-        return dataclasses.replace(net, x0=np.ascontiguousarray(np.stack([x[0, 0] + along, wave, z - down])))
-    return net
-
-
-def pleated(net: Net, gather: float) -> Net:
-    """A hanging cloth on `gather` of its width, in waves as long as its width at rest."""
-    x, y, z = net.x0
-    width = float(x[0, -1] - x[0, 0])
-    s = np.linspace(0.0, gather * width, 2001)
-    phase = 2.0 * math.pi * PLEATS * s / s[-1]
-    low, high, depth, along = 0.0, width, 0.0, s
-    for _ in range(50):
-        depth = 0.5 * (low + high)
-        along = np.concatenate([[0.0], np.hypot(np.diff(s), np.diff(depth * np.sin(phase))).cumsum()])
-        low, high = (depth, high) if along[-1] < width else (low, depth)
-    # Particles at equal lengths along the wave
-    at = np.interp(np.linspace(0.0, along[-1], x.shape[1]), along, s)
-    out = depth * np.sin(2.0 * math.pi * PLEATS * at / s[-1])
-    return dataclasses.replace(net, x0=np.ascontiguousarray(np.stack([x[0, 0] + at + 0.0 * y, y + out, z])))
-
-
-def resample(values: NDArray[np.float64], rows: int, cols: int) -> NDArray[np.float64]:
-    """(3, r, c) over the cloth, with other numbers of particles."""
-    r, c = (np.linspace(0.0, 1.0, count) for count in values.shape[1:])
-    i, j = np.linspace(0.0, 1.0, rows), np.linspace(0.0, 1.0, cols)
-    across = np.array([[np.interp(j, c, row) for row in part] for part in values])
-    return np.ascontiguousarray(
-        np.moveaxis(np.array([[np.interp(i, r, col) for col in part.T] for part in across]), 1, 2)
-    )
+    note: str  # why another method runs than the one chosen, or ""
 
 
 def gusty(params: Params, t: float) -> Vector:
@@ -328,19 +158,14 @@ class Scene:
 
     def advance(self, steps: int) -> None:
         """Take steps with pins, sphere and pull on their ways; raises DivergenceError, keeping the last good state."""
-        integrator = INTEGRATORS[self.params.integrator]
-        if integrator.undamped_only and self.net.is_damped:
-            raise DivergenceError(
-                f"{integrator.name} takes no damping: set damping and air to 0, floor and sphere off."
-            )
         duration = steps * self.step
         good = self.state.copy()
         net = self.net_under_way(self.state.t, duration)
-        advance(net, self.state, integrator, self.step, steps, with_ledger=self.params.plot_energy)
+        advance(net, self.state, self.integrator, self.step, steps, with_ledger=self.params.plot_energy)
         if not (self.state.is_sane and np.abs(self.state.x).max() < BOUND):
             self.state = good
             raise DivergenceError(self.diagnosis())
-        if integrator.implicit:
+        if self.integrator.implicit:
             self.corrections = (self.state.force_evals - good.force_evals) / steps
         self.net = net
         if self.params.rows * self.params.cols <= LOOKED_THROUGH and self.state.t - self.looked_at >= LOOK_EVERY:
@@ -402,7 +227,8 @@ class Scene:
 
     def look(self) -> None:
         """Judge the stability: of the state as it is where that is quick, else by a bound for all states."""
-        record = INTEGRATORS[self.params.integrator]
+        self.integrator, self.note = method_for(self.params.integrator, self.net)
+        record = self.integrator
         exact = self.params.rows * self.params.cols <= LOOKED_THROUGH
         if exact:
             stability = gauge(self.net, record, self.step, self.state)
@@ -411,13 +237,13 @@ class Scene:
             zeta = 0.5 * rate / omega if omega > 0.0 else 0.0
             limit = record.limit(zeta)
             stability = Gauge(omega, zeta, self.step * omega, limit, limit / omega if omega > 0.0 else math.inf)
-        self.stability = ClothGauge(stability, exact, self.corrections)
+        self.stability = ClothGauge(stability, exact, self.corrections, self.note)
         self.looked_at = self.state.t
 
     def diagnosis(self) -> str:
         """Why the run diverged and what would hold."""
         g = self.stability.stability
-        name, h = self.params.integrator, self.step
+        name, h = self.integrator.name, self.step
         start = f"The cloth left its bounds at t = {self.state.t:.2f} s: h ω = {g.h_omega:.3g} "
         if g.h_omega > g.limit:
             holds = f"A step below {g.critical_step:.3g} s would hold" if g.critical_step > 0 else "No step holds"

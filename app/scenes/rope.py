@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from app.follow import Follower
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
+from app.method import method_for
 from sim.knobs import knob
 from sim.springs import INTEGRATORS, Contact, Net, lab_units, rope, simulate
 from sim.springs import Grab as Pull
@@ -143,6 +144,7 @@ class RopeGauge(NamedTuple):
     stability: Gauge
     knob: str  # the stiffness knob in force
     largest_stiffness: float  # in that knob's unit
+    note: str  # why another method runs than the one chosen, or ""
 
 
 def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
@@ -262,17 +264,10 @@ class Scene:
 
     def advance(self, steps: int) -> None:
         """Take steps with root, sphere and pull on their ways; raises DivergenceError, keeping the last good state."""
-        integrator = INTEGRATORS[self.params.integrator]
-        if integrator.undamped_only and self.net.is_damped:
-            raise DivergenceError(
-                f"{integrator.name} takes no damping: set damping and drag to 0, floor and sphere off."
-            )
         duration = steps * self.step
         good = self.state.copy()
         net = self.net_under_way(self.state.t, duration)
-        advance(
-            net, self.state, INTEGRATORS[self.params.integrator], self.step, steps, with_ledger=self.params.plot_energy
-        )
+        advance(net, self.state, self.integrator, self.step, steps, with_ledger=self.params.plot_energy)
         if not (self.state.is_sane and self.extent() < self.bound):
             self.state = good
             raise DivergenceError(self.diagnosis())
@@ -313,19 +308,19 @@ class Scene:
 
     def look(self) -> None:
         """Judge the stability of the state as it is."""
-        integrator = INTEGRATORS[self.params.integrator]
-        stability = gauge(self.net, integrator, self.step, self.state)
-        largest = critical_stiffness(self.net, integrator, self.step, self.state)
+        self.integrator, self.note = method_for(self.params.integrator, self.net)
+        stability = gauge(self.net, self.integrator, self.step, self.state)
+        largest = critical_stiffness(self.net, self.integrator, self.step, self.state)
         knob = "stiffness"
         if self.params.units == "material":
             knob, largest = "axial_stiffness", largest * self.net.families[0].rest
-        self.stability = RopeGauge(stability, knob, largest)
+        self.stability = RopeGauge(stability, knob, largest, self.note)
         self.looked_at = self.state.t
 
     def diagnosis(self) -> str:
         """Why the run diverged and what would hold."""
         g = self.stability.stability
-        name, h = self.params.integrator, self.step
+        name, h = self.integrator.name, self.step
         start = f"The rope left its bounds at t = {self.state.t:.2f} s: "
         if g.h_omega > g.limit:
             remedy = (

@@ -5,9 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 
+from app.cloth_knobs import PRESETS, Params, hidden
+from app.cloth_start import resample
+from app.loop import SimLoop
 from app.messages import DivergenceError, Grab, Place, Release
-from app.pictures.cloth import faces
-from app.scenes.cloth import PRESETS, Params, Scene, hidden, resample
+from app.pictures.cloth import faces, marks
+from app.scenes.cloth import Scene
 from sim.knobs import check, knobs
 
 SMALL = Params(rows=10, cols=10, time_step=1 / 1200, wind=0.0)
@@ -16,6 +19,10 @@ SMALL = Params(rows=10, cols=10, time_step=1 / 1200, wind=0.0)
 def run(scene: Scene, seconds: float) -> None:
     for _ in range(round(seconds * 60)):
         scene.advance(max(1, round(1 / 60 / scene.step)))
+
+
+def snapshot_of(scene: Scene):
+    return SimLoop(scene, paused=True).latest
 
 
 def test_the_presets_are_the_four_and_the_first_is_the_defaults():
@@ -102,9 +109,16 @@ def test_an_explosion_keeps_the_last_good_state_and_names_a_step_that_holds():
     assert np.isfinite(scene.picture().points).all()
 
 
-def test_pefrl_says_that_it_takes_no_damping():
-    with pytest.raises(DivergenceError, match="takes no damping"):
-        run(Scene(dataclasses.replace(SMALL, integrator="pefrl")), 0.1)
+def test_where_the_chosen_method_refuses_damping_another_runs_and_the_panel_says_so():
+    scene = Scene(dataclasses.replace(SMALL, integrator="pefrl"))
+    run(scene, 0.1)
+    assert scene.integrator.name == "leapfrog"
+    assert "takes no damping" in scene.gauge().note
+    assert "takes no damping" in marks(snapshot_of(scene))["integrator"]
+    scene.set_params(dataclasses.replace(scene.params, damping=0.0, air=0.0, floor=False))
+    run(scene, 0.1)
+    assert scene.integrator.name == "pefrl"
+    assert scene.gauge().note == marks(snapshot_of(scene))["integrator"] == ""
 
 
 def test_an_implicit_step_says_what_it_takes():

@@ -20,6 +20,10 @@ LEDGERS = {
     "grabbed": dataclasses.replace(rope(8), grab=GRAB),
 }
 
+# Order: steps of the coarsest run, between runs, and slack. High orders need a window between where the residual still
+# changes sign (order 5, undamped: at 16 steps) and round-off; the eighth, with a pull, is not yet asymptotic in it.
+LADDERS = {1: (400, 2.0, 0.15), 5: (64, 1.3, 0.15), 8: (11, 1.25, 2.0)}
+
 
 def stretched(x, v=0.0):
     state = State.at_rest(OSCILLATOR)
@@ -40,13 +44,11 @@ def residual(net, name, seconds, steps):
 def test_the_ledger_s_residual_falls_at_the_method_s_order(name, case):
     record = INTEGRATORS[name]
     order = record.order if case != "undamped" else record.undamped_order or record.order
-    coarsest = 400 if order == 1 else 50 if order < 5 else 16
-    counts = [round(coarsest * 2 ** (i if order < 5 else 0.4 * i)) for i in range(6)]
+    coarsest, ratio, slack = LADDERS.get(order, (50, 2.0, 0.15))
+    counts = [round(coarsest * ratio**i) for i in range(6)]
     errors = [residual(LEDGERS[case], name, 0.4, steps) for steps in counts]
     # Some errors cancel in the sum: it may fall faster, never slower.
-    assert slope(counts[2:], errors[2:]) > order - {5: 0.5, 8: 2.0}.get(
-        order, 0.15
-    )  # high orders are soon at round-off
+    assert slope(counts[2:], errors[2:]) > order - slack
 
 
 @pytest.mark.parametrize("law", ["clipped", "lab"])

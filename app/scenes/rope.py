@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from app.follow import Follower
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
 from app.method import method_for
+from app.spring_work import SpringWork
 from sim.knobs import knob
 from sim.springs import INTEGRATORS, Contact, Net, lab_units, rope, simulate
 from sim.springs import Grab as Pull
@@ -205,6 +206,7 @@ class Scene:
         self.sphere = Follower(SPHERE)
         self.held: tuple[int, Follower] | None = None
         self.samples: list[tuple[float, ...]] = []
+        self.work = SpringWork()
         self.reset()
 
     @property
@@ -268,6 +270,7 @@ class Scene:
         good = self.state.copy()
         net = self.net_under_way(self.state.t, duration)
         advance(net, self.state, self.integrator, self.step, steps, with_ledger=self.params.plot_energy)
+        self.work.take(net, self.state.force_evals - good.force_evals, steps, with_ledger=self.params.plot_energy)
         if not (self.state.is_sane and self.extent() < self.bound):
             self.state = good
             raise DivergenceError(self.diagnosis())
@@ -275,7 +278,9 @@ class Scene:
             self.state.x[:, 0, 0] = self.root.position
             self.state.v[:, 0, 0] = 0.0
         self.net = net
-        if self.state.t - self.looked_at >= GAUGE_EVERY:
+        due = self.state.t - self.looked_at >= GAUGE_EVERY
+        self.work.add("looks at the stability", 1, due)
+        if due:
             self.look()
         if (self.params.plot_energy or self.params.plot_tip) and self.state.t - self.sampled_at >= SAMPLE_EVERY:
             self.sample()

@@ -2,8 +2,6 @@
 
 import json
 import math
-import os
-import tempfile
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -12,6 +10,7 @@ import numpy as np
 from rich.progress import Progress
 
 from app.messages import DivergenceError
+from app.replacing import check_folder, replacing
 from sim.knobs import refusal
 
 
@@ -23,8 +22,7 @@ def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate:
         raise refusal("--rate", rate, "above 0 to 100000 Hz")
     if out.suffix != ".npz":
         raise refusal("--out", str(out), "a name that ends in .npz")
-    if not out.parent.is_dir():
-        raise refusal("--out", str(out), "a file in a folder that exists")
+    check_folder("--out", out)
     running = scene.Scene(params)
     frames = max(1, round(seconds * rate))
     steps = max(1, math.ceil(seconds / frames / running.step * (1 - 1e-9)))
@@ -56,11 +54,5 @@ def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate:
 
 def write_whole(path: Path, arrays: dict[str, Any]) -> None:
     """Write an .npz so that `path` holds all of it or what it held before."""
-    with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
-        try:
-            np.savez_compressed(file, **arrays)
-            file.flush()
-            os.replace(file.name, path)
-        except BaseException:
-            os.unlink(file.name)
-            raise
+    with replacing(path) as draft:
+        np.savez_compressed(draft, **arrays)

@@ -12,6 +12,7 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
+from app.ledger import Work
 from app.messages import Command, DivergenceError, Pause, Play, Reset, Snapshot, Status, StepOnce, TogglePlay
 
 FRAME = 1 / 60  # [s] between ticks
@@ -27,6 +28,7 @@ class FixedStep:
     def __init__(self) -> None:
         self.debt = 0.0  # [s] of simulated time not yet stepped
         self.cost = 0.0  # [s] of processor time a step takes, lately
+        self.dropped = 0  # steps that were due and never taken
 
     def steps(self, wall: float, speed: float, h: float) -> tuple[int, bool]:
         """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s]."""
@@ -35,6 +37,7 @@ class FixedStep:
         most = max(1, int(BUDGET * FRAME / self.cost)) if self.cost > 0 else due
         if due > most:
             self.debt = 0.0
+            self.dropped += due - most
             return most, True
         self.debt = max(0.0, self.debt - due * h)
         return due, False
@@ -97,8 +100,18 @@ class SimLoop:
                 changed = True
         else:
             self.counts["idle ticks"] += 1
+        self.counts["ticks"] += 1
         if changed:
             self.latest = self.snapshot(solve)
+
+    def work(self) -> dict[str, Work]:
+        """For the ledger: what ran against what had no need to, paused or unwatched, or no time to."""
+        c = self.counts
+        return {
+            "ticks": Work(c["ticks"] - c["idle ticks"], c["idle ticks"]),
+            "steps": Work(c["steps"], self.pacer.dropped),
+            "snapshots": Work(c["snapshots"], max(c["ticks"] - c["snapshots"], 0)),
+        }
 
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
@@ -173,7 +186,8 @@ class SimLoop:
         picture = self.scene.picture()
         curves = self.scene.curves() if hasattr(self.scene, "curves") else None
         samples = self.scene.take_samples()
-        return Snapshot(self.counts["snapshots"], picture, status, self.scene.gauge(), samples, curves)
+        gauge, work = self.scene.gauge(), getattr(self.scene, "work", dict)()
+        return Snapshot(self.counts["snapshots"], picture, status, gauge, samples, work, curves)
 
     def run(self, stop: threading.Event) -> None:
         """Tick until `stop` is set, at the frame rate while there is something to do."""

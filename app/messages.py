@@ -3,6 +3,8 @@
 import math
 from typing import Any, NamedTuple
 
+from app.ledger import Works
+
 Vector = tuple[float, float, float]
 
 REACH = 100.0  # [m] from the origin: nothing from a browser is placed farther out
@@ -89,6 +91,7 @@ class Snapshot(NamedTuple):
     status: Status
     gauge: Any
     samples: tuple[tuple[float, ...], ...]  # new plot rows, (t, ...) each
+    work: Works  # what the scene did and what it skipped, since it was opened
     curves: Any = None  # knob -> columns of its chart, where a chart is not a course in time
 
 

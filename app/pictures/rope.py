@@ -230,7 +230,10 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     g = snapshot.gauge
     step, stiffness = g.stability.critical_step, g.largest_stiffness
     unit = "N/m" if g.knob == "stiffness" else "N"
+    if step == float("inf"):
+        return {"integrator": g.note, "time_step": "any step holds", g.knob: "any stiffness holds"}
     return {
+        "integrator": g.note,
         "time_step": f"holds up to {step:.3g} s" if step > 0 else "no step holds with this method",
         g.knob: f"holds up to {stiffness:.3g} {unit}" if stiffness > 0 else "no stiffness holds at this step",
     }

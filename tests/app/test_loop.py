@@ -4,6 +4,7 @@ import dataclasses
 
 import pytest
 
+from app.ledger import Work
 from app.loop import BUDGET, FRAME, FixedStep, SimLoop
 from app.messages import DivergenceError, Pause, Play, Reset, StepOnce, TogglePlay
 from sim.knobs import knob
@@ -61,6 +62,9 @@ class Scene:
 
     def take_samples(self) -> tuple:
         return ()
+
+    def work(self) -> dict[str, Work]:
+        return {"advances": Work(len(self.seen))}
 
 
 def make(cost: float = 0.0, **options) -> tuple[SimLoop, Scene]:

@@ -13,6 +13,8 @@ from app.messages import DivergenceError
 from app.replacing import check_folder, replacing
 from sim.knobs import refusal
 
+MOST_BYTES = 4e9  # of a file, before it is packed
+
 
 def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate: float, out: Path) -> int:
     """Run and write; a run that diverges keeps what it had, says so, and returns 1."""
@@ -24,11 +26,16 @@ def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate:
         raise refusal("--out", str(out), "a name that ends in .npz")
     check_folder("--out", out)
     running = scene.Scene(params)
+    # More frames than steps would only repeat themselves.
+    frames = max(1, min(round(seconds * rate), steps_to(running, seconds)))
+    size = (frames + 1) * sum(array.nbytes for array, _ in running.arrays().values())
+    if size > MOST_BYTES:
+        raise ValueError(
+            f"--seconds, --rate: {frames} frames are {size / 1e9:.3g} GB; allowed: at most {MOST_BYTES / 1e9:g} GB"
+        )
     if getattr(running, "note", ""):
         # A file is no place for a method that was not asked for.
         raise refusal("integrator", params.integrator, "another, as this net is damped: by links, drag, air or contact")
-    frames = max(1, round(seconds * rate))
-    steps = max(1, math.ceil(seconds / frames / running.step * (1 - 1e-9)))
     times, columns, units = [], {}, {}
     problem = ""
     with Progress(transient=True) as progress:
@@ -36,7 +43,7 @@ def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate:
         for frame in range(frames + 1):
             if frame:
                 try:
-                    running.advance(steps)
+                    running.advance(steps_to(running, seconds * frame / frames))
                 except DivergenceError as reason:
                     problem = str(reason)
                     break
@@ -53,6 +60,11 @@ def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate:
         print(f"The run ended early. {problem}")
         return 1
     return 0
+
+
+def steps_to(running: Any, until: float) -> int:
+    """Steps from a scene's time to the first whole step at or after `until` [s], forgiving round-off."""
+    return max(0, math.ceil((until - running.time) / running.step * (1.0 - 1e-9) - 1e-6))
 
 
 def write_whole(path: Path, arrays: dict[str, Any]) -> None:

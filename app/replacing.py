@@ -24,13 +24,13 @@ def replacing(path: Path) -> Iterator[Path]:
 
 def check_folder(option: str, path: Path) -> None:
     """Raises ValueError, naming the option, where no file can be made at `path`."""
-    if not path.parent.is_dir():
-        raise refusal(option, str(path), "a file in a folder that exists")
-    if path.is_dir():
-        raise refusal(option, str(path), "a file, not a folder")
     probe = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
     try:
+        if not path.parent.is_dir():
+            raise refusal(option, str(path), "a file in a folder that exists")
+        if path.is_dir():
+            raise refusal(option, str(path), "a file, not a folder")
         probe.touch()
         probe.unlink()
     except OSError as error:
-        raise refusal(option, str(path), f"a file in a folder that can be written ({error.strerror})") from None
+        raise refusal(option, str(path), f"a file that can be written ({error.strerror})") from None

@@ -10,6 +10,7 @@ import numpy as np
 
 import app
 import sim
+from app.headless import steps_to
 from app.measures import measures_named, plotted
 from app.messages import DivergenceError
 from app.scenes import scene_named
@@ -61,6 +62,9 @@ def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Ou
     try:
         with np.errstate(all="ignore"):
             running = module.Scene(check(module.Params, values))
+            if note := getattr(running, "note", ""):
+                # The numbers of another method than the one asked for are no result.
+                return failed(note)
             for index, until in enumerate(times):
                 row = advance_to(running, until) or row
                 for name, measure in (own(running) if own else plotted(module, row)).items():
@@ -76,10 +80,9 @@ def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Ou
 def advance_to(running: Any, until: float) -> tuple[float, ...]:
     """Take steps up to time `until` [s]; returns the newest plot row, () for none. Raises DivergenceError."""
     row: tuple[float, ...] = ()
-    step = running.step
-    due = math.ceil((until - running.time) / step * (1.0 - 1e-9) - 1e-6)
+    due = steps_to(running, until)
     while due > 0:
-        count = min(due, max(1, round(FRAME / step)))
+        count = min(due, max(1, round(FRAME / running.step)))
         advance(running, count)
         due -= count
         rows = running.take_samples()

@@ -26,7 +26,7 @@ def draw(dataset: Any) -> Any:
     at_end = dataset[shown].isel(time=-1) if "time" in dataset.dims else dataset[shown]
     swept = list(json.loads(dataset.attrs["identity"])["spec"]["knobs"])
     random = dataset.attrs["design"] == "random"
-    ranked = sorted(swept, key=lambda name: (not is_number(dataset[name]), -np.unique(dataset[name]).size))
+    ranked = sorted(swept, key=lambda name: rank(dataset[name]))
     across = ranked[:COLUMNS] if random else [None]
     if not random and len(ranked) > 2:
         across = list(dataset[ranked[2]].values[:COLUMNS])
@@ -49,7 +49,7 @@ def draw(dataset: Any) -> Any:
                 if len(ranked) > 2:
                     cut = cut.sel({ranked[2]: column})
                     axes.set_title(f"{ranked[2]} = {text(column)}" if is_top else "", fontsize=10)
-                image = picture(axes, cut, ranked[:2], colours)
+                image = picture(axes, cut, ranked[:2], colours, is_top and axes is row[0])
             axes.label_outer()
             axes.spines[["top", "right"]].set_visible(False)
         if image is not None:
@@ -57,6 +57,11 @@ def draw(dataset: Any) -> Any:
         else:
             row[0].set_ylabel(label(values))
     return figure
+
+
+def rank(values: Any) -> tuple[bool, int, bool]:
+    """By this knobs come as axes: numbers of many values first."""
+    return not is_number(values), -np.unique(values).size, values.dtype.kind != "f"
 
 
 def measures_shown(dataset: Any) -> list[str]:
@@ -68,8 +73,8 @@ def measures_shown(dataset: Any) -> list[str]:
     return (diverged + (differing or names))[:ROWS] or ["run_time"]
 
 
-def picture(axes: Any, values: Any, names: list[str], colours: Any) -> Any:
-    """A map (returned, for its colour bar) or curves (None) of values over one or two knobs."""
+def picture(axes: Any, values: Any, names: list[str], colours: Any, is_first: bool) -> Any:
+    """A map (returned, for its colour bar) or curves (None) over one or two knobs, with a legend in the first panel."""
     both = len(names) == 2 and all(is_number(values[n]) and values[n].size >= MAP_FROM for n in names)
     if both:
         x, y = (values[n] for n in names)
@@ -88,8 +93,8 @@ def picture(axes: Any, values: Any, names: list[str], colours: Any) -> Any:
         style = {"color": COLOURS[index], "marker": MARKERS[index], "markersize": 4}
         axes.plot(positions(x), y.values, label=None if curve is None else text(curve), **style)
     set_axis(axes, "x", x)
-    if len(names) == 2:
-        axes.legend(title=label(values[names[1]], "name"), frameon=False, fontsize=8, title_fontsize=8)
+    if len(names) == 2 and is_first:
+        axes.legend(title=label(values[names[1]]), frameon=False, fontsize=8, title_fontsize=8)
     return None
 
 
@@ -115,12 +120,14 @@ def is_log(x: Any) -> bool:
 
 def set_axis(axes: Any, which: str, x: Any) -> None:
     """Label, scale and ticks of the axis `which`, x or y."""
-    getattr(axes, f"set_{which}label")(label(x, "name"))
+    getattr(axes, f"set_{which}label")(label(x))
     if not is_number(x):
         names = [text(value) for value in np.unique(x.values)]
         getattr(axes, f"set_{which}ticks")(range(len(names)), names, rotation=20, ha="right", fontsize=8)
     elif is_log(x):
         getattr(axes, f"set_{which}scale")("log")
+    elif x.dtype.kind == "i":
+        getattr(axes, f"{which}axis").get_major_locator().set_params(integer=True)
 
 
 def edges(values: Any) -> Any:
@@ -141,12 +148,10 @@ def scale(values: Any) -> Any:
     return LogNorm(low, high) if low > 0.0 and high / low >= DECADES else Normalize(low, high)
 
 
-def label(values: Any, what: str = "meaning") -> str:
-    """Name or meaning with its unit."""
-    words = values.name.replace("_", " ") if what == "name" else values.attrs["long_name"]
+def label(values: Any) -> str:
+    """The name with its unit."""
     unit = values.attrs.get("units", "1")
-    if len(words) > 34:
-        words = values.name.replace("_", " ")
+    words = values.name.replace("_", " ")
     return words if unit == "1" else f"{words} [{unit}]"
 
 

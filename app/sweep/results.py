@@ -102,7 +102,11 @@ def identity_in(path: Path) -> dict[str, Any] | None:
 
 
 def write(dataset: Any, path: Path) -> None:
-    """Write the NetCDF file whole, or leave what was there."""
+    """Write the NetCDF file whole, or leave what was there and raise OSError."""
     packed = {name: {"zlib": True} for name, v in dataset.data_vars.items() if v.dtype.kind == "f" and v.ndim}
-    with replacing(path) as draft:
-        dataset.to_netcdf(draft, engine="netcdf4", format="NETCDF4", encoding=packed)
+    try:
+        with replacing(path) as draft:
+            dataset.to_netcdf(draft, engine="netcdf4", format="NETCDF4", encoding=packed)
+    except RuntimeError as error:
+        # netCDF4's word for a full disk, too
+        raise OSError(f"{path} cannot be written ({error}); the finished cases are kept") from None

@@ -60,7 +60,7 @@ def read_spec(path: Path) -> Spec:
         content = tomllib.loads(text)
     except OSError as error:
         raise refusal("SPEC", str(path), f"a file that can be read ({error.strerror})") from None
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"SPEC: {path} is not TOML ({error})") from None
     return make_spec(content, text)
 

@@ -19,6 +19,17 @@ class Store:
         self.path = path
         try:
             self.base = sqlite3.connect(path, timeout=0.5, isolation_level=None)
+        except sqlite3.Error as error:
+            raise OSError(f"{path}: {error}") from None
+        try:
+            refuse_other(path, self.begin(about), about)
+        except BaseException:
+            self.close()
+            raise
+
+    def begin(self, about: dict[str, Any]) -> dict[str, Any]:
+        """Take the file for this program alone; returns what it is about."""
+        try:
             self.base.execute("PRAGMA locking_mode = EXCLUSIVE")
             self.base.execute("BEGIN EXCLUSIVE")
             self.base.execute("CREATE TABLE IF NOT EXISTS about (content TEXT NOT NULL)")
@@ -29,12 +40,11 @@ class Store:
             self.base.execute("COMMIT")
         except sqlite3.OperationalError as error:
             if "locked" in str(error):
-                raise ValueError(f"--out: another sweep is writing to {path}") from None
-            raise OSError(f"{path}: {error}") from None
+                raise ValueError(f"--out: another sweep is writing to {self.path}") from None
+            raise OSError(f"{self.path}: {error}") from None
         except sqlite3.DatabaseError as error:
-            raise ValueError(f"--out: {path} is not the start of a sweep ({error}); --fresh replaces it") from None
-        if row is not None:
-            refuse_other(path, json.loads(row[0]), about)
+            raise ValueError(f"--out: {self.path} is not the start of a sweep ({error}); --fresh replaces it") from None
+        return json.loads(json.dumps(about) if row is None else row[0])
 
     def cases(self) -> dict[int, Outcome]:
         """The finished cases by number."""

@@ -98,7 +98,7 @@ def on_cluster(address: str, jobs: dict[int, Job]) -> Iterator[tuple[int, Outcom
         numbers = {}
         for number, job in jobs.items():
             numbers[client.submit(run_case, *job, key=f"springtide-{os.getpid()}-{number}", pure=False)] = number
-        for future in as_completed(list(numbers)):
+        for future in as_completed(list(numbers), loop=client.loop):
             number = numbers.pop(future)
             if future.status == "finished":
                 yield number, future.result()

@@ -86,10 +86,19 @@ class Params:
 PRESETS: dict[str, dict[str, Any]] = {
     "Clear water": {},
     "Light crude spill 0.2 m": {
-        "spill": "layer", "thickness": 0.2, "exposure": 60.0, "section": True, "follow": "window", "wind_speed": 5.0,
+        "spill": "layer",
+        "thickness": 0.2,
+        "exposure": 60.0,
+        "section": True,
+        "follow": "window",
+        "wind_speed": 5.0,
     },
     "Heavy fuel oil": {
-        "spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 600.0, "follow": "from above",
+        "spill": "layer",
+        "oil": "IFO 180",
+        "thickness": 0.5,
+        "exposure": 600.0,
+        "follow": "from above",
     },
     "Entirely mixed": {"spill": "mixed", "oil": "Arabian Light", "fraction": 0.4, "follow": "from above"},
     "Storm with buoys": {"wind_speed": 17.0, "bodies": 12, "wave_count": 160, "size": 2.0, "follow": "from above"},

@@ -32,8 +32,8 @@ VIEWS = {  # camera and target [m] when one of them is followed
 }
 BODY_VIEW = (-5.2, -6.2, 2.4), (0.0, 0.0, 0.0)  # [m] of camera and target from a followed body at size 1.5
 WINDOW_VIEW = (
-    (7.6 * WAY[0] - 1.6 * WAY[1], 7.6 * WAY[1] + 1.6 * WAY[0], 1.5),
-    (-1.6 * WAY[1], 1.6 * WAY[0], 0.15),
+    (4.8 * WAY[0] - 1.0 * WAY[1], 4.8 * WAY[1] + 1.0 * WAY[0], 0.9),
+    (-1.0 * WAY[1], 1.0 * WAY[0], 0.1),
 )
 FOLLOWED = {"first buoy": 0, "second buoy": 1, "box": 2, "window": 0}
 
@@ -69,8 +69,12 @@ class Picture:
         self.flames: Flames | None = None
         self.walls: Walls | None = None
         self.pull = scene.add_line_segments(
-            "/pull", np.zeros((1, 2, 3), np.float32), colors=HELD_COLOUR, thickness=4.0,
-            thickness_units="screen", visible=False,
+            "/pull",
+            np.zeros((1, 2, 3), np.float32),
+            colors=HELD_COLOUR,
+            thickness=4.0,
+            thickness_units="screen",
+            visible=False,
         )
 
     def show(self, picture: RadialPicture) -> None:

@@ -24,7 +24,10 @@ class Walls:
         rows = np.arange(n)
         a, b = rows[:-1], rows[1:]
         quads = []
-        for high, low in ((0, 1), (2, 3)):  # bands between rows of vertices; the interface is there twice, for its colours
+        for high, low in (
+            (0, 1),
+            (2, 3),
+        ):  # bands between rows of vertices; the interface is there twice, for its colours
             h, k = high * n, low * n
             quads += [np.stack([a + h, b + h, a + k], 1), np.stack([b + h, b + k, a + k], 1)]
         floor = np.stack([np.full(n - 1, 4 * n), a + 3 * n, b + 3 * n], 1)
@@ -37,7 +40,9 @@ class Walls:
         )  # fmt: skip
         lines = np.zeros((FAR - 1, 2, 3), np.float32)
         self.lines = [
-            server.scene.add_line_segments(f"{name}/{part}", lines, colors=colour, thickness=thick, thickness_units="screen")
+            server.scene.add_line_segments(
+                f"{name}/{part}", lines, colors=colour, thickness=thick, thickness_units="screen"
+            )
             for part, colour, thick in (("top", SURFACE_LINE, 2.0), ("interface", INTERFACE_LINE, 3.0))
         ]
 

@@ -1,5 +1,6 @@
-"""A window into the sea: a pit without water before a body, on whose far wall the layers are seen where they meet it."""
+"""A window into the sea: a pit without water before a body, on whose far wall the layers are seen as they meet it."""
 
+import itertools
 import math
 from typing import NamedTuple
 
@@ -32,7 +33,7 @@ def outline(middle: tuple[float, float], size: float) -> NDArray[np.float64]:
     half, length = HALF * size, LENGTH * size
     ends = [(half, 0.0), (-half, 0.0), (-half, length), (half, length), (half, 0.0)]
     walls = []
-    for i, ((a, b), (c, d)) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+    for i, ((a, b), (c, d)) in enumerate(itertools.pairwise(ends)):
         share = np.linspace(0.0, 1.0, FAR if i == 0 else SIDE)[0 if i == 0 else 1 :]
         walls.append(np.column_stack([a + share * (c - a), b + share * (d - b)]))
     along, across = np.concatenate(walls).T

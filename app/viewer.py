@@ -3,12 +3,16 @@
 import queue
 import threading
 import time
+import traceback
+from collections.abc import Callable
 from typing import Any
+
+import viser
 
 from app.guard import open_server
 from app.ledger import Unwatched, Work, gather, modules
 from app.loop import SimLoop
-from app.messages import Command
+from app.messages import Command, Halt, Release, Snapshot
 from app.panel import Panel
 from app.patch import decline
 from app.pictures import picture_named
@@ -29,6 +33,8 @@ class Viewer:
             decline(self.server)
         self.traffic = Traffic(self.server)
         self.port = self.server.get_port()
+        self.commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        self.server.on_client_disconnect(self.let_go)
         self.stop = threading.Event()
         self.threads: list[threading.Thread] = []
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
@@ -52,7 +58,7 @@ class Viewer:
             self.shown = self.drawn = 0
             self.traffic.begin()
             self.unwatched = Unwatched()
-            commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+            commands = self.commands = queue.SimpleQueue()
             self.picture = picture.Picture(self.server, commands.put)
             position, target = self.picture.CAMERA
             fov = getattr(self.picture, "FOV", FOV)
@@ -81,6 +87,10 @@ class Viewer:
         """How many browsers look."""
         return len(self.server._connected_clients)
 
+    async def let_go(self, client: viser.ClientHandle) -> None:
+        """A browser that dies in mid-drag never says that it let go; whoever else drags grabs again with each move."""
+        self.commands.put(Release())
+
     def pump(self, stop: threading.Event) -> None:
         """Show each new snapshot once."""
         while not stop.wait(PUMP if self.audience() else 0.1):
@@ -95,11 +105,23 @@ class Viewer:
         self.shown = snapshot.serial
         self.drawn += 1
         start = time.perf_counter()
+        self.attempt("picture", self.draw, snapshot)
+        self.sent = time.perf_counter() - start
+        self.attempt("panel", self.panel.update, snapshot, self.sent)
+
+    def draw(self, snapshot: Snapshot) -> None:
         with self.server.atomic():
             self.picture.show(snapshot.picture)
         self.server.flush()
-        self.sent = time.perf_counter() - start
-        self.panel.update(snapshot, self.sent)
+
+    def attempt(self, what: str, action: Callable[..., None], *arguments: Any) -> None:
+        """Show something; what goes wrong halts the run once, and this thread lives to say so."""
+        try:
+            action(*arguments)
+        except Exception as error:
+            if not self.loop.halted:
+                traceback.print_exc()
+                self.loop.commands.put(Halt(f"The {what} could not be drawn, {type(error).__name__}: {error}"))
 
     def work(self) -> dict[str, Work]:
         """The ledger of the open scene."""

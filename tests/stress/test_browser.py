@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
-from app.scenes.rope import ROOT
+from app.messages import Pause
 from app.viewer import Viewer
 from tests.browser.conftest import CHROMIUM, FLAGS, Tab
 from tests.browser.test_rope import pixel
@@ -41,14 +40,17 @@ def process(tmp_path: Path) -> Iterator[tuple[subprocess.Popen, Any]]:
 def test_a_chromium_killed_while_it_drags(lab: Viewer, process: tuple[subprocess.Popen, Any], tally: Tally) -> None:
     chromium, browser = process
     tab = Tab(browser, lab.port)
-    tab.wait(lambda: lab.audience() == 1 and lab.loop.scene.time > 0.5)
+    tab.wait(lambda: lab.audience() == 1 and lab.loop.scene.time > 6)
+    lab.commands.put(Pause())  # a slow page must hit what it sees
+    tab.page.wait_for_timeout(1500)
+    start = pixel(lab, lab.scene.state.x[:, 0, 6])
     with tally.fault("Chromium killed in mid-drag"):
 
         def grab() -> bool:
-            bead = lab.scene.state.x[:, 0, 2]
-            start = pixel(lab, bead)
-            tab.drag(start, (start[0] + 60, start[1] + 30))
-            return lab.scene.held is not None or not np.allclose(lab.scene.root.target, ROOT)
+            tab.release()
+            tab.drag(start, (start[0] + 60, start[1] - 30))
+            tab.page.wait_for_timeout(3000)
+            return lab.scene.held is not None
 
         tab.wait(grab)
         chromium.kill()

@@ -91,9 +91,11 @@ class SimLoop:
         changed |= self.drain()
         solve = 0.0
         if self.running and self.audience():
+            if changed:
+                self.pacer.cost = 0.0
             n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step)
             if n:
-                solve = self.advance(n)
+                solve = self.feel(n) if changed else self.advance(n)
                 changed = True
         else:
             self.counts["idle ticks"] += 1
@@ -108,6 +110,18 @@ class SimLoop:
         self.pacer.learn(n, seconds)
         self.counts["steps"] += n
         return seconds
+
+    def feel(self, n: int) -> float:
+        """Take n steps of unknown cost: one, then what its cost allows, and so on; what does not fit is dropped."""
+        spent, done, chunk = 0.0, 0, 1
+        while done < n and self.running and spent < BUDGET * FRAME:
+            spent += self.advance(chunk)
+            done += chunk
+            left = BUDGET * FRAME - spent
+            fits = int(left / self.pacer.cost) if self.pacer.cost > 0 else 16 * chunk
+            chunk = max(1, min(n - done, 16 * chunk, fits))
+        self.capped |= done < n
+        return spent
 
     def guarded(self, action: Callable[[], None]) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say."""

@@ -1,6 +1,7 @@
 """Live plots in a dock of their own, made when first asked for. Long histories thin out; they never grow."""
 
 import time
+from collections.abc import Sequence
 from types import ModuleType
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 import viser
 from viser import uplot
 
+from app.chart import Chart, Line
 from app.messages import Snapshot
 
 EVERY = 0.12  # [s] between two sends
@@ -19,7 +21,7 @@ class Plots:
     """What a scene's `PLOTS` declares: knob -> (title, unit, names of the series in SERIES).
 
     `CURVES`, where a scene has it, declares charts over something else than time: knob -> (title, label of the first
-    column, names of the others); each snapshot brings their columns whole.
+    column, names of the others); each snapshot brings their columns whole, or a `Chart` with the looks of its lines.
     """
 
     def __init__(self, server: viser.ViserServer, scene: ModuleType) -> None:
@@ -27,13 +29,15 @@ class Plots:
         self.curves: dict[str, tuple[str, str, tuple[str, ...]]] = getattr(scene, "CURVES", {})
         self.rows: list[tuple[float, ...]] = []
         self.charts: dict[str, Any] = {}
+        self.looks: dict[str, Any] = {}  # what each chart of a `Chart` was made for
         self.sent: dict[str, Any] = {}  # the columns each curve shows
         self.panel: Any = None
         self.sent_at = 0.0
 
     def update(self, snapshot: Snapshot, params: Any) -> None:
         """Take the snapshot's new rows and, now and then, send what is open."""
-        wanted = {knob for knob in (*self.scene.PLOTS, *self.curves) if getattr(params, knob)}
+        meant = {*self.scene.PLOTS, *self.curves} - self.scene.hidden(params)
+        wanted = {knob for knob in meant if getattr(params, knob)}
         for knob in (*self.scene.PLOTS, *self.curves):
             if knob in self.charts:
                 self.charts[knob].visible = knob in wanted
@@ -55,6 +59,9 @@ class Plots:
                 columns = snapshot.curves[knob]
                 if self.sent.get(knob) is not columns:
                     self.sent[knob] = columns
+                    if isinstance(columns, Chart):
+                        self.suit(knob, columns)
+                        columns = columns.columns
                     self.charts[knob].data = columns
             if len(self.rows) < 2:
                 return
@@ -62,6 +69,15 @@ class Plots:
             for knob in wanted & set(self.scene.PLOTS):
                 columns = [1 + self.scene.SERIES.index(name) for name in self.scene.PLOTS[knob][2]]
                 self.charts[knob].data = (table[0], *(table[c] for c in columns))
+
+    def suit(self, knob: str, chart: Chart) -> None:
+        """Make a chart anew where its lines are others than before."""
+        if self.looks.get(knob) != chart._replace(columns=()):
+            self.looks[knob] = chart._replace(columns=())
+            order = self.charts[knob].order
+            self.charts[knob].remove()
+            self.charts[knob] = self.draw(chart.title, chart.first, chart.lines, chart.ticks)
+            self.charts[knob].order = order
 
     def add(self, knob: str) -> Any:
         """The chart of one knob, in the dock."""
@@ -74,14 +90,33 @@ class Plots:
         else:
             title, unit, names = self.scene.PLOTS[knob]
             heading, first = f"{title} [{unit}]", "t [s]"
+        return self.draw(heading, first, [Line(*look) for look in zip(names, COLOURS, strict=False)])
+
+    def draw(self, heading: str, first: str, lines: Sequence[Line], ticks: Sequence[tuple[float, str]] = ()) -> Any:
+        """An empty chart in the dock; ticks: of a logarithmic scale, none for a linear one that fits."""
         series: list[uplot.Series] = [uplot.Series(label=first)]
-        for name, colour in zip(names, COLOURS, strict=False):
-            series.append(uplot.Series(label=name, stroke=colour, width=2))
+        for line in lines:
+            look = uplot.Series(label=line.label, stroke=line.colour, width=line.width)
+            if line.dash:
+                look["dash"] = line.dash
+            if line.fill:
+                look["fill"] = line.fill
+            series.append(look)
+        scales = {"x": uplot.Scale(time=False, auto=True)}
+        more: dict[str, Any] = {"height": 220}
+        start = np.array([0.0, 1.0])
+        if ticks:
+            places, words = zip(*ticks, strict=True)
+            scales["y"] = uplot.Scale(distr=3, log=10, range=(places[0], places[-1]), auto=False)
+            # The chart's own words for small numbers are zeros, on the axis as in its legend.
+            more = {"height": 260, "legend": uplot.Legend(live=False)}
+            more["axes"] = (uplot.Axis(), uplot.Axis(splits=places, values=words, size=66))
+            start = np.full(2, places[0])
         with self.tab:
             return self.server.gui.add_uplot(
-                tuple(np.array([0.0, 1.0]) for _ in series),
+                (np.array([0.0, 1.0]), *(start for _ in lines)),
                 tuple(series),
                 title=heading,
-                scales={"x": uplot.Scale(time=False, auto=True)},
-                height=220,
+                scales=scales,
+                **more,
             )

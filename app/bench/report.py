@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from app.colour import TOLD_APART
+
 Rows = list[dict[str, Any]]
 
-# Okabe and Ito's palette, told apart with any colour vision, each with a marker of its own.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+# One for each of the colours.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
 
@@ -123,7 +124,7 @@ def work_precision(rows: Rows, title: str) -> Any:
         for index, method in enumerate(methods):
             own = sorted((row for row in rows if row["method"] == method), key=lambda row: row["force evaluations"])
             x, y = [row[column] for row in own], [row["error at 1 s [m]"] for row in own]
-            style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 8], "markersize": 5}
+            style = {"color": TOLD_APART[index % 8], "marker": MARKERS[index % 8], "markersize": 5}
             axes.loglog(x, y, label=method.replace("_", " "), **style)
             curves.append((x, y))
         if column == "force evaluations":

@@ -28,7 +28,7 @@ def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate:
     running = scene.Scene(params)
     if getattr(running, "note", ""):
         # A file is no place for a method that was not asked for.
-        raise refusal("integrator", params.integrator, f"another; {running.note}")
+        raise refusal("integrator", params.integrator, "another, as this net is damped: by links, drag, air or contact")
     frames = max(1, round(seconds * rate))
     steps = max(1, math.ceil(seconds / frames / running.step * (1 - 1e-9)))
     times, columns, units = [], {}, {}

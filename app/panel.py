@@ -9,19 +9,15 @@ from typing import Any
 
 import viser
 
+from app.ledger import Works, table
 from app.messages import Command, Reset, Snapshot, StepOnce, TogglePlay
 from app.plots import Plots
 from sim.knobs import Knob, check, clamp_value, knobs
 
 STATUS_EVERY = 0.25  # [s]
 MARKS_EVERY = 0.5  # [s]
+LEDGER_EVERY = 2.0  # [s]
 OPEN_GROUPS = 2  # the first groups of knobs start open
-
-
-def set_content(handle: Any, content: str) -> None:
-    """Send a line of HTML only where it is new."""
-    if handle.content != content:
-        handle.content = content
 
 
 def title(name: str, knob: Knob) -> str:
@@ -132,7 +128,7 @@ class Control:
             with self.folder:
                 self.mark = self.gui.add_html("", order=(self.slider or self.field).order + 0.5)
         style = "font-size:11px;opacity:.7;padding:0 12px;margin-top:-6px"
-        set_content(self.mark, f'<div style="{style}">{text}</div>' if text else "")
+        self.mark.content = f'<div style="{style}">{text}</div>' if text else ""
 
 
 class Panel:
@@ -146,13 +142,14 @@ class Panel:
         params: Any,
         post: Callable[[Command], None],
         *,
+        work: Callable[[], Works],
         scenes: tuple[str, ...] = (),
         open_scene: Callable[[str], None] = lambda name: None,
     ) -> None:
         self.scene, self.picture, self.post = scene, picture, post
         self.gui = server.gui
         self.params = params
-        self.status_at = self.marks_at = 0.0
+        self.status_at = self.marks_at = self.ledger_at = 0.0
         self.halted = ""
         self.server = server
         self.plots = Plots(server, scene)
@@ -181,6 +178,10 @@ class Panel:
                 value = getattr(params, knob_name)
                 self.controls[knob_name] = Control(gui, groups[knob.group], knob_name, knob, value, self.on_change)
         self.notes: dict[str, Any] = {}
+        self.work = work
+        with gui.add_folder("Advanced", expand_by_default=False):
+            gui.add_html(note("What this scene did since it was opened, and what it did not have to do."))
+            self.ledger = gui.add_html("")
         self.hide()
         self.add_keys()
 
@@ -253,9 +254,9 @@ class Panel:
                 self.notify(self.halted)
         if now - self.status_at >= STATUS_EVERY:
             self.status_at = now
-            set_content(self.status, status_line(snapshot, sent))
+            self.status.content = status_line(snapshot, sent)
             readout = self.picture.readout(snapshot)
-            set_content(self.readout, f'<div style="padding:2px 12px 6px;font-size:12px">{readout}</div>')
+            self.readout.content = f'<div style="padding:2px 12px 6px;font-size:12px">{readout}</div>'
         if now - self.marks_at >= MARKS_EVERY:
             self.marks_at = now
             for name, text in self.picture.marks(snapshot).items():
@@ -263,17 +264,26 @@ class Panel:
             if hasattr(self.picture, "notes"):
                 self.write_notes(self.picture.notes(snapshot))
 
+        if now - self.ledger_at >= LEDGER_EVERY:
+            self.ledger_at = now
+            self.ledger.content = note(table(self.work()))
+
     def write_notes(self, notes: dict[str, str]) -> None:
         """Foldable texts below the controls, as HTML: made once, then kept up to date."""
         for heading, text in notes.items():
             if heading not in self.notes:
                 with self.gui.add_folder(heading, expand_by_default=False):
                     self.notes[heading] = self.gui.add_html("")
-            set_content(self.notes[heading], f'<div style="padding:2px 12px 8px;font-size:12px">{text}</div>')
+            self.notes[heading].content = note(text)
 
     def notify(self, text: str) -> None:
         for client in self.server.get_clients().values():
             client.add_notification("Paused", text, color="red", auto_close_seconds=10.0)
+
+
+def note(text: str) -> str:
+    """Text in small print, as HTML."""
+    return f'<div style="padding:2px 12px 8px;font-size:12px">{text}</div>'
 
 
 def status_line(snapshot: Snapshot, sent: float) -> str:

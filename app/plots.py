@@ -10,6 +10,7 @@ import viser
 from viser import uplot
 
 from app.chart import Chart, Line
+from app.ledger import Work
 from app.messages import Snapshot
 
 EVERY = 0.12  # [s] between two sends
@@ -30,9 +31,13 @@ class Plots:
         self.rows: list[tuple[float, ...]] = []
         self.charts: dict[str, Any] = {}
         self.looks: dict[str, Any] = {}  # what each chart of a `Chart` was made for
-        self.sent: dict[str, Any] = {}  # the columns each curve shows
+        self.sent: dict[str, Any] = {}  # the columns each curve shows, and the last row of each plot
         self.panel: Any = None
         self.sent_at = 0.0
+        self.drawn = self.spared = 0  # charts sent anew, and charts that were closed or had nothing new
+
+    def work(self) -> dict[str, Work]:
+        return {"charts drawn": Work(self.drawn, self.spared)}
 
     def update(self, snapshot: Snapshot, params: Any) -> None:
         """Take the snapshot's new rows and, now and then, send what is open."""
@@ -53,22 +58,33 @@ class Plots:
         if len(self.rows) > LENGTH:
             self.rows = self.rows[-LENGTH:]
         now = time.monotonic()
-        if wanted and now - self.sent_at >= EVERY:
+        if now - self.sent_at >= EVERY:
             self.sent_at = now
-            for knob in wanted & set(snapshot.curves or {}):
-                columns = snapshot.curves[knob]
-                if self.sent.get(knob) is not columns:
-                    self.sent[knob] = columns
-                    if isinstance(columns, Chart):
-                        self.suit(knob, columns)
-                        columns = columns.columns
-                    self.charts[knob].data = columns
-            if len(self.rows) < 2:
-                return
-            table = np.array(self.rows).T
-            for knob in wanted & set(self.scene.PLOTS):
-                columns = [1 + self.scene.SERIES.index(name) for name in self.scene.PLOTS[knob][2]]
-                self.charts[knob].data = (table[0], *(table[c] for c in columns))
+            before = self.drawn
+            if wanted:
+                self.send(snapshot, wanted)
+            self.spared += len(self.scene.PLOTS) + len(self.curves) - (self.drawn - before)
+
+    def send(self, snapshot: Snapshot, wanted: set[str]) -> None:
+        """Send the charts that are open and have something new."""
+        for knob in wanted & set(snapshot.curves or {}):
+            columns = snapshot.curves[knob]
+            if self.sent.get(knob) is not columns:
+                self.sent[knob] = columns
+                if isinstance(columns, Chart):
+                    self.suit(knob, columns)
+                    columns = columns.columns
+                self.charts[knob].data = columns
+                self.drawn += 1
+        if len(self.rows) < 2:
+            return
+        behind = [knob for knob in self.scene.PLOTS if knob in wanted and self.sent.get(knob) is not self.rows[-1]]
+        table = np.array(self.rows).T if behind else np.empty(0)
+        for knob in behind:
+            self.sent[knob] = self.rows[-1]
+            columns = [1 + self.scene.SERIES.index(name) for name in self.scene.PLOTS[knob][2]]
+            self.charts[knob].data = (table[0], *(table[c] for c in columns))
+            self.drawn += 1
 
     def suit(self, knob: str, chart: Chart) -> None:
         """Make a chart anew where its lines are others than before."""

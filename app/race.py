@@ -20,7 +20,7 @@ from sim.springs.stability import Gauge, gauge
 from sim.springs.state import State, advance, energy, steps_for
 
 LONGEST = 0.1  # [s] that a step of equal cost may take
-TRIAL = 24  # steps that the cost of an implicit method is judged by
+TRIAL = 24  # steps, fewer of long ropes, that the cost of an implicit method is judged by
 TIMED = 10_000  # evaluations of a point that timing a step takes each time, at most
 REPEATS = 3  # times, of which the least counts
 STIFFEST = 1e9  # [N/m], as of the knob
@@ -61,8 +61,8 @@ def evals_of(net: Net, record: Integrator, h: float) -> float:
     if not record.implicit:
         return float(record.evals)
     state = State.at_rest(net)
-    advance(net, state, record, h, TRIAL)
-    return max(float(record.evals), state.force_evals / TRIAL)
+    advance(net, state, record, h, max(4, min(TRIAL, 2400 // net.shape[1])))
+    return max(float(record.evals), state.force_evals / state.steps)
 
 
 def step_of(params: Params, number: int, net: Net) -> float:
@@ -164,9 +164,9 @@ class Lane:
     def timed(self) -> float:
         """Time [s] of a step from here: the least of a few calls of steps each, without what calling costs."""
         each = self.evals * self.state.x.size / 3
-        many = int(np.clip(TIMED / each, 4, 200))
+        many = int(np.clip(TIMED / each, 3, 200))
         least = [math.inf, math.inf]
-        for _ in range(REPEATS):
+        for _ in range(REPEATS if many > 3 else 1):
             for i, steps in enumerate((1, many)):
                 copy = self.state.copy()
                 start = time.perf_counter()
@@ -222,14 +222,24 @@ class Race:
         for ghost, lane in zip(self.ghosts, self.lanes, strict=False):
             ghost.take(lane.net)
 
-    def advance(self, moving: Net, ticks: int) -> None:
-        """Advance all by so many ticks; moving: rope 1's net as root and pull move meanwhile."""
+    def advance(self, moving: Net, ticks: int) -> tuple[int, int]:
+        """Advance all by so many ticks; moving: rope 1's net as root and pull move meanwhile.
+
+        Returns how many force evaluations and steps that took, the references' apart.
+        """
         duration = ticks * self.tick
+        before = self.counts()
         for lane in self.lanes:
             lane.advance(dataclasses.replace(moving, families=lane.net.families), ticks)
         for ghost, lane in zip(self.ghosts, self.lanes, strict=False):
             ghost.advance(dataclasses.replace(moving, families=lane.net.families), self.t, duration)
         self.t += duration
+        after = self.counts()
+        return after[0] - before[0], after[1] - before[1]
+
+    def counts(self) -> tuple[int, int]:
+        """Force evaluations and steps of all lanes."""
+        return sum(lane.state.force_evals for lane in self.lanes), sum(lane.state.steps for lane in self.lanes)
 
     def pin(self, position: tuple[float, float, float]) -> None:
         """All roots to rest at a place [m]."""

@@ -63,4 +63,3 @@ class RadialGauge(NamedTuple):
     peak_period: float  # [s] of the wave in the middle of the energy
     tally: Tally
     compared: dict[str, Compared]
-    counts: dict[str, int]

@@ -176,14 +176,6 @@ def compared_html(snapshot: Snapshot) -> str:
     return f'<table style="{TABLE}">{"".join(rows)}</table>{verdict}'
 
 
-def counts_html(snapshot: Snapshot) -> str:
-    """What was done and what was skipped."""
-    counts = snapshot.gauge.counts
-    done, skipped = counts["wave-vertex pairs evaluated"], counts["pairs skipped"]
-    share = f"; the rings skip {skipped / (done + skipped):.0%}" if done + skipped else ""
-    return "<br>".join(f"{name}: {value:,}" for name, value in counts.items()) + share
-
-
 def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """What is written under a knob."""
     p, g = snapshot.picture.params, snapshot.gauge

@@ -105,7 +105,7 @@ def line_up(*integrators: str, **others: Any) -> dict[str, Any]:
     return {"ropes": len(integrators), "integrator": first, **named, **SHOWN, **others}
 
 
-# 160 to 15,625 N/m, across Euler's limit at 1/60 s (437) and RK4's (8600); with more points the softest meets the floor.
+# 160 to 15,625 N/m, across Euler's limit at 1/60 s (437) and RK4's (8600). Softer or longer, and one meets the floor.
 RISING = {"points": 5, "stiffness": 160.0, "stiffness_ratio": 2.5}
 
 PRESETS: dict[str, dict[str, Any]] = {

@@ -3,15 +3,19 @@
 import queue
 import threading
 import time
+import traceback
+from collections.abc import Callable
 from typing import Any
 
 from app.guard import open_server
+from app.ledger import Unwatched, Work, gather, modules
 from app.loop import SimLoop
-from app.messages import Command
+from app.messages import Command, Halt, Snapshot
 from app.panel import Panel
 from app.patch import decline
 from app.pictures import picture_named
 from app.scenes import NAMES, scene_named
+from app.traffic import Traffic
 
 FOV = 1.3  # [rad] vertical field of view, unless a picture has its own
 PUMP = 1 / 60  # [s] between looks for a new snapshot; a scene's picture may ask for less
@@ -25,10 +29,12 @@ class Viewer:
         self.server, self.screen = open_server(host, port)
         if plain:
             decline(self.server)
+        self.traffic = Traffic(self.server)
         self.port = self.server.get_port()
         self.stop = threading.Event()
         self.threads: list[threading.Thread] = []
-        self.shown = 0
+        self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
+        self.unwatched = Unwatched()
         self.sent = 0.0  # [s] that the last frame took to hand over
         self.changing = threading.Lock()
         gui = self.server.gui
@@ -45,6 +51,9 @@ class Viewer:
             self.server.gui.reset()
             self.server.scene.reset()
             self.scene = scene.Scene(params or scene.Params())
+            self.shown = self.drawn = 0
+            self.traffic.begin()
+            self.unwatched = Unwatched()
             commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
             self.picture = picture.Picture(self.server, commands.put)
             position, target = self.picture.CAMERA
@@ -52,7 +61,14 @@ class Viewer:
             for camera in (self.server.initial_camera, *(c.camera for c in self.server.get_clients().values())):
                 camera.position, camera.look_at, camera.fov = position, target, fov
             self.panel = Panel(
-                self.server, scene, picture, self.scene.params, commands.put, scenes=NAMES, open_scene=self.open
+                self.server,
+                scene,
+                picture,
+                self.scene.params,
+                commands.put,
+                work=self.work,
+                scenes=NAMES,
+                open_scene=self.open,
             )
             self.loop = SimLoop(self.scene, commands, self.panel.read, self.audience, paused=paused)
             self.stop = threading.Event()
@@ -70,19 +86,47 @@ class Viewer:
     def pump(self, stop: threading.Event) -> None:
         """Show each new snapshot once."""
         while not stop.wait(PUMP if self.audience() else 0.1):
-            self.show_latest()
+            self.unwatched.note(self.audience())
+            with self.traffic.counted():
+                self.show_latest()
 
     def show_latest(self) -> None:
         snapshot = self.loop.latest
         if snapshot.serial == self.shown:
             return
         self.shown = snapshot.serial
+        self.drawn += 1
         start = time.perf_counter()
+        self.attempt("picture", self.draw, snapshot)
+        self.sent = time.perf_counter() - start
+        self.attempt("panel", self.panel.update, snapshot, self.sent)
+
+    def draw(self, snapshot: Snapshot) -> None:
         with self.server.atomic():
             self.picture.show(snapshot.picture)
         self.server.flush()
-        self.sent = time.perf_counter() - start
-        self.panel.update(snapshot, self.sent)
+
+    def attempt(self, what: str, action: Callable[..., None], *arguments: Any) -> None:
+        """Show something; what goes wrong halts the run once, and this thread lives to say so."""
+        try:
+            action(*arguments)
+        except Exception as error:
+            if not self.loop.halted:
+                traceback.print_exc()
+                self.loop.commands.put(Halt(f"The {what} could not be drawn, {type(error).__name__}: {error}"))
+
+    def work(self) -> dict[str, Work]:
+        """The ledger of the open scene."""
+        latest = self.loop.latest
+        return gather(
+            self.loop.work(),
+            {"pictures handed over": Work(self.drawn, self.shown - self.drawn)},
+            self.traffic.work(),
+            self.panel.plots.work(),
+            latest.work,
+            self.unwatched.work(),
+            modules(),
+        )
 
     def close(self) -> None:
         """Stop the threads of the open scene."""

@@ -7,7 +7,17 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 SOURCES = sorted(path for top in ("sim", "app", "assets", "tests") for path in (ROOT / top).rglob("*.py"))
-VIEWERS = {"viewer.py", "panel.py", "water.py", "paint.py", "patch.py", "guard.py", "record.py", "plots.py"}
+VIEWERS = {
+    "viewer.py",
+    "panel.py",
+    "water.py",
+    "paint.py",
+    "patch.py",
+    "guard.py",
+    "record.py",
+    "plots.py",
+    "traffic.py",
+}
 APART = ("springs", "ocean", "particles")
 LONGEST = 400  # lines
 

@@ -193,9 +193,4 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
 
 def notes(snapshot: Snapshot) -> dict[str, str]:
     """What folds out below the controls."""
-    g = snapshot.gauge
-    done = ", ".join(f"{count} {name}" for name, count in sorted(g.counts.items()))
-    return {
-        "Lab says, physics says": lab_says(snapshot.picture.params, g.report),
-        "Work done": f"{done or 'none'}. What a picture does not need is not computed.",
-    }
+    return {"Lab says, physics says": lab_says(snapshot.picture.params, snapshot.gauge.report)}

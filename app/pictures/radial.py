@@ -13,7 +13,7 @@ from app.fluid_look import look_of, slick_look
 from app.messages import Command, Grab, Place, Release, Snapshot, finite_vector
 from app.pictures.flames import Flames
 from app.radial_records import RadialPicture
-from app.radial_report import compared_html, counts_html, fluids_html, lab_says, marks_of, table
+from app.radial_report import compared_html, fluids_html, lab_says, marks_of, table
 from app.scenes.radial import RADIUS, SLICK_RADIUS
 from app.shapes import ball
 from app.water import Look, Water, sky
@@ -248,5 +248,4 @@ def notes(snapshot: Snapshot) -> dict[str, str]:
         "Lab says, physics says": lab_says(snapshot),
         "Fluids": fluids_html(snapshot),
         "Radial or square": compared_html(snapshot),
-        "Work done": counts_html(snapshot),
     }

@@ -177,6 +177,7 @@ class Picture:
         if picture.sphere is not None:
             self.ball.position = picture.sphere[:3]
             self.ball.scale = picture.sphere[3]
+            self.follow("sphere", picture.sphere[:3])
 
     def show_race(self, picture: RopePicture) -> None:
         """The ropes of a race, in place of the one."""

@@ -9,7 +9,7 @@ that a headless run imports no viewer. The module has
    plot knob), `PRESETS`: name -> {knob: value}, the first being the defaults;
 3. `Scene(params)`, the simulation, on the simulation thread only: `params`, `step` [s], `time` [s], `set_params`,
    `advance(steps)` (raises `DivergenceError`), `reset()`, `obey(command)`, `picture()` (frozen, float32), `gauge()`,
-   `take_samples()`, `arrays()` for headless runs;
+   `take_samples()`, `arrays()` for headless runs, `work()` for the ledger (`app/ledger.py`);
 4. `hidden(params)`, the knobs that mean nothing just now, and `warm_up()`, which compiles what the scene may call.
 
 It may have `CURVES` (see `app/plots.py`) with `Scene.curves()`, and `Scene.frame` [s], the time between pictures.

@@ -13,6 +13,7 @@ from app.cloth_start import build, resample, sphere_home
 from app.follow import Follower
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
 from app.method import method_for
+from app.spring_work import SpringWork
 from sim.springs import INTEGRATORS, Air, Net, cloth, simulate
 from sim.springs import Grab as Pull
 from sim.springs.net import PinPath
@@ -92,6 +93,7 @@ class Scene:
     def __init__(self, params: Params) -> None:
         self.params = params
         self.samples: list[tuple[float, ...]] = []
+        self.work = SpringWork()
         self.reset()
 
     @property
@@ -162,13 +164,16 @@ class Scene:
         good = self.state.copy()
         net = self.net_under_way(self.state.t, duration)
         advance(net, self.state, self.integrator, self.step, steps, with_ledger=self.params.plot_energy)
+        self.work.take(net, self.state.force_evals - good.force_evals, steps, with_ledger=self.params.plot_energy)
         if not (self.state.is_sane and np.abs(self.state.x).max() < BOUND):
             self.state = good
             raise DivergenceError(self.diagnosis())
         if self.integrator.implicit:
             self.corrections = (self.state.force_evals - good.force_evals) / steps
         self.net = net
-        if self.params.rows * self.params.cols <= LOOKED_THROUGH and self.state.t - self.looked_at >= LOOK_EVERY:
+        due = self.params.rows * self.params.cols <= LOOKED_THROUGH and self.state.t - self.looked_at >= LOOK_EVERY
+        self.work.add("looks at the stability", 1, due)
+        if due:
             self.look()
         if (self.params.plot_energy or self.params.plot_strain) and self.state.t - self.sampled_at >= SAMPLE_EVERY:
             self.sample()

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from app.ledger import Work
 from app.messages import Command, Point
 from app.probe import Probe, where_hit
 from app.sea_knobs import Params, conditions, gravity, hidden
@@ -35,6 +36,7 @@ PACE_EVERY = 0.5  # [s] between two looks at how steep and how fast the sea is
 LEARN = 0.15  # [1/s] spreads by which the threshold of foam moves where e times too little is drawn
 TRIM = 0.5  # spreads it begins above the formula
 LEAST_FOAM = 1e-4  # share of the sea below which nobody counts
+EVERY_FIELD = 8  # transforms of a height, its displacement, slope and Jacobian
 SEEN = 1.2  # part of the fading time for which foam counts as seen
 
 PRESETS: dict[str, dict[str, Any]] = {
@@ -82,7 +84,7 @@ class RainGauge(NamedTuple):
 
 
 class SeaGauge(NamedTuple):
-    """What was found, what was done and what was skipped."""
+    """What was found."""
 
     foam: float  # share of the drawn sea
     foam_asked: float  # share that Monahan's law gives
@@ -91,7 +93,6 @@ class SeaGauge(NamedTuple):
     residual: float | None  # [m] of the probe
     rain: RainGauge | None
     report: Report | None
-    counts: dict[str, int]
 
 
 def warm_up() -> Iterator[str]:
@@ -334,8 +335,20 @@ class Scene:
             residual=self.probe.residual if self.drawn is not None and self.drawn.probe is not None else None,
             rain=rain,
             report=self.report if p.statistics else None,
-            counts=dict(self.counts),
         )
+
+    def work(self) -> dict[str, Work]:
+        """For the ledger: each against every field, and everything that may be shown, in every picture."""
+        c = self.counts
+        pictures = c["pictures"]
+        return {
+            "transforms": Work(c["transforms"], max(EVERY_FIELD * pictures - c["transforms"], 0)),
+            "showers": Work(c["showers"], pictures - c["showers"]),
+            "rings of rain begun": Work(c["rings"]),
+            "probe readings": Work(c["probe readings"], pictures - c["probe readings"]),
+            "probe spectra": Work(c["probe spectra"], pictures - c["probe spectra"]),
+            "statistics": Work(c["statistics"], pictures - c["statistics"]),
+        }
 
     def curves(self) -> dict[str, tuple[NDArray[np.floating], ...]] | None:
         """The columns of `CURVES`."""

@@ -1,5 +1,6 @@
 """The radial sea: buoys and a box on water, on oil, or on both mixed, near a rig that may burn."""
 
+import collections
 import dataclasses
 import math
 import time
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from app.blowout import Blowout, slick_reach
 from app.crowd import Crowd
+from app.ledger import Work
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
 from app.radial_knobs import PRESETS, Params, conditions_of, exposure_of, hidden, spill_of
 from app.radial_records import Compared, RadialGauge, RadialPicture, SlickShape
@@ -70,6 +72,7 @@ class Scene:
     def __init__(self, params: Params) -> None:
         self.params = params
         self.samples: list[tuple[float, ...]] = []
+        self.counts: collections.Counter[str] = collections.Counter()
         self.reset()
 
     @property
@@ -165,6 +168,7 @@ class Scene:
         """Take steps; raises DivergenceError where a body's state is no longer finite."""
         crowd, sea, h = self.crowd, self.sea, self.step
         laws = Laws()
+        touched = crowd.touched
         for _ in range(steps):
             if crowd.count:
                 at = sea.at(crowd.fleet.position[:, :2], self.time, crowd.widths)
@@ -179,6 +183,9 @@ class Scene:
                 if plotted and self.time - self.sampled_at >= SAMPLE_EVERY:
                     self.sample(float(at.height[0]))
             self.time += h
+        n = crowd.count
+        done = {"body steps": steps * n, "pairs": steps * n * (n - 1) // 2, "touches": crowd.touched - touched}
+        self.counts.update(done)
         if self.params.ripples and crowd.count:
             self.wakes.press(self.time, crowd.fleet.position[:, :2], crowd.widths, crowd.impulse)
         crowd.impulse[:] = 0.0
@@ -257,6 +264,8 @@ class Scene:
                 self.wakes.lay(self.time, vertices[part], slopes[part], len(vertices))
         self.foam = self.whitecaps()
         self.slick = self.shape_slick(vertices, slopes)
+        rings, slicks = p.ripples and self.wakes.sea.ripples.alive, self.slick is not None
+        self.counts.update({"surfaces": 1, "rings": int(rings), "slicks": int(slicks)})
 
     def whitecaps(self) -> NDArray[np.float32]:
         """Foam (n,), 0 to 1, where the surface is pressed together most: as much of the sea as Monahan measured.
@@ -275,9 +284,11 @@ class Scene:
         return np.clip((self.threshold - jacobian) / np.float32(FOAM_OVER) + 0.5, 0.0, 1.0).astype(np.float32)
 
     def timed(self, name: str, sea: RadialSea | TileSea, centre: tuple[float, float]) -> RadialSurface:
+        before = sea.evaluated, sea.skipped
         start = time.perf_counter()
         surface = sea.on(self.grid, self.time, centre)
         taken = time.perf_counter() - start
+        self.counts.update({"waves": sea.evaluated - before[0], "waves left out": sea.skipped - before[1]})
         self.costs[name] = taken if name not in self.costs else 0.9 * self.costs[name] + 0.1 * taken
         return surface
 
@@ -314,14 +325,18 @@ class Scene:
             peak_period=2 * math.pi / float(s.rate[len(s.rate) // 2]),
             tally=self.blowout.tally(self.spill),
             compared=compared,
-            counts={
-                "wave-vertex pairs evaluated": s.evaluated,
-                "pairs skipped": s.skipped,
-                "body steps": self.crowd.stepped,
-                "collisions": self.crowd.touched,
-                "presses on the water": self.wakes.pressed,
-            },
         )
+
+    def work(self) -> dict[str, Work]:
+        """For the ledger: each wave at each vertex, each pair of bodies, and what may be laid on every surface."""
+        c = self.counts
+        return {
+            "waves summed at vertices": Work(c["waves"], c["waves left out"]),
+            "steps of bodies": Work(c["body steps"]),
+            "pairs of bodies in touch": Work(c["touches"], max(c["pairs"] - c["touches"], 0)),
+            "surfaces with rings of bodies": Work(c["rings"], c["surfaces"] - c["rings"]),
+            "surfaces with a slick": Work(c["slicks"], c["surfaces"] - c["slicks"]),
+        }
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
         """The state for a file: name -> (array, unit)."""

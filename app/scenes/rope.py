@@ -15,6 +15,7 @@ from app.race import Race, RaceGauge
 from app.race_charts import RaceCharts
 from app.race_report import RacePicture, place_of, race_arrays, race_picture
 from app.rope_knobs import PRESETS, ROOT, SPHERE, THICKNESS, Params, build, hidden
+from app.spring_work import SpringWork
 from sim.springs import INTEGRATORS, Net, rope, simulate
 from sim.springs import Grab as Pull
 from sim.springs.stability import Gauge, critical_stiffness, gauge
@@ -111,7 +112,9 @@ class Scene:
         self.root = Follower(ROOT)
         self.sphere = Follower(SPHERE)
         self.held: tuple[int, Follower] | None = None
+        self.lost = False  # has left its bounds since the last reset
         self.samples: list[tuple[float, ...]] = []
+        self.work = SpringWork()
         self.reset()
 
     @property
@@ -123,7 +126,9 @@ class Scene:
         return self.race.t if self.race else self.state.t
 
     def reset(self) -> None:
-        """The rope at rest, level from where its root is going."""
+        """The rope at rest, level from where its root is going; from home where it was lost, in the floor perhaps."""
+        if self.lost:
+            self.root.target, self.sphere.target, self.lost = ROOT, SPHERE, False
         self.root.put(self.root.target)
         self.sphere.put(self.sphere.target)
         self.held = None
@@ -198,14 +203,18 @@ class Scene:
         good = self.state.copy()
         net = self.net_under_way(self.state.t, duration)
         advance(net, self.state, self.integrator, self.step, steps, with_ledger=self.with_ledger)
+        self.work.take(net, self.state.force_evals - good.force_evals, steps, with_ledger=self.with_ledger)
         if not (self.state.is_sane and self.extent() < self.bound):
             self.state = good
+            self.lost = True
             raise DivergenceError(self.diagnosis())
         if self.root.at_rest:
             self.state.x[:, 0, 0] = self.root.position
             self.state.v[:, 0, 0] = 0.0
         self.net = net
-        if self.state.t - self.looked_at >= GAUGE_EVERY:
+        due = self.state.t - self.looked_at >= GAUGE_EVERY
+        self.work.add("looks at the stability", 1, due)
+        if due:
             self.look()
         if (self.params.plot_energy or self.params.plot_tip) and self.state.t - self.sampled_at >= SAMPLE_EVERY:
             self.sample()
@@ -218,7 +227,8 @@ class Scene:
     def advance_race(self, race: Race, ticks: int) -> None:
         """Take ticks of a race, whatever becomes of its ropes."""
         self.net = self.net_under_way(race.t, ticks * race.tick)
-        race.advance(self.net, ticks)
+        evals, steps = race.advance(self.net, ticks)
+        self.work.take(self.net, evals, steps, with_ledger=True)
         if self.root.at_rest:
             race.pin(self.root.position)
         if race.t - self.looked_at >= GAUGE_EVERY:
@@ -246,7 +256,7 @@ class Scene:
         return dataclasses.replace(
             self.net,
             pin_paths=() if path is None else (((0, 0), path),),
-            sphere=(*before, self.params.sphere_radius) if self.params.sphere else None,
+            sphere=(*before, self.params.sphere_radius) if self.net.sphere else None,
             sphere_velocity=velocity,
             epoch=t,
             grab=pull,
@@ -343,7 +353,7 @@ class Scene:
             tension=self.tension().astype(np.float32),
             full_scale=max(1.25 * weight, 1e-3),
             root=self.root.target,
-            sphere=(*self.sphere.position, self.params.sphere_radius) if self.params.sphere else None,
+            sphere=(*self.sphere.position, self.params.sphere_radius) if self.net.sphere else None,
             floor=self.params.floor,
             grid=self.params.grid,
             colour=self.params.colour,

@@ -1,7 +1,7 @@
 """A race: up to six ropes that differ in method, step or stiffness only, on one clock, against a reference.
 
-A tick of the race is its longest step; the others are shortened equally where they do not divide it, so that all ropes
-and the reference meet at the end of each tick. A rope that diverges is held where it last was good, and says why; one
+All ropes and the reference meet at the end of each tick, a multiple of the longest step; steps that do not divide it
+are shortened equally. A rope that diverges is held where it last was good, and says why; one
 that refuses (an undamped method on a damped net) never starts. The others race on.
 """
 
@@ -23,6 +23,8 @@ LONGEST = 0.1  # [s] that a step of equal cost may take
 TRIAL = 24  # steps, fewer of long ropes, that the cost of an implicit method is judged by
 TIMED = 10_000  # evaluations of a point that timing a step takes each time, at most
 REPEATS = 3  # times, of which the least counts
+LONGEST_TICK = 1 / 30  # [s], or the longest step: how far a multiple of it is looked for that suits the others
+SHORTENED = 0.02  # part of itself that a step may lose to make the tick a multiple of it
 STIFFEST = 1e9  # [N/m], as of the knob
 
 
@@ -84,6 +86,18 @@ def stiffened(net: Net, ratio: float) -> Net:
     """The net with links `ratio` times as stiff, at most STIFFEST."""
     links = tuple(f._replace(stiffness=min(STIFFEST, ratio * f.stiffness)) for f in net.families)
     return dataclasses.replace(net, families=links)
+
+
+def tick_of(steps: list[float]) -> float:
+    """The time [s] between meetings of all: the least multiple of the longest step that shortens no step by much."""
+    longest = max(steps)
+    multiples = range(1, max(1, int(LONGEST_TICK / longest * (1 + 1e-9))) + 1)
+
+    def loss(multiple: int) -> float:
+        tick = multiple * longest
+        return max(1.0 - tick / (steps_for(tick, step) * step) for step in steps)
+
+    return longest * next((m for m in multiples if loss(m) <= SHORTENED), min(multiples, key=loss))
 
 
 class Lane:
@@ -194,7 +208,7 @@ class Race:
         numbers = range(1, params.ropes + 1)
         nets = [stiffened(net, self.ratio ** (number - 1)) for number in numbers]
         steps = [step_of(params, number, own) for number, own in zip(numbers, nets, strict=True)]
-        self.tick = max(steps)  # [s]
+        self.tick = tick_of(steps)  # [s]
         self.t = 0.0
         self.lanes = [
             Lane(number, own, INTEGRATORS[method_of(params, number)], step, self.tick)

@@ -17,10 +17,9 @@ class Line(NamedTuple):
 
 
 class Chart(NamedTuple):
-    """Columns over a first one, whole at each snapshot; a NaN leaves a gap."""
+    """Columns over a first one, whole at each snapshot."""
 
-    title: str
     first: str  # label of the first column
     lines: tuple[Line, ...]
     columns: tuple[NDArray[np.float64], ...]  # the first, then one a line
-    ticks: tuple[tuple[float, str], ...] = ()  # of a logarithmic scale from the first to the last; none: linear, fitted
+    end: float  # of the first column's scale, from 0; best changed seldom, as the chart is then made anew

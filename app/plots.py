@@ -21,16 +21,17 @@ COLOURS = ("#4c6ef5", "#f76707", "#12b886", "#ae3ec9", "#868e96", "#e03131", "#1
 class Plots:
     """What a scene's `PLOTS` declares: knob -> (title, unit, names of the series in SERIES).
 
-    `CURVES`, where a scene has it, declares charts over something else than time: knob -> (title, label of the first
-    column, names of the others); each snapshot brings their columns whole, or a `Chart` with the looks of its lines.
+    `CURVES`, where a scene has it, declares charts whose columns each snapshot brings whole: knob -> (title, label of
+    the first column, names of the others) and, for a logarithmic scale, its ticks, (value, word) from end to end. In
+    place of the columns may come a `Chart`, which has the looks of its lines as well.
     """
 
     def __init__(self, server: viser.ViserServer, scene: ModuleType) -> None:
         self.server, self.scene = server, scene
-        self.curves: dict[str, tuple[str, str, tuple[str, ...]]] = getattr(scene, "CURVES", {})
+        self.curves: dict[str, tuple[Any, ...]] = getattr(scene, "CURVES", {})
         self.rows: list[tuple[float, ...]] = []
         self.charts: dict[str, Any] = {}
-        self.looks: dict[str, Any] = {}  # what each chart of a `Chart` was made for
+        self.looks: dict[str, Any] = {}  # the lines and the scale that each chart of a `Chart` has
         self.sent: dict[str, Any] = {}  # the columns each curve shows, and the last row of each plot
         self.panel: Any = None
         self.sent_at = 0.0
@@ -71,10 +72,12 @@ class Plots:
             columns = snapshot.curves[knob]
             if self.sent.get(knob) is not columns:
                 self.sent[knob] = columns
-                if isinstance(columns, Chart):
-                    self.suit(knob, columns)
-                    columns = columns.columns
-                self.charts[knob].data = columns
+                # Lines and their columns together: the browser must not see more of one than of the other.
+                with self.server.atomic():
+                    if isinstance(columns, Chart):
+                        self.suit(knob, columns)
+                        columns = columns.columns
+                    self.charts[knob].data = columns
                 self.drawn += 1
         if len(self.rows) < 2:
             return
@@ -87,13 +90,13 @@ class Plots:
             self.drawn += 1
 
     def suit(self, knob: str, chart: Chart) -> None:
-        """Make a chart anew where its lines are others than before."""
-        if self.looks.get(knob) != chart._replace(columns=()):
-            self.looks[knob] = chart._replace(columns=())
-            order = self.charts[knob].order
-            self.charts[knob].remove()
-            self.charts[knob] = self.draw(chart.title, chart.first, chart.lines, chart.ticks)
-            self.charts[knob].order = order
+        """Give a chart the lines and the scale that it has now, where they are others than before."""
+        if self.looks.get(knob) != chart[:2] + chart[3:]:
+            self.looks[knob] = chart[:2] + chart[3:]
+            handle = self.charts[knob]
+            handle.series = series_of(chart.first, chart.lines)
+            # Left to itself the scale would carry on from the lines before.
+            handle.scales = {**handle.scales, "x": uplot.Scale(time=False, auto=False, range=(0.0, chart.end))}
 
     def add(self, knob: str) -> Any:
         """The chart of one knob, in the dock."""
@@ -101,23 +104,14 @@ class Plots:
             self.panel = self.server.gui.add_panel()
             self.tab = self.panel.add_tab("Plots")
             self.panel.dock_left()
+        ticks: tuple[tuple[float, str], ...] = ()
         if knob in self.curves:
-            heading, first, names = self.curves[knob]
+            heading, first, names, *rest = self.curves[knob]
+            ticks = rest[0] if rest else ()
         else:
             title, unit, names = self.scene.PLOTS[knob]
             heading, first = f"{title} [{unit}]", "t [s]"
-        return self.draw(heading, first, [Line(*look) for look in zip(names, COLOURS, strict=False)])
-
-    def draw(self, heading: str, first: str, lines: Sequence[Line], ticks: Sequence[tuple[float, str]] = ()) -> Any:
-        """An empty chart in the dock; ticks: of a logarithmic scale, none for a linear one that fits."""
-        series: list[uplot.Series] = [uplot.Series(label=first)]
-        for line in lines:
-            look = uplot.Series(label=line.label, stroke=line.colour, width=line.width)
-            if line.dash:
-                look["dash"] = line.dash
-            if line.fill:
-                look["fill"] = line.fill
-            series.append(look)
+        series = series_of(first, [Line(*look) for look in zip(names, COLOURS, strict=False)])
         scales = {"x": uplot.Scale(time=False, auto=True)}
         more: dict[str, Any] = {"height": 220}
         start = np.array([0.0, 1.0])
@@ -130,9 +124,18 @@ class Plots:
             start = np.full(2, places[0])
         with self.tab:
             return self.server.gui.add_uplot(
-                (np.array([0.0, 1.0]), *(start for _ in lines)),
-                tuple(series),
-                title=heading,
-                scales=scales,
-                **more,
+                (np.array([0.0, 1.0]), *(start for _ in names)), series, title=heading, scales=scales, **more
             )
+
+
+def series_of(first: str, lines: Sequence[Line]) -> tuple[uplot.Series, ...]:
+    """What viser calls a chart's columns: the one they stand over, then a line each."""
+    series = [uplot.Series(label=first)]
+    for line in lines:
+        look = uplot.Series(label=line.label, stroke=line.colour, width=line.width)
+        if line.dash:
+            look["dash"] = line.dash
+        if line.fill:
+            look["fill"] = line.fill
+        series.append(look)
+    return tuple(series)

@@ -12,13 +12,24 @@ from app.race_report import name
 
 EVERY = 1 / 30  # [s] of simulated time between two rows
 KEPT = 600  # rows; a longer race keeps every other one, then every fourth
-TICKS = ((1e-10, "0.1 nm"), (1e-8, "10 nm"), (1e-6, "1 µm"), (1e-4, "0.1 mm"), (1e-2, "1 cm"), (1.0, "1 m"))
-DECADES = (1e-10, 10.0)  # [m] ends of the error's scale
+TICKS = (  # [m] of the error's scale
+    (1e-10, "0.1 nm"), (1e-8, "10 nm"), (1e-6, "1 µm"), (1e-4, "0.1 mm"), (1e-2, "1 cm"), (1.0, "1 m"), (10.0, ""),
+)  # fmt: skip
+CURVES = {
+    "plot_errors": ("Distance from the reference", "t [s]", ("rope 1",), TICKS),
+    "plot_energies": ("Energy above the start [J]", "t [s]", ("rope 1",)),
+}
 ZONE = Line("reference unsure", "rgba(120,120,120,0.6)", 1.0, fill="rgba(120,120,120,0.3)")
 ONLY_GHOST = Line("reference", "#000000", 1.5, (4.0, 4.0))
 DASHES = ((), (10.0, 4.0), (3.0, 3.0), (12.0, 3.0, 3.0, 3.0), (6.0, 6.0), (1.0, 4.0))  # told apart in grey as well
 TALL = 0.7  # energies above so many times what the rope falls through are left out
 ABOVE, BELOW = 1e3, 1e-12  # [m] off the error's scale: of a rope that diverged, and where there is no reference
+
+
+def round_up(t: float) -> float:
+    """The next time [s] of 2, 5, 10, 20, 50 and so on."""
+    decade = 10.0 ** math.floor(math.log10(max(t, 2.0)))
+    return next(m * decade for m in (1.0, 2.0, 5.0, 10.0) if m * decade >= max(t, 2.0) * (1 - 1e-9))
 
 
 class RaceCharts:
@@ -54,7 +65,7 @@ class RaceCharts:
         for i, lane in enumerate(race.lanes):
             # A logarithmic chart has no gaps: what has no error goes off its scale.
             error = race.error(lane)
-            row[3 + 2 * i] = ABOVE if lane.out else max(error, DECADES[0]) if error == error else BELOW
+            row[3 + 2 * i] = ABOVE if lane.out else max(error, TICKS[0][0]) if error == error else BELOW
             above = math.nan if lane.out else lane.total() - self.start[i]
             row[4 + 2 * i] = above if above < self.tall else math.nan
         self.count += 1
@@ -66,20 +77,17 @@ class RaceCharts:
         return ABOVE if any(value != value for value in least) else max(least)
 
     def charts(self) -> dict[str, Chart]:
-        """By knob; the same objects until there is a new row."""
-        if not self.drawn:
+        """By knob; the same objects until there is a new row. Nothing before there is a line to draw."""
+        if not self.drawn and self.count > 1:
             race, table = self.race, self.rows[: self.count].T.copy()
             risen = race.ratio != 1.0
             lines = tuple(Line(name(lane, risen), TOLD_APART[i], 2.0, DASHES[i]) for i, lane in enumerate(race.lanes))
             ghosts: tuple[NDArray[np.float64], ...] = () if risen else (table[2],)
+            errors = (table[0], table[1], *table[3::2])
+            energies = (table[0], *table[4::2], *ghosts)
+            reference = (ONLY_GHOST,) * len(ghosts)
             self.drawn = {
-                "plot_errors": Chart(
-                    "Distance from the reference", "t [s]", (ZONE, *lines),
-                    (table[0], table[1], *table[3::2]), (*TICKS, (DECADES[1], "")),
-                ),
-                "plot_energies": Chart(
-                    "Energy above the start [J]", "t [s]", (*lines, *([ONLY_GHOST] if ghosts else [])),
-                    (table[0], *table[4::2], *ghosts),
-                ),
-            }  # fmt: skip
+                "plot_errors": Chart("t [s]", (ZONE, *lines), errors, round_up(race.t)),
+                "plot_energies": Chart("t [s]", (*lines, *reference), energies, round_up(race.t)),
+            }
         return self.drawn

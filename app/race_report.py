@@ -11,6 +11,8 @@ from app.colour import TOLD_APART
 from app.race import Lane, Race, RaceGauge, Standing
 from app.rope_knobs import Params
 
+ROUND_OFF = 1e-10  # [J] below which an energy is none
+
 
 class RacePicture(NamedTuple):
     """What the viewer draws of a race."""
@@ -102,7 +104,8 @@ def row(s: Standing, risen: bool) -> str:
     if s.out:
         fate = f'<span style="color:#c92a2a">{html.escape(s.out)}</span>'
     else:
-        fate = f"{error_in_words(s)} · method {'took' if s.taken >= 0 else 'gave'} {abs(s.taken):.2g} J"
+        took = s.taken if abs(s.taken) > ROUND_OFF else 0.0
+        fate = f"{error_in_words(s)} · method {'took' if took >= 0 else 'gave'} {abs(took):.2g} J"
     cost = f"{gauge} · {s.evals / s.step:.0f} forces/s · {seconds(s.cost)} a step{newton}"
     return f'{head}<div style="padding-left:17px;font-size:11px;margin-bottom:5px"><div>{fate}</div>{cost}</div>'
 

@@ -1,4 +1,4 @@
-"""A race as drawn: a tube a rope in its own colour, the references as translucent ones around them, a flag on each."""
+"""A race as drawn: a tube a rope in its own colour, the references as translucent ones, a flag on each."""
 
 from collections.abc import Callable
 from typing import Any
@@ -14,10 +14,17 @@ from app.shapes import ball, smooth_line, sweep, tube_faces
 RINGS = 90  # about as many rings as a rope is drawn with
 SIDES = 8
 RADIUS = 0.75 * THICKNESS
-HALO = 1.7 * RADIUS  # [m] of the reference, which surrounds a rope that is where it should be
+CORE = 0.9 * RADIUS  # [m] of the reference, which is hidden in a rope that is where it should be
 GHOST_COLOUR = (70, 76, 88)
+SHADE = 0.6  # of a colour's numbers, so that lit from all sides it looks as it does in the charts
 FADED = 0.35  # opacity of a rope that is out
 POLE = 0.16  # [m] from a root to its label, and between the heights of labels, lest they overlap
+
+
+def shaded(rope: int) -> tuple[int, int, int]:
+    """The colour of a rope's material."""
+    red, green, blue = (round(SHADE * part) for part in rgb(TOLD_APART[rope]))
+    return red, green, blue
 
 
 class RaceDrawing:
@@ -36,14 +43,14 @@ class RaceDrawing:
         scene = server.scene
         self.tubes = [
             scene.add_mesh_simple(
-                f"/race/rope_{i + 1}", self.tube(race.ropes[i], RADIUS), faces, color=rgb(TOLD_APART[i]), side="double"
+                f"/race/rope_{i + 1}", self.tube(race.ropes[i], RADIUS), faces, color=shaded(i), side="double"
             )
             for i in range(self.ropes)
         ]
-        self.halos = np.zeros((self.ropes * self.each, 3), np.float32)
+        self.cores = np.zeros((self.ropes * self.each, 3), np.float32)
         self.ghosts = scene.add_mesh_simple(
             "/race/ghosts",
-            self.halos,
+            self.cores,
             np.concatenate([faces + i * self.each for i in range(self.ropes)]).astype(np.uint32),
             color=GHOST_COLOUR,
             opacity=0.4,
@@ -51,14 +58,15 @@ class RaceDrawing:
             visible=False,
         )
         points = race.ropes.reshape(-1, 3)
-        colours = np.repeat([rgb(colour) for colour in TOLD_APART[: self.ropes]], n, axis=0).astype(np.uint8)
+        # Colours of instances are taken as linear ones.
+        colours = np.repeat([255.0 * (np.array(shaded(i)) / 255.0) ** 2.2 for i in range(self.ropes)], n, axis=0)
         self.beads = scene.add_batched_meshes_simple(
             "/race/points",
             *ball(6),
             batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (len(points), 1)),
             batched_positions=points,
             batched_scales=np.full(len(points), min(1.5 * THICKNESS, 0.3 / n + 0.8 * THICKNESS), np.float32),
-            batched_colors=(0.75 * colours).astype(np.uint8),
+            batched_colors=colours.astype(np.uint8),
             lod="off",
         )
         self.beads.on_drag("left")(drag)
@@ -101,8 +109,8 @@ class RaceDrawing:
         self.ghosts.visible = race.ghosts is not None
         if race.ghosts is not None:
             for i in range(self.ropes):
-                self.halos[i * self.each : (i + 1) * self.each] = self.tube(race.ghosts[i], HALO)
-            self.ghosts.vertices = self.halos
+                self.cores[i * self.each : (i + 1) * self.each] = self.tube(race.ghosts[i], CORE)
+            self.ghosts.vertices = self.cores
         self.beads.visible = show_points
         if show_points:
             self.beads.batched_positions = race.ropes.reshape(-1, 3)

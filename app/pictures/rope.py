@@ -28,7 +28,7 @@ class Picture:
     """Draws `RopePicture`s."""
 
     CAMERA = ((-0.4, -4.3, 2.35), (-0.3, 0.0, 1.75))  # position, target [m]
-    RACE_CAMERA = ((3.0, -3.1, 2.9), (0.1, 0.0, 1.75))
+    RACE_CAMERA = ((3.4, -2.7, 2.9), (0.45, 0.35, 1.75))
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server = server

@@ -12,7 +12,7 @@ from app.follow import Follower
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
 from app.method import method_for
 from app.race import Race, RaceGauge
-from app.race_charts import RaceCharts
+from app.race_charts import CURVES, RaceCharts
 from app.race_report import RacePicture, place_of, race_arrays, race_picture
 from app.rope_knobs import PRESETS, ROOT, SPHERE, THICKNESS, Params, build, hidden
 from app.spring_work import SpringWork
@@ -34,10 +34,6 @@ SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "error", "ti
 PLOTS = {
     "plot_energy": ("Energy", "J", ("kinetic", "elastic", "gravity", "contact", "dissipated", "error")),
     "plot_tip": ("Height of the tip", "m", ("tip height",)),
-}
-CURVES = {  # of a race, whose lines `RaceCharts` knows
-    "plot_errors": ("Distance from the reference", "t [s]", ("rope 1",)),
-    "plot_energies": ("Energy above the start [J]", "t [s]", ("rope 1",)),
 }
 
 

@@ -10,7 +10,7 @@ from app.ghost import LOST, Ghost
 from app.headless import run_to_file
 from app.messages import DivergenceError, Grab, Place, Release
 from app.race import tick_of
-from app.race_charts import KEPT, RaceCharts
+from app.race_charts import KEPT, RaceCharts, round_up
 from app.race_report import standings
 from app.rope_knobs import PRESETS, ROOT, Params, build, hidden
 from app.scenes import rope as rope_scene
@@ -226,6 +226,7 @@ def test_a_long_race_thins_its_rows_and_keeps_its_beginning():
     scene = Scene(Params(ropes=2, points=2))
     scene.charts = charts = RaceCharts(scene.race)
     charts.every = 1e-9
+    assert charts.charts() == {}
     for _ in range(2 * KEPT + 10):
         charts.due = 0.0
         scene.race.advance(scene.net, 1)
@@ -291,6 +292,11 @@ def test_stiffness_without_fear(name):
     if name == "implicit_euler":
         assert paid.taken > 0.1 * paid.dissipated
     assert Scene(Params()).gauge().paid is None
+
+
+@pytest.mark.parametrize(("t", "end"), [(0.1, 2.0), (2.0, 2.0), (2.1, 5.0), (10.0, 10.0), (11.0, 20.0), (99.0, 100.0)])
+def test_the_charts_end_at_a_round_time(t, end):
+    assert round_up(t) == pytest.approx(end)
 
 
 @pytest.mark.parametrize("steps", [[0.1, 0.03], [1 / 60] * 6, [1e-5, 0.1], [1 / 240, 3 / 960, 4 / 960], [0.01, 0.007]])

@@ -49,8 +49,10 @@ def race_picture(race: Race, params: Params) -> RacePicture:
     ghosts = race.ghost_points() if params.ghost else None
     labels = []
     for lane in race.lanes:
-        verdict = f": {lane.out.partition(':')[0]}" if lane.out else ""
-        labels.append(name(lane, race.ratio != 1.0) + verdict)
+        words = name(lane, race.ratio != 1.0)
+        if lane.out:  # first what matters, as a label may reach out of view
+            words = f"{lane.number} {lane.out.partition(':')[0]}: {words.partition(' ')[2]}"
+        labels.append(words)
     return RacePicture(
         (race.points() + apart).astype(np.float32),
         None if ghosts is None else (ghosts + apart).astype(np.float32),

@@ -134,7 +134,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         "symplectic_euler", "leapfrog", "implicit_midpoint", "pefrl", "rk4", race_steps="same cost",
         time_step=1 / 960, damping=0.0, drag=0.0, floor=False,
     ),
-    "Stiffness without fear": line_up("implicit_euler", "tr_bdf2", "implicit_midpoint", stiffness=1e9, points=20),
+    "Stiffness without fear": line_up("implicit_euler", "tr_bdf2", "implicit_midpoint", stiffness=1e9),
 }  # fmt: skip
 
 LAB_ONLY = {"stiffness", "damping", "mass", "drag"}

@@ -5,13 +5,22 @@
 
 const WATER_UNIFORMS = [
   "deep", "scatter", "foamColor", "sunDirection", "sunColor", "optics",
-  "air", "ripple", "skyline", "fold", "tint", "weather", "state", "grid", "extent", "wireColor",
+  "air", "ripple", "skyline", "fold", "tint", "weather", "place", "state", "grid", "extent", "wireColor",
+  "slick", "slickDeep", "slickScatter", "slickOptics", "pit", "pitWay",
 ];
 const seas = new Map(); // base name -> what this file has made for it
+const looks = new Map(); // base name -> its uniforms: one set for good, as viser keeps a material for a new geometry
 
-function makeSea(mesh) {
-  const uniforms = { toSea: { value: mesh.matrixWorld.clone() }, fromSea: { value: mesh.matrixWorld.clone() } };
-  for (const name of WATER_UNIFORMS) uniforms[name] = { value: mesh.position.clone() };
+function uniformsOf(base, mesh) {
+  if (!looks.has(base)) {
+    const uniforms = { toSea: { value: mesh.matrixWorld.clone() }, fromSea: { value: mesh.matrixWorld.clone() } };
+    for (const name of WATER_UNIFORMS) uniforms[name] = { value: mesh.position.clone() };
+    looks.set(base, uniforms);
+  }
+  return looks.get(base);
+}
+
+function makeSea(mesh, uniforms) {
   return { mesh, geometry: mesh.geometry, uniforms, tiles: [], levels: [], shape: "", dome: null, wire: null };
 }
 
@@ -140,7 +149,7 @@ recipes.push({
     let sea = seas.get(base);
     if (!sea || sea.mesh !== mesh || sea.geometry !== mesh.geometry) {
       if (sea) unmakeSea(sea);
-      seas.set(base, (sea = makeSea(mesh)));
+      seas.set(base, (sea = makeSea(mesh, uniformsOf(base, mesh))));
       mesh.geometry.computeVertexNormals = () => {}; // they come with aux: viser need not derive them each frame
     }
     readLook(sea, channel);
@@ -203,7 +212,8 @@ recipes.push({
       });
     }
     // The plain stand-ins that other browsers may need are not for this one.
-    for (const name of [`${base}/plain_foam`, `${base}/plain_wire`, `${base}/plain_sea`]) {
+    for (const part of ["foam", "wire", "sea", "slick"]) {
+      const name = `${base}/plain_${part}`;
       const standIn = meshOf(name);
       if (standIn) standIn.visible = false;
     }

@@ -25,13 +25,44 @@ FOAM_SHOWS = 0.35  # the foam value from which the plain mesh shows it
 
 
 @dataclass(frozen=True)
+class SlickPatch:
+    """A round slick of another fluid on the water. Colours as in `Look`.
+
+    centre (x, y) and radius [m]; calm: factor on the slope of the ripples.
+    """
+
+    centre: tuple[float, float]
+    radius: float
+    deep: RGB
+    scatter: RGB
+    refractive_index: float
+    roughness: float
+    calm: float
+
+
+@dataclass(frozen=True)
+class Pit:
+    """A rectangle without surface: a window into the sea, whose walls are another's to draw.
+
+    centre (x, y) [m] of one wall, half its length [m], the way (unit vector) to the wall across and how far it is [m].
+    """
+
+    centre: tuple[float, float]
+    half: float
+    way: tuple[float, float]
+    length: float
+
+
+@dataclass(frozen=True)
 class Look:
     """How a fluid looks and how it is lit. Colours are sRGB in 0..1; directions point towards the sun.
 
     refractive_index sets the Fresnel reflectance; roughness is the rms slope of what neither mesh nor ripples show;
-    specular scales every reflection (1 is physics, the lab's oil is below). ripple_slope [rms], ripple_length [m] of
-    the longest ripple, ripple_direction [rad] towards which ripples run. haze [m] is the distance at which a fraction
-    1 - 1/e of the sea is lost in the sky. foam_scale [m] is the size of a patch of bubbles.
+    specular scales every reflection (1 is physics, the lab's oil is below). ripple_slope [rms], ripple_length and
+    ripple_shortest [m] of the longest and the shortest ripple, ripple_direction [rad] towards which ripples run,
+    gravity [m/s2] that sets how fast. haze [m] is the distance at which a fraction 1 - 1/e of the sea is lost in the
+    sky. foam_scale [m] is the size of a patch of bubbles. disc: share of the sun's disc and glitter that shows;
+    gloom: how much darker thick cloud is than thin.
     """
 
     deep: RGB = (0.0, 0.20, 0.31)
@@ -42,7 +73,9 @@ class Look:
     specular: float = 1.0
     ripple_slope: float = 0.2
     ripple_length: float = 1.6
+    ripple_shortest: float = 0.05
     ripple_direction: float = 0.0
+    gravity: float = 9.81
     foam_scale: float = 2.0
     sun_direction: tuple[float, float, float] = (0.6, 0.3, 0.5)
     sun_color: RGB = (1.0, 0.9, 0.75)
@@ -50,6 +83,8 @@ class Look:
     tint: RGB = (1.0, 1.0, 1.0)
     clouds: float = 0.4
     cloud_size: float = 2.2
+    disc: float = 1.0
+    gloom: float = 0.3
     haze: float = HAZE
     exposure: float = 1.0
     skyline: tuple[float, float, float] = (0.06, 0.2, 0.6)
@@ -57,6 +92,8 @@ class Look:
     dome: bool = True
     wireframe: bool = False
     wire_color: RGB = (0.95, 0.55, 0.1)
+    slick: SlickPatch | None = None
+    pit: Pit | None = None
 
 
 def linear(color: RGB) -> np.ndarray:
@@ -184,16 +221,28 @@ class Water:
             linear(look.sun_color) * look.sun_strength,
             (look.refractive_index, look.roughness, look.specular),
             (look.haze, look.exposure, look.foam_scale),
-            (look.ripple_slope, look.ripple_length, look.ripple_direction),
+            (look.ripple_slope, look.ripple_length, look.ripple_shortest),
             look.skyline,
             look.fold,
             look.tint,
             (look.clouds, look.cloud_size, look.ripple_direction),
+            (look.gravity, look.disc, look.gloom),
             self._state,
             (rows, cols, self._length),
             (self._tiles, float(look.dome), float(look.wireframe)),
             linear(look.wire_color),
         ]
+        slick, pit = look.slick, look.pit
+        if slick is None:
+            table += [np.zeros(3)] * 4
+        else:
+            table += [
+                (*slick.centre, slick.radius),
+                linear(slick.deep),
+                linear(slick.scatter),
+                (slick.refractive_index, slick.roughness, slick.calm),
+            ]
+        table += [np.zeros(3)] * 2 if pit is None else [(*pit.centre, pit.half), (*pit.way, pit.length)]
         return np.array(table, np.float32)
 
     def _draw_plain(self) -> None:
@@ -201,9 +250,13 @@ class Water:
         if self.alive is not False:
             return
         z = self._vertices[..., 2]
-        foam = self._vertices.copy()
-        foam[..., 2] += np.where(self._aux[..., 2] > FOAM_SHOWS, FOAM_RISES, -FOAM_SINKS)
-        self._stand_in("plain_foam", foam.reshape(-1, 3), self._faces, color=(235, 240, 242))
+        self._stand_in("plain_foam", self._sheet(self._aux[..., 2] > FOAM_SHOWS), self._faces, color=(235, 240, 242))
+        slick = self._look.slick
+        if slick is not None or "plain_slick" in self._stand_ins:
+            (x, y), radius = (slick.centre, slick.radius) if slick is not None else ((0.0, 0.0), 0.0)
+            inside = np.hypot(self._vertices[..., 0] - x, self._vertices[..., 1] - y) < radius
+            colour = as_bytes(slick.deep if slick is not None else self._look.deep)
+            self._stand_in("plain_slick", self._sheet(inside), self._faces, color=colour)
         if self._look.wireframe or "plain_wire" in self._stand_ins:
             wire = self._stand_in("plain_wire", self._vertices.reshape(-1, 3), self._faces, wireframe=True)
             wire.visible = self._look.wireframe
@@ -213,6 +266,12 @@ class Water:
             self._stand_in(
                 "plain_sea", np.stack([x, y, low], 1), np.array([[0, 1, 2], [0, 2, 3]]), color=self.mesh.color
             )
+
+    def _sheet(self, shown: np.ndarray) -> np.ndarray:
+        """The surface once more, (n, 3): just above itself where it is to show, below elsewhere."""
+        sheet = self._vertices.copy()
+        sheet[..., 2] += np.where(shown, FOAM_RISES, -FOAM_SINKS)
+        return sheet.reshape(-1, 3)
 
     def _stand_in(self, suffix: str, vertices: np.ndarray, faces: np.ndarray, **mesh: Any) -> viser.MeshHandle:
         """A mesh for browsers without the patch; the others hide it (water.js)."""
@@ -250,7 +309,7 @@ class Photograph:
 
 
 SKIES = {
-    "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 10.0, 0.6, 0.65, 0.62, 1.6, (0.80, 0.94, 1.22)),
+    "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 10.0, 0.6, 0.65, 0.64, 1.2, (0.72, 0.91, 1.28)),
     "sunset": Photograph(
         0.600, 3.3, (1.0, 0.62, 0.30), 4.0, 1.5, 5.0, 0.42, 0.36, 0.36, 9.0, (1.0, 0.9, 0.84), (232, 196, 150)
     ),

@@ -3,6 +3,7 @@
 import dataclasses
 import itertools
 import math
+import os
 
 import numpy as np
 import pytest
@@ -70,6 +71,21 @@ def test_the_fused_forces_agree_with_the_formulas_link_by_link(shape, model):
     x, v = net.x0 + 0.03 * rng.standard_normal(net.x0.shape), rng.standard_normal(net.x0.shape)
     naive = acceleration(net, x, v)
     assert np.abs(forces_of(net, x, v) - naive).max() < 1e-12 * np.abs(naive).max()
+
+
+@pytest.mark.skipif(os.cpu_count() == 1, reason="one core")
+@pytest.mark.parametrize(("rows", "cols"), [(16, 9), (33, 5), (64, 64)])
+def test_two_threads_give_the_very_numbers_of_one(rows, cols):
+    net = cloth(rows, cols, damping=0.3, drag=0.1)
+    rng = np.random.default_rng(1)
+    x, v = net.x0 + 0.03 * rng.standard_normal(net.x0.shape), rng.standard_normal(net.x0.shape)
+    split = dataclasses.replace(net, threads=2)
+    assert split.forces(1.0).bands == 2
+    assert (forces_of(split, x, v) == forces_of(net, x, v)).all()
+
+
+def test_a_cloth_of_few_rows_stays_on_one_thread():
+    assert dataclasses.replace(cloth(15, 100), threads=8).forces(1.0).bands == 1
 
 
 @pytest.mark.parametrize(("p", "q"), [(1, 1), (1, 2), (3, 2), (5, 7)])

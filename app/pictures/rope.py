@@ -184,6 +184,7 @@ class Picture:
         if picture.sphere is not None:
             self.ball.position = picture.sphere[:3]
             self.ball.scale = picture.sphere[3]
+            self.follow("sphere", picture.sphere[:3])
 
     def follow(self, thing: str, position: tuple[float, float, float]) -> None:
         """Move a gizmo to where its thing was put by other means, unless it is being dragged."""

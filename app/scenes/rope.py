@@ -205,6 +205,7 @@ class Scene:
         self.root = Follower(ROOT)
         self.sphere = Follower(SPHERE)
         self.held: tuple[int, Follower] | None = None
+        self.lost = False  # has left its bounds since the last reset
         self.samples: list[tuple[float, ...]] = []
         self.work = SpringWork()
         self.reset()
@@ -218,7 +219,9 @@ class Scene:
         return self.state.t
 
     def reset(self) -> None:
-        """The rope at rest, level from where its root is going."""
+        """The rope at rest, level from where its root is going; from home where it was lost, in the floor perhaps."""
+        if self.lost:
+            self.root.target, self.sphere.target, self.lost = ROOT, SPHERE, False
         self.root.put(self.root.target)
         self.sphere.put(self.sphere.target)
         self.held = None
@@ -273,6 +276,7 @@ class Scene:
         self.work.take(net, self.state.force_evals - good.force_evals, steps, with_ledger=self.params.plot_energy)
         if not (self.state.is_sane and self.extent() < self.bound):
             self.state = good
+            self.lost = True
             raise DivergenceError(self.diagnosis())
         if self.root.at_rest:
             self.state.x[:, 0, 0] = self.root.position

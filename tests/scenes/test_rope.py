@@ -63,6 +63,17 @@ def test_the_root_follows_where_it_is_placed() -> None:
     assert (scene.state.v[:, 0, 0] == 0).all()
 
 
+def test_a_rope_lost_in_the_floor_starts_from_home_again() -> None:
+    scene = Scene(Params())
+    scene.obey(Place("root", (0.0, 0.0, -90.0)))
+    scene.reset()
+    with pytest.raises(DivergenceError):
+        run(scene, 600, 1)
+    scene.reset()
+    assert tuple(scene.state.x[:, 0, 0]) == ROOT
+    run(scene, 600, 1)
+
+
 def test_a_pull_is_capped() -> None:
     scene = Scene(Params(pull=50.0, gravity=0.0, drag=2.0, floor=False))
     scene.obey(Grab(9, (-50.0, 0.0, 3.0)))

@@ -14,7 +14,7 @@ from sim.springs.collide import find_pairs
 from sim.springs.forces import set_acceleration
 from sim.springs.net import CLOTH, SKIN
 from sim.springs.state import State, advance, energy
-from sim.springs.statics import hanging_chain
+from sim.springs.statics import catenary, hanging_chain
 from tests.naive import acceleration
 
 BAD = [math.nan, math.inf, True, "1", None]
@@ -120,6 +120,27 @@ def test_strips_without_cross_springs_hang_as_chains():
     advance(net, state, INTEGRATORS["leapfrog"], 2e-3, 20_000)
     for j in range(3):
         assert state.x[2, :, j] - state.x[2, 0, j] == pytest.approx(depth, abs=1e-9)
+
+
+def test_a_strip_between_two_bars_hangs_as_the_catenary():
+    """Structural springs down the strip only: each column is the discrete elastic catenary between its two pins."""
+    rows, length, span, rise = 24, 1.2, 1.0, 0.1
+    net = cloth(
+        rows, 3, 0.2, length, 1.0, 300.0, 0.0, 0.0, 0.2, 0.3,
+        pinned=[(i, j) for i in (0, rows - 1) for j in range(3)],
+    )  # fmt: skip
+    net = dataclasses.replace(
+        net, families=tuple(f if f[:2] == (1, 0) else f._replace(stiffness=0.0, damping=0.0) for f in net.families)
+    )
+    x = net.x0.copy()
+    x[1], x[2] = np.linspace(0.0, span, rows)[:, None], np.linspace(0.0, rise, rows)[:, None]
+    net = dataclasses.replace(net, x0=x)
+    exact = catenary(rows, length, span, rise, 300.0, net.mass, 9.81)
+    state = State.at_rest(net)
+    advance(net, state, INTEGRATORS["leapfrog"], 1e-3, 30_000)
+    for j in range(3):
+        assert state.x[1, :, j] == pytest.approx(exact.x[:, 0], abs=1e-8)
+        assert state.x[2, :, j] == pytest.approx(exact.x[:, 2], abs=1e-8)
 
 
 def test_a_square_cloth_keeps_the_eight_symmetries_of_the_square():

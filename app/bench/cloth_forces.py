@@ -11,12 +11,11 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
 
 from app.bench.cloth import task_cloth
 from app.bench.kernels import build
-from sim.jit import kernel
+from sim.jit import MOST_THREADS, kernel, set_threads
 from sim.springs.cloth_forces import accelerate_cloth, cloth_scratch
 
 
@@ -57,7 +56,7 @@ def row(n: int, library: ctypes.CDLL | None, repeats: int) -> dict[str, Any]:
         assert library is not None
         library.cloth_forces(n, *arrays, *numbers, count)
 
-    numba.set_num_threads(min(2, numba.config.NUMBA_NUM_THREADS))  # type: ignore[attr-defined]
+    set_threads(min(2, MOST_THREADS))
     one()
     two()
     times: dict[str, list[float]] = {"ours": [], "c": [], "one": [], "two": []}

@@ -5,9 +5,8 @@ its twelve in one loop: every link is worked out once, written once and read twi
 """
 
 import numpy as np
-from numba import prange
 
-from sim.jit import kernel
+from sim.jit import kernel, prange
 from sim.springs.links import link_forces
 
 PAD = 2  # zeros on either side of a row: no link reaches further

@@ -9,10 +9,10 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.jit import MOST_THREADS
 from sim.knobs import refusal
 
 Vector = tuple[float, float, float]
@@ -248,7 +248,7 @@ class Net:
             thickness=float(self.thickness),
             pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1, dtype=np.int64),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
-            bands=max(1, min(self.threads, numba.config.NUMBA_NUM_THREADS, rows // LEAST_BAND)),  # type: ignore[attr-defined]
+            bands=max(1, min(self.threads, MOST_THREADS, rows // LEAST_BAND)),
         )
 
 

@@ -3,10 +3,10 @@
 import dataclasses
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.jit import set_threads
 from sim.knobs import refusal
 from sim.springs.energy import Energy, energies
 from sim.springs.forces import set_acceleration
@@ -77,8 +77,7 @@ def advance(net: Net, state: State, integrator: Integrator, h: float, steps: int
     set_lag(net, state, integrator.lag * h)
     ledger, p = np.zeros(2), net.forces(h)
     if p.bands > 1:
-        # Of this thread's loops; a kernel that did it could not be kept in the cache.
-        numba.set_num_threads(p.bands)
+        set_threads(p.bands)
     state.force_evals += integrator.advance(
         state.x.reshape(-1), state.v.reshape(-1), ledger, state.t, h, steps, p, with_ledger
     )

@@ -90,7 +90,8 @@ class Patch:
             clients = server.get_clients()
             waiting = False
             for number, client in clients.items():
-                if set(self._names) <= self._drawn.get(number, frozenset()):
+                # With others slow to answer this one may have left since.
+                if number not in server.get_clients() or set(self._names) <= self._drawn.get(number, frozenset()):
                     continue
                 self._since.setdefault(number, time.monotonic())
                 waiting = True

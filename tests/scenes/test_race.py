@@ -8,6 +8,7 @@ import pytest
 
 from app.ghost import LOST, Ghost
 from app.headless import run_to_file
+from app.measures.rope import measures
 from app.messages import DivergenceError, Grab, Place, Release
 from app.race import tick_of
 from app.race_charts import KEPT, RaceCharts, round_up
@@ -307,3 +308,11 @@ def test_all_meet_at_the_end_of_a_tick_without_much_shorter_steps(steps):
     assert all(step >= own * (1 - 1e-9) for step, own in zip(steps, taken, strict=True))
     if max(steps) < 1 / 60:
         assert all(own > 0.95 * step for step, own in zip(steps, taken, strict=True))
+
+
+def test_a_sweep_records_each_rope_of_a_race():
+    scene = raced("Euler against RK4 against leapfrog", 0.5)
+    found = measures(scene)
+    assert found["error_1"].value > found["error_2"].value > 0.0
+    assert set(found) == {f"{what}_{n}" for what in ("error", "taken", "h_omega") for n in (1, 2, 3)}
+    assert "tip_height" in measures(Scene(Params()))

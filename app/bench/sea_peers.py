@@ -21,12 +21,12 @@ class Peer(NamedTuple):
 
 
 def wave_numbers(sea: Sea) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """-i k/|k| of each axis and the frequencies, (N, N), FFT order."""
+    """i k/|k| of each axis and the frequencies, (N, N), FFT order."""
     n = np.fft.fftfreq(sea.size, 1.0 / sea.size)
     kx, ky = np.meshgrid(n, n, indexing="ij")
     k = np.hypot(kx, ky)
     k[0, 0] = 1.0
-    return -1j * kx / k, -1j * ky / k, sea.frequencies
+    return 1j * kx / k, 1j * ky / k, sea.frequencies
 
 
 def mirrored(h0: np.ndarray) -> np.ndarray:

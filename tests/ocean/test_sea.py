@@ -372,3 +372,12 @@ def test_no_wind_is_a_flat_sea():
     surface = Sea(16, 50.0, wind_speed=0.0).surface(3.0)
     assert not surface.height.any()
     assert (surface.jacobian == 1.0).all()
+
+
+def test_crests_are_sharp_and_their_water_runs_with_the_wave():
+    """Gerstner's sign: with the other one troughs would be sharp, crests round, and foam would lie in the troughs."""
+    sea = Sea(size=64, length=128.0, spectrum="jonswap", wind_speed=8.0, wind_direction=0.0)
+    surface, later = sea.surface(3.0), sea.surface(3.01)
+    assert np.corrcoef(surface.jacobian.ravel(), surface.height.ravel())[0, 1] < -0.5
+    along = (later.displacement[..., 0] - surface.displacement[..., 0]) / 0.01  # [m/s] towards +x, where the wind goes
+    assert np.corrcoef(along.ravel(), surface.height.ravel())[0, 1] > 0.5

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from app.replacing import replacing
+
 Rows = list[dict[str, Any]]
 
 # Okabe and Ito's palette, told apart with any colour vision, each with a marker of its own.
@@ -65,7 +67,7 @@ def show(title: str, rows: Rows) -> None:
 
 def save_table(rows: Rows, path: Path) -> None:
     """One CSV file, columns with their units in the head."""
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns(rows))
         writer.writeheader()
         writer.writerows(rows)
@@ -77,7 +79,8 @@ def save_figures(figures: dict[str, Any], folder: Path) -> list[Path]:
     for name, figure in figures.items():
         for suffix in ("svg", "png"):
             paths.append(folder / f"{name}.{suffix}")
-            figure.savefig(paths[-1], dpi=150, bbox_inches="tight")
+            with replacing(paths[-1]) as draft:
+                figure.savefig(draft, dpi=150, bbox_inches="tight")
     return paths
 
 

@@ -48,7 +48,7 @@ def student(sea: Sea) -> Frame:
 
 
 def halves(sea: Sea) -> tuple[np.ndarray, ...]:
-    """Half planes in single precision: h0, conj(h0(-k)), -i kx/k, -i ky/k; and the frequencies in double."""
+    """Half planes in single precision: h0, conj(h0(-k)), i kx/k, i ky/k; and the frequencies in double."""
     h0 = sea.amplitudes_at(0.0)
     half = sea.size // 2 + 1
     x, y, omega = wave_numbers(sea)

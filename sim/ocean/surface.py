@@ -54,8 +54,8 @@ class Surface:
     def displacement(self) -> np.ndarray:
         """Horizontal displacement (size, size, 2) [m], choppiness included. Two transforms; none at choppiness 0.
 
-        D(k) = i choppiness (k/|k|) h(k): Tessendorf (2001), eq. 44, with the sign of Gerstner's wave, by which crests
-        are pressed together and water on them moves with the wave.
+        D(k) = i choppiness (k/|k|) h(k): Tessendorf (2001), eq. 44, with the sign that he leaves to the factor. Water
+        of a deep wave a cos(kx - omega t) moves by -a sin(kx - omega t) along it (Lamb, Art. 229): to the crests.
         """
         out = self._two_planes()
         if self.choppiness > 0.0:

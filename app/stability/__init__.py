@@ -1,0 +1,1 @@
+"""`springtide stability`: maps measured by letting every integrator run, beside what theory says of it."""

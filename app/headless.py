@@ -26,6 +26,9 @@ def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate:
     if not out.parent.is_dir():
         raise refusal("--out", str(out), "a file in a folder that exists")
     running = scene.Scene(params)
+    if getattr(running, "note", ""):
+        # A file is no place for a method that was not asked for.
+        raise refusal("integrator", params.integrator, "another, as this net is damped: by links, drag, air or contact")
     frames = max(1, round(seconds * rate))
     steps = max(1, math.ceil(seconds / frames / running.step * (1 - 1e-9)))
     times, columns, units = [], {}, {}

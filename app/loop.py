@@ -13,10 +13,23 @@ from collections.abc import Callable
 from typing import Any
 
 from app.ledger import Work
-from app.messages import Command, DivergenceError, Pause, Play, Reset, Snapshot, Status, StepOnce, TogglePlay
+from app.messages import (
+    Command,
+    DivergenceError,
+    Halt,
+    Pause,
+    Play,
+    Reset,
+    Snapshot,
+    Status,
+    StepOnce,
+    TogglePlay,
+    where_not_finite,
+)
 
 FRAME = 1 / 60  # [s] between ticks
 BUDGET = 0.7  # part of a frame that solving may take; the rest is for streaming
+GROWTH = 8  # from one part to the next of steps whose cost is not known
 IDLE = 0.1  # [s] between looks while there is nothing to do
 LONGEST = 0.25  # [s] of wall time that one tick makes up for
 WINDOW = 1.0  # [s] over which rates are measured
@@ -41,6 +54,13 @@ class FixedStep:
             return most, True
         self.debt = max(0.0, self.debt - due * h)
         return due, False
+
+    def next_part(self, last: int, spent: float) -> int:
+        """Steps to try next, after `spent` [s] of this frame and a last part of `last` steps; 0 when it is full."""
+        left = BUDGET * FRAME - spent
+        if left <= 0.0:
+            return 0
+        return min(GROWTH * last, int(left / self.cost)) if self.cost > 0 else GROWTH * last
 
     def learn(self, steps: int, seconds: float) -> None:
         """Take note that `steps` steps took `seconds` of processor time."""
@@ -76,6 +96,7 @@ class SimLoop:
         self.clock, self.effort = clock, effort
         self.running = not paused
         self.halted = ""
+        self.untried = True  # nothing is known of what a step costs with the knobs as they are
         self.pacer = FixedStep()
         self.capped = False
         self.counts: collections.Counter[str] = collections.Counter()
@@ -90,19 +111,38 @@ class SimLoop:
         params = self.read_params()
         changed = params != self.scene.params
         if changed:
+            self.untried = True
             self.guarded(lambda: self.scene.set_params(params))
         changed |= self.drain()
         solve = 0.0
         if self.running and self.audience():
             n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step)
             if n:
-                solve = self.advance(n)
+                solve = self.try_out(n) if self.untried else self.advance(n)
                 changed = True
         else:
             self.counts["idle ticks"] += 1
         self.counts["ticks"] += 1
         if changed:
             self.latest = self.snapshot(solve)
+
+    def try_out(self, n: int) -> float:
+        """Take up to n steps in growing parts while the frame's budget lasts; returns what they took [s].
+
+        Another method or more points may make a step a thousand times as dear as the last one was.
+        """
+        part, spent = 1, 0.0
+        while n > 0 and part > 0 and self.running:
+            part = min(part, n)
+            self.pacer.cost = 0.0
+            spent += self.advance(part)
+            n -= part
+            part = self.pacer.next_part(part, spent)
+        self.untried = False
+        if n > 0 and self.running:
+            self.capped, self.pacer.debt = True, 0.0
+            self.pacer.dropped += n
+        return spent
 
     def work(self) -> dict[str, Work]:
         """For the ledger: what ran against what had no need to, paused or unwatched, or no time to."""
@@ -158,6 +198,8 @@ class SimLoop:
             case StepOnce():
                 self.running = False
                 self.advance(1)
+            case Halt(reason):
+                self.halt(reason)
             case Reset():
                 self.running, self.halted = self.running or bool(self.halted), ""
                 self.pacer.debt = 0.0
@@ -166,13 +208,32 @@ class SimLoop:
                 self.guarded(lambda: self.scene.obey(command))
 
     def snapshot(self, solve: float) -> Snapshot:
+        """What there is to show now; the last good picture where the scene has none."""
         self.counts["snapshots"] += 1
+        shown: list[Any] = []
+        self.guarded(lambda: shown.extend(self.look()))
+        if not shown:
+            shown = [self.latest.picture, self.latest.gauge, (), self.latest.work, None]
+        picture, gauge, samples, work, curves = shown
+        return Snapshot(self.counts["snapshots"], picture, self.status(solve), gauge, samples, work, curves)
+
+    def look(self) -> tuple[Any, ...]:
+        """The scene's picture, gauge, plot rows, ledger and curves; ArithmeticError for a number that is none."""
+        scene = self.scene
+        picture = scene.picture()
+        where = where_not_finite(picture)
+        if where:
+            raise ArithmeticError(f"{where} of its picture is no longer a number; reset it, or take a smaller step")
+        gauge, work = scene.gauge(), getattr(scene, "work", dict)()
+        return picture, gauge, scene.take_samples(), work, scene.curves() if hasattr(scene, "curves") else None
+
+    def status(self, solve: float) -> Status:
         simulated = self.scene.time
         self.history.append((self.wall, simulated))
         while len(self.history) > 2 and self.history[0][0] < self.wall - WINDOW:
             self.history.popleft()
         elapsed = self.wall - self.history[0][0]
-        status = Status(
+        return Status(
             running=self.running,
             time=simulated,
             steps=self.counts["steps"],
@@ -183,11 +244,6 @@ class SimLoop:
             rate=(len(self.history) - 1) / elapsed if elapsed > 0 else 0.0,
             halted=self.halted,
         )
-        picture = self.scene.picture()
-        curves = self.scene.curves() if hasattr(self.scene, "curves") else None
-        samples = self.scene.take_samples()
-        gauge, work = self.scene.gauge(), getattr(self.scene, "work", dict)()
-        return Snapshot(self.counts["snapshots"], picture, status, gauge, samples, work, curves)
 
     def run(self, stop: threading.Event) -> None:
         """Tick until `stop` is set, at the frame rate while there is something to do."""

@@ -3,6 +3,8 @@
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from app.ledger import Works
 
 Vector = tuple[float, float, float]
@@ -21,6 +23,21 @@ def finite_vector(values: Any, reach: float = REACH) -> Vector | None:
     return min(max(x, -reach), reach), min(max(y, -reach), reach), min(max(z, -reach), reach)
 
 
+def where_not_finite(picture: Any, name: str = "") -> str:
+    """Which part of a picture (records, tuples, float arrays) holds a NaN or an infinity; "" where none does."""
+    if isinstance(picture, np.ndarray):
+        return "" if picture.dtype.kind != "f" or np.isfinite(picture).all() else name or "an array"
+    if isinstance(picture, float):
+        return "" if math.isfinite(picture) else name or "a number"
+    if isinstance(picture, tuple):
+        names = getattr(picture, "_fields", (name,) * len(picture))
+        for label, part in zip(names, picture, strict=True):
+            where = where_not_finite(part, label)
+            if where:
+                return where
+    return ""
+
+
 class Play(NamedTuple):
     """Run on."""
 
@@ -35,6 +52,12 @@ class TogglePlay(NamedTuple):
 
 class StepOnce(NamedTuple):
     """Hold still and advance by one time step."""
+
+
+class Halt(NamedTuple):
+    """Hold still because something went wrong, and say what."""
+
+    reason: str
 
 
 class Reset(NamedTuple):
@@ -66,7 +89,7 @@ class Point(NamedTuple):
     direction: Vector
 
 
-Command = Play | Pause | TogglePlay | StepOnce | Reset | Place | Grab | Release | Point
+Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Place | Grab | Release | Point
 
 
 class Status(NamedTuple):

@@ -123,9 +123,12 @@ class Control:
     def write(self, text: str) -> None:
         """A line under the control."""
         if self.mark is None:
+            if not text:
+                return
             with self.folder:
                 self.mark = self.gui.add_html("", order=(self.slider or self.field).order + 0.5)
-        self.mark.content = f'<div style="font-size:11px;opacity:.7;padding:0 12px;margin-top:-6px">{text}</div>'
+        style = "font-size:11px;opacity:.7;padding:0 12px;margin-top:-6px"
+        self.mark.content = f'<div style="{style}">{text}</div>' if text else ""
 
 
 class Panel:

@@ -11,6 +11,7 @@ from sim.ocean.planets import RADIUS_RULES, gravity_of
 from sim.ocean.statistics import Statistics, beaufort, expected, height_scatter, measured
 
 BAND = 2.0  # standard deviations: 95 of 100 seas lie within
+NEAR_PEAK = 0.08  # of the peak frequency: waves within are called dominant
 WATER, HEAVY_OIL = 1e-6, 1e-3  # [m2/s] kinematic viscosities to compare with
 
 
@@ -60,7 +61,10 @@ def dominant(sea: Sea, t: float, period: float) -> tuple[float, float]:
     if not period > 0.0:
         return math.nan, math.nan
     peak = 2.0 * math.pi / period
-    energy = np.where(np.abs(sea.frequencies / peak - 1.0) < 0.08, sea.energy_at(t), 0.0)
+    energy = sea.energy_at(t)
+    away = np.where(energy > 0.0, np.abs(sea.frequencies / peak - 1.0), math.inf)
+    # A tile of few waves may have none so near: then the nearest.
+    energy = np.where(away <= max(NEAR_PEAK, float(away.min())), energy, 0.0)
     total = float(energy.sum())
     if not total > 0.0:
         return math.nan, math.nan
@@ -148,7 +152,7 @@ def lab_says(params: Params, r: Report | None) -> str:
             f"{0.20925 * U * U / g:.3g} m and {U / 0.877:.3g} m/s."
             + (
                 f" The dominant waves here are {r.theory.wave[0]:.3g} m long and run at {r.theory.wave[1]:.3g} m/s."
-                if r
+                if r and not math.isnan(r.theory.wave[0])
                 else ""
             ),
         ),

@@ -3,12 +3,14 @@
 import queue
 import threading
 import time
+import traceback
+from collections.abc import Callable
 from typing import Any
 
 from app.guard import open_server
 from app.ledger import Unwatched, Work, gather, modules
 from app.loop import SimLoop
-from app.messages import Command
+from app.messages import Command, Halt, Snapshot
 from app.panel import Panel
 from app.patch import decline
 from app.pictures import picture_named
@@ -95,11 +97,23 @@ class Viewer:
         self.shown = snapshot.serial
         self.drawn += 1
         start = time.perf_counter()
+        self.attempt("picture", self.draw, snapshot)
+        self.sent = time.perf_counter() - start
+        self.attempt("panel", self.panel.update, snapshot, self.sent)
+
+    def draw(self, snapshot: Snapshot) -> None:
         with self.server.atomic():
             self.picture.show(snapshot.picture)
         self.server.flush()
-        self.sent = time.perf_counter() - start
-        self.panel.update(snapshot, self.sent)
+
+    def attempt(self, what: str, action: Callable[..., None], *arguments: Any) -> None:
+        """Show something; what goes wrong halts the run once, and this thread lives to say so."""
+        try:
+            action(*arguments)
+        except Exception as error:
+            if not self.loop.halted:
+                traceback.print_exc()
+                self.loop.commands.put(Halt(f"The {what} could not be drawn, {type(error).__name__}: {error}"))
 
     def work(self) -> dict[str, Work]:
         """The ledger of the open scene."""

@@ -84,3 +84,52 @@ void leapfrog(int n, double *restrict x, double *restrict v, const double *restr
         if (b > 0) damp_links(n, 1, v, w, free, held), damp_links(n, 0, v, w, free, held);
     }
 }
+
+/* The forces of a cloth, structural, shear and bend links of n x n particles, each link once: a row's links go into a
+   buffer of the last three rows, padded by two zeros to its sides. f is (6, 3, 3, n + 4), k and rest (6,). */
+void cloth_forces(int n, const double *restrict x, const double *restrict v, const double *restrict w, double *restrict f,
+                  double *restrict a, const double *restrict k, const double *restrict rest, double b, double gx, double gy,
+                  double gz, double c, int repeats) {
+    const int di[6] = {0, 1, 1, 1, 0, 2}, dj[6] = {1, 0, 1, -1, 2, 0};
+    const double load[3] = {gx, gy, gz};
+    const int m = n + 4, N = n * n;
+    for (int r = 0; r < repeats; r++) {
+        for (int i = 0; i < 54 * m; i++) f[i] = 0;
+        for (int i = 0; i < n; i++) {
+            for (int q = 0; q < 6; q++) {
+                double *restrict fx = f + ((q * 3 + i % 3) * 3) * m + 2, *restrict fy = fx + m, *restrict fz = fy + m;
+                int first = dj[q] < 0 ? -dj[q] : 0, count = n - (dj[q] < 0 ? -dj[q] : dj[q]);
+                if (i + di[q] >= n) {
+                    for (int j = 0; j < n; j++) fx[j] = fy[j] = fz[j] = 0;
+                    continue;
+                }
+                const double *X = x + i * n + first, *Y = X + N, *Z = Y + N, *U = v + i * n + first, *V = U + N, *W = V + N;
+                const int to = di[q] * n + dj[q];
+                const double kk = k[q], d = k[q] * rest[q];
+                fx += first, fy += first, fz += first;
+                for (int j = 0; j < count; j++) {
+                    double rx = X[j + to] - X[j], ry = Y[j + to] - Y[j], rz = Z[j + to] - Z[j];
+                    double s = kk - d / sqrt(rx * rx + ry * ry + rz * rz + 1e-300);
+                    fx[j] = s * rx + b * (U[j + to] - U[j]);
+                    fy[j] = s * ry + b * (V[j + to] - V[j]);
+                    fz[j] = s * rz + b * (W[j + to] - W[j]);
+                }
+            }
+            for (int e = 0; e < 3; e++) {
+                const double *F[6], *G[6];
+                for (int q = 0; q < 6; q++) {
+                    F[q] = f + ((q * 3 + i % 3) * 3 + e) * m + 2;
+                    G[q] = f + ((q * 3 + (i - di[q] + 3) % 3) * 3 + e) * m + 2 - dj[q];
+                }
+                const double *restrict f0 = F[0], *restrict f1 = F[1], *restrict f2 = F[2], *restrict f3 = F[3];
+                const double *restrict f4 = F[4], *restrict f5 = F[5], *restrict g0 = G[0], *restrict g1 = G[1];
+                const double *restrict g2 = G[2], *restrict g3 = G[3], *restrict g4 = G[4], *restrict g5 = G[5];
+                const double *restrict vv = v + e * N + i * n, *restrict ww = w + i * n, mg = load[e];
+                double *restrict aa = a + e * N + i * n;
+                for (int j = 0; j < n; j++)
+                    aa[j] = ww[j] * (mg - c * vv[j] + f0[j] - g0[j] + f1[j] - g1[j] + f2[j] - g2[j] + f3[j] - g3[j]
+                                     + f4[j] - g4[j] + f5[j] - g5[j]);
+            }
+        }
+    }
+}

@@ -19,7 +19,7 @@ from sim.springs import INTEGRATORS, Net
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, steps_for
 
-METHODS = ("symplectic_euler", "leapfrog_lagged", "leapfrog", "rk4")
+METHODS = ("symplectic_euler", "leapfrog_lagged", "leapfrog", "rk4", "dopri5", "dop853")
 LADDER = (0.95, 0.8, 0.4, 0.2, 0.1, 0.05, 0.025)  # of the critical step
 REFINED = {16: 128, 128: 128, 1024: 16}  # steps of the reference within one of 0.8 times critical: good to 1e-11 m
 

@@ -184,6 +184,7 @@ class Picture:
         if picture.sphere is not None:
             self.ball.position = picture.sphere[:3]
             self.ball.scale = picture.sphere[3]
+            self.follow("sphere", picture.sphere[:3])
 
     def follow(self, thing: str, position: tuple[float, float, float]) -> None:
         """Move a gizmo to where its thing was put by other means, unless it is being dragged."""
@@ -230,7 +231,10 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     g = snapshot.gauge
     step, stiffness = g.stability.critical_step, g.largest_stiffness
     unit = "N/m" if g.knob == "stiffness" else "N"
+    if step == float("inf"):
+        return {"integrator": g.note, "time_step": "any step holds", g.knob: "any stiffness holds"}
     return {
+        "integrator": g.note,
         "time_step": f"holds up to {step:.3g} s" if step > 0 else "no step holds with this method",
         g.knob: f"holds up to {stiffness:.3g} {unit}" if stiffness > 0 else "no stiffness holds at this step",
     }

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from app.follow import Follower
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
+from app.method import method_for
 from app.spring_work import SpringWork
 from sim.knobs import knob
 from sim.springs import INTEGRATORS, Contact, Net, lab_units, rope, simulate
@@ -144,6 +145,7 @@ class RopeGauge(NamedTuple):
     stability: Gauge
     knob: str  # the stiffness knob in force
     largest_stiffness: float  # in that knob's unit
+    note: str  # why another method runs than the one chosen, or ""
 
 
 def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
@@ -182,12 +184,15 @@ def resample(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
     return np.ascontiguousarray([[np.interp(new, old, row[0])] for row in values])
 
 
+UNDAMPED = rope(4, damping=0.0, drag=0.0)
+
+
 def warm_up() -> Iterator[str]:
     """Compile everything the scene may call, piece by piece; yields what comes next."""
     net = rope(4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2))
-    for name in INTEGRATORS:
+    for name, record in INTEGRATORS.items():
         yield name
-        simulate(net, name, 1e-3, 2e-3, 2, with_ledger=True)
+        simulate(UNDAMPED if record.undamped_only else net, name, 1e-3, 2e-3, 2, with_ledger=True)
     yield "stability"
     Scene(Params())
 
@@ -200,6 +205,7 @@ class Scene:
         self.root = Follower(ROOT)
         self.sphere = Follower(SPHERE)
         self.held: tuple[int, Follower] | None = None
+        self.lost = False  # has left its bounds since the last reset
         self.samples: list[tuple[float, ...]] = []
         self.work = SpringWork()
         self.reset()
@@ -213,7 +219,9 @@ class Scene:
         return self.state.t
 
     def reset(self) -> None:
-        """The rope at rest, level from where its root is going."""
+        """The rope at rest, level from where its root is going; from home where it was lost, in the floor perhaps."""
+        if self.lost:
+            self.root.target, self.sphere.target, self.lost = ROOT, SPHERE, False
         self.root.put(self.root.target)
         self.sphere.put(self.sphere.target)
         self.held = None
@@ -264,12 +272,11 @@ class Scene:
         duration = steps * self.step
         good = self.state.copy()
         net = self.net_under_way(self.state.t, duration)
-        advance(
-            net, self.state, INTEGRATORS[self.params.integrator], self.step, steps, with_ledger=self.params.plot_energy
-        )
+        advance(net, self.state, self.integrator, self.step, steps, with_ledger=self.params.plot_energy)
         self.work.take(net, self.state.force_evals - good.force_evals, steps, with_ledger=self.params.plot_energy)
         if not (self.state.is_sane and self.extent() < self.bound):
             self.state = good
+            self.lost = True
             raise DivergenceError(self.diagnosis())
         if self.root.at_rest:
             self.state.x[:, 0, 0] = self.root.position
@@ -310,19 +317,19 @@ class Scene:
 
     def look(self) -> None:
         """Judge the stability of the state as it is."""
-        integrator = INTEGRATORS[self.params.integrator]
-        stability = gauge(self.net, integrator, self.step, self.state)
-        largest = critical_stiffness(self.net, integrator, self.step, self.state)
+        self.integrator, self.note = method_for(self.params.integrator, self.net)
+        stability = gauge(self.net, self.integrator, self.step, self.state)
+        largest = critical_stiffness(self.net, self.integrator, self.step, self.state)
         knob = "stiffness"
         if self.params.units == "material":
             knob, largest = "axial_stiffness", largest * self.net.families[0].rest
-        self.stability = RopeGauge(stability, knob, largest)
+        self.stability = RopeGauge(stability, knob, largest, self.note)
         self.looked_at = self.state.t
 
     def diagnosis(self) -> str:
         """Why the run diverged and what would hold."""
         g = self.stability.stability
-        name, h = self.params.integrator, self.step
+        name, h = self.integrator.name, self.step
         start = f"The rope left its bounds at t = {self.state.t:.2f} s: "
         if g.h_omega > g.limit:
             remedy = (

@@ -3,11 +3,15 @@
 k is a stiffness here, h a time step.
 """
 
+from sim.springs.cloth import cloth
 from sim.springs.integrators import Integrator, discover
-from sim.springs.net import Contact, Grab, Net, PinPath, lab_units, rope
+from sim.springs.net import Air, Contact, Grab, Net, PinPath, lab_units, rope
 
 INTEGRATORS: dict[str, Integrator] = discover()
 
 from sim.springs.simulate import Run, simulate  # noqa: E402  (it looks integrators up)
 
-__all__ = ["INTEGRATORS", "Contact", "Grab", "Integrator", "Net", "PinPath", "Run", "lab_units", "rope", "simulate"]
+__all__ = [
+    "INTEGRATORS", "Air", "Contact", "Grab", "Integrator", "Net", "PinPath", "Run", "cloth", "lab_units", "rope",
+    "simulate",
+]  # fmt: skip

@@ -43,3 +43,14 @@ def limit_of_polynomial(coefficients: tuple[float, ...], zeta: float) -> float:
     left = growth(z) > 1.0 + SLACK
     first = int(left.argmax()) if left.any() else len(z)
     return limit_of(growth, known=SCAN * first)
+
+
+def polynomial_of(a: tuple[tuple[float, ...], ...], b: tuple[float, ...]) -> tuple[float, ...]:
+    """Coefficients of the stability polynomial, 1 and b A^(i-1) 1, of an explicit method's slopes and weights."""
+    size = len(b)
+    slopes = np.array([(*row, *(0.0,) * (size - len(row))) for row in a])
+    powers, coefficients = np.ones(size), [1.0]
+    for _ in range(size):
+        coefficients.append(float(np.dot(b, powers)))
+        powers = slopes @ powers
+    return tuple(coefficients)

@@ -12,8 +12,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
+from sim.springs.collide import damp_self_contacts
 from sim.springs.contact import surface_velocity, touches, touching
-from sim.springs.forces import TINY
+from sim.springs.links import TINY
+from sim.springs.wind import add_wind
 
 
 @kernel(noalias=True, inline=True)
@@ -200,10 +202,29 @@ def damp_motion(x, v, decay, p, reverse):
 
 
 @kernel(allocates=False)
+def blow(x, v, s, p, f, a, middle):
+    """The air's push for a time s [s], by the explicit midpoint rule.
+
+    a, middle: scratch (3 rows cols,); f: of `make_scratch`.
+    """
+    for j in range(v.shape[0]):
+        a[j], middle[j] = 0.0, v[j]
+    add_wind(x, v, p, f, a)
+    for j in range(v.shape[0]):
+        middle[j] += 0.5 * s * a[j]
+        a[j] = 0.0
+    add_wind(x, middle, p, f, a)
+    for j in range(v.shape[0]):
+        v[j] += s * a[j]
+
+
+@kernel(allocates=False)
 def damp_surfaces(x, v, t, s, p, reverse):
-    """Floor, sphere, pull, or in reverse."""
-    for step in range(3):
-        part = 2 - step if reverse else step
+    """Itself, floor, sphere, pull, or in reverse."""
+    for step in range(4):
+        part = 2 - step if reverse else step - 1
+        if part == -1 and p.thickness > 0.0:
+            damp_self_contacts(x, v, s, p, reverse)
         if part == 0 and p.has_floor:
             damp_contact(x, v, t, s, p, False)
         elif part == 1 and p.has_sphere:
@@ -215,7 +236,7 @@ def damp_surfaces(x, v, t, s, p, reverse):
 @kernel(inline=True)
 def damp(x, v, t, s, decay, p, reverse):
     """All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards."""
-    outside = p.has_floor or p.has_sphere or p.grabbed >= 0
+    outside = p.has_floor or p.has_sphere or p.grabbed >= 0 or p.thickness > 0.0
     if outside and reverse:
         damp_surfaces(x, v, t, s, p, reverse)
     damp_motion(x, v, decay, p, reverse)

@@ -8,8 +8,11 @@ import math
 from typing import NamedTuple
 
 from sim.jit import kernel
+from sim.springs.collide import self_contact_energy
 from sim.springs.contact import contact_force, surface_velocity, touches, touching
-from sim.springs.forces import TINY, grab_secant
+from sim.springs.forces import grab_secant
+from sim.springs.links import TINY
+from sim.springs.wind import wind_power
 
 
 class Energy(NamedTuple):
@@ -140,6 +143,8 @@ def power(x, v, t, p, with_damping):
     dissipated, work = link_power(x, v, p, with_damping)
     if with_damping and p.drag > 0.0:
         dissipated += 2.0 * p.drag / p.mass * kinetic_energy(v, p)
+    if with_damping and p.has_air:
+        work += wind_power(x, v, p)
     if p.has_floor or p.has_sphere:
         lost, done = contact_power(x, v, t, p, with_damping)
         dissipated += lost
@@ -165,4 +170,6 @@ def add_power(x, v, t, p, with_damping, weight, ledger):
 def energies(x, v, t, p):
     """(kinetic, elastic, gravity, contact) [J]."""
     contact = contact_energy(x, t, p) if p.has_floor or p.has_sphere else 0.0
+    if p.thickness > 0.0:
+        contact += self_contact_energy(x, p)
     return kinetic_energy(v, p), elastic_energy(x, p), gravity_energy(x, p), contact

@@ -11,44 +11,11 @@ import math
 import numpy as np
 
 from sim.jit import kernel
+from sim.springs.cloth_forces import accelerate_cloth, cloth_scratch
+from sim.springs.collide import add_self_contacts
 from sim.springs.contact import add_contacts
-
-TINY = 1e-300  # [m^2] under the root: coincident points get no spring force instead of 0/0
-
-
-@kernel(noalias=True, inline=True)
-def link_forces(x, v, f, ia, ib, of, n, N, M, k, b, rest, axial):
-    """Force on the first end of n links, (ia, ib), (ia + 1, ib + 1), ...: F = k (|r| - d) r/|r| - b v_rel (lab eq. 4).
-
-    Written to f (3 M,) from index `of` of each component. Isotropic damping acts on the whole relative velocity, as the
-    lab has it; axial on its part along the link.
-    """
-    if axial:
-        for j in range(n):
-            p, q = ia + j, ib + j
-            rx, ry, rz = x[q] - x[p], x[N + q] - x[N + p], x[N + N + q] - x[N + N + p]
-            rr = rx * rx + ry * ry + rz * rz + TINY
-            closing = (v[q] - v[p]) * rx + (v[N + q] - v[N + p]) * ry + (v[N + N + q] - v[N + N + p]) * rz
-            s = k - k * rest / math.sqrt(rr) + b * closing / rr
-            f[of + j] = s * rx
-            f[M + of + j] = s * ry
-            f[M + M + of + j] = s * rz
-    elif b == 0.0:
-        for j in range(n):
-            p, q = ia + j, ib + j
-            rx, ry, rz = x[q] - x[p], x[N + q] - x[N + p], x[N + N + q] - x[N + N + p]
-            s = k - k * rest / math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-            f[of + j] = s * rx
-            f[M + of + j] = s * ry
-            f[M + M + of + j] = s * rz
-    else:
-        for j in range(n):
-            p, q = ia + j, ib + j
-            rx, ry, rz = x[q] - x[p], x[N + q] - x[N + p], x[N + N + q] - x[N + N + p]
-            s = k - k * rest / math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-            f[of + j] = s * rx + b * (v[q] - v[p])
-            f[M + of + j] = s * ry + b * (v[N + q] - v[N + p])
-            f[M + M + of + j] = s * rz + b * (v[N + N + q] - v[N + N + p])
+from sim.springs.links import link_forces
+from sim.springs.wind import add_wind, wind_scratch
 
 
 @kernel(noalias=True, inline=True)
@@ -148,8 +115,14 @@ def accelerate(x, v, t, p, with_damping, f, a):
     b = 1.0 if with_damping else 0.0
     if p.is_rope:
         accelerate_rope(x, v, p, b, b * p.drag, f, a)
+    elif p.is_cloth:
+        accelerate_cloth(x, v, p, b, b * p.drag, f, a)
     else:
         accelerate_grid(x, v, p, b, b * p.drag, f, a)
+    if p.has_air and with_damping:
+        add_wind(x, v, p, f, a)
+    if p.thickness > 0.0:
+        add_self_contacts(x, v, p, with_damping, a)
     if p.has_floor or p.has_sphere:
         add_contacts(x, v, t, p, with_damping, a)
     if p.grabbed >= 0:
@@ -158,7 +131,7 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 @kernel
 def make_scratch(p):
-    return np.zeros(3 * (p.cols + 1))
+    return np.zeros((cloth_scratch(p.cols) if p.is_cloth else 3 * (p.cols + 1)) + wind_scratch(p.cols))
 
 
 @kernel(inline=True)

@@ -18,6 +18,9 @@ Vector = tuple[float, float, float]
 
 DAMPING_MODELS = ("isotropic", "axial")
 CONTACT_LAWS = ("clipped", "lab")
+CLOTH = [(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)]  # structural, shear, bend: a kernel of their own
+PAIRS = 24  # most pairs within reach, for each particle
+SKIN = 0.5  # of the thickness: how far pairs are looked for beyond it, so that the list of them lasts
 
 
 class Family(NamedTuple):
@@ -58,6 +61,18 @@ class Grab(NamedTuple):
     max_force: float  # [N], of the spring part
 
 
+class Air(NamedTuple):
+    """Moving air around a cloth: drag and lift on its cells, F = rho/2 A s [C_D u + C_L (|u| n - s u/|u|)], s = u . n.
+
+    u is the air's velocity over the cell, A its area, n its normal on the side the air leaves.
+    """
+
+    wind: Vector = (0.0, 0.0, 0.0)  # [m/s]
+    density: float = 1.2  # rho [kg/m^3]
+    drag: float = 1.2  # C_D
+    lift: float = 0.8  # C_L
+
+
 class PinPath(NamedTuple):
     """Prescribed motion of a pin: x(s) = c0 + c1 s + c2 s^2 + c3 s^3 with s = t - start."""
 
@@ -71,6 +86,7 @@ class Forces(NamedTuple):
     rows: int
     cols: int
     is_rope: bool  # one row, linked to the next point only
+    is_cloth: bool  # the families of CLOTH
     weights: NDArray[np.float64]  # (rows cols,) inverse masses [1/kg], 0 where pinned
     mass: float  # [kg] per point
     drag: float  # [N s/m] per point
@@ -106,6 +122,15 @@ class Forces(NamedTuple):
     grab_k: float
     grab_b: float
     grab_max: float
+    has_air: bool
+    wind_x: float  # [m/s]
+    wind_y: float
+    wind_z: float
+    air_drag: float  # rho C_D / 2 [kg/m^3]
+    air_lift: float
+    thickness: float  # [m] at which particles of the net push each other, 0: never
+    pairs: NDArray[np.int64]  # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for
+    seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
 
 
 @dataclasses.dataclass(frozen=True)
@@ -127,6 +152,8 @@ class Net:
     radius: float = 0.0  # [m]: a point touches at this distance
     pin_paths: tuple[tuple[tuple[int, int], PinPath], ...] = ()
     grab: Grab | None = None
+    air: Air | None = None
+    thickness: float = 0.0  # [m]: particles nearer to each other than this push, 0: they pass
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -137,6 +164,18 @@ class Net:
     def is_rope(self) -> bool:
         """One row of points, each linked to the next only."""
         return self.x0.shape[1] == 1 and [f[:2] for f in self.families] == [(0, 1)]
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether anything but a grab takes energy out."""
+        touched = self.floor is not None or self.sphere is not None or self.thickness > 0.0
+        rough = self.contact.damping > 0.0 or (self.contact.friction > 0.0 and self.contact.law == "clipped")
+        return (
+            self.drag > 0.0
+            or self.air is not None
+            or any(f.damping > 0.0 for f in self.families)
+            or (touched and rough)
+        )
 
     def weights(self) -> NDArray[np.float64]:
         """(rows cols,) inverse masses [1/kg]; 0 where pinned."""
@@ -155,10 +194,12 @@ class Net:
         sx, sy, sz, sr = self.sphere or (0.0, 0.0, 0.0, 0.0)
         svx, svy, svz = self.sphere_velocity
         grab = self.grab or Grab(0, 0, (0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
+        air = self.air or Air()
         return Forces(
             rows=rows,
             cols=cols,
             is_rope=self.is_rope,
+            is_cloth=[f[:2] for f in self.families] == CLOTH,
             weights=self.weights(),
             mass=float(self.mass),
             drag=float(self.drag),
@@ -194,6 +235,15 @@ class Net:
             grab_k=float(grab.stiffness),
             grab_b=float(grab.damping),
             grab_max=float(grab.max_force),
+            has_air=self.air is not None,
+            wind_x=float(air.wind[0]),
+            wind_y=float(air.wind[1]),
+            wind_z=float(air.wind[2]),
+            air_drag=0.5 * float(air.density * air.drag),
+            air_lift=0.5 * float(air.density * air.lift),
+            thickness=float(self.thickness),
+            pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1, dtype=np.int64),
+            seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
         )
 
 

@@ -8,12 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.knobs import refusal
+from sim.springs.energy import energies
 from sim.springs.integrators import Integrator
 from sim.springs.net import Net, check_choice, check_number
-from sim.springs.state import SANE, State, advance, energy, steps_for, velocities
+from sim.springs.state import SANE, State, advance, check_damping, energy, steps_for, velocities
 
 CALM = 1e-3 * SANE  # [m]: a net within this has not yet been out of the sane bound
+STEP = 1 / 1200  # [s]
+RTOL, ATOL = 1e-6, 1e-9  # of adaptive methods
+FRICTION_STEP = 1e-3  # [s] that regularises friction where the step varies
 MOST_FRAMES = 10_000_000  # what memory may hold, of a small net
+
+Progress = Callable[[int, int], None] | None
 
 
 class Run(NamedTuple):
@@ -30,29 +36,49 @@ class Run(NamedTuple):
 def simulate(
     net: Net,
     integrator: str = "rk4",
-    step: float = 1 / 1200,
+    step: float | None = None,
     duration: float = 2.0,
     frames: int = 61,
     *,
+    rtol: float | None = None,
+    atol: float | None = None,
     with_ledger: bool = False,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress = None,
 ) -> Run:
     """Integrate `net` from rest and sample it at `frames` equal times from 0 to `duration` [s].
 
-    step: [s]; shortened equally where it does not divide a frame interval. with_ledger: also integrate what damping
-    takes and pins put in; the stored energies are always there. progress: called with (frames done, frames).
+    step: [s], 1/1200 by default; shortened equally where it does not divide a frame interval. rtol, atol: adaptive
+    methods choose steps whose error is within atol + rtol |value| of each position [m] and velocity [m/s], 1e-6 and
+    1e-9 by default; given a step instead they take that. with_ledger: also integrate what damping takes and pins
+    put in; the stored energies are always there. progress: called with (frames done, frames).
     A run that diverges ends there: `diverged_at` is the time of the first step that left any sane bound, and later
     frames are NaN.
 
     Raises ValueError, naming the argument, its value and what is allowed.
     """
     record = integrator_named(integrator)
-    check_number("step", step, 0, math.inf, "s", above=True)
+    if step is not None:
+        check_number("step", step, 0, math.inf, "s", above=True)
+    for name, value in (("rtol", rtol), ("atol", atol)):
+        if value is not None:
+            check_number(name, value, 0, 1, "", above=True)
+            if not record.adaptive or step is not None:
+                raise refusal(name, value, "None, as the step is given" if record.adaptive else "adaptive methods only")
     check_number("duration", duration, 0, math.inf, "s", above=True)
     if not isinstance(frames, int | np.integer) or isinstance(frames, bool) or not 2 <= frames <= MOST_FRAMES:
         raise refusal("frames", frames, f"a whole number from 2 to {MOST_FRAMES}")
+    check_damping(net, record)
     t = np.linspace(0.0, duration, int(frames))
-    interval = duration / (len(t) - 1)
+    if record.adaptive and step is None:
+        return marched(net, record, t, rtol or RTOL, atol or ATOL, with_ledger, progress)
+    return stepped(net, record, t, step or STEP, with_ledger, progress)
+
+
+def stepped(
+    net: Net, record: Integrator, t: NDArray[np.float64], step: float, with_ledger: bool, progress: Progress
+) -> Run:
+    """The run at times `t` [s] in equal steps of at most `step` [s]."""
+    interval = float(t[-1]) / (len(t) - 1)
     steps = steps_for(interval, step)
     h = interval / steps
 
@@ -78,6 +104,34 @@ def simulate(
         if progress:
             progress(frame + 1, len(t))
     return Run(t, per_point(net, xs), per_point(net, vs), ledger, state.force_evals, diverged_at)
+
+
+def marched(
+    net: Net,
+    record: Integrator,
+    t: NDArray[np.float64],
+    rtol: float,
+    atol: float,
+    with_ledger: bool,
+    progress: Progress,
+) -> Run:
+    """The run at times `t` [s] in steps of an adaptive method's own choosing."""
+    assert record.march is not None
+    xs = np.full((len(t), net.x0.size), np.nan)
+    vs = np.full_like(xs, np.nan)
+    taken = np.zeros((len(t), 2))
+    x, v = net.x0.reshape(-1).copy(), np.zeros(net.x0.size)
+    p = net.forces(FRICTION_STEP)
+    evals, _, filled, stopped_at = record.march(x, v, t, rtol, atol, p, with_ledger, xs, vs, taken)
+    shape = (len(t), *net.x0.shape)
+    xs[filled:], vs[filled:] = np.nan, np.nan
+    ledger = np.full((len(t), 6), np.nan)
+    for frame in range(filled):
+        ledger[frame] = *energies(xs[frame], vs[frame], float(t[frame]), p), *taken[frame]
+        if progress:
+            progress(frame + 1, len(t))
+    diverged_at = None if filled == len(t) else float(stopped_at)
+    return Run(t, per_point(net, xs.reshape(shape)), per_point(net, vs.reshape(shape)), ledger, evals, diverged_at)
 
 
 def integrator_named(name: str) -> Integrator:

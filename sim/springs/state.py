@@ -6,6 +6,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.knobs import refusal
 from sim.springs.energy import Energy, energies
 from sim.springs.forces import set_acceleration
 from sim.springs.integrators import Integrator
@@ -63,8 +64,15 @@ def velocities(net: Net, state: State) -> NDArray[np.float64]:
     return state.v + state.lag * acceleration(net, state, state.lag)
 
 
+def check_damping(net: Net, integrator: Integrator) -> None:
+    """Raises ValueError where a damped net is given to a method that takes none."""
+    if integrator.undamped_only and net.is_damped:
+        raise refusal("integrator", integrator.name, "another, as this net is damped: by links, drag or contact")
+
+
 def advance(net: Net, state: State, integrator: Integrator, h: float, steps: int, *, with_ledger: bool = False) -> None:
-    """Advance `state` in place by `steps` steps of h [s]."""
+    """Advance `state` in place by `steps` steps of h [s]. Raises ValueError for a net the integrator refuses."""
+    check_damping(net, integrator)
     set_lag(net, state, integrator.lag * h)
     ledger = np.zeros(2)
     state.force_evals += integrator.advance(

@@ -49,6 +49,15 @@ def test_bad_arguments_of_run_are_refused_before_any_work(capsys: pytest.Capture
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_method_that_refuses_the_net_is_refused_where_nobody_looks(
+    capsys: pytest.CaptureFixture, tmp_path: Path
+) -> None:
+    out = tmp_path / "a.npz"
+    line = refused(capsys, "run", "rope", "--seconds", "1", "--out", str(out), "--set", "integrator=pefrl")
+    assert "integrator: 'pefrl' is not allowed" in line
+    assert not out.exists()
+
+
 def test_a_preset_file_sets_knobs_and_a_bad_one_is_refused(capsys: pytest.CaptureFixture, tmp_path: Path) -> None:
     preset = tmp_path / "p.json"
     preset.write_text(json.dumps({"scene": "rope", "knobs": {"points": 5, "gravity": 3.0}}))

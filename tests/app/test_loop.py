@@ -1,12 +1,15 @@
 """The loop, ticked with a clock of the test's own."""
 
 import dataclasses
+from collections.abc import Callable
+from typing import NamedTuple
 
+import numpy as np
 import pytest
 
 from app.ledger import Work
 from app.loop import BUDGET, FRAME, FixedStep, SimLoop
-from app.messages import DivergenceError, Pause, Play, Reset, StepOnce, TogglePlay
+from app.messages import DivergenceError, Halt, Pause, Play, Reset, StepOnce, TogglePlay, where_not_finite
 from sim.knobs import knob
 
 
@@ -185,3 +188,63 @@ def test_the_real_time_factor_is_measured() -> None:
     for _ in range(120):
         loop.tick(FRAME)
     assert loop.latest.status.actual == pytest.approx(0.5, abs=0.02)
+
+
+def test_a_step_that_became_a_thousand_times_as_dear_does_not_hold_up_the_frame() -> None:
+    values = Params(speed=8.0)
+    loop, scene = make(cost=1e-7, read_params=lambda: values)
+    scene.step = 1e-5
+    for _ in range(10):
+        loop.tick(FRAME)
+    assert loop.counts["steps"] > 10_000
+    values, scene.cost = Params(speed=8.0, stiffness=2.0), 1e-4
+    before = scene.clock.now
+    loop.tick(FRAME)
+    assert scene.clock.now - before <= FRAME
+    assert loop.latest.status.capped
+
+
+class Numbers(NamedTuple):
+    points: np.ndarray
+    load: float = 0.0
+    parts: tuple = ()
+
+
+@pytest.mark.parametrize(
+    ("picture", "where"),
+    [
+        (Numbers(np.ones(3), 2.0, (np.arange(3), None, "text")), ""),
+        (Numbers(np.array([1.0, np.nan])), "points"),
+        (Numbers(np.ones(3), np.inf), "load"),
+        (Numbers(np.ones(3), 0.0, (1.0, (Numbers(np.full(2, np.inf, np.float32)),))), "points"),
+    ],
+)
+def test_what_is_not_finite_in_a_picture_is_found(picture: Numbers, where: str) -> None:
+    assert where_not_finite(picture) == where
+
+
+@pytest.mark.parametrize("fault", [lambda: float("nan"), lambda: 1 / 0])
+def test_a_picture_that_cannot_be_shown_pauses_the_run_and_the_last_good_one_stays(
+    fault: Callable[[], float], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    loop, scene = make()
+    loop.tick(FRAME)
+    good = loop.latest.picture
+    with monkeypatch.context() as patch:
+        patch.setattr(scene, "picture", fault)
+        loop.tick(FRAME)
+    assert loop.latest.picture == good
+    assert not loop.running
+    assert "number" in loop.latest.status.halted or "division" in loop.latest.status.halted
+    loop.commands.put(Reset())
+    loop.tick(FRAME)
+    assert loop.running
+    capsys.readouterr()
+
+
+def test_a_halt_from_outside_is_said() -> None:
+    loop, _ = make()
+    loop.commands.put(Halt("The picture could not be drawn"))
+    loop.tick(FRAME)
+    assert loop.latest.status.halted == "The picture could not be drawn"
+    assert not loop.latest.status.running

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from app import pictures
+from app import pictures, sea_report
 from app.loop import SimLoop
 from app.messages import Point, Reset
 from app.scenes import phillips
@@ -303,3 +303,13 @@ def test_the_panel_has_words_for_every_preset(name):
     assert all(texts)
     assert not any(re.search(r"\b(nan|inf)\b", text) for text in texts)
     assert "Lab says, physics says" in picture.notes(loop.latest)
+
+
+@pytest.mark.parametrize("change", [{"deep": False}, {"planet": "Enceladus"}, {"wind_speed": 0.0}])
+def test_the_dominant_waves_have_a_length_or_no_words(change):
+    scene = Scene(Params(**change))
+    scene.advance(1)
+    picture, gauge = scene.picture(), scene.gauge()
+    words = sea_report.lab_says(picture.params, gauge.report)
+    assert not re.search(r"\bnan\b", words)
+    assert ("dominant waves here" in words) == (gauge.report.theory.wave[0] > 0.0) == ("wind_speed" not in change)

@@ -63,6 +63,17 @@ def test_the_root_follows_where_it_is_placed() -> None:
     assert (scene.state.v[:, 0, 0] == 0).all()
 
 
+def test_a_rope_lost_in_the_floor_starts_from_home_again() -> None:
+    scene = Scene(Params())
+    scene.obey(Place("root", (0.0, 0.0, -90.0)))
+    scene.reset()
+    with pytest.raises(DivergenceError):
+        run(scene, 600, 1)
+    scene.reset()
+    assert tuple(scene.state.x[:, 0, 0]) == ROOT
+    run(scene, 600, 1)
+
+
 def test_a_pull_is_capped() -> None:
     scene = Scene(Params(pull=50.0, gravity=0.0, drag=2.0, floor=False))
     scene.obey(Grab(9, (-50.0, 0.0, 3.0)))
@@ -114,6 +125,17 @@ def test_every_integrator_can_be_chosen_while_moving() -> None:
         scene.set_params(Params(integrator=name, time_step=1 / 400))
         scene.advance(20)
         assert np.isfinite(scene.picture().points).all()
+        assert (scene.integrator.name == name) == (scene.gauge().note == "")
+
+
+def test_where_the_chosen_method_refuses_damping_another_runs_and_says_so() -> None:
+    scene = Scene(Params(integrator="pefrl"))
+    scene.advance(10)
+    assert scene.integrator.name == "leapfrog"
+    assert "pefrl takes no damping, so leapfrog runs" in scene.gauge().note
+    scene.set_params(Params(integrator="pefrl", damping=0.0, drag=0.0, floor=False))
+    scene.advance(10)
+    assert (scene.integrator.name, scene.gauge().note) == ("pefrl", "")
 
 
 def test_the_energy_plots_error_is_small_and_reset_leaves_a_gap() -> None:

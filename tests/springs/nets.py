@@ -4,8 +4,10 @@ import dataclasses
 
 import numpy as np
 
-from sim.springs import Contact, Grab, Net, rope
+from sim.springs import INTEGRATORS, Contact, Grab, Net, rope
 from sim.springs.net import Family
+
+DAMPABLE = [name for name, record in INTEGRATORS.items() if not record.undamped_only]
 
 FAMILIES = (
     Family(0, 1, 0.2, 800.0, 4.0),

@@ -6,6 +6,7 @@ import pytest
 
 from sim.springs import INTEGRATORS, Contact, Grab, PinPath, rope
 from sim.springs.state import State, advance, velocities
+from tests.springs.nets import DAMPABLE
 
 POINT = rope(2, stiffness=0.0, damping=0.0, drag=0.0, gravity=0.0, root=(0.0, 0.0, 5.0), floor=0.0)
 
@@ -71,7 +72,7 @@ def test_the_clipped_law_never_pulls_and_the_lab_s_does():
 
 
 @pytest.mark.parametrize("law", ["clipped", "lab"])
-@pytest.mark.parametrize("name", INTEGRATORS)
+@pytest.mark.parametrize("name", DAMPABLE)
 def test_a_point_rests_as_deep_as_its_weight_over_the_stiffness(name, law):
     net = lone(Contact(800.0, 10.7, 0.2, law), gravity=(0.0, 0.0, -10.0))
     state = placed(net, (0.0, 0.0, 0.1), (0.0, 0.0, 0.0))
@@ -94,7 +95,7 @@ def test_a_rope_on_the_floor_is_carried_by_it():
     assert state.x[2, 0] == pytest.approx(np.full(6, -0.0125), abs=1e-9)
 
 
-@pytest.mark.parametrize("name", INTEGRATORS)
+@pytest.mark.parametrize("name", DAMPABLE)
 def test_friction_slows_a_sliding_point_by_mu_g_and_then_holds_it(name):
     net = lone(Contact(8000.0, 50.0, 0.3), gravity=(0.0, 0.0, -10.0))
     state = placed(net, (0.0, 0.0, -10.0 / 8000.0), (1.2, 1.6, 0.0))
@@ -176,7 +177,7 @@ def test_explicit_euler_falls_through_the_air_in_its_closed_form():
 
 
 @pytest.mark.parametrize(("drag", "terminal"), [(1.0, 10.0), (0.5, 20.0)])
-@pytest.mark.parametrize("name", INTEGRATORS)
+@pytest.mark.parametrize("name", DAMPABLE)
 def test_drag_holds_a_falling_point_at_its_terminal_speed(name, drag, terminal):
     net = dataclasses.replace(POINT, floor=None, drag=drag, gravity=(0.0, 0.0, -10.0))
     state = State.at_rest(net)

@@ -6,12 +6,12 @@ import pytest
 from sim.springs import INTEGRATORS, rope, simulate
 from sim.springs.state import State, advance, steps_for
 from sim.springs.statics import hanging_chain
-from tests.springs.nets import patch
+from tests.springs.nets import DAMPABLE, patch
 
 NOT_NUMBERS = [math.nan, math.inf, -math.inf, True, "1", None, [1.0], 10**400]
 REFUSED = {
     "integrator": ["", "rk5", "RK4", None, 4, ["rk4"]],
-    "step": [*NOT_NUMBERS, 0.0, -1.0],
+    "step": [*(bad for bad in NOT_NUMBERS if bad is not None), 0.0, -1.0],
     "duration": [*NOT_NUMBERS, 0.0, -1.0],
     "frames": [*NOT_NUMBERS, 0, 1, -5, 2.0],
 }
@@ -55,7 +55,7 @@ def test_round_off_in_the_ratio_costs_no_extra_step():
     assert steps_for(0.31, 0.1) == 4
 
 
-@pytest.mark.parametrize("name", INTEGRATORS)
+@pytest.mark.parametrize("name", DAMPABLE)
 def test_frames_are_the_states_that_advance_passes_through(name):
     net = rope(7)
     run = simulate(net, name, 1e-3, 0.2, 3)
@@ -65,7 +65,7 @@ def test_frames_are_the_states_that_advance_passes_through(name):
     assert np.moveaxis(run.x[-1], -1, 0) == pytest.approx(state.x[:, 0], abs=1e-13)
 
 
-@pytest.mark.parametrize("name", INTEGRATORS)
+@pytest.mark.parametrize("name", DAMPABLE)
 def test_velocities_are_at_the_frame_s_time_even_where_the_method_s_trail(name):
     run = simulate(rope(5), name, 1e-4, 0.5, 5001)
     differences = (run.x[2:] - run.x[:-2]) / (run.t[2:] - run.t[:-2])[:, None, None]
@@ -103,7 +103,7 @@ def test_explicit_euler_grows_by_the_lab_s_factor():
 
 
 def test_the_other_integrators_hold_the_lab_s_defaults():
-    for name in set(INTEGRATORS) - {"explicit_euler"}:
+    for name in set(DAMPABLE) - {"explicit_euler"}:
         assert simulate(rope(), name, 1 / 60, 5.0, 11).diverged_at is None
 
 

@@ -29,6 +29,15 @@ class Integrator(NamedTuple):
     summary: str  # when to choose it
     lag: float = 0.0  # v is stored this part of a step before x
     undamped_order: int = 0  # where it differs from `order`
+    implicit: bool = False  # a force evaluation is then one correction of Newton's method, `evals` the least number
+    l_stable: bool = False  # what it cannot follow decays within a step
+    undamped_only: bool = False  # refuses nets with damping
+    march: Callable[..., tuple[int, int, int, float]] | None = None  # adaptive methods: with steps of its own choosing
+
+    @property
+    def adaptive(self) -> bool:
+        """Whether it takes rtol and atol instead of a step."""
+        return self.march is not None
 
 
 def discover() -> dict[str, Integrator]:

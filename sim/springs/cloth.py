@@ -1,0 +1,147 @@
+"""`cloth`: a rectangle of particles with structural, shear and bend springs."""
+
+import dataclasses
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from sim.knobs import refusal
+from sim.springs.net import (
+    CLOTH,
+    CONTACT_LAWS,
+    DAMPING_MODELS,
+    PLAIN_CONTACT,
+    Air,
+    Contact,
+    Family,
+    Net,
+    Vector,
+    check_choice,
+    check_number,
+    check_vector,
+)
+
+HOLDS = ("corners", "edge", "all corners", "rim", "free")
+MOST = 1024  # rows or columns
+
+
+def held(hold: str, rows: int, cols: int) -> frozenset[tuple[int, int]]:
+    """The pinned particles: corners (0, 0) and (0, cols - 1), the edge between them, four corners, the rim, or none."""
+    check_choice("pinned", hold, HOLDS)
+    corners = {(0, 0), (0, cols - 1)}
+    far = {(rows - 1, 0), (rows - 1, cols - 1)}
+    edge = {(0, j) for j in range(cols)}
+    rim = {(i, j) for i in range(rows) for j in range(cols) if i in (0, rows - 1) or j in (0, cols - 1)}
+    return frozenset({"corners": corners, "edge": edge, "all corners": corners | far, "rim": rim, "free": set()}[hold])
+
+
+def cloth(
+    rows: int = 32,
+    cols: int = 32,
+    width: float = 1.0,
+    length: float = 1.0,
+    density: float = 1.0,
+    stiffness: float = 981.0,
+    shear: float = 490.0,
+    bend: float = 98.0,
+    damping: float = 0.002,
+    drag: float = 0.0,
+    gravity: float = 9.81,
+    origin: Vector = (0.0, 0.0, 0.0),
+    pinned: str | Iterable[tuple[int, int]] = "corners",
+    floor: float | None = None,
+    sphere: tuple[float, float, float, float] | None = None,
+    damping_model: str = "isotropic",
+    *,
+    contact: Contact | None = None,
+    radius: float = 0.0,
+    air: Air | None = None,
+    thickness: float = 0.0,
+) -> Net:
+    """A cloth at rest in a level plane: particle (i, j) is at origin + (j width/(cols-1), i length/(rows-1), 0).
+
+    width, length: [m]. density: [kg/m^2], shared equally by all particles. stiffness, shear, bend: [N/m] of a link to
+    the next particle, across a cell, and to the next but one; damping [N s/m] of a link; drag [N s/m] of a particle.
+    pinned: "corners" (0, 0) and (0, cols - 1), "edge" between them, "all corners", "rim", "free", or the particles.
+    thickness: particles nearer to each other push with the contact's stiffness [m], 0: they pass. air: drag and lift
+    by wind. floor, sphere, damping_model, contact, radius: as of `rope`.
+
+    Raises ValueError, naming the argument, its value and what is allowed.
+    """
+    for name, count in (("rows", rows), ("cols", cols)):
+        if not isinstance(count, int | np.integer) or isinstance(count, bool) or not 2 <= count <= MOST:
+            raise refusal(name, count, f"a whole number from 2 to {MOST}")
+    check_number("width", width, 0, math.inf, "m", above=True)
+    check_number("length", length, 0, math.inf, "m", above=True)
+    check_number("density", density, 0, math.inf, "kg/m^2", above=True)
+    for name, value in (("stiffness", stiffness), ("shear", shear), ("bend", bend)):
+        check_number(name, value, 0, math.inf, "N/m")
+    check_number("damping", damping, 0, math.inf, "N s/m")
+    check_number("drag", drag, 0, math.inf, "N s/m")
+    check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
+    check_number("radius", radius, 0, math.inf, "m")
+    check_number("thickness", thickness, 0, math.inf, "m")
+    check_vector("origin", origin)
+    check_choice("damping_model", damping_model, DAMPING_MODELS)
+    contact = PLAIN_CONTACT if contact is None else contact
+    if not isinstance(contact, Contact):
+        raise refusal("contact", contact, "a Contact, or None")
+    check_number("contact.stiffness", contact.stiffness, 0, math.inf, "N/m")
+    check_number("contact.damping", contact.damping, 0, math.inf, "N s/m")
+    check_number("contact.friction", contact.friction, 0, math.inf, "")
+    check_choice("contact.law", contact.law, CONTACT_LAWS)
+    if air is not None:
+        if not isinstance(air, Air):
+            raise refusal("air", air, "an Air, or None")
+        check_vector("air.wind", air.wind)
+        for name in ("density", "drag", "lift"):
+            check_number(f"air.{name}", getattr(air, name), 0, math.inf, "")
+    if floor is not None:
+        check_number("floor", floor, -math.inf, math.inf, "m")
+    if sphere is not None:
+        check_number("sphere radius", check_vector("sphere", sphere, 4)[3], 0, math.inf, "m")
+
+    dx, dy = width / (cols - 1), length / (rows - 1)
+    rests = (dx, dy, math.hypot(dx, dy), math.hypot(dx, dy), 2.0 * dx, 2.0 * dy)
+    springs = (stiffness, stiffness, shear, shear, bend, bend)
+    families = tuple(
+        Family(di, dj, rest, float(k), float(damping)) for (di, dj), rest, k in zip(CLOTH, rests, springs, strict=True)
+    )
+    j, i = np.meshgrid(dx * np.arange(cols), dy * np.arange(rows))
+    x0 = np.stack([j, i, np.zeros_like(i)]) + np.asarray(origin, dtype=np.float64)[:, None, None]
+    return Net(
+        x0=np.ascontiguousarray(x0),
+        families=families,
+        mass=density * width * length / (rows * cols),
+        drag=float(drag),
+        gravity=(0.0, 0.0, -float(gravity)),
+        pinned=pinned_particles(pinned, int(rows), int(cols)),
+        damping_model=damping_model,
+        floor=None if floor is None else float(floor),
+        sphere=None if sphere is None else tuple(float(c) for c in sphere),  # type: ignore[arg-type]
+        contact=contact,
+        radius=float(radius),
+        air=air,
+        thickness=float(thickness),
+    )
+
+
+def pinned_particles(pinned: object, rows: int, cols: int) -> frozenset[tuple[int, int]]:
+    """`cloth`'s pinned as (row, column) pairs; raises ValueError for one that is none of its particles."""
+    if isinstance(pinned, str):
+        return held(pinned, rows, cols)
+    try:
+        pairs = frozenset((int(i), int(j)) for i, j in pinned)  # type: ignore[attr-defined]
+    except (TypeError, ValueError):
+        raise refusal("pinned", pinned, "one of " + ", ".join(HOLDS) + ", or (row, column) pairs") from None
+    for i, j in pairs:
+        if not (0 <= i < rows and 0 <= j < cols):
+            raise refusal("pinned", (i, j), f"a row from 0 to {rows - 1} and a column from 0 to {cols - 1}")
+    return pairs
+
+
+def turned_down(net: Net) -> Net:
+    """The same cloth hanging in the vertical plane below its first row instead of lying level."""
+    x, y, z = net.x0
+    return dataclasses.replace(net, x0=np.ascontiguousarray(np.stack([x, np.full_like(y, y[0, 0]), z - (y - y[0, 0])])))

@@ -1,0 +1,169 @@
+"""A net against itself: particles nearer than the thickness push each other apart, neighbours on the grid excepted.
+
+Pairs are found by a spatial hash and kept while nothing has moved by half of what they were looked for beyond the
+thickness (Verlet's list), so that a force evaluation only runs over a short list. With a thickness of at least 0.71
+of the spacing nothing fits through a cell.
+"""
+
+import math
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.net import SKIN
+
+NEIGHBOURS = 2  # rows and columns apart, within which a pair is held by links and never pushes
+
+
+@kernel(inline=True)
+def cell(x, inverse):
+    return np.int64(math.floor(x * inverse))
+
+
+@kernel(inline=True)
+def bucket(cx, cy, cz, mask):
+    """Teschner's hash of a cell (VMV 2003), to a power of two of buckets."""
+    return ((cx * 73856093) ^ (cy * 19349663) ^ (cz * 83492791)) & mask
+
+
+@kernel
+def find_pairs(x, p):
+    """Fill p.pairs with the pairs nearer than (1 + SKIN) thickness, and p.seen with the positions."""
+    n = p.rows * p.cols
+    reach = (1.0 + SKIN) * p.thickness
+    inverse = 1.0 / reach
+    mask = 1
+    while mask < n:
+        mask *= 2
+    mask -= 1
+    starts = np.zeros(mask + 2, np.int64)
+    where = np.empty(n, np.int64)
+    order = np.empty(n, np.int64)
+    for j in range(n):
+        where[j] = bucket(cell(x[j], inverse), cell(x[n + j], inverse), cell(x[2 * n + j], inverse), mask)
+        starts[where[j] + 1] += 1
+    for q in range(mask + 1):
+        starts[q + 1] += starts[q]
+    for j in range(n - 1, -1, -1):
+        starts[where[j] + 1] -= 1
+        order[starts[where[j] + 1]] = j
+    most = p.pairs.shape[0] - 1
+    count = 0
+    for a in range(n):
+        ia, ja = a // p.cols, a % p.cols
+        ca, cb, cc = cell(x[a], inverse), cell(x[n + a], inverse), cell(x[2 * n + a], inverse)
+        for near in range(27):
+            cx, cy, cz = ca + near // 9 - 1, cb + near // 3 % 3 - 1, cc + near % 3 - 1
+            q = bucket(cx, cy, cz, mask)
+            end = starts[q + 2] if q < mask else n
+            for s in range(starts[q + 1], end):
+                b = order[s]
+                if b <= a:
+                    continue
+                if abs(b // p.cols - ia) <= NEIGHBOURS and abs(b % p.cols - ja) <= NEIGHBOURS:
+                    continue
+                dx, dy, dz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+                if dx * dx + dy * dy + dz * dz >= reach * reach:
+                    continue
+                # Two cells of the 27 may share a bucket: take the pair from the cell that b is in.
+                other = (
+                    cell(x[b], inverse) == cx and cell(x[n + b], inverse) == cy and cell(x[2 * n + b], inverse) == cz
+                )
+                if other and count < most:
+                    p.pairs[count, 0], p.pairs[count, 1] = a, b
+                    count += 1
+    p.pairs[most, 0] = count
+    for j in range(3 * n):
+        p.seen[j] = x[j]
+
+
+@kernel(noalias=True, inline=True)
+def mean_shift(x, seen, o, n):
+    total = 0.0
+    for j in range(n):
+        total += x[o + j] - seen[o + j]
+    return total / n
+
+
+@kernel(noalias=True, inline=True)
+def farthest(x, seen, n):
+    """Largest squared distance of any particle from where it was seen, but for what all have moved together."""
+    mx, my, mz = mean_shift(x, seen, np.uint64(0), n), mean_shift(x, seen, n, n), mean_shift(x, seen, n + n, n)
+    most = 0.0
+    for j in range(n):
+        dx, dy, dz = x[j] - seen[j] - mx, x[n + j] - seen[n + j] - my, x[n + n + j] - seen[n + n + j] - mz
+        most = max(most, dx * dx + dy * dy + dz * dz)
+    return most
+
+
+@kernel(allocates=False)
+def refresh_pairs(x, p):
+    """Find the pairs anew where something has moved by half the skin; returns their number."""
+    half = 0.5 * SKIN * p.thickness
+    last = p.pairs.shape[0] - 1
+    if p.pairs[last, 0] < 0 or not farthest(x, p.seen, np.uint64(p.rows * p.cols)) < half * half:
+        find_pairs(x, p)
+    return p.pairs[last, 0]
+
+
+@kernel(allocates=False)
+def add_self_contacts(x, v, p, with_damping, a):
+    """Add the accelerations of touching pairs, max(0, k depth - b v_n) each way."""
+    n = p.rows * p.cols
+    for s in range(refresh_pairs(x, p)):
+        i, j = p.pairs[s, 0], p.pairs[s, 1]
+        dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
+        rr = dx * dx + dy * dy + dz * dz
+        if rr >= p.thickness * p.thickness or rr == 0.0:
+            continue
+        r = math.sqrt(rr)
+        push = p.contact_k * (p.thickness - r)
+        if with_damping:
+            opening = (v[j] - v[i]) * dx + (v[n + j] - v[n + i]) * dy + (v[2 * n + j] - v[2 * n + i]) * dz
+            push = max(0.0, push - p.contact_b * opening / r)
+        push /= r
+        wi, wj = p.weights[i] * push, p.weights[j] * push
+        a[i] -= wi * dx
+        a[n + i] -= wi * dy
+        a[2 * n + i] -= wi * dz
+        a[j] += wj * dx
+        a[n + j] += wj * dy
+        a[2 * n + j] += wj * dz
+
+
+@kernel(allocates=False)
+def damp_self_contacts(x, v, s, p, reverse):
+    """The damping of touching pairs alone for a time s [s], each exact or, separating, at most what pushes them."""
+    n = p.rows * p.cols
+    count = refresh_pairs(x, p)
+    for turn in range(count):
+        pair = count - 1 - turn if reverse else turn
+        i, j = p.pairs[pair, 0], p.pairs[pair, 1]
+        dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
+        rr = dx * dx + dy * dy + dz * dz
+        both = p.weights[i] + p.weights[j]
+        if rr >= p.thickness * p.thickness or rr == 0.0 or both == 0.0:
+            continue
+        r = math.sqrt(rr)
+        opening = ((v[j] - v[i]) * dx + (v[n + j] - v[n + i]) * dy + (v[2 * n + j] - v[2 * n + i]) * dz) / r
+        after = max(opening * math.exp(-p.contact_b * both * s), opening - p.contact_k * (p.thickness - r) * both * s)
+        change = (after - opening) / (both * r)
+        wi, wj = p.weights[i] * change, p.weights[j] * change
+        v[i] -= wi * dx
+        v[n + i] -= wi * dy
+        v[2 * n + i] -= wi * dz
+        v[j] += wj * dx
+        v[n + j] += wj * dy
+        v[2 * n + j] += wj * dz
+
+
+@kernel(allocates=False)
+def self_contact_energy(x, p):
+    """1/2 k depth^2 over the touching pairs [J]."""
+    n = p.rows * p.cols
+    total = 0.0
+    for s in range(refresh_pairs(x, p)):
+        i, j = p.pairs[s, 0], p.pairs[s, 1]
+        dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
+        total += 0.5 * p.contact_k * max(0.0, p.thickness - math.sqrt(dx * dx + dy * dy + dz * dz)) ** 2
+    return total

@@ -1,0 +1,116 @@
+"""Conjugate gradients for a net's implicit step, preconditioned by each particle's own 3 x 3 block (block Jacobi)."""
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.block_tridiagonal import solve_block
+from sim.springs.forces import add_row
+from sim.springs.rows import add_scaled
+from sim.springs.tangent import dot
+
+REDUCTION = 1e-4  # of the residual, in the preconditioner's norm: Newton's method mends the rest
+MOST = 500
+
+
+@kernel(noalias=True, inline=True)
+def set_products(blocks, o, u, n, q):
+    """q = B u, particle by particle."""
+    for j in range(n):
+        x, y, z = u[j], u[n + j], u[n + n + j]
+        xx, xy, xz = blocks[o + j], blocks[o + n + j], blocks[o + n + n + j]
+        yy, yz, zz = blocks[o + n * 3 + j], blocks[o + n * 4 + j], blocks[o + n * 5 + j]
+        q[j] = xx * x + xy * y + xz * z
+        q[n + j] = xy * x + yy * y + yz * z
+        q[n + n + j] = xz * x + yz * y + zz * z
+
+
+@kernel(noalias=True, inline=True)
+def set_link_products(blocks, o, u, ia, ib, count, n, m, f):
+    """f = H (u_a - u_b) of `count` links in a row."""
+    for j in range(count):
+        a, b = ia + j, ib + j
+        x, y, z = u[a] - u[b], u[n + a] - u[n + b], u[n + n + a] - u[n + n + b]
+        xx, xy, xz = blocks[o + a], blocks[o + n + a], blocks[o + n + n + a]
+        yy, yz, zz = blocks[o + n * 3 + a], blocks[o + n * 4 + a], blocks[o + n * 5 + a]
+        f[j] = xx * x + xy * y + xz * z
+        f[m + j] = xy * x + yy * y + yz * z
+        f[m + m + j] = xz * x + yz * y + zz * z
+
+
+@kernel(noalias=True, inline=True)
+def hold_pinned(w, u, o, n):
+    for j in range(n):
+        u[o + j] = u[o + j] if w[j] > 0.0 else 0.0
+
+
+@kernel(noalias=True, allocates=False)
+def set_matrix_product(points, links, u, p, f, q):
+    """q = (M + g D + g^2 K) u of `sim.springs.blocks`, 0 where pinned; u is 0 there."""
+    n, m = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1)
+    set_products(points, np.uint64(0), u, n, q)
+    for r in range(p.offsets.shape[0]):
+        di, dj = p.offsets[r, 0], p.offsets[r, 1]
+        first = max(0, -dj)
+        count = np.uint64(max(0, p.cols - abs(dj)))
+        for i in range(p.rows - di):
+            ia = np.uint64(i * p.cols + first)
+            ib = np.uint64((i + di) * p.cols + first + dj)
+            set_link_products(links, np.uint64(6 * r) * n, u, ia, ib, count, n, m, f)
+            for e in range(3):
+                of, o = np.uint64(e) * m, np.uint64(e) * n
+                add_row(f, of, count, 1.0, q, o + ia)
+                add_row(f, of, count, -1.0, q, o + ib)
+    for e in range(3):
+        hold_pinned(p.weights, q, np.uint64(e) * n, n)
+
+
+@kernel(noalias=True, allocates=False)
+def factorise(blocks, n):
+    """Each particle's block (6, n) flat into its L and reciprocal D, in place."""
+    for j in range(n):
+        sxx, sxy, sxz = blocks[j], blocks[n + j], blocks[2 * n + j]
+        syy, syz, szz = blocks[3 * n + j], blocks[4 * n + j], blocks[5 * n + j]
+        d0 = 1.0 / sxx
+        l10, l20 = sxy * d0, sxz * d0
+        d1 = 1.0 / (syy - l10 * sxy)
+        e21 = syz - l20 * sxy
+        l21 = e21 * d1
+        blocks[j], blocks[n + j], blocks[2 * n + j] = l10, l20, l21
+        blocks[3 * n + j], blocks[4 * n + j], blocks[5 * n + j] = d0, d1, 1.0 / (szz - l20 * sxz - l21 * e21)
+
+
+@kernel(noalias=True, inline=True)
+def precondition(factors, r, n, z):
+    for j in range(n):
+        z[j], z[n + j], z[n + n + j] = solve_block(
+            factors[j], factors[n + j], factors[n + n + j], factors[n * 3 + j], factors[n * 4 + j], factors[n * 5 + j],
+            r[j], r[n + j], r[n + n + j],
+        )  # fmt: skip
+
+
+@kernel(noalias=True, inline=True)
+def set_direction(d, beta, z):
+    for j in range(d.shape[0]):
+        d[j] = z[j] + beta * d[j]
+
+
+@kernel(noalias=True, allocates=False)
+def solve_conjugate_gradients(points, links, factors, r, p, f, z, d, q, u):
+    """Solve A u = r to REDUCTION; r is overwritten. factors: `factorise` of A's diagonal. f, z, d, q: scratch."""
+    n = np.uint64(p.rows * p.cols)
+    precondition(factors, r, n, z)
+    for j in range(u.shape[0]):
+        u[j], d[j] = 0.0, z[j]
+    rho = dot(r, z)
+    goal = REDUCTION * REDUCTION * rho
+    for count in range(MOST):
+        if rho <= goal:
+            return count
+        set_matrix_product(points, links, d, p, f, q)
+        alpha = rho / dot(d, q)
+        add_scaled(u, alpha, d)
+        add_scaled(r, -alpha, q)
+        precondition(factors, r, n, z)
+        before, rho = rho, dot(r, z)
+        set_direction(d, rho / before, z)
+    return MOST

@@ -1,0 +1,43 @@
+"""Dormand-Prince 5(4), adaptive: steps of its own choosing for a given tolerance, frames filled in between.
+
+Six force evaluations a step of fifth order. Undamped modes hold to h omega = 1 only, so that stiffness makes it dear; a
+tolerance of 1e-5 to 1e-8 on a soft net is where it pays.
+"""
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.amplification import limit_of_polynomial, polynomial_of
+from sim.springs.embedded.dopri5 import A, B, make_stages, take_step
+from sim.springs.embedded.march import march as march_to_frames
+from sim.springs.forces import accelerate, set_pins
+from sim.springs.integrators import Integrator
+
+POLYNOMIAL = polynomial_of(A, B)
+
+
+def limit(zeta: float) -> float:
+    """Where the stability polynomial, 1 + s + ... + s^5/120 + s^6/600, leaves 1 on the ray of s = h lambda."""
+    return limit_of_polynomial(POLYNOMIAL, zeta)
+
+
+@kernel
+def advance(x, v, ledger, t, h, steps, p, with_ledger):
+    stages = make_stages(x, p)
+    xn, vn = np.empty_like(x), np.empty_like(x)
+    set_pins(x, v, t, p)
+    accelerate(x, v, t, p, True, stages.f, stages.a0)
+    for s in range(steps):
+        take_step(x, v, t + s * h, h, p, stages, xn, vn, ledger, with_ledger)
+        x[:], v[:], stages.a0[:] = xn, vn, stages.a6
+    return 1 + 6 * steps
+
+
+def march(*arguments):
+    return march_to_frames(False, *arguments)
+
+
+RECORD = Integrator(
+    "dopri5", 5, False, 6, limit, advance, "For a known error: chooses its own steps, errors of 1e-5 to 1e-8.",
+    march=march,
+)  # fmt: skip

@@ -1,0 +1,65 @@
+"""PEFRL, a symplectic splitting of fourth order with small errors (Omelyan, Mryglod & Folk 2002, eq. 20).
+
+Drifts and kicks in turn, symmetric: X(xi) K((1-2 lambda)/2) X(chi) K(lambda) X(1-2(chi+xi)) K(lambda) X(chi) ...
+Some of them run backwards, where damping would drive: a damped net is refused.
+"""
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.amplification import limit_of
+from sim.springs.energy import add_power
+from sim.springs.forces import accelerate, make_scratch, set_pins
+from sim.springs.integrators import Integrator
+from sim.springs.rows import add_scaled
+
+XI = 0.1786178958448091
+LAMBDA = -0.2123418310626054
+CHI = -0.06626458266981849
+DRIFTS = (XI, CHI, 1.0 - 2.0 * (CHI + XI), CHI, XI)
+KICKS = (0.5 - LAMBDA, LAMBDA, LAMBDA, 0.5 - LAMBDA)
+
+
+def growth(z: float) -> float:
+    """Largest eigenvalue of a step of x'' = -x with h = z."""
+    step = np.eye(2)
+    for i, drift in enumerate(DRIFTS):
+        step = np.array([[1.0, drift * z], [0.0, 1.0]]) @ step
+        if i < len(KICKS):
+            step = np.array([[1.0, 0.0], [-KICKS[i] * z, 1.0]]) @ step
+    half = 0.5 * float(np.trace(step))  # the determinant is 1
+    return abs(half) + max(0.0, half * half - 1.0) ** 0.5 if abs(half) > 1.0 else 1.0
+
+
+UNDAMPED_LIMIT = limit_of(growth)
+
+
+def limit(zeta: float) -> float:
+    """Where half the trace of the step matrix leaves -1..1; no step holds damping."""
+    return UNDAMPED_LIMIT if zeta <= 1e-9 else 0.0
+
+
+@kernel(noalias=True)
+def advance(x, v, ledger, t, h, steps, p, with_ledger):
+    a = np.empty_like(x)
+    f = make_scratch(p)
+    for s in range(steps):
+        now = t + s * h
+        set_pins(x, v, now, p)
+        for i in range(4):
+            add_scaled(x, DRIFTS[i] * h, v)
+            now += DRIFTS[i] * h
+            set_pins(x, v, now, p)
+            accelerate(x, v, now, p, False, f, a)
+            if with_ledger:
+                add_power(x, v, now, p, False, KICKS[i] * h, ledger)
+            add_scaled(v, KICKS[i] * h, a)
+        add_scaled(x, DRIFTS[4] * h, v)
+    set_pins(x, v, t + steps * h, p)
+    return 4 * steps
+
+
+RECORD = Integrator(
+    "pefrl", 4, True, 4, limit, advance, "For long undamped motions: symplectic, fourth order; refuses damping.",
+    undamped_only=True,
+)  # fmt: skip

@@ -1,0 +1,42 @@
+"""The force of a row of links, the inner loop of every net."""
+
+import math
+
+from sim.jit import kernel
+
+TINY = 1e-300  # [m^2] under the root: coincident points get no spring force instead of 0/0
+
+
+@kernel(noalias=True, inline=True)
+def link_forces(x, v, f, ia, ib, of, n, N, M, k, b, rest, axial):
+    """Force on the first end of n links, (ia, ib), (ia + 1, ib + 1), ...: F = k (|r| - d) r/|r| - b v_rel (lab eq. 4).
+
+    Written to f (3 M,) from index `of` of each component. Isotropic damping acts on the whole relative velocity, as the
+    lab has it; axial on its part along the link.
+    """
+    if axial:
+        for j in range(n):
+            p, q = ia + j, ib + j
+            rx, ry, rz = x[q] - x[p], x[N + q] - x[N + p], x[N + N + q] - x[N + N + p]
+            rr = rx * rx + ry * ry + rz * rz + TINY
+            closing = (v[q] - v[p]) * rx + (v[N + q] - v[N + p]) * ry + (v[N + N + q] - v[N + N + p]) * rz
+            s = k - k * rest / math.sqrt(rr) + b * closing / rr
+            f[of + j] = s * rx
+            f[M + of + j] = s * ry
+            f[M + M + of + j] = s * rz
+    elif b == 0.0:
+        for j in range(n):
+            p, q = ia + j, ib + j
+            rx, ry, rz = x[q] - x[p], x[N + q] - x[N + p], x[N + N + q] - x[N + N + p]
+            s = k - k * rest / math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+            f[of + j] = s * rx
+            f[M + of + j] = s * ry
+            f[M + M + of + j] = s * rz
+    else:
+        for j in range(n):
+            p, q = ia + j, ib + j
+            rx, ry, rz = x[q] - x[p], x[N + q] - x[N + p], x[N + N + q] - x[N + N + p]
+            s = k - k * rest / math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+            f[of + j] = s * rx + b * (v[q] - v[p])
+            f[M + of + j] = s * ry + b * (v[N + q] - v[N + p])
+            f[M + M + of + j] = s * rz + b * (v[N + N + q] - v[N + N + p])

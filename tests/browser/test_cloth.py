@@ -1,0 +1,63 @@
+"""The cloth scene in a real browser, driven by mouse and keyboard."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from app.messages import Pause, Play
+from app.viewer import Viewer
+from tests.browser.test_rope import pixel, watching
+
+
+@pytest.fixture
+def lab() -> Iterator[Viewer]:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("cloth")
+    yield viewer
+    viewer.shut()
+
+
+def test_every_preset_is_drawn_and_moves_without_console_errors(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    tab.wait(lambda: watching(lab))
+    for key, particles in (("1", 32 * 32), ("2", 48 * 32), ("3", 64 * 64), ("4", 48 * 48)):
+        tab.page.keyboard.press(key)
+        tab.wait(lambda particles=particles: len(tab.vertices("/cloth")) == particles)
+        first = tab.vertices("/cloth")
+        tab.wait(lambda first=first: np.abs(tab.vertices("/cloth") - first).max() > 0.02)
+        assert np.isfinite(tab.vertices("/cloth")).all()
+    assert not lab.loop.halted
+    assert tab.errors == []
+
+
+def test_a_particle_is_dragged_by_the_mouse(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    tab.wait(lambda: watching(lab) and lab.loop.scene.time > 1)
+    lab.loop.commands.put(Pause())
+    tab.page.wait_for_timeout(1200)
+    here = lab.scene.state.x[:, 16, 10].copy()
+    start = pixel(lab, here)
+    tab.page.mouse.move(*start)
+    lab.loop.commands.put(Play())
+    tab.drag(start, (start[0] - 80, start[1] - 30))
+    tab.wait(lambda: lab.scene.held is not None, 20)
+    row, col = divmod(lab.scene.held[0], 32)
+    assert np.linalg.norm(lab.scene.state.x[:, row, col] - here) < 1.0
+    tab.wait(lambda: lab.loop.latest.picture.pull is not None, 20)
+    tab.release()
+    tab.wait(lambda: lab.scene.held is None, 20)
+    assert tab.errors == []
+
+
+def test_a_pin_is_moved_by_its_arrow(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    tab.wait(lambda: watching(lab))
+    tab.page.wait_for_timeout(1500)
+    pin = lab.scene.state.x[:, 0, 0].copy()
+    arrow = pin + (0.0, 0.0, 0.18)
+    tab.drag(pixel(lab, arrow), pixel(lab, arrow + (0.0, 0.0, 0.4)))
+    tab.release()
+    tab.wait(lambda: lab.scene.handles[0].position[2] > pin[2] + 0.1)
+    tab.wait(lambda: lab.scene.state.x[2, 0, 0] > pin[2] + 0.1)
+    assert tab.errors == []

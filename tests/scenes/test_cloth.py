@@ -1,0 +1,147 @@
+"""The cloth scene without a browser: presets, handles, pulls, and what it says when it goes wrong."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from app.cloth_knobs import PRESETS, Params, hidden
+from app.cloth_start import resample
+from app.loop import SimLoop
+from app.messages import DivergenceError, Grab, Place, Release
+from app.pictures.cloth import faces, marks
+from app.scenes.cloth import Scene
+from sim.knobs import check, knobs
+
+SMALL = Params(rows=10, cols=10, time_step=1 / 1200, wind=0.0)
+
+
+def run(scene: Scene, seconds: float) -> None:
+    for _ in range(round(seconds * 60)):
+        scene.advance(max(1, round(1 / 60 / scene.step)))
+
+
+def snapshot_of(scene: Scene):
+    return SimLoop(scene, paused=True).latest
+
+
+def test_the_presets_are_the_four_and_the_first_is_the_defaults():
+    assert list(PRESETS) == ["Curtain", "Flag in wind", "Drape over the sphere", "Trampoline"]
+    assert check(Params, PRESETS["Curtain"]) == Params()
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_preset_runs_and_is_drawn(preset):
+    scene = Scene(check(Params, PRESETS[preset]))
+    start = scene.picture().points
+    run(scene, 0.4)
+    picture = scene.picture()
+    assert picture.points.dtype == np.float32
+    assert np.isfinite(picture.points).all()
+    assert np.abs(picture.points - start).max() > 0.02
+    assert picture.points[..., 2].min() > -0.02
+    gauge = scene.gauge().stability
+    assert gauge.h_omega < gauge.limit
+    assert scene.params.integrator in ("leapfrog", "symplectic_euler")
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_knobs_that_are_hidden_are_knobs(preset):
+    params = check(Params, PRESETS[preset])
+    assert hidden(params) <= set(knobs(params))
+
+
+def test_a_dragged_particle_comes_and_is_let_go():
+    scene = Scene(SMALL)
+    run(scene, 0.5)
+    index = 7 * 10 + 4
+    before = scene.state.x[:, 7, 4].copy()
+    target = (float(before[0]), float(before[1]) - 0.4, float(before[2]))
+    scene.obey(Grab(index, target))
+    run(scene, 0.7)
+    assert scene.picture().pull is not None
+    assert scene.state.x[1, 7, 4] < before[1] - 0.2
+    scene.obey(Release())
+    run(scene, 0.1)
+    assert scene.picture().pull is None
+
+
+def test_a_moved_pin_takes_its_end_of_the_edge_along():
+    scene = Scene(SMALL)
+    run(scene, 0.1)
+    ends = scene.state.x[:, 0, [0, -1]].copy()
+    scene.obey(Place("pin b", (float(ends[0, 1]) + 0.3, float(ends[1, 1]), float(ends[2, 1]))))
+    run(scene, 1.0)
+    assert scene.state.x[:, 0, 0] == pytest.approx(ends[:, 0], abs=1e-6)
+    assert scene.state.x[:, 0, -1] == pytest.approx(ends[:, 1] + (0.3, 0.0, 0.0), abs=1e-4)
+    middle = 0.5 * (scene.state.x[0, 0, 4] + scene.state.x[0, 0, 5])
+    assert middle > 0.5 * (ends[0, 0] + ends[0, 1]) + 0.1
+    scene.reset()
+    assert scene.state.x[:, 0, -1] == pytest.approx(ends[:, 1], abs=1e-9)
+
+
+def test_the_sphere_pushes_the_cloth():
+    scene = Scene(dataclasses.replace(SMALL, sphere=True, gather=1.0))
+    run(scene, 0.2)
+    scene.obey(Place("sphere", (0.0, 0.3, 1.2)))
+    run(scene, 1.0)
+    sphere = np.array(scene.picture().sphere)
+    gap = np.linalg.norm(scene.state.x - sphere[:3, None, None], axis=0).min() - sphere[3]
+    assert scene.state.x[1].max() > 0.3
+    assert gap > 0.0
+
+
+def test_a_new_grid_keeps_the_shape():
+    scene = Scene(SMALL)
+    run(scene, 0.3)
+    old = scene.state.x.copy()
+    scene.set_params(dataclasses.replace(SMALL, rows=19, cols=28))
+    assert scene.state.x[:, ::2, ::3] == pytest.approx(old, abs=1e-12)
+    run(scene, 0.2)
+    plane = np.random.default_rng(0).random((3, 6, 5))
+    assert (resample(plane, 6, 5) == plane).all()
+
+
+def test_an_explosion_keeps_the_last_good_state_and_names_a_step_that_holds():
+    scene = Scene(dataclasses.replace(SMALL, integrator="explicit_euler", time_step=0.01))
+    with pytest.raises(DivergenceError, match=r"h ω = .* over explicit_euler's limit"):
+        run(scene, 20.0)
+    assert np.isfinite(scene.picture().points).all()
+
+
+def test_where_the_chosen_method_refuses_damping_another_runs_and_the_panel_says_so():
+    scene = Scene(dataclasses.replace(SMALL, integrator="pefrl"))
+    run(scene, 0.1)
+    assert scene.integrator.name == "leapfrog"
+    assert "takes no damping" in scene.gauge().note
+    assert "takes no damping" in marks(snapshot_of(scene))["integrator"]
+    scene.set_params(dataclasses.replace(scene.params, damping=0.0, air=0.0, floor=False))
+    run(scene, 0.1)
+    assert scene.integrator.name == "pefrl"
+    assert scene.gauge().note == marks(snapshot_of(scene))["integrator"] == ""
+
+
+def test_an_implicit_step_says_what_it_takes():
+    scene = Scene(dataclasses.replace(SMALL, integrator="implicit_euler", time_step=1 / 60, stiffness=1e5))
+    run(scene, 0.5)
+    assert 1.0 <= scene.gauge().corrections <= 25.0
+    assert scene.gauge().stability.limit == np.inf
+
+
+def test_the_mesh_has_two_triangles_a_cell_all_turned_alike():
+    found = faces(4, 6)
+    assert found.shape == (2 * 3 * 5, 3)
+    i, j = np.divmod(np.arange(24), 6)
+    points = np.stack([j, i, 0 * i], 1)
+    a, b, c = (points[found[:, k]] for k in range(3))
+    assert len(set(np.sign(np.cross(b - a, c - a)[:, 2]))) == 1
+
+
+def test_samples_and_arrays_carry_what_the_plots_and_files_want():
+    scene = Scene(dataclasses.replace(SMALL, plot_energy=True))
+    run(scene, 0.3)
+    rows = scene.take_samples()
+    assert len(rows) > 3
+    assert all(len(row) == 7 for row in rows)
+    assert scene.take_samples() == ()
+    assert scene.arrays()["x"][0].shape == (10, 10, 3)

@@ -1,0 +1,170 @@
+"""The whole lab of one scene on one thread, with what its browsers are told looked through.
+
+Panel, loop, scene and drawing are the real ones; only the clock is the test's own, so that a thousand frames take as
+long as they take to compute. Every message that would go to a browser is searched for numbers that are not finite.
+"""
+
+import dataclasses
+import math
+import random
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from app.loop import FRAME
+from app.messages import Grab, Pause, Place, Play, Point, Release, Reset, StepOnce
+from app.viewer import Viewer
+from sim.knobs import Knob, knobs
+from tests.stress.tally import Tally
+
+CRASH = "The scene stopped with"  # how the loop reports what is no divergence
+
+
+def infinite(value: Any, path: str = "") -> Iterator[str]:
+    """Where in a message there is a number that is not finite."""
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind == "f" and not np.isfinite(value).all():
+            yield f"{path}{value.shape}"
+    elif isinstance(value, float | np.floating):
+        if not math.isfinite(value):
+            yield path
+    elif isinstance(value, str):
+        if "nan" in value.lower().split():
+            yield f"{path} says {value!r}"
+    elif isinstance(value, dict):
+        for key, part in value.items():
+            yield from infinite(part, f"{path}.{key}")
+    elif isinstance(value, list | tuple):
+        for index, part in enumerate(value):
+            yield from infinite(part, f"{path}[{index}]")
+    elif dataclasses.is_dataclass(value):
+        yield from infinite(vars(value), f"{path}{type(value).__name__}")
+
+
+class Hammer:
+    """One scene and what is done to it."""
+
+    def __init__(self, name: str, tally: Tally) -> None:
+        self.name, self.tally = name, tally
+        self.viewer = Viewer("127.0.0.1", 0)
+        self.server = self.viewer.server._websock_server
+        self.poison: list[str] = []
+        self.queue = self.server.queue_message
+        self.server.queue_message = self.look_through  # type: ignore[method-assign]
+        self.viewer.open(name)
+        self.viewer.close()  # its threads: from here on this one does their work
+        self.viewer.loop.audience = lambda: 1
+        self.viewer.attempt = lambda what, action, *arguments: action(*arguments)  # what goes wrong is to be seen
+        self.longest = 0.0  # [s] of processor time in a frame
+
+    def look_through(self, message: Any) -> None:
+        """What is sent to every browser."""
+        self.tally.counts[self.name]["messages"] += 1
+        self.poison.extend(infinite(message))
+        self.queue(message)
+
+    @property
+    def loop(self) -> Any:
+        return self.viewer.loop
+
+    @property
+    def knobs(self) -> dict[str, Knob]:
+        return knobs(self.viewer.panel.params)
+
+    def set(self, name: str, value: Any) -> None:
+        """Turn one knob, as the panel does."""
+        self.tally.counts[self.name]["changes"] += 1
+        self.viewer.panel.controls[name].take(value)
+
+    def frame(self, count: int = 1) -> None:
+        """Frames as the two threads would make them, each checked."""
+        panel = self.viewer.panel
+        for _ in range(count):
+            start = time.process_time()
+            self.loop.tick(FRAME)
+            panel.status_at = panel.marks_at = 0.0  # write every text, every frame
+            self.viewer.show_latest()
+            self.longest = max(self.longest, time.process_time() - start)
+            self.check()
+        self.tally.counts[self.name]["frames"] += count
+
+    def check(self) -> None:
+        status = self.loop.latest.status
+        assert not self.poison, f"sent to the browser: {self.poison[:3]} with {self.unusual()}"
+        assert CRASH not in status.halted, f"{status.halted} with {self.unusual()}"
+        if status.halted:
+            assert not status.running
+            assert len(status.halted) > 20, status.halted
+        else:
+            assert math.isfinite(status.time)
+
+    def unusual(self) -> dict[str, Any]:
+        """The knobs that are not at their defaults."""
+        params = self.viewer.panel.params
+        return {name: getattr(params, name) for name, k in self.knobs.items() if getattr(params, name) != k.default}
+
+    def go_on(self) -> None:
+        """After a halt: reset, and where the knobs cannot hold, the defaults; then it must run."""
+        if self.loop.halted:
+            self.tally.counts[self.name]["halts"] += 1
+            self.loop.commands.put(Reset())
+            self.frame()
+            if self.loop.halted:
+                self.calm()
+
+    def calm(self) -> None:
+        """Back to the defaults and running."""
+        panel = self.viewer.panel
+        panel.load(next(iter(panel.scene.PRESETS)))
+        self.loop.commands.put(Play())
+        self.frame(2)
+        assert not self.loop.halted, self.loop.halted
+        before = self.loop.scene.time
+        self.frame(3)
+        assert self.loop.running
+        assert self.loop.scene.time > before
+
+    def shut(self) -> None:
+        self.tally.notes.append(f"{self.name}: longest frame {self.longest:.2f} s of processor time")
+        self.viewer.shut()
+
+
+def ends(knob: Knob) -> tuple[Any, ...]:
+    """Both ends of a knob, or all its choices."""
+    if knob.choices:
+        return knob.choices
+    return (False, True) if knob.kind is bool else (knob.kind(knob.lo), knob.kind(knob.hi))
+
+
+def anywhere(knob: Knob, rng: random.Random) -> Any:
+    """Any value a knob may have, its ends among them more often than chance has it."""
+    if knob.choices or knob.kind is bool or rng.random() < 0.1:
+        return rng.choice(ends(knob))
+    if knob.log_from:
+        value = 10.0 ** rng.uniform(math.log10(knob.log_from), math.log10(knob.hi))
+    else:
+        value = rng.uniform(knob.lo, knob.hi)
+    return min(max(round(value), int(knob.lo)), int(knob.hi)) if knob.kind is int else value
+
+
+def some_command(rng: random.Random) -> Any:
+    """Something a hand does, in or out of reach."""
+    reach = rng.choice([1.0, 5.0, 100.0])
+    place = rng.uniform(-reach, reach), rng.uniform(-reach, reach), rng.uniform(-reach, reach)
+    aim = rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0)
+    return rng.choice(
+        [
+            Grab(rng.randrange(0, 12), place),
+            Grab(rng.randrange(-5, 2000), place),
+            Release(),
+            Place(rng.choice(["root", "sphere", "eye", "nothing"]), place),
+            Point(place, aim),
+            Point(place, (0.0, 0.0, 0.0)),
+            StepOnce(),
+            Pause(),
+            Play(),
+            Reset(),
+        ]
+    )  # fmt: skip

@@ -52,6 +52,11 @@ def make_parser() -> argparse.ArgumentParser:
     bench.add_argument("--out", type=Path, metavar="DIR", help="write CSV and figures here")
     bench.set_defaults(command=run_bench)
 
+    stability = commands.add_parser("stability", help="stability maps and energy drift, measured beside theory")
+    stability.add_argument("--quick", action="store_true", help="coarse, within a minute")
+    stability.add_argument("--out", type=Path, metavar="DIR", help="write CSV and figures here")
+    stability.set_defaults(command=run_stability)
+
     warmup = commands.add_parser("warmup", help="compile every kernel and plan every transform, once")
     warmup.set_defaults(command=run_warmup)
     return parser
@@ -111,6 +116,12 @@ def run_bench(arguments: argparse.Namespace) -> int:
     from app.bench.command import run
 
     return run(arguments.names, arguments.quick, arguments.peers, arguments.out)
+
+
+def run_stability(arguments: argparse.Namespace) -> int:
+    from app.stability.command import run
+
+    return run(arguments.quick, arguments.out)
 
 
 def run_warmup(arguments: argparse.Namespace) -> int:

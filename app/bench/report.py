@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from sim.knobs import refusal
+
 Rows = list[dict[str, Any]]
 
 # Okabe and Ito's palette, told apart with any colour vision, each with a marker of its own.
@@ -32,6 +34,16 @@ def machine() -> str:
         except PackageNotFoundError:
             versions.append(f"{package} from its sources")
     return f"{name}, {os.cpu_count()} cores; Python {platform.python_version()}, " + ", ".join(versions)
+
+
+def make_folder(out: Path | None) -> None:
+    """Make the folder for results, where one is asked for; raises ValueError where it cannot be made."""
+    if out is None:
+        return
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise refusal("--out", str(out), f"a folder that can be written ({problem.strerror})") from None
 
 
 def columns(rows: Rows) -> list[str]:

@@ -19,7 +19,7 @@ def run(quick: bool = False, out: Path | None = None, workers: int = 0) -> int:
 
     Returns the exit status, 0. Raises ValueError for an `out` that is not a folder.
     """
-    report.check_folder(out)
+    report.make_folder(out)
     print(report.machine())
     for name, title, part, details, figure in PARTS:
         found = part.measure(quick=quick, workers=workers)

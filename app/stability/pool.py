@@ -12,7 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 def spread(work: Callable[..., Any], tasks: Sequence[tuple[Any, ...]], title: str, workers: int = 0) -> list[Any]:
     """[work(*task) for task in tasks], on `workers` processes (0: one a core; 1: here), with progress.
 
-    Processes rather than threads: between two calls of a kernel that runs for microseconds, threads wait for each other.
+    Processes rather than threads, which between two calls of a kernel of some microseconds wait for each other.
     """
     workers = min(workers or os.cpu_count() or 1, len(tasks))
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()

@@ -77,7 +77,7 @@ def measured_limit(
 
 
 def energy_scale(net: Net, x: NDArray[np.float64]) -> float:
-    """An energy [J] that is large for a net at rest at x (3, rows, cols): its fall by its own length, or its stretch."""
+    """An energy [J] that is large for a net at rest at x (3, rows, cols): a fall by its own length, or a stretch."""
     span = float(np.ptp(x.reshape(3, -1), axis=1).max())
     fall = net.mass * math.hypot(*net.gravity) * span * np.count_nonzero(net.weights())
     stretch = max((f.stiffness * f.rest**2 for f in net.families), default=0.0)
@@ -96,9 +96,9 @@ def stir(net: Net, state: State, joule: float) -> None:
 def outcome(integrator: Integrator, net: Net, h: float, rest: NDArray[np.float64], most: int = 1 << 14) -> int:
     """What becomes of a small disturbance of `net` at rest at `rest` (3, rows, cols) [m] in steps of h [s].
 
-    HOLDS: it has decayed, or not grown in `most` steps. RATTLES: it has grown a hundredfold, and is bounded by what links do when
-    they are far from their length. EXPLODES: it has no bound. What is in a disturbance is its energy above that at
-    rest, of which an equilibrium has the least.
+    HOLDS: it has decayed, or not grown in `most` steps. RATTLES: it has grown a hundredfold, and is then bounded by
+    what links do far from their length. EXPLODES: nothing bounds it. The size of a disturbance is its energy above
+    that at rest, which is the least there is.
     """
     state = State.at_rest(net)
     state.x[:] = rest

@@ -17,8 +17,8 @@ STILL = 1e-18  # kinetic over potential energy at which it rests
 def settled(net: Net, x: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
     """Positions (3, rows, cols) [m] of `net` at rest, from x (None: x0), its pins, sphere and hands held still.
 
-    Dynamic relaxation with kinetic damping: whenever the kinetic energy has passed a peak, a minimum of the potential is
-    near, and everything stops there (Cundall 1976; Barnes 1988). Undamped, so that the only thing to tune is the step.
+    Dynamic relaxation with kinetic damping: whenever the kinetic energy has passed a peak, a minimum of the potential
+    is near, and everything stops there (Cundall 1976; Barnes 1988). Undamped, so that there is only a step to choose.
     """
     still = dataclasses.replace(
         net,

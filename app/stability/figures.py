@@ -9,6 +9,7 @@ from app.bench.report import COLOURS, MARKERS
 from app.stability.drift import Drift
 from app.stability.linear import LinearMap, extra_damping
 from app.stability.rope import RopeMap
+from sim.springs import INTEGRATORS
 
 ACROSS = 4  # maps in a row
 GROWS = "#D55E00"  # Okabe and Ito's vermilion
@@ -53,19 +54,18 @@ def linear_figure(maps: list[LinearMap]) -> Any:
     for axes, found in zip(grid, maps, strict=True):
         x, y = edges(found.steps), edges(found.zetas)
         extra = np.ma.masked_invalid(np.where(found.rates > 0.0, np.nan, extra_damping(found)))
-        shades = axes.pcolormesh(x, y, extra, cmap="PuOr_r", vmin=-0.5, vmax=0.5, rasterized=True)
+        shades = axes.pcolormesh(x, y, extra, cmap="PRGn", vmin=-0.5, vmax=0.5, rasterized=True)
         grows = np.ma.masked_where(~(found.rates > 0.0), np.ones_like(found.rates))
         axes.pcolormesh(x, y, grows, cmap=ListedColormap([GROWS]), rasterized=True)
         fine = np.linspace(0.0, found.zetas[-1], 400)
         if not np.isnan(found.measured[1:]).all():
-            from sim.springs import INTEGRATORS
-
-            axes.plot([INTEGRATORS[found.name].limit(float(z)) for z in fine], fine, color="black", linewidth=1.4)
+            limits = [INTEGRATORS[found.name].limit(float(z)) for z in fine]
+            axes.plot(limits, fine, color="black", linewidth=1.4)
         every = max(1, len(found.zetas) // 20)
         shown = np.where(np.isfinite(found.measured), found.measured, np.nan)[::every]
         axes.plot(shown, found.zetas[::every], "o", color="white", markeredgecolor="black", markersize=3.5)
         axes.set_xlim(0.0, x[-1])
-        axes.set_ylim(0.0, found.zetas[-1])
+        axes.set_ylim(y[0], y[-1])
         axes.set_title(found.name.replace("_", " "), fontsize=10)
         if not np.isfinite(found.rates[1:]).any():
             axes.text(2.0, 1.0, "refuses damping", ha="center", color="0.4")
@@ -118,19 +118,18 @@ def drift_figure(drifts: list[Drift]) -> Any:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10.0, 4.2), layout="constrained")
-    figure.suptitle("Energy of the undamped rope of ten points")
+    figure.suptitle("Energy of the undamped rope of ten points, swinging from 5°")
     for axes, symplectic in zip(figure.subplots(1, 2, sharey=True), (True, False), strict=True):
-        for index, drift in enumerate(drifts):
-            if drift.symplectic != symplectic:
-                continue
+        for index, drift in enumerate(drift for drift in drifts if drift.symplectic == symplectic):
             size = np.abs(drift.error[1:])
             style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 8], "markevery": 0.1}
             axes.loglog(drift.t[1:], size, label=drift.name.replace("_", " "), linewidth=1.0, markersize=5, **style)
+        axes.set_ylim(1e-17, 1e2)
         axes.set_title("symplectic" if symplectic else "not symplectic", fontsize=10)
         axes.set_xlabel("time [s]")
         axes.grid(visible=True, which="major", color="0.9")
         axes.spines[["top", "right"]].set_visible(False)
         axes.legend(frameon=False, fontsize=9)
         if symplectic:
-            axes.set_ylabel("|energy error| / (fall from level to hanging)")
+            axes.set_ylabel("|energy error| / energy of the swing")
     return figure

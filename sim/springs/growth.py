@@ -15,7 +15,8 @@ from sim.springs.net import Family, Net, rope
 from sim.springs.state import State, advance, energy
 
 FIRST = 16  # steps of the first look; each look doubles them
-FAR, NEAR = 1e3, 1e-3  # amplitudes at which a run from 1 has grown, or decayed
+FAR, NEAR = 1e3, 1e-60  # sizes at which a run from 1 has grown, or decayed
+TALL, LOW = 30.0, 0.1  # the same of a run that was cut short: a leapfrog that holds may reach 30
 STIR = 1e-9  # energy of a disturbance, in parts of what is large for its net
 GROWN = 1e4  # times its energy at which a disturbance has grown: still far too small for the rope not to be linear
 MUCH = 100.0  # parts of what is large, which no link comes back from
@@ -32,13 +33,13 @@ def growth(integrator: Integrator, zeta: float, z: float, most: int = 1 << 17) -
     """Logarithm per step of an oscillator's amplitude, omega = 1 and h = z, measured over up to `most` steps.
 
     Two starts that no step matrix can both hide from, (x, v) = (1, 0) and (0, 1), go side by side until together they
-    have grown or decayed a thousandfold; the rate is that of the second half. 0 where they did neither.
+    are FAR or NEAR, or for `most` steps; the rate is that of the second half, 0 where they did neither.
     """
     net = oscillator(zeta)
     p = net.forces(z)
     x, v, ledger = np.zeros(6), np.zeros(6), np.zeros(2)
     x[1], v[3] = 1.0, 1.0
-    steps, before = 0, 1.0
+    steps, before, rate = 0, math.sqrt(2.0), 0.0
     while steps < most:
         more = max(steps, FIRST)
         integrator.advance(x, v, ledger, steps * z, z, more, p, False)
@@ -48,17 +49,17 @@ def growth(integrator: Integrator, zeta: float, z: float, most: int = 1 << 17) -
             if not size < 1e300:
                 return math.inf
             return math.log(max(size, 1e-300) / before) / more
-        before = size
-    return 0.0
+        rate, before = math.log(size / before) / more, size
+    return rate if before < LOW or (before > TALL and rate > 0.0) else 0.0
 
 
 def measured_limit(
-    integrator: Integrator, zeta: float, steps: NDArray[np.float64], rates: NDArray[np.float64], most: int = 1 << 22
+    integrator: Integrator, zeta: float, steps: NDArray[np.float64], rates: NDArray[np.float64], most: int = 1 << 21
 ) -> float:
     """The h omega at which a row of the map, growth rates (n,) at ascending `steps` (n,), first begins to grow.
 
     Halved between the last that holds and the first that grows, to 0.1 %; inf where none grows, 0 where all do. most:
-    force evaluations spent on one value; near its limit explicit Euler grows by (h omega)^2/100 a step.
+    steps spent on one value; near its limit explicit Euler grows by (h omega)^2/100 a step.
     """
     grows = np.flatnonzero(rates > 0.0)
     if not len(grows):
@@ -69,7 +70,7 @@ def measured_limit(
         middle = 0.5 * (low + high)
         if middle < 0.1 * steps[0]:
             return 0.0
-        if growth(integrator, zeta, middle, most // integrator.evals) > 0.0:
+        if growth(integrator, zeta, middle, most) > 0.0:
             high = middle
         else:
             low = middle

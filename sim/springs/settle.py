@@ -9,9 +9,10 @@ from sim.springs.integrators.leapfrog import RECORD as LEAPFROG
 from sim.springs.net import Net
 from sim.springs.stability import gershgorin
 from sim.springs.state import State, advance, energy
+from sim.springs.statics import hanging_chain
 
 LOOKS, STEPS = 4000, 20  # most looks, and steps between two
-STILL = 1e-18  # kinetic over potential energy at which it rests
+STILL = 1e-16  # kinetic energy of a peak, over the potential's, at which it rests
 
 
 def settled(net: Net, x: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
@@ -19,7 +20,10 @@ def settled(net: Net, x: NDArray[np.float64] | None = None) -> NDArray[np.float6
 
     Dynamic relaxation with kinetic damping: whenever the kinetic energy has passed a peak, a minimum of the potential
     is near, and everything stops there (Cundall 1976; Barnes 1988). Undamped, so that there is only a step to choose.
+    A rope that hangs free is where `hanging_chain` says, exactly.
     """
+    if net.is_rope and net.floor is None and net.sphere is None and net.pinned == {(0, 0)}:
+        return np.ascontiguousarray(hanging_chain(net).x.T[:, None, :])
     still = dataclasses.replace(
         net,
         families=tuple(f._replace(damping=0.0) for f in net.families),
@@ -39,7 +43,7 @@ def settled(net: Net, x: NDArray[np.float64] | None = None) -> NDArray[np.float6
         advance(still, state, LEAPFROG, h, STEPS)
         now = energy(still, state)
         if now.kinetic < before:
-            if now.kinetic < STILL * max(abs(now.gravity), now.elastic, 1e-12) and before < STILL:
+            if before < STILL * max(abs(now.gravity), now.elastic, 1e-12):
                 break
             state.v[:], before = 0.0, 0.0
         else:

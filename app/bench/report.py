@@ -67,9 +67,9 @@ def show(title: str, rows: Rows) -> None:
 
     table = Table(title=escape(title), title_justify="left")
     names = columns(rows)
-    for name in names:
+    for index, name in enumerate(names):
         is_number = any(isinstance(row.get(name), int | float) for row in rows)
-        table.add_column(escape(name), justify="right" if is_number else "left")
+        table.add_column(escape(name), justify="right" if is_number else "left", no_wrap=index == 0)
     for row in rows:
         table.add_row(*(escape(written(row.get(name))) for name in names))
     Console().print(table)

@@ -48,8 +48,11 @@ def test_symplectic_energies_are_bounded_and_the_others_drift():
     drifts = [drift.Drift(name, INTEGRATORS[name].symplectic, *drift.course(name, 20_000)) for name in names]
     courses = {row["integrator"]: row["course"] for row in drift.rows(drifts)}
     assert courses == {
-        "symplectic_euler": "bounded", "leapfrog": "bounded", "implicit_euler": "comes to rest", "explicit_euler": "diverged",
-    }  # fmt: skip
+        "symplectic_euler": "bounded",
+        "leapfrog": "bounded",
+        "implicit_euler": "comes to rest",
+        "explicit_euler": "diverged",
+    }
 
 
 def test_the_command_keeps_tables_and_figures(tmp_path, monkeypatch, capsys, maps):

@@ -57,6 +57,13 @@ def make_parser() -> argparse.ArgumentParser:
     stability.add_argument("--out", type=Path, metavar="DIR", help="write CSV and figures here")
     stability.set_defaults(command=run_stability)
 
+    sweep = commands.add_parser("sweep", help="a scene over ranges of its knobs, into one NetCDF file")
+    sweep.add_argument("spec", type=Path, metavar="SPEC.toml", help="what to sweep; see assets/sweeps")
+    sweep.add_argument("--out", type=Path, required=True, metavar="FILE.nc")
+    sweep.add_argument("--scheduler", metavar="ADDRESS", help="run on this Dask cluster, not on this machine's cores")
+    sweep.add_argument("--fresh", action="store_true", help="start over, replacing what is there")
+    sweep.set_defaults(command=run_sweep)
+
     warmup = commands.add_parser("warmup", help="compile every kernel and plan every transform, once")
     warmup.set_defaults(command=run_warmup)
     return parser
@@ -122,6 +129,12 @@ def run_stability(arguments: argparse.Namespace) -> int:
     from app.stability.command import run
 
     return run(arguments.quick, arguments.out)
+
+
+def run_sweep(arguments: argparse.Namespace) -> int:
+    from app.sweep.command import sweep
+
+    return sweep(arguments.spec, arguments.out, arguments.scheduler, fresh=arguments.fresh)
 
 
 def run_warmup(arguments: argparse.Namespace) -> int:

@@ -2,8 +2,6 @@
 
 import json
 import math
-import os
-import tempfile
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -12,7 +10,10 @@ import numpy as np
 from rich.progress import Progress
 
 from app.messages import DivergenceError
+from app.replacing import check_folder, replacing
 from sim.knobs import refusal
+
+MOST_BYTES = 4e9  # of a file, before it is packed
 
 
 def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate: float, out: Path) -> int:
@@ -23,14 +24,18 @@ def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate:
         raise refusal("--rate", rate, "above 0 to 100000 Hz")
     if out.suffix != ".npz":
         raise refusal("--out", str(out), "a name that ends in .npz")
-    if not out.parent.is_dir():
-        raise refusal("--out", str(out), "a file in a folder that exists")
+    check_folder("--out", out)
     running = scene.Scene(params)
+    # More frames than steps would only repeat themselves.
+    frames = max(1, min(round(seconds * rate), steps_to(running, seconds)))
+    size = (frames + 1) * sum(array.nbytes for array, _ in running.arrays().values())
+    if size > MOST_BYTES:
+        raise ValueError(
+            f"--seconds, --rate: {frames} frames are {size / 1e9:.3g} GB; allowed: at most {MOST_BYTES / 1e9:g} GB"
+        )
     if getattr(running, "note", ""):
         # A file is no place for a method that was not asked for.
         raise refusal("integrator", params.integrator, "another, as this net is damped: by links, drag, air or contact")
-    frames = max(1, round(seconds * rate))
-    steps = max(1, math.ceil(seconds / frames / running.step * (1 - 1e-9)))
     times, columns, units = [], {}, {}
     problem = ""
     with Progress(transient=True) as progress:
@@ -38,7 +43,7 @@ def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate:
         for frame in range(frames + 1):
             if frame:
                 try:
-                    running.advance(steps)
+                    running.advance(steps_to(running, seconds * frame / frames))
                 except DivergenceError as reason:
                     problem = str(reason)
                     break
@@ -57,13 +62,12 @@ def run_to_file(name: str, scene: ModuleType, params: Any, seconds: float, rate:
     return 0
 
 
+def steps_to(running: Any, until: float) -> int:
+    """Steps from a scene's time to the first whole step at or after `until` [s], forgiving round-off."""
+    return max(0, math.ceil((until - running.time) / running.step * (1.0 - 1e-9) - 1e-6))
+
+
 def write_whole(path: Path, arrays: dict[str, Any]) -> None:
     """Write an .npz so that `path` holds all of it or what it held before."""
-    with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".npz", delete=False) as file:
-        try:
-            np.savez_compressed(file, **arrays)
-            file.flush()
-            os.replace(file.name, path)
-        except BaseException:
-            os.unlink(file.name)
-            raise
+    with replacing(path) as draft:
+        np.savez_compressed(draft, **arrays)

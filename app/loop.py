@@ -218,12 +218,12 @@ class SimLoop:
         return Snapshot(self.counts["snapshots"], picture, self.status(solve), gauge, samples, work, curves)
 
     def look(self) -> tuple[Any, ...]:
-        """The scene's picture, gauge, plot rows, ledger and curves; ArithmeticError for a number that is none."""
+        """The scene's picture, gauge, plot rows, ledger and curves; DivergenceError for a number that is none."""
         scene = self.scene
         picture = scene.picture()
         where = where_not_finite(picture)
         if where:
-            raise ArithmeticError(f"{where} of its picture is no longer a number; reset it, or take a smaller step")
+            raise DivergenceError(f"The picture's {where} holds what is no number. Reset, or take a smaller step.")
         gauge, work = scene.gauge(), getattr(scene, "work", dict)()
         return picture, gauge, scene.take_samples(), work, scene.curves() if hasattr(scene, "curves") else None
 

@@ -29,6 +29,7 @@ from viser import _messages
 KEY = "springtide-patch"  # the local storage key the script answers under
 ASK_EVERY = 0.5  # [s] between two questions to a browser that has not answered
 GRACE = 20.0  # [s] until a browser without an answer counts as plain; the first frame compiles shaders
+SCRIPTS = ("patch.js", "water_shader.js", "water.js", "rain.js")
 LONGEST_ANSWER = 10_000  # [characters] what a browser sends is bounded before it is read
 
 _patches: "weakref.WeakKeyDictionary[viser.ViserServer, Patch]" = weakref.WeakKeyDictionary()
@@ -51,9 +52,7 @@ class Patch:
 
     def script(self) -> str:
         """The script as it is sent: one function scope, the token first, the hook last."""
-        parts = [
-            (resources.files("app") / name).read_text("utf-8") for name in ("patch.js", "water_shader.js", "water.js")
-        ]
+        parts = [(resources.files("app") / name).read_text("utf-8") for name in SCRIPTS]
         return f'(() => {{ "use strict"; const TOKEN = "{self._token}";\n' + "\n".join(parts) + "\ninstall(); })();"
 
     def expect(self, name: str) -> None:
@@ -91,7 +90,8 @@ class Patch:
             clients = server.get_clients()
             waiting = False
             for number, client in clients.items():
-                if set(self._names) <= self._drawn.get(number, frozenset()):
+                # With others slow to answer this one may have left since.
+                if number not in server.get_clients() or set(self._names) <= self._drawn.get(number, frozenset()):
                     continue
                 self._since.setdefault(number, time.monotonic())
                 waiting = True

@@ -9,10 +9,12 @@ from sim.knobs import check, refusal
 
 
 def read_preset(path: Path, scene: ModuleType) -> dict[str, Any]:
-    """The knobs in a preset file; raises ValueError where it is not one of this scene's, OSError where unreadable."""
+    """The knobs in a preset file; raises ValueError where it is not one of this scene's."""
     try:
         content = json.loads(path.read_text("utf-8"))
-    except ValueError as error:
+    except OSError as error:
+        raise refusal("--preset", str(path), f"a file that can be read ({error.strerror})") from None
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"--preset: {path} is not JSON ({error})") from None
     name = scene.__name__.rpartition(".")[2]
     if not isinstance(content, dict) or not isinstance(content.get("knobs"), dict):

@@ -10,7 +10,7 @@ from sim.ocean.spectra import SPECTRA
 
 SIZES = ("64", "128", "256", "512")
 MESHES = ("32", "64", "128", "256")
-VIEWS = ("deck", "bow", "mast", "gull")
+VIEWS = ("swimmer", "deck", "bridge", "mast", "gull")
 TENSION = 0.0728  # [N/m] of water against air
 CALM = 0.05  # [m/s] wind below which there are no waves: squares of smaller numbers run out of range
 
@@ -85,7 +85,7 @@ class Params:
 
     view: str = knob("deck", choices=VIEWS, doc="Where to look from", group="Look")
     sky: str = knob("park", choices=("park", "sunset", "dawn", "night"), doc="Sky and light", group="Look")
-    sun: float = knob(-14.0, -180.0, 180.0, "°", "Bearing of the sun", group="Look")
+    sun: float = knob(18.0, -180.0, 180.0, "°", "Bearing of the sun", group="Look")
     clouds: float = knob(0.4, 0.0, 1.0, "", "Cloud cover", group="Look")
     daylight: float = knob(0.85, 0.05, 3.0, "", "Brightness", group="Look")
     visibility: float = knob(3000.0, 50.0, 20000.0, "m", "Distance at which haze hides", log_from=50.0, group="Look")

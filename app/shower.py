@@ -24,7 +24,7 @@ BLOW = (
 )
 LEAK = 0.5  # [1/s] at which rings fade, for what would have left the tile
 LASTING = 0.22  # [s] that a splash is drawn
-SPLASHES = 400  # drawn at once at most
+SPLASHES = 150  # drawn at once at most
 DENSITY = 1000.0  # [kg/m3]
 
 

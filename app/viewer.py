@@ -7,10 +7,12 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
+import viser
+
 from app.guard import open_server
 from app.ledger import Unwatched, Work, gather, modules
 from app.loop import SimLoop
-from app.messages import Command, Halt, Snapshot
+from app.messages import Command, Halt, Release, Snapshot
 from app.panel import Panel
 from app.patch import decline
 from app.pictures import picture_named
@@ -31,6 +33,8 @@ class Viewer:
             decline(self.server)
         self.traffic = Traffic(self.server)
         self.port = self.server.get_port()
+        self.commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        self.server.on_client_disconnect(self.let_go)
         self.stop = threading.Event()
         self.threads: list[threading.Thread] = []
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
@@ -54,7 +58,7 @@ class Viewer:
             self.shown = self.drawn = 0
             self.traffic.begin()
             self.unwatched = Unwatched()
-            commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+            commands = self.commands = queue.SimpleQueue()
             self.picture = picture.Picture(self.server, commands.put)
             position, target = self.picture.CAMERA
             fov = getattr(self.picture, "FOV", FOV)
@@ -82,6 +86,10 @@ class Viewer:
     def audience(self) -> int:
         """How many browsers look."""
         return len(self.server._connected_clients)
+
+    async def let_go(self, client: viser.ClientHandle) -> None:
+        """A browser that dies in mid-drag never says that it let go; whoever else drags grabs again with each move."""
+        self.commands.put(Release())
 
     def pump(self, stop: threading.Event) -> None:
         """Show each new snapshot once."""

@@ -6,6 +6,9 @@ from app.pictures import picture_named
 from app.scenes import NAMES, scene_named
 from sim.jit import CACHE
 
+# What stands for a compiled scene: with its drawing or without, and what serves for either.
+MARKS = {True: (".warm",), False: (".headless.warm", ".warm")}
+
 
 def warm_up() -> int:
     """Compile every scene's kernels and plan its transforms; returns the exit status."""
@@ -15,18 +18,18 @@ def warm_up() -> int:
     return 0
 
 
-def prepare(name: str) -> None:
-    """Compile a scene's kernels unless this version of them has been compiled before."""
-    if CACHE is None or not (CACHE / f"{name}.warm").exists():
-        compile_scene(name)
+def prepare(name: str, *, drawn: bool = True) -> None:
+    """Compile a scene's kernels, and its drawing's, unless this version of them has been compiled before."""
+    if CACHE is None or not any((CACHE / f"{name}{mark}").exists() for mark in MARKS[drawn]):
+        compile_scene(name, drawn=drawn)
 
 
-def compile_scene(name: str) -> None:
+def compile_scene(name: str, *, drawn: bool = True) -> None:
     columns = SpinnerColumn(), TextColumn("compiling {task.description} (once)"), TimeElapsedColumn()
     with Progress(*columns, transient=True) as progress:
         task = progress.add_task(name, total=None)
-        for side in (scene_named(name), picture_named(name)):
+        for side in (scene_named(name), picture_named(name)) if drawn else (scene_named(name),):
             for part in side.warm_up():
                 progress.update(task, description=f"{name}: {part}")
     if CACHE is not None:
-        (CACHE / f"{name}.warm").touch()
+        (CACHE / f"{name}{MARKS[drawn][0]}").touch()

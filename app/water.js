@@ -5,13 +5,21 @@
 
 const WATER_UNIFORMS = [
   "deep", "scatter", "foamColor", "sunDirection", "sunColor", "optics",
-  "air", "ripple", "skyline", "fold", "tint", "weather", "state", "grid", "extent", "wireColor",
+  "air", "ripple", "skyline", "fold", "tint", "weather", "place", "state", "grid", "extent", "wireColor",
 ];
 const seas = new Map(); // base name -> what this file has made for it
+const looks = new Map(); // base name -> its uniforms: one set for good, as viser keeps a material for a new geometry
 
-function makeSea(mesh) {
-  const uniforms = { toSea: { value: mesh.matrixWorld.clone() }, fromSea: { value: mesh.matrixWorld.clone() } };
-  for (const name of WATER_UNIFORMS) uniforms[name] = { value: mesh.position.clone() };
+function uniformsOf(base, mesh) {
+  if (!looks.has(base)) {
+    const uniforms = { toSea: { value: mesh.matrixWorld.clone() }, fromSea: { value: mesh.matrixWorld.clone() } };
+    for (const name of WATER_UNIFORMS) uniforms[name] = { value: mesh.position.clone() };
+    looks.set(base, uniforms);
+  }
+  return looks.get(base);
+}
+
+function makeSea(mesh, uniforms) {
   return { mesh, geometry: mesh.geometry, uniforms, tiles: [], levels: [], shape: "", dome: null, wire: null };
 }
 
@@ -140,7 +148,7 @@ recipes.push({
     let sea = seas.get(base);
     if (!sea || sea.mesh !== mesh || sea.geometry !== mesh.geometry) {
       if (sea) unmakeSea(sea);
-      seas.set(base, (sea = makeSea(mesh)));
+      seas.set(base, (sea = makeSea(mesh, uniformsOf(base, mesh))));
       mesh.geometry.computeVertexNormals = () => {}; // they come with aux: viser need not derive them each frame
     }
     readLook(sea, channel);

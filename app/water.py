@@ -29,9 +29,11 @@ class Look:
     """How a fluid looks and how it is lit. Colours are sRGB in 0..1; directions point towards the sun.
 
     refractive_index sets the Fresnel reflectance; roughness is the rms slope of what neither mesh nor ripples show;
-    specular scales every reflection (1 is physics, the lab's oil is below). ripple_slope [rms], ripple_length [m] of
-    the longest ripple, ripple_direction [rad] towards which ripples run. haze [m] is the distance at which a fraction
-    1 - 1/e of the sea is lost in the sky. foam_scale [m] is the size of a patch of bubbles.
+    specular scales every reflection (1 is physics, the lab's oil is below). ripple_slope [rms], ripple_length and
+    ripple_shortest [m] of the longest and the shortest ripple, ripple_direction [rad] towards which ripples run,
+    gravity [m/s2] that sets how fast. haze [m] is the distance at which a fraction 1 - 1/e of the sea is lost in the
+    sky. foam_scale [m] is the size of a patch of bubbles. disc: share of the sun's disc and glitter that shows;
+    gloom: how much darker thick cloud is than thin.
     """
 
     deep: RGB = (0.0, 0.20, 0.31)
@@ -42,7 +44,9 @@ class Look:
     specular: float = 1.0
     ripple_slope: float = 0.2
     ripple_length: float = 1.6
+    ripple_shortest: float = 0.05
     ripple_direction: float = 0.0
+    gravity: float = 9.81
     foam_scale: float = 2.0
     sun_direction: tuple[float, float, float] = (0.6, 0.3, 0.5)
     sun_color: RGB = (1.0, 0.9, 0.75)
@@ -50,6 +54,8 @@ class Look:
     tint: RGB = (1.0, 1.0, 1.0)
     clouds: float = 0.4
     cloud_size: float = 2.2
+    disc: float = 1.0
+    gloom: float = 0.3
     haze: float = HAZE
     exposure: float = 1.0
     skyline: tuple[float, float, float] = (0.06, 0.2, 0.6)
@@ -184,11 +190,12 @@ class Water:
             linear(look.sun_color) * look.sun_strength,
             (look.refractive_index, look.roughness, look.specular),
             (look.haze, look.exposure, look.foam_scale),
-            (look.ripple_slope, look.ripple_length, look.ripple_direction),
+            (look.ripple_slope, look.ripple_length, look.ripple_shortest),
             look.skyline,
             look.fold,
             look.tint,
             (look.clouds, look.cloud_size, look.ripple_direction),
+            (look.gravity, look.disc, look.gloom),
             self._state,
             (rows, cols, self._length),
             (self._tiles, float(look.dome), float(look.wireframe)),
@@ -250,7 +257,7 @@ class Photograph:
 
 
 SKIES = {
-    "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 10.0, 0.6, 0.65, 0.62, 1.6, (0.80, 0.94, 1.22)),
+    "park": Photograph(0.600, 10.5, (1.0, 0.93, 0.80), 5.0, 3.5, 10.0, 0.6, 0.65, 0.64, 1.2, (0.72, 0.91, 1.28)),
     "sunset": Photograph(
         0.600, 3.3, (1.0, 0.62, 0.30), 4.0, 1.5, 5.0, 0.42, 0.36, 0.36, 9.0, (1.0, 0.9, 0.84), (232, 196, 150)
     ),

@@ -36,6 +36,7 @@ const WATER_GLSL = {
     uniform vec3 sunColor;
     uniform vec3 tint; // a filter before the photograph
     uniform vec3 weather; // cloud cover, size of clouds, direction of the wind [rad]
+    uniform vec3 place; // gravity [m/s2], share of the sun's disc and glitter that shows, darkness of thick cloud
     uniform vec3 state; // time [s], significant height [m], mean square slope of the mesh
 
     // The photographs were taken on land. Their elevations are remapped so that the land lies below our horizon, and
@@ -58,7 +59,7 @@ const WATER_GLSL = {
         vec3 c = textureCubeUV(envMap, envMapRotation * (mat3(fromSea) * d), blur).rgb;
         // Bright places keep their hue; the sun's own disc is drawn where it belongs, not through a blurred photograph.
         float light = dot(c, vec3(0.3, 0.5, 0.2));
-        c = max(mix(vec3(light), c, 1.15), 0.0) * tint;
+        c = max(mix(vec3(light), c, 1.15), 0.0) * pow(tint, vec3(0.7 + 2.0 * clamp(d.z, 0.0, 0.6)));
         return c / (1.0 + light / fold.z) * envMapIntensity;
       #else
         return mix(vec3(0.75, 0.8, 0.85), vec3(0.2, 0.4, 0.7), sqrt(max(d.z, 0.0)));
@@ -77,9 +78,10 @@ const WATER_GLSL = {
       return n;
     }
 
-    // A thin layer of cloud before the photograph, so that no two seas have the same sky.
-    vec3 clouded(vec3 c, vec3 d, float blur, vec3 ambient) {
-      if (weather.x <= 0.0 || d.z < 0.004) return c;
+    // A layer of cloud before the photograph, so that no two seas have the same sky. The last number is how much of
+    // the sky it hides.
+    vec4 clouded(vec3 c, vec3 d, float blur, vec3 ambient) {
+      if (weather.x <= 0.0 || d.z < 0.004) return vec4(c, 0.0);
       vec2 w = vec2(cos(weather.z), sin(weather.z));
       vec2 p = d.xy / (d.z + 0.11);
       p = vec2(dot(p, w) * 0.55 - 0.004 * state.x, dot(p, vec2(-w.y, w.x))) / weather.y;
@@ -87,7 +89,7 @@ const WATER_GLSL = {
       float n = billow(p, octaves) + 1.3 * (weather.x - 0.5);
       float cover = smoothstep(-0.12 - blur, 0.55 + blur, n);
       vec2 s = normalize(sunDirection.xy + 1e-4);
-      if (cover <= 0.003) return c;
+      if (cover <= 0.003) return vec4(c, 0.0);
       float lit = 0.6; // mirrored clouds are not modelled in relief
       if (blur < 0.1) {
         float sunward = billow(p + 0.22 * vec2(dot(s, w), dot(s, vec2(-w.y, w.x))), 3);
@@ -95,8 +97,10 @@ const WATER_GLSL = {
       }
       float near = max(dot(d, sunDirection), 0.0);
       vec3 glow = sunColor * (0.05 + 0.10 * lit + 0.5 * pow(near, 24.0) * (1.2 - cover) + 0.12 * pow(near, 3.0) * lit);
-      vec3 cloud = ambient * (0.55 + 0.45 * lit) + glow;
-      return mix(c, cloud, cover * 0.92 * smoothstep(0.0, 0.09, d.z));
+      // The thicker, the darker from below: torn edges stay bright, bellies go grey.
+      float thick = 1.0 - place.z * smoothstep(-0.5, 0.45, n - 1.3 * (weather.x - 0.5));
+      vec3 cloud = (ambient * (0.55 + 0.45 * lit) + glow) * thick;
+      return vec4(mix(c, cloud, cover * 0.92 * smoothstep(0.0, 0.09, d.z)), cover);
     }
 
     vec3 sky(vec3 d, float blur) {
@@ -142,27 +146,30 @@ const WATER_GLSL = {
     uniform vec3 foamColor;
     uniform vec3 optics; // refractive index, roughness, specular scale
     uniform vec3 air; // haze distance [m], exposure, foam scale [m]
-    uniform vec3 ripple; // rms slope, longest wave [m], direction [rad]
+    uniform vec3 ripple; // rms slope, longest and shortest wave [m]
     uniform vec3 extent; // tiles along a side, dome, wire
 
     float schlick(float f0, float c) { float m = clamp(1.0 - c, 0.0, 1.0); float m2 = m * m; return f0 + (1.0 - f0) * m2 * m2 * m; }
 
-    // Slopes of ripples too short for the mesh. Each octave fades where it would be finer than a pixel; its variance
-    // is then in w instead. Phase speeds are those of deep water.
+    // Slopes of ripples too short for the mesh, with as much variance in each octave, as wind waves have in their
+    // equilibrium range. An octave fades where it would be finer than a pixel; its variance is then in z instead.
+    // Phase speeds are those of deep water.
     vec4 ripples(vec2 x, float footprint) {
       vec2 slope = vec2(0.0);
-      float lost = 0.0, wave = ripple.y, angle = ripple.z;
-      float each = ripple.x * ripple.x / 5.0;
+      float lost = 0.0, wave = ripple.y, angle = weather.z;
+      float octaves = clamp(1.0 + floor(log(ripple.y / ripple.z) / 0.755), 1.0, 9.0);
+      float each = ripple.x * ripple.x / octaves;
       // Gusts: patches of rougher and smoother water, and nothing in it repeats from tile to tile.
       float gust = 0.65 + 0.5 * ruffle(x / (ripple.y * 24.0) + state.x * 0.02).x
                         + 0.5 * ruffle(x / (ripple.y * 7.0) - state.x * 0.03).x;
       gust = max(gust, 0.15) * 1.3;
-      for (int k = 0; k < 5; k++) {
+      for (int k = 0; k < 9; k++) {
+        if (float(k) >= octaves) break;
         float seen = 1.0 - smoothstep(0.12, 0.5, footprint / wave);
         lost += each * (1.0 - seen * seen);
         if (seen > 0.0) {
           vec2 d = vec2(cos(angle), sin(angle));
-          float speed = sqrt(9.81 * wave / 6.2832);
+          float speed = sqrt(place.x * wave / 6.2832);
           // Crests are longer than they are wide.
           vec2 along = vec2(dot(x, d) - speed * state.x, 0.6 * dot(x, vec2(-d.y, d.x)));
           vec3 n = ruffle(along / wave);
@@ -192,7 +199,7 @@ const WATER_GLSL = {
     // coverage and close into a mat, streaked along the wind.
     vec2 froth(vec2 x, float asked, float footprint) {
       if (asked <= 0.004) return vec2(0.0);
-      vec2 d = vec2(cos(ripple.z), sin(ripple.z));
+      vec2 d = vec2(cos(weather.z), sin(weather.z));
       vec2 p = vec2(dot(x, d) * 0.7, dot(x, vec2(-d.y, d.x))) / air.z;
       vec2 drift = vec2(ruffle(p * 0.43 + 3.1).x, ruffle(p * 0.43 - 7.7).x);
       p += drift * 1.1;
@@ -241,8 +248,8 @@ const WATER_GLSL = {
         for (int k = 0; k < 3; k++) {
           float seen = flatness * (1.0 - smoothstep(0.1, 0.5, footprint / wave));
           if (seen > 0.0) {
-            vec2 d = vec2(cos(ripple.z + 0.5 * float(k - 1)), sin(ripple.z + 0.5 * float(k - 1)));
-            float along = dot(at.xy, d) - sqrt(1.56 * wave) * state.x;
+            vec2 d = vec2(cos(weather.z + 0.5 * float(k - 1)), sin(weather.z + 0.5 * float(k - 1)));
+            float along = dot(at.xy, d) - sqrt(0.159 * place.x * wave) * state.x;
             vec2 n = ruffle(vec2(along, 0.4 * dot(at.xy, vec2(-d.y, d.x))) / wave).yz;
             slope += seen * sqrt(state.z) * (n.x * d + 0.4 * n.y * vec2(-d.y, d.x));
             rough -= seen * 0.3 * state.z;
@@ -271,7 +278,7 @@ const WATER_GLSL = {
       R = normalize(R);
       float dim = clamp(sqrt(sigma) * 0.7, 0.0, 0.8);
       vec3 ambient = ambientLight();
-      vec3 mirrored = clouded(sky(R, dim), R, max(dim, 0.1), ambient);
+      vec3 mirrored = clouded(sky(R, dim), R, max(dim, 0.1), ambient).rgb;
 
       // Sun glitter: the share of facets that send the sun to the eye, Gaussian in slope (Cox & Munk 1954).
       vec3 H = normalize(V + sunDirection);
@@ -279,7 +286,7 @@ const WATER_GLSL = {
       float spread = variance + 0.0004;
       float facets = exp(-0.5 * dot(tilt, tilt) / spread) / (6.2832 * spread);
       float glitter = schlick(f0, dot(V, H)) * facets / (4.0 * pow(max(H.z, 0.1), 4.0) * max(facing, 0.12));
-      glitter *= 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z;
+      glitter *= 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * place.y;
 
       // Light that comes back out of the water: the deep, and crests with the sun behind them.
       float sunUp = max(dot(N, sunDirection), 0.0);
@@ -340,10 +347,8 @@ const DOME_FRAGMENT = `
   ${WATER_GLSL.surface}
   varying vec3 vRay;
   // The disc, twice as wide as the true one, and the glow of the air around it.
-  float sun(vec3 d) {
-    float off = length(d - sunDirection);
-    return 30.0 * (1.0 - smoothstep(0.006, 0.014, off)) + 1.6 * exp(-off * 55.0) + 0.22 * exp(-off * 14.0) + 0.05 * exp(-off * 4.0);
-  }
+  float disc(float off) { return 30.0 * (1.0 - smoothstep(0.006, 0.014, off)) + 2.4 * exp(-off * 60.0); }
+  float glow(float off) { return 0.30 * exp(-off * 16.0) + 0.07 * exp(-off * 4.0); }
   // The photographs' colour comes in blocks of some degrees: take the light sharp and the hue soft.
   vec3 clearSky(vec3 d) {
     vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
@@ -358,7 +363,15 @@ const DOME_FRAGMENT = `
     float down = max(-d.z, 1e-5);
     vec3 at = vec3(eye.xy + d.xy * min(max(eye.z, 0.0) / down, 1e5), 0.0);
     // Below the horizon lies the sea that no mesh reaches.
-    vec3 c = d.z < 0.0 ? shadeSea(at, at.xy, vec3(0.0), 1.0) : clouded(clearSky(d) + sunColor * sun(d), d, 0.0, ambientLight()) * air.y;
+    vec3 c;
+    if (d.z < 0.0) {
+      c = shadeSea(at, at.xy, vec3(0.0), 1.0);
+    } else {
+      float off = length(d - sunDirection);
+      vec4 clouds = clouded(clearSky(d) + sunColor * glow(off), d, 0.0, ambientLight());
+      float through = 1.0 - clouds.a;
+      c = (clouds.rgb + sunColor * disc(off) * place.y * through * through) * air.y;
+    }
     gl_FragColor = vec4(c, 1.0);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>

@@ -8,35 +8,43 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.messages import Command, Point, Snapshot, finite_vector
+from app.messages import Command, Point, Snapshot, Vector, finite_vector
 from app.pictures.rain import RainMesh
 from app.scenes.phillips import Params, SeaPicture
+from app.sea_knobs import TENSION, gravity
 from app.sea_report import lab_says, low_pass_line, planet_line, span, table, viscosity_line, wind_line
 from app.water import Look, Water, sky
 
 LENGTH = Params().length  # [m] tile of the first view
-VIEWS = {  # eye and target, of the tile's length: over the middle of the tile, into the sun
-    "deck": ((0.47, 0.5, 0.013), (0.53, 0.5, 0.0113)),
-    "bow": ((0.36, 0.5, 0.042), (0.56, 0.5, 0.004)),
-    "mast": ((0.42, 0.5, 0.06), (0.53, 0.5, 0.035)),
-    "gull": ((0.2, 0.5, 0.2), (0.55, 0.5, 0.0)),
+VIEWS = {  # [m]: height of the eye, how far ahead it looks, and how high there
+    "swimmer": (1.7, 6.0, 0.5),
+    "deck": (2.6, 11.5, 2.2),
+    "bridge": (4.5, 30.0, 3.6),
+    "mast": (8.0, 40.0, 6.0),
+    "gull": (40.0, 70.0, 0.0),
 }
+BEHIND = 20.0  # [m] the eye is at most behind the middle of the tile, where the rain is
 TILES = 5
 FAR = 20_000.0  # [m] where the view ends
 OVERCAST = (0.80, 0.92, 1.02)  # filter before the sky under a closed cover of clouds
 BUOY = (240, 96, 32)
 FARTHEST = 1e5  # [m] from which a click is taken
 RIPPLE_CELLS = 2.5  # longest ripple of the shader, in cells of the mesh: where the mesh leaves off
+SHORTEST = 3.0  # shortest ripple, in capillary lengths 2 pi sqrt(tension/(density gravity))
+FOAM_CELLS = 0.9  # size of a patch of bubbles, in cells of the mesh: so it hides the mesh's own facets
 
 
-def scaled(place: tuple[float, float, float], factor: float) -> tuple[float, float, float]:
-    return place[0] * factor, place[1] * factor, place[2] * factor
+def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
+    """Eye and target [m] of a view over a tile of `length` [m]: as high in metres over every sea."""
+    height, ahead, there = VIEWS[view]
+    x = 0.5 * length - min(0.14 * length, BEHIND)
+    return (x, 0.5 * length, height), (x + ahead, 0.5 * length, there)
 
 
 class Picture:
     """Draws `SeaPicture`s."""
 
-    CAMERA = scaled(VIEWS["deck"][0], LENGTH), scaled(VIEWS["deck"][1], LENGTH)
+    CAMERA = camera_of(Params().view, LENGTH)
     FOV = 0.65  # [rad]
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
@@ -45,7 +53,7 @@ class Picture:
         self.rain: RainMesh | None = None
         self.buoy: viser.FrameHandle | None = None
         self.shape: tuple[int, float] = (0, LENGTH)
-        self.view = "deck"
+        self.view = Params().view
         self.lit: tuple[Any, ...] = ()
         self.look = Look()
         self.last: SeaPicture | None = None
@@ -69,7 +77,7 @@ class Picture:
             if self.water is not None:
                 self.water.remove()
             self.water = Water(self.server, "/sea", shape[0], shape[0], p.length, tiles=TILES, look=look)
-            self.follow(p.length / self.shape[1])
+            self.follow(self.shape[1], p.length)
             self.shape = shape
         elif look != self.look:
             self.water.set_look(look)
@@ -77,7 +85,7 @@ class Picture:
         if p.view != self.view:
             self.view = p.view
             for camera in self.cameras():
-                camera.position, camera.look_at = (scaled(place, p.length) for place in VIEWS[p.view])
+                camera.position, camera.look_at = camera_of(p.view, p.length)
         if self.last is None or picture.vertices is not self.last.vertices:
             self.water.set_surface(picture.vertices, picture.slopes, picture.foam, picture.time)
             self.show_rain(picture)
@@ -88,6 +96,8 @@ class Picture:
         """The look under this sky: ripples carry what of Cox and Munk's slope the mesh does not."""
         p: Params = picture.params
         missing = max(min(0.003, 0.0015 * p.wind_speed) + 0.00512 * p.wind_speed - picture.slope_resolved, 0.001)
+        cell, g = p.length / len(picture.vertices), gravity(p)
+        capillary = 2.0 * math.pi * math.sqrt(TENSION / (1000.0 * g))
         # Under a closed cover there is no sun, and its colour is gone from the sky.
         overcast = min(max((p.clouds - 0.6) / 0.4, 0.0), 1.0)
         grey = np.array(OVERCAST) * overcast + np.array(self.light.tint) * (1.0 - overcast)
@@ -96,12 +106,16 @@ class Picture:
             clouds=p.clouds,
             tint=tuple(float(c) for c in grey),
             sun_strength=self.light.sun_strength * (1.0 - 0.93 * overcast),
+            disc=(1.0 - overcast) ** 2,
+            gloom=0.25 + 0.45 * overcast,
             exposure=self.light.exposure * p.daylight,
             haze=p.visibility,
             ripple_slope=round(min(math.sqrt(missing), 0.25), 2),
-            ripple_length=RIPPLE_CELLS * p.length / len(picture.vertices),
+            ripple_length=RIPPLE_CELLS * cell,
+            ripple_shortest=SHORTEST * capillary,
             ripple_direction=math.radians(p.wind_direction),
-            foam_scale=max(0.008 * p.length, 0.4),
+            gravity=g,
+            foam_scale=max(FOAM_CELLS * cell, 0.4),
             wireframe=p.grid,
         )
 
@@ -112,7 +126,7 @@ class Picture:
             self.rain = None
         if rain is not None:
             if self.rain is None:
-                self.rain = RainMesh(self.server, rain)
+                self.rain = RainMesh(self.server, rain, self.look.exposure)
             self.rain.show(rain)
 
     def show_probe(self, picture: SeaPicture) -> None:
@@ -124,23 +138,25 @@ class Picture:
             self.buoy = add_buoy(self.server)
         self.buoy.visible = True
         self.buoy.position = picture.probe
-        self.buoy.scale = picture.params.length / LENGTH
 
     def cameras(self) -> list[Any]:
         """The camera of each browser, and the one that new browsers begin with."""
         return [self.server.initial_camera, *(client.camera for client in self.server.get_clients().values())]
 
-    def follow(self, factor: float) -> None:
-        """Take every camera along to a tile `factor` times as long."""
+    def follow(self, old: float, new: float) -> None:
+        """Take every camera from above the middle of a tile of side `old` [m] to that of one of side `new`."""
         for camera in self.cameras():
             camera.far = FAR
-            if factor != 1.0:
-                camera.position = np.asarray(camera.position) * factor
-                camera.look_at = np.asarray(camera.look_at) * factor
+            if old != new:
+                eye, target = np.asarray(camera.position), np.asarray(camera.look_at)
+                place = 0.5 * new + np.clip(eye[:2] - 0.5 * old, -new, new)
+                to = np.array([*place, eye[2]])
+                # Setting the position moves the target along.
+                camera.position, camera.look_at = to, to + target - eye
 
 
 def add_buoy(server: viser.ViserServer) -> viser.FrameHandle:
-    """A spar with a ball, 3 m high on a tile of `LENGTH`."""
+    """A spar with a ball, 3 m high."""
     scene = server.scene
     frame = scene.add_frame("/probe", show_axes=False)
     scene.add_cylinder("/probe/spar", radius=0.09, height=4.2, color=(245, 245, 240), position=(0, 0, 0.9))

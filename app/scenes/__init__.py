@@ -18,6 +18,8 @@ The drawing has `Picture(server, post)` with `show(picture, gauge)`, on the view
 `post` commands, `readout(snapshot)`, the HTML under the panel's
 buttons, `marks(snapshot)`, knob -> the line under it, and `warm_up()`; it may have `notes(snapshot)`, heading -> HTML
 to fold out.
+
+What a sweep records of it is its plot rows, or what a module of its name in `app/measures` says.
 """
 
 import importlib

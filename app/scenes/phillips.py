@@ -31,7 +31,7 @@ SOFT = 0.35  # how far below the threshold the Jacobian of full foam is, in part
 MEASURE_EVERY = 0.5  # [s] between two looks at the statistics of the sea
 SETTLED = 16.0  # transition times after which nothing is left of a change
 SAMPLE_EVERY = 0.1  # [s] between two plot rows
-AHEAD = (0.56, 0.485)  # of the tile: where the probe is before it is placed
+AHEAD = (0.06, 12.0), (-0.015, -3.0)  # of the tile, but no more than [m]: where the probe is before it is placed
 PACE_EVERY = 0.5  # [s] between two looks at how steep and how fast the sea is
 LEARN = 0.15  # [1/s] spreads by which the threshold of foam moves where e times too little is drawn
 TRIM = 0.5  # spreads it begins above the formula
@@ -42,17 +42,20 @@ SEEN = 1.2  # part of the fading time for which foam counts as seen
 PRESETS: dict[str, dict[str, Any]] = {
     "Earth breeze": {},
     "Storm arriving": {
-        "spectrum": "jonswap", "wind_speed": 24.0, "fetch": 150e3, "start": "calm", "transition": 20.0, "rain": 15.0,
-        "length": 512.0, "choppiness": 1.2, "clouds": 1.0, "daylight": 0.7, "visibility": 1200.0, "drops": 3000,
+        "spectrum": "jonswap", "wind_speed": 24.0, "fetch": 200e3, "start": "calm", "transition": 20.0, "rain": 15.0,
+        "length": 600.0, "choppiness": 1.2, "clouds": 1.0, "daylight": 0.7, "visibility": 1200.0, "drops": 3000,
+        "view": "bridge",
     },
     "Storm over": {
         "wind_speed": 7.0, "start": "storm", "transition": 20.0, "length": 384.0, "sky": "sunset", "clouds": 0.45,
     },
-    "Light planet": {"planet_mass": 0.01, "length": 1024.0, "wind_speed": 10.0, "visibility": 6000.0, "sky": "dawn"},
-    "Heavy planet": {"planet_mass": 100.0, "length": 64.0, "wind_speed": 10.0, "visibility": 1500.0},
+    "Light planet": {
+        "planet_mass": 0.01, "length": 1024.0, "wind_speed": 10.0, "visibility": 6000.0, "sky": "dawn", "view": "mast",
+    },
+    "Heavy planet": {"planet_mass": 100.0, "length": 128.0, "wind_speed": 10.0, "visibility": 1500.0, "view": "mast"},
     "Rain shower": {
-        "rain": 30.0, "length": 32.0, "wind_speed": 0.5, "wind_direction": 70.0, "mesh": "256", "rings": 1.3,
-        "frame_rate": 24.0, "view": "bow", "drops": 600, "visibility": 500.0, "foam": False, "sky": "dawn",
+        "rain": 30.0, "length": 32.0, "wind_speed": 0.5, "wind_direction": 70.0, "mesh": "256", "rings": 2.5,
+        "frame_rate": 24.0, "view": "swimmer", "drops": 600, "visibility": 500.0, "foam": False, "sky": "dawn",
         "clouds": 0.8, "sun": 8.0,
     },
 }  # fmt: skip
@@ -125,7 +128,9 @@ class Scene:
         self.samples: list[tuple[float, ...]] = []
         self.probe = Probe()
         self.placed = False
-        self.probe.put((AHEAD[0] * params.length, AHEAD[1] * params.length))
+        L = params.length
+        x, y = (math.copysign(min(abs(part) * L, abs(most)), most) for part, most in AHEAD)
+        self.probe.put((0.5 * L + x, 0.5 * L + y))
         self.reset()
 
     @property
@@ -192,7 +197,8 @@ class Scene:
         self.theory = None
         if params.length != old.length:
             x, y = self.probe.at
-            self.probe.put((x * params.length / old.length, y * params.length / old.length))
+            middle = 0.5 * (params.length - old.length)
+            self.probe.put((x + middle, y + middle))
         if (params.length, params.seed) != (old.length, old.seed):
             self.make_sea()
             return

@@ -86,6 +86,15 @@ def make_water(server: viser.ViserServer, dome: bool = False, **arguments) -> Wa
     return water
 
 
+RED = Look(deep=(0.6, 0.1, 0.1), scatter=(0.6, 0.1, 0.1), specular=0.0, dome=False)
+
+
+def redness(picture: np.ndarray) -> float:
+    """How much more red than blue the sea is."""
+    sea = picture[120:200, 60:260]
+    return float(sea[..., 0].mean() - sea[..., 2].mean())
+
+
 def materials(page) -> dict[str, str]:
     """What each patched node's material says it was dressed with."""
     return page.evaluate(
@@ -123,12 +132,24 @@ def test_a_new_look_arrives_without_a_new_script(chromium, server):
     page, errors = visit(chromium, server)
     assert wait(page, lambda: water.alive is True)
 
-    def redness(picture: np.ndarray) -> float:
-        sea = picture[120:200, 60:260]
-        return float(sea[..., 0].mean() - sea[..., 2].mean())
-
     assert redness(settled(page)) < 0
-    water.set_look(Look(deep=(0.6, 0.1, 0.1), scatter=(0.6, 0.1, 0.1), specular=0.0, dome=False))
+    water.set_look(RED)
+    server.flush()
+    assert wait(page, lambda: redness(pixels(page)) > 20)
+    assert errors == []
+    page.close()
+
+
+def test_a_sea_of_another_size_has_its_own_look(chromium, server):
+    """viser may keep the material for the new geometry, and with it the uniforms."""
+    water = make_water(server)
+    page, errors = visit(chromium, server)
+    assert wait(page, lambda: water.alive is True)
+    assert redness(settled(page)) < 0
+    with server.atomic():
+        water.remove()
+        water = Water(server, "/sea", SIZE // 2, SIZE // 2, LENGTH, look=RED)
+        water.set_surface(*(field[::2, ::2] for field in surface()))
     server.flush()
     assert wait(page, lambda: redness(pixels(page)) > 20)
     assert errors == []

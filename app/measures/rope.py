@@ -1,0 +1,30 @@
+"""Numbers of the rope: its energies, their balance, its tip, its tightest link, how near to its limit the step is."""
+
+import math
+
+import numpy as np
+
+from app.measures import Measure
+from app.scenes.rope import Scene
+from sim.springs.state import energy, velocities
+
+
+def measures(scene: Scene) -> dict[str, Measure]:
+    """Of the rope as it is; what damping took is known only while the knob plot_energy is on."""
+    e, state, gauge = energy(scene.net, scene.state), scene.state, scene.gauge().stability
+    error = e.total + state.dissipated - state.work - scene.initial.total
+    known = scene.params.plot_energy
+    return {
+        "tip_height": Measure(float(state.x[2, 0, -1]), "m", "Height of the tip"),
+        "tip_speed": Measure(float(np.linalg.norm(velocities(scene.net, state)[:, 0, -1])), "m/s", "Speed of the tip"),
+        "largest_tension": Measure(float(scene.tension().max()), "N", "Largest force of a link"),
+        "kinetic_energy": Measure(e.kinetic, "J", "Kinetic energy"),
+        "elastic_energy": Measure(e.elastic, "J", "Elastic energy of the links"),
+        "gravity_energy": Measure(e.gravity - scene.initial.gravity, "J", "Potential energy gained since the start"),
+        "contact_energy": Measure(e.contact, "J", "Elastic energy of the contacts"),
+        "dissipated_energy": Measure(state.dissipated if known else math.nan, "J", "What damping took"),
+        "energy_error": Measure(error if known else math.nan, "J", "Energy beyond what there should be"),
+        "h_omega": Measure(gauge.h_omega, "1", "Step times the frequency nearest to its limit"),
+        "h_omega_limit": Measure(gauge.limit, "1", "Largest stable h omega of the integrator at that damping"),
+        "critical_step": Measure(gauge.critical_step, "s", "Largest stable step"),
+    }

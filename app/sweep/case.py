@@ -1,0 +1,107 @@
+"""One case of a sweep, from its knobs to its numbers; runs in a worker, which may be another machine."""
+
+import math
+import time
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import app
+import sim
+from app.headless import steps_to
+from app.measures import measures_named, plotted
+from app.messages import DivergenceError
+from app.scenes import scene_named
+from sim.jit import sources_hash
+from sim.knobs import check
+
+FRAME = 1 / 30  # [s] of simulated time between two looks at whether the run still holds
+FINISHED, DIVERGED, FAILED = "finished", "diverged", "failed"
+ENDS = (FINISHED, DIVERGED, FAILED)
+
+
+class Outcome(NamedTuple):
+    """What became of a case; `_asdict` of it is JSON."""
+
+    end: str  # one of ENDS
+    message: str  # why it did not finish, or ""
+    diverged_at: float  # [s] the last time at which the state was sound; nan where it did not diverge
+    run_time: float  # [s] of processor time
+    measures: dict[str, list[float]]  # one value a time; nan from where it did not get to
+    labels: dict[str, tuple[str, str]]  # unit and meaning of each measure
+
+
+def program() -> str:
+    """Which program this is: its version, and a hash of its sources."""
+    try:
+        number = version("springtide")
+    except PackageNotFoundError:
+        number = "from its sources"
+    return f"springtide {number}, sources " + "-".join(
+        sources_hash(Path(package.__path__[0]))[:8] for package in (app, sim)
+    )
+
+
+def failed(message: str) -> Outcome:
+    """The outcome of a case that gave no numbers."""
+    return Outcome(FAILED, message, math.nan, math.nan, {}, {})
+
+
+def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Outcome:
+    """Run one case and measure it at each of `times` [s]; never raises for what the scene does."""
+    module = scene_named(scene)
+    own = measures_named(scene)
+    found: dict[str, list[float]] = {}
+    labels: dict[str, tuple[str, str]] = {}
+    end, message, diverged_at = FINISHED, "", math.nan
+    row: tuple[float, ...] = ()
+    running: Any = None
+    start = time.thread_time()
+    try:
+        with np.errstate(all="ignore"):
+            running = module.Scene(check(module.Params, values))
+            if note := getattr(running, "note", ""):
+                # The numbers of another method than the one asked for are no result.
+                return failed(note)
+            for index, until in enumerate(times):
+                row = advance_to(running, until) or row
+                for name, measure in (own(running) if own else plotted(module, row)).items():
+                    found.setdefault(name, [math.nan] * len(times))[index] = float(measure.value)
+                    labels[name] = measure.unit, measure.meaning
+    except DivergenceError as reason:
+        end, message, diverged_at = DIVERGED, str(reason), float(running.time)
+    except Exception as error:
+        end, message = FAILED, f"{type(error).__name__}: {error}"
+    return Outcome(end, message, diverged_at, time.thread_time() - start, found, labels)
+
+
+def advance_to(running: Any, until: float) -> tuple[float, ...]:
+    """Take steps up to time `until` [s]; returns the newest plot row, () for none. Raises DivergenceError."""
+    row: tuple[float, ...] = ()
+    due = steps_to(running, until)
+    while due > 0:
+        count = min(due, max(1, round(FRAME / running.step)))
+        advance(running, count)
+        due -= count
+        rows = running.take_samples()
+        row = rows[-1] if rows else row
+    return row
+
+
+def advance(running: Any, count: int) -> None:
+    """Take `count` steps; where they cannot all be taken, as many as can, and then raises DivergenceError.
+
+    A scene that diverges keeps its last sound state, so halving the steps finds the last step that holds.
+    """
+    while count > 0:
+        try:
+            running.advance(count)
+            return
+        except DivergenceError:
+            if count == 1:
+                raise
+            first = count // 2
+            advance(running, first)
+            count -= first

@@ -1,0 +1,75 @@
+"""From ranges and lists of knobs to cases: every combination, or a Latin hypercube.
+
+A Latin hypercube of n cases (McKay, Beckman and Conover 1979, Technometrics 21:239) has one case in each n-th of every
+knob's range, whatever the number of knobs.
+"""
+
+import itertools
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sim.knobs import Knob
+
+MOST_CASES = 100_000
+
+
+class Listed(NamedTuple):
+    """Values as given."""
+
+    values: tuple[Any, ...]
+
+
+class Range(NamedTuple):
+    """From `low` to `high`, both included; points: values of a grid, 0 in a random design."""
+
+    low: float
+    high: float
+    points: int
+    log: bool
+
+
+Axis = Listed | Range
+
+
+def at(axis: Axis, share: float, knob: Knob) -> Any:
+    """The value at `share`, 0 to 1, of the axis; equal shares of it go to each listed value and each whole number."""
+    if isinstance(axis, Listed):
+        return axis.values[min(int(share * len(axis.values)), len(axis.values) - 1)]
+    low, high = axis.low, axis.high
+    if knob.kind is int and not axis.log:
+        return min(int(low + share * (high - low + 1)), int(high))
+    if share >= 1.0:
+        return high
+    value = min(low * (high / low) ** share if axis.log else low + share * (high - low), high)
+    return round(value) if knob.kind is int else value
+
+
+def grid_values(axis: Axis, knob: Knob) -> tuple[Any, ...]:
+    """The values of a grid along one axis; whole numbers are rounded to."""
+    if isinstance(axis, Listed):
+        return axis.values
+    real = knob._replace(default=0.0)
+    values = [at(axis, float(share), real) for share in np.linspace(0.0, 1.0, axis.points)]
+    return tuple(round(value) for value in values) if knob.kind is int else tuple(values)
+
+
+def grid(axes: dict[str, tuple[Any, ...]]) -> list[dict[str, Any]]:
+    """Every combination, the last knob the fastest."""
+    return [dict(zip(axes, values, strict=True)) for values in itertools.product(*axes.values())]
+
+
+def hypercube(axes: dict[str, Axis], knobs: dict[str, Knob], count: int, seed: int) -> list[dict[str, Any]]:
+    """`count` cases, one in each `count`-th of every axis."""
+    generator = np.random.default_rng(seed)
+    columns = {}
+    for name, axis in axes.items():
+        shares = (generator.permutation(count) + generator.random(count)) / count
+        columns[name] = [at(axis, float(share), knobs[name]) for share in shares]
+    return [{name: column[i] for name, column in columns.items()} for i in range(count)]
+
+
+def size(axes: dict[str, Axis]) -> int:
+    """How many combinations there are."""
+    return math.prod(len(axis.values) if isinstance(axis, Listed) else axis.points for axis in axes.values())

@@ -127,7 +127,7 @@ def energy_course(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Times (samples + 1,) [s] and total energies [J] of `net` from its start, in steps of h [s]; NaN once diverged."""
     state = State.at_rest(net)
-    t = h * steps / samples * np.arange(samples + 1)
+    t = np.arange(samples + 1, dtype=np.float64) * (h * steps / samples)
     total = np.full(samples + 1, math.nan)
     total[0] = energy(net, state).total
     for i in range(1, samples + 1):

@@ -4,6 +4,7 @@ numba does not notice an edit in a *callee's* file, so the cache directory is na
 sources: an edit anywhere makes a new one. Where nothing is writable, kernels compile afresh at each start.
 """
 
+import contextlib
 import hashlib
 import os
 import shutil
@@ -15,6 +16,7 @@ from typing import Any
 
 import numba
 import platformdirs
+from numba.core.caching import IndexDataCacheFile
 from numba.core.compiler import Flags
 from numba.core.options import TargetOptions
 from numba.core.registry import cpu_target
@@ -60,6 +62,26 @@ def cache_directory() -> Path | None:
 CACHE = cache_directory()
 
 
+class KernelFile(IndexDataCacheFile):
+    """numba's cache file of one kernel, where neither a full disk nor rubbish ends the program: it compiles anew."""
+
+    def load(self, key: Any) -> Any:
+        try:
+            return super().load(key)
+        except Exception:  # whatever unpickling leads to
+            return None
+
+    def save(self, key: Any, data: Any) -> None:
+        with contextlib.suppress(OSError):  # a full disk: kept another time
+            try:
+                super().save(key, data)
+            except OSError:
+                raise
+            except Exception:  # the index is rubbish: an empty one
+                self.flush()
+                super().save(key, data)
+
+
 def kernel(
     function: Callable[..., Any] | None = None,
     *,
@@ -92,6 +114,9 @@ def kernel(
     try:
         # numba reads the setting once, here; other libraries' kernels stay where they were.
         numba.config.CACHE_DIR = str(CACHE) if CACHE else previous  # type: ignore[attr-defined]
-        return numba.njit(cache=CACHE is not None, **options)(function)
+        compiled = numba.njit(cache=CACHE is not None, **options)(function)
     finally:
         numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
+    if CACHE is not None:
+        compiled._cache._cache_file.__class__ = KernelFile  # type: ignore[attr-defined]
+    return compiled

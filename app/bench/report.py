@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from app.replacing import replacing
 from sim.knobs import refusal
 
 Rows = list[dict[str, Any]]
@@ -77,7 +78,7 @@ def show(title: str, rows: Rows) -> None:
 
 def save_table(rows: Rows, path: Path) -> None:
     """One CSV file, columns with their units in the head."""
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns(rows))
         writer.writeheader()
         writer.writerows(rows)
@@ -89,7 +90,8 @@ def save_figures(figures: dict[str, Any], folder: Path) -> list[Path]:
     for name, figure in figures.items():
         for suffix in ("svg", "png"):
             paths.append(folder / f"{name}.{suffix}")
-            figure.savefig(paths[-1], dpi=150, bbox_inches="tight")
+            with replacing(paths[-1]) as draft:
+                figure.savefig(draft, dpi=150, bbox_inches="tight")
     return paths
 
 

@@ -14,7 +14,8 @@ from app.crowd import Crowd
 from app.ledger import Work
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
 from app.radial_knobs import PRESETS, Params, conditions_of, exposure_of, hidden, spill_of
-from app.radial_records import Compared, RadialGauge, RadialPicture, SlickShape
+from app.radial_records import Compared, RadialGauge, RadialPicture
+from app.section import Section, outline, section_at
 from app.wakes import LENGTH as WAKES_LENGTH
 from app.wakes import Wakes
 from sim.floating import Laws
@@ -41,8 +42,6 @@ PLOTS = {
 FRAME = 1 / 30  # [s] between pictures
 RADIUS = 5000.0  # [m] of the grid
 INNER = 0.35  # [m] its first ring
-SLICK_RADIUS = 220.0  # [m] as far as the slick is drawn
-SLICK_HIGH, SLICK_SOFT = 0.2, 10.0  # [m] above the water, and from how far inside its edge
 TILE, TILE_LENGTH = 128, 256.0  # the square sea: as many vertices as the rings
 SAMPLE_EVERY = 1 / 15  # [s] between plot rows
 COMPARE_EVERY = 2.0  # [s] of wall time between two timings of the other surface
@@ -172,11 +171,12 @@ class Scene:
         for _ in range(steps):
             if crowd.count:
                 at = sea.at(crowd.fleet.position[:, :2], self.time, crowd.widths)
+                layer = self.layer_at(crowd.fleet.position[:, :2])
                 crowd.measure(self.time, at, h)
                 if self.params.mooring:
                     crowd.moor()
                 try:
-                    crowd.step(self.spill, at, self.time, h, self.layer(), laws)
+                    crowd.step(self.spill, at, self.time, h, layer, laws)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
                 plotted = self.params.plot_draft or self.params.plot_surface
@@ -191,13 +191,12 @@ class Scene:
         crowd.impulse[:] = 0.0
         self.blowout.step(sea, self.time, steps * h)
 
-    def layer(self) -> NDArray[np.float64]:
-        """Thickness (bodies,) [m] of oil under the surface at each body."""
-        found = np.full(self.crowd.count, self.spill.thickness)
+    def layer_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Thickness (n,) [m] of oil under the surface at points (n, 2) [m]."""
+        found = np.full(len(points), self.spill.thickness)
         slick = self.blowout.slick(self.spill)
         if slick is not None and self.spill.kind != "mixed":
-            position = self.crowd.fleet.position
-            found[slick_reach(slick, position[:, 0], position[:, 1]) > 0.0] += slick.thickness
+            found[slick_reach(slick, points[:, 0], points[:, 1]) > 0.0] += slick.thickness
         return found
 
     def sample(self, surface: float) -> None:
@@ -233,7 +232,8 @@ class Scene:
             grid=self.grid,
             surface=self.surface,
             foam=self.foam,
-            slick=self.slick,
+            slick=self.blowout.slick(self.spill) if self.spill.kind == "water" else None,
+            section=self.section,
             kinds=tuple(crowd.kinds),
             positions=crowd.fleet.position.astype(np.float32),
             rotations=crowd.fleet.rotation.astype(np.float32),
@@ -244,7 +244,7 @@ class Scene:
         )
 
     def draw(self) -> None:
-        """The surface, its foam and the slick on it, as they are now."""
+        """The surface, its foam and the window into it, as they are now."""
         p = self.params
         centre = self.eye if p.centre == "camera" else (0.0, 0.0)
         self.surface = self.timed(p.surface, self.sea, centre)
@@ -263,9 +263,9 @@ class Scene:
             for part in (slice(0, len(self.grid) - 1 if p.centre == "camera" else near), slice(-1, None)):
                 self.wakes.lay(self.time, vertices[part], slopes[part], len(vertices))
         self.foam = self.whitecaps()
-        self.slick = self.shape_slick(vertices, slopes)
-        rings, slicks = p.ripples and self.wakes.sea.ripples.alive, self.slick is not None
-        self.counts.update({"surfaces": 1, "rings": int(rings), "slicks": int(slicks)})
+        self.section = self.cut() if p.section else None
+        rings = p.ripples and self.wakes.sea.ripples.alive
+        self.counts.update({"surfaces": 1, "rings": int(rings), "windows": int(p.section)})
 
     def whitecaps(self) -> NDArray[np.float32]:
         """Foam (n,), 0 to 1, where the surface is pressed together most: as much of the sea as Monahan measured.
@@ -292,17 +292,20 @@ class Scene:
         self.costs[name] = taken if name not in self.costs else 0.9 * self.costs[name] + 0.1 * taken
         return surface
 
-    def shape_slick(self, vertices: NDArray[np.float32], slopes: NDArray[np.float32]) -> SlickShape | None:
-        """The first rings and the centre once more, just above the water within the slick and below it outside."""
-        slick = self.blowout.slick(self.spill)
-        if slick is None or self.spill.kind != "water":
-            return None
-        rings = int((self.grid.radii < SLICK_RADIUS).sum())
-        count = rings * self.grid.spokes
-        mine = np.concatenate([vertices[:count], vertices[-1:]])
-        inside = slick_reach(slick, mine[:, 0], mine[:, 1])
-        mine[:, 2] += np.clip(inside / SLICK_SOFT, -8.0, 1.0) * np.float32(SLICK_HIGH)
-        return SlickShape(mine, np.concatenate([slopes[:count], slopes[-1:]]), rings)
+    def cut(self) -> Section:
+        """The sea at the walls of a window before the first body, as drawn there."""
+        crowd, size = self.crowd, self.params.size
+        x, y = crowd.fleet.position[0, :2].tolist() if crowd.count else (0.0, 0.0)
+        points = outline((x, y), size)
+        at = self.sea.at(points, self.time)
+        walls = np.column_stack([points, at.height]).astype(np.float32)
+        if self.params.ripples:
+            self.wakes.lay(self.time, walls, np.zeros((len(walls), 2), np.float32), len(walls))
+        top = walls[:, 2].astype(np.float64)
+        layer = self.layer_at(points)
+        oiled = self.spill.kind != "mixed" and bool(layer.max() > 0.0)
+        interface = at.interface - layer + (top - at.height) if oiled else top
+        return section_at((x, y), size, points, top, interface, oiled)
 
     def gauge(self) -> RadialGauge:
         s, grid = self.sum, self.grid
@@ -335,7 +338,7 @@ class Scene:
             "steps of bodies": Work(c["body steps"]),
             "pairs of bodies in touch": Work(c["touches"], max(c["pairs"] - c["touches"], 0)),
             "surfaces with rings of bodies": Work(c["rings"], c["surfaces"] - c["rings"]),
-            "surfaces with a slick": Work(c["slicks"], c["surfaces"] - c["slicks"]),
+            "surfaces with a window": Work(c["windows"], c["surfaces"] - c["windows"]),
         }
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:

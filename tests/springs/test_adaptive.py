@@ -7,7 +7,9 @@ from scipy.integrate._ivp.rk import RK45
 
 from sim.springs import INTEGRATORS, rope, simulate
 from sim.springs.amplification import polynomial_of
-from sim.springs.embedded import dop853, dopri5
+from sim.springs.embedded import dop853, dopri5, stages
+from sim.springs.embedded.errors import error_of
+from sim.springs.forces import set_acceleration
 from sim.springs.state import State, advance, energy
 from tests.springs.reference import integrated
 
@@ -54,6 +56,37 @@ def test_frames_are_as_good_between_steps_as_at_their_ends(name):
     truth = simulate(net, "dop853", step=1e-4, duration=1.0, frames=333)
     assert np.abs(run.x - truth.x).max() < 1e-7
     assert np.abs(run.v - truth.v).max() < 1e-6
+
+
+@pytest.mark.parametrize("points", [7, 200, 385])
+def test_a_bare_rope_s_blocks_change_nothing(points):
+    """Against the same step stage by stage, for one block, two, and five of which the last is cut."""
+    net = rope(points, length=0.1 * points, stiffness=2e4)
+    p, x = net.forces(1.0), net.x0.ravel() + 1e-3 * np.random.default_rng(0).standard_normal(net.x0.size)
+    v, start, found = 0.1 * np.sin(np.arange(x.size)), np.zeros(x.size), []
+    set_acceleration(x, v, 0.0, p, start)
+    for whole in (False, True):
+        room = stages.make_stages(dop853.METHOD, x, p)
+        room.k[: x.size] = start
+        xn, vn = np.zeros(x.size), np.zeros(x.size)
+        if whole:
+            stages.step_any(dop853.METHOD, x, v, 0.0, 1e-3, p, room, xn, vn, np.zeros(2), False)
+        else:
+            stages.step_bare_rope(dop853.METHOD, x, v, 1e-3, p, room, xn, vn)
+        error = error_of(dop853.METHOD, x, v, 1e-3, room, xn, vn, 1e-6, 1e-9)
+        found.append(np.concatenate([xn, vn, room.k[12 * room.stride :][: x.size], [error]]))
+    assert found[0] == pytest.approx(found[1], rel=1e-13, abs=1e-13)
+
+
+@pytest.mark.parametrize("name", ADAPTIVE)
+def test_few_steps_are_taken_in_vain_where_stability_limits_them(name):
+    net = rope(40, stiffness=2e5)
+    x, v = net.x0.ravel().copy(), np.zeros(net.x0.size)
+    march = INTEGRATORS[name].march
+    assert march is not None
+    kept, times = np.zeros((2, x.size)), np.array([0.0, 1.0])
+    evals, steps, _, _ = march(x, v, times, 1e-5, 1e-7, net.forces(1.0), False, kept, kept.copy(), np.zeros((2, 2)))
+    assert evals - 1 <= 1.05 * steps * INTEGRATORS[name].evals
 
 
 def test_dense_output_costs_nothing():

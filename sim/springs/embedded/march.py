@@ -8,11 +8,13 @@ and accelerations at both ends, of the order of the method; order 8, or a ledger
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.embedded import dop853, dopri5
-from sim.springs.forces import accelerate, make_scratch, set_pins
+from sim.springs.embedded.errors import error_of
+from sim.springs.embedded.stages import accept, make_stages, take_step
+from sim.springs.forces import accelerate, set_pins
 from sim.springs.state import SANE
 
 SAFETY = 0.9
+NOW, BEFORE = 0.7, 0.4  # exponents of this step's error and the last one's (Gustafsson's PI), over the order
 SHRINK, GROW = 0.2, 6.0  # least and largest factor between two steps
 SMALLEST = 1e-14  # step over the whole time, below which the search is given up
 
@@ -50,42 +52,35 @@ def is_sane(x):
 
 
 @kernel
-def march(eighth, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
+def march(method, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
     """Fill xs, vs (frames, 3 rows cols) and ledgers (frames, 2) at `times`, starting from x, v at the first.
 
     Returns force evaluations, steps taken, frames filled, and the time reached [s]; fewer frames than there are where
     no step was short enough or the state left any sane bound.
     """
-    five, eight = dopri5.make_stages(x, p), dop853.make_stages(x, p)
-    f = make_scratch(p)
-    a, xn, vn = np.empty_like(x), np.empty_like(x), np.empty_like(x)
+    stages = make_stages(method, x, p)
+    size = x.shape[0]
+    a, an = stages.k[:size], stages.k[method.stages * stages.stride :][:size]
+    xn, vn = np.empty_like(x), np.empty_like(x)
     spent, ledger = np.zeros(2), np.zeros(2)
     t, last = times[0], times[-1]
     set_pins(x, v, t, p)
-    accelerate(x, v, t, p, True, f, a)
+    accelerate(x, v, t, p, True, stages.f, stages.a)
+    a[:] = stages.a
     evals, steps, frame = 1, 0, 1
     xs[0], vs[0] = x, v
-    lands = eighth or with_ledger
+    lands = method.order > 5 or with_ledger
     h = first_step(x, v, a, rtol, atol)
-    power = -1.0 / 8.0 if eighth else -1.0 / 5.0
+    power, before = -1.0 / method.order, 1.0
     grow = GROW
     while frame < len(times):
         goal = times[frame] if lands else last
         landing = t + 1.01 * h >= goal
         step = goal - t if landing else h
         spent[:] = 0.0
-        if eighth:
-            eight.a0[:] = a
-            dop853.take_step(x, v, t, step, p, eight, xn, vn, spent, with_ledger)
-            error = dop853.error_of(x, v, step, p, eight, xn, vn, rtol, atol)
-            an = eight.a12
-            evals += 12
-        else:
-            five.a0[:] = a
-            dopri5.take_step(x, v, t, step, p, five, xn, vn, spent, with_ledger)
-            error = dopri5.error_of(x, v, step, p, five, xn, vn, rtol, atol)
-            an = five.a6
-            evals += 6
+        take_step(method, x, v, t, step, p, stages, xn, vn, spent, with_ledger)
+        error = error_of(method, x, v, step, stages, xn, vn, rtol, atol)
+        evals += method.stages
         if not error <= 1.0:
             # Written so that a NaN shrinks the step as well.
             h = step * max(SHRINK, SAFETY * error**power) if error < 1e9 else SHRINK * step
@@ -103,12 +98,15 @@ def march(eighth, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
                 set_pins(xs[frame], vs[frame], times[frame], p)
             ledgers[frame] = ledger
             frame += 1
-        x[:], v[:], a[:] = xn, vn, an
+        accept(method, x, v, stages, xn, vn)
         t = after
         steps += 1
         if not is_sane(x):
             break
-        factor = min(grow, SAFETY * error**power) if error > 0.0 else grow
+        factor = grow
+        if error > 0.0:
+            factor = min(grow, SAFETY * error ** (NOW * power) / before ** (BEFORE * power))
+            before = max(error, 1e-4)
         # A step cut short to land says little about the next.
         h = max(h, step * factor) if landing else step * max(SHRINK, factor)
         grow = GROW

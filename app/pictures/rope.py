@@ -203,6 +203,11 @@ def warm_up() -> Iterator[str]:
     sweep(line, THICKNESS, SIDES, vertices)
 
 
+def stiffness_knob(params: Any) -> str:
+    """The knob that a map of step and stiffness is about."""
+    return "stiffness" if params.units == "lab" else "axial_stiffness"
+
+
 def readout(snapshot: Snapshot) -> str:
     """The stability gauge and the colour scale, as HTML."""
     g = snapshot.gauge.stability

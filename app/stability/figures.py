@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from app.bench.report import COLOURS, MARKERS
+from app.stability import OUTCOMES
 from app.stability.drift import Drift
 from app.stability.linear import LinearMap, extra_damping
 from app.stability.rope import RopeMap
@@ -13,8 +14,6 @@ from sim.springs import INTEGRATORS
 
 ACROSS = 4  # maps in a row
 GROWS = "#D55E00"  # Okabe and Ito's vermilion
-# Told apart in grey as well: light, middle, dark.
-OUTCOMES = {"holds": "#CFE6F5", "rattles": "#E69F00", "explodes": "#8C2D04"}
 
 
 def panels(count: int, title: str) -> tuple[Any, list[Any], list[Any]]:

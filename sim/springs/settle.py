@@ -22,8 +22,10 @@ def settled(net: Net, x: NDArray[np.float64] | None = None) -> NDArray[np.float6
     is near, and everything stops there (Cundall 1976; Barnes 1988). Undamped, so that there is only a step to choose.
     A rope that hangs free is where `hanging_chain` says, exactly.
     """
-    if net.is_rope and net.floor is None and net.sphere is None and net.pinned == {(0, 0)}:
-        return np.ascontiguousarray(hanging_chain(net).x.T[:, None, :])
+    if net.is_rope and net.sphere is None and net.pinned == {(0, 0)}:
+        hanging = hanging_chain(net).x
+        if net.floor is None or hanging[:, 2].min() > net.floor + net.radius:
+            return np.ascontiguousarray(hanging.T[:, None, :])
     still = dataclasses.replace(
         net,
         families=tuple(f._replace(damping=0.0) for f in net.families),

@@ -120,15 +120,17 @@ def drift_figure(drifts: list[Drift]) -> Any:
     figure.suptitle("Energy of the undamped rope of ten points, swinging from 5°")
     for axes, symplectic in zip(figure.subplots(1, 2, sharey=True), (True, False), strict=True):
         for index, drift in enumerate(drift for drift in drifts if drift.symplectic == symplectic):
-            size = np.abs(drift.error[1:])
+            size = np.maximum.accumulate(np.abs(drift.error[1:]))
             style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 8], "markevery": 0.1}
-            axes.loglog(drift.t[1:], size, label=drift.name.replace("_", " "), linewidth=1.0, markersize=5, **style)
-        axes.set_ylim(1e-17, 1e2)
+            lost = drift.t[np.isnan(drift.error)]
+            label = drift.name.replace("_", " ") + (f" (gone at {lost[0]:.0f} s)" if len(lost) else "")
+            axes.loglog(drift.t[1:], size, label=label, linewidth=1.2, markersize=5, **style)
+        axes.set_ylim(1e-15, 1e2)
         axes.set_title("symplectic" if symplectic else "not symplectic", fontsize=10)
         axes.set_xlabel("time [s]")
         axes.grid(visible=True, which="major", color="0.9")
         axes.spines[["top", "right"]].set_visible(False)
-        axes.legend(frameon=False, fontsize=9)
+        axes.legend(frameon=False, fontsize=9, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
         if symplectic:
-            axes.set_ylabel("|energy error| / energy of the swing")
+            axes.set_ylabel("largest energy error so far / energy of the swing")
     return figure

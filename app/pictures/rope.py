@@ -16,7 +16,7 @@ from app.shapes import SIDES, ball, smooth_line, sweep, tube_faces
 ROPE_COLOUR = (196, 154, 92)
 BEAD_COLOUR = (58, 68, 86)
 HELD_COLOUR = (255, 90, 60)
-RINGS = 240  # about as many rings as a rope is drawn with
+RINGS = 120  # about as many rings as a rope is drawn with
 HANDS_OFF = 0.5  # [s] after its last drag that a gizmo is left alone
 
 
@@ -189,9 +189,8 @@ class Picture:
     def follow(self, thing: str, position: tuple[float, float, float]) -> None:
         """Move a gizmo to where its thing was put by other means, unless it is being dragged."""
         gizmo = self.gizmos[thing]
-        if time.monotonic() - self.dragged_at[thing] > HANDS_OFF and not np.allclose(
-            gizmo.position, position, atol=1e-4
-        ):
+        away = max(abs(float(a) - b) for a, b in zip(gizmo.position, position, strict=True))
+        if away > 1e-4 and time.monotonic() - self.dragged_at[thing] > HANDS_OFF:
             gizmo.position = position
 
 

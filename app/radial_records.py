@@ -32,6 +32,7 @@ class RadialPicture(NamedTuple):
     fire: tuple[NDArray[np.float32], NDArray[np.float32]] | None  # (3, n) [m], (2, n) heat and age over life
     jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
     spill: Spill
+    age: float  # [s] that the waves have run under the oil
 
 
 class Compared(NamedTuple):
@@ -43,6 +44,7 @@ class Compared(NamedTuple):
     extent: float  # [m] across, before it repeats
     height: float  # Hs [m] of its waves
     slope: float  # mean square slope of its waves
+    error: float  # of Hs, against the spectrum's, as a share
 
 
 class RadialGauge(NamedTuple):
@@ -57,3 +59,4 @@ class RadialGauge(NamedTuple):
     peak_period: float  # [s] of the wave in the middle of the energy
     tally: Tally
     compared: dict[str, Compared]
+    age: float  # [s] that the waves have run under the oil

@@ -27,7 +27,7 @@ HANDLE = 0.75  # [m] radius of what is dragged, at size 1
 HELD_COLOUR = (255, 90, 60)
 EYE_EVERY = 0.2  # [s] between looks at where the camera is
 VIEWS = {  # camera and target [m] when one of them is followed
-    "rig": ((RIG[0] - 58.0, RIG[1] - 78.0, 32.0), (RIG[0] + 12.0, RIG[1] - 4.0, 21.0)),
+    "rig": ((RIG[0] - 62.0, RIG[1] - 84.0, 40.0), (RIG[0] + 10.0, RIG[1] - 4.0, 16.0)),
     "from above": ((-9.5, -11.0, 8.5), (6.0, 3.6, -1.0)),
 }
 BODY_VIEW = (-5.2, -6.2, 2.4), (0.0, 0.0, 0.0)  # [m] of camera and target from a followed body at size 1.5
@@ -116,7 +116,7 @@ class Picture:
             )
 
     def show_sea(self, picture: RadialPicture) -> None:
-        look = look_of(self.light, picture.params, picture.spill, picture.slick, picture.section)
+        look = look_of(self.light, picture)
         if self.water is None or picture.grid is not self.grid:
             if self.water is not None:
                 self.water.remove()

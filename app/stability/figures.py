@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.report import COLOURS, MARKERS
+from app.bench.report import MARKERS
+from app.colour import TOLD_APART
 from app.stability import OUTCOMES
 from app.stability.drift import Drift
 from app.stability.linear import LinearMap, extra_damping
@@ -121,7 +122,7 @@ def drift_figure(drifts: list[Drift]) -> Any:
     for axes, symplectic in zip(figure.subplots(1, 2, sharey=True), (True, False), strict=True):
         for index, drift in enumerate(drift for drift in drifts if drift.symplectic == symplectic):
             size = np.maximum.accumulate(np.abs(drift.error[1:]))
-            style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 8], "markevery": 0.1}
+            style = {"color": TOLD_APART[index % 8], "marker": MARKERS[index % 8], "markevery": 0.1}
             lost = drift.t[np.isnan(drift.error)]
             label = drift.name.replace("_", " ") + (f" (gone at {lost[0]:.0f} s)" if len(lost) else "")
             axes.loglog(drift.t[1:], size, label=label, linewidth=1.2, markersize=5, **style)

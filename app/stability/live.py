@@ -54,7 +54,7 @@ class Row(NamedTuple):
 
 def shown(params: Any) -> tuple[Any, ...]:
     """The knobs that a map depends on."""
-    aside = ("Look", "Plots")
+    aside = ("Look", "Plots", "Race")
     names = [name for name, knob in knobs(params).items() if knob.group not in aside and name != "speed"]
     return tuple(getattr(params, name) for name in names)
 

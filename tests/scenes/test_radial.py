@@ -17,6 +17,7 @@ from app.scenes.radial import Scene
 from sim.floating import equilibrium_draft, heave_period
 from sim.knobs import check, clamp, knobs
 from sim.ocean.fluids import fluids
+from sim.ocean.radial import RadialSea
 
 CALM = {"waves": False, "rig": False, "ripples": False}
 
@@ -288,3 +289,22 @@ def test_arrays_have_units() -> None:
     for array, unit in radial.Scene(Params()).arrays().values():
         assert np.isfinite(array).all()
         assert unit
+
+
+@pytest.mark.parametrize("surface", ["sum", "fft"])
+def test_a_spill_ages_and_its_knob_sets_its_age_anew(surface: str) -> None:
+    heavy = {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 10.0, "bodies": 0, "surface": surface}
+    scene = Scene(with_knobs(**heavy))
+    before, square = scene.sum.significant_height, scene.make_tile().significant_height
+    run(scene, 60.0)
+    assert scene.gauge().age == pytest.approx(70.0, abs=0.2)
+    aged = RadialSea(scene.waves(), scene.spill, 70.0)
+    assert scene.sum.significant_height == pytest.approx(aged.significant_height, rel=1e-3)
+    assert scene.sum.significant_height < 0.995 * before
+    scene.picture()
+    assert scene.tile is not None
+    assert scene.tile.significant_height < 0.995 * square
+    scene.set_params(with_knobs(**{**heavy, "exposure": 20.0}))
+    assert scene.gauge().age == 20.0
+    still = Scene(with_knobs(**heavy, ageing=False))
+    assert run(still, 5.0).gauge().age == 10.0

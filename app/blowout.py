@@ -59,6 +59,9 @@ class Blowout:
         i, j = np.meshgrid(np.arange(PATCH), np.arange(PATCH), indexing="ij")
         self.points = np.column_stack([i.ravel(), j.ravel()]) * PATCH_CELL + self.origin
         self.set_params(params, params)
+        if self.fire is not None:  # it has burnt for long when the scene begins
+            for _ in range(int(SMOKE / 0.1)):
+                self.fire.step(0.1)
 
     def set_params(self, params: Params, old: Params) -> None:
         """Light or put out, open or close, as the knobs say; oil on the sea stays."""

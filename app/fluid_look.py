@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from app.blowout import Slick
-from app.radial_knobs import Params, exposure_of
-from app.section import Section
+from app.radial_knobs import Params
+from app.radial_records import RadialPicture
 from app.water import RGB, Look, Pit, SlickPatch
 from sim.ocean.spill import Spill
 
@@ -27,18 +27,19 @@ def blend(a: RGB | np.ndarray, b: RGB | np.ndarray, share: float) -> RGB:
     return x, y, z
 
 
-def ripple_slope(p: Params, spill: Spill) -> float:
-    """Root mean square slope of the material's ripples: Cox and Munk's, less what the fluid took of short waves."""
+def ripple_slope(p: Params, spill: Spill, age: float) -> float:
+    """Root mean square slope of the material's ripples: Cox and Munk's, less what `age` [s] of the fluid took."""
     clean = math.sqrt(0.003 + 0.00512 * p.wind_speed) if p.waves else 0.02
     k = np.array([2.0 * math.pi / RIPPLE])
-    kept = math.exp(-float(spill.roots(k)[1][0]) * exposure_of(p))
+    kept = math.exp(-float(spill.roots(k)[1][0]) * age)
     return min(clean, 0.24) * max(kept, 0.12)
 
 
-def look_of(light: Look, p: Params, spill: Spill, slick: Slick | None, section: Section | None) -> Look:
+def look_of(light: Look, picture: RadialPicture) -> Look:
     """The look under a light (`app.water.sky`), with a slick on clean water and a window into it."""
+    p, spill, section = picture.params, picture.spill, picture.section
     common = {
-        "ripple_slope": round(ripple_slope(p, spill), 3),
+        "ripple_slope": round(ripple_slope(p, spill, picture.age), 3),
         "ripple_length": 1.6 if spill.kind == "water" else 2.4,
         "ripple_direction": math.radians(p.wind_direction),
         "wireframe": p.grid,
@@ -48,7 +49,7 @@ def look_of(light: Look, p: Params, spill: Spill, slick: Slick | None, section: 
         "pit": None if section is None else Pit(section.middle, section.half, section.way, section.length),
     }
     if spill.kind == "water":
-        patch = None if slick is None else slick_patch(light, p, spill, slick)
+        patch = None if picture.slick is None else slick_patch(light, p, spill, picture.slick)
         return dataclasses.replace(light, **common, slick=patch)
     return dataclasses.replace(light, **common, **oil_colours(light, spill))
 
@@ -75,7 +76,7 @@ def slick_patch(light: Look, p: Params, spill: Spill, slick: Slick) -> SlickPatc
     """A slick of this oil, drawn as if it were thick: what thin oil shows of the water is left out."""
     layer = dataclasses.replace(spill, thickness=max(slick.thickness, 0.05), fraction=0.0)
     colours = oil_colours(light, layer)
-    calm = ripple_slope(dataclasses.replace(p, spill="layer"), layer) / ripple_slope(p, spill)
+    calm = ripple_slope(p, layer, p.exposure) / ripple_slope(p, spill, 0.0)
     return SlickPatch(
         slick.centre, round(slick.radius, 1), colours["deep"], colours["scatter"], spill.oil.refractive_index,
         colours["roughness"], round(calm, 2),

@@ -36,8 +36,9 @@ class Params:
     mixture_law: str = knob("taylor", choices=tuple(MIXTURE_LAWS), doc="Viscosity of the mixture", group="Oil")
     film: bool = knob(False, doc="An inextensible film besides: oil on troubled waters", group="Oil")
     exposure: float = knob(
-        60.0, 0.0, 3600.0, "s", "How long the waves have run under the oil", log_from=1.0, group="Oil"
+        60.0, 0.0, 3600.0, "s", "How long the waves have run under the oil at the start", log_from=1.0, group="Oil"
     )
+    ageing: bool = knob(True, doc="That time runs on, and the waves go on decaying", group="Oil")
     optics: str = knob(
         "physical",
         choices=("physical", "lab"),
@@ -82,6 +83,8 @@ class Params:
     plot_draft: bool = knob(False, doc="Drafts of the first three bodies over time", group="Plots")
     plot_surface: bool = knob(False, doc="Height of the surface and of the first buoy", group="Plots")
 
+    hull: str = ""  # a mesh file that floats besides; named on the command line only, never by a browser
+
 
 PRESETS: dict[str, dict[str, Any]] = {
     "Clear water": {},
@@ -114,11 +117,11 @@ def hidden(params: Params) -> set[str]:
     if params.spill != "mixed":
         names |= {"fraction", "mixture_law"}
     if params.spill == "none":
-        names |= {"film", "exposure", "optics"}
+        names |= {"film", "exposure", "ageing", "optics"}
         if not (params.rig and params.jet):
             names.add("oil")
     if not params.waves:
-        names |= {"wind_speed", "wind_direction", "spectrum", "wave_count", "choppiness", "exposure", "film"}
+        names |= {"wind_speed", "wind_direction", "spectrum", "wave_count", "choppiness", "exposure", "ageing", "film"}
     if params.bodies == 0:
         names |= {"density", "size", "ripples", "mooring", "pull"}
     if not params.rig:

@@ -16,10 +16,15 @@ from typing import Any
 
 import numba
 import platformdirs
+from numba import prange  # for the kernels that are parallel
 from numba.core.caching import IndexDataCacheFile
 from numba.core.compiler import Flags
 from numba.core.options import TargetOptions
 from numba.core.registry import cpu_target
+
+__all__ = ["CACHE", "MOST_THREADS", "kernel", "prange", "set_threads"]
+
+MOST_THREADS: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
 
 # Every flag of `fastmath` but nnan and ninf: a NaN must stay visible to the checks that stop a run.
 FASTMATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
@@ -120,3 +125,8 @@ def kernel(
     if CACHE is not None:
         compiled._cache._cache_file.__class__ = KernelFile  # type: ignore[attr-defined]
     return compiled
+
+
+def set_threads(count: int) -> None:
+    """How many threads the calling thread's parallel kernels take. A kernel that set it could not be cached."""
+    numba.set_num_threads(count)

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from app.colour import TOLD_APART
 from app.replacing import replacing
 
 Rows = list[dict[str, Any]]
 
-# Okabe and Ito's palette, told apart with any colour vision, each with a marker of its own.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+# One for each of the colours.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
 
@@ -108,8 +108,8 @@ def mark_slopes(axes: Any, curves: Iterable[tuple[list[float], list[float]]]) ->
             marked.add(order)
 
 
-def work_precision(rows: Rows, title: str) -> Any:
-    """Error at the end over run time and over force evaluations, a curve a method, both logarithmic."""
+def work_precision(rows: Rows, title: str, error: str = "error at 1 s [m]") -> Any:
+    """The column `error` over run time and over force evaluations, a curve a method, both logarithmic."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10.0, 4.4), layout="constrained")
@@ -125,8 +125,14 @@ def work_precision(rows: Rows, title: str) -> Any:
         curves = []
         for index, method in enumerate(methods):
             own = sorted((row for row in rows if row["method"] == method), key=lambda row: row["force evaluations"])
-            x, y = [row[column] for row in own], [row["error at 1 s [m]"] for row in own]
-            style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 8], "markersize": 5}
+            x, y = [row[column] for row in own], [row[error] for row in own]
+            dash = "-" if index < 8 else "--"
+            style = {
+                "color": TOLD_APART[index % 8],
+                "marker": MARKERS[index % 8],
+                "markersize": 5,
+                "linestyle": dash,
+            }
             axes.loglog(x, y, label=method.replace("_", " "), **style)
             curves.append((x, y))
         if column == "force evaluations":
@@ -135,7 +141,7 @@ def work_precision(rows: Rows, title: str) -> Any:
         axes.grid(visible=True, which="major", color="0.9")
         axes.spines[["top", "right"]].set_visible(False)
     floor = max(row["reference good to [m]"] for row in rows)
-    panels[0].set_ylabel("error at 1 s [m]")
+    panels[0].set_ylabel(error)
     panels[0].legend(frameon=False, fontsize=9)
     for axes in panels:
         axes.axhline(floor, color="0.6", linestyle=":", linewidth=1.0)

@@ -18,7 +18,7 @@ from app.radial_records import Compared, RadialGauge, RadialPicture
 from app.section import Section, outline, section_at
 from app.wakes import LENGTH as WAKES_LENGTH
 from app.wakes import Wakes
-from sim.floating import Laws
+from sim.floating import Hull, Laws
 from sim.knobs import check
 from sim.ocean import Sea
 from sim.ocean.gerstner import Waves, draw_waves
@@ -44,6 +44,8 @@ RADIUS = 5000.0  # [m] of the grid
 INNER = 0.35  # [m] its first ring
 TILE, TILE_LENGTH = 128, 256.0  # the square sea: as many vertices as the rings
 SAMPLE_EVERY = 1 / 15  # [s] between plot rows
+AGE_EVERY = 1.0  # [s] between two decays of the sum of waves
+AGE_TILE = 0.2  # growth of the age at which the square sea, which takes longer, is made anew
 COMPARE_EVERY = 2.0  # [s] of wall time between two timings of the other surface
 FOAM_NEAR = 80.0  # [m] within which the Jacobian is looked at for foam
 FOAM_OVER = 0.07  # of the Jacobian, over which foam fills up
@@ -70,6 +72,7 @@ class Scene:
 
     def __init__(self, params: Params) -> None:
         self.params = params
+        self.own = Hull.load(params.hull) if params.hull else None
         self.samples: list[tuple[float, ...]] = []
         self.counts: collections.Counter[str] = collections.Counter()
         self.reset()
@@ -82,11 +85,12 @@ class Scene:
         """The bodies at rest in their places, and no oil but the layer the knobs ask for."""
         p = self.params
         self.time = 0.0
-        self.spill = spill_of(p)
-        self.sum = RadialSea(self.waves(), self.spill, exposure_of(p), p.choppiness)
+        self.spill, self.age = spill_of(p), exposure_of(p)
+        self.sum = RadialSea(self.waves(), self.spill, self.age, p.choppiness)
         self.tile: TileSea | None = None
+        self.tile_age = 0.0
         self.grid = self.make_grid()
-        self.crowd = Crowd(p.bodies, p.size, p.density, self.spill)
+        self.crowd = Crowd(p.bodies, p.size, p.density, self.spill, self.own)
         self.wakes = Wakes()
         self.blowout = Blowout(p)
         self.eye = (0.0, 0.0)
@@ -109,7 +113,8 @@ class Scene:
     def make_tile(self) -> TileSea:
         """The square sea under the same wind and oil; what oil took of a wave, exp(-2 nu k^2 T), is its low-pass."""
         p, fluid = self.params, self.spill.surface
-        low_pass = 2.0 * math.sqrt(fluid.kinematic_viscosity * exposure_of(p))
+        low_pass = 2.0 * math.sqrt(fluid.kinematic_viscosity * self.age)
+        self.tile_age = self.age
         conditions = dataclasses.replace(conditions_of(p), low_pass=low_pass)
         wind = {name: getattr(conditions, name) for name in ("wind_speed", "wind_direction", "low_pass")}
         sea = Sea(TILE, TILE_LENGTH, p.spectrum, choppiness=p.choppiness, frequency=self.spill.omega, **wind)
@@ -134,15 +139,17 @@ class Scene:
         self.spill = spill_of(params)
         sea = changed("waves", "wind_speed", "wind_direction", "spectrum", "wave_count")
         fluids = changed("spill", "oil", "thickness", "fraction", "mixture_law", "film", "exposure")
+        if fluids:
+            self.age = exposure_of(params)
         if sea or fluids:
-            self.sum.change(self.time, self.waves() if sea else None, self.spill, exposure_of(params))
+            self.sum.change(self.time, self.waves() if sea else None, self.spill, self.age)
         self.sum.choppiness = params.choppiness
         if sea or fluids or changed("choppiness"):
             self.tile = None
         if changed("rings", "spokes", "ring_law"):
             self.grid = self.make_grid()
         if changed("bodies", "size"):
-            self.crowd = Crowd(params.bodies, params.size, params.density, self.spill)
+            self.crowd = Crowd(params.bodies, params.size, params.density, self.spill, self.own)
             self.target = None
         elif fluids or changed("density"):
             self.crowd.restate(params.density, self.spill)
@@ -183,6 +190,8 @@ class Scene:
                 if plotted and self.time - self.sampled_at >= SAMPLE_EVERY:
                     self.sample(float(at.height[0]))
             self.time += h
+        if self.params.ageing and self.spill.kind != "water":
+            self.grow_old(steps * h)
         n = crowd.count
         done = {"body steps": steps * n, "pairs": steps * n * (n - 1) // 2, "touches": crowd.touched - touched}
         self.counts.update(done)
@@ -190,6 +199,14 @@ class Scene:
             self.wakes.press(self.time, crowd.fleet.position[:, :2], crowd.widths, crowd.impulse)
         crowd.impulse[:] = 0.0
         self.blowout.step(sea, self.time, steps * h)
+
+    def grow_old(self, duration: float) -> None:
+        """Let the waves decay under the oil for `duration` [s] more."""
+        self.age += duration
+        if self.age - self.sum.exposure >= AGE_EVERY:
+            self.sum.age(self.age)
+        if self.tile is not None and self.age > (1.0 + AGE_TILE) * self.tile_age + AGE_EVERY:
+            self.tile = None
 
     def layer_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Thickness (n,) [m] of oil under the surface at points (n, 2) [m]."""
@@ -235,12 +252,14 @@ class Scene:
             slick=self.blowout.slick(self.spill) if self.spill.kind == "water" else None,
             section=self.section,
             kinds=tuple(crowd.kinds),
+            own=self.own,
             positions=crowd.fleet.position.astype(np.float32),
             rotations=crowd.fleet.rotation.astype(np.float32),
             pull=pull,
             fire=flames,
             jet=None if jet is None else jet.position[:, jet.flying].T.astype(np.float32),
             spill=self.spill,
+            age=self.age,
         )
 
     def draw(self) -> None:
@@ -314,10 +333,13 @@ class Scene:
         if "sum" in self.costs:
             shortest, extent = 2 * float(grid.spacing[0]), 2 * float(grid.radii[-1])
             numbers = shortest, extent, s.significant_height, s.mean_square_slope
-            compared["sum"] = Compared(self.costs["sum"], len(clean.kx), *numbers)
+            compared["sum"] = Compared(
+                self.costs["sum"], len(clean.kx), *numbers, 0.0
+            )  # of equal energy by their making
         if "fft" in self.costs and tile is not None:
             numbers = 2 * TILE_LENGTH / TILE, TILE_LENGTH, tile.significant_height, tile.mean_square_slope
-            compared["fft"] = Compared(self.costs["fft"], TILE * TILE // 2, *numbers)
+            error = tile.significant_height / s.significant_height - 1.0 if s.significant_height > 0.0 else 0.0
+            compared["fft"] = Compared(self.costs["fft"], TILE * TILE // 2, *numbers, error)
         return RadialGauge(
             readings=self.crowd.readings(self.time),
             spill=self.spill,
@@ -328,6 +350,7 @@ class Scene:
             peak_period=2 * math.pi / float(s.rate[len(s.rate) // 2]),
             tally=self.blowout.tally(self.spill),
             compared=compared,
+            age=self.age,
         )
 
     def work(self) -> dict[str, Work]:

@@ -3,11 +3,13 @@
 import dataclasses
 import itertools
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from app.__main__ import main
 from app.blowout import Blowout, slick_reach
 from app.crowd import HeaveMeter, hull_of, place_of
 from app.messages import Grab, Place, Release
@@ -17,6 +19,7 @@ from app.scenes.radial import Scene
 from sim.floating import equilibrium_draft, heave_period
 from sim.knobs import check, clamp, knobs
 from sim.ocean.fluids import fluids
+from sim.ocean.radial import RadialSea
 
 CALM = {"waves": False, "rig": False, "ripples": False}
 
@@ -288,3 +291,65 @@ def test_arrays_have_units() -> None:
     for array, unit in radial.Scene(Params()).arrays().values():
         assert np.isfinite(array).all()
         assert unit
+
+
+@pytest.mark.parametrize("surface", ["sum", "fft"])
+def test_a_spill_ages_and_its_knob_sets_its_age_anew(surface: str) -> None:
+    heavy = {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 10.0, "bodies": 0, "surface": surface}
+    scene = Scene(with_knobs(**heavy))
+    before, square = scene.sum.significant_height, scene.make_tile().significant_height
+    run(scene, 60.0)
+    assert scene.gauge().age == pytest.approx(70.0, abs=0.2)
+    aged = RadialSea(scene.waves(), scene.spill, 70.0)
+    assert scene.sum.significant_height == pytest.approx(aged.significant_height, rel=1e-3)
+    assert scene.sum.significant_height < 0.995 * before
+    scene.picture()
+    assert scene.tile is not None
+    assert scene.tile.significant_height < 0.995 * square
+    scene.set_params(with_knobs(**{**heavy, "exposure": 20.0}))
+    assert scene.gauge().age == 20.0
+    still = Scene(with_knobs(**heavy, ageing=False))
+    assert run(still, 5.0).gauge().age == 10.0
+
+
+def write_boat(path: Path, *, closed: bool = True) -> Path:
+    """An STL of a wedge, 2 m long, 1 m wide, 0.5 m deep; without its stern unless closed."""
+    corners = np.array([[-1, -0.5, 0], [-1, 0.5, 0], [1, 0, 0], [-1, -0.5, -0.5], [-1, 0.5, -0.5], [1, 0, -0.5]], float)
+    faces = [(0, 2, 1), (3, 4, 5), (0, 3, 5), (0, 5, 2), (1, 2, 5), (1, 5, 4), (0, 1, 4), (0, 4, 3)]
+    lines = ["solid boat"]
+    for face in faces[: None if closed else 6]:
+        lines += ["facet normal 0 0 0", "outer loop"]
+        lines += ["vertex {} {} {}".format(*corners[v]) for v in face]
+        lines += ["endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid boat"]))
+    return path
+
+
+def test_a_hull_from_a_file_floats_besides_at_the_draft_of_the_readout(tmp_path: Path) -> None:
+    path = write_boat(tmp_path / "boat.stl")
+    scene = Scene(dataclasses.replace(with_knobs(**CALM, spill="layer", thickness=0.1), hull=str(path)))
+    run(scene, 90.0)
+    reading = scene.gauge().readings[-1]
+    assert reading.kind == "hull"
+    prism = 450.0 * 0.5  # [kg/m2] over its waterplane, which is the same at every draft
+    rho = scene.spill.oil.density
+    assert reading.theory.draft == pytest.approx(0.1 + (prism - rho * 0.1) / 1025.0, abs=1e-9)
+    picture = scene.picture()
+    assert picture.kinds[-1] == "hull"
+    assert picture.own is not None
+    assert len(picture.positions) == 4
+    scene.set_params(dataclasses.replace(scene.params, bodies=1))
+    assert scene.crowd.kinds == ["buoy_red", "hull"]
+
+
+def test_a_mesh_that_is_not_closed_ends_the_command_with_one_line(tmp_path: Path, capsys) -> None:
+    path = write_boat(tmp_path / "open.stl", closed=False)
+    out = ["--seconds", "1", "--out", str(tmp_path / "a.npz"), "--hull"]
+    assert main(["run", "radial", *out, str(path)]) == 2
+    said = capsys.readouterr().err
+    assert "closed" in said
+    assert said.count("\n") == 1
+    assert main(["run", "radial", *out, str(tmp_path / "none.stl")]) == 2
+    assert main(["run", "rope", *out, str(write_boat(tmp_path / "boat.stl"))]) == 2
+    assert "radial" in capsys.readouterr().err
+    assert main(["run", "radial", *out, str(tmp_path / "boat.stl")]) == 0

@@ -30,6 +30,7 @@ class Integrator(NamedTuple):
     lag: float = 0.0  # v is stored this part of a step before x
     undamped_order: int = 0  # where it differs from `order`
     implicit: bool = False  # a force evaluation is then one correction of Newton's method, `evals` the least number
+    outside: int = 0  # of implicit methods: force evaluations a step beside those corrections
     l_stable: bool = False  # what it cannot follow decays within a step
     undamped_only: bool = False  # refuses nets with damping
     march: Callable[..., tuple[int, int, int, float]] | None = None  # adaptive methods: with steps of its own choosing

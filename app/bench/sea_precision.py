@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.report import COLOURS, MARKERS
+from app.bench.report import MARKERS
+from app.colour import TOLD_APART
 from sim.ocean import Sea
 from sim.ocean.query import sample
 from sim.ocean.wave_sum import add_waves
@@ -149,7 +150,7 @@ def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
         for index, method in enumerate(dict.fromkeys(row["method"] for row in own)):
             curve = [row for row in own if row["method"] == method]
             x, y = [row["ms"] for row in curve], [row["error"] for row in curve]
-            axes.loglog(x, y, label=method, color=COLOURS[index], marker=MARKERS[index], markersize=5)
+            axes.loglog(x, y, label=method, color=TOLD_APART[index], marker=MARKERS[index], markersize=5)
             for row in curve:
                 axes.annotate(
                     str(row["size"]), (row["ms"], row["error"]), (4, 3), textcoords="offset points", fontsize=7

@@ -244,11 +244,12 @@ class Scene:
         """The sea as it is now; what has not changed is handed out again."""
         p, drawn = self.params, self.drawn
         if drawn is None or drawn.time != self.time or changed(drawn.params, p) - LOOKS:
-            self.drawn = self.draw()
+            drawn = self.draw()
         elif drawn.params != p:
-            self.drawn = drawn._replace(params=p)
+            drawn = drawn._replace(params=p)
             self.counts["pictures kept"] += 1
-        return self.drawn
+        self.drawn = drawn
+        return drawn
 
     def draw(self) -> SeaPicture:
         """Evaluate the surface once, and let foam, rain, probe and statistics catch up with it."""

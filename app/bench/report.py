@@ -14,7 +14,7 @@ Rows = list[dict[str, Any]]
 
 # Okabe and Ito's palette, told apart with any colour vision, each with a marker of its own.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h", "p", "d")
 
 
 def machine() -> str:
@@ -109,7 +109,7 @@ def work_precision(rows: Rows, title: str) -> Any:
     """Error at the end over run time and over force evaluations, a curve a method, both logarithmic."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(10.0, 4.4), layout="constrained")
+    figure = Figure(figsize=(10.0, 5.2), layout="constrained")
     figure.suptitle(title)
     panels = figure.subplots(1, 2, sharey=True)
     methods = list(dict.fromkeys(row["method"] for row in rows))
@@ -122,8 +122,9 @@ def work_precision(rows: Rows, title: str) -> Any:
         curves = []
         for index, method in enumerate(methods):
             own = sorted((row for row in rows if row["method"] == method), key=lambda row: row["force evaluations"])
-            x, y = [row[column] for row in own], [row["error at 1 s [m]"] for row in own]
-            style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 8], "markersize": 5}
+            x, y = [row[column] for row in own], [row["error [m]"] for row in own]
+            dashes = "-" if index < len(COLOURS) else "--"
+            style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 13], "markersize": 5, "linestyle": dashes}
             axes.loglog(x, y, label=method.replace("_", " "), **style)
             curves.append((x, y))
         if column == "force evaluations":
@@ -132,8 +133,10 @@ def work_precision(rows: Rows, title: str) -> Any:
         axes.grid(visible=True, which="major", color="0.9")
         axes.spines[["top", "right"]].set_visible(False)
     floor = max(row["reference good to [m]"] for row in rows)
-    panels[0].set_ylabel("error at 1 s [m]")
-    panels[0].legend(frameon=False, fontsize=9)
+    panels[0].set_ylabel("error [m]")
+    figure.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=6, frameon=False, fontsize=8
+    )
     for axes in panels:
         axes.axhline(floor, color="0.6", linestyle=":", linewidth=1.0)
     panels[1].annotate("reference good to here", (1.0, floor), (0, 3), xycoords=("axes fraction", "data"),

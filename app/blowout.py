@@ -19,10 +19,9 @@ FIRE_WIDTH = 9.0  # [m]
 NOZZLE = (RIG[0] - 12.0, RIG[1] - 17.0, 20.0)  # [m] on the edge of the deck towards the buoys
 GUSH = (-9.0, -7.0, 9.5)  # [m/s]
 UPDRAFT = 3.0  # [m/s] of the air that the fire draws up
-SMOKE = 13.0  # [s] that a parcel lives
+SMOKE = 24.0  # [s] that a parcel lives
 FLIGHT = 4.0  # [s] about as long as a parcel is in the air
 PATCH, PATCH_CELL = 16, 3.0  # points a side, and their distance [m], of the sea that parcels are compared with
-OUTLINE = ((3, 0.10, 0.4), (5, 0.06, 2.0), (9, 0.03, 1.0))  # lobes of the slick: number, size, phase
 
 
 class Slick(NamedTuple):
@@ -60,6 +59,9 @@ class Blowout:
         i, j = np.meshgrid(np.arange(PATCH), np.arange(PATCH), indexing="ij")
         self.points = np.column_stack([i.ravel(), j.ravel()]) * PATCH_CELL + self.origin
         self.set_params(params, params)
+        if self.fire is not None:  # it has burnt for long when the scene begins
+            for _ in range(int(SMOKE / 0.1)):
+                self.fire.step(0.1)
 
     def set_params(self, params: Params, old: Params) -> None:
         """Light or put out, open or close, as the knobs say; oil on the sea stays."""
@@ -128,10 +130,5 @@ def wind_of(params: Params) -> tuple[float, float]:
 
 
 def slick_reach(slick: Slick, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """How far inside the slick's lobed outline points are [m], negative outside."""
-    dx, dy = x - slick.centre[0], y - slick.centre[1]
-    bearing = np.arctan2(dy, dx)
-    edge = np.full_like(bearing, 1.0)
-    for lobes, size, phase in OUTLINE:
-        edge += size * np.sin(lobes * bearing + phase)
-    return slick.radius * edge - np.hypot(dx, dy)
+    """How far inside the slick points are [m], negative outside. It is round; drawn, its edge is torn."""
+    return slick.radius - np.hypot(x - slick.centre[0], y - slick.centre[1])

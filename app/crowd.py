@@ -23,7 +23,7 @@ from sim.ocean.radial import SurfaceAt
 from sim.ocean.spill import Spill
 
 KINDS = ("buoy_red", "buoy_yellow", "crate", "ball")
-PLACES = ((-2.4, 1.0), (0.9, 4.0), (0.4, -0.8))  # [m] at size 1 of the first three
+PLACES = ((-2.4, 1.0), (-3.0, 4.6), (0.4, -0.8))  # [m] at size 1 of the first three
 RING = 4.2  # [m] at size 1: from one turn of the spiral of the others to the next
 DEEPEST = -60.0  # [m] where what sinks comes to rest
 SLACK = 1.5  # [m] at size 1 of a mooring line

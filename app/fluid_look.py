@@ -2,11 +2,14 @@
 
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 
-from app.radial_knobs import Params, exposure_of
-from app.water import RGB, Look
+from app.blowout import Slick
+from app.radial_knobs import Params
+from app.radial_records import RadialPicture
+from app.water import RGB, Look, Pit, SlickPatch
 from sim.ocean.spill import Spill
 
 LAB_SPECULAR = 0.4  # share of the reflection that the lab's mode keeps of oil
@@ -24,31 +27,34 @@ def blend(a: RGB | np.ndarray, b: RGB | np.ndarray, share: float) -> RGB:
     return x, y, z
 
 
-def ripple_slope(p: Params, spill: Spill) -> float:
-    """Root mean square slope of the material's ripples: Cox and Munk's, less what the fluid took of short waves."""
+def ripple_slope(p: Params, spill: Spill, age: float) -> float:
+    """Root mean square slope of the material's ripples: Cox and Munk's, less what `age` [s] of the fluid took."""
     clean = math.sqrt(0.003 + 0.00512 * p.wind_speed) if p.waves else 0.02
     k = np.array([2.0 * math.pi / RIPPLE])
-    kept = math.exp(-float(spill.roots(k)[1][0]) * exposure_of(p))
+    kept = math.exp(-float(spill.roots(k)[1][0]) * age)
     return min(clean, 0.24) * max(kept, 0.12)
 
 
-def look_of(light: Look, p: Params, spill: Spill) -> Look:
-    """The look under a light (`app.water.sky`)."""
+def look_of(light: Look, picture: RadialPicture) -> Look:
+    """The look under a light (`app.water.sky`), with a slick on clean water and a window into it."""
+    p, spill, section = picture.params, picture.spill, picture.section
     common = {
-        "ripple_slope": round(ripple_slope(p, spill), 3),
+        "ripple_slope": round(ripple_slope(p, spill, picture.age), 3),
         "ripple_length": 1.6 if spill.kind == "water" else 2.4,
         "ripple_direction": math.radians(p.wind_direction),
         "wireframe": p.grid,
         "specular": LAB_SPECULAR if p.optics == "lab" and p.spill != "none" else 1.0,
         "refractive_index": spill.surface.refractive_index,
         "clouds": min(0.15 + 0.045 * p.wind_speed, 0.9),
+        "pit": None if section is None else Pit(section.middle, section.half, section.way, section.length),
     }
     if spill.kind == "water":
-        return dataclasses.replace(light, **common)
+        patch = None if picture.slick is None else slick_patch(light, p, spill, picture.slick)
+        return dataclasses.replace(light, **common, slick=patch)
     return dataclasses.replace(light, **common, **oil_colours(light, spill))
 
 
-def oil_colours(light: Look, spill: Spill) -> dict[str, object]:
+def oil_colours(light: Look, spill: Spill) -> dict[str, Any]:
     """Body colours. Oil sends nearly no light back from below; a mixture is brown and turbid."""
     oil = rgb_of(spill.oil.colour)
     if spill.kind == "mixed":
@@ -62,13 +68,16 @@ def oil_colours(light: Look, spill: Spill) -> dict[str, object]:
         }
     # A thin layer lets some of the water's colour through: light is halved every few millimetres of crude.
     seen = 1.0 - math.exp(-spill.thickness / 0.004)
-    deep, scatter = blend(light.deep, 0.55 * oil, seen), blend(light.scatter, 0.9 * oil, seen)
+    deep, scatter = blend(light.deep, oil, seen), blend(light.scatter, 1.3 * oil, seen)
     return {"deep": deep, "scatter": scatter, "foam": blend(light.foam, (0.45, 0.36, 0.26), seen), "roughness": 0.02}
 
 
-def slick_look(light: Look, p: Params, spill: Spill) -> Look:
-    """The look of a slick that floats on clean water."""
-    layer = dataclasses.replace(spill, thickness=max(spill.thickness, 0.05), fraction=0.0)
-    return dataclasses.replace(
-        look_of(light, dataclasses.replace(p, spill="layer"), layer), dome=False, wireframe=p.grid
-    )
+def slick_patch(light: Look, p: Params, spill: Spill, slick: Slick) -> SlickPatch:
+    """A slick of this oil, drawn as if it were thick: what thin oil shows of the water is left out."""
+    layer = dataclasses.replace(spill, thickness=max(slick.thickness, 0.05), fraction=0.0)
+    colours = oil_colours(light, layer)
+    calm = ripple_slope(p, layer, p.exposure) / ripple_slope(p, spill, 0.0)
+    return SlickPatch(
+        slick.centre, round(slick.radius, 1), colours["deep"], colours["scatter"], spill.oil.refractive_index,
+        colours["roughness"], round(calm, 2),
+    )  # fmt: skip

@@ -9,9 +9,14 @@ RATE = 25.0  # [1/s]: what follows has done nine tenths of a jump after 0.16 s
 
 
 class Follower:
-    """A critically damped pursuit, y'' = r^2 (target - y) - 2 r y', exact over any time."""
+    """A critically damped pursuit, y'' = r^2 (target - y) - 2 r y', exact over any time.
 
-    def __init__(self, position: Vector) -> None:
+    top: largest speed along an axis [m/s]. A target further than 2 top/r is pursued as if it were that far: from rest,
+    or from any slower motion, the pursuit of a point ahead by d is never faster than r d/2.
+    """
+
+    def __init__(self, position: Vector, top: float = math.inf) -> None:
+        self.top = top
         self.position: Vector = position
         self.velocity: Vector = (0.0, 0.0, 0.0)
         self.target: Vector = position
@@ -27,7 +32,9 @@ class Follower:
         x0, v0 = self.position, self.velocity
         decay = math.exp(-RATE * duration)
         x1, v1 = [], []
-        for x, v, target in zip(x0, v0, self.target, strict=True):
+        reach = 2.0 * self.top / RATE
+        ahead = tuple(x + min(max(target - x, -reach), reach) for x, target in zip(x0, self.target, strict=True))
+        for x, v, target in zip(x0, v0, ahead, strict=True):
             # y - target = (a + b t) exp(-r t) with a = y0 - target, b = v0 + r a
             a = x - target
             b = v + RATE * a
@@ -45,4 +52,4 @@ class Follower:
 
     def put(self, position: Vector) -> None:
         """Be at rest there at once."""
-        self.__init__(position)
+        self.__init__(position, self.top)

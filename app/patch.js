@@ -89,6 +89,8 @@ function tell(alive) {
 }
 
 function beforeRender(renderer, scene, camera) {
+  // viser fades the picture in over the first five frames after its sky is there: many seconds where frames are slow.
+  if (scene.environment) renderer.domElement.style.opacity = "1";
   window.__springtide = { memory: () => ({ ...renderer.info.memory }) }; // what a leak would show in
   const nodes = window.__viserMutable.nodeRefFromName;
   const alive = [];

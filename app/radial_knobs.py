@@ -12,7 +12,7 @@ from sim.ocean.spill import Spill
 
 OILS = tuple(name for name in fluids() if "water" not in name)
 SPILLS = ("none", "layer", "mixed")
-FOLLOWED = ("free", "first buoy", "second buoy", "box", "rig")
+FOLLOWED = ("free", "first buoy", "second buoy", "box", "window", "from above", "rig")
 SKIES = ("park", "sunset", "dawn", "night")
 
 
@@ -36,8 +36,9 @@ class Params:
     mixture_law: str = knob("taylor", choices=tuple(MIXTURE_LAWS), doc="Viscosity of the mixture", group="Oil")
     film: bool = knob(False, doc="An inextensible film besides: oil on troubled waters", group="Oil")
     exposure: float = knob(
-        60.0, 0.0, 3600.0, "s", "How long the waves have run under the oil", log_from=1.0, group="Oil"
+        60.0, 0.0, 3600.0, "s", "How long the waves have run under the oil at the start", log_from=1.0, group="Oil"
     )
+    ageing: bool = knob(True, doc="That time runs on, and the waves go on decaying", group="Oil")
     optics: str = knob(
         "physical",
         choices=("physical", "lab"),
@@ -75,6 +76,9 @@ class Params:
 
     follow: str = knob("free", choices=FOLLOWED, doc="What the camera looks at and goes along with", group="Look")
     sky: str = knob("park", choices=SKIES, doc="Sky and light", group="Look")
+    section: bool = knob(
+        False, doc="A window into the sea before the first buoy: the oil, the interface, the hull in both", group="Look"
+    )
     grid: bool = knob(False, doc="Lines of the mesh", group="Look")
     plot_draft: bool = knob(False, doc="Drafts of the first three bodies over time", group="Plots")
     plot_surface: bool = knob(False, doc="Height of the surface and of the first buoy", group="Plots")
@@ -82,10 +86,23 @@ class Params:
 
 PRESETS: dict[str, dict[str, Any]] = {
     "Clear water": {},
-    "Light crude spill 0.2 m": {"spill": "layer", "thickness": 0.2, "exposure": 60.0},
-    "Heavy fuel oil": {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 600.0},
-    "Entirely mixed": {"spill": "mixed", "oil": "Arabian Light", "fraction": 0.4, "sky": "dawn"},
-    "Storm with buoys": {"wind_speed": 17.0, "bodies": 12, "wave_count": 160, "sky": "dawn", "size": 2.0},
+    "Light crude spill 0.2 m": {
+        "spill": "layer",
+        "thickness": 0.2,
+        "exposure": 60.0,
+        "section": True,
+        "follow": "window",
+        "wind_speed": 5.0,
+    },
+    "Heavy fuel oil": {
+        "spill": "layer",
+        "oil": "IFO 180",
+        "thickness": 0.5,
+        "exposure": 600.0,
+        "follow": "from above",
+    },
+    "Entirely mixed": {"spill": "mixed", "oil": "Arabian Light", "fraction": 0.4, "follow": "from above"},
+    "Storm with buoys": {"wind_speed": 17.0, "bodies": 12, "wave_count": 160, "size": 2.0, "follow": "from above"},
     "Burning rig": {"fire": True, "jet": True, "follow": "rig", "sky": "dawn", "wind_speed": 6.0},
 }
 
@@ -98,11 +115,11 @@ def hidden(params: Params) -> set[str]:
     if params.spill != "mixed":
         names |= {"fraction", "mixture_law"}
     if params.spill == "none":
-        names |= {"film", "exposure", "optics"}
+        names |= {"film", "exposure", "ageing", "optics"}
         if not (params.rig and params.jet):
             names.add("oil")
     if not params.waves:
-        names |= {"wind_speed", "wind_direction", "spectrum", "wave_count", "choppiness", "exposure", "film"}
+        names |= {"wind_speed", "wind_direction", "spectrum", "wave_count", "choppiness", "exposure", "ageing", "film"}
     if params.bodies == 0:
         names |= {"density", "size", "ripples", "mooring", "pull"}
     if not params.rig:

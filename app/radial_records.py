@@ -5,21 +5,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.blowout import Tally
+from app.blowout import Slick, Tally
 from app.crowd import Reading
 from app.messages import Vector
 from app.radial_knobs import Params
+from app.section import Section
 from sim.ocean.radial import RadialSurface
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.spill import Spill
-
-
-class SlickShape(NamedTuple):
-    """The slick as a mesh over the first rings of the sea's."""
-
-    vertices: NDArray[np.float32]  # (m, 3) [m]
-    slopes: NDArray[np.float32]  # (m, 2)
-    rings: int
 
 
 class RadialPicture(NamedTuple):
@@ -30,7 +23,8 @@ class RadialPicture(NamedTuple):
     grid: RadialGrid
     surface: RadialSurface
     foam: NDArray[np.float32]  # (n,)
-    slick: SlickShape | None
+    slick: Slick | None  # drawn on clean water only: on a layer it would not show
+    section: Section | None
     kinds: tuple[str, ...]  # of the bodies
     positions: NDArray[np.float32]  # (bodies, 3) [m]
     rotations: NDArray[np.float32]  # (bodies, 4) quaternions (w, x, y, z)
@@ -38,6 +32,7 @@ class RadialPicture(NamedTuple):
     fire: tuple[NDArray[np.float32], NDArray[np.float32]] | None  # (3, n) [m], (2, n) heat and age over life
     jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
     spill: Spill
+    age: float  # [s] that the waves have run under the oil
 
 
 class Compared(NamedTuple):
@@ -49,6 +44,7 @@ class Compared(NamedTuple):
     extent: float  # [m] across, before it repeats
     height: float  # Hs [m] of its waves
     slope: float  # mean square slope of its waves
+    error: float  # of Hs, against the spectrum's, as a share
 
 
 class RadialGauge(NamedTuple):
@@ -63,3 +59,4 @@ class RadialGauge(NamedTuple):
     peak_period: float  # [s] of the wave in the middle of the energy
     tally: Tally
     compared: dict[str, Compared]
+    age: float  # [s] that the waves have run under the oil

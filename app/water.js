@@ -6,6 +6,7 @@
 const WATER_UNIFORMS = [
   "deep", "scatter", "foamColor", "sunDirection", "sunColor", "optics",
   "air", "ripple", "skyline", "fold", "tint", "weather", "place", "state", "grid", "extent", "wireColor",
+  "slick", "slickDeep", "slickScatter", "slickOptics", "pit", "pitWay",
 ];
 const seas = new Map(); // base name -> what this file has made for it
 const looks = new Map(); // base name -> its uniforms: one set for good, as viser keeps a material for a new geometry
@@ -211,7 +212,8 @@ recipes.push({
       });
     }
     // The plain stand-ins that other browsers may need are not for this one.
-    for (const name of [`${base}/plain_foam`, `${base}/plain_wire`, `${base}/plain_sea`]) {
+    for (const part of ["foam", "wire", "sea", "slick"]) {
+      const name = `${base}/plain_${part}`;
       const standIn = meshOf(name);
       if (standIn) standIn.visible = false;
     }

@@ -25,6 +25,35 @@ FOAM_SHOWS = 0.35  # the foam value from which the plain mesh shows it
 
 
 @dataclass(frozen=True)
+class SlickPatch:
+    """A round slick of another fluid on the water. Colours as in `Look`.
+
+    centre (x, y) and radius [m]; calm: factor on the slope of the ripples.
+    """
+
+    centre: tuple[float, float]
+    radius: float
+    deep: RGB
+    scatter: RGB
+    refractive_index: float
+    roughness: float
+    calm: float
+
+
+@dataclass(frozen=True)
+class Pit:
+    """A rectangle without surface: a window into the sea, whose walls are another's to draw.
+
+    centre (x, y) [m] of one wall, half its length [m], the way (unit vector) to the wall across and how far it is [m].
+    """
+
+    centre: tuple[float, float]
+    half: float
+    way: tuple[float, float]
+    length: float
+
+
+@dataclass(frozen=True)
 class Look:
     """How a fluid looks and how it is lit. Colours are sRGB in 0..1; directions point towards the sun.
 
@@ -63,6 +92,8 @@ class Look:
     dome: bool = True
     wireframe: bool = False
     wire_color: RGB = (0.95, 0.55, 0.1)
+    slick: SlickPatch | None = None
+    pit: Pit | None = None
 
 
 def linear(color: RGB) -> np.ndarray:
@@ -201,6 +232,17 @@ class Water:
             (self._tiles, float(look.dome), float(look.wireframe)),
             linear(look.wire_color),
         ]
+        slick, pit = look.slick, look.pit
+        if slick is None:
+            table += [np.zeros(3)] * 4
+        else:
+            table += [
+                (*slick.centre, slick.radius),
+                linear(slick.deep),
+                linear(slick.scatter),
+                (slick.refractive_index, slick.roughness, slick.calm),
+            ]
+        table += [np.zeros(3)] * 2 if pit is None else [(*pit.centre, pit.half), (*pit.way, pit.length)]
         return np.array(table, np.float32)
 
     def _draw_plain(self) -> None:
@@ -208,9 +250,13 @@ class Water:
         if self.alive is not False:
             return
         z = self._vertices[..., 2]
-        foam = self._vertices.copy()
-        foam[..., 2] += np.where(self._aux[..., 2] > FOAM_SHOWS, FOAM_RISES, -FOAM_SINKS)
-        self._stand_in("plain_foam", foam.reshape(-1, 3), self._faces, color=(235, 240, 242))
+        self._stand_in("plain_foam", self._sheet(self._aux[..., 2] > FOAM_SHOWS), self._faces, color=(235, 240, 242))
+        slick = self._look.slick
+        if slick is not None or "plain_slick" in self._stand_ins:
+            (x, y), radius = (slick.centre, slick.radius) if slick is not None else ((0.0, 0.0), 0.0)
+            inside = np.hypot(self._vertices[..., 0] - x, self._vertices[..., 1] - y) < radius
+            colour = as_bytes(slick.deep if slick is not None else self._look.deep)
+            self._stand_in("plain_slick", self._sheet(inside), self._faces, color=colour)
         if self._look.wireframe or "plain_wire" in self._stand_ins:
             wire = self._stand_in("plain_wire", self._vertices.reshape(-1, 3), self._faces, wireframe=True)
             wire.visible = self._look.wireframe
@@ -220,6 +266,12 @@ class Water:
             self._stand_in(
                 "plain_sea", np.stack([x, y, low], 1), np.array([[0, 1, 2], [0, 2, 3]]), color=self.mesh.color
             )
+
+    def _sheet(self, shown: np.ndarray) -> np.ndarray:
+        """The surface once more, (n, 3): just above itself where it is to show, below elsewhere."""
+        sheet = self._vertices.copy()
+        sheet[..., 2] += np.where(shown, FOAM_RISES, -FOAM_SINKS)
+        return sheet.reshape(-1, 3)
 
     def _stand_in(self, suffix: str, vertices: np.ndarray, faces: np.ndarray, **mesh: Any) -> viser.MeshHandle:
         """A mesh for browsers without the patch; the others hide it (water.js)."""

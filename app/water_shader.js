@@ -224,8 +224,29 @@ const WATER_GLSL = {
       return vec2(clamp(cover, 0.0, 1.0), clamp(0.35 + 0.65 * mat - 0.5 * crumb + 0.3 * (grain - 0.5), 0.0, 1.0));
     }
 
+    // A round slick of another fluid on the water, its edge torn into tongues and patches: how much of the sea is it.
+    uniform vec3 slick; // middle x, y, radius [m] (0: none)
+    uniform vec3 slickDeep;
+    uniform vec3 slickScatter;
+    uniform vec3 slickOptics; // refractive index, roughness, factor on the slope of ripples
+
+    float slickCover(vec2 x) {
+      if (slick.z <= 0.0) return 0.0;
+      vec2 d = x - slick.xy;
+      float off = slick.z - length(d), size = 0.22 * slick.z + 1.0;
+      if (abs(off) > 1.5 * size) return off > 0.0 ? 1.0 : 0.0;
+      float torn = ruffle(d / size).x + 0.5 * ruffle(d / size * 2.7 + 5.0).x + 0.25 * ruffle(d / size * 7.1 - 3.0).x;
+      return smoothstep(-0.05, 0.05, off / size + 0.8 * torn);
+    }
+    vec3 deepUnder(float oil) { return mix(deep, slickDeep, oil); }
+    vec3 scatterUnder(float oil) { return mix(scatter, slickScatter, oil); }
+    vec3 opticsUnder(float oil) { return mix(optics, vec3(slickOptics.xy, optics.z), oil); }
+
     // at: the point [m]; rest: where its water rests; aux: slopes and foam; flat: 1 where no mesh is left.
     vec3 shadeSea(vec3 at, vec2 rest, vec3 aux, float flatness) {
+      float oil = slickCover(at.xy);
+      vec3 deep = deepUnder(oil), scatter = scatterUnder(oil), optics = opticsUnder(oil);
+      aux.z *= 1.0 - oil;
       vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
       vec3 toEye = eye - at;
       float far = length(toEye);
@@ -240,6 +261,8 @@ const WATER_GLSL = {
       float cell = grid.z / max(grid.x, 64.0);
       float blur = max(flatness, smoothstep(cell * 1.5, cell * 12.0, footprint));
       vec4 fine = ripples(at.xy, footprint);
+      float calm = mix(1.0, slickOptics.z, oil);
+      fine.xyz *= vec3(calm, calm, calm * calm);
       vec2 slope = aux.xy * (1.0 - blur) + fine.xy;
       float rough = blur * state.z;
       // Beyond the mesh, noise of the same slope goes on as swell for as long as a pixel can show it.
@@ -317,7 +340,12 @@ const WATER_FRAGMENT = `
   varying vec3 vSea;
   varying vec2 vRest;
   varying vec3 vAux;
+  uniform vec3 pit; // middle x, y of a wall of the hole in the sea, half its length [m] (0: none)
+  uniform vec3 pitWay; // unit vector from that wall to the one across, and how far that is [m]
   void main() {
+    vec2 from = vSea.xy - pit.xy;
+    float across = dot(from, pitWay.xy), along = dot(from, vec2(-pitWay.y, pitWay.x));
+    if (across > 0.0 && across < pitWay.z && abs(along) < pit.z) discard;
     // Towards the rim of the last tile the waves go flat, as the sea beyond is.
     float flatness = 0.0;
     if (extent.y > 0.0) {

@@ -4,6 +4,7 @@ numba does not notice an edit in a *callee's* file, so the cache directory is na
 sources: an edit anywhere makes a new one. Where nothing is writable, kernels compile afresh at each start.
 """
 
+import contextlib
 import hashlib
 import os
 import shutil
@@ -15,9 +16,15 @@ from typing import Any
 
 import numba
 import platformdirs
+from numba import prange  # for the kernels that are parallel
+from numba.core.caching import IndexDataCacheFile
 from numba.core.compiler import Flags
 from numba.core.options import TargetOptions
 from numba.core.registry import cpu_target
+
+__all__ = ["CACHE", "MOST_THREADS", "kernel", "prange", "set_threads"]
+
+MOST_THREADS: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
 
 # Every flag of `fastmath` but nnan and ninf: a NaN must stay visible to the checks that stop a run.
 FASTMATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
@@ -60,6 +67,26 @@ def cache_directory() -> Path | None:
 CACHE = cache_directory()
 
 
+class KernelFile(IndexDataCacheFile):
+    """numba's cache file of one kernel, where neither a full disk nor rubbish ends the program: it compiles anew."""
+
+    def load(self, key: Any) -> Any:
+        try:
+            return super().load(key)
+        except Exception:  # whatever unpickling leads to
+            return None
+
+    def save(self, key: Any, data: Any) -> None:
+        with contextlib.suppress(OSError):  # a full disk: kept another time
+            try:
+                super().save(key, data)
+            except OSError:
+                raise
+            except Exception:  # the index is rubbish: an empty one
+                self.flush()
+                super().save(key, data)
+
+
 def kernel(
     function: Callable[..., Any] | None = None,
     *,
@@ -92,6 +119,14 @@ def kernel(
     try:
         # numba reads the setting once, here; other libraries' kernels stay where they were.
         numba.config.CACHE_DIR = str(CACHE) if CACHE else previous  # type: ignore[attr-defined]
-        return numba.njit(cache=CACHE is not None, **options)(function)
+        compiled = numba.njit(cache=CACHE is not None, **options)(function)
     finally:
         numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
+    if CACHE is not None:
+        compiled._cache._cache_file.__class__ = KernelFile  # type: ignore[attr-defined]
+    return compiled
+
+
+def set_threads(count: int) -> None:
+    """How many threads the calling thread's parallel kernels take. A kernel that set it could not be cached."""
+    numba.set_num_threads(count)

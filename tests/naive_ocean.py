@@ -18,8 +18,8 @@ def sum_of_waves(sea: Sea, t: float, x: np.ndarray, y: np.ndarray) -> dict[str, 
                 continue
             wave = 2.0 * h0[i, j] * np.exp(1j * (kx * x + ky * y - omega[i, j] * t) - decay[i, j] * t)
             c = sea.choppiness
-            parts = (1, -1j * c * kx / k, -1j * c * ky / k, 1j * kx, 1j * ky)
-            for name, factor in zip(names, (*parts, c * kx * kx / k, c * ky * ky / k, c * kx * ky / k), strict=True):
+            parts = (1, 1j * c * kx / k, 1j * c * ky / k, 1j * kx, 1j * ky)
+            for name, factor in zip(names, (*parts, -c * kx * kx / k, -c * ky * ky / k, -c * kx * ky / k), strict=True):
                 total[name] += (factor * wave).real
     return total
 

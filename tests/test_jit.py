@@ -119,3 +119,28 @@ def test_a_nan_stays_visible():
 def test_kernels_let_other_threads_run():
     assert halved.targetoptions["nogil"]  # type: ignore[attr-defined]
     assert add.targetoptions["nogil"]  # type: ignore[attr-defined]
+
+
+ADDS = """
+import numpy as np
+from sim.jit import kernel
+import tests.test_jit as t
+x = np.ones(3)
+t.add(x, x.copy())
+print(x[0])
+"""
+
+
+def test_a_full_disk_and_rubbish_in_the_cache_cost_a_compilation_and_no_more(tmp_path):
+    full = f"import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))\n{ADDS}"
+    assert python(full, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"
+    assert not list(tmp_path.rglob("*.nbc"))
+    assert python(ADDS, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"
+    for pattern in ("*.nbc", "*.nb?"):
+        kept = list(tmp_path.rglob(pattern))
+        assert kept
+        for path in kept:
+            path.write_bytes(path.read_bytes()[:40])
+        assert python(ADDS, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"
+        # Kept again, and whole.
+        assert all(path.stat().st_size > 40 for path in kept)

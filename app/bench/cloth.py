@@ -1,79 +1,41 @@
-"""The cloth: its force kernel against the same loop in C, the cloth task's error and time, and the drape in real time.
+"""Run time against error on the benchmark cloth, every method that applies, and what a user would pick instead.
 
 C(n): n x n particles, 1 m, 1 kg, level, four corners pinned; structural springs 981, shear 490, bend 98 N/m, damping
-0.002 N s/m each. Errors are the largest distance of any particle from the reference at t = 0.25 s.
+0.002 N s/m each. Errors are the largest distance of any particle from the reference at t = 0.25 s. Explicit methods
+take a ladder of fractions of their critical step, implicit ones, which have none, a ladder of steps.
 """
 
-import ctypes
+import math
 import statistics
 import time
-from typing import Any
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from app.bench.kernels import build
-from sim.jit import kernel
 from sim.springs import INTEGRATORS, Net, cloth
-from sim.springs.cloth_forces import accelerate_cloth, cloth_scratch
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, steps_for
 
 END = 0.25  # [s]
-STEP = {32: 460e-6, 64: 230e-6, 128: 115e-6}  # [s], the peers' own
-METHODS = ("symplectic_euler", "leapfrog_lagged", "leapfrog", "rk4", "dop853")
+METHODS = tuple(name for name, record in INTEGRATORS.items() if not record.undamped_only)
+LADDER = (0.95, 0.6, 0.4, 0.2, 0.1, 0.05, 0.025)  # of the critical step
+LONG = (8, 16, 32, 64, 128, 256, 512)  # steps of methods without one
+PEER_STEP = 0.8  # of leapfrog's critical step, which peers take
+BEST = ("symplectic_euler", "leapfrog", "rk4", "dopri5", "dop853")  # those that a peer may have to face
+
+
+class Reference(NamedTuple):
+    """Positions (3, n, n) [m] at the end, and how far they may be off [m]."""
+
+    x: NDArray[np.float64]
+    uncertainty: float
 
 
 def task_cloth(n: int) -> Net:
     """C(n)."""
     return cloth(n, n, 1.0, 1.0, 1.0, 981.0, 490.0, 98.0, 0.002, pinned="all corners")
-
-
-@kernel
-def repeat(x, v, p, f, a, count):
-    """The forces again and again, so that a call is long against its start."""
-    for _ in range(count):
-        accelerate_cloth(x, v, p, 1.0, p.drag, f, a)
-
-
-def seconds(call: Any) -> float:
-    start = time.perf_counter()
-    call()
-    return time.perf_counter() - start
-
-
-def kernel_row(n: int, library: ctypes.CDLL | None, repeats: int) -> dict[str, Any]:
-    """One size: ours and C in turn."""
-    net = task_cloth(n)
-    p = net.forces(1.0)
-    x = net.x0 + 0.1 / n * np.random.default_rng(0).standard_normal(net.x0.shape)
-    v, mine, theirs = np.zeros_like(x), np.zeros_like(x), np.zeros_like(x)
-    f = np.zeros(cloth_scratch(n))
-    count = max(1, 400_000 // (n * n))
-
-    def ours() -> None:
-        repeat(x.reshape(-1), v.reshape(-1), p, f, mine.reshape(-1), count)
-
-    def same_in_c() -> None:
-        assert library is not None
-        w, links = net.weights(), np.array([family[2:4] for family in net.families])
-        rest, k = np.ascontiguousarray(links[:, 0]), np.ascontiguousarray(links[:, 1])
-        arrays = [q.ctypes.data_as(ctypes.c_void_p) for q in (x, v, w, np.zeros(54 * (n + 4)), theirs, k, rest)]
-        numbers = [ctypes.c_double(q) for q in (0.002, *(net.mass * g for g in net.gravity), net.drag)]
-        library.cloth_forces(n, *arrays, *numbers, count)
-
-    ours()
-    times: tuple[list[float], list[float]] = [], []
-    for _ in range(repeats):
-        times[0].append(seconds(ours))
-        if library is not None:
-            times[1].append(seconds(same_in_c))
-    scale = 1e9 / (count * n * n)
-    own = statistics.median(times[0]) * scale
-    row: dict[str, Any] = {"task": f"forces {n} x {n}", "ns per particle": own, "least ns": min(times[0]) * scale}
-    if library is not None:
-        c = statistics.median(times[1]) * scale
-        row |= {"C ns per particle": c, "ratio to C": own / c, "difference": float(np.abs(mine - theirs).max())}
-    return row
 
 
 def run(net: Net, name: str, steps: int) -> State:
@@ -82,59 +44,143 @@ def run(net: Net, name: str, steps: int) -> State:
     return state
 
 
-def task_rows(n: int, repeats: int) -> list[dict[str, Any]]:
-    """C(n) with each method at the peers' step, or the longest it holds."""
-    net = task_cloth(n)
-    truth = run(net, "dop853", steps_for(END, 0.4 * critical_step(net, "dop853")))
-    rows = []
-    for name in METHODS:
-        step = STEP[n] if INTEGRATORS[name].order < 4 else 0.9 * critical_step(net, name)
-        steps = steps_for(END, step)
-        state = run(net, name, steps)
-        times = [seconds(lambda name=name, steps=steps: run(net, name, steps)) for _ in range(repeats)]
-        took = statistics.median(times)
-        rows.append(
-            {
-                "task": f"C({n})",
-                "method": name,
-                "step [us]": 1e6 * END / steps,
-                "ns per particle-step": 1e9 * took / (steps * n * n),
-                "x real time": END / took,
-                "error at 0.25 s [m]": float(np.linalg.norm(state.x - truth.x, axis=0).max()),
-            }
-        )
-    return rows
+def reference(net: Net) -> Reference:
+    """dop853 at a quarter of its critical step, and its distance from RK4, another method, far below its own."""
+    x = run(net, "dop853", steps_for(END, 0.25 * critical_step(net, "dop853"))).x
+    other = run(net, "rk4", steps_for(END, 0.05 * critical_step(net, "rk4"))).x
+    return Reference(x, float(np.abs(x - other).max()))
 
 
-def drape_row(frames: int) -> dict[str, Any]:
-    """The drape preset with self-collision, as the scene runs it, picture and all."""
-    from app.cloth_knobs import PRESETS, Params
-    from app.scenes.cloth import Scene
+def error_of(x: NDArray[np.float64], truth: Reference) -> float:
+    """Largest distance [m] of any particle."""
+    return float(np.linalg.norm(x - truth.x, axis=0).max())
 
-    scene = Scene(Params(**PRESETS["Drape over the sphere"]))
-    steps = round(1 / 60 / scene.step)
-    times = []
-    for _ in range(frames):
-        start = time.perf_counter()
-        scene.advance(steps)
-        scene.picture()
-        times.append(time.perf_counter() - start)
-    settled = times[len(times) // 3 :]
-    return {
-        "task": "drape 64 x 64, self-collision",
-        "method": scene.params.integrator,
-        "frame [ms]": 1e3 * statistics.median(settled),
-        "longest [ms]": 1e3 * max(settled),
-        "x real time": 1 / 60 / statistics.median(settled),
-    }
+
+def steps_of(net: Net, name: str) -> list[int]:
+    """The rungs of a method, coarse to fine."""
+    critical = critical_step(net, name)
+    if critical == 0.0:
+        return list(LONG[2:])  # explicit Euler holds no undamped mode; short runs end before it shows
+    if math.isinf(critical):
+        return list(LONG)
+    return [steps_for(END, fraction * critical) for fraction in LADDER]
+
+
+def seconds(call: Callable[[], Any]) -> float:
+    """Processor time, which what else runs on the machine does not lengthen."""
+    start = time.thread_time()
+    call()
+    return time.thread_time() - start
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Kernel, task, and drape."""
-    library = build()
-    sizes = (32, 64) if quick else (32, 64, 128)
-    table = [kernel_row(n, library, 7 if quick else 21) for n in sizes]
-    for n in sizes:
-        table += task_rows(n, 3 if quick else 5)
-    table.append(drape_row(150 if quick else 300))
+    """Each method's ladder; a method ends where its rungs take longer than is worth waiting for."""
+    table = []
+    for n in (32,) if quick else (32, 64, 128):
+        net = task_cloth(n)
+        truth = reference(net)
+        for name in METHODS:
+            for steps in steps_of(net, name):
+                state = run(net, name, steps)
+                error = error_of(state.x, truth)
+                if not math.isfinite(error) or error > 1.0:
+                    continue
+                if error < 3.0 * truth.uncertainty:
+                    break
+                times = [seconds(lambda name=name, steps=steps, net=net: run(net, name, steps))]
+                while len(times) < 5 and sum(times) < (0.3 if quick else 2.0):
+                    times.append(seconds(lambda name=name, steps=steps, net=net: run(net, name, steps)))
+                table.append(
+                    {
+                        "task": f"C({n})",
+                        "method": name,
+                        "step [us]": 1e6 * END / steps,
+                        "force evaluations": state.force_evals,
+                        "time [ms]": 1e3 * statistics.median(times),
+                        "least [ms]": 1e3 * min(times),
+                        "ns per particle-step": 1e9 * min(times) / (steps * n * n),
+                        "x real time": END / min(times),
+                        "error at 0.25 s [m]": error,
+                        "reference good to [m]": truth.uncertainty,
+                    }
+                )
+                if min(times) > (1.0 if quick else 8.0):
+                    break
     return table
+
+
+def cheapest(net: Net, truth: Reference, limit: float) -> tuple[str, int, float] | None:
+    """(method, steps, error) of our quickest run with an error of at most `limit` [m], or None."""
+    found = []
+    for name in BEST:
+        for steps in steps_of(net, name):
+            error = error_of(run(net, name, steps).x, truth)
+            if error <= limit:
+                found.append((seconds(lambda name=name, steps=steps: run(net, name, steps)), name, steps, error))
+                break
+    return min(found)[1:] if found else None
+
+
+def timed_in_turn(
+    one: Callable[[], Any], other: Callable[[], Any], most: int, enough: float = 20.0
+) -> tuple[list[float], list[float]]:
+    """Wall times [s] of two calls, taken in turn, until `most` of each or `enough` seconds."""
+    times: tuple[list[float], list[float]] = [], []
+    while len(times[0]) < most and sum(times[0]) < enough:
+        for call, own in zip((one, other), times, strict=True):
+            start = time.perf_counter()
+            call()
+            own.append(time.perf_counter() - start)
+    return times
+
+
+def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
+    """Every peer that is installed against our quickest run at its error or less, the two in turn, in wall time."""
+    from app.bench.cloth_peers import PEERS, is_installed
+
+    table: list[dict[str, Any]] = []
+    for n in (32,) if quick else (32, 64, 128):
+        net = task_cloth(n)
+        truth = reference(net)
+        step = PEER_STEP * critical_step(net, "leapfrog")
+        for peer in PEERS:
+            row: dict[str, Any] = {"task": f"C({n})", "peer": peer.name}
+            table.append(row)
+            if not is_installed(peer):
+                row["note"] = "not installed"
+                continue
+            theirs_run = peer.make(net, peer.step or step)
+            error = error_of(theirs_run(END), truth)
+            row |= {"step [us]": 1e6 * (peer.step or step), "error at 0.25 s [m]": error}
+            best = cheapest(net, truth, error)
+            if best is None:
+                row["note"] = "no rung of ours is as exact"
+                continue
+            name, steps, own_error = best
+            theirs, ours = timed_in_turn(
+                lambda again=theirs_run: again(END),
+                lambda net=net, name=name, steps=steps: run(net, name, steps),
+                5 if quick else 9,
+            )
+            row |= {
+                "peer [ms]": 1e3 * min(theirs),
+                "ours": name,
+                "our steps": steps,
+                "ours [ms]": 1e3 * min(ours),
+                "our error [m]": own_error,
+                "times as long as ours": min(theirs) / min(ours),
+            }
+    return table
+
+
+def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
+    """Work-precision diagrams by file name, one for each size."""
+    from app.bench.report import work_precision
+
+    tasks = list(dict.fromkeys(row["task"] for row in table))
+    return {
+        f"cloth_{task.strip('C()')}": work_precision(
+            [row for row in table if row["task"] == task], f"Cloth {task}, 0.25 s", "error at 0.25 s [m]"
+        )
+        for task in tasks
+    }

@@ -11,6 +11,7 @@ from types import ModuleType
 
 import app.bench
 from app.bench import report
+from app.replacing import replacing
 from sim.knobs import refusal
 
 
@@ -53,6 +54,7 @@ def run(names: list[str], quick: bool = False, peers: bool = False, out: Path | 
             except ModuleNotFoundError as missing:
                 print(f"no figures of {name}: {missing.name} is not installed (pip install 'springtide[plot]')")
     if out is not None:
-        (out / "machine.txt").write_text(report.machine() + "\n", encoding="utf-8")
+        with replacing(out / "machine.txt") as draft:
+            draft.write_text(report.machine() + "\n", encoding="utf-8")
         print(f"kept in {out}")
     return 0

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from app.replacing import replacing
+
 Rows = list[dict[str, Any]]
 
 # Okabe and Ito's palette, told apart with any colour vision, each with a marker of its own.
@@ -65,7 +67,7 @@ def show(title: str, rows: Rows) -> None:
 
 def save_table(rows: Rows, path: Path) -> None:
     """One CSV file, columns with their units in the head."""
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns(rows))
         writer.writeheader()
         writer.writerows(rows)
@@ -77,7 +79,8 @@ def save_figures(figures: dict[str, Any], folder: Path) -> list[Path]:
     for name, figure in figures.items():
         for suffix in ("svg", "png"):
             paths.append(folder / f"{name}.{suffix}")
-            figure.savefig(paths[-1], dpi=150, bbox_inches="tight")
+            with replacing(paths[-1]) as draft:
+                figure.savefig(draft, dpi=150, bbox_inches="tight")
     return paths
 
 
@@ -105,8 +108,8 @@ def mark_slopes(axes: Any, curves: Iterable[tuple[list[float], list[float]]]) ->
             marked.add(order)
 
 
-def work_precision(rows: Rows, title: str) -> Any:
-    """Error at the end over run time and over force evaluations, a curve a method, both logarithmic."""
+def work_precision(rows: Rows, title: str, error: str = "error [m]") -> Any:
+    """The column `error` over run time and over force evaluations, a curve a method, both logarithmic."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10.0, 5.2), layout="constrained")
@@ -122,9 +125,9 @@ def work_precision(rows: Rows, title: str) -> Any:
         curves = []
         for index, method in enumerate(methods):
             own = sorted((row for row in rows if row["method"] == method), key=lambda row: row["force evaluations"])
-            x, y = [row[column] for row in own], [row["error [m]"] for row in own]
-            dashes = "-" if index < len(COLOURS) else "--"
-            style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 13], "markersize": 5, "linestyle": dashes}
+            x, y = [row[column] for row in own], [row[error] for row in own]
+            dash = "-" if index < len(COLOURS) else "--"
+            style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 13], "markersize": 5, "linestyle": dash}
             axes.loglog(x, y, label=method.replace("_", " "), **style)
             curves.append((x, y))
         if column == "force evaluations":
@@ -133,10 +136,9 @@ def work_precision(rows: Rows, title: str) -> Any:
         axes.grid(visible=True, which="major", color="0.9")
         axes.spines[["top", "right"]].set_visible(False)
     floor = max(row["reference good to [m]"] for row in rows)
-    panels[0].set_ylabel("error [m]")
-    figure.legend(
-        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=6, frameon=False, fontsize=8
-    )
+    panels[0].set_ylabel(error)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False, fontsize=8)
     for axes in panels:
         axes.axhline(floor, color="0.6", linestyle=":", linewidth=1.0)
     panels[1].annotate("reference good to here", (1.0, floor), (0, 3), xycoords=("axes fraction", "data"),

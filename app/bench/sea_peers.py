@@ -21,12 +21,12 @@ class Peer(NamedTuple):
 
 
 def wave_numbers(sea: Sea) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """-i k/|k| of each axis and the frequencies, (N, N), FFT order."""
+    """i k/|k| of each axis and the frequencies, (N, N), FFT order."""
     n = np.fft.fftfreq(sea.size, 1.0 / sea.size)
     kx, ky = np.meshgrid(n, n, indexing="ij")
     k = np.hypot(kx, ky)
     k[0, 0] = 1.0
-    return -1j * kx / k, -1j * ky / k, sea.frequencies
+    return 1j * kx / k, 1j * ky / k, sea.frequencies
 
 
 def mirrored(h0: np.ndarray) -> np.ndarray:
@@ -48,7 +48,7 @@ def student(sea: Sea) -> Frame:
 
 
 def halves(sea: Sea) -> tuple[np.ndarray, ...]:
-    """Half planes in single precision: h0, conj(h0(-k)), -i kx/k, -i ky/k; and the frequencies in double."""
+    """Half planes in single precision: h0, conj(h0(-k)), i kx/k, i ky/k; and the frequencies in double."""
     h0 = sea.amplitudes_at(0.0)
     half = sea.size // 2 + 1
     x, y, omega = wave_numbers(sea)

@@ -37,14 +37,15 @@ class Flames:
             rgb = np.stack([np.interp(heat, HEAT, [c[i] for c in RGB]) for i in range(3)], axis=1)
             # Flames are dense and small, smoke widens as it thins.
             young = np.clip(age / 0.04, 0.0, 1.0)
-            opacity = young * np.interp(heat, (0.0, 0.08, 0.2, 1.0), (0.16, 0.3, 0.7, 0.95)) * (1.0 - age**3)
-            width = 0.8 + 0.9 * (1.0 - heat) + 5.0 * np.clip(age, 0.0, 1.0) ** 1.2
+            opacity = young * np.interp(heat, (0.0, 0.08, 0.2, 1.0), (0.17, 0.3, 0.7, 0.95))
+            opacity *= (1.0 - np.clip(age, 0.0, 1.0)) ** 1.3
+            width = 0.8 + 0.9 * (1.0 - heat) + 8.5 * np.clip(age, 0.0, 1.0)
             tall = width * np.interp(heat, (0.0, 0.3, 1.0), (1.0, 1.3, 1.8))
             self.put(0, x, width, tall, rgb, np.where(age < 0.0, 0.0, opacity))
         if jet is not None and len(jet):
             chosen = jet[:: max(1, -(-len(jet) // PARCELS))]
             n = len(chosen)
-            self.put(FLAMES, chosen, np.full(n, 0.26), np.full(n, 0.42), np.tile(OIL, (n, 1)), np.full(n, 0.95))
+            self.put(FLAMES, chosen, np.full(n, 0.34), np.full(n, 0.55), np.tile(OIL, (n, 1)), np.full(n, 0.9))
         self.handle.buffer = self.buffer.copy()
 
     def put(

@@ -1,4 +1,4 @@
-"""The radial sea as water, its bodies as models, the rig with its fire, and a slick."""
+"""The radial sea as water, its bodies as models, the rig with its fire, and a window into the sea."""
 
 import importlib.resources
 import time
@@ -9,12 +9,15 @@ import numpy as np
 import viser
 
 from app.blowout import FIRE, RIG
-from app.fluid_look import look_of, slick_look
+from app.fluid_look import look_of
 from app.messages import Command, Grab, Place, Release, Snapshot, finite_vector
+from app.pictures.chase import Chase
 from app.pictures.flames import Flames
+from app.pictures.section import Walls
 from app.radial_records import RadialPicture
 from app.radial_report import compared_html, fluids_html, lab_says, marks_of, table
-from app.scenes.radial import RADIUS, SLICK_RADIUS
+from app.scenes.radial import RADIUS
+from app.section import WAY
 from app.shapes import ball
 from app.water import Look, Water, sky
 
@@ -24,10 +27,15 @@ HANDLE = 0.75  # [m] radius of what is dragged, at size 1
 HELD_COLOUR = (255, 90, 60)
 EYE_EVERY = 0.2  # [s] between looks at where the camera is
 VIEWS = {  # camera and target [m] when one of them is followed
-    "rig": ((RIG[0] - 58.0, RIG[1] - 78.0, 32.0), (RIG[0] + 12.0, RIG[1] - 4.0, 21.0)),
+    "rig": ((RIG[0] - 62.0, RIG[1] - 84.0, 40.0), (RIG[0] + 10.0, RIG[1] - 4.0, 16.0)),
+    "from above": ((-9.5, -11.0, 8.5), (6.0, 3.6, -1.0)),
 }
-BODY_VIEW = (-5.2, -6.2, 2.4)  # [m] from a followed body at size 1.5
-FOLLOWED = {"first buoy": 0, "second buoy": 1, "box": 2}
+BODY_VIEW = (-5.2, -6.2, 2.4), (0.0, 0.0, 0.0)  # [m] of camera and target from a followed body at size 1.5
+WINDOW_VIEW = (
+    (4.8 * WAY[0] - 1.0 * WAY[1], 4.8 * WAY[1] + 1.0 * WAY[0], 0.9),
+    (-1.0 * WAY[1], 1.0 * WAY[0], 0.1),
+)
+FOLLOWED = {"first buoy": 0, "second buoy": 1, "box": 2, "window": 0}
 
 
 def model(name: str) -> bytes:
@@ -43,16 +51,15 @@ class Picture:
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
         self.water: Water | None = None
-        self.slick: Water | None = None
         self.grid: Any = None
         self.lit = ""
-        self.light = self.look = self.oil = Look()
+        self.light = self.look = Look()
         self.last: RadialPicture | None = None
         self.groups: dict[str, tuple[Any, np.ndarray]] = {}
         self.handles: viser.BatchedMeshHandle | None = None
         self.kinds: tuple[str, ...] = ()
         self.size = 0.0
-        self.follow, self.followed = "free", np.zeros(3)
+        self.follow, self.chase = "free", Chase()
         self.eye_at = 0.0
         scene = server.scene
         self.rig = scene.add_glb("/rig", model("rig"), position=(*RIG, 0.0), cast_shadow=False, receive_shadow=False)
@@ -60,8 +67,14 @@ class Picture:
             "/glow", color=(255, 140, 50), intensity=0.0, distance=160.0, decay=1.2, position=FIRE, visible=False
         )
         self.flames: Flames | None = None
+        self.walls: Walls | None = None
         self.pull = scene.add_line_segments(
-            "/pull", np.zeros((1, 2, 3), np.float32), colors=HELD_COLOUR, thickness=4.0, visible=False
+            "/pull",
+            np.zeros((1, 2, 3), np.float32),
+            colors=HELD_COLOUR,
+            thickness=4.0,
+            thickness_units="screen",
+            visible=False,
         )
 
     def show(self, picture: RadialPicture) -> None:
@@ -72,7 +85,10 @@ class Picture:
             self.light = sky(self.server, p.sky, SUN)
             self.shine()
         self.show_sea(picture)
-        self.show_slick(picture)
+        if self.walls is None and picture.section is not None:
+            self.walls = Walls(self.server, "/section", picture.section)
+        if self.walls is not None:
+            self.walls.show(picture.section, self.light, picture.spill)
         self.show_bodies(picture)
         if self.rig.visible != p.rig:
             self.rig.visible = p.rig
@@ -100,42 +116,18 @@ class Picture:
             )
 
     def show_sea(self, picture: RadialPicture) -> None:
-        look = look_of(self.light, picture.params, picture.spill)
+        look = look_of(self.light, picture)
         if self.water is None or picture.grid is not self.grid:
             if self.water is not None:
                 self.water.remove()
             self.grid = picture.grid
             self.water = Water(self.server, "/sea", 1, len(self.grid), RADIUS, faces=self.grid.faces, look=look)
-            if self.slick is not None:
-                self.slick.remove()
-                self.slick = None
         elif look != self.look:
             self.water.set_look(look)
         self.look = look
         s = picture.surface
         if self.last is None or s is not self.last.surface:
             self.water.set_surface(s.vertices[None], s.slope[None], picture.foam[None], picture.time)
-
-    def show_slick(self, picture: RadialPicture) -> None:
-        shape = picture.slick
-        if shape is None:
-            if self.slick is not None:
-                self.slick.remove()
-                self.slick = None
-            return
-        look = slick_look(self.light, picture.params, picture.spill)
-        if self.slick is None:
-            n = len(shape.vertices)
-            faces = self.grid.faces.astype(np.int64)
-            last = len(self.grid) - 1
-            inside = ((faces < n - 1) | (faces == last)).all(axis=1)
-            mine = np.where(faces == last, n - 1, faces)[inside]
-            self.slick = Water(self.server, "/slick", 1, n, SLICK_RADIUS, faces=mine, look=look)
-        elif look != self.oil:
-            self.slick.set_look(look)
-        self.oil = look
-        foam = np.zeros((1, len(shape.vertices)), np.float32)
-        self.slick.set_surface(shape.vertices[None], shape.slopes[None], foam, picture.time)
 
     def show_bodies(self, picture: RadialPicture) -> None:
         if picture.kinds != self.kinds or picture.params.size != self.size:
@@ -201,28 +193,25 @@ class Picture:
         p = picture.params
         body = FOLLOWED.get(p.follow, -1)
         here = picture.positions[body].astype(float) if 0 <= body < len(picture.positions) else None
-        cameras = [client.camera for client in self.server.get_clients().values()]
+        cameras = {number: client.camera for number, client in self.server.get_clients().items()}
+        if here is not None:
+            here[2] = 0.0  # a camera that heaves with the body would hide that it heaves
         if p.follow != self.follow:
             self.follow = p.follow
             if here is not None:
-                view = tuple(here + np.array(BODY_VIEW) * p.size / 1.5), tuple(here)
-                self.followed = here
+                offset = np.array(WINDOW_VIEW if p.follow == "window" else BODY_VIEW) * p.size / 1.5
+                self.chase.start(here, offset)
+                view = tuple(here + offset)
             else:
                 view = VIEWS.get(p.follow, self.CAMERA)
-            first = self.server.initial_camera
-            for camera in (first, *cameras):
+            for camera in (self.server.initial_camera, *cameras.values()):
                 camera.position, camera.look_at = view
         elif here is not None:
-            step = here - self.followed
-            if np.abs(step).max() > 0.02:
-                for camera in cameras:
-                    camera.position = np.asarray(camera.position) + step
-                    camera.look_at = np.asarray(camera.look_at) + step
-                self.followed = here
+            self.chase.go(here, cameras)
         now = time.monotonic()
         if p.centre == "camera" and cameras and now - self.eye_at > EYE_EVERY:
             self.eye_at = now
-            eye = finite_vector(cameras[0].position)
+            eye = finite_vector(next(iter(cameras.values())).position)
             if eye is not None:
                 self.post(Place("eye", eye))
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from app.cloth_knobs import PRESETS, Params, hidden
 from app.cloth_start import build, resample, sphere_home
+from app.cores import Cores
 from app.follow import Follower
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
 from app.method import method_for
@@ -26,6 +27,8 @@ TITLE = "Cloth"
 LOOK_EVERY = 0.5  # [s] of simulated time between two looks at the stability of the state
 LOOKED_THROUGH = 1100  # particles up to which that is quick; of larger cloths Gershgorin's bound is shown
 SAMPLE_EVERY = 1 / 30  # [s]
+TOP_SPEED = 3.0  # [m/s] of the sphere along an axis, however fast it is dragged: what the cloth can keep clear of
+LARGE = 2000  # particles from which two threads may be quicker
 BOUND = 60.0  # [m] from the origin, beyond which the run has diverged
 HELP = "<b>Drag the cloth</b> anywhere to pull it. <b>Drag the arrows</b> to move its pins and the sphere."
 SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "largest strain")
@@ -66,6 +69,7 @@ class ClothGauge(NamedTuple):
     exact: bool  # of the state as it is; else a bound for any
     corrections: float  # of Newton's method a step, of implicit methods
     note: str  # why another method runs than the one chosen, or ""
+    threads: int  # that the forces are worked out on
 
 
 def gusty(params: Params, t: float) -> Vector:
@@ -94,6 +98,7 @@ class Scene:
         self.params = params
         self.samples: list[tuple[float, ...]] = []
         self.work = SpringWork()
+        self.cores = Cores()
         self.reset()
 
     @property
@@ -106,7 +111,7 @@ class Scene:
 
     def reset(self) -> None:
         """The cloth, its pins and the sphere where the knobs start them."""
-        self.sphere = Follower(sphere_home(self.params))
+        self.sphere = Follower(sphere_home(self.params), TOP_SPEED)
         self.net = build(self.params, self.sphere.position)
         self.state = State.at_rest(self.net)
         self.held: tuple[int, Follower] | None = None
@@ -126,6 +131,7 @@ class Scene:
     def set_params(self, params: Params) -> None:
         """Take new knobs; the motion goes on, resampled where the grid changes, unless it is another start."""
         old, self.params = self.params, params
+        self.cores.forget()
         if (params.start, params.gather) != (old.start, old.gather):
             self.reset()
             return
@@ -163,7 +169,13 @@ class Scene:
         duration = steps * self.step
         good = self.state.copy()
         net = self.net_under_way(self.state.t, duration)
-        advance(net, self.state, self.integrator, self.step, steps, with_ledger=self.params.plot_energy)
+
+        def take(threads: int, count: int) -> None:
+            shared = dataclasses.replace(net, threads=threads)
+            advance(shared, self.state, self.integrator, self.step, count, with_ledger=self.params.plot_energy)
+            self.work.add("steps on two threads", count, threads == 2)
+
+        self.cores.advance(steps, take, large=self.params.rows * self.params.cols >= LARGE)
         self.work.take(net, self.state.force_evals - good.force_evals, steps, with_ledger=self.params.plot_energy)
         if not (self.state.is_sane and np.abs(self.state.x).max() < BOUND):
             self.state = good
@@ -242,7 +254,7 @@ class Scene:
             zeta = 0.5 * rate / omega if omega > 0.0 else 0.0
             limit = record.limit(zeta)
             stability = Gauge(omega, zeta, self.step * omega, limit, limit / omega if omega > 0.0 else math.inf)
-        self.stability = ClothGauge(stability, exact, self.corrections, self.note)
+        self.stability = ClothGauge(stability, exact, self.corrections, self.note, self.cores.threads)
         self.looked_at = self.state.t
 
     def diagnosis(self) -> str:
@@ -269,7 +281,7 @@ class Scene:
         return taken
 
     def gauge(self) -> ClothGauge:
-        return self.stability._replace(corrections=self.corrections)
+        return self.stability._replace(corrections=self.corrections, threads=self.cores.threads)
 
     def strain(self) -> NDArray[np.float64]:
         """(rows, cols) largest |strain| of the structural springs at each particle."""

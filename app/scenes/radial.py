@@ -14,7 +14,8 @@ from app.crowd import Crowd
 from app.ledger import Work
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
 from app.radial_knobs import PRESETS, Params, conditions_of, exposure_of, hidden, spill_of
-from app.radial_records import Compared, RadialGauge, RadialPicture, SlickShape
+from app.radial_records import Compared, RadialGauge, RadialPicture
+from app.section import Section, outline, section_at
 from app.wakes import LENGTH as WAKES_LENGTH
 from app.wakes import Wakes
 from sim.floating import Laws
@@ -41,10 +42,10 @@ PLOTS = {
 FRAME = 1 / 30  # [s] between pictures
 RADIUS = 5000.0  # [m] of the grid
 INNER = 0.35  # [m] its first ring
-SLICK_RADIUS = 220.0  # [m] as far as the slick is drawn
-SLICK_HIGH, SLICK_SOFT = 0.2, 10.0  # [m] above the water, and from how far inside its edge
 TILE, TILE_LENGTH = 128, 256.0  # the square sea: as many vertices as the rings
 SAMPLE_EVERY = 1 / 15  # [s] between plot rows
+AGE_EVERY = 1.0  # [s] between two decays of the sum of waves
+AGE_TILE = 0.2  # growth of the age at which the square sea, which takes longer, is made anew
 COMPARE_EVERY = 2.0  # [s] of wall time between two timings of the other surface
 FOAM_NEAR = 80.0  # [m] within which the Jacobian is looked at for foam
 FOAM_OVER = 0.07  # of the Jacobian, over which foam fills up
@@ -83,9 +84,10 @@ class Scene:
         """The bodies at rest in their places, and no oil but the layer the knobs ask for."""
         p = self.params
         self.time = 0.0
-        self.spill = spill_of(p)
-        self.sum = RadialSea(self.waves(), self.spill, exposure_of(p), p.choppiness)
+        self.spill, self.age = spill_of(p), exposure_of(p)
+        self.sum = RadialSea(self.waves(), self.spill, self.age, p.choppiness)
         self.tile: TileSea | None = None
+        self.tile_age = 0.0
         self.grid = self.make_grid()
         self.crowd = Crowd(p.bodies, p.size, p.density, self.spill)
         self.wakes = Wakes()
@@ -110,7 +112,8 @@ class Scene:
     def make_tile(self) -> TileSea:
         """The square sea under the same wind and oil; what oil took of a wave, exp(-2 nu k^2 T), is its low-pass."""
         p, fluid = self.params, self.spill.surface
-        low_pass = 2.0 * math.sqrt(fluid.kinematic_viscosity * exposure_of(p))
+        low_pass = 2.0 * math.sqrt(fluid.kinematic_viscosity * self.age)
+        self.tile_age = self.age
         conditions = dataclasses.replace(conditions_of(p), low_pass=low_pass)
         wind = {name: getattr(conditions, name) for name in ("wind_speed", "wind_direction", "low_pass")}
         sea = Sea(TILE, TILE_LENGTH, p.spectrum, choppiness=p.choppiness, frequency=self.spill.omega, **wind)
@@ -135,8 +138,10 @@ class Scene:
         self.spill = spill_of(params)
         sea = changed("waves", "wind_speed", "wind_direction", "spectrum", "wave_count")
         fluids = changed("spill", "oil", "thickness", "fraction", "mixture_law", "film", "exposure")
+        if fluids:
+            self.age = exposure_of(params)
         if sea or fluids:
-            self.sum.change(self.time, self.waves() if sea else None, self.spill, exposure_of(params))
+            self.sum.change(self.time, self.waves() if sea else None, self.spill, self.age)
         self.sum.choppiness = params.choppiness
         if sea or fluids or changed("choppiness"):
             self.tile = None
@@ -172,17 +177,20 @@ class Scene:
         for _ in range(steps):
             if crowd.count:
                 at = sea.at(crowd.fleet.position[:, :2], self.time, crowd.widths)
+                layer = self.layer_at(crowd.fleet.position[:, :2])
                 crowd.measure(self.time, at, h)
                 if self.params.mooring:
                     crowd.moor()
                 try:
-                    crowd.step(self.spill, at, self.time, h, self.layer(), laws)
+                    crowd.step(self.spill, at, self.time, h, layer, laws)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
                 plotted = self.params.plot_draft or self.params.plot_surface
                 if plotted and self.time - self.sampled_at >= SAMPLE_EVERY:
                     self.sample(float(at.height[0]))
             self.time += h
+        if self.params.ageing and self.spill.kind != "water":
+            self.grow_old(steps * h)
         n = crowd.count
         done = {"body steps": steps * n, "pairs": steps * n * (n - 1) // 2, "touches": crowd.touched - touched}
         self.counts.update(done)
@@ -191,13 +199,20 @@ class Scene:
         crowd.impulse[:] = 0.0
         self.blowout.step(sea, self.time, steps * h)
 
-    def layer(self) -> NDArray[np.float64]:
-        """Thickness (bodies,) [m] of oil under the surface at each body."""
-        found = np.full(self.crowd.count, self.spill.thickness)
+    def grow_old(self, duration: float) -> None:
+        """Let the waves decay under the oil for `duration` [s] more."""
+        self.age += duration
+        if self.age - self.sum.exposure >= AGE_EVERY:
+            self.sum.age(self.age)
+        if self.tile is not None and self.age > (1.0 + AGE_TILE) * self.tile_age + AGE_EVERY:
+            self.tile = None
+
+    def layer_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Thickness (n,) [m] of oil under the surface at points (n, 2) [m]."""
+        found = np.full(len(points), self.spill.thickness)
         slick = self.blowout.slick(self.spill)
         if slick is not None and self.spill.kind != "mixed":
-            position = self.crowd.fleet.position
-            found[slick_reach(slick, position[:, 0], position[:, 1]) > 0.0] += slick.thickness
+            found[slick_reach(slick, points[:, 0], points[:, 1]) > 0.0] += slick.thickness
         return found
 
     def sample(self, surface: float) -> None:
@@ -233,7 +248,8 @@ class Scene:
             grid=self.grid,
             surface=self.surface,
             foam=self.foam,
-            slick=self.slick,
+            slick=self.blowout.slick(self.spill) if self.spill.kind == "water" else None,
+            section=self.section,
             kinds=tuple(crowd.kinds),
             positions=crowd.fleet.position.astype(np.float32),
             rotations=crowd.fleet.rotation.astype(np.float32),
@@ -241,10 +257,11 @@ class Scene:
             fire=flames,
             jet=None if jet is None else jet.position[:, jet.flying].T.astype(np.float32),
             spill=self.spill,
+            age=self.age,
         )
 
     def draw(self) -> None:
-        """The surface, its foam and the slick on it, as they are now."""
+        """The surface, its foam and the window into it, as they are now."""
         p = self.params
         centre = self.eye if p.centre == "camera" else (0.0, 0.0)
         self.surface = self.timed(p.surface, self.sea, centre)
@@ -263,9 +280,9 @@ class Scene:
             for part in (slice(0, len(self.grid) - 1 if p.centre == "camera" else near), slice(-1, None)):
                 self.wakes.lay(self.time, vertices[part], slopes[part], len(vertices))
         self.foam = self.whitecaps()
-        self.slick = self.shape_slick(vertices, slopes)
-        rings, slicks = p.ripples and self.wakes.sea.ripples.alive, self.slick is not None
-        self.counts.update({"surfaces": 1, "rings": int(rings), "slicks": int(slicks)})
+        self.section = self.cut() if p.section else None
+        rings = p.ripples and self.wakes.sea.ripples.alive
+        self.counts.update({"surfaces": 1, "rings": int(rings), "windows": int(p.section)})
 
     def whitecaps(self) -> NDArray[np.float32]:
         """Foam (n,), 0 to 1, where the surface is pressed together most: as much of the sea as Monahan measured.
@@ -292,17 +309,20 @@ class Scene:
         self.costs[name] = taken if name not in self.costs else 0.9 * self.costs[name] + 0.1 * taken
         return surface
 
-    def shape_slick(self, vertices: NDArray[np.float32], slopes: NDArray[np.float32]) -> SlickShape | None:
-        """The first rings and the centre once more, just above the water within the slick and below it outside."""
-        slick = self.blowout.slick(self.spill)
-        if slick is None or self.spill.kind != "water":
-            return None
-        rings = int((self.grid.radii < SLICK_RADIUS).sum())
-        count = rings * self.grid.spokes
-        mine = np.concatenate([vertices[:count], vertices[-1:]])
-        inside = slick_reach(slick, mine[:, 0], mine[:, 1])
-        mine[:, 2] += np.clip(inside / SLICK_SOFT, -8.0, 1.0) * np.float32(SLICK_HIGH)
-        return SlickShape(mine, np.concatenate([slopes[:count], slopes[-1:]]), rings)
+    def cut(self) -> Section:
+        """The sea at the walls of a window before the first body, as drawn there."""
+        crowd, size = self.crowd, self.params.size
+        x, y = crowd.fleet.position[0, :2].tolist() if crowd.count else (0.0, 0.0)
+        points = outline((x, y), size)
+        at = self.sea.at(points, self.time)
+        walls = np.column_stack([points, at.height]).astype(np.float32)
+        if self.params.ripples:
+            self.wakes.lay(self.time, walls, np.zeros((len(walls), 2), np.float32), len(walls))
+        top = walls[:, 2].astype(np.float64)
+        layer = self.layer_at(points)
+        oiled = self.spill.kind != "mixed" and bool(layer.max() > 0.0)
+        interface = at.interface - layer + (top - at.height) if oiled else top
+        return section_at((x, y), size, points, top, interface, oiled)
 
     def gauge(self) -> RadialGauge:
         s, grid = self.sum, self.grid
@@ -311,10 +331,13 @@ class Scene:
         if "sum" in self.costs:
             shortest, extent = 2 * float(grid.spacing[0]), 2 * float(grid.radii[-1])
             numbers = shortest, extent, s.significant_height, s.mean_square_slope
-            compared["sum"] = Compared(self.costs["sum"], len(clean.kx), *numbers)
+            compared["sum"] = Compared(
+                self.costs["sum"], len(clean.kx), *numbers, 0.0
+            )  # of equal energy by their making
         if "fft" in self.costs and tile is not None:
             numbers = 2 * TILE_LENGTH / TILE, TILE_LENGTH, tile.significant_height, tile.mean_square_slope
-            compared["fft"] = Compared(self.costs["fft"], TILE * TILE // 2, *numbers)
+            error = tile.significant_height / s.significant_height - 1.0 if s.significant_height > 0.0 else 0.0
+            compared["fft"] = Compared(self.costs["fft"], TILE * TILE // 2, *numbers, error)
         return RadialGauge(
             readings=self.crowd.readings(self.time),
             spill=self.spill,
@@ -325,6 +348,7 @@ class Scene:
             peak_period=2 * math.pi / float(s.rate[len(s.rate) // 2]),
             tally=self.blowout.tally(self.spill),
             compared=compared,
+            age=self.age,
         )
 
     def work(self) -> dict[str, Work]:
@@ -335,7 +359,7 @@ class Scene:
             "steps of bodies": Work(c["body steps"]),
             "pairs of bodies in touch": Work(c["touches"], max(c["pairs"] - c["touches"], 0)),
             "surfaces with rings of bodies": Work(c["rings"], c["surfaces"] - c["rings"]),
-            "surfaces with a slick": Work(c["slicks"], c["surfaces"] - c["slicks"]),
+            "surfaces with a window": Work(c["windows"], c["surfaces"] - c["windows"]),
         }
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:

@@ -8,6 +8,7 @@ import logging
 import multiprocessing
 import os
 import signal
+import socket
 import threading
 from collections import deque
 from collections.abc import Generator, Iterator
@@ -88,6 +89,7 @@ def on_cluster(address: str, jobs: dict[int, Job]) -> Iterator[tuple[int, Outcom
     """
     from distributed import Client, as_completed
 
+    check_address(address)
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
@@ -106,6 +108,17 @@ def on_cluster(address: str, jobs: dict[int, Job]) -> Iterator[tuple[int, Outcom
                 yield number, failed(f"on the cluster: {one_line(future.exception())}")
             else:
                 raise OSError(f"the scheduler at {address} has gone")
+
+
+def check_address(address: str) -> None:
+    """Raises ValueError where nothing listens at `address`: a client that fails leaves threads behind."""
+    host, _, port = address.rpartition("://")[2].rpartition(":")
+    if not (host and port.isdecimal() and int(port) < 65536):
+        raise refusal("--scheduler", address, "an address such as tcp://host:8786")
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), PATIENCE).close()
+    except (OSError, UnicodeError) as error:
+        raise refusal("--scheduler", address, f"where a Dask scheduler listens ({error})") from None
 
 
 def check_workers(client: Any, address: str) -> None:

@@ -155,12 +155,12 @@ def sum_waves(h, dk, choppiness, x, y):
                 re = twice * (h[i, 2 * j] * c - h[i, 2 * j + 1] * s)
                 im = twice * (h[i, 2 * j] * s + h[i, 2 * j + 1] * c)
                 height += re
-                # Re(-i h e) = Im(h e); d/dx of it is kx Re(h e)
-                Dx += kx / k * im
-                Dy += ky / k * im
-                Dxx += kx * kx / k * re
-                Dyy += ky * ky / k * re
-                Dxy += kx * ky / k * re
+                # Re(i h e) = -Im(h e); d/dx of it is -kx Re(h e)
+                Dx -= kx / k * im
+                Dy -= ky / k * im
+                Dxx -= kx * kx / k * re
+                Dyy -= ky * ky / k * re
+                Dxy -= kx * ky / k * re
             c, s = c * stepc - s * steps, s * stepc + c * steps
     g = choppiness
     return height, g * Dx, g * Dy, g * Dxx, g * Dyy, g * Dxy

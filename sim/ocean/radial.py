@@ -93,6 +93,11 @@ class RadialSea:
         self._grid = None
         self._weights: dict[bytes, np.ndarray] = {}
 
+    def age(self, exposure: float) -> None:
+        """The same waves, grown older: they have now run `exposure` [s] in all on this medium, and decayed."""
+        self.exposure = not_negative("exposure", exposure, "s")
+        self.amplitude = self.waves.amplitude * np.exp(-self.decay * self.exposure)
+
     @property
     def significant_height(self) -> float:
         """Hs = 4 sqrt(sum a^2/2) [m] of the waves as they are, decayed."""

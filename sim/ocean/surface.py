@@ -54,12 +54,13 @@ class Surface:
     def displacement(self) -> np.ndarray:
         """Horizontal displacement (size, size, 2) [m], choppiness included. Two transforms; none at choppiness 0.
 
-        D(k) = -i choppiness (k/|k|) h(k): Tessendorf (2001), eq. 44.
+        D(k) = i choppiness (k/|k|) h(k): Tessendorf (2001), eq. 44, with the sign that he leaves to the factor. Water
+        of a deep wave a cos(kx - omega t) moves by -a sin(kx - omega t) along it (Lamb, Art. 229): to the crests.
         """
         out = self._two_planes()
         if self.choppiness > 0.0:
             rows = self.sea.rows
-            chop = -rows["k"] * rows["k"].dtype.type(self.choppiness)
+            chop = rows["k"] * rows["k"].dtype.type(self.choppiness)
             self._set_field(set_imaginary_multiple, chop, rows["1"], "1/k", out[..., 0])
             self._set_field(set_imaginary_multiple, rows["1"], chop, "1/k", out[..., 1])
         else:
@@ -80,7 +81,7 @@ class Surface:
         rows, out = self.sea.rows, self.sea.transforms.grids.take(3)
         out[...] = 0.0
         if self.choppiness > 0.0:
-            chop = rows["1"].dtype.type(self.choppiness)
+            chop = -rows["1"].dtype.type(self.choppiness)
             for i, (row, column) in enumerate((("k2", "1"), ("1", "k2"), ("k", "k"))):
                 self._set_field(set_real_multiple, chop * rows[row], rows[column], "1/k", out[i])
         return out

@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike
 
 from sim.jit import kernel
 from sim.ocean.bounds import positions
-from sim.ocean.query import bicubic
+from sim.ocean.query import bicubic, sample
 from sim.ocean.radial import RadialSurface, SurfaceAt
 from sim.ocean.radial_grid import FADE, RadialGrid
 from sim.ocean.sea import Sea
 
 INSTANT = 1 / 60  # [s] between the three heights from which rise and acceleration are differences
 REACH = 0.05  # [m] of the differences that give the slope at a point
+STEPS = 12  # towards a label: where the surface does not nearly fold, each leaves half the miss or less
 
 
 class TileSea:
@@ -39,10 +40,11 @@ class TileSea:
         D, slope = surface.displacement, surface.slope
         n = len(grid)
         vertices, slopes = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32)
+        jacobian = np.empty(n, np.float32)
         cell = self.sea.length / self.sea.size
         sample_mesh(grid.x, grid.y, self._share, centre[0], centre[1], cell, surface.height, D[..., 0], D[..., 1],
-                    slope[..., 0], slope[..., 1], vertices, slopes)  # fmt: skip
-        return RadialSurface(vertices, slopes, np.ones(n, np.float32))
+                    slope[..., 0], slope[..., 1], vertices, slopes, jacobian)  # fmt: skip
+        return RadialSurface(vertices, slopes, jacobian)
 
     def shares(self, grid: RadialGrid) -> np.ndarray:
         """Amplitude (bands,) that the rings can show: root of the energy in waves of enough cells."""
@@ -66,29 +68,56 @@ class TileSea:
 
     def at(self, points: ArrayLike, t: float, size: ArrayLike = 0.0) -> SurfaceAt:
         """The sea above points (n, 2) [m] at time t [s]; `size` is not used, the tile has no shorter waves than its
-        cells. The current along the surface is left out: velocity is that of a surface that only rises."""
+        cells. Velocity is that of the water that is there now, acceleration that of the surface above the point."""
         where = positions("points", points)
         n = len(where)
         around = np.concatenate([where + REACH * np.array(d) for d in ((1, 0), (-1, 0), (0, 1), (0, -1), (0, 0))])
         height, residual = self.sea.height_at(around, t)
         east, west, north, south, now = height.reshape(5, n)
         slope = np.column_stack([east - west, north - south]) / (2 * REACH)
-        before, after = (self.sea.height_at(where, t + s)[0] for s in (-INSTANT, INSTANT))
-        velocity = np.zeros((n, 3))
-        velocity[:, 2] = (after - before) / (2 * INSTANT)
-        acceleration = (after - 2 * now + before) / INSTANT**2
-        return SurfaceAt(now, slope, velocity, acceleration, now.copy(), slope.copy(), velocity[:, 2].copy(), where,
+        cell, label = self.sea.length / self.sea.size, where.copy()
+        D = self.sea.surface(t).displacement
+        find_labels(where, D[..., 0], D[..., 1], cell, label)
+        above, moved = [], []
+        for instant in (-INSTANT, INSTANT):
+            above.append(self.sea.height_at(where, t + instant)[0])
+            moved.append(self.particles(label, t + instant, cell))
+        velocity = (moved[1] - moved[0]) / (2 * INSTANT)
+        rise, acceleration = (above[1] - above[0]) / (2 * INSTANT), (above[1] - 2 * now + above[0]) / INSTANT**2
+        return SurfaceAt(now, slope, velocity, acceleration, now.copy(), slope.copy(), rise, label,
                          residual[4 * n :])  # fmt: skip
+
+    def particles(self, label: np.ndarray, t: float, cell: float) -> np.ndarray:
+        """Displacement (n, 3) [m] at time t [s] of what rests at labels (n, 2) [m]."""
+        surface = self.sea.surface(t)
+        fields = (surface.displacement[..., 0], surface.displacement[..., 1], surface.height)
+        out = np.empty((3, len(label)))
+        for field, row in zip(fields, out, strict=True):
+            sample(label, np.ascontiguousarray(field), cell, row)
+        return out.T
 
 
 @kernel
-def sample_mesh(x, y, share, x0, y0, cell, height, dx, dy, sx, sy, vertices, slopes):
-    """The tile's fields at the points of a grid about (x0, y0), each lowered to its share."""
+def find_labels(points, dx, dy, cell, labels):
+    """labels (n, 2) [m]: which point of the resting surface is at points (n, 2) [m], by fixed-point steps."""
+    for p in range(points.shape[0]):
+        x, y = points[p, 0], points[p, 1]
+        for _ in range(STEPS):
+            x = points[p, 0] - bicubic(dx, labels[p, 0] / cell, labels[p, 1] / cell)[0]
+            y = points[p, 1] - bicubic(dy, labels[p, 0] / cell, labels[p, 1] / cell)[0]
+            labels[p, 0], labels[p, 1] = x, y
+
+
+@kernel
+def sample_mesh(x, y, share, x0, y0, cell, height, dx, dy, sx, sy, vertices, slopes, jacobian):
+    """The tile's fields at the points of a grid about (x0, y0), each lowered to its share, and the Jacobian."""
     for i in range(x.size):
         X, Y = x[i] + x0, y[i] + y0
         u, v, s = X / cell, Y / cell, share[i]
-        vertices[i, 0] = X + s * bicubic(dx, u, v)[0]
-        vertices[i, 1] = Y + s * bicubic(dy, u, v)[0]
+        a, xx, xy = bicubic(dx, u, v)
+        b, yx, yy = bicubic(dy, u, v)
+        vertices[i, 0], vertices[i, 1] = X + s * a, Y + s * b
+        jacobian[i] = (1.0 + s * xx / cell) * (1.0 + s * yy / cell) - s * s * xy * yx / (cell * cell)
         vertices[i, 2] = s * bicubic(height, u, v)[0]
         slopes[i, 0] = s * bicubic(sx, u, v)[0]
         slopes[i, 1] = s * bicubic(sy, u, v)[0]

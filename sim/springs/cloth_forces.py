@@ -6,11 +6,12 @@ its twelve in one loop: every link is worked out once, written once and read twi
 
 import numpy as np
 
-from sim.jit import kernel
+from sim.jit import kernel, prange
 from sim.springs.links import link_forces
 
 PAD = 2  # zeros on either side of a row: no link reaches further
-RING = 3  # rows kept: a link of the bend family ends two rows on
+REACH = 2  # rows on, where a link of the bend family ends
+RING = REACH + 1  # rows kept
 
 
 @kernel(inline=True)
@@ -43,22 +44,28 @@ def sum_row(f, w, v, a, o, ow, n, load, c, f01, f10, g10, f11, g11, f1m, g1m, f0
 
 
 @kernel(noalias=True, allocates=False)
-def accelerate_cloth(x, v, p, b, c, f, a):
-    """Accelerations of the six families, gravity and drag; f: the buffer, (cloth_scratch,)."""
+def accelerate_rows(x, v, p, b, c, f, o, a, start, stop):
+    """Accelerations of the rows from `start` up to `stop`; f: the buffer, from index o.
+
+    The links that reach in from up to two rows before are worked out here too.
+    """
     n = np.uint64(p.rows * p.cols)
     width = p.cols + 2 * PAD
     m = np.uint64(width)
     cols = np.uint64(p.cols)
     axial = p.axial and b > 0.0
-    for q in (1, 2, 3, 5):
-        for before in (1, 2):
-            clear(f, place(q, before, width) - np.uint64(PAD), np.uint64(3) * m)
-    for i in range(p.rows):
+    if start == 0:
+        for q in (1, 2, 3, 5):
+            for before in (1, 2):
+                clear(f, o + place(q, before, width) - np.uint64(PAD), np.uint64(3) * m)
+    for i in range(max(0, start - REACH), stop):
         for q in range(6):
             di, dj = p.offsets[q, 0], p.offsets[q, 1]
+            if i + di < start:
+                continue
             first = max(0, -dj)
             count = np.uint64(max(0, p.cols - abs(dj)))
-            of = place(q, i, width)
+            of = o + place(q, i, width)
             if i + di < p.rows:
                 ia = np.uint64(i * p.cols + first)
                 ib = np.uint64((i + di) * p.cols + first + dj)
@@ -68,10 +75,12 @@ def accelerate_cloth(x, v, p, b, c, f, a):
                 )  # fmt: skip
             else:
                 clear(f, of - np.uint64(PAD), np.uint64(3) * m)
+        if i < start:
+            continue
         row = np.uint64(i * p.cols)
         for e in range(3):
             load = p.mass * (p.gx if e == 0 else p.gy if e == 1 else p.gz)
-            s = np.uint64(e) * m
+            s = o + np.uint64(e) * m
             sum_row(
                 f, p.weights, v, a, np.uint64(e) * n + row, row, cols, load, c,
                 place(0, i, width) + s,
@@ -81,3 +90,22 @@ def accelerate_cloth(x, v, p, b, c, f, a):
                 place(4, i, width) + s,
                 place(5, i, width) + s, place(5, i + 1, width) + s,
             )  # fmt: skip
+
+
+@kernel(parallel=True)
+def accelerate_bands(x, v, p, b, c, f, a):
+    """`accelerate_rows` in p.bands bands of rows at once, each on a thread and in a buffer of its own."""
+    for k in prange(p.bands):
+        accelerate_rows(
+            x, v, p, b, c, f, np.uint64(k * cloth_scratch(p.cols)), a,
+            p.rows * k // p.bands, p.rows * (k + 1) // p.bands,
+        )  # fmt: skip
+
+
+@kernel(allocates=False)
+def accelerate_cloth(x, v, p, b, c, f, a):
+    """Accelerations of the six families, gravity and drag; f: the buffers, (p.bands cloth_scratch,)."""
+    if p.bands > 1:
+        accelerate_bands(x, v, p, b, c, f, a)
+    else:
+        accelerate_rows(x, v, p, b, c, f, np.uint64(0), a, 0, p.rows)

@@ -131,7 +131,7 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 @kernel
 def make_scratch(p):
-    return np.zeros((cloth_scratch(p.cols) if p.is_cloth else 3 * (p.cols + 1)) + wind_scratch(p.cols))
+    return np.zeros((p.bands * cloth_scratch(p.cols) if p.is_cloth else 3 * (p.cols + 1)) + wind_scratch(p.cols))
 
 
 @kernel(inline=True)

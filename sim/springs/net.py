@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.jit import MOST_THREADS
 from sim.knobs import refusal
 
 Vector = tuple[float, float, float]
@@ -19,6 +20,7 @@ Vector = tuple[float, float, float]
 DAMPING_MODELS = ("isotropic", "axial")
 CONTACT_LAWS = ("clipped", "lab")
 CLOTH = [(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)]  # structural, shear, bend: a kernel of their own
+LEAST_BAND = 8  # rows that are worth a thread
 PAIRS = 24  # most pairs within reach, for each particle
 SKIN = 0.5  # of the thickness: how far pairs are looked for beyond it, so that the list of them lasts
 
@@ -131,6 +133,7 @@ class Forces(NamedTuple):
     thickness: float  # [m] at which particles of the net push each other, 0: never
     pairs: NDArray[np.int64]  # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
+    bands: int  # of rows, whose forces a cloth's threads work out at once
 
 
 @dataclasses.dataclass(frozen=True)
@@ -154,6 +157,7 @@ class Net:
     grab: Grab | None = None
     air: Air | None = None
     thickness: float = 0.0  # [m]: particles nearer to each other than this push, 0: they pass
+    threads: int = 1  # that a cloth's forces are worked out on
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -244,6 +248,7 @@ class Net:
             thickness=float(self.thickness),
             pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1, dtype=np.int64),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
+            bands=max(1, min(self.threads, MOST_THREADS, rows // LEAST_BAND)),
         )
 
 

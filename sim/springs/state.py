@@ -6,6 +6,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.jit import set_threads
 from sim.knobs import refusal
 from sim.springs.energy import Energy, energies
 from sim.springs.forces import set_acceleration
@@ -74,9 +75,11 @@ def advance(net: Net, state: State, integrator: Integrator, h: float, steps: int
     """Advance `state` in place by `steps` steps of h [s]. Raises ValueError for a net the integrator refuses."""
     check_damping(net, integrator)
     set_lag(net, state, integrator.lag * h)
-    ledger = np.zeros(2)
+    ledger, p = np.zeros(2), net.forces(h)
+    if p.bands > 1:
+        set_threads(p.bands)
     state.force_evals += integrator.advance(
-        state.x.reshape(-1), state.v.reshape(-1), ledger, state.t, h, steps, net.forces(h), with_ledger
+        state.x.reshape(-1), state.v.reshape(-1), ledger, state.t, h, steps, p, with_ledger
     )
     state.t += steps * h
     state.steps += steps

@@ -43,7 +43,36 @@ def test_each_preset_is_drawn_as_water_without_console_errors(lab: Viewer, open_
     assert lab.loop.halted == ""
     if preset == "Burning rig":
         tab.wait(lambda: lab.picture.flames is not None and lab.picture.flames.handle.visible, 60)
-        tab.wait(lambda: len(tab.vertices("/slick")) > 0, 120)
+        tab.wait(lambda: lab.picture.look.slick is not None and lab.picture.look.slick.radius > 3.0, 120)
+        # The look's last six rows are the slick's four and the window's two.
+        tab.wait(lambda: tab.vertices("/sea/water_look")[-6, 2] > 3.0, 60)
+    assert tab.errors == []
+
+
+def test_a_window_shows_the_interface_and_the_camera_goes_along(lab: Viewer, open_tab) -> None:
+    load(lab, spill="layer", thickness=0.4, section=True, follow="window", rings=32, spokes=32, bodies=1)
+    lab.loop.commands.put(Reset())
+    tab = open_tab(lab.port, width=500, height=320)
+    tab.wait(lambda: drawn(lab), 120)
+    tab.wait(lambda: len(tab.vertices("/section")) > 0)
+    tab.wait(lambda: lab.picture.walls.mesh.alive is True, 120)
+    n = (len(tab.vertices("/section")) - 1) // 4
+
+    def thickness() -> float:
+        walls = tab.vertices("/section")
+        return float((walls[:n, 2] - walls[n : 2 * n, 2]).mean())
+
+    tab.wait(lambda: abs(thickness() - 0.4) < 0.05, 60)
+
+    def beside() -> float:
+        """How far the page's camera is from where it belongs beside the buoy [m]."""
+        (client,) = lab.server.get_clients().values()
+        wanted = lab.scene.crowd.fleet.position[0, :2] + lab.picture.chase.offset[0, :2]
+        return float(np.abs(np.asarray(client.camera.position)[:2] - wanted).max())
+
+    lab.scene.crowd.fleet.velocity[0] = (3.0, 2.0, 0.0)
+    tab.wait(lambda: np.hypot(*(lab.scene.crowd.fleet.position[0, :2] - lab.scene.crowd.home[0])) > 1.0, 60)
+    tab.wait(lambda: beside() < 0.5, 60)
     assert tab.errors == []
 
 

@@ -246,3 +246,14 @@ def test_no_wind_is_a_level_sea() -> None:
 def test_what_is_not_allowed_is_refused_by_name(make, word: str) -> None:
     with pytest.raises(ValueError, match=word):
         make()
+
+
+def test_growing_older_is_having_run_longer() -> None:
+    waves, oil = draw_waves(SPECTRA["jonswap"], WIND, 64), Spill(oil=fluids()["IFO 180"], thickness=0.3)
+    grown, longer = RadialSea(waves, oil, exposure=10.0), RadialSea(waves, oil, exposure=300.0)
+    grown.age(300.0)
+    np.testing.assert_array_equal(grown.amplitude, longer.amplitude)
+    assert grown.significant_height < RadialSea(waves, oil, exposure=10.0).significant_height
+    np.testing.assert_allclose(grown.at([[1.0, 2.0]], 7.0).height, longer.at([[1.0, 2.0]], 7.0).height, atol=1e-12)
+    with pytest.raises(ValueError, match="exposure"):
+        grown.age(-1.0)

@@ -175,6 +175,16 @@ def test_a_field_stays_as_it_was_while_anyone_holds_it():
         np.testing.assert_array_equal(field, Sea(16, 60.0).surface(float(t)).height)
 
 
+def test_choppiness_gathers_water_at_the_crests():
+    """Where the surface is high it is pressed together, so that crests are sharp and troughs are wide."""
+    sea = Sea(64, 200.0, wind_speed=8.0, precision="double")
+    surface = sea.surface(3.0)
+    # To first order J - 1 is -sum |k| h: as like the height as its own roughened self.
+    assert np.corrcoef(surface.height.ravel(), surface.jacobian.ravel())[0, 1] < -0.5
+    by_place = surface.jacobian / surface.jacobian.sum()
+    assert float((by_place * surface.height).sum()) < 0.0  # so more of the plane lies under troughs
+
+
 def test_choppiness_can_change_live():
     sea = Sea(16, 60.0, choppiness=0.5, precision="double")
     D = sea.surface(2.0).displacement

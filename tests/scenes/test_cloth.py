@@ -10,7 +10,7 @@ from app.cloth_start import resample
 from app.loop import SimLoop
 from app.messages import DivergenceError, Grab, Place, Release
 from app.pictures.cloth import faces, marks
-from app.scenes.cloth import Scene
+from app.scenes.cloth import TOP_SPEED, Scene
 from sim.knobs import check, knobs
 
 SMALL = Params(rows=10, cols=10, time_step=1 / 1200, wind=0.0)
@@ -89,6 +89,26 @@ def test_the_sphere_pushes_the_cloth():
     gap = np.linalg.norm(scene.state.x - sphere[:3, None, None], axis=0).min() - sphere[3]
     assert scene.state.x[1].max() > 0.3
     assert gap > 0.0
+
+
+def test_a_sphere_torn_through_the_curtain_takes_the_cloth_along():
+    """Dragged away at once, far beyond: it goes at its top speed, and no particle ends inside what is drawn of it."""
+    scene = Scene(dataclasses.replace(Params(), sphere=True, wind=0.0))
+    run(scene, 0.3)
+    scene.obey(Place("sphere", (0.0, 50.0, 1.2)))
+    fastest, before, least = 0.0, np.array(scene.picture().sphere), np.inf
+    for _ in range(20):
+        scene.advance(round(1 / 60 / scene.step))
+        sphere = np.array(scene.picture().sphere)
+        fastest = max(fastest, (sphere[1] - before[1]) * 60)
+        before = sphere
+        least = min(least, np.linalg.norm(scene.state.x - sphere[:3, None, None], axis=0).min() / sphere[3])
+    assert 0.9 * TOP_SPEED < fastest <= TOP_SPEED
+    assert least > 0.99
+    # Whatever of the cloth the sphere met it has before it.
+    near = np.abs(scene.state.x[0]) + np.abs(scene.state.x[2] - 1.2) < 0.1
+    assert near.any()
+    assert (scene.state.x[1][near] > sphere[1]).all()
 
 
 def test_a_new_grid_keeps_the_shape():

@@ -13,10 +13,11 @@ from app.crowd import HeaveMeter, hull_of, place_of
 from app.messages import Grab, Place, Release
 from app.radial_knobs import PRESETS, Params, hidden, spill_of
 from app.scenes import radial
-from app.scenes.radial import SLICK_HIGH, SLICK_SOFT, Scene
+from app.scenes.radial import Scene
 from sim.floating import equilibrium_draft, heave_period
 from sim.knobs import check, clamp, knobs
 from sim.ocean.fluids import fluids
+from sim.ocean.radial import RadialSea
 
 CALM = {"waves": False, "rig": False, "ripples": False}
 
@@ -215,15 +216,42 @@ def test_oil_from_the_jet_makes_a_slick_that_grows() -> None:
     assert late.ejected == pytest.approx(late.in_flight + late.fed)
     assert late.fed == pytest.approx(math.pi * late.radius**2 * late.thickness)
     assert late.hits > early.hits > 0
-    shape = scene.picture().slick
-    assert shape is not None
-    slick = scene.blowout.slick(scene.spill)
+    slick = scene.picture().slick
     assert slick is not None
-    above = slick_reach(slick, shape.vertices[:, 0], shape.vertices[:, 1]) > SLICK_SOFT
-    water = np.concatenate([scene.surface.vertices[: len(shape.vertices) - 1], scene.surface.vertices[-1:]])
-    lift = shape.vertices[:, 2] - water[:, 2]
-    np.testing.assert_allclose(lift[above], SLICK_HIGH, atol=1e-5)
-    assert lift[~above].min() < -0.1
+    assert (slick.radius, slick.thickness) == (late.radius, late.thickness)
+    x, y = slick.centre
+    rim = np.array([x, x + slick.radius, x + 2 * slick.radius])
+    np.testing.assert_allclose(slick_reach(slick, rim, np.full(3, y)), [slick.radius, 0.0, -slick.radius], atol=1e-9)
+
+
+@pytest.mark.parametrize("surface", ["sum", "fft"])
+def test_the_window_is_cut_where_sea_and_interface_are(surface: str) -> None:
+    scene = run(Scene(with_knobs(spill="layer", thickness=0.3, section=True, surface=surface, ripples=False)), 2.0)
+    section = scene.picture().section
+    assert section is not None
+    assert section.oiled
+    at = scene.sea.at(section.points, scene.time)
+    np.testing.assert_allclose(section.top, at.height, atol=1e-6)
+    np.testing.assert_allclose(section.interface, np.minimum(at.interface - 0.3, at.height), atol=1e-6)
+    assert section.floor < section.interface.min()
+    buoy = scene.crowd.fleet.position[0, :2]
+    wall = section.points[:65]
+    np.testing.assert_allclose(wall.mean(axis=0), buoy, atol=1e-9)
+    np.testing.assert_allclose((wall - buoy) @ section.way, 0.0, atol=1e-9)
+    np.testing.assert_allclose(np.ptp(wall @ [-section.way[1], section.way[0]]), 2 * section.half, rtol=1e-6)
+    # the line goes around once, the pit on its left, and closes
+    x, y = section.points.T
+    assert 0.5 * float(x[:-1] @ np.diff(y) - y[:-1] @ np.diff(x)) == pytest.approx(2 * section.half * section.length)
+    np.testing.assert_allclose(section.points[0], section.points[-1], atol=1e-9)
+
+
+def test_a_window_into_clean_water_has_no_interface_and_none_is_cut_unasked() -> None:
+    scene = Scene(with_knobs(section=True, bodies=0))
+    section = scene.picture().section
+    assert section is not None
+    assert not section.oiled
+    assert (section.interface == section.top).all()
+    assert Scene(Params()).picture().section is None
 
 
 def test_closing_the_jet_keeps_its_oil() -> None:
@@ -261,3 +289,22 @@ def test_arrays_have_units() -> None:
     for array, unit in radial.Scene(Params()).arrays().values():
         assert np.isfinite(array).all()
         assert unit
+
+
+@pytest.mark.parametrize("surface", ["sum", "fft"])
+def test_a_spill_ages_and_its_knob_sets_its_age_anew(surface: str) -> None:
+    heavy = {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 10.0, "bodies": 0, "surface": surface}
+    scene = Scene(with_knobs(**heavy))
+    before, square = scene.sum.significant_height, scene.make_tile().significant_height
+    run(scene, 60.0)
+    assert scene.gauge().age == pytest.approx(70.0, abs=0.2)
+    aged = RadialSea(scene.waves(), scene.spill, 70.0)
+    assert scene.sum.significant_height == pytest.approx(aged.significant_height, rel=1e-3)
+    assert scene.sum.significant_height < 0.995 * before
+    scene.picture()
+    assert scene.tile is not None
+    assert scene.tile.significant_height < 0.995 * square
+    scene.set_params(with_knobs(**{**heavy, "exposure": 20.0}))
+    assert scene.gauge().age == 20.0
+    still = Scene(with_knobs(**heavy, ageing=False))
+    assert run(still, 5.0).gauge().age == 10.0

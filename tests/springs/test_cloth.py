@@ -3,6 +3,7 @@
 import dataclasses
 import itertools
 import math
+import os
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from sim.springs.collide import find_pairs
 from sim.springs.forces import set_acceleration
 from sim.springs.net import CLOTH, SKIN
 from sim.springs.state import State, advance, energy
-from sim.springs.statics import hanging_chain
+from sim.springs.statics import catenary, hanging_chain
 from tests.naive import acceleration
 
 BAD = [math.nan, math.inf, True, "1", None]
@@ -72,6 +73,21 @@ def test_the_fused_forces_agree_with_the_formulas_link_by_link(shape, model):
     assert np.abs(forces_of(net, x, v) - naive).max() < 1e-12 * np.abs(naive).max()
 
 
+@pytest.mark.skipif(os.cpu_count() == 1, reason="one core")
+@pytest.mark.parametrize(("rows", "cols"), [(16, 9), (33, 5), (64, 64)])
+def test_two_threads_give_the_very_numbers_of_one(rows, cols):
+    net = cloth(rows, cols, damping=0.3, drag=0.1)
+    rng = np.random.default_rng(1)
+    x, v = net.x0 + 0.03 * rng.standard_normal(net.x0.shape), rng.standard_normal(net.x0.shape)
+    split = dataclasses.replace(net, threads=2)
+    assert split.forces(1.0).bands == 2
+    assert (forces_of(split, x, v) == forces_of(net, x, v)).all()
+
+
+def test_a_cloth_of_few_rows_stays_on_one_thread():
+    assert dataclasses.replace(cloth(15, 100), threads=8).forces(1.0).bands == 1
+
+
 @pytest.mark.parametrize(("p", "q"), [(1, 1), (1, 2), (3, 2), (5, 7)])
 def test_a_taut_square_of_structural_springs_vibrates_as_the_discrete_membrane(p, q):
     """omega^2 = (4 T/m a) [sin^2(p pi/2(N+1)) + sin^2(q pi/2(M+1))], N x M free particles, tension T."""
@@ -104,6 +120,27 @@ def test_strips_without_cross_springs_hang_as_chains():
     advance(net, state, INTEGRATORS["leapfrog"], 2e-3, 20_000)
     for j in range(3):
         assert state.x[2, :, j] - state.x[2, 0, j] == pytest.approx(depth, abs=1e-9)
+
+
+def test_a_strip_between_two_bars_hangs_as_the_catenary():
+    """Structural springs down the strip only: each column is the discrete elastic catenary between its two pins."""
+    rows, length, span, rise = 24, 1.2, 1.0, 0.1
+    net = cloth(
+        rows, 3, 0.2, length, 1.0, 300.0, 0.0, 0.0, 0.2, 0.3,
+        pinned=[(i, j) for i in (0, rows - 1) for j in range(3)],
+    )  # fmt: skip
+    net = dataclasses.replace(
+        net, families=tuple(f if f[:2] == (1, 0) else f._replace(stiffness=0.0, damping=0.0) for f in net.families)
+    )
+    x = net.x0.copy()
+    x[1], x[2] = np.linspace(0.0, span, rows)[:, None], np.linspace(0.0, rise, rows)[:, None]
+    net = dataclasses.replace(net, x0=x)
+    exact = catenary(rows, length, span, rise, 300.0, net.mass, 9.81)
+    state = State.at_rest(net)
+    advance(net, state, INTEGRATORS["leapfrog"], 1e-3, 30_000)
+    for j in range(3):
+        assert state.x[1, :, j] == pytest.approx(exact.x[:, 0], abs=1e-8)
+        assert state.x[2, :, j] == pytest.approx(exact.x[:, 2], abs=1e-8)
 
 
 def test_a_square_cloth_keeps_the_eight_symmetries_of_the_square():

@@ -1,4 +1,4 @@
-"""XPBD: bounded at any stiffness, and the springs' own physics as the step goes to 0 (the order tests hold its motion)."""
+"""XPBD: bounded at any stiffness, and the springs' own physics as the step goes to 0."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ def test_one_link_alone_takes_exactly_an_implicit_step():
 
 
 def test_its_equilibrium_is_too_long_by_the_square_of_the_step():
-    """A sweep passes a pull on by one link, so that a hanging rope is softer than its springs, less so in short steps."""
+    """A sweep passes a pull on by one link, so that a hanging rope is softer than its springs."""
     net = rope(10, drag=20.0, damping=20.0)
     counts, errors = [300, 600, 1200, 2400], []
     exact = hanging_chain(net).x.T[:, None]

@@ -1,0 +1,61 @@
+"""A camera that goes along with a body, and still lets itself be turned."""
+
+import time
+from collections import deque
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from app.messages import Vector
+
+SAME = 0.02  # [m] within which a camera, or its target, is where it was put
+HANDS_ON = 0.4  # [s] since a hand last moved the camera, for which it is left alone
+STEP = 0.02  # [m] that the body goes before the cameras follow
+KEPT = 90  # placings that a slow page may still answer with
+
+
+class Chase:
+    """Keeps each browser's camera where its user has put it beside a body.
+
+    A page answers late, so what it says of its camera is the hand of a user only where it is none of the last placings.
+    """
+
+    def __init__(self) -> None:
+        self.here = np.zeros(3)
+        self.offset = np.zeros((2, 3))  # [m] camera and target from the body as it begins
+        self.mine: dict[int, np.ndarray] = {}  # client -> the same, as its user has it now
+        self.placed: dict[int, deque[np.ndarray]] = {}
+        self.moved: dict[int, float] = {}  # client -> when a hand last moved its camera [s]
+
+    def start(self, here: np.ndarray, offset: Iterable[Vector]) -> None:
+        """Begin beside a body at `here` (3,) [m]; offset: camera and target from it [m]."""
+        self.here, self.offset = here, np.array(list(offset))
+        self.mine, self.placed, self.moved = {}, {}, {}
+
+    def go(self, here: np.ndarray, cameras: dict[int, Any], now: float | None = None) -> None:
+        """Follow to `here` (3,) [m] with the cameras by client; now [s]: a clock."""
+        now = time.monotonic() if now is None else now
+        on = float(np.abs(here - self.here).max()) > STEP
+        for client, camera in cameras.items():
+            if client not in self.mine:
+                before = np.array([camera.position, camera.look_at], float)
+                self.mine[client], self.placed[client] = self.offset, deque([before], maxlen=KEPT)
+                self.place(client, camera, here)
+                continue
+            at = np.array([camera.position, camera.look_at], float)
+            # The two arrive one after the other, so that a page may answer with a new one and an old.
+            off = np.abs(at - np.array(self.placed[client])).max(axis=2).min(axis=0)
+            if off.max() > SAME:
+                self.mine[client], self.moved[client] = at - here, now
+                self.placed[client].append(at)
+            elif on and now - self.moved.get(client, -np.inf) > HANDS_ON:
+                self.place(client, camera, here)
+        if on:
+            self.here = here
+
+    def place(self, client: int, camera: Any, here: np.ndarray) -> None:
+        """Put a camera beside `here`."""
+        at = here + self.mine[client]
+        camera.position, camera.look_at = at
+        self.placed[client].append(at)

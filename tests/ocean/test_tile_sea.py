@@ -1,0 +1,47 @@
+"""The square sea asked as the radial one is: where its water moves, and where it is pressed together."""
+
+import numpy as np
+
+from sim.ocean import Sea
+from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.tile_sea import TileSea
+
+
+def tile(choppiness: float = 1.0) -> TileSea:
+    return TileSea(Sea(size=64, length=128.0, spectrum="jonswap", wind_speed=8.0, choppiness=choppiness))
+
+
+POINTS = np.array([[3.0, 4.0], [-20.0, 31.0], [60.0, -5.5]])
+
+
+def test_what_rides_the_surface_goes_where_its_velocity_says() -> None:
+    sea, dt = tile(), 0.02
+    at = sea.at(POINTS, 5.0)
+    cell = sea.sea.length / sea.sea.size
+    before, after = (at.label + sea.particles(at.label, 5.0 + s, cell)[:, :2] for s in (-dt, dt))
+    np.testing.assert_allclose((after - before) / (2 * dt), at.velocity[:, :2], rtol=0, atol=2e-3)
+    assert np.abs(at.velocity[:, :2]).max() > 0.2
+    here = at.label + sea.particles(at.label, 5.0, cell)[:, :2]
+    np.testing.assert_allclose(here, POINTS, atol=1e-3)
+    # and stays on the surface: w = d eta/dt + u . grad eta
+    rise = at.interface_rise + (at.velocity[:, :2] * at.slope).sum(axis=1)
+    np.testing.assert_allclose(at.velocity[:, 2], rise, atol=0.02)
+
+
+def test_without_choppiness_nothing_moves_along() -> None:
+    at = tile(0.0).at(POINTS, 5.0)
+    assert (at.velocity[:, :2] == 0.0).all()
+    np.testing.assert_allclose(at.velocity[:, 2], at.interface_rise, atol=1e-6)
+
+
+def test_the_jacobian_is_that_of_the_mesh() -> None:
+    sea, grid = tile(), RadialGrid(64, 64, 0.3, 60.0)
+    surface = sea.on(grid, 3.0)
+    own = sea.sea.surface(3.0).jacobian
+    # crests are pressed together and troughs drawn apart, as much as in the transform's own field
+    near = surface.jacobian[: 40 * grid.spokes]
+    assert near.min() > own.min() - 0.05
+    assert near.max() < own.max() + 0.05
+    assert np.corrcoef(near, surface.vertices[: 40 * grid.spokes, 2])[0, 1] < -0.5
+    level = TileSea(Sea(size=64, length=128.0, wind_speed=0.0)).on(grid, 0.0)
+    np.testing.assert_array_equal(level.jacobian, 1.0)

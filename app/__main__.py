@@ -1,11 +1,14 @@
 """The command line: `springtide` and `python -m app`."""
 
 import argparse
+import dataclasses
 import sys
 from pathlib import Path
 from typing import Any, NoReturn
 
 from app.scenes import NAMES, scene_named
+
+MOST_FACES = 20_000  # of a hull from a file: pressure is summed over all of them at each step
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -77,6 +80,7 @@ def add_serving(parser: argparse.ArgumentParser) -> None:
 def add_knobs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--preset", type=Path, metavar="FILE.json", help="knobs of a scene, as JSON")
     parser.add_argument("--set", nargs="+", default=[], metavar="KNOB=VALUE", help="set knobs of the scene")
+    parser.add_argument("--hull", type=Path, metavar="FILE", help="a closed mesh that floats in the radial sea besides")
 
 
 def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
@@ -85,7 +89,21 @@ def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
     from sim.knobs import check, parse
 
     values = read_preset(arguments.preset, scene) if arguments.preset else {}
-    return check(scene.Params, {**values, **parse(scene.Params, arguments.set)})
+    params = check(scene.Params, {**values, **parse(scene.Params, arguments.set)})
+    return params if arguments.hull is None else with_hull(params, arguments.hull)
+
+
+def with_hull(params: Any, path: Path) -> Any:
+    """The parameters with one more hull; raises ValueError where the scene floats nothing, or the mesh is no hull."""
+    from sim.floating import Hull
+    from sim.knobs import refusal
+
+    if not hasattr(params, "hull"):
+        raise refusal("--hull", str(path), "a hull with --scene radial only")
+    faces = len(Hull.load(path).faces)
+    if faces > MOST_FACES:
+        raise refusal("--hull", f"{path} of {faces} triangles", f"at most {MOST_FACES}")
+    return dataclasses.replace(params, hull=str(path))
 
 
 def serve(arguments: argparse.Namespace) -> int:

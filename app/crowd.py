@@ -23,6 +23,8 @@ from sim.ocean.radial import SurfaceAt
 from sim.ocean.spill import Spill
 
 KINDS = ("buoy_red", "buoy_yellow", "crate", "ball")
+OWN = "hull"  # the kind of the one that came from a file
+OWN_PLACE = (-0.2, 2.4)  # [m] at size 1, for one of 2 m; a greater one lies beyond
 PLACES = ((-2.4, 1.0), (-3.0, 4.6), (0.4, -0.8))  # [m] at size 1 of the first three
 RING = 4.2  # [m] at size 1: from one turn of the spiral of the others to the next
 DEEPEST = -60.0  # [m] where what sinks comes to rest
@@ -111,26 +113,33 @@ class HeaveMeter:
 class Crowd:
     """The bodies on the simulation thread."""
 
-    def __init__(self, count: int, size: float, density: float, spill: Spill) -> None:
-        self.count, self.size, self.density = count, size, density
+    def __init__(self, count: int, size: float, density: float, spill: Spill, own: Hull | None = None) -> None:
+        """own: a hull that floats besides, as large as it is."""
+        self.size, self.density = size, density
         self.kinds = [kind_of(i) for i in range(count)]
         hulls = {kind: hull_of(kind, size) for kind in KINDS}
+        places = [place_of(i, size) for i in range(count)]
+        if own is not None:
+            hulls[OWN] = own
+            self.kinds.append(OWN)
+            beyond = max(float(np.abs(own.extents[:2]).max()) - 1.0, 0.0)
+            places.append((OWN_PLACE[0] * size + 0.35 * beyond, OWN_PLACE[1] * size + 0.94 * beyond))
+        self.count = len(self.kinds)
         self.hulls = hulls
         self.theory = theory_of(hulls, density, spill)
         bodies = []
-        for i, kind in enumerate(self.kinds):
+        for kind, (x, y) in zip(self.kinds, places, strict=True):
             t = self.theory[kind]
             hull = hulls[kind]
             sunk = t.draft if math.isfinite(t.draft) else 0.5 * t.height
-            x, y = place_of(i, size)
             bodies.append(Body(hull, density, (x, y, -hull.extents[2, 0] - sunk)))
         self.fleet: Fleet = make_fleet(bodies)
         self.home = self.fleet.position[:, :2].copy()
-        self.widths = np.array([2.0 * hulls[kind].extents[0, 1] for kind in self.kinds])
-        self.meter = HeaveMeter(count)
+        self.widths = np.array([np.ptp(hulls[kind].extents[0]) for kind in self.kinds])
+        self.meter = HeaveMeter(self.count)
         self.held: dict[int, np.ndarray] = {}
-        self.draft = np.zeros(count)
-        self.impulse = np.zeros(count)  # [N s] pressed on the water since last taken
+        self.draft = np.zeros(self.count)
+        self.impulse = np.zeros(self.count)  # [N s] pressed on the water since last taken
         self.touched = self.stepped = 0
 
     def restate(self, density: float, spill: Spill) -> None:
@@ -210,10 +219,11 @@ class Crowd:
         self.meter.take(t, self.draft, duration)
 
     def readings(self, t: float, most: int = 6) -> tuple[Reading, ...]:
-        """The first few bodies now."""
+        """The first few bodies now, and the one from a file."""
+        shown = [i for i, kind in enumerate(self.kinds) if i < most or kind == OWN]
         return tuple(
             Reading(kind, float(self.draft[i]), float(self.meter.mean[i]), self.meter.period(i, t), self.theory[kind])
-            for i, kind in enumerate(self.kinds[:most])
+            for i, kind in ((i, self.kinds[i]) for i in shown)
         )
 
 

@@ -194,8 +194,9 @@ class Panel:
             ("Plots", "P", self.toggle_plots),
             ("Grid", "G", self.toggle_grid),
         ]
-        for number, preset in enumerate(list(self.scene.PRESETS)[:9], 1):
-            actions.append((f"Preset: {preset}", str(number), lambda preset=preset: self.load(preset)))
+        for number, preset in enumerate(self.scene.PRESETS, 1):
+            key = str(number) if number <= 9 else None  # the rest in the command palette and the list only
+            actions.append((f"Preset: {preset}", key, lambda preset=preset: self.load(preset)))
         for label, key, action in actions:
             command = self.gui.add_command(label, hotkey=key)
 

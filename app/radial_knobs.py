@@ -83,6 +83,8 @@ class Params:
     plot_draft: bool = knob(False, doc="Drafts of the first three bodies over time", group="Plots")
     plot_surface: bool = knob(False, doc="Height of the surface and of the first buoy", group="Plots")
 
+    hull: str = ""  # a mesh file that floats besides; named on the command line only, never by a browser
+
 
 PRESETS: dict[str, dict[str, Any]] = {
     "Clear water": {},

@@ -10,6 +10,7 @@ from app.crowd import Reading
 from app.messages import Vector
 from app.radial_knobs import Params
 from app.section import Section
+from sim.floating import Hull
 from sim.ocean.radial import RadialSurface
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.spill import Spill
@@ -26,6 +27,7 @@ class RadialPicture(NamedTuple):
     slick: Slick | None  # drawn on clean water only: on a layer it would not show
     section: Section | None
     kinds: tuple[str, ...]  # of the bodies
+    own: Hull | None  # the hull of the one from a file
     positions: NDArray[np.float32]  # (bodies, 3) [m]
     rotations: NDArray[np.float32]  # (bodies, 4) quaternions (w, x, y, z)
     pull: tuple[Vector, Vector] | None  # from a held body to where it is pulled [m]

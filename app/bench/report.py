@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from app.colour import TOLD_APART
 from app.replacing import replacing
 
 Rows = list[dict[str, Any]]
 
-# Okabe and Ito's palette, told apart with any colour vision, each with a marker of its own.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+# Told apart by shape too, where two curves share a colour.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h", "p", "d")
 
 
@@ -126,8 +126,8 @@ def work_precision(rows: Rows, title: str, error: str = "error [m]") -> Any:
         for index, method in enumerate(methods):
             own = sorted((row for row in rows if row["method"] == method), key=lambda row: row["force evaluations"])
             x, y = [row[column] for row in own], [row[error] for row in own]
-            dash = "-" if index < len(COLOURS) else "--"
-            style = {"color": COLOURS[index % 8], "marker": MARKERS[index % 13], "markersize": 5, "linestyle": dash}
+            dash = "-" if index < len(TOLD_APART) else "--"
+            style = {"color": TOLD_APART[index % 8], "marker": MARKERS[index % 13], "markersize": 5, "linestyle": dash}
             axes.loglog(x, y, label=method.replace("_", " "), **style)
             curves.append((x, y))
         if column == "force evaluations":

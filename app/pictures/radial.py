@@ -9,6 +9,7 @@ import numpy as np
 import viser
 
 from app.blowout import FIRE, RIG
+from app.crowd import OWN
 from app.fluid_look import look_of
 from app.messages import Command, Grab, Place, Release, Snapshot, finite_vector
 from app.pictures.chase import Chase
@@ -25,6 +26,7 @@ SUN = 1.25  # [rad] bearing of the sun, beyond the buoys as the camera starts
 SUNLIGHT = 2.2  # intensity of the lamp that stands for a sun of strength 5
 HANDLE = 0.75  # [m] radius of what is dragged, at size 1
 HELD_COLOUR = (255, 90, 60)
+OWN_COLOUR = (64, 132, 186)  # of a hull from a file
 EYE_EVERY = 0.2  # [s] between looks at where the camera is
 VIEWS = {  # camera and target [m] when one of them is followed
     "rig": ((RIG[0] - 62.0, RIG[1] - 84.0, 40.0), (RIG[0] + 10.0, RIG[1] - 4.0, 16.0)),
@@ -137,16 +139,19 @@ class Picture:
             self.kinds, self.size = picture.kinds, picture.params.size
             for kind in sorted(set(self.kinds)):
                 chosen = np.array([i for i, other in enumerate(self.kinds) if other == kind])
-                handle = self.server.scene.add_batched_glb(
-                    f"/bodies/{kind}",
-                    model(kind),
-                    batched_wxyzs=picture.rotations[chosen],
-                    batched_positions=picture.positions[chosen],
-                    batched_scales=np.full(len(chosen), self.size, np.float32),
-                    lod="off",
-                    cast_shadow=False,
-                    receive_shadow=False,
-                )
+                poses = {"batched_wxyzs": picture.rotations[chosen], "batched_positions": picture.positions[chosen]}
+                plain = {"lod": "off", "cast_shadow": False, "receive_shadow": False}
+                name = f"/bodies/{kind}"
+                if kind == OWN:
+                    assert picture.own is not None
+                    vertices, faces = picture.own.vertices.astype(np.float32), picture.own.faces.astype(np.uint32)
+                    handle: Any = self.server.scene.add_batched_meshes_simple(
+                        name, vertices, faces, batched_colors=OWN_COLOUR, flat_shading=True, **poses, **plain
+                    )
+                else:
+                    handle = self.server.scene.add_batched_glb(
+                        name, model(kind), batched_scales=np.full(len(chosen), self.size, np.float32), **poses, **plain
+                    )
                 self.groups[kind] = handle, chosen
             self.add_handles(picture)
         for handle, chosen in self.groups.values():
@@ -167,13 +172,16 @@ class Picture:
         if n == 0:
             return
         vertices, faces = ball(4)
+        sizes = np.full(n, self.size, np.float32)
+        if picture.own is not None:
+            sizes[-1] = 0.5 * np.ptp(picture.own.extents, axis=1).mean() / HANDLE
         self.handles = self.server.scene.add_batched_meshes_simple(
             "/handles",
             HANDLE * vertices,
             faces,
             batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)),
             batched_positions=picture.positions,
-            batched_scales=np.full(n, self.size, np.float32),
+            batched_scales=sizes,
             opacity=0.0,
             lod="off",
             cast_shadow=False,

@@ -10,7 +10,11 @@ import viser
 from app.colour import css_scale, scale_colours
 from app.messages import Command, Grab, Place, Release, Snapshot, finite_vector
 from app.paint import Painted
-from app.scenes.rope import ROOT, SPHERE, THICKNESS, RopePicture
+from app.pictures.race import RaceDrawing
+from app.race import RaceGauge
+from app.race_report import standings
+from app.rope_knobs import ROOT, SPHERE, THICKNESS
+from app.scenes.rope import Paid, RopePicture
 from app.shapes import SIDES, ball, smooth_line, sweep, tube_faces
 
 ROPE_COLOUR = (196, 154, 92)
@@ -24,6 +28,7 @@ class Picture:
     """Draws `RopePicture`s."""
 
     CAMERA = ((-0.4, -4.3, 2.35), (-0.3, 0.0, 1.75))  # position, target [m]
+    RACE_CAMERA = ((3.4, -2.7, 2.9), (0.45, 0.35, 1.75))
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server = server
@@ -31,6 +36,7 @@ class Picture:
         self.tube: Painted | None = None
         self.beads: viser.BatchedMeshHandle | None = None
         self.count = 0
+        self.race: RaceDrawing | None = None
         self.nearest = 0
         self.dragged_at = {"root": 0.0, "sphere": 0.0}
         scene = server.scene
@@ -154,6 +160,55 @@ class Picture:
 
     def show(self, picture: RopePicture) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
+        if picture.race is None:
+            self.show_rope(picture)
+        else:
+            self.show_race(picture)
+        self.pull.visible = picture.pull is not None
+        if picture.pull is not None:
+            points = picture.points if picture.race is None else picture.race.ropes.reshape(-1, 3)
+            self.pull.points = np.array([[points[picture.pull.particle], picture.pull.target]], np.float32)
+            self.pull.thickness = 2.0 + 5.0 * picture.pull.load
+        self.floor.visible = picture.floor
+        self.floor.cell_thickness = 1.0 if picture.grid else 0.0
+        self.floor.section_thickness = 1.0 if picture.grid else 0.0
+        self.ball.visible = self.gizmos["sphere"].visible = picture.sphere is not None
+        self.follow("root", picture.root)
+        if picture.sphere is not None:
+            self.ball.position = picture.sphere[:3]
+            self.ball.scale = picture.sphere[3]
+            self.follow("sphere", picture.sphere[:3])
+
+    def show_race(self, picture: RopePicture) -> None:
+        """The ropes of a race, in place of the one."""
+        race = picture.race
+        assert race is not None
+        if self.race is None:
+            self.look_from(self.RACE_CAMERA)
+        if self.race is not None and self.race.shape != race.ropes.shape:
+            self.race.remove()
+            self.race = None
+        if self.race is None:
+            self.race = RaceDrawing(self.server, race, self.on_bead)
+        self.race.show(race, picture.show_points)
+        self.hook.visible = False
+        if self.tube is not None and self.beads is not None:
+            self.tube.remove()
+            self.beads.remove()
+            self.tube = self.beads = None
+            self.count = 0
+
+    def look_from(self, camera: tuple[tuple[float, float, float], tuple[float, float, float]]) -> None:
+        """Move every camera to where a race, or one rope, is best seen."""
+        for client in (self.server.initial_camera, *(c.camera for c in self.server.get_clients().values())):
+            client.position, client.look_at = camera
+
+    def show_rope(self, picture: RopePicture) -> None:
+        """The one rope."""
+        if self.race is not None:
+            self.race.remove()
+            self.race = None
+            self.look_from(self.CAMERA)
         if len(picture.points) != self.count:
             self.build(picture)
         assert self.tube is not None
@@ -171,20 +226,8 @@ class Picture:
                 colours[held] = HELD_COLOUR
             self.beads.batched_colors = colours
             self.held = held
-        self.pull.visible = picture.pull is not None
-        if picture.pull is not None:
-            self.pull.points = np.array([[picture.points[held], picture.pull.target]], np.float32)
-            self.pull.thickness = 2.0 + 5.0 * picture.pull.load
+        self.hook.visible = True
         self.hook.position = tuple(picture.points[0])
-        self.floor.visible = picture.floor
-        self.floor.cell_thickness = 1.0 if picture.grid else 0.0
-        self.floor.section_thickness = 1.0 if picture.grid else 0.0
-        self.ball.visible = self.gizmos["sphere"].visible = picture.sphere is not None
-        self.follow("root", picture.root)
-        if picture.sphere is not None:
-            self.ball.position = picture.sphere[:3]
-            self.ball.scale = picture.sphere[3]
-            self.follow("sphere", picture.sphere[:3])
 
     def follow(self, thing: str, position: tuple[float, float, float]) -> None:
         """Move a gizmo to where its thing was put by other means, unless it is being dragged."""
@@ -204,13 +247,15 @@ def warm_up() -> Iterator[str]:
 
 
 def readout(snapshot: Snapshot) -> str:
-    """The stability gauge and the colour scale, as HTML."""
+    """The stability gauge and the colour scale, or a race's standings, as HTML."""
+    if isinstance(snapshot.gauge, RaceGauge):
+        return standings(snapshot.gauge)
     g = snapshot.gauge.stability
     part = g.h_omega / g.limit if g.limit > 0 else float("inf")
     width, colour = min(part, 1.0) * 100, "#2b8a3e" if part < 0.8 else "#e67700" if part <= 1.0 else "#c92a2a"
     verdict = "stable" if part <= 1.0 else "unstable"
     picture = snapshot.picture
-    scale = ""
+    paid, scale = price(snapshot.gauge.paid), ""
     if picture.colour == "tension":
         scale = (
             f'<div style="height:8px;border-radius:4px;background:{css_scale()}"></div>'
@@ -222,13 +267,28 @@ def readout(snapshot: Snapshot) -> str:
         f"<span>limit {g.limit:.3g} at ζ = {g.zeta:.2g}</span>"
         f'<b style="color:{colour}">{verdict}</b></div>'
         '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 8px">'
-        f'<div style="height:8px;border-radius:4px;width:{width:.0f}%;background:{colour}"></div></div>{scale}'
+        f'<div style="height:8px;border-radius:4px;width:{width:.0f}%;background:{colour}"></div></div>{paid}{scale}'
+    )
+
+
+def price(paid: Paid | None) -> str:
+    """What an implicit method asks for its stability, as HTML; nothing of others."""
+    if paid is None:
+        return ""
+    share = f", the rope's own damping {paid.dissipated:.3g} J" if paid.dissipated > 0.0 else ""
+    return (
+        f'<div style="margin-bottom:6px">paid: <b>{paid.corrections:.1f}</b> Newton corrections a step; the method '
+        f"{'took' if paid.taken >= 0 else 'gave'} <b>{abs(paid.taken):.3g} J</b>{share}</div>"
     )
 
 
 def marks(snapshot: Snapshot) -> dict[str, str]:
     """What is written under a knob: the largest value that holds with the others as they are."""
     g = snapshot.gauge
+    if isinstance(g, RaceGauge):
+        first = g.standings[0].gauge.critical_step
+        limit = "" if first == float("inf") else f"rope 1 holds up to {first:.3g} s"
+        return {"integrator": "", "time_step": limit, "stiffness": "", "axial_stiffness": ""}
     step, stiffness = g.stability.critical_step, g.largest_stiffness
     unit = "N/m" if g.knob == "stiffness" else "N"
     if step == float("inf"):

@@ -18,7 +18,7 @@ from app.radial_records import Compared, RadialGauge, RadialPicture
 from app.section import Section, outline, section_at
 from app.wakes import LENGTH as WAKES_LENGTH
 from app.wakes import Wakes
-from sim.floating import Laws
+from sim.floating import Hull, Laws
 from sim.knobs import check
 from sim.ocean import Sea
 from sim.ocean.gerstner import Waves, draw_waves
@@ -72,6 +72,7 @@ class Scene:
 
     def __init__(self, params: Params) -> None:
         self.params = params
+        self.own = Hull.load(params.hull) if params.hull else None
         self.samples: list[tuple[float, ...]] = []
         self.counts: collections.Counter[str] = collections.Counter()
         self.reset()
@@ -89,7 +90,7 @@ class Scene:
         self.tile: TileSea | None = None
         self.tile_age = 0.0
         self.grid = self.make_grid()
-        self.crowd = Crowd(p.bodies, p.size, p.density, self.spill)
+        self.crowd = Crowd(p.bodies, p.size, p.density, self.spill, self.own)
         self.wakes = Wakes()
         self.blowout = Blowout(p)
         self.eye = (0.0, 0.0)
@@ -148,7 +149,7 @@ class Scene:
         if changed("rings", "spokes", "ring_law"):
             self.grid = self.make_grid()
         if changed("bodies", "size"):
-            self.crowd = Crowd(params.bodies, params.size, params.density, self.spill)
+            self.crowd = Crowd(params.bodies, params.size, params.density, self.spill, self.own)
             self.target = None
         elif fluids or changed("density"):
             self.crowd.restate(params.density, self.spill)
@@ -251,6 +252,7 @@ class Scene:
             slick=self.blowout.slick(self.spill) if self.spill.kind == "water" else None,
             section=self.section,
             kinds=tuple(crowd.kinds),
+            own=self.own,
             positions=crowd.fleet.position.astype(np.float32),
             rotations=crowd.fleet.rotation.astype(np.float32),
             pull=pull,

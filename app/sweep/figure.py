@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.report import COLOURS, MARKERS
+from app.bench.report import MARKERS
+from app.colour import TOLD_APART
 
 ROWS, COLUMNS, CURVES = 2, 4, 8  # at most
 MAP_FROM = 5  # values of each of two knobs from which a map is drawn
@@ -90,7 +91,7 @@ def picture(axes: Any, values: Any, names: list[str], colours: Any, is_first: bo
     curves = values[names[1]].values[:CURVES] if len(names) == 2 else [None]
     for index, curve in enumerate(curves):
         y = values if curve is None else values.sel({names[1]: curve})
-        style = {"color": COLOURS[index], "marker": MARKERS[index], "markersize": 4}
+        style = {"color": TOLD_APART[index], "marker": MARKERS[index], "markersize": 4}
         axes.plot(positions(x), y.values, label=None if curve is None else text(curve), **style)
     set_axis(axes, "x", x)
     if len(names) == 2 and is_first:
@@ -99,7 +100,7 @@ def picture(axes: Any, values: Any, names: list[str], colours: Any, is_first: bo
 
 
 def points(axes: Any, x: Any, y: Any) -> None:
-    axes.plot(positions(x), y.values, linestyle="", marker=".", color=COLOURS[0])
+    axes.plot(positions(x), y.values, linestyle="", marker=".", color=TOLD_APART[0])
     set_axis(axes, "x", x)
 
 

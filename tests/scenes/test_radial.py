@@ -3,11 +3,13 @@
 import dataclasses
 import itertools
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from app.__main__ import main
 from app.blowout import Blowout, slick_reach
 from app.crowd import HeaveMeter, hull_of, place_of
 from app.messages import Grab, Place, Release
@@ -308,3 +310,46 @@ def test_a_spill_ages_and_its_knob_sets_its_age_anew(surface: str) -> None:
     assert scene.gauge().age == 20.0
     still = Scene(with_knobs(**heavy, ageing=False))
     assert run(still, 5.0).gauge().age == 10.0
+
+
+def write_boat(path: Path, *, closed: bool = True) -> Path:
+    """An STL of a wedge, 2 m long, 1 m wide, 0.5 m deep; without its stern unless closed."""
+    corners = np.array([[-1, -0.5, 0], [-1, 0.5, 0], [1, 0, 0], [-1, -0.5, -0.5], [-1, 0.5, -0.5], [1, 0, -0.5]], float)
+    faces = [(0, 2, 1), (3, 4, 5), (0, 3, 5), (0, 5, 2), (1, 2, 5), (1, 5, 4), (0, 1, 4), (0, 4, 3)]
+    lines = ["solid boat"]
+    for face in faces[: None if closed else 6]:
+        lines += ["facet normal 0 0 0", "outer loop"]
+        lines += ["vertex {} {} {}".format(*corners[v]) for v in face]
+        lines += ["endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid boat"]))
+    return path
+
+
+def test_a_hull_from_a_file_floats_besides_at_the_draft_of_the_readout(tmp_path: Path) -> None:
+    path = write_boat(tmp_path / "boat.stl")
+    scene = Scene(dataclasses.replace(with_knobs(**CALM, spill="layer", thickness=0.1), hull=str(path)))
+    run(scene, 90.0)
+    reading = scene.gauge().readings[-1]
+    assert reading.kind == "hull"
+    prism = 450.0 * 0.5  # [kg/m2] over its waterplane, which is the same at every draft
+    rho = scene.spill.oil.density
+    assert reading.theory.draft == pytest.approx(0.1 + (prism - rho * 0.1) / 1025.0, abs=1e-9)
+    picture = scene.picture()
+    assert picture.kinds[-1] == "hull"
+    assert picture.own is not None
+    assert len(picture.positions) == 4
+    scene.set_params(dataclasses.replace(scene.params, bodies=1))
+    assert scene.crowd.kinds == ["buoy_red", "hull"]
+
+
+def test_a_mesh_that_is_not_closed_ends_the_command_with_one_line(tmp_path: Path, capsys) -> None:
+    path = write_boat(tmp_path / "open.stl", closed=False)
+    out = ["--seconds", "1", "--out", str(tmp_path / "a.npz"), "--hull"]
+    assert main(["run", "radial", *out, str(path)]) == 2
+    said = capsys.readouterr().err
+    assert "closed" in said
+    assert said.count("\n") == 1
+    assert main(["run", "radial", *out, str(tmp_path / "none.stl")]) == 2
+    assert main(["run", "rope", *out, str(write_boat(tmp_path / "boat.stl"))]) == 2
+    assert "radial" in capsys.readouterr().err
+    assert main(["run", "radial", *out, str(tmp_path / "boat.stl")]) == 0

@@ -59,6 +59,6 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
 
 
 RECORD = Integrator(
-    "tr_bdf2", 2, False, 2, limit, advance, "For stiff ropes with some accuracy: L-stable and second order.",
-    implicit=True, l_stable=True,
+    "tr_bdf2", 2, False, 3, limit, advance, "For stiff ropes with some accuracy: L-stable and second order.",
+    implicit=True, l_stable=True, outside=1,
 )  # fmt: skip

@@ -1,0 +1,31 @@
+"""A browser's ears without its eyes: connects to a lab on this machine and reads all it is sent, until it is ended.
+
+`python -m app.bench.listener PORT`, as a process of its own: what it costs is not the server's.
+"""
+
+import asyncio
+import sys
+from importlib.metadata import version
+
+import msgspec
+import websockets
+from websockets.asyncio.client import connect
+
+CAMERA = {
+    "type": "ViewerCameraMessage", "wxyz": (1.0, 0.0, 0.0, 0.0), "position": (0.0, -8.0, 3.0), "fov": 1.3, "near": 0.01,
+    "far": 1000.0, "image_height": 720, "image_width": 1280, "look_at": (0.0, 0.0, 0.0),
+    "up_direction": (0.0, 0.0, 1.0),
+}  # fmt: skip
+
+
+async def listen(port: int) -> None:
+    """Look from one place, as a page that has loaded does, and take every message."""
+    protocol = websockets.Subprotocol(f"viser-v{version('viser')}")
+    async with connect(f"ws://127.0.0.1:{port}", subprotocols=[protocol], max_size=None) as client:
+        await client.send(msgspec.msgpack.encode(CAMERA))
+        async for _ in client:
+            pass
+
+
+if __name__ == "__main__":
+    asyncio.run(listen(int(sys.argv[1])))

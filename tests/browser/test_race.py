@@ -1,0 +1,78 @@
+"""The race presets in a real browser: ropes, flags and charts."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from app.rope_knobs import PRESETS, ROOT, Params
+from app.viewer import Viewer
+from sim.knobs import check
+from tests.browser.test_rope import pixel, watching
+
+RACES = [name for name, knobs in PRESETS.items() if knobs.get("ropes", 1) > 1]
+CHARTS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({chart}) => ({
+    title: chart.root.querySelector('.u-title')?.textContent, labels: chart.series.map(s => s.label),
+    rows: chart.data[0].length, log: chart.scales.y.distr === 3}))"""
+
+
+@pytest.fixture
+def lab() -> Iterator[Viewer]:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("rope")
+    yield viewer
+    viewer.shut()
+
+
+def test_every_race_is_drawn_with_its_charts_and_no_console_errors(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port, width=900, height=500)
+    tab.wait(lambda: watching(lab))
+    for preset in RACES:
+        lab.panel.load(preset)
+        ropes = PRESETS[preset]["ropes"]
+        tab.wait(lambda ropes=ropes: lab.scene.race is not None and len(lab.scene.race.lanes) == ropes)
+
+        def drawn(ropes=ropes) -> bool:
+            counts = [len(tab.vertices(f"/race/rope_{number + 1}")) for number in range(ropes + 1)]
+            return all(counts[:ropes]) and counts[ropes] == 0 and len(tab.vertices("/race/ghosts")) == sum(counts)
+
+        tab.wait(drawn)
+        # They start level at the root's height; a slow page may miss the swing, not that it was.
+        tab.wait(lambda: tab.vertices("/race/ghosts")[:, 2].min() < ROOT[2] - 1.0)
+
+        def charts(ropes=ropes) -> list:
+            found = {chart["title"]: chart for chart in tab.page.evaluate(CHARTS)}
+            errors, energies = found.get("Distance from the reference"), found.get("Energy above the start [J]")
+            full = errors and energies and min(errors["rows"], energies["rows"]) > 5
+            return [errors, energies] if full and len(errors["labels"]) == ropes + 2 else []
+
+        errors, energies = tab.wait(charts)
+        assert errors["log"]
+        assert errors["labels"][1] == "reference unsure"
+        named = [label for label in energies["labels"][1:] if label != "reference"]
+        assert named == errors["labels"][2:]
+        assert [label.split()[0] for label in named] == [str(number + 1) for number in range(ropes)]
+    assert not lab.loop.halted
+    assert tab.errors == []
+
+
+def test_a_bead_of_a_race_is_dragged_and_the_single_rope_comes_back(lab: Viewer, open_tab) -> None:
+    without_charts = {**PRESETS["Leapfrog read literally"], "plot_errors": False, "plot_energies": False}
+    lab.open("rope", check(Params, without_charts))
+    tab = open_tab(lab.port)
+    tab.wait(lambda: watching(lab) and lab.scene.race is not None and lab.scene.time > 5)
+    tab.wait(lambda: len(tab.vertices("/race/rope_4")) > 0)
+
+    def dragged() -> bool:
+        start = pixel(lab, lab.scene.picture().race.ropes[0, 7])
+        tab.drag(start, (start[0] - 60, start[1] - 40))
+        tab.page.wait_for_timeout(1500)
+        held = lab.scene.held is not None
+        tab.release()
+        return held
+
+    tab.wait(dragged)  # again where a slow page had not yet noticed what the mouse was over
+    tab.wait(lambda: lab.scene.held is None, 30)
+    tab.page.keyboard.press("1")
+    tab.wait(lambda: len(tab.vertices("/rope")) > 0 and len(tab.vertices("/race/rope_1")) == 0)
+    assert lab.scene.race is None
+    assert tab.errors == []

@@ -55,6 +55,11 @@ def make_parser() -> argparse.ArgumentParser:
     bench.add_argument("--out", type=Path, metavar="DIR", help="write CSV and figures here")
     bench.set_defaults(command=run_bench)
 
+    stability = commands.add_parser("stability", help="stability maps and energy drift, measured beside theory")
+    stability.add_argument("--quick", action="store_true", help="coarse, within a minute")
+    stability.add_argument("--out", type=Path, metavar="DIR", help="write CSV and figures here")
+    stability.set_defaults(command=run_stability)
+
     sweep = commands.add_parser("sweep", help="a scene over ranges of its knobs, into one NetCDF file")
     sweep.add_argument("spec", type=Path, metavar="SPEC.toml", help="what to sweep; see assets/sweeps")
     sweep.add_argument("--out", type=Path, required=True, metavar="FILE.nc")
@@ -136,6 +141,12 @@ def run_bench(arguments: argparse.Namespace) -> int:
     from app.bench.command import run
 
     return run(arguments.names, arguments.quick, arguments.peers, arguments.out)
+
+
+def run_stability(arguments: argparse.Namespace) -> int:
+    from app.stability.command import run
+
+    return run(arguments.quick, arguments.out)
 
 
 def run_sweep(arguments: argparse.Namespace) -> int:

@@ -179,7 +179,12 @@ class Panel:
                 self.controls[knob_name] = Control(gui, groups[knob.group], knob_name, knob, value, self.on_change)
         self.notes: dict[str, Any] = {}
         self.work = work
+        self.map: Any = None
         with gui.add_folder("Advanced", expand_by_default=False):
+            if hasattr(picture, "stiffness_knob"):
+                from app.stability.live import LiveMap  # no sea imports what springs need
+
+                self.map = LiveMap(gui, scene, self.read, lambda: picture.stiffness_knob(self.params), self.set)
             gui.add_html(note("What this scene did since it was opened, and what it did not have to do."))
             self.ledger = gui.add_html("")
         self.hide()
@@ -207,6 +212,10 @@ class Panel:
     def read(self) -> Any:
         """The knobs as they stand; polled by the simulation once a frame."""
         return self.params
+
+    def set(self, name: str, value: Any) -> None:
+        """Set one knob, as its control would."""
+        self.controls[name].take(value)
 
     def on_change(self, name: str, value: Any) -> None:
         # One new frozen record a change: whoever reads sees all of it or nothing.
@@ -263,7 +272,8 @@ class Panel:
                 self.controls[name].write(text)
             if hasattr(self.picture, "notes"):
                 self.write_notes(self.picture.notes(snapshot))
-
+            if self.map is not None:
+                self.map.draw()
         if now - self.ledger_at >= LEDGER_EVERY:
             self.ledger_at = now
             self.ledger.content = note(table(self.work()))

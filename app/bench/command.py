@@ -31,11 +31,7 @@ def run(names: list[str], quick: bool = False, peers: bool = False, out: Path | 
     for name in names:
         if name not in known:
             raise refusal("bench", name, "one of " + ", ".join(known))
-    if out is not None:
-        try:
-            out.mkdir(parents=True, exist_ok=True)
-        except OSError as problem:
-            raise refusal("--out", str(out), f"a folder that can be written ({problem.strerror})") from None
+    report.make_folder(out)
     print(report.machine())
     for name in names or known:
         module = known[name]

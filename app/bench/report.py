@@ -12,6 +12,7 @@ import numpy as np
 
 from app.colour import TOLD_APART
 from app.replacing import replacing
+from sim.knobs import refusal
 
 Rows = list[dict[str, Any]]
 
@@ -36,6 +37,16 @@ def machine() -> str:
     return f"{name}, {os.cpu_count()} cores; Python {platform.python_version()}, " + ", ".join(versions)
 
 
+def make_folder(out: Path | None) -> None:
+    """Make the folder for results, where one is asked for; raises ValueError where it cannot be made."""
+    if out is None:
+        return
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise refusal("--out", str(out), f"a folder that can be written ({problem.strerror})") from None
+
+
 def columns(rows: Rows) -> list[str]:
     """Every column of any row, in the order they first come."""
     return list(dict.fromkeys(name for row in rows for name in row))
@@ -57,9 +68,9 @@ def show(title: str, rows: Rows) -> None:
 
     table = Table(title=escape(title), title_justify="left")
     names = columns(rows)
-    for name in names:
+    for index, name in enumerate(names):
         is_number = any(isinstance(row.get(name), int | float) for row in rows)
-        table.add_column(escape(name), justify="right" if is_number else "left")
+        table.add_column(escape(name), justify="right" if is_number else "left", no_wrap=index == 0)
     for row in rows:
         table.add_row(*(escape(written(row.get(name))) for name in names))
     Console().print(table)

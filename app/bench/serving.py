@@ -14,7 +14,7 @@ from app.messages import Pause, Play
 from app.scenes import NAMES
 
 BROWSER_FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-STATES = ("nobody looking", "paused", "running")
+STATES = ("nobody looking", "paused", "running", "running with plots")
 
 
 def answer_time() -> float:
@@ -59,10 +59,13 @@ def scene_rows(name: str, browser: Any, seconds: float) -> list[dict[str, Any]]:
             page.wait_for_timeout(20)
         found.append({"what": f"{name}: from the page's address to its running", "s": time.perf_counter() - start})
         page.wait_for_timeout(2000)
-        for state, command in ((STATES[1], Pause()), (STATES[2], Play())):
+        for state, command in zip(STATES[1:3], (Pause(), Play()), strict=True):
             viewer.loop.commands.put(command)
             page.wait_for_timeout(1000)
             found.append({"what": f"{name}: {state}", "per cent of a core": processor_share(seconds)})
+        viewer.panel.toggle_plots()
+        page.wait_for_timeout(1000)
+        found.append({"what": f"{name}: {STATES[3]}", "per cent of a core": processor_share(seconds)})
         page.close()
         return found
     finally:

@@ -1,7 +1,6 @@
 """A camera that goes along with a body, and still lets itself be turned."""
 
 import time
-from collections import deque
 from collections.abc import Iterable
 from typing import Any
 
@@ -12,7 +11,7 @@ from app.messages import Vector
 SAME = 0.02  # [m] within which a camera, or its target, is where it was put
 HANDS_ON = 0.4  # [s] since a hand last moved the camera, for which it is left alone
 STEP = 0.02  # [m] that the body goes before the cameras follow
-KEPT = 90  # placings that a slow page may still answer with
+KEPT = 900  # placings, half a minute of them, that a slow page may still answer with
 
 
 class Chase:
@@ -25,13 +24,14 @@ class Chase:
         self.here = np.zeros(3)
         self.offset = np.zeros((2, 3))  # [m] camera and target from the body as it begins
         self.mine: dict[int, np.ndarray] = {}  # client -> the same, as its user has it now
-        self.placed: dict[int, deque[np.ndarray]] = {}
+        self.placed: dict[int, np.ndarray] = {}  # client -> (KEPT, 2, 3), the last ones in a ring
+        self.turn: dict[int, int] = {}
         self.moved: dict[int, float] = {}  # client -> when a hand last moved its camera [s]
 
     def start(self, here: np.ndarray, offset: Iterable[Vector]) -> None:
         """Begin beside a body at `here` (3,) [m]; offset: camera and target from it [m]."""
         self.here, self.offset = here, np.array(list(offset))
-        self.mine, self.placed, self.moved = {}, {}, {}
+        self.mine, self.placed, self.turn, self.moved = {}, {}, {}, {}
 
     def go(self, here: np.ndarray, cameras: dict[int, Any], now: float | None = None) -> None:
         """Follow to `here` (3,) [m] with the cameras by client; now [s]: a clock."""
@@ -40,15 +40,17 @@ class Chase:
         for client, camera in cameras.items():
             if client not in self.mine:
                 before = np.array([camera.position, camera.look_at], float)
-                self.mine[client], self.placed[client] = self.offset, deque([before], maxlen=KEPT)
+                self.mine[client], self.turn[client] = self.offset, 0
+                self.placed[client] = np.full((KEPT, 2, 3), np.inf)
+                self.remember(client, before)
                 self.place(client, camera, here)
                 continue
             at = np.array([camera.position, camera.look_at], float)
             # The two arrive one after the other, so that a page may answer with a new one and an old.
-            off = np.abs(at - np.array(self.placed[client])).max(axis=2).min(axis=0)
+            off = np.abs(at - self.placed[client]).max(axis=2).min(axis=0)
             if off.max() > SAME:
                 self.mine[client], self.moved[client] = at - here, now
-                self.placed[client].append(at)
+                self.remember(client, at)
             elif on and now - self.moved.get(client, -np.inf) > HANDS_ON:
                 self.place(client, camera, here)
         if on:
@@ -58,4 +60,9 @@ class Chase:
         """Put a camera beside `here`."""
         at = here + self.mine[client]
         camera.position, camera.look_at = at
-        self.placed[client].append(at)
+        self.remember(client, at)
+
+    def remember(self, client: int, at: np.ndarray) -> None:
+        """Keep a placing (2, 3) [m] in the place of the oldest."""
+        self.placed[client][self.turn[client]] = at
+        self.turn[client] = (self.turn[client] + 1) % KEPT

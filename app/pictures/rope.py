@@ -20,7 +20,7 @@ from app.shapes import SIDES, ball, smooth_line, sweep, tube_faces
 ROPE_COLOUR = (196, 154, 92)
 BEAD_COLOUR = (58, 68, 86)
 HELD_COLOUR = (255, 90, 60)
-RINGS = 240  # about as many rings as a rope is drawn with
+RINGS = 120  # about as many rings as a rope is drawn with
 HANDS_OFF = 0.5  # [s] after its last drag that a gizmo is left alone
 
 
@@ -232,9 +232,8 @@ class Picture:
     def follow(self, thing: str, position: tuple[float, float, float]) -> None:
         """Move a gizmo to where its thing was put by other means, unless it is being dragged."""
         gizmo = self.gizmos[thing]
-        if time.monotonic() - self.dragged_at[thing] > HANDS_OFF and not np.allclose(
-            gizmo.position, position, atol=1e-4
-        ):
+        away = max(abs(float(a) - b) for a, b in zip(gizmo.position, position, strict=True))
+        if away > 1e-4 and time.monotonic() - self.dragged_at[thing] > HANDS_OFF:
             gizmo.position = position
 
 
@@ -244,6 +243,11 @@ def warm_up() -> Iterator[str]:
     line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
     smooth_line(np.zeros((2, 3), np.float32), 2, line)
     sweep(line, THICKNESS, SIDES, vertices)
+
+
+def stiffness_knob(params: Any) -> str:
+    """The knob that a map of step and stiffness is about."""
+    return "stiffness" if params.units == "lab" else "axial_stiffness"
 
 
 def readout(snapshot: Snapshot) -> str:

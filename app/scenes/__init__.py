@@ -17,7 +17,7 @@ It may have `CURVES` (see `app/plots.py`) with `Scene.curves()`, and `Scene.fram
 The drawing has `Picture(server, post)` with `show(picture, gauge)`, on the viewer's thread only, whose callbacks only
 `post` commands, `readout(snapshot)`, the HTML under the panel's
 buttons, `marks(snapshot)`, knob -> the line under it, and `warm_up()`; it may have `notes(snapshot)`, heading -> HTML
-to fold out.
+to fold out, and `stiffness_knob(params)` with the scene's `build(params)`, the net of a map of step and stiffness.
 
 What a sweep records of it is its plot rows, or what a module of its name in `app/measures` says.
 """

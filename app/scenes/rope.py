@@ -22,12 +22,12 @@ from sim.springs.stability import Gauge, critical_stiffness, gauge
 from sim.springs.state import State, advance, energy, velocities
 
 __all__ = [
-    "CURVES", "HELP", "PLOTS", "PRESETS", "ROOT", "SERIES", "SPHERE", "THICKNESS", "TITLE", "Params", "Scene", "hidden",
-    "warm_up",
+    "CURVES", "HELP", "PLOTS", "PRESETS", "ROOT", "SERIES", "SPHERE", "THICKNESS", "TITLE", "Params", "Scene", "build",
+    "hidden", "warm_up",
 ]  # fmt: skip
 
 TITLE = "Rope"
-GAUGE_EVERY = 0.2  # [s] of simulated time between two looks at the stability of the state
+GAUGE_EVERY = 0.5  # [s] of simulated time between two looks at the stability of the state
 SAMPLE_EVERY = 1 / 30  # [s] between two plot rows
 HELP = "<b>Drag a bead</b> to pull the rope. <b>Drag the arrows</b> to move its root."
 SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "error", "tip height")

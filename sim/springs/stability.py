@@ -2,10 +2,12 @@
 
 Explicit integrators blow up from the top of the spectrum, a sawtooth along the links. An integrator declares the
 largest stable h omega of an oscillator of damping ratio zeta, so a net's largest stable step is the least of
-limit(zeta)/omega over the modes that can be the first to leave: the stiffest, the most damped, and, where damping is
-axial, the stiffest across the links. Each mode's damping is its Rayleigh quotient, exact where D is a combination
-of K and M, as along a straight rope. Contact or crossing links couple the modes: the step is then right to some per
-cent, except explicit Euler's, which hangs on the least damped of all modes and is a guide only.
+limit(zeta)/omega over the modes that can be the first to leave: the stiffest, the most damped, and one across the
+links. Of isotropic damping that is the most damped there, which is as damped as along them and less stiff, so that
+in a soft rope it is the more overdamped; of axial damping it is the stiffest there. Each mode's damping is its
+Rayleigh quotient, exact where D is a combination of K and M, as along a straight rope. Contact or crossing links
+couple the modes: the step is then right to some per cent, except explicit Euler's, which hangs on the least damped of
+all modes and is a guide only.
 """
 
 import dataclasses
@@ -102,6 +104,20 @@ def sawtooth(net: Net, x: NDArray[np.float64], p: Forces) -> NDArray[np.float64]
     return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
 
 
+def across(net: Net, x: NDArray[np.float64], p: Forces) -> NDArray[np.float64]:
+    """The same, (3 rows cols,), at right angles to the links, where they are least stiff."""
+    rows, cols = net.shape
+    along = np.gradient(x, axis=2) if cols > 1 else np.gradient(x, axis=1)
+    other = np.gradient(x, axis=1) if min(rows, cols) > 1 else np.zeros_like(x)
+    # A rope has no second direction: any will do that it does not run along.
+    least = np.zeros(3)
+    least[int(np.abs(along).sum(axis=(1, 2)).argmin())] = 1.0
+    normal = np.cross(along, other if other.any() else least[:, None, None], axis=0)
+    alternating = (-1.0) ** np.add.outer(np.arange(rows), np.arange(cols))
+    flat = (alternating * normal / np.sqrt((normal * normal).sum(axis=0) + 1e-300)).reshape(3, -1) * (p.weights > 0.0)
+    return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
+
+
 def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Forces, part: int):
     """The unit vector (3 rows cols,) of the largest eigenvalue of `part` of the tangent about x."""
     basis = np.zeros((min(VECTORS, x.size), x.size))
@@ -115,7 +131,7 @@ def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: 
 
 def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) -> list[Mode]:
     """The stiffest mode about positions x (3, rows, cols) [m] (None: x0) at time t [s], then the most damped one and,
-    of axially damped nets, the stiffest across the links.
+    across the links, the most damped one again or, of axially damped nets, the stiffest.
 
     Points that touch floor or sphere, and the grab, count; friction does not (see `sim.springs.tangent`).
     Empty where nothing is free to move.
@@ -128,12 +144,12 @@ def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) ->
     flat = np.ascontiguousarray(x).reshape(-1)
     if not start.any():
         return []
-    parts = [STIFFNESS]
+    parts = [(STIFFNESS, start)]
     if p.damped or p.has_floor or p.has_sphere or p.grabbed >= 0:
-        parts.append(DAMPING)
-    if p.damped and p.axial:
-        parts.append(TRANSVERSE)
-    found = [quotients(flat, top_vector(flat, start, t, p, part), t, p) for part in parts]
+        parts.append((DAMPING, start))
+    if p.damped:
+        parts.append((TRANSVERSE, start) if p.axial else (DAMPING, across(net, x, p)))
+    found = [quotients(flat, top_vector(flat, begin, t, p, part), t, p) for part, begin in parts]
     # Slack links are not stiff across by more than round-off: no frequency is better than a wrong one.
     floor = 1e-12 * abs(found[0][0])
     return [Mode(stiffness if stiffness > floor else 0.0, links, rate) for stiffness, links, rate in found]

@@ -33,8 +33,8 @@ def test_a_camera_is_put_beside_the_body_and_goes_along() -> None:
 def test_a_page_that_answers_late_does_not_lead_it_astray() -> None:
     one = camera()
     chase, cameras = begun(one)
-    answers = deque([(one.position, one.look_at)], maxlen=10)
-    for i in range(1, 200):
+    answers = deque([(one.position, one.look_at)], maxlen=400)  # 13 s late
+    for i in range(1, 1500):
         here = np.array([np.sin(i / 20), 0.5 * np.cos(i / 15), 0.0])
         one.position, one.look_at = answers[0]  # what the page last said
         chase.go(here, cameras, i / 30)

@@ -7,6 +7,7 @@ import pytest
 
 from app.messages import Pause, Play
 from app.scenes.rope import ROOT
+from app.stability import live
 from app.viewer import Viewer
 
 
@@ -156,3 +157,25 @@ def test_without_the_script_the_rope_is_drawn_in_its_plain_colour(open_tab) -> N
         assert tab.errors == []
     finally:
         viewer.shut()
+
+
+def test_a_click_on_the_map_sets_step_and_stiffness(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    tab.wait(lambda: watching(lab))
+    lab.loop.commands.put(Pause())
+    lab.panel.map.ask()
+    tab.wait(lambda: len(lab.panel.map.rows) == live.ROWS)
+    tab.page.get_by_text("Advanced", exact=True).first.click()
+    picture = tab.page.locator("svg.springtide-map")
+    picture.scroll_into_view_if_needed(timeout=60_000)
+    tab.page.wait_for_timeout(1000)
+    box = picture.bounding_box()
+    unit = box["width"] / live.PICTURE[0]
+    x, y = live.LEFT + 0.25 * live.WIDE, live.TOP + 0.25 * live.HIGH
+    tab.page.mouse.click(box["x"] + unit * x, box["y"] + unit * y)
+    params = lab.panel.read()
+    tab.wait(lambda: lab.panel.read().stiffness != params.stiffness)
+    axes = lab.panel.map.axes
+    assert live.place_of(axes.steps, lab.panel.read().time_step) == pytest.approx(0.25, abs=0.02)
+    assert live.place_of(axes.stiffnesses, lab.panel.read().stiffness) == pytest.approx(0.75, abs=0.02)
+    assert not tab.errors

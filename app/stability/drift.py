@@ -1,0 +1,95 @@
+"""Energy over a million steps of the undamped rope, swinging from 5 degrees: what no method should gain or lose."""
+
+import dataclasses
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.stability.pool import spread
+from sim.springs import INTEGRATORS, Net, rope
+from sim.springs.growth import energy_course
+from sim.springs.settle import settled
+from sim.springs.state import State, energy
+from sim.springs.statics import hanging_chain
+
+STEP = 1 / 300  # [s]: h omega = 0.19 of the stiffest mode, where every method but explicit Euler is at home
+STEPS, QUICK_STEPS = 1_000_000, 20_000
+SAMPLES = 500
+ANGLE = math.radians(5.0)  # a small swing keeps to its modes; of a wild one the stiff modes slowly take the energy
+PART = 5  # the first and the last fifth are compared
+
+
+class Drift(NamedTuple):
+    """One integrator."""
+
+    name: str
+    symplectic: bool
+    t: NDArray[np.float64]  # (samples + 1,) [s]
+    error: NDArray[np.float64]  # (samples + 1,) of the energy, in parts of what the swing holds; NaN: diverged
+
+
+def swing() -> Net:
+    """The lab's rope without damping, hung out straight and stretched as it hangs, at an angle."""
+    net = rope(10, damping=0.0, drag=0.0)
+    depth = -hanging_chain(net).x[:, 2]
+    return dataclasses.replace(
+        net, x0=np.stack([-depth * math.sin(ANGLE), 0.0 * depth, -depth * math.cos(ANGLE)])[:, None, :]
+    )
+
+
+def course(name: str, steps: int) -> NDArray[np.float64]:
+    """Times and energy errors of one integrator, (2, samples + 1)."""
+    net = swing()
+    t, total = energy_course(INTEGRATORS[name], net, STEP, steps, SAMPLES)
+    held = float(total[0]) - energy(net, resting(net)).total
+    return np.array([t, (total - total[0]) / held])
+
+
+def resting(net: Net) -> State:
+    state = State.at_rest(net)
+    state.x[:] = settled(net)
+    return state
+
+
+def measure(quick: bool = False, workers: int = 0) -> list[Drift]:
+    """Every integrator there is."""
+    found = spread(course, [(name, QUICK_STEPS if quick else STEPS) for name in INTEGRATORS], "energy", workers)
+    return [
+        Drift(name, record.symplectic, *part) for (name, record), part in zip(INTEGRATORS.items(), found, strict=True)
+    ]
+
+
+def rows(drifts: list[Drift]) -> list[dict[str, Any]]:
+    """The table: drift by least squares, the error's largest size, and whether it wanders off or stays."""
+    table = []
+    for d in drifts:
+        good = np.isfinite(d.error)
+        t, error = d.t[good], d.error[good]
+        slope = float(np.polyfit(t, error, 1)[0]) if len(t) == len(d.t) else None
+        table.append(
+            {
+                "integrator": d.name,
+                "symplectic": "yes" if d.symplectic else "no",
+                "steps": round(float(t[-1]) / STEP),
+                "drift per 1e6 steps": None if slope is None else slope * 1e6 * STEP,
+                "error at most": float(np.abs(error).max()),
+                "course": "diverged" if slope is None else course_of(error),
+            }
+        )
+    return table
+
+
+def course_of(error: NDArray[np.float64]) -> str:
+    """In a word: whether the mean of the last fifth is outside twice the range of the first, or there is no swing."""
+    part = len(error) // PART
+    first, last = error[:part], float(error[-part:].mean())
+    if last < -0.5:
+        return "comes to rest"
+    return "bounded" if abs(last - 0.5 * (first.max() + first.min())) <= np.ptp(first) else "drifts"
+
+
+def course_rows(drifts: list[Drift]) -> list[dict[str, Any]]:
+    """Every sample, a column an integrator."""
+    return [{"t [s]": float(t), **{d.name: float(d.error[i]) for d in drifts}} for i, t in enumerate(drifts[0].t)]

@@ -1,0 +1,137 @@
+"""The figures: a small map for each integrator, and the courses of energy. Matplotlib, imported on use."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from app.bench.report import MARKERS
+from app.colour import TOLD_APART
+from app.stability import OUTCOMES
+from app.stability.drift import Drift
+from app.stability.linear import LinearMap, extra_damping
+from app.stability.rope import RopeMap
+from sim.springs import INTEGRATORS
+
+ACROSS = 4  # maps in a row
+GROWS = "#D55E00"  # Okabe and Ito's vermilion
+
+
+def panels(count: int, title: str) -> tuple[Any, list[Any], list[Any]]:
+    """A figure of `count` panels with common axes, those of its left and lower edges, and all of them."""
+    from matplotlib.figure import Figure
+
+    down = math.ceil(count / ACROSS)
+    across = min(count, ACROSS)
+    figure = Figure(figsize=(2.9 * across + 0.9, 2.6 * down + 0.9), layout="constrained")
+    figure.suptitle(title)
+    grid = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).ravel().tolist()
+    for axes in grid[count:]:
+        axes.set_visible(False)
+    # A panel with none below it carries the labels of its column.
+    for index in range(count):
+        if index + across >= count:
+            grid[index].tick_params(labelbottom=True)
+    return figure, [grid[i] for i in range(count) if i + across >= count], grid[:count]
+
+
+def edges(centres: np.ndarray, *, logarithmic: bool = False) -> np.ndarray:
+    """Edges (n + 1,) of cells about `centres` (n,), evenly spaced in themselves or in their logarithms."""
+    c = np.log(centres) if logarithmic else centres
+    half = 0.5 * (c[1] - c[0])
+    e = np.concatenate([[c[0] - half], c + half])
+    return np.exp(e) if logarithmic else e
+
+
+def linear_figure(maps: list[LinearMap]) -> Any:
+    """Extra damping in colour, growth in one colour, both boundaries."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    figure, lowest, grid = panels(len(maps), "x'' + 2 ζ ω x' + ω² x = 0, one step of h after the other")
+    shades = None
+    for axes, found in zip(grid, maps, strict=True):
+        x, y = edges(found.steps), edges(found.zetas)
+        extra = np.ma.masked_invalid(np.where(found.rates > 0.0, np.nan, extra_damping(found)))
+        shades = axes.pcolormesh(x, y, extra, cmap="PRGn", vmin=-0.5, vmax=0.5, rasterized=True)
+        grows = np.ma.masked_where(~(found.rates > 0.0), np.ones_like(found.rates))
+        axes.pcolormesh(x, y, grows, cmap=ListedColormap([GROWS]), rasterized=True)
+        fine = np.linspace(0.0, found.zetas[-1], 400)
+        if not np.isnan(found.measured[1:]).all():
+            limits = [INTEGRATORS[found.name].limit(float(z)) for z in fine]
+            axes.plot(limits, fine, color="black", linewidth=1.4)
+        every = max(1, len(found.zetas) // 20)
+        shown = np.where(np.isfinite(found.measured), found.measured, np.nan)[::every]
+        axes.plot(shown, found.zetas[::every], "o", color="white", markeredgecolor="black", markersize=3.5)
+        axes.set_xlim(0.0, x[-1])
+        axes.set_ylim(y[0], y[-1])
+        axes.set_title(found.name.replace("_", " "), fontsize=10)
+        if not np.isfinite(found.rates[1:]).any():
+            axes.text(2.0, 1.0, "refuses damping", ha="center", color="0.4")
+    for axes in lowest:
+        axes.set_xlabel("h ω")
+    for axes in grid[::ACROSS]:
+        axes.set_ylabel("damping ratio ζ")
+    assert shades is not None
+    figure.colorbar(shades, ax=grid, label="damping ratio that the method adds", extend="both", shrink=0.7)
+    figure.legend(
+        handles=[
+            Patch(color=GROWS, label="grows"),
+            Line2D([], [], color="black", label="limit by theory"),
+            Line2D([], [], color="white", marker="o", markeredgecolor="black", label="limit as measured"),
+        ],
+        loc="outside lower center", ncols=3, frameon=False,
+    )  # fmt: skip
+    return figure
+
+
+def rope_figure(maps: list[RopeMap]) -> Any:
+    """Outcomes in three colours, `critical_step` on top."""
+    from matplotlib.colors import ListedColormap
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    figure, lowest, grid = panels(len(maps), "The lab's rope of ten points, disturbed a little at rest")
+    colours = ListedColormap(list(OUTCOMES.values()))
+    for axes, found in zip(grid, maps, strict=True):
+        x, y = edges(found.steps, logarithmic=True), edges(found.stiffnesses, logarithmic=True)
+        axes.pcolormesh(x, y, found.outcomes, cmap=colours, vmin=0, vmax=2, rasterized=True)
+        axes.plot(found.theory, found.stiffnesses, color="black", linewidth=1.4)
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlim(x[0], x[-1])
+        axes.set_ylim(y[0], y[-1])
+        axes.set_title(found.name.replace("_", " "), fontsize=10)
+    for axes in lowest:
+        axes.set_xlabel("step h [s]")
+    for axes in grid[::ACROSS]:
+        axes.set_ylabel("stiffness k [N/m]")
+    handles: list[Any] = [Patch(color=colour, label=name) for name, colour in OUTCOMES.items()]
+    handles.append(Line2D([], [], color="black", label="critical_step"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
+    return figure
+
+
+def drift_figure(drifts: list[Drift]) -> Any:
+    """Energy errors over time: the symplectic methods to the left, the others to the right."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.0, 4.2), layout="constrained")
+    figure.suptitle("Energy of the undamped rope of ten points, swinging from 5°")
+    for axes, symplectic in zip(figure.subplots(1, 2, sharey=True), (True, False), strict=True):
+        for index, drift in enumerate(drift for drift in drifts if drift.symplectic == symplectic):
+            size = np.maximum.accumulate(np.abs(drift.error[1:]))
+            style = {"color": TOLD_APART[index % 8], "marker": MARKERS[index % 8], "markevery": 0.1}
+            lost = drift.t[np.isnan(drift.error)]
+            label = drift.name.replace("_", " ") + (f" (gone at {lost[0]:.0f} s)" if len(lost) else "")
+            axes.loglog(drift.t[1:], size, label=label, linewidth=1.2, markersize=5, **style)
+        axes.set_ylim(1e-15, 1e2)
+        axes.set_title("symplectic" if symplectic else "not symplectic", fontsize=10)
+        axes.set_xlabel("time [s]")
+        axes.grid(visible=True, which="major", color="0.9")
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.legend(frameon=False, fontsize=9, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
+        if symplectic:
+            axes.set_ylabel("largest energy error so far / energy of the swing")
+    return figure

@@ -1,0 +1,110 @@
+"""Maps over step and stiffness of the real, nonlinear rope at rest: does a small disturbance grow, does it explode?"""
+
+import dataclasses
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.stability.pool import spread
+from sim.springs import INTEGRATORS, Net, rope
+from sim.springs.growth import EXPLODES, HOLDS, RATTLES, outcome
+from sim.springs.settle import settled
+from sim.springs.stability import critical_step
+from sim.springs.state import State
+
+STEPS = (3e-4, 0.3)  # [s]
+STIFFNESSES = (30.0, 1e6)  # [N/m]
+FINE = 1.005  # ratio of steps to which a boundary is found
+
+
+class RopeMap(NamedTuple):
+    """One integrator."""
+
+    name: str
+    steps: NDArray[np.float64]  # (cols,) [s]
+    stiffnesses: NDArray[np.float64]  # (rows,) [N/m]
+    outcomes: NDArray[np.int64]  # (rows, cols) HOLDS, RATTLES or EXPLODES
+    measured: NDArray[np.float64]  # (rows,) [s] step at which a disturbance begins to grow; inf: none does
+    theory: NDArray[np.float64]  # (rows,) [s] critical_step
+
+
+def with_stiffness(net: Net, stiffness: float) -> Net:
+    """The rope `net` with links of another stiffness [N/m]."""
+    return dataclasses.replace(net, families=tuple(f._replace(stiffness=stiffness) for f in net.families))
+
+
+def row(
+    name: str, net: Net, stiffness: float, steps: NDArray[np.float64], most: int
+) -> tuple[NDArray[np.int64], float, float]:
+    """(outcomes at each step, the step at which disturbances begin to grow [s], critical_step [s])."""
+    record, net = INTEGRATORS[name], with_stiffness(net, stiffness)
+    rest = settled(net)
+    state = State.at_rest(net)
+    state.x[:] = rest
+    found = np.array([outcome(record, net, float(h), rest, most) for h in steps])
+    grows = np.flatnonzero(found != HOLDS)
+    measured = math.inf
+    if len(grows):
+        high = float(steps[grows[0]])
+        low = float(steps[grows[0] - 1]) if grows[0] else 0.3 * high
+        while high > FINE * low:
+            middle = math.sqrt(low * high)
+            low, high = (middle, high) if outcome(record, net, middle, rest, 16 * most) == HOLDS else (low, middle)
+        measured = math.sqrt(low * high)
+    return found, measured, critical_step(net, name, state)
+
+
+def measure(net: Net | None = None, quick: bool = False, workers: int = 0) -> list[RopeMap]:
+    """Every integrator that takes this rope (None: the lab's ten points)."""
+    net = rope() if net is None else net
+    rows, cols, most = (8, 12, 1 << 12) if quick else (32, 48, 1 << 14)
+    steps, stiffnesses = np.geomspace(*STEPS, cols), np.geomspace(*STIFFNESSES, rows)
+    names = [name for name, record in INTEGRATORS.items() if not (record.undamped_only and net.is_damped)]
+    tasks = [(name, net, float(k), steps, most) for name in names for k in stiffnesses]
+    found = spread(row, tasks, "step and stiffness", workers)
+    maps = []
+    for i, name in enumerate(names):
+        own = found[i * rows : (i + 1) * rows]
+        outcomes, measured, theory = (np.array([part[j] for part in own]) for j in range(3))
+        maps.append(RopeMap(name, steps, stiffnesses, outcomes, measured, theory))
+    return maps
+
+
+def rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
+    """The table: how the rope fares, and how far critical_step is from where growth begins."""
+    table = []
+    for m in maps:
+        grows = m.outcomes != HOLDS
+        wrong = grows != (m.steps[None, :] > m.theory[:, None])
+        within = (m.theory < m.steps[-1]) & (m.theory > m.steps[0]) & np.isfinite(m.measured)
+        apart = np.abs(m.measured[within] / m.theory[within] - 1.0)
+        table.append(
+            {
+                "integrator": m.name,
+                "cells": grows.size,
+                "hold": int((m.outcomes == HOLDS).sum()),
+                "rattle": int((m.outcomes == RATTLES).sum()),
+                "explode": int((m.outcomes == EXPLODES).sum()),
+                "disagree": int(wrong.sum()),
+                "step off, median [%]": 100.0 * float(np.median(apart)) if len(apart) else None,
+                "at most [%]": 100.0 * float(apart.max()) if len(apart) else None,
+                "at k [N/m]": float(m.stiffnesses[within][int(apart.argmax())]) if len(apart) else None,
+            }
+        )
+    return table
+
+
+def boundary_rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
+    """Both boundaries, by integrator and stiffness."""
+    return [
+        {
+            "integrator": m.name,
+            "stiffness [N/m]": float(k),
+            "step measured [s]": float(a),
+            "critical_step [s]": float(b),
+        }
+        for m in maps
+        for k, a, b in zip(m.stiffnesses, m.measured, m.theory, strict=True)
+    ]

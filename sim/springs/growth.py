@@ -1,0 +1,138 @@
+"""Stability measured: whether what an integrator computes grows, found by letting it run through its own kernel.
+
+Beside theory (`sim.springs.stability`), which it does not use: the oscillator is a spring of no rest length, so that
+a net of two points is exactly linear, and the rope is the real one.
+"""
+
+import dataclasses
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.springs.integrators import Integrator
+from sim.springs.net import Family, Net, rope
+from sim.springs.state import State, advance, energy
+
+FIRST = 16  # steps of the first look; each look doubles them
+FAR, NEAR = 1e3, 1e-60  # sizes at which a run from 1 has grown, or decayed
+TALL, LOW = 30.0, 0.1  # the same of a run that was cut short: a leapfrog that holds may reach 30
+STIR = 1e-9  # energy of a disturbance, in parts of what is large for its net
+GROWN = 1e4  # times its energy at which a disturbance has grown: still far too small for the rope not to be linear
+MUCH = 100.0  # parts of what is large, which no link comes back from
+HOLDS, RATTLES, EXPLODES = range(3)
+
+
+def oscillator(zeta: float) -> Net:
+    """x'' + 2 zeta x' + x = 0 in each component: a free point on a spring to a pinned one."""
+    net = rope(2, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
+    return dataclasses.replace(net, families=(Family(0, 1, 0.0, 1.0, 2.0 * zeta),))
+
+
+def growth(integrator: Integrator, zeta: float, z: float, most: int = 1 << 17) -> float:
+    """Logarithm per step of an oscillator's amplitude, omega = 1 and h = z, measured over up to `most` steps.
+
+    Two starts that no step matrix can both hide from, (x, v) = (1, 0) and (0, 1), go side by side until together they
+    are FAR or NEAR, or for `most` steps; the rate is that of the second half, 0 where they did neither.
+    """
+    net = oscillator(zeta)
+    p = net.forces(z)
+    x, v, ledger = np.zeros(6), np.zeros(6), np.zeros(2)
+    x[1], v[3] = 1.0, 1.0
+    steps, before, rate = 0, math.sqrt(2.0), 0.0
+    while steps < most:
+        more = max(steps, FIRST)
+        integrator.advance(x, v, ledger, steps * z, z, more, p, False)
+        steps += more
+        size = math.sqrt(float(x @ x + v @ v))
+        if not NEAR < size < FAR:  # a NaN as well
+            if not size < 1e300:
+                return math.inf
+            return math.log(max(size, 1e-300) / before) / more
+        rate, before = math.log(size / before) / more, size
+    return rate if before < LOW or (before > TALL and rate > 0.0) else 0.0
+
+
+def measured_limit(
+    integrator: Integrator, zeta: float, steps: NDArray[np.float64], rates: NDArray[np.float64], most: int = 1 << 21
+) -> float:
+    """The h omega at which a row of the map, growth rates (n,) at ascending `steps` (n,), first begins to grow.
+
+    Halved between the last that holds and the first that grows, to 0.1 %; inf where none grows, 0 where all do. most:
+    steps spent on one value; near its limit explicit Euler grows by (h omega)^2/100 a step.
+    """
+    grows = np.flatnonzero(rates > 0.0)
+    if not len(grows):
+        return math.inf
+    first = int(grows[0])
+    low, high = float(steps[first - 1]) if first else 0.0, float(steps[first])
+    while high - low > 1e-3 * high:
+        middle = 0.5 * (low + high)
+        if middle < 0.1 * steps[0]:
+            return 0.0
+        if growth(integrator, zeta, middle, most) > 0.0:
+            high = middle
+        else:
+            low = middle
+    return 0.5 * (low + high)
+
+
+def energy_scale(net: Net, x: NDArray[np.float64]) -> float:
+    """An energy [J] that is large for a net at rest at x (3, rows, cols): a fall by its own length, or a stretch."""
+    span = float(np.ptp(x.reshape(3, -1), axis=1).max())
+    fall = net.mass * math.hypot(*net.gravity) * span * np.count_nonzero(net.weights())
+    stretch = max((f.stiffness * f.rest**2 for f in net.families), default=0.0)
+    return max(fall, 1e-3 * stretch, 1e-12)
+
+
+def stir(net: Net, state: State, joule: float) -> None:
+    """Give the free points random velocities that carry `joule` [J]: something of every mode."""
+    free = net.weights().reshape(net.shape) > 0.0
+    kick = np.random.default_rng(0).standard_normal(state.v.shape) * free
+    square = 0.5 * net.mass * float((kick * kick).sum())
+    if square > 0.0:
+        state.v += kick * math.sqrt(joule / square)
+
+
+def outcome(integrator: Integrator, net: Net, h: float, rest: NDArray[np.float64], most: int = 1 << 14) -> int:
+    """What becomes of a small disturbance of `net` at rest at `rest` (3, rows, cols) [m] in steps of h [s].
+
+    HOLDS: it has decayed, or not grown in `most` steps. RATTLES: it has grown a hundredfold, and is then bounded by
+    what links do far from their length. EXPLODES: nothing bounds it. The size of a disturbance is its energy above
+    that at rest, which is the least there is.
+    """
+    state = State.at_rest(net)
+    state.x[:] = rest
+    scale, least = energy_scale(net, rest), energy(net, state).total
+    stir(net, state, STIR * scale)
+    done = grown_at = 0
+    while done < (2 * grown_at or most):
+        more = max(done, FIRST)
+        advance(net, state, integrator, h, more)
+        done += more
+        if not state.is_sane:
+            return EXPLODES
+        above = energy(net, state).total - least
+        if not above < MUCH * scale:
+            return EXPLODES
+        if not grown_at and above > GROWN * STIR * scale:
+            grown_at = done
+        if above < STIR * scale / GROWN:
+            break
+    return RATTLES if grown_at else HOLDS
+
+
+def energy_course(
+    integrator: Integrator, net: Net, h: float, steps: int, samples: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Times (samples + 1,) [s] and total energies [J] of `net` from its start, in steps of h [s]; NaN once diverged."""
+    state = State.at_rest(net)
+    t = np.arange(samples + 1, dtype=np.float64) * (h * steps / samples)
+    total = np.full(samples + 1, math.nan)
+    total[0] = energy(net, state).total
+    for i in range(1, samples + 1):
+        advance(net, state, integrator, h, steps // samples)
+        if not state.is_sane:
+            break
+        total[i] = energy(net, state).total
+    return t, total

@@ -1,0 +1,53 @@
+"""Where a net comes to rest, floor and sphere included, found by letting it fall."""
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.springs.integrators.leapfrog import RECORD as LEAPFROG
+from sim.springs.net import Net
+from sim.springs.stability import gershgorin
+from sim.springs.state import State, advance, energy
+from sim.springs.statics import hanging_chain
+
+LOOKS, STEPS = 4000, 20  # most looks, and steps between two
+STILL = 1e-16  # kinetic energy of a peak, over the potential's, at which it rests
+
+
+def settled(net: Net, x: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+    """Positions (3, rows, cols) [m] of `net` at rest, from x (None: x0), its pins, sphere and hands held still.
+
+    Dynamic relaxation with kinetic damping: whenever the kinetic energy has passed a peak, a minimum of the potential
+    is near, and everything stops there (Cundall 1976; Barnes 1988). Undamped, so that there is only a step to choose.
+    A rope that hangs free is where `hanging_chain` says, exactly.
+    """
+    if net.is_rope and net.sphere is None and net.pinned == {(0, 0)}:
+        hanging = hanging_chain(net).x
+        if net.floor is None or hanging[:, 2].min() > net.floor + net.radius:
+            return np.ascontiguousarray(hanging.T[:, None, :])
+    still = dataclasses.replace(
+        net,
+        families=tuple(f._replace(damping=0.0) for f in net.families),
+        drag=0.0,
+        contact=net.contact._replace(damping=0.0, friction=0.0),
+        sphere_velocity=(0.0, 0.0, 0.0),
+        pin_paths=(),
+        grab=None,
+    )
+    state = State.at_rest(still)
+    state.x[:] = net.x0 if x is None else x
+    fastest, _ = gershgorin(still)
+    if fastest == 0.0:
+        return state.x
+    h, before = 1.0 / fastest, 0.0
+    for _ in range(LOOKS):
+        advance(still, state, LEAPFROG, h, STEPS)
+        now = energy(still, state)
+        if now.kinetic < before:
+            if before < STILL * max(abs(now.gravity), now.elastic, 1e-12):
+                break
+            state.v[:], before = 0.0, 0.0
+        else:
+            before = now.kinetic
+    return state.x

@@ -14,9 +14,17 @@ from app.scenes.cloth import ClothPicture
 from app.shapes import ball
 
 CLOTH_COLOUR = (176, 58, 72)
+GROUND, HAZE, ZENITH = (222, 227, 233), (232, 237, 243), (126, 168, 214)  # sRGB of the floor, and of the sky's ends
 HELD_COLOUR = (255, 90, 60)
 GRIP = 0.018  # [m] radius of the balls that pins are drawn as
 HANDS_OFF = 0.5  # [s] after its last drag that a gizmo is left alone
+
+
+def sky() -> np.ndarray:
+    """(512, 4, 3) sRGB: from the zenith down to the haze on the horizon, and the haze below it."""
+    up = np.clip(1.0 - np.linspace(0.0, 1.0, 512) / 0.45, 0.0, 1.0)[:, None]
+    column = np.array(HAZE) * (1.0 - up) + np.array(ZENITH) * up
+    return np.repeat(column.round().astype(np.uint8)[:, None], 4, axis=1)
 
 
 def faces(rows: int, cols: int) -> np.ndarray:
@@ -33,7 +41,7 @@ def faces(rows: int, cols: int) -> np.ndarray:
 class Picture:
     """Draws `ClothPicture`s."""
 
-    CAMERA = ((1.25, -2.85, 2.0), (0.3, 0.0, 1.15))  # position, target [m]
+    CAMERA = ((1.15, -2.15, 2.05), (0.42, 0.0, 1.3))  # position, target [m]
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server = server
@@ -44,6 +52,7 @@ class Picture:
         self.dragged_at = {"pin a": 0.0, "pin b": 0.0, "sphere": 0.0}
         scene = server.scene
         scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
+        scene.set_background_image(sky())
         self.floor = scene.add_grid(
             "/floor",
             width=24.0,
@@ -51,18 +60,18 @@ class Picture:
             infinite_grid=True,
             cell_size=0.25,
             section_size=1.0,
-            cell_color=(196, 202, 212),
-            section_color=(150, 160, 176),
-            plane_color=(226, 230, 236),
+            cell_color=(190, 198, 208),
+            section_color=(160, 170, 184),
+            plane_color=GROUND,
             plane_opacity=1.0,
             fade_distance=26.0,
             shadow_opacity=0.3,
         )
         self.ball = scene.add_mesh_simple("/sphere/ball", *ball(48), color=(92, 140, 190), visible=False)
         self.gizmos = {
-            "pin a": self.add_gizmo("pin a", 0.3),
-            "pin b": self.add_gizmo("pin b", 0.3),
-            "sphere": self.add_gizmo("sphere", 0.8),
+            "pin a": self.add_gizmo("pin a", 0.22),
+            "pin b": self.add_gizmo("pin b", 0.22),
+            "sphere": self.add_gizmo("sphere", 0.55),
         }
         self.grips = [
             scene.add_mesh_simple(f"/grip_{name}", *ball(12), scale=GRIP, color=(60, 66, 80)) for name in ("a", "b")
@@ -82,8 +91,9 @@ class Picture:
 
     def add_gizmo(self, thing: str, scale: float) -> viser.TransformControlsHandle:
         gizmo = self.server.scene.add_transform_controls(
-            f"/{thing.replace(' ', '_')}_gizmo", scale=scale, disable_rotations=True, depth_test=False, visible=False
-        )
+            f"/{thing.replace(' ', '_')}_gizmo", scale=scale, disable_rotations=True, disable_sliders=True,
+            depth_test=False, visible=False,
+        )  # fmt: skip
 
         @gizmo.on_update
         async def _(event: Any) -> None:
@@ -181,6 +191,8 @@ def readout(snapshot: Snapshot) -> str:
     taken = ""
     if snapshot.gauge.corrections:
         taken = f"<div>{snapshot.gauge.corrections:.1f} Newton corrections a step</div>"
+    if snapshot.gauge.threads > 1:
+        taken += f"<div>forces on {snapshot.gauge.threads} threads, which is quicker just now</div>"
     scale = ""
     if picture.colour == "strain":
         scale = (

@@ -55,7 +55,7 @@ def test_a_pin_is_moved_by_its_arrow(lab: Viewer, open_tab) -> None:
     tab.wait(lambda: watching(lab))
     tab.page.wait_for_timeout(1500)
     pin = lab.scene.state.x[:, 0, 0].copy()
-    arrow = pin + (0.0, 0.0, 0.18)
+    arrow = pin + (0.0, 0.0, 0.15)
     tab.drag(pixel(lab, arrow), pixel(lab, arrow + (0.0, 0.0, 0.4)))
     tab.release()
     tab.wait(lambda: lab.scene.handles[0].position[2] > pin[2] + 0.1)

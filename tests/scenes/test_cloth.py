@@ -9,7 +9,8 @@ from app.cloth_knobs import PRESETS, Params, hidden
 from app.cloth_start import resample
 from app.loop import SimLoop
 from app.messages import DivergenceError, Grab, Place, Release
-from app.pictures.cloth import faces, marks
+from app.panel import status_line
+from app.pictures.cloth import faces, marks, readout
 from app.scenes.cloth import TOP_SPEED, Scene
 from sim.knobs import check, knobs
 
@@ -146,6 +147,28 @@ def test_an_implicit_step_says_what_it_takes():
     run(scene, 0.5)
     assert 1.0 <= scene.gauge().corrections <= 25.0
     assert scene.gauge().stability.limit == np.inf
+
+
+def test_while_a_step_takes_longer_than_a_frame_one_is_taken_and_dropped_time_is_said():
+    """Counted by a clock that says 0.3 s of each implicit step: never more than one a frame, however much is due."""
+    spent = 0.0
+
+    class Dear(Scene):
+        def advance(self, steps: int) -> None:
+            nonlocal spent
+            super().advance(steps)
+            spent += 0.3 * steps
+
+    params = dataclasses.replace(SMALL, integrator="implicit_euler", time_step=1 / 240, stiffness=1e5)
+    loop = SimLoop(Dear(params), effort=lambda: spent)
+    for _ in range(12):
+        before = loop.counts["steps"]
+        loop.tick(0.3)
+        assert loop.counts["steps"] - before <= 1
+    assert loop.latest.status.capped
+    assert "[CAPPED]" in status_line(loop.latest, 0.0)
+    assert loop.work()["steps"].skipped > 100
+    assert "Newton corrections a step" in readout(loop.latest)
 
 
 def test_the_mesh_has_two_triangles_a_cell_all_turned_alike():

@@ -4,7 +4,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from app.bench import command, report, rope
+from app.bench import command, report, rope, rope_task
 from app.bench.kernels import task_rope
 from app.bench.rope_peers import PEERS, is_installed
 from sim.springs.stability import critical_step
@@ -17,7 +17,7 @@ def ladder(order: int, method: str) -> report.Rows:
             "method": method,
             "force evaluations": 100 * 2**i,
             "least [ms]": 0.1 * 2**i,
-            "error at 1 s [m]": 1e-2 / 2 ** (order * i),
+            "error [m]": 1e-2 / 2 ** (order * i),
             "reference good to [m]": 1e-12,
         }
         for i in range(5)
@@ -59,7 +59,7 @@ def test_work_precision_figures_have_units_orders_and_both_formats(tmp_path):
     figure = report.work_precision(ladder(2, "leapfrog") + ladder(4, "rk4"), "Rope")
     left, right = figure.axes
     assert left.get_xlabel().endswith("[ms]")
-    assert left.get_ylabel() == "error at 1 s [m]"
+    assert left.get_ylabel() == "error [m]"
     assert right.get_xlabel() == "force evaluations"
     assert {text.get_text() for text in right.texts} >= {"2", "4"}
     paths = report.save_figures({"rope": figure}, tmp_path)
@@ -69,20 +69,19 @@ def test_work_precision_figures_have_units_orders_and_both_formats(tmp_path):
 
 def test_the_reference_is_as_good_as_it_says():
     net = task_rope(16)
-    truth = rope.reference(net)
+    truth = rope_task.reference(net)
     assert truth.uncertainty < 1e-10
     x, _ = exact(net, 1.0)
     assert np.abs(truth.end - x).max() < 1e-10
-    rung = rope.rung(net, "rk4", 0.1)
-    assert rope.error_of(rung, truth)[1] == pytest.approx(3.5e-8, rel=0.05)
+    rung = rope_task.rung(net, "rk4", 0.1)
+    assert rope_task.errors(*rung.run(), truth)[1] == pytest.approx(3.5e-8, rel=0.05)
 
 
 def test_rungs_end_at_half_a_second_on_the_way():
-    for name in rope.METHODS:
-        ours = rope.rung(task_rope(16), name, 0.95)
+    for name in rope_task.METHODS:
+        ours = rope_task.rung(task_rope(16), name, 0.95)
         assert ours.steps % 2 == 0
-        assert ours.h * ours.steps == pytest.approx(1.0, rel=1e-14)
-        assert ours.h <= 0.95 * critical_step(ours.net, name)
+        assert 1.0 / ours.steps <= 0.95 * critical_step(ours.net, name)
 
 
 @pytest.mark.parametrize(
@@ -92,19 +91,36 @@ def test_peers_solve_the_same_rope(peer):
     assert is_installed(peer)
     net = dataclasses.replace(task_rope(16), damping_model=peer.model)
     run = peer.make(net, 0.8 * critical_step(net, "leapfrog"))
-    at_half, at_end = rope.errors(run(0.5), run(1.0), rope.reference(net))
+    at_half, at_end = rope_task.errors(run(0.5), run(1.0), rope_task.reference(net))
     assert max(at_half, at_end) < 1e-3
 
 
 def test_our_own_run_at_a_peer_s_error_is_within_it():
     net = task_rope(16)
-    truth = rope.reference(net)
-    found = rope.cheapest(net, truth, (1e-6, 1e-5))
-    assert found is not None
-    _, error = found
-    assert error[0] <= 1e-6
-    assert error[1] <= 1e-5
-    assert rope.cheapest(net, truth, (0.0, 0.0)) is None
+    tried = rope_task.Tried(net, rope_task.reference(net))
+    for limit in ((1e-3, 1e-2), (1e-6, 1e-5), (1e-9, 1e-8)):
+        found = tried.cheapest(limit)
+        assert found is not None
+        half, end = rope_task.errors(*found.run(), tried.truth)
+        assert half <= limit[0]
+        assert end <= limit[1]
+    assert tried.cheapest((0.0, 0.0)) is None
+
+
+def test_two_methods_agree_on_the_lab_rope():
+    assert rope.truth_of(rope.PROBLEMS[0]).uncertainty < 1e-11
+
+
+def test_leapfrog_needs_a_tenth_of_the_evaluations_of_the_lab_s_euler():
+    problem = rope.PROBLEMS[0]
+    truth = rope.truth_of(problem)
+    table = [
+        row for name in ("leapfrog", "symplectic_euler", "rk4") for row in rope.ladder(problem, name, truth, 3000, 1)
+    ]
+    leapfrog, euler = (rope.evaluations_at(table, name, rope.LEVEL) for name in ("leapfrog", "symplectic_euler"))
+    assert euler > 10.0 * leapfrog
+    assert "symplectic_euler" not in rope.front(table)
+    assert np.isnan(rope.evaluations_at(table, "rk4", 1.0))
 
 
 def test_tables_say_what_is_missing():

@@ -1,6 +1,7 @@
 """`springtide bench`: every module of this package that has `rows(quick)` is a benchmark, found by being here.
 
-A module may also have `peer_rows(quick)`, run when peers are asked for, and `figures(rows)`, figures by file name.
+A module may also have `findings(rows)`, a second table that the first one says; `peer_rows(quick)`, run when peers are
+asked for; and `figures(rows)`, figures by file name.
 """
 
 import importlib
@@ -35,6 +36,8 @@ def run(names: list[str], quick: bool = False, peers: bool = False, out: Path | 
     for name in names or known:
         module = known[name]
         tables = {name: module.rows(quick)}
+        if hasattr(module, "findings"):
+            tables[f"{name}_findings"] = module.findings(tables[name])
         if peers and hasattr(module, "peer_rows"):
             tables[f"{name}_peers"] = module.peer_rows(quick)
         for title, rows in tables.items():

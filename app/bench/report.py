@@ -16,8 +16,8 @@ from sim.knobs import refusal
 
 Rows = list[dict[str, Any]]
 
-# One for each of the colours.
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+# Told apart by shape too, where two curves share a colour.
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h", "p", "d")
 
 
 def machine() -> str:
@@ -119,11 +119,11 @@ def mark_slopes(axes: Any, curves: Iterable[tuple[list[float], list[float]]]) ->
             marked.add(order)
 
 
-def work_precision(rows: Rows, title: str, error: str = "error at 1 s [m]") -> Any:
+def work_precision(rows: Rows, title: str, error: str = "error [m]") -> Any:
     """The column `error` over run time and over force evaluations, a curve a method, both logarithmic."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(10.0, 4.4), layout="constrained")
+    figure = Figure(figsize=(10.0, 5.2), layout="constrained")
     figure.suptitle(title)
     panels = figure.subplots(1, 2, sharey=True)
     methods = list(dict.fromkeys(row["method"] for row in rows))
@@ -137,13 +137,8 @@ def work_precision(rows: Rows, title: str, error: str = "error at 1 s [m]") -> A
         for index, method in enumerate(methods):
             own = sorted((row for row in rows if row["method"] == method), key=lambda row: row["force evaluations"])
             x, y = [row[column] for row in own], [row[error] for row in own]
-            dash = "-" if index < 8 else "--"
-            style = {
-                "color": TOLD_APART[index % 8],
-                "marker": MARKERS[index % 8],
-                "markersize": 5,
-                "linestyle": dash,
-            }
+            dash = "-" if index < len(TOLD_APART) else "--"
+            style = {"color": TOLD_APART[index % 8], "marker": MARKERS[index % 13], "markersize": 5, "linestyle": dash}
             axes.loglog(x, y, label=method.replace("_", " "), **style)
             curves.append((x, y))
         if column == "force evaluations":
@@ -153,7 +148,8 @@ def work_precision(rows: Rows, title: str, error: str = "error at 1 s [m]") -> A
         axes.spines[["top", "right"]].set_visible(False)
     floor = max(row["reference good to [m]"] for row in rows)
     panels[0].set_ylabel(error)
-    panels[0].legend(frameon=False, fontsize=9)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False, fontsize=8)
     for axes in panels:
         axes.axhline(floor, color="0.6", linestyle=":", linewidth=1.0)
     panels[1].annotate("reference good to here", (1.0, floor), (0, 3), xycoords=("axes fraction", "data"),

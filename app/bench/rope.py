@@ -1,203 +1,171 @@
-"""Run time against error on the benchmark rope, ours and, on demand, what a user would pick instead.
+"""Run time and force evaluations against error on five ropes, every integrator a ladder of steps or tolerances.
 
-R(N): N links, 1 m, 1 kg, EA 981 N, released horizontally, 1 s. A method is a ladder of steps, fractions of its own
-critical step; its error is the largest distance of any point from the reference at t = 0.5 s and at t = 1 s. Times are
-those of one call for the whole second, without the error's; medians of repeats.
+An error is the largest distance of any point from the reference at the end. The reference is dop853 at a tolerance of
+1e-12, and is taken to be as good as a second method, dopri5, agrees with it; errors within ten times of that are left
+out. A run is one call for the whole motion, kernels compiled, the least of repeats; what diverges is no point of a
+curve. `--peers` runs the rope task of `app.bench.rope_task`.
 """
 
-import dataclasses
+import math
 import statistics
 import time
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from rich.progress import track
 
-from app.bench.kernels import task_rope
-from sim.springs import INTEGRATORS, Net
-from sim.springs.stability import critical_step
-from sim.springs.state import State, advance, steps_for
+from app.bench.rope_task import peer_rows
+from sim.springs import INTEGRATORS, Net, rope
+from sim.springs.state import State, advance
 
-METHODS = ("symplectic_euler", "leapfrog_lagged", "leapfrog", "rk4", "dopri5", "dop853")
-LADDER = (0.95, 0.8, 0.4, 0.2, 0.1, 0.05, 0.025)  # of the critical step
-REFINED = {16: 128, 128: 128, 1024: 16}  # steps of the reference within one of 0.8 times critical: good to 1e-11 m
+__all__ = ["figures", "findings", "peer_rows", "rows"]
 
-
-class Reference(NamedTuple):
-    """Positions (3, 1, points) [m], and how far they may be off [m]."""
-
-    half: NDArray[np.float64]
-    end: NDArray[np.float64]
-    uncertainty: float
+LONGEST = 1 / 15  # [s], the first step of every ladder
+TOLERANCES = tuple(10.0 ** (-0.5 * i) for i in range(4, 23))  # rtol; atol is a hundredth of it
+TIGHT = 1e-12  # rtol of the references
+LEVEL = 2e-3  # [m], where leapfrog is held against the lab's Euler
 
 
-class Ours(NamedTuple):
-    """One rung of a ladder, ready to run."""
-
+class Problem(NamedTuple):
     name: str
     net: Net
-    h: float  # [s]
-    steps: int
-
-    def run(self) -> State:
-        state = State.at_rest(self.net)
-        advance(self.net, state, INTEGRATORS[self.name], self.h, self.steps)
-        return state
+    seconds: float
 
 
-def seconds(call: Callable[[], Any]) -> float:
-    start = time.perf_counter()
-    call()
-    return time.perf_counter() - start
+class Truth(NamedTuple):
+    x: NDArray[np.float64]  # (3, 1, points) [m]
+    uncertainty: float  # [m]
 
 
-def refined(net: Net, h: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    state = State.at_rest(net)
-    steps = steps_for(0.5, h)
-    advance(net, state, INTEGRATORS["rk4"], 0.5 / steps, steps)
-    half = state.x.copy()
-    advance(net, state, INTEGRATORS["rk4"], 0.5 / steps, steps)
-    return half, state.x
+PROBLEMS = (
+    Problem("lab default", rope(10), 2.0),
+    Problem("stiff, 8e4 N/m", rope(10, stiffness=8e4), 1.0),
+    Problem("undamped, long", rope(10, damping=0.0, drag=0.0), 4.0),
+    Problem("very stiff, 8e6 N/m", rope(10, stiffness=8e6), 1.0),
+    Problem("drop on the floor", rope(10, floor=-1.0), 1.5),
+)
 
 
-def reference(net: Net) -> Reference:
-    """RK4 far below its critical step, and how far it is from twice that step, which is mostly round-off."""
-    h = 0.8 * critical_step(net, "rk4") / REFINED.get(net.shape[1] - 1, 8)
-    coarse, fine = refined(net, 2.0 * h), refined(net, h)
-    off = max(float(np.abs(a - b).max()) for a, b in zip(coarse, fine, strict=True))
-    return Reference(*fine, off)
-
-
-def errors(half: NDArray[np.float64], end: NDArray[np.float64], truth: Reference) -> tuple[float, float]:
-    """Largest distance [m] of any point at t = 0.5 s and t = 1 s."""
-    return (
-        float(np.linalg.norm(half - truth.half, axis=0).max()),
-        float(np.linalg.norm(end - truth.end, axis=0).max()),
+def marched(problem: Problem, name: str, rtol: float) -> tuple[NDArray[np.float64], int]:
+    """Positions at the end [m] and force evaluations, steps chosen for a tolerance."""
+    net, march = problem.net, INTEGRATORS[name].march
+    assert march is not None
+    xs, vs = np.zeros((2, 2, net.x0.size))
+    start, times, p = net.x0.reshape(-1).copy(), np.array([0.0, problem.seconds]), net.forces(1e-3)
+    evals, _, filled, _ = march(
+        start, np.zeros(net.x0.size), times, rtol, 0.01 * rtol, p, False, xs, vs, np.zeros((2, 2))
     )
+    return xs[1].reshape(net.x0.shape) if filled == 2 else np.full(net.x0.shape, np.nan), evals
 
 
-def rung(net: Net, name: str, fraction: float) -> Ours:
-    # An even number, so that half of them end at half a second.
-    steps = 2 * steps_for(0.5, fraction * critical_step(net, name))
-    return Ours(name, net, 1.0 / steps, steps)
+def stepped(problem: Problem, name: str, steps: int) -> tuple[NDArray[np.float64], int]:
+    """The same in equal steps."""
+    state = State.at_rest(problem.net)
+    advance(problem.net, state, INTEGRATORS[name], problem.seconds / steps, steps)
+    return state.x, state.force_evals
 
 
-def error_of(ours: Ours, truth: Reference) -> tuple[float, float]:
-    half = ours._replace(steps=ours.steps // 2).run()
-    end = half.copy()
-    advance(ours.net, end, INTEGRATORS[ours.name], ours.h, ours.steps // 2)
-    return errors(half.x, end.x, truth)
+def truth_of(problem: Problem) -> Truth:
+    one, other = (marched(problem, name, TIGHT)[0] for name in ("dop853", "dopri5"))
+    return Truth(one, float(np.linalg.norm(one - other, axis=0).max()))
+
+
+def methods_for(net: Net) -> list[str]:
+    return [name for name, record in INTEGRATORS.items() if not (record.undamped_only and net.is_damped)]
+
+
+def ladder(problem: Problem, name: str, truth: Truth, most: int, repeats: int) -> list[dict[str, Any]]:
+    """Rungs from coarse to fine, until `most` force evaluations or the reference's own error."""
+    found = []
+    adaptive = INTEGRATORS[name].adaptive
+    coarsest = math.ceil(problem.seconds / LONGEST)
+    for i in range(len(TOLERANCES)):
+        setting = TOLERANCES[i] if adaptive else coarsest * 2**i
+        run = marched if adaptive else stepped
+        with np.errstate(all="ignore"):
+            x, evals = run(problem, name, setting)  # type: ignore[arg-type]
+            error = float(np.linalg.norm(x - truth.x, axis=0).max())
+        if evals > most or error < 10.0 * truth.uncertainty:
+            break
+        if not error < 0.5:
+            continue  # diverged, or another motion altogether
+        times = []
+        while len(times) < repeats and sum(times) < 0.05 * repeats:
+            start = time.perf_counter()
+            run(problem, name, setting)  # type: ignore[arg-type]
+            times.append(time.perf_counter() - start)
+        found.append(
+            {
+                "problem": problem.name,
+                "method": name,
+                "step [s]": None if adaptive else problem.seconds / setting,
+                "rtol": setting if adaptive else None,
+                "force evaluations": evals,
+                "time [ms]": 1e3 * statistics.median(times),
+                "least [ms]": 1e3 * min(times),
+                "error [m]": error,
+                "reference good to [m]": truth.uncertainty,
+            }
+        )
+    return found
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Each method's ladder on R(16), R(128) and, unless quick, R(1024)."""
+    """Every method's ladder on every problem; quick: shorter ladders, fewer repeats."""
     table = []
-    for links in (16, 128) if quick else (16, 128, 1024):
-        net = task_rope(links)
-        truth = reference(net)
-        for name in METHODS:
-            for fraction in LADDER:
-                ours = rung(net, name, fraction)
-                at_half, at_end = error_of(ours, truth)
-                if at_end < 10.0 * truth.uncertainty:
-                    break
-                times = [seconds(ours.run)]
-                while len(times) < (3 if quick else 7) and sum(times) < 5.0:
-                    times.append(seconds(ours.run))
-                table.append(
-                    {
-                        "task": f"R({links})",
-                        "method": name,
-                        "h / critical": fraction,
-                        "steps": ours.steps,
-                        "force evaluations": ours.steps * INTEGRATORS[name].evals,
-                        "time [ms]": 1e3 * statistics.median(times),
-                        "least [ms]": 1e3 * min(times),
-                        "error at 0.5 s [m]": at_half,
-                        "error at 1 s [m]": at_end,
-                        "reference good to [m]": truth.uncertainty,
-                    }
-                )
+    truths = {problem.name: truth_of(problem) for problem in PROBLEMS}
+    pairs = [(problem, name) for problem in PROBLEMS for name in methods_for(problem.net)]
+    for problem, name in track(pairs, "rope", transient=True):
+        table += ladder(problem, name, truths[problem.name], 20_000 if quick else 200_000, 3 if quick else 9)
     return table
 
 
-def cheapest(net: Net, truth: Reference, limit: tuple[float, float]) -> tuple[Ours, tuple[float, float]] | None:
-    """Our quickest method and step whose errors are both within `limit` [m]; None where none on the ladders is."""
+def evaluations_at(table: list[dict[str, Any]], method: str, error: float) -> float:
+    """Force evaluations a method needs for an error [m], between rungs by their logarithms; NaN beyond them."""
+    own = sorted((row["error [m]"], row["force evaluations"]) for row in table if row["method"] == method)
+    if not own or not own[0][0] <= error <= own[-1][0]:
+        return math.nan
+    errors, evals = np.log(np.array(own)).T
+    return float(np.exp(np.interp(math.log(error), errors, evals)))
+
+
+def front(table: list[dict[str, Any]]) -> list[str]:
+    """Methods that nothing beats in both time and error somewhere on one problem."""
+    points = [(row["error [m]"], row["least [ms]"], row["method"]) for row in table]
+    ahead = [
+        name for error, time, name in points if not any(other < error and took < time for other, took, _ in points)
+    ]
+    return list(dict.fromkeys(ahead))
+
+
+def findings(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """What the ladders say: the reference's own error, the front, and leapfrog against the lab's Euler."""
     found = []
-    for name in METHODS:
-        for fraction in (*LADDER, 0.0125):
-            ours = rung(net, name, fraction)
-            error = error_of(ours, truth)
-            if max(error) < 10.0 * truth.uncertainty:
-                break  # finer than the reference can tell
-            if error[0] <= limit[0] and error[1] <= limit[1]:
-                # Between the rungs: the step at which the error should just be theirs.
-                spare = min(theirs / own for theirs, own in zip(limit, error, strict=True))
-                longer = rung(net, name, min(0.97 * fraction * spare ** (1.0 / INTEGRATORS[name].order), LADDER[0]))
-                longer_error = error_of(longer, truth)
-                if longer.h > ours.h and longer_error[0] <= limit[0] and longer_error[1] <= limit[1]:
-                    ours, error = longer, longer_error
-                found.append((seconds(ours.run), ours, error))
-                break
-    if not found:
-        return None
-    _, ours, error = min(found, key=lambda entry: entry[0])
-    return ours, error
-
-
-def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Every peer that is installed against our quickest run at its error or less, the two timed in turns.
-
-    A peer that damps along the links only is compared with the reference of that model.
-    """
-    from app.bench.rope_peers import PEERS, is_installed
-
-    table: list[dict[str, Any]] = []
-    for links in (16, 128) if quick else (16, 128, 1024):
-        truths: dict[str, tuple[Net, Reference]] = {}
-        for peer in PEERS:
-            row: dict[str, Any] = {"task": f"R({links})", "peer": peer.name, "damping": peer.model}
-            table.append(row)
-            if not is_installed(peer) or links > peer.most_links:
-                row["note"] = "not installed" if not is_installed(peer) else "left out: minutes a run"
-                continue
-            if peer.model not in truths:
-                net = dataclasses.replace(task_rope(links), damping_model=peer.model)
-                truths[peer.model] = net, reference(net)
-            net, truth = truths[peer.model]
-            run = peer.make(net, 0.8 * critical_step(net, "leapfrog"))
-            limit = errors(run(0.5), run(1.0), truth)
-            row |= {"error at 0.5 s [m]": limit[0], "error at 1 s [m]": limit[1]}
-            best = cheapest(net, truth, limit) if limit[1] > 10.0 * truth.uncertainty else None
-            once = seconds(lambda run=run: run(1.0))
-            repeats = max(1, min(5 if quick else 15, int(4.0 / once)))
-            theirs, mine = [], []
-            for _ in range(repeats):
-                theirs.append(seconds(lambda run=run: run(1.0)))
-                if best is not None:
-                    mine.append(seconds(best[0].run))
-            row["peer [ms]"] = 1e3 * statistics.median(theirs)
-            if best is None:
-                row["note"] = f"no step of ours is as exact; the reference is good to {truth.uncertainty:.1e} m"
-                continue
-            ours, error = best
-            row |= {
-                "ours": ours.name,
-                "steps": ours.steps,
-                "ours [ms]": 1e3 * statistics.median(mine),
-                "our error at 1 s [m]": error[1],
-                "times as long as ours": statistics.median(theirs) / statistics.median(mine),
-            }
-    return table
+    for problem in PROBLEMS:
+        own = [row for row in table if row["problem"] == problem.name]
+        if own:
+            found.append(
+                {
+                    "problem": problem.name,
+                    "two references differ by [m]": own[0]["reference good to [m]"],
+                    "on the front of time against error": ", ".join(front(own)),
+                }
+            )
+            leapfrog, euler = (evaluations_at(own, name, LEVEL) for name in ("leapfrog", "symplectic_euler"))
+            if math.isfinite(euler / leapfrog):
+                found[-1][f"Euler's force evaluations over leapfrog's at {LEVEL:g} m"] = euler / leapfrog
+    return found
 
 
 def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
-    """Work-precision diagrams by file name, one for each task."""
+    """A work-precision diagram of each problem by file name."""
     from app.bench.report import work_precision
 
-    tasks = list(dict.fromkeys(row["task"] for row in table))
-    return {
-        f"rope_{task.strip('R()')}": work_precision([row for row in table if row["task"] == task], f"Rope {task}, 1 s")
-        for task in tasks
-    }
+    drawn = {}
+    for problem in PROBLEMS:
+        own = [row for row in table if row["problem"] == problem.name]
+        if own:
+            name = problem.name.split(",")[0].replace(" ", "_")
+            drawn[f"rope_{name}"] = work_precision(own, f"Rope of 10 points, {problem.name}, {problem.seconds:g} s")
+    return drawn

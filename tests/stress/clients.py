@@ -41,7 +41,7 @@ class Clients:
         self.thread.start()
         self.open: list[ClientConnection] = []
         self.received: dict[ClientConnection, int] = {}  # [bytes]
-        self.readers: list[asyncio.Task[None]] = []
+        self.readers: set[asyncio.Task[None]] = set()
 
     def call(self, work: Coroutine[Any, Any, Any], seconds: float = 60.0) -> Any:
         return asyncio.run_coroutine_threadsafe(work, self.loop).result(seconds)
@@ -64,13 +64,16 @@ class Clients:
         self.open.append(client)
         self.received[client] = 0
         if reads:
-            self.readers.append(asyncio.ensure_future(self.read(client)))
+            reader = asyncio.ensure_future(self.read(client))
+            self.readers.add(reader)
+            reader.add_done_callback(self.readers.discard)
         return client
 
     async def read(self, client: ClientConnection) -> None:
         with contextlib.suppress(websockets.exceptions.ConnectionClosed):
             async for message in client:
-                self.received[client] += len(message)
+                if client in self.received:
+                    self.received[client] += len(message)
 
     def say(self, client: ClientConnection, message: dict[str, Any]) -> None:
         self.call(client.send(msgspec.msgpack.encode(message)))
@@ -87,6 +90,7 @@ class Clients:
         """End a client as a killed process does: no closing handshake."""
         self.loop.call_soon_threadsafe(client.transport.abort)
         self.open.remove(client)
+        self.received.pop(client)
 
     def shut(self) -> None:
         for client in list(self.open):

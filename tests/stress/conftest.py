@@ -7,16 +7,17 @@ import pytest
 
 from app.scenes import NAMES
 from tests.stress.hammer import Hammer
-from tests.stress.tally import Tally
+from tests.stress.tally import SERVED, Tally
 
 TALLY = Tally()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Everything in this folder is stress."""
+    """Everything in this folder is stress, and may take long."""
     for item in items:
         if "/tests/stress/" in item.path.as_posix():
             item.add_marker(pytest.mark.stress)
+            item.add_marker(pytest.mark.timeout(1200 + 2 * SERVED))
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:

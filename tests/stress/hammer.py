@@ -80,12 +80,12 @@ class Hammer:
         self.tally.counts[self.name]["changes"] += 1
         self.viewer.panel.controls[name].take(value)
 
-    def frame(self, count: int = 1) -> None:
-        """Frames as the two threads would make them, each checked."""
+    def frame(self, count: int = 1, wall: float = FRAME) -> None:
+        """Frames `wall` [s] apart as the two threads would make them, each checked."""
         panel = self.viewer.panel
         for _ in range(count):
             start = time.process_time()
-            self.loop.tick(FRAME)
+            self.loop.tick(wall)
             panel.status_at = panel.marks_at = 0.0  # write every text, every frame
             self.viewer.show_latest()
             self.longest = max(self.longest, time.process_time() - start)

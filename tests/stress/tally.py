@@ -2,7 +2,10 @@
 
 import collections
 import contextlib
+import os
 from collections.abc import Iterator
+
+SERVED = float(os.environ.get("SPRINGTIDE_STRESS_SOAK", "30"))  # [s] of wall time that each scene is served
 
 
 class Tally:

@@ -8,7 +8,7 @@ from tests.stress.hammer import Hammer, anywhere, ends, some_command
 
 CHANGES = int(os.environ.get("SPRINGTIDE_STRESS_CHANGES", "10000"))  # of the walk, for each scene
 FRAMES = 3  # at each end
-AT_ONCE = 4  # most knobs turned between two frames
+AT_ONCE = 10  # most knobs turned between two frames
 
 
 def test_each_knob_at_both_ends(hammer: Hammer) -> None:

@@ -1,0 +1,87 @@
+"""Hours of running, with the memory watched.
+
+`SPRINGTIDE_STRESS_SOAK=3600 pytest -m stress tests/stress/test_soak.py` serves each scene for a real hour; without it,
+an hour of simulated time is run as fast as it can be, and a served one lasts as long as it says below.
+"""
+
+import gc
+import time
+
+import psutil
+import pytest
+
+from app.loop import LONGEST
+from app.messages import Play, Reset
+from app.scenes import NAMES
+from app.viewer import Viewer
+from app.warmup import prepare
+from sim.knobs import knobs
+from tests.stress.clients import clients_of, until
+from tests.stress.hammer import Hammer
+from tests.stress.tally import SERVED, Tally
+
+HOUR = 3600.0  # [s] of simulated time
+GROWTH = 1.05  # of what is resident after the warm-up
+# Smaller, or in longer steps, so that an hour of it fits in a minute or two.
+PRESS = {"cloth": {"rows": 8, "cols": 8, "time_step": 1e-3}, "radial": {"time_step": 1 / 20}}
+
+
+def resident() -> float:
+    """What this process holds [MB], without what waits to be collected."""
+    gc.collect()
+    return psutil.Process().memory_info().rss / 1e6
+
+
+def test_an_hour_of_simulated_time(hammer: Hammer, tally: Tally) -> None:
+    for name, value in PRESS.get(hammer.name, {}).items():
+        hammer.set(name, value)
+    speed = hammer.knobs["speed"].hi
+    hammer.set("speed", speed)
+    hammer.loop.effort = lambda: 0.0  # as on a machine that always keeps up
+    hammer.loop.untried = True
+    frames = round(HOUR / (speed * LONGEST))
+    start = hammer.loop.scene.time
+    hammer.frame(frames // 5, wall=LONGEST)
+    before = resident()
+    hammer.frame(frames - frames // 5, wall=LONGEST)
+    after = resident()
+    assert not hammer.loop.halted, hammer.loop.halted
+    assert hammer.loop.scene.time - start > 0.99 * HOUR
+    tally.notes.append(f"{hammer.name}: an hour simulated in {frames:,} frames, {before:.0f} MB then {after:.0f} MB")
+    assert after < GROWTH * before
+    hammer.loop.effort = time.thread_time
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_served_while_clients_come_and_go(name: str, tally: Tally) -> None:
+    prepare(name)
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open(name)
+    plots = [knob for knob in knobs(viewer.panel.params) if knob.startswith("plot_")]
+    with clients_of(viewer.port) as clients:
+        stays = clients.join()
+        for plot in plots:
+            viewer.panel.controls[plot].take(True)
+        before, half = 0.0, time.monotonic() + 0.5 * SERVED
+        end = time.monotonic() + SERVED
+        visits = 0
+        while time.monotonic() < end:
+            visitor = clients.join()
+            time.sleep(min(1.0, SERVED / 20))
+            clients.kill(visitor)
+            visits += 1
+            if visits % 10 == 0:
+                viewer.commands.put(Reset())
+                viewer.commands.put(Play())
+            if not before and time.monotonic() > half:
+                before = resident()
+        after = resident()
+        assert not viewer.loop.halted
+        shown, got = viewer.shown, clients.received[stays]
+        until(lambda: viewer.shown > shown and clients.received[stays] > got, "still served")
+    viewer.shut()
+    tally.notes.append(
+        f"{name}: served for {SERVED:g} s to one client and {visits} that came and were killed, "
+        f"{before:.0f} MB then {after:.0f} MB"
+    )
+    assert after < GROWTH * before

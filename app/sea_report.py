@@ -10,6 +10,7 @@ from sim.ocean import Sea
 from sim.ocean.planets import RADIUS_RULES, gravity_of
 from sim.ocean.statistics import Statistics, beaufort, expected, height_scatter, measured
 
+STILL_HIGHER = 1.2  # of the height of an endless sea: what no tile holds of this wind alone
 BAND = 2.0  # standard deviations: 95 of 100 seas lie within
 NEAR_PEAK = 0.08  # of the peak frequency: waves within are called dominant
 WATER, HEAVY_OIL = 1e-6, 1e-3  # [m2/s] kinematic viscosities to compare with
@@ -91,10 +92,15 @@ def table(r: Report) -> str:
         row("mean square slope", f"{m.mean_square_slope:.3g}", f"{e.mean_square_slope:.3g}"),
         row("direction [°]", number(math.degrees(m.direction), ".0f"), number(math.degrees(e.direction), ".0f")),
     ]
-    share = "" if math.isnan(whole) or whole == 0.0 else (
-        f"<div style='opacity:.75'>The tile holds {min(e.significant_height / whole, 9.99):.0%} of the "
-        f"{whole:.3g} m of an endless, undamped sea.</div>"
-    )  # fmt: skip
+    share = ""
+    if whole > 0.0:
+        held = e.significant_height / whole
+        said = (
+            f"The tile holds {held:.0%} of the {whole:.3g} m of an endless, undamped sea."
+            if held < STILL_HIGHER
+            else f"Waves of the old weather are still here; this wind alone would raise {whole:.3g} m."
+        )
+        share = f"<div style='opacity:.75'>{said}</div>"
     return (
         "<table style='width:100%;border-spacing:0;font-size:12px'><tr style='opacity:.75'><td></td>"
         "<td style='text-align:right'>drawn</td><td style='text-align:right'>theory, 95 %</td></tr>"

@@ -15,6 +15,7 @@ from app.sea_knobs import Params, conditions, gravity, hidden
 from app.sea_mesh import set_mesh
 from app.sea_report import Report, Theory, measure, theory
 from app.shower import RainPicture, Shower
+from sim.knobs import knobs
 from sim.ocean import Sea
 from sim.ocean.foam import pace, threshold, whitecaps
 
@@ -38,6 +39,9 @@ TRIM = 0.5  # spreads it begins above the formula
 LEAST_FOAM = 1e-4  # share of the sea below which nobody counts
 EVERY_FIELD = 8  # transforms of a height, its displacement, slope and Jacobian
 SEEN = 1.2  # part of the fading time for which foam counts as seen
+
+# The knobs that change how the sea is shown and not where it is.
+LOOKS = {name for name, k in knobs(Params).items() if k.group == "Look"} | {"grid", "speed", "frame_rate"}
 
 PRESETS: dict[str, dict[str, Any]] = {
     "Earth breeze": {},
@@ -109,6 +113,11 @@ def warm_up() -> Iterator[str]:
         for _ in range(4):
             scene.advance(30)
             scene.picture()
+
+
+def changed(old: Params, new: Params) -> set[str]:
+    """Names of the knobs that differ."""
+    return {name for name, value in vars(new).items() if value != getattr(old, name)}
 
 
 def rain_of(params: Params) -> tuple[Any, ...]:
@@ -233,10 +242,14 @@ class Scene:
 
     def picture(self) -> SeaPicture:
         """The sea as it is now; what has not changed is handed out again."""
-        p = self.params
-        if self.drawn is None or (self.drawn.params, self.drawn.time) != (p, self.time):
-            self.drawn = self.draw()
-        return self.drawn
+        p, drawn = self.params, self.drawn
+        if drawn is None or drawn.time != self.time or changed(drawn.params, p) - LOOKS:
+            drawn = self.draw()
+        elif drawn.params != p:
+            drawn = drawn._replace(params=p)
+            self.counts["pictures kept"] += 1
+        self.drawn = drawn
+        return drawn
 
     def draw(self) -> SeaPicture:
         """Evaluate the surface once, and let foam, rain, probe and statistics catch up with it."""
@@ -349,6 +362,7 @@ class Scene:
         pictures = c["pictures"]
         return {
             "transforms": Work(c["transforms"], max(EVERY_FIELD * pictures - c["transforms"], 0)),
+            "new looks on the same sea": Work(0, c["pictures kept"]),
             "showers": Work(c["showers"], pictures - c["showers"]),
             "rings of rain begun": Work(c["rings"]),
             "probe readings": Work(c["probe readings"], pictures - c["probe readings"]),

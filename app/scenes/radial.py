@@ -217,7 +217,7 @@ class Scene:
         return found
 
     def sample(self, surface: float) -> None:
-        draft = np.full(3, math.nan)
+        draft = np.zeros(3)  # of bodies that are not there: a NaN may reach no browser
         draft[: min(3, self.crowd.count)] = self.crowd.draft[:3]
         self.samples.append((self.time, *draft.tolist(), surface, float(self.crowd.fleet.position[0, 2])))
         self.sampled_at = self.time

@@ -103,6 +103,19 @@ def test_steps_cost_nothing_and_an_unchanged_sea_is_the_same_picture():
     assert scene.counts["pictures"] == 1
 
 
+def test_a_new_look_on_a_paused_sea_computes_and_sends_no_surface():
+    scene = Scene(Params(**SMALL))
+    scene.advance(5)
+    before, done = scene.picture(), scene.counts["transforms"]
+    scene.set_params(dataclasses.replace(scene.params, clouds=0.9, daylight=0.3, grid=True))
+    after = scene.picture()
+    assert after.params.clouds == 0.9
+    assert after.vertices is before.vertices  # what the viewer sends only where it is new
+    assert scene.counts["transforms"] == done
+    scene.set_params(dataclasses.replace(scene.params, amplitude=2.0))
+    assert scene.picture().vertices is not before.vertices
+
+
 def test_nobody_looking_costs_nothing():
     scene = Scene(Params(**SMALL, rain=20.0))
     loop = SimLoop(scene, audience=lambda: 0)

@@ -353,3 +353,12 @@ def test_a_mesh_that_is_not_closed_ends_the_command_with_one_line(tmp_path: Path
     assert main(["run", "rope", *out, str(write_boat(tmp_path / "boat.stl"))]) == 2
     assert "radial" in capsys.readouterr().err
     assert main(["run", "radial", *out, str(tmp_path / "boat.stl")]) == 0
+
+
+def test_plot_rows_are_numbers_with_fewer_bodies_than_curves():
+    scene = Scene(Params(bodies=1, plot_draft=True))
+    scene.take_samples()
+    scene.advance(20)
+    rows = scene.take_samples()
+    assert rows
+    assert np.isfinite(rows).all()

@@ -22,7 +22,7 @@ CURVES = {
 ZONE = Line("reference unsure", "rgba(120,120,120,0.6)", 1.0, fill="rgba(120,120,120,0.3)")
 ONLY_GHOST = Line("reference", "#000000", 1.5, (4.0, 4.0))
 DASHES = ((), (10.0, 4.0), (3.0, 3.0), (12.0, 3.0, 3.0, 3.0), (6.0, 6.0), (1.0, 4.0))  # told apart in grey as well
-TALL = 0.7  # energies above so many times what the rope falls through are left out
+TALL = 0.7  # energies are drawn up to so many times what the rope falls through
 ABOVE, BELOW = 1e3, 1e-12  # [m] off the error's scale: of a rope that diverged, and where there is no reference
 
 
@@ -61,15 +61,19 @@ class RaceCharts:
         row = self.rows[self.count]
         row[0] = race.t
         row[1] = self.zone()
-        row[2] = race.ghosts[0].energy(race.lanes[0].net, race.t) - self.start[0]
+        last = self.rows[max(self.count - 1, 0)]
+        row[2] = self.held(race.ghosts[0].energy(race.lanes[0].net, race.t) - self.start[0], last[2])
         for i, lane in enumerate(race.lanes):
             # A logarithmic chart has no gaps: what has no error goes off its scale.
             error = race.error(lane)
             row[3 + 2 * i] = ABOVE if lane.out else max(error, TICKS[0][0]) if error == error else BELOW
-            above = math.nan if lane.out else lane.total() - self.start[i]
-            row[4 + 2 * i] = above if above < self.tall else math.nan
+            row[4 + 2 * i] = self.held(math.nan if lane.out else lane.total() - self.start[i], last[4 + 2 * i])
         self.count += 1
         self.drawn = {}
+
+    def held(self, energy: float, last: float) -> float:
+        """The energy to draw [J]: bounded, and the last one of a rope that has stopped, as a browser takes no NaN."""
+        return min(max(energy, -self.tall), self.tall) if energy == energy else last
 
     def zone(self) -> float:
         """What an error must exceed [m] to be read; the top of the chart once a reference is lost."""

@@ -103,7 +103,11 @@ def on_cluster(address: str, jobs: dict[int, Job]) -> Iterator[tuple[int, Outcom
         for future in as_completed(list(numbers), loop=client.loop):
             number = numbers.pop(future)
             if future.status == "finished":
-                yield number, future.result()
+                try:
+                    outcome = future.result()
+                except OSError:
+                    raise OSError(f"the scheduler at {address} has gone") from None  # before it handed this one over
+                yield number, outcome
             elif future.status == "error":
                 yield number, failed(f"on the cluster: {one_line(future.exception())}")
             else:

@@ -172,8 +172,8 @@ def test_a_click_on_the_map_sets_step_and_stiffness(lab: Viewer, open_tab) -> No
     box = picture.bounding_box()
     unit = box["width"] / live.PICTURE[0]
     x, y = live.LEFT + 0.25 * live.WIDE, live.TOP + 0.25 * live.HIGH
-    tab.page.mouse.click(box["x"] + unit * x, box["y"] + unit * y)
     params = lab.panel.read()
+    tab.page.mouse.click(box["x"] + unit * x, box["y"] + unit * y)
     tab.wait(lambda: lab.panel.read().stiffness != params.stiffness)
     axes = lab.panel.map.axes
     assert live.place_of(axes.steps, lab.panel.read().time_step) == pytest.approx(0.25, abs=0.02)

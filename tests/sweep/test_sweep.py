@@ -126,7 +126,7 @@ def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, tmp_path, capsys):
     assert not kept.exists()
     with xr.open_dataset(out) as data:
         found = [run_case("rope", {"points": 60, "time_step": 2e-4, "plot_energy": True, "plot_tip": True,
-                                   "stiffness": float(k)}, (40.0,)) for k in data.stiffness.values[[0, -1]]]  # fmt: skip
+                                   "stiffness": float(k)}, (40,)) for k in data.stiffness.values[[0, -1]]]  # fmt: skip
         assert data.tip_height.values[[0, -1]].tolist() == [f.measures["tip_height"][0] for f in found]
         assert (data.end == 0).all()
 

@@ -167,13 +167,11 @@ def test_a_click_on_the_map_sets_step_and_stiffness(lab: Viewer, open_tab) -> No
     tab.wait(lambda: len(lab.panel.map.rows) == live.ROWS)
     tab.page.get_by_text("Advanced", exact=True).first.click()
     picture = tab.page.locator("svg.springtide-map")
-    picture.scroll_into_view_if_needed(timeout=60_000)
-    tab.page.wait_for_timeout(1000)
-    box = picture.bounding_box()
-    unit = box["width"] / live.PICTURE[0]
+    picture.hover(timeout=60_000)  # scrolls, and waits until the folder has unfolded
+    unit = picture.bounding_box()["width"] / live.PICTURE[0]
     x, y = live.LEFT + 0.25 * live.WIDE, live.TOP + 0.25 * live.HIGH
     params = lab.panel.read()
-    tab.page.mouse.click(box["x"] + unit * x, box["y"] + unit * y)
+    picture.click(position={"x": unit * x, "y": unit * y}, timeout=60_000)
     tab.wait(lambda: lab.panel.read().stiffness != params.stiffness)
     axes = lab.panel.map.axes
     assert live.place_of(axes.steps, lab.panel.read().time_step) == pytest.approx(0.25, abs=0.02)

@@ -1,21 +1,12 @@
 """The cloth scene in a real browser, driven by mouse and keyboard."""
 
-from collections.abc import Iterator
-
 import numpy as np
-import pytest
 
 from app.messages import Pause, Play
 from app.viewer import Viewer
 from tests.browser.test_rope import pixel, watching
 
-
-@pytest.fixture
-def lab() -> Iterator[Viewer]:
-    viewer = Viewer("127.0.0.1", 0)
-    viewer.open("cloth")
-    yield viewer
-    viewer.shut()
+SCENE = "cloth"
 
 
 def test_every_preset_is_drawn_and_moves_without_console_errors(lab: Viewer, open_tab) -> None:

@@ -17,8 +17,8 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
     times: dict[int, list[float]] = {n: [] for n in COUNTS}
     for _ in range(5 if quick else 21):
         for n in COUNTS:
-            own = np.tile([4.0, 0.1, 0.2, 4.0, 0.1, 4.0], (n, 1))
-            beside = -0.3 * rng.random((n, 6))
+            own = np.tile([4.0, 0.1, 0.2, 0.1, 4.0, 0.1, 0.2, 0.1, 4.0], (n, 1))
+            beside = -0.3 * rng.random((n, 9))
             r = rng.standard_normal((n, 3))
             repeats = max(1, 100_000 // n)
             copies = [(own.copy(), r.copy()) for _ in range(repeats)]

@@ -102,6 +102,7 @@ class SimLoop:
         self.counts: collections.Counter[str] = collections.Counter()
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
         self.wall = 0.0
+        self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
         self.latest: Snapshot = self.snapshot(0.0)
 
     def tick(self, wall: float) -> None:
@@ -109,7 +110,8 @@ class SimLoop:
         self.wall += wall
         # Knobs first: a preset sets them all and then asks for a reset.
         params = self.read_params()
-        changed = params != self.scene.params
+        # Mostly the very same record: not to compare it knob by knob.
+        changed = params is not self.scene.params and params != self.scene.params
         if changed:
             self.untried = True
             self.guarded(lambda: self.scene.set_params(params))
@@ -124,7 +126,7 @@ class SimLoop:
             self.counts["idle ticks"] += 1
         self.counts["ticks"] += 1
         if changed:
-            self.latest = self.snapshot(solve)
+            self.publish(solve)
 
     def try_out(self, n: int) -> float:
         """Take up to n steps in growing parts while the frame's budget lasts; returns what they took [s].
@@ -207,6 +209,11 @@ class SimLoop:
             case _:
                 self.guarded(lambda: self.scene.obey(command))
 
+    def publish(self, solve: float) -> None:
+        """Let whoever shows them have what there is now."""
+        self.latest = self.snapshot(solve)
+        self.fresh.set()
+
     def snapshot(self, solve: float) -> Snapshot:
         """What there is to show now; the last good picture where the scene has none."""
         self.counts["snapshots"] += 1
@@ -265,6 +272,6 @@ class SimLoop:
             return
         try:
             self.obey(self.commands.get(timeout=seconds))
-            self.latest = self.snapshot(0.0)
+            self.publish(0.0)
         except queue.Empty:
             pass

@@ -248,3 +248,19 @@ def test_a_halt_from_outside_is_said() -> None:
     loop.tick(FRAME)
     assert loop.latest.status.halted == "The picture could not be drawn"
     assert not loop.latest.status.running
+
+
+def test_whoever_shows_is_told_of_each_new_snapshot_and_of_nothing_else() -> None:
+    loop, _ = make()
+    told = []
+    for _ in range(20):
+        loop.tick(FRAME)
+        told.append(loop.fresh.is_set())
+        loop.fresh.clear()
+    assert sum(told) == loop.latest.serial - 1
+    loop.obey(Pause())
+    loop.tick(FRAME)
+    assert not loop.fresh.is_set()
+    loop.commands.put(StepOnce())
+    loop.tick(FRAME)
+    assert loop.fresh.is_set()

@@ -43,11 +43,14 @@ class FixedStep:
         self.cost = 0.0  # [s] of processor time a step takes, lately
         self.dropped = 0  # steps that were due and never taken
 
-    def steps(self, wall: float, speed: float, h: float) -> tuple[int, bool]:
-        """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s]."""
+    def steps(self, wall: float, speed: float, h: float, frame: float = FRAME) -> tuple[int, bool]:
+        """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s].
+
+        frame: [s] between pictures; where that is longer, there is more time to solve in.
+        """
         self.debt += min(wall, LONGEST) * speed
         due = int(self.debt / h * (1 + 1e-9))
-        most = max(1, int(BUDGET * FRAME / self.cost)) if self.cost > 0 else due
+        most = max(1, int(BUDGET * max(frame, FRAME) / self.cost)) if self.cost > 0 else due
         if due > most:
             self.debt = 0.0
             self.dropped += due - most
@@ -105,6 +108,11 @@ class SimLoop:
         self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
         self.latest: Snapshot = self.snapshot(0.0)
 
+    @property
+    def frame(self) -> float:
+        """Time [s] between pictures: a scene may ask for fewer."""
+        return getattr(self.scene, "frame", FRAME)
+
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
         self.wall += wall
@@ -118,7 +126,7 @@ class SimLoop:
         changed |= self.drain()
         solve = 0.0
         if self.running and self.audience():
-            n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step)
+            n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame)
             if n:
                 solve = self.try_out(n) if self.untried else self.advance(n)
                 changed = True
@@ -260,8 +268,7 @@ class SimLoop:
             now = self.clock()
             self.tick(now - last)
             last = now
-            frame = getattr(self.scene, "frame", FRAME)  # [s] a scene may ask for fewer pictures
-            rest = (frame if busy else IDLE) - (self.clock() - now)
+            rest = (self.frame if busy else IDLE) - (self.clock() - now)
             if rest > 0:
                 self.wait(rest, stop, busy)
 

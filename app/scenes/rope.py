@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from app.chart import Chart
 from app.follow import Follower
+from app.loop import FRAME
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
 from app.method import method_for
 from app.race import Race, RaceGauge
@@ -29,6 +30,7 @@ __all__ = [
 TITLE = "Rope"
 GAUGE_EVERY = 0.5  # [s] of simulated time between two looks at the stability of the state
 UNMOVED = 1e-3  # of a link: a rope that has moved by less since the last look is as stable as it was
+SWIFT = 0.3  # [m/s] as seen: 5 mm, about a pixel, between pictures at their highest rate
 SAMPLE_EVERY = 1 / 30  # [s] between two plot rows
 HELP = "<b>Drag a bead</b> to pull the rope. <b>Drag the arrows</b> to move its root."
 SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "error", "tip height")
@@ -117,6 +119,13 @@ class Scene:
     @property
     def step(self) -> float:
         return self.race.tick if self.race else self.params.time_step
+
+    @property
+    def frame(self) -> float:
+        """Time [s] between pictures: half as many where nothing moves so fast that it would show."""
+        if self.race or self.held or not self.root.at_rest or not self.sphere.at_rest:
+            return FRAME
+        return FRAME if float(np.abs(self.state.v).max()) * self.params.speed > SWIFT else 2.0 * FRAME
 
     @property
     def time(self) -> float:

@@ -107,8 +107,10 @@ class Ghost:
 
 def too_dear(net: Net, count: int) -> str:
     """Why `count` references of about this net cannot be followed in real time, or ""."""
-    # The shortest steps are about 0.7/omega; six evaluations each, in two runs.
-    steps = gershgorin(net)[0] / 0.7
+    # The shortest steps are about 0.7/omega, and stay below 3.3/rate where damping is strong; six evaluations each, in
+    # two runs.
+    omega, rate = gershgorin(net)
+    steps = max(omega / 0.7, rate / 3.3)
     if count * 12.0 * steps * net.x0[0].size <= DEAREST:
         return ""
     return f"it would take {steps:.2g} steps a second, too many for ropes of {net.x0[0].size} points"

@@ -1,11 +1,16 @@
 """Compile kernels ahead, with a progress bar: `springtide warmup`, and the first start of each scene."""
 
+import hashlib
+from pathlib import Path
+
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
 from app.pictures import picture_named
 from app.scenes import NAMES, scene_named
 from sim.jit import CACHE
 
+# numba keeps the kernels of each installation apart, though all share the one directory.
+PLACE = hashlib.sha256(str(Path(__file__).resolve().parent.parent).encode()).hexdigest()[:8]
 # What stands for a compiled scene: with its drawing or without, and what serves for either.
 MARKS = {True: (".warm",), False: (".headless.warm", ".warm")}
 
@@ -20,7 +25,7 @@ def warm_up() -> int:
 
 def prepare(name: str, *, drawn: bool = True) -> None:
     """Compile a scene's kernels, and its drawing's, unless this version of them has been compiled before."""
-    if CACHE is None or not any((CACHE / f"{name}{mark}").exists() for mark in MARKS[drawn]):
+    if CACHE is None or not any((CACHE / f"{name}-{PLACE}{mark}").exists() for mark in MARKS[drawn]):
         compile_scene(name, drawn=drawn)
 
 
@@ -32,4 +37,4 @@ def compile_scene(name: str, *, drawn: bool = True) -> None:
             for part in side.warm_up():
                 progress.update(task, description=f"{name}: {part}")
     if CACHE is not None:
-        (CACHE / f"{name}{MARKS[drawn][0]}").touch()
+        (CACHE / f"{name}-{PLACE}{MARKS[drawn][0]}").touch()

@@ -17,7 +17,7 @@ from typing import Any
 import numba
 import platformdirs
 from numba import prange  # for the kernels that are parallel
-from numba.core.caching import IndexDataCacheFile
+from numba.core.caching import CompileResultCacheImpl, IndexDataCacheFile
 from numba.core.compiler import Flags
 from numba.core.options import TargetOptions
 from numba.core.registry import cpu_target
@@ -87,6 +87,20 @@ class KernelFile(IndexDataCacheFile):
                 super().save(key, data)
 
 
+class KernelResult(CompileResultCacheImpl):
+    """numba's reading of a kept kernel, which also tells its callers what it needs.
+
+    A kernel that calls a parallel one keeps with it that the threads are to be started as it is loaded. numba hands
+    that on from callee to caller as both are compiled, but forgets it of a callee that came from the cache: the caller,
+    kept in its turn, would end the program that loads it first ("Symbol not found: allocate_sched").
+    """
+
+    def rebuild(self, target_context: Any, payload: Any) -> Any:
+        result = super().rebuild(target_context, payload)
+        result.library._reload_init.update(result.reload_init)
+        return result
+
+
 def kernel(
     function: Callable[..., Any] | None = None,
     *,
@@ -124,6 +138,7 @@ def kernel(
         numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
     if CACHE is not None:
         compiled._cache._cache_file.__class__ = KernelFile  # type: ignore[attr-defined]
+        compiled._cache._impl.__class__ = KernelResult  # type: ignore[attr-defined]
     return compiled
 
 

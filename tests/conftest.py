@@ -7,11 +7,11 @@ import pytest
 
 
 @pytest.fixture
-def lab() -> Iterator[Any]:
-    """A viewer with the rope open, on a free port of the loopback."""
+def lab(request: pytest.FixtureRequest) -> Iterator[Any]:
+    """A viewer with the module's SCENE open, the rope where it names none, on a free port of the loopback."""
     from app.viewer import Viewer
 
     viewer = Viewer("127.0.0.1", 0)
-    viewer.open("rope")
+    viewer.open(getattr(request.module, "SCENE", "rope"))
     yield viewer
     viewer.shut()

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from app.bench import command, report, rope, rope_task
+from app.bench.installed import is_installed
 from app.bench.kernels import task_rope
-from app.bench.rope_peers import PEERS, is_installed
+from app.bench.rope_peers import PEERS
 from sim.springs.stability import critical_step
 from tests.springs.reference import exact
 
@@ -88,7 +89,7 @@ def test_rungs_end_at_half_a_second_on_the_way():
     "peer", [peer for peer in PEERS if peer.package in ("numpy", "scipy")], ids=lambda peer: peer.name
 )
 def test_peers_solve_the_same_rope(peer):
-    assert is_installed(peer)
+    assert is_installed(peer.package)
     net = dataclasses.replace(task_rope(16), damping_model=peer.model)
     run = peer.make(net, 0.8 * critical_step(net, "leapfrog"))
     at_half, at_end = rope_task.errors(run(0.5), run(1.0), rope_task.reference(net))

@@ -144,3 +144,36 @@ def test_a_full_disk_and_rubbish_in_the_cache_cost_a_compilation_and_no_more(tmp
         assert python(ADDS, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"
         # Kept again, and whole.
         assert all(path.stat().st_size > 40 for path in kept)
+
+
+CALLERS = """
+import numpy as np
+from sim.jit import kernel, prange
+
+@kernel(parallel=True)
+def add_one(x):
+    for j in prange(x.shape[0]):
+        x[j] += 1.0
+
+@kernel
+def add_two(x):
+    add_one(x)
+    add_one(x)
+
+@kernel
+def add_four(x):
+    add_two(x)
+    add_two(x)
+"""
+
+
+def test_a_kernel_from_the_cache_starts_the_threads_its_callees_need(tmp_path):
+    (tmp_path / "callers.py").write_text(CALLERS)
+    call = "import callers, numpy as np; x = np.zeros(4); callers.{}(x); print(x.sum())"
+    folders = {"SPRINGTIDE_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
+    # The second compiles its caller on what the first kept, the third only loads what the second did.
+    assert [python(call.format(name), **folders) for name in ("add_two", "add_four", "add_four")] == [
+        "8.0",
+        "16.0",
+        "16.0",
+    ]

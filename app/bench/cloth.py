@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from app.bench.installed import is_installed
 from sim.springs import INTEGRATORS, Net, cloth
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, steps_for
@@ -136,7 +137,7 @@ def timed_in_turn(
 
 def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
     """Every peer that is installed against our quickest run at its error or less, the two in turn, in wall time."""
-    from app.bench.cloth_peers import PEERS, is_installed
+    from app.bench.cloth_peers import PEERS
 
     table: list[dict[str, Any]] = []
     for n in (32,) if quick else (32, 64, 128):
@@ -146,7 +147,7 @@ def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
         for peer in PEERS:
             row: dict[str, Any] = {"task": f"C({n})", "peer": peer.name}
             table.append(row)
-            if not is_installed(peer):
+            if not is_installed(peer.package):
                 row["note"] = "not installed"
                 continue
             theirs_run = peer.make(net, peer.step or step)

@@ -4,7 +4,6 @@ A peer's `make(net, h)` gives run(seconds) -> x (3, rows, cols). All take symple
 has its own method and step. What has to be compiled is compiled by the first run, which is not timed.
 """
 
-import importlib.util
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -22,10 +21,6 @@ class Peer(NamedTuple):
     package: str
     make: Callable[[Net, float], Run]
     step: float = 0.0  # [s] of its own, 0: the step given
-
-
-def is_installed(peer: Peer) -> bool:
-    return importlib.util.find_spec(peer.package) is not None
 
 
 def ends(di: int, dj: int) -> tuple[Any, Any]:

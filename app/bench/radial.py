@@ -1,14 +1,12 @@
 """The radial sea: its sum of waves against the same loop in C, what the rings save, and radial against square."""
 
 import ctypes
-import statistics
-import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from app.bench.kernels import build
+from app.bench.timing import interleaved
 from sim.ocean import Sea
 from sim.ocean.gerstner import draw_waves
 from sim.ocean.radial import RadialSea
@@ -90,16 +88,3 @@ def against_square(repeats: int) -> list[dict[str, Any]]:
 
 def default_sea() -> RadialSea:
     return RadialSea(draw_waves(SPECTRA["jonswap"], Conditions(wind_speed=8.0), WAVES))
-
-
-def interleaved(functions: tuple[Callable[[], Any], ...], repeats: int) -> list[float]:
-    """Median time of each [s], called in turn."""
-    taken: list[list[float]] = [[] for _ in functions]
-    for function in functions:
-        function()
-    for _ in range(repeats):
-        for times, function in zip(taken, functions, strict=True):
-            start = time.perf_counter()
-            function()
-            times.append(time.perf_counter() - start)
-    return [statistics.median(times) for times in taken]

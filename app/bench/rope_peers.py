@@ -3,7 +3,6 @@
 Fixed-step peers take the step h [s]. What has to be compiled is compiled by the first run, which is not timed.
 """
 
-import importlib.util
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -22,10 +21,6 @@ class Peer(NamedTuple):
     model: str  # its damping: "isotropic" or "axial"
     make: Callable[[Net, float], Run]
     most_links: int = 1024  # beyond that a run takes minutes, or the package gives up
-
-
-def is_installed(peer: Peer) -> bool:
-    return importlib.util.find_spec(peer.package) is not None
 
 
 def numbers(net: Net) -> tuple[float, float, float, float, float, float]:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.progress import track
 
+from app.bench.installed import is_installed
 from app.bench.kernels import task_rope
 from sim.springs import INTEGRATORS, Net
 from sim.springs.stability import critical_step
@@ -143,7 +144,7 @@ def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
 
     A peer that damps along the links only is compared with the reference of that model.
     """
-    from app.bench.rope_peers import PEERS, is_installed
+    from app.bench.rope_peers import PEERS
 
     table: list[dict[str, Any]] = []
     tasks = [(links, peer) for links in ((16, 128) if quick else (16, 128, 1024)) for peer in PEERS]
@@ -151,8 +152,8 @@ def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
     for links, peer in track(tasks, "rope peers", transient=True):
         row: dict[str, Any] = {"task": f"R({links})", "peer": peer.name, "damping": peer.model}
         table.append(row)
-        if not is_installed(peer) or links > peer.most_links:
-            row["note"] = "not installed" if not is_installed(peer) else "left out: minutes a run"
+        if not is_installed(peer.package) or links > peer.most_links:
+            row["note"] = "not installed" if not is_installed(peer.package) else "left out: minutes a run"
             continue
         if (links, peer.model) not in tried:
             net = dataclasses.replace(task_rope(links), damping_model=peer.model)

@@ -1,13 +1,13 @@
 """What a frame of the square sea costs beside the bare transforms it needs, interleaved in one run."""
 
-import statistics
-import time
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from app.bench.sea_peers import PEERS, is_installed, student
+from app.bench.installed import is_installed
+from app.bench.sea_peers import PEERS, student
+from app.bench.timing import interleaved
 from sim.ocean import Sea
 from sim.ocean.transforms import Transforms
 
@@ -36,7 +36,7 @@ def peer_rows(quick: bool) -> list[dict[str, Any]]:
     for size in (256,) if quick else (256, 512):
         sea = Sea(size=size, length=500.0, spectrum="phillips")
         truth = student(Sea(size=size, length=500.0, spectrum="phillips", precision="double"))
-        there = [peer for peer in PEERS if is_installed(peer)]
+        there = [peer for peer in PEERS if is_installed(peer.package)]
         frames: dict[str, Callable[[float], Any]] = {"ours": lambda t, sea=sea: ours_at(sea, t)}
         frames |= {peer.name: peer.make(sea) for peer in there}
         exact = truth(5.0)
@@ -117,14 +117,3 @@ def bare_transforms(sea: Sea, count: int) -> Callable[[], None]:
             each.set_grid(grid)
 
     return bare
-
-
-def interleaved(functions: tuple[Callable[[], None], ...], repeats: int) -> list[float]:
-    """Median time of each [s], called in turn."""
-    taken: list[list[float]] = [[] for _ in functions]
-    for _ in range(repeats):
-        for times, function in zip(taken, functions, strict=True):
-            start = time.perf_counter()
-            function()
-            times.append(time.perf_counter() - start)
-    return [statistics.median(times) for times in taken]

@@ -3,7 +3,6 @@
 A peer's `make(sea)` gives frame(t) -> (3, N, N), or None where it draws another sea and can only be timed.
 """
 
-import importlib.util
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -124,7 +123,3 @@ PEERS = (
     Peer("jax single, half plane", "jax", jax_half),
     Peer("Blender Ocean modifier", "bpy", blender),
 )
-
-
-def is_installed(peer: Peer) -> bool:
-    return importlib.util.find_spec(peer.package) is not None

@@ -11,9 +11,10 @@ import viser
 from app.blowout import FIRE, RIG
 from app.crowd import OWN
 from app.fluid_look import look_of
-from app.messages import Command, Grab, Place, Release, Snapshot, finite_vector
+from app.messages import Command, Place, Snapshot, finite_vector
 from app.pictures.chase import Chase
 from app.pictures.flames import Flames
+from app.pictures.pull import PullLine, drag
 from app.pictures.section import Walls
 from app.radial_records import RadialPicture
 from app.radial_report import compared_html, fluids_html, lab_says, marks_of, table
@@ -25,7 +26,6 @@ from app.water import Look, Water, sky
 SUN = 1.25  # [rad] bearing of the sun, beyond the buoys as the camera starts
 SUNLIGHT = 2.2  # intensity of the lamp that stands for a sun of strength 5
 HANDLE = 0.75  # [m] radius of what is dragged, at size 1
-HELD_COLOUR = (255, 90, 60)
 OWN_COLOUR = (64, 132, 186)  # of a hull from a file
 EYE_EVERY = 0.2  # [s] between looks at where the camera is
 VIEWS = {  # camera and target [m] when one of them is followed
@@ -70,14 +70,7 @@ class Picture:
         )
         self.flames: Flames | None = None
         self.walls: Walls | None = None
-        self.pull = scene.add_line_segments(
-            "/pull",
-            np.zeros((1, 2, 3), np.float32),
-            colors=HELD_COLOUR,
-            thickness=4.0,
-            thickness_units="screen",
-            visible=False,
-        )
+        self.pull = PullLine(server)
 
     def show(self, picture: RadialPicture) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
@@ -159,9 +152,7 @@ class Picture:
             handle.batched_wxyzs = picture.rotations[chosen]
         if self.handles is not None:
             self.handles.batched_positions = picture.positions
-        self.pull.visible = picture.pull is not None
-        if picture.pull is not None:
-            self.pull.points = np.array([picture.pull], np.float32)
+        self.pull.show(picture.pull)
 
     def add_handles(self, picture: RadialPicture) -> None:
         """Clear balls about the bodies, to be dragged: viser loses a page that drags instances of a GLB (1.1)."""
@@ -190,11 +181,7 @@ class Picture:
         self.handles.on_drag("left")(self.on_body)
 
     async def on_body(self, event: Any) -> None:
-        target = finite_vector(event.end_position)
-        if event.phase == "end" or target is None or event.instance_index is None:
-            self.post(Release())
-        else:
-            self.post(Grab(int(event.instance_index), target))
+        drag(self.post, event, event.instance_index)
 
     def move_camera(self, picture: RadialPicture) -> None:
         """Fly to what is followed when it is chosen, then go along with it; and tell the scene where the camera is."""

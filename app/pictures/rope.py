@@ -1,27 +1,29 @@
 """The rope as a tube coloured by tension, its points as beads to be grabbed, root and sphere on gizmos."""
 
-import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import viser
 
-from app.colour import css_scale, scale_colours
-from app.messages import Command, Grab, Place, Release, Snapshot, finite_vector
+from app.colour import SCALE, paint_tube
+from app.messages import Command, Snapshot
 from app.paint import Painted
+from app.pictures.gizmo import Gizmo
+from app.pictures.ground import Ground
+from app.pictures.pull import HELD_COLOUR, PullLine, drag, nearest
 from app.pictures.race import RaceDrawing
 from app.race import RaceGauge
 from app.race_report import standings
 from app.rope_knobs import ROOT, SPHERE, THICKNESS
 from app.scenes.rope import Paid, RopePicture
 from app.shapes import SIDES, ball, smooth_line, sweep, tube_faces
+from app.spring_report import colour_scale, stability_bar
 
 ROPE_COLOUR = (196, 154, 92)
 BEAD_COLOUR = (58, 68, 86)
-HELD_COLOUR = (255, 90, 60)
 RINGS = 120  # about as many rings as a rope is drawn with
-HANDS_OFF = 0.5  # [s] after its last drag that a gizmo is left alone
+UNSEEN = 2e-4  # [m] that a point may be from where it is drawn, and of the colour scale a link: far below a pixel
 
 
 class Picture:
@@ -38,55 +40,15 @@ class Picture:
         self.count = 0
         self.race: RaceDrawing | None = None
         self.nearest = 0
-        self.dragged_at = {"root": 0.0, "sphere": 0.0}
+        self.ball_at: Any = None  # the sphere as it is shown
         scene = server.scene
         scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
-        self.floor = scene.add_grid(
-            "/floor",
-            width=24.0,
-            height=24.0,
-            infinite_grid=True,
-            cell_size=0.25,
-            section_size=1.0,
-            cell_color=(196, 202, 212),
-            section_color=(150, 160, 176),
-            plane_color=(226, 230, 236),
-            plane_opacity=1.0,
-            fade_distance=26.0,
-            shadow_opacity=0.3,
-        )
+        self.ground = Ground(server, (226, 230, 236), (196, 202, 212), (150, 160, 176))
         self.ball = scene.add_mesh_simple("/sphere/ball", *ball(32), color=(92, 140, 190), visible=False)
-        self.gizmos = {
-            "root": self.add_gizmo("root", ROOT, 0.34),
-            "sphere": self.add_gizmo("sphere", SPHERE, 1.1),
-        }
-        self.gizmos["sphere"].visible = False
+        self.root = Gizmo(server, post, "root", 0.34, position=ROOT)
+        self.sphere = Gizmo(server, post, "sphere", 1.1, position=SPHERE, visible=False)
         self.hook = scene.add_mesh_simple("/hook", *ball(8), scale=1.9 * THICKNESS, color=(60, 66, 80))
-        # One segment for the pull; its ends move while a point is held.
-        self.pull = scene.add_line_segments(
-            "/pull",
-            np.zeros((1, 2, 3), np.float32),
-            colors=HELD_COLOUR,
-            thickness=4.0,
-            thickness_units="screen",
-            visible=False,
-        )
-
-    def add_gizmo(
-        self, thing: str, position: tuple[float, float, float], scale: float
-    ) -> viser.TransformControlsHandle:
-        gizmo = self.server.scene.add_transform_controls(
-            f"/{thing}_gizmo", scale=scale, position=position, disable_rotations=True, depth_test=False
-        )
-
-        @gizmo.on_update
-        async def _(event: Any) -> None:
-            self.dragged_at[thing] = time.monotonic()
-            place = finite_vector(event.target.position)
-            if place is not None:
-                self.post(Place(thing, place))
-
-        return gizmo
+        self.pull = PullLine(server)
 
     def build(self, picture: RopePicture) -> None:
         """Make tube and beads for a new number of points."""
@@ -94,8 +56,8 @@ class Picture:
         self.between = max(1, RINGS // (n - 1))
         rings = (n - 1) * self.between + 1
         self.line = np.zeros((rings, 3))
-        self.vertices = np.zeros((rings * SIDES + 2, 3), np.float32)
-        self.sweep(picture)
+        self.vertices, self.rgb = np.zeros((2, rings * SIDES + 2, 3), np.float32)
+        self.form(picture)
         if self.tube is not None:
             self.tube.remove()
         if self.beads is not None:
@@ -105,7 +67,7 @@ class Picture:
             "/rope",
             self.vertices,
             tube_faces(rings),
-            self.colours(picture),
+            self.rgb,
             color=ROPE_COLOUR,
             side="double",
         )
@@ -120,8 +82,8 @@ class Picture:
         )
         self.beads.on_drag("left")(self.on_bead)
         self.tube.mesh.on_drag("left")(self.on_tube)
-        self.points = picture.points
         self.held = -1
+        self.hook_at: Any = None
         self.count = n
 
     def bead_radius(self, picture: RopePicture) -> float:
@@ -130,33 +92,32 @@ class Picture:
         return float(np.clip(0.4 * spacing, 0.5 * THICKNESS, 1.9 * THICKNESS))
 
     async def on_bead(self, event: Any) -> None:
-        self.drag(event, event.instance_index)
+        drag(self.post, event, event.instance_index)
 
     async def on_tube(self, event: Any) -> None:
         """The same between beads, where they are close or hidden: the point nearest to where the drag began."""
         if event.phase == "start":
-            self.nearest = int(np.argmin(np.linalg.norm(self.points - event.start_position, axis=1)))
-        self.drag(event, self.nearest)
+            self.nearest = nearest(self.points, event)
+        drag(self.post, event, self.nearest)
 
-    def drag(self, event: Any, particle: int | None) -> None:
-        target = finite_vector(event.end_position)
-        if event.phase == "end" or target is None or particle is None:
-            self.post(Release())
-        else:
-            self.post(Grab(particle, target))
-
-    def sweep(self, picture: RopePicture) -> None:
+    def form(self, picture: RopePicture) -> None:
+        """The tube and its colours, which then stand for this picture and all that look the same."""
+        self.points, self.tension = picture.points, picture.tension
+        self.painted = picture.colour, picture.full_scale
         smooth_line(picture.points, self.between, self.line)
         sweep(self.line, THICKNESS, SIDES, self.vertices)
-
-    def colours(self, picture: RopePicture) -> np.ndarray:
-        """(vertices, 3) sRGB in 0..1: tension along the rope, or plain."""
         if picture.colour == "plain":
-            return np.tile(np.array(ROPE_COLOUR, np.float32) / 255, (len(self.vertices), 1))
-        links = np.arange(len(picture.tension)) + 0.5
-        along = np.interp(np.arange(len(self.line)) / self.between, links, picture.tension)
-        rings = scale_colours(along, 0.0, picture.full_scale)
-        return np.concatenate([np.repeat(rings, SIDES, axis=0), rings[[0, -1]]])
+            self.rgb[:] = np.array(ROPE_COLOUR, np.float32) / 255
+        else:
+            paint_tube(picture.tension, self.between, picture.full_scale, SCALE, SIDES, self.rgb)
+
+    def looks_the_same(self, picture: RopePicture) -> bool:
+        """Whether nobody could tell a picture from what is shown, as of a rope that has come to rest."""
+        return (
+            self.painted == (picture.colour, picture.full_scale)
+            and float(np.abs(picture.points - self.points).max()) < UNSEEN
+            and float(np.abs(picture.tension - self.tension).max()) < UNSEEN * picture.full_scale
+        )
 
     def show(self, picture: RopePicture) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
@@ -164,20 +125,20 @@ class Picture:
             self.show_rope(picture)
         else:
             self.show_race(picture)
-        self.pull.visible = picture.pull is not None
-        if picture.pull is not None:
+        if picture.pull is None:
+            self.pull.show(None)
+        else:
             points = picture.points if picture.race is None else picture.race.ropes.reshape(-1, 3)
-            self.pull.points = np.array([[points[picture.pull.particle], picture.pull.target]], np.float32)
-            self.pull.thickness = 2.0 + 5.0 * picture.pull.load
-        self.floor.visible = picture.floor
-        self.floor.cell_thickness = 1.0 if picture.grid else 0.0
-        self.floor.section_thickness = 1.0 if picture.grid else 0.0
-        self.ball.visible = self.gizmos["sphere"].visible = picture.sphere is not None
-        self.follow("root", picture.root)
-        if picture.sphere is not None:
-            self.ball.position = picture.sphere[:3]
-            self.ball.scale = picture.sphere[3]
-            self.follow("sphere", picture.sphere[:3])
+            self.pull.show((points[picture.pull.particle], picture.pull.target), picture.pull.load)
+        self.ground.show(picture.floor, picture.grid)
+        self.root.show(picture.root)
+        self.sphere.show(None if picture.sphere is None else picture.sphere[:3])
+        if picture.sphere != self.ball_at:
+            self.ball_at = picture.sphere
+            self.ball.visible = picture.sphere is not None
+            if picture.sphere is not None:
+                self.ball.position = picture.sphere[:3]
+                self.ball.scale = picture.sphere[3]
 
     def show_race(self, picture: RopePicture) -> None:
         """The ropes of a race, in place of the one."""
@@ -213,12 +174,12 @@ class Picture:
             self.build(picture)
         assert self.tube is not None
         assert self.beads is not None
-        self.points = picture.points
-        self.sweep(picture)
-        self.tube.set(self.vertices, self.colours(picture))
+        if not self.looks_the_same(picture):
+            self.form(picture)
+        self.tube.set(self.vertices, self.rgb)
         self.beads.visible = picture.show_points
         if picture.show_points:
-            self.beads.batched_positions = picture.points
+            self.beads.batched_positions = self.points
         held = -1 if picture.pull is None else picture.pull.particle
         if held != self.held:
             colours = np.tile(np.array(BEAD_COLOUR, np.uint8), (self.count, 1))
@@ -227,14 +188,10 @@ class Picture:
             self.beads.batched_colors = colours
             self.held = held
         self.hook.visible = True
-        self.hook.position = tuple(picture.points[0])
-
-    def follow(self, thing: str, position: tuple[float, float, float]) -> None:
-        """Move a gizmo to where its thing was put by other means, unless it is being dragged."""
-        gizmo = self.gizmos[thing]
-        away = max(abs(float(a) - b) for a, b in zip(gizmo.position, position, strict=True))
-        if away > 1e-4 and time.monotonic() - self.dragged_at[thing] > HANDS_OFF:
-            gizmo.position = position
+        at = tuple(self.points[0].tolist())
+        if at != self.hook_at:
+            self.hook_at = at
+            self.hook.position = at
 
 
 def warm_up() -> Iterator[str]:
@@ -243,6 +200,7 @@ def warm_up() -> Iterator[str]:
     line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
     smooth_line(np.zeros((2, 3), np.float32), 2, line)
     sweep(line, THICKNESS, SIDES, vertices)
+    paint_tube(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)
 
 
 def stiffness_knob(params: Any) -> str:
@@ -254,25 +212,10 @@ def readout(snapshot: Snapshot) -> str:
     """The stability gauge and the colour scale, or a race's standings, as HTML."""
     if isinstance(snapshot.gauge, RaceGauge):
         return standings(snapshot.gauge)
-    g = snapshot.gauge.stability
-    part = g.h_omega / g.limit if g.limit > 0 else float("inf")
-    width, colour = min(part, 1.0) * 100, "#2b8a3e" if part < 0.8 else "#e67700" if part <= 1.0 else "#c92a2a"
-    verdict = "stable" if part <= 1.0 else "unstable"
-    picture = snapshot.picture
-    paid, scale = price(snapshot.gauge.paid), ""
+    picture, scale = snapshot.picture, ""
     if picture.colour == "tension":
-        scale = (
-            f'<div style="height:8px;border-radius:4px;background:{css_scale()}"></div>'
-            '<div style="display:flex;justify-content:space-between">'
-            f"<span>slack</span><span>tension</span><span>{picture.full_scale:.3g} N</span></div>"
-        )
-    return (
-        f'<div style="display:flex;justify-content:space-between"><b>h ω = {g.h_omega:.3g}</b>'
-        f"<span>limit {g.limit:.3g} at ζ = {g.zeta:.2g}</span>"
-        f'<b style="color:{colour}">{verdict}</b></div>'
-        '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 8px">'
-        f'<div style="height:8px;border-radius:4px;width:{width:.0f}%;background:{colour}"></div></div>{paid}{scale}'
-    )
+        scale = colour_scale("slack", "tension", f"{picture.full_scale:.3g} N")
+    return stability_bar(snapshot.gauge.stability) + price(snapshot.gauge.paid) + scale
 
 
 def price(paid: Paid | None) -> str:

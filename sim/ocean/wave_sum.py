@@ -38,6 +38,14 @@ def fine_sine(q):
     return q * (D1 + s * (D3 + s * (D5 + s * (D7 + s * D9))))
 
 
+@kernel(inline=True)
+def fine_wave(t, a):
+    """a cos(2 pi t) and a sin(2 pi t) in double: t [turns] folded to a quarter turn, as `add_pair` explains."""
+    t -= np.rint(t)
+    u = abs(t) - 0.25
+    return -fine_sine(u) * a, math.copysign(fine_sine(0.25 - abs(u)), t) * a
+
+
 @kernel(noalias=True, allocates=False)
 def add_pair(x, y, first, last, w, wave, scale0, scale1, z, X, Y, hx, hy, xx, yy, xy):
     """Add waves w and w + 1 to vertices first to last; two at a time halve the traffic of the eight sums.
@@ -113,12 +121,7 @@ def sum_at(x, y, p, kx, ky, phase, amplitude, chop, weight, out):
     """out (8,): z, X, Y, hx, hy, xx, yy, xy of the sum at label x, y; weight[p] (waves,) scales each wave."""
     z = X = Y = hx = hy = xx = yy = xy = 0.0
     for w in range(kx.size):
-        t = (kx[w] * x + ky[w] * y) / (2.0 * math.pi) + phase[w]
-        t -= np.rint(t)
-        u = abs(t) - 0.25
-        a = amplitude[w] * weight[p, w]
-        c = -fine_sine(u) * a
-        s = math.copysign(fine_sine(0.25 - abs(u)), t) * a
+        c, s = fine_wave((kx[w] * x + ky[w] * y) / (2.0 * math.pi) + phase[w], amplitude[w] * weight[p, w])
         k = np.sqrt(kx[w] * kx[w] + ky[w] * ky[w])
         ex, ey = chop * kx[w] / k, chop * ky[w] / k
         z += c
@@ -168,11 +171,7 @@ def set_motion(labels, kx, ky, rate, phase, amplitude, chop, weight, ratio, velo
         u = v = w = g = h = hx = hy = rise = 0.0
         for i in range(kx.size):
             t = (kx[i] * labels[p, 0] + ky[i] * labels[p, 1]) / (2.0 * math.pi) + phase[i]
-            t -= np.rint(t)
-            q = abs(t) - 0.25
-            a = amplitude[i] * weight[p, i]
-            c = -fine_sine(q) * a
-            s = math.copysign(fine_sine(0.25 - abs(q)), t) * a
+            c, s = fine_wave(t, amplitude[i] * weight[p, i])
             k = np.sqrt(kx[i] * kx[i] + ky[i] * ky[i])
             # d/dt of -e sin and of cos at phase k.X - omega t
             u += chop * kx[i] / k * rate[i] * c

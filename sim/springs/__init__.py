@@ -5,7 +5,8 @@ k is a stiffness here, h a time step.
 
 from sim.springs.cloth import cloth
 from sim.springs.integrators import Integrator, discover
-from sim.springs.net import Air, Contact, Grab, Net, PinPath, lab_units, rope
+from sim.springs.net import Air, Contact, Grab, Net, PinPath
+from sim.springs.rope import lab_units, rope
 
 INTEGRATORS: dict[str, Integrator] = discover()
 

@@ -1,6 +1,7 @@
 """Linear stability of one-step methods on x'' + 2 zeta omega x' + omega^2 x = 0, in units of z = h omega."""
 
 import cmath
+import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -30,6 +31,7 @@ def limit_of(growth: Callable[[float], float], slack: float = SLACK, known: floa
     return low
 
 
+@functools.lru_cache(maxsize=1000)
 def limit_of_polynomial(coefficients: tuple[float, ...], zeta: float) -> float:
     """Largest stable z of a Runge-Kutta method with R(s) = sum c_i s^i."""
     both = np.array(eigenvalues(zeta))
@@ -38,11 +40,14 @@ def limit_of_polynomial(coefficients: tuple[float, ...], zeta: float) -> float:
         r = np.polynomial.polynomial.polyval(np.multiply.outer(both, z), coefficients)
         return np.abs(r).max(axis=0)
 
-    # A live display asks often: scan four units of z, which is further than such methods reach, in one go.
-    z = SCAN * np.arange(1, int(4.0 / SCAN))
-    left = growth(z) > 1.0 + SLACK
-    first = int(left.argmax()) if left.any() else len(z)
-    return limit_of(growth, known=SCAN * first)
+    # A live display asks often: scan four units of z in one go, where most such methods have their limit.
+    known, many = 0.0, round(4.0 / SCAN)
+    while known < FURTHEST:
+        left = growth(known + SCAN * np.arange(1, many + 1)) > 1.0 + SLACK
+        if left.any():
+            return limit_of(growth, known=known + SCAN * int(left.argmax()))
+        known += SCAN * many
+    return float("inf")
 
 
 def polynomial_of(a: tuple[tuple[float, ...], ...], b: tuple[float, ...]) -> tuple[float, ...]:

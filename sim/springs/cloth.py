@@ -7,20 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from sim.knobs import refusal
-from sim.springs.net import (
-    CLOTH,
-    CONTACT_LAWS,
-    DAMPING_MODELS,
-    PLAIN_CONTACT,
-    Air,
-    Contact,
-    Family,
-    Net,
-    Vector,
-    check_choice,
-    check_number,
-    check_vector,
-)
+from sim.springs.checks import check_choice, check_number, check_vector
+from sim.springs.net import CLOTH, DAMPING_MODELS, Air, Contact, Family, Net, Vector, check_surroundings
 
 HOLDS = ("corners", "edge", "all corners", "rim", "free")
 MOST = 1024  # rows or columns
@@ -84,23 +72,13 @@ def cloth(
     check_number("thickness", thickness, 0, math.inf, "m")
     check_vector("origin", origin)
     check_choice("damping_model", damping_model, DAMPING_MODELS)
-    contact = PLAIN_CONTACT if contact is None else contact
-    if not isinstance(contact, Contact):
-        raise refusal("contact", contact, "a Contact, or None")
-    check_number("contact.stiffness", contact.stiffness, 0, math.inf, "N/m")
-    check_number("contact.damping", contact.damping, 0, math.inf, "N s/m")
-    check_number("contact.friction", contact.friction, 0, math.inf, "")
-    check_choice("contact.law", contact.law, CONTACT_LAWS)
+    contact = check_surroundings(contact, floor, sphere)
     if air is not None:
         if not isinstance(air, Air):
             raise refusal("air", air, "an Air, or None")
         check_vector("air.wind", air.wind)
         for name in ("density", "drag", "lift"):
             check_number(f"air.{name}", getattr(air, name), 0, math.inf, "")
-    if floor is not None:
-        check_number("floor", floor, -math.inf, math.inf, "m")
-    if sphere is not None:
-        check_number("sphere radius", check_vector("sphere", sphere, 4)[3], 0, math.inf, "m")
 
     dx, dy = width / (cols - 1), length / (rows - 1)
     rests = (dx, dy, math.hypot(dx, dy), math.hypot(dx, dy), 2.0 * dx, 2.0 * dy)

@@ -106,6 +106,17 @@ def refresh_pairs(x, p):
     return p.pairs[last, 0]
 
 
+@kernel(inline=True)
+def push_apart(out, i, j, n, wi, wj, dx, dy, dz):
+    """out -= wi d at particle i and += wj d at j; d = (dx, dy, dz) from i to j."""
+    out[i] -= wi * dx
+    out[n + i] -= wi * dy
+    out[2 * n + i] -= wi * dz
+    out[j] += wj * dx
+    out[n + j] += wj * dy
+    out[2 * n + j] += wj * dz
+
+
 @kernel(allocates=False)
 def add_self_contacts(x, v, p, with_damping, a):
     """Add the accelerations of touching pairs, max(0, k depth - b v_n) each way."""
@@ -122,13 +133,7 @@ def add_self_contacts(x, v, p, with_damping, a):
             opening = (v[j] - v[i]) * dx + (v[n + j] - v[n + i]) * dy + (v[2 * n + j] - v[2 * n + i]) * dz
             push = max(0.0, push - p.contact_b * opening / r)
         push /= r
-        wi, wj = p.weights[i] * push, p.weights[j] * push
-        a[i] -= wi * dx
-        a[n + i] -= wi * dy
-        a[2 * n + i] -= wi * dz
-        a[j] += wj * dx
-        a[n + j] += wj * dy
-        a[2 * n + j] += wj * dz
+        push_apart(a, i, j, n, p.weights[i] * push, p.weights[j] * push, dx, dy, dz)
 
 
 @kernel(allocates=False)
@@ -148,13 +153,7 @@ def damp_self_contacts(x, v, s, p, reverse):
         opening = ((v[j] - v[i]) * dx + (v[n + j] - v[n + i]) * dy + (v[2 * n + j] - v[2 * n + i]) * dz) / r
         after = max(opening * math.exp(-p.contact_b * both * s), opening - p.contact_k * (p.thickness - r) * both * s)
         change = (after - opening) / (both * r)
-        wi, wj = p.weights[i] * change, p.weights[j] * change
-        v[i] -= wi * dx
-        v[n + i] -= wi * dy
-        v[2 * n + i] -= wi * dz
-        v[j] += wj * dx
-        v[n + j] += wj * dy
-        v[2 * n + j] += wj * dz
+        push_apart(v, i, j, n, p.weights[i] * change, p.weights[j] * change, dx, dy, dz)
 
 
 @kernel(allocates=False)

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs.integrators import Integrator
-from sim.springs.net import Family, Net, rope
+from sim.springs.net import Family, Net
+from sim.springs.rope import rope
 from sim.springs.state import State, advance, energy
 
 FIRST = 16  # steps of the first look; each look doubles them

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.knobs import refusal
+from sim.springs.checks import check_choice, check_number
 from sim.springs.energy import energies
 from sim.springs.integrators import Integrator
-from sim.springs.net import Net, check_choice, check_number
+from sim.springs.net import Net
 from sim.springs.state import SANE, State, advance, check_damping, energy, steps_for, velocities
 
 CALM = 1e-3 * SANE  # [m]: a net within this has not yet been out of the sane bound

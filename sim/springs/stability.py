@@ -17,8 +17,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.springs.checks import check_number
 from sim.springs.integrators import Integrator
-from sim.springs.net import Forces, Net, check_number
+from sim.springs.net import Forces, Net
 from sim.springs.simulate import integrator_named
 from sim.springs.state import State
 from sim.springs.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.knobs import refusal
-from sim.springs.net import Net, check_number
+from sim.springs.checks import check_number
+from sim.springs.net import Net
 
 ITERATIONS = 200  # of Newton: a dozen is usual
 

@@ -16,6 +16,7 @@ SEA = Params(size="64", mesh="32", length=64.0)
 
 @pytest.fixture
 def lab() -> Iterator[Viewer]:
+    """A small sea, in place of the scene's own."""
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("phillips", SEA)
     yield viewer

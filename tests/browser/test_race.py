@@ -1,9 +1,5 @@
 """The race presets in a real browser: ropes, flags and charts."""
 
-from collections.abc import Iterator
-
-import pytest
-
 from app.rope_knobs import PRESETS, ROOT, Params
 from app.viewer import Viewer
 from sim.knobs import check
@@ -13,14 +9,6 @@ RACES = [name for name, knobs in PRESETS.items() if knobs.get("ropes", 1) > 1]
 CHARTS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({chart}) => ({
     title: chart.root.querySelector('.u-title')?.textContent, labels: chart.series.map(s => s.label),
     rows: chart.data[0].length, log: chart.scales.y.distr === 3}))"""
-
-
-@pytest.fixture
-def lab() -> Iterator[Viewer]:
-    viewer = Viewer("127.0.0.1", 0)
-    viewer.open("rope")
-    yield viewer
-    viewer.shut()
 
 
 def test_every_race_is_drawn_with_its_charts_and_no_console_errors(lab: Viewer, open_tab) -> None:

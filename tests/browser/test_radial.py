@@ -1,6 +1,5 @@
 """The radial scene in a real browser: every preset as water, a buoy dragged under, oil poured on."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,13 +10,7 @@ from app.radial_knobs import PRESETS
 from app.viewer import Viewer
 from tests.browser.test_rope import pixel
 
-
-@pytest.fixture
-def lab() -> Iterator[Viewer]:
-    viewer = Viewer("127.0.0.1", 0)
-    viewer.open("radial")
-    yield viewer
-    viewer.shut()
+SCENE = "radial"
 
 
 def drawn(lab: Viewer) -> bool:

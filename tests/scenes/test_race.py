@@ -147,6 +147,13 @@ def test_a_reference_too_dear_is_left_out_and_says_so():
     assert "There is no reference" in standings(scene.gauge())
 
 
+def test_a_reference_is_too_dear_by_its_damping_alone_too():
+    # 4e8 /s against a frequency of 1e3 rad/s: an explicit method's steps would be 8 ns long.
+    scene = Scene(Params(ropes=2, damping=1e5, mass=1e-3, integrator="implicit_euler", integrator_2="tr_bdf2"))
+    scene.advance(2)
+    assert "too many for ropes of 10 points" in scene.gauge().no_ghost
+
+
 def test_a_method_that_refuses_damping_is_out_at_once():
     scene = Scene(Params(ropes=2, integrator_2="pefrl"))
     run(scene, 0.5)

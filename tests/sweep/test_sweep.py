@@ -33,14 +33,14 @@ integrator = ["explicit_euler", "leapfrog"]
 time_step = [0.002, 0.1]
 sphere = [false, true]
 """
+# Four short cases, and two that take seconds whatever the machine: what is stopped is stopped in the midst of them.
 LONG = """
 scene = "rope"
 seconds = 40.0
 [set]
-points = 60
-time_step = 2e-4
+points = 200
 [knobs]
-stiffness = { from = 500.0, to = 2000.0, count = 10 }
+time_step = [4e-3, 2e-3, 1.5e-3, 1e-3, 1e-4, 1.1e-4]
 """
 
 
@@ -121,13 +121,15 @@ def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, tmp_path, capsys):
     assert alive == []
     assert not out.exists()
     assert main(command[3:]) == 0
-    done = int(capsys.readouterr().out.partition(" of 10 cases are kept")[0])
-    assert 1 <= done < 10
+    done = int(capsys.readouterr().out.partition(" of 6 cases are kept")[0])
+    assert 1 <= done < 6
     assert not kept.exists()
     with xr.open_dataset(out) as data:
-        found = [run_case("rope", {"points": 60, "time_step": 2e-4, "plot_energy": True, "plot_tip": True,
-                                   "stiffness": float(k)}, (40,)) for k in data.stiffness.values[[0, -1]]]  # fmt: skip
-        assert data.tip_height.values[[0, -1]].tolist() == [f.measures["tip_height"][0] for f in found]
+        found = [
+            run_case("rope", {"points": 200, "plot_energy": True, "plot_tip": True, "time_step": float(h)}, (40,))
+            for h in data.time_step.values[[0, 3]]
+        ]
+        assert data.tip_height.values[[0, 3]].tolist() == [f.measures["tip_height"][0] for f in found]
         assert (data.end == 0).all()
 
 

@@ -275,3 +275,17 @@ def accept(method, x, v, stages, xn, vn):
     copy(vn, zero, size, v, zero)
     for j in range(size):
         k[j] = k[last + j]
+
+
+@kernel
+def take_steps(method, x, v, ledger, t, h, steps, p, with_ledger):
+    """`steps` steps of h [s] from t; returns the force evaluations."""
+    stages = make_stages(method, x, p)
+    xn, vn = np.empty_like(x), np.empty_like(x)
+    set_pins(x, v, t, p)
+    accelerate(x, v, t, p, True, stages.f, stages.a)
+    stages.k[: x.shape[0]] = stages.a
+    for s in range(steps):
+        take_step(method, x, v, t + s * h, h, p, stages, xn, vn, ledger, with_ledger)
+        accept(method, x, v, stages, xn, vn)
+    return 1 + method.stages * steps

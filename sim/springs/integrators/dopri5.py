@@ -4,14 +4,10 @@ Six force evaluations a step of fifth order. Undamped modes hold to h omega = 1 
 tolerance of 1e-5 to 1e-8 on a soft net is where it pays.
 """
 
-import numpy as np
-
-from sim.jit import kernel
 from sim.springs.amplification import limit_of_polynomial, polynomial_of
 from sim.springs.embedded.dopri5 import METHOD, A, B
 from sim.springs.embedded.march import march as march_to_frames
-from sim.springs.embedded.stages import accept, make_stages, take_step
-from sim.springs.forces import accelerate, set_pins
+from sim.springs.embedded.stages import take_steps
 from sim.springs.integrators import Integrator
 
 POLYNOMIAL = polynomial_of(A, B)
@@ -22,17 +18,8 @@ def limit(zeta: float) -> float:
     return limit_of_polynomial(POLYNOMIAL, zeta)
 
 
-@kernel
-def advance(x, v, ledger, t, h, steps, p, with_ledger):
-    stages = make_stages(METHOD, x, p)
-    xn, vn = np.empty_like(x), np.empty_like(x)
-    set_pins(x, v, t, p)
-    accelerate(x, v, t, p, True, stages.f, stages.a)
-    stages.k[: x.shape[0]] = stages.a
-    for s in range(steps):
-        take_step(METHOD, x, v, t + s * h, h, p, stages, xn, vn, ledger, with_ledger)
-        accept(METHOD, x, v, stages, xn, vn)
-    return 1 + 6 * steps
+def advance(*arguments):
+    return take_steps(METHOD, *arguments)
 
 
 def march(*arguments):

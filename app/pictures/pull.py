@@ -1,0 +1,49 @@
+"""The pull of the mouse: what a drag tells the simulation, and the line from what is held to where it is drawn."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import viser
+
+from app.messages import Command, Grab, Release, finite_vector
+
+HELD_COLOUR = (255, 90, 60)
+
+
+def drag(post: Callable[[Command], None], event: Any, index: int | None) -> None:
+    """Post what viser's drag event asks for: thing `index` pulled to where the mouse is, or let go."""
+    target = finite_vector(event.end_position)
+    if event.phase == "end" or target is None or index is None:
+        post(Release())
+    else:
+        post(Grab(int(index), target))
+
+
+def nearest(points: np.ndarray, event: Any) -> int:
+    """Which of points (n, 3) is nearest to where a drag began."""
+    return int(np.argmin(np.linalg.norm(points - event.start_position, axis=1)))
+
+
+class PullLine:
+    """One segment, whose ends move while something is held."""
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self.drawn = False
+        self.line = server.scene.add_line_segments(
+            "/pull",
+            np.zeros((1, 2, 3), np.float32),
+            colors=HELD_COLOUR,
+            thickness=4.0,
+            thickness_units="screen",
+            visible=False,
+        )
+
+    def show(self, ends: Any, load: float = 0.4) -> None:
+        """ends: (2, 3) [m], or None while nothing is held; load: part of the most that the hand pulls with."""
+        if self.drawn != (ends is not None):
+            self.drawn = ends is not None
+            self.line.visible = self.drawn
+        if ends is not None:
+            self.line.points = np.array([ends], np.float32)
+            self.line.thickness = 2.0 + 5.0 * load

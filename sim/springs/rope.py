@@ -1,0 +1,92 @@
+"""`rope`: a line of points joined by springs, in the lab's units; `lab_units` from a rope's material."""
+
+import math
+
+import numpy as np
+
+from sim.knobs import refusal
+from sim.springs.checks import check_choice, check_number, check_vector
+from sim.springs.net import DAMPING_MODELS, Contact, Family, Net, Vector, check_surroundings
+
+
+def rope(
+    points: int = 10,
+    length: float = 2.0,
+    mass: float = 1.0,
+    stiffness: float = 800.0,
+    damping: float = 7.0,
+    drag: float = 1.0,
+    gravity: float = 10.0,
+    root: Vector = (0.0, 0.0, 0.0),
+    floor: float | None = None,
+    sphere: tuple[float, float, float, float] | None = None,
+    damping_model: str = "isotropic",
+    *,
+    end: Vector | None = None,
+    contact: Contact | None = None,
+    radius: float = 0.0,
+) -> Net:
+    """A rope in the lab's units, at rest from `root` along -x; point 0 is the fixed root.
+
+    points: from 1. length: rest length of the whole [m]. mass: [kg] per point. stiffness [N/m] and damping [N s/m]
+    per link; drag [N s/m] per point; gravity [m/s^2] along -z. floor: height [m]; sphere: (x, y, z, radius) [m].
+    damping_model: "isotropic", the lab's eq. 4, b (v1 - v2); or "axial", its part along the link only.
+    end: where the last point is pinned too [m]; the points then start on the straight line from root to end.
+    radius: of the points, for contact [m].
+
+    Raises ValueError, naming the argument, its value and what is allowed.
+    """
+    if not isinstance(points, int | np.integer) or isinstance(points, bool) or not 1 <= points <= 1_000_000:
+        raise refusal("points", points, "a whole number from 1 to 1000000")
+    check_number("length", length, 0, math.inf, "m", above=True)
+    check_number("mass", mass, 0, math.inf, "kg", above=True)
+    check_number("stiffness", stiffness, 0, math.inf, "N/m")
+    check_number("damping", damping, 0, math.inf, "N s/m")
+    check_number("drag", drag, 0, math.inf, "N s/m")
+    check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
+    check_number("radius", radius, 0, math.inf, "m")
+    check_vector("root", root)
+    check_choice("damping_model", damping_model, DAMPING_MODELS)
+    contact = check_surroundings(contact, floor, sphere)
+
+    n = int(points)
+    rest = length / max(n - 1, 1)
+    start = np.asarray(root, dtype=np.float64)
+    stop = start - (length, 0.0, 0.0) if end is None else np.asarray(check_vector("end", end), dtype=np.float64)
+    along = np.linspace(0.0, 1.0, n)
+    x0 = start[:, None] + (stop - start)[:, None] * along
+    return Net(
+        x0=np.ascontiguousarray(x0.reshape(3, 1, n)),
+        families=(Family(0, 1, rest, float(stiffness), float(damping)),),
+        mass=float(mass),
+        drag=float(drag),
+        gravity=(0.0, 0.0, -float(gravity)),
+        pinned=frozenset({(0, 0)} if end is None else {(0, 0), (0, n - 1)}),
+        damping_model=damping_model,
+        floor=None if floor is None else float(floor),
+        sphere=None if sphere is None else tuple(float(c) for c in sphere),  # type: ignore[arg-type]
+        contact=contact,
+        radius=float(radius),
+    )
+
+
+def lab_units(
+    points: int,
+    length: float,
+    axial_stiffness: float,
+    mass_per_length: float,
+    axial_viscosity: float,
+    drag_per_length: float,
+) -> dict[str, float]:
+    """`rope`'s per-link and per-point numbers of a rope given in material units, so that points only refine it.
+
+    axial_stiffness EA [N], mass_per_length [kg/m], axial_viscosity [N s], drag_per_length [N s/m^2].
+    With n links: k = EA n / L, m = mu L / n, b = eta n / L, c = drag L / n.
+    """
+    spacing = length / max(points - 1, 1)
+    return {
+        "mass": mass_per_length * spacing,
+        "stiffness": axial_stiffness / spacing,
+        "damping": axial_viscosity / spacing,
+        "drag": drag_per_length * spacing,
+    }

@@ -43,11 +43,14 @@ class FixedStep:
         self.cost = 0.0  # [s] of processor time a step takes, lately
         self.dropped = 0  # steps that were due and never taken
 
-    def steps(self, wall: float, speed: float, h: float) -> tuple[int, bool]:
-        """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s]."""
+    def steps(self, wall: float, speed: float, h: float, frame: float = FRAME) -> tuple[int, bool]:
+        """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s].
+
+        frame: [s] between pictures; where that is longer, there is more time to solve in.
+        """
         self.debt += min(wall, LONGEST) * speed
         due = int(self.debt / h * (1 + 1e-9))
-        most = max(1, int(BUDGET * FRAME / self.cost)) if self.cost > 0 else due
+        most = max(1, int(BUDGET * max(frame, FRAME) / self.cost)) if self.cost > 0 else due
         if due > most:
             self.debt = 0.0
             self.dropped += due - most
@@ -102,21 +105,28 @@ class SimLoop:
         self.counts: collections.Counter[str] = collections.Counter()
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
         self.wall = 0.0
+        self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
         self.latest: Snapshot = self.snapshot(0.0)
+
+    @property
+    def frame(self) -> float:
+        """Time [s] between pictures: a scene may ask for fewer."""
+        return getattr(self.scene, "frame", FRAME)
 
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
         self.wall += wall
         # Knobs first: a preset sets them all and then asks for a reset.
         params = self.read_params()
-        changed = params != self.scene.params
+        # Mostly the very same record: not to compare it knob by knob.
+        changed = params is not self.scene.params and params != self.scene.params
         if changed:
             self.untried = True
             self.guarded(lambda: self.scene.set_params(params))
         changed |= self.drain()
         solve = 0.0
         if self.running and self.audience():
-            n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step)
+            n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame)
             if n:
                 solve = self.try_out(n) if self.untried else self.advance(n)
                 changed = True
@@ -124,7 +134,7 @@ class SimLoop:
             self.counts["idle ticks"] += 1
         self.counts["ticks"] += 1
         if changed:
-            self.latest = self.snapshot(solve)
+            self.publish(solve)
 
     def try_out(self, n: int) -> float:
         """Take up to n steps in growing parts while the frame's budget lasts; returns what they took [s].
@@ -207,6 +217,11 @@ class SimLoop:
             case _:
                 self.guarded(lambda: self.scene.obey(command))
 
+    def publish(self, solve: float) -> None:
+        """Let whoever shows them have what there is now."""
+        self.latest = self.snapshot(solve)
+        self.fresh.set()
+
     def snapshot(self, solve: float) -> Snapshot:
         """What there is to show now; the last good picture where the scene has none."""
         self.counts["snapshots"] += 1
@@ -253,8 +268,7 @@ class SimLoop:
             now = self.clock()
             self.tick(now - last)
             last = now
-            frame = getattr(self.scene, "frame", FRAME)  # [s] a scene may ask for fewer pictures
-            rest = (frame if busy else IDLE) - (self.clock() - now)
+            rest = (self.frame if busy else IDLE) - (self.clock() - now)
             if rest > 0:
                 self.wait(rest, stop, busy)
 
@@ -265,6 +279,6 @@ class SimLoop:
             return
         try:
             self.obey(self.commands.get(timeout=seconds))
-            self.latest = self.snapshot(0.0)
+            self.publish(0.0)
         except queue.Empty:
             pass

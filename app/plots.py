@@ -42,6 +42,17 @@ class Plots:
 
     def update(self, snapshot: Snapshot, params: Any) -> None:
         """Take the snapshot's new rows and, now and then, send what is open."""
+        for row in snapshot.samples:
+            if row[0] != row[0]:  # a NaN time: the run starts over
+                self.rows.clear()
+            else:
+                self.rows.append(row)
+        if len(self.rows) > LENGTH:
+            self.rows = self.rows[-LENGTH:]
+        now = time.monotonic()
+        if now - self.sent_at < EVERY:
+            return
+        self.sent_at = now
         meant = {*self.scene.PLOTS, *self.curves} - self.scene.hidden(params)
         wanted = {knob for knob in meant if getattr(params, knob)}
         for knob in (*self.scene.PLOTS, *self.curves):
@@ -51,20 +62,10 @@ class Plots:
                 self.charts[knob] = self.add(knob)
         if self.panel is not None:
             self.panel.visible = bool(wanted)
-        for row in snapshot.samples:
-            if row[0] != row[0]:  # a NaN time: the run starts over
-                self.rows.clear()
-            else:
-                self.rows.append(row)
-        if len(self.rows) > LENGTH:
-            self.rows = self.rows[-LENGTH:]
-        now = time.monotonic()
-        if now - self.sent_at >= EVERY:
-            self.sent_at = now
-            before = self.drawn
-            if wanted:
-                self.send(snapshot, wanted)
-            self.spared += len(self.scene.PLOTS) + len(self.curves) - (self.drawn - before)
+        before = self.drawn
+        if wanted:
+            self.send(snapshot, wanted)
+        self.spared += len(self.scene.PLOTS) + len(self.curves) - (self.drawn - before)
 
     def send(self, snapshot: Snapshot, wanted: set[str]) -> None:
         """Send the charts that are open and have something new."""

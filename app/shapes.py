@@ -77,6 +77,10 @@ def sweep(line, radius, sides, vertices):
     so that the tube does not twist.
     """
     rings = line.shape[0]
+    around = np.empty((sides, 2))
+    for s in range(sides):
+        angle = 2.0 * math.pi * s / sides
+        around[s, 0], around[s, 1] = radius * math.cos(angle), radius * math.sin(angle)
     tx, ty, tz = 1.0, 0.0, 0.0
     rx, ry, rz = 0.0, 1.0, 0.0
     for i in range(rings):
@@ -111,8 +115,7 @@ def sweep(line, radius, sides, vertices):
         tx, ty, tz = ux, uy, uz
         sx, sy, sz = uy * rz - uz * ry, uz * rx - ux * rz, ux * ry - uy * rx
         for s in range(sides):
-            angle = 2.0 * math.pi * s / sides
-            c, d = radius * math.cos(angle), radius * math.sin(angle)
+            c, d = around[s, 0], around[s, 1]
             v = i * sides + s
             vertices[v, 0] = line[i, 0] + c * rx + d * sx
             vertices[v, 1] = line[i, 1] + c * ry + d * sy

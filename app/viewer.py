@@ -20,7 +20,7 @@ from app.scenes import NAMES, scene_named
 from app.traffic import Traffic
 
 FOV = 1.3  # [rad] vertical field of view, unless a picture has its own
-PUMP = 1 / 60  # [s] between looks for a new snapshot; a scene's picture may ask for less
+PATIENCE = 0.1  # [s] between looks where no snapshot comes
 
 
 class Viewer:
@@ -92,11 +92,12 @@ class Viewer:
         self.commands.put(Release())
 
     def pump(self, stop: threading.Event) -> None:
-        """Show each new snapshot once."""
-        while not stop.wait(PUMP if self.audience() else 0.1):
+        """Show each new snapshot once, as soon as it is there: a clock of its own would miss some of them."""
+        while not stop.is_set():
+            self.loop.fresh.wait(PATIENCE)
+            self.loop.fresh.clear()
             self.unwatched.note(self.audience())
-            with self.traffic.counted():
-                self.show_latest()
+            self.show_latest()
 
     def show_latest(self) -> None:
         snapshot = self.loop.latest
@@ -105,14 +106,17 @@ class Viewer:
         self.shown = snapshot.serial
         self.drawn += 1
         start = time.perf_counter()
-        self.attempt("picture", self.draw, snapshot)
-        self.sent = time.perf_counter() - start
-        self.attempt("panel", self.panel.update, snapshot, self.sent)
+        with self.traffic.counted():
+            self.attempt("picture", self.draw, snapshot)
+            self.sent = time.perf_counter() - start
+            self.attempt("panel", self.panel.update, snapshot, self.sent)
 
     def draw(self, snapshot: Snapshot) -> None:
+        before = self.traffic.messages
         with self.server.atomic():
             self.picture.show(snapshot.picture)
-        self.server.flush()
+        if self.traffic.messages > before:
+            self.server.flush()
 
     def attempt(self, what: str, action: Callable[..., None], *arguments: Any) -> None:
         """Show something; what goes wrong halts the run once, and this thread lives to say so."""

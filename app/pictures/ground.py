@@ -9,6 +9,7 @@ class Ground:
     """viser's grid as a floor."""
 
     def __init__(self, server: viser.ViserServer, plane: Colour, cells: Colour, sections: Colour) -> None:
+        self.shown: tuple[bool, bool] | None = None
         self.grid = server.scene.add_grid(
             "/floor",
             width=24.0,
@@ -26,5 +27,8 @@ class Ground:
 
     def show(self, floor: bool, grid: bool) -> None:
         """floor: whether it is there; grid: whether its lines are."""
+        if (floor, grid) == self.shown:
+            return
+        self.shown = floor, grid
         self.grid.visible = floor
         self.grid.cell_thickness = self.grid.section_thickness = 1.0 if grid else 0.0

@@ -29,6 +29,7 @@ class PullLine:
     """One segment, whose ends move while something is held."""
 
     def __init__(self, server: viser.ViserServer) -> None:
+        self.drawn = False
         self.line = server.scene.add_line_segments(
             "/pull",
             np.zeros((1, 2, 3), np.float32),
@@ -40,7 +41,9 @@ class PullLine:
 
     def show(self, ends: Any, load: float = 0.4) -> None:
         """ends: (2, 3) [m], or None while nothing is held; load: part of the most that the hand pulls with."""
-        self.line.visible = ends is not None
+        if self.drawn != (ends is not None):
+            self.drawn = ends is not None
+            self.line.visible = self.drawn
         if ends is not None:
             self.line.points = np.array([ends], np.float32)
             self.line.thickness = 2.0 + 5.0 * load

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.colour import scale_colours
+from app.colour import SCALE, paint_tube
 from app.messages import Command, Snapshot
 from app.paint import Painted
 from app.pictures.gizmo import Gizmo
@@ -23,6 +23,7 @@ from app.spring_report import colour_scale, stability_bar
 ROPE_COLOUR = (196, 154, 92)
 BEAD_COLOUR = (58, 68, 86)
 RINGS = 120  # about as many rings as a rope is drawn with
+UNSEEN = 2e-4  # [m] that a point may be from where it is drawn, and of the colour scale a link: far below a pixel
 
 
 class Picture:
@@ -39,6 +40,7 @@ class Picture:
         self.count = 0
         self.race: RaceDrawing | None = None
         self.nearest = 0
+        self.ball_at: Any = None  # the sphere as it is shown
         scene = server.scene
         scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
         self.ground = Ground(server, (226, 230, 236), (196, 202, 212), (150, 160, 176))
@@ -54,8 +56,8 @@ class Picture:
         self.between = max(1, RINGS // (n - 1))
         rings = (n - 1) * self.between + 1
         self.line = np.zeros((rings, 3))
-        self.vertices = np.zeros((rings * SIDES + 2, 3), np.float32)
-        self.sweep(picture)
+        self.vertices, self.rgb = np.zeros((2, rings * SIDES + 2, 3), np.float32)
+        self.form(picture)
         if self.tube is not None:
             self.tube.remove()
         if self.beads is not None:
@@ -65,7 +67,7 @@ class Picture:
             "/rope",
             self.vertices,
             tube_faces(rings),
-            self.colours(picture),
+            self.rgb,
             color=ROPE_COLOUR,
             side="double",
         )
@@ -80,8 +82,8 @@ class Picture:
         )
         self.beads.on_drag("left")(self.on_bead)
         self.tube.mesh.on_drag("left")(self.on_tube)
-        self.points = picture.points
         self.held = -1
+        self.hook_at: Any = None
         self.count = n
 
     def bead_radius(self, picture: RopePicture) -> float:
@@ -98,18 +100,24 @@ class Picture:
             self.nearest = nearest(self.points, event)
         drag(self.post, event, self.nearest)
 
-    def sweep(self, picture: RopePicture) -> None:
+    def form(self, picture: RopePicture) -> None:
+        """The tube and its colours, which then stand for this picture and all that look the same."""
+        self.points, self.tension = picture.points, picture.tension
+        self.painted = picture.colour, picture.full_scale
         smooth_line(picture.points, self.between, self.line)
         sweep(self.line, THICKNESS, SIDES, self.vertices)
-
-    def colours(self, picture: RopePicture) -> np.ndarray:
-        """(vertices, 3) sRGB in 0..1: tension along the rope, or plain."""
         if picture.colour == "plain":
-            return np.tile(np.array(ROPE_COLOUR, np.float32) / 255, (len(self.vertices), 1))
-        links = np.arange(len(picture.tension)) + 0.5
-        along = np.interp(np.arange(len(self.line)) / self.between, links, picture.tension)
-        rings = scale_colours(along, 0.0, picture.full_scale)
-        return np.concatenate([np.repeat(rings, SIDES, axis=0), rings[[0, -1]]])
+            self.rgb[:] = np.array(ROPE_COLOUR, np.float32) / 255
+        else:
+            paint_tube(picture.tension, self.between, picture.full_scale, SCALE, SIDES, self.rgb)
+
+    def looks_the_same(self, picture: RopePicture) -> bool:
+        """Whether nobody could tell a picture from what is shown, as of a rope that has come to rest."""
+        return (
+            self.painted == (picture.colour, picture.full_scale)
+            and float(np.abs(picture.points - self.points).max()) < UNSEEN
+            and float(np.abs(picture.tension - self.tension).max()) < UNSEEN * picture.full_scale
+        )
 
     def show(self, picture: RopePicture) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
@@ -124,11 +132,13 @@ class Picture:
             self.pull.show((points[picture.pull.particle], picture.pull.target), picture.pull.load)
         self.ground.show(picture.floor, picture.grid)
         self.root.show(picture.root)
-        self.ball.visible = picture.sphere is not None
         self.sphere.show(None if picture.sphere is None else picture.sphere[:3])
-        if picture.sphere is not None:
-            self.ball.position = picture.sphere[:3]
-            self.ball.scale = picture.sphere[3]
+        if picture.sphere != self.ball_at:
+            self.ball_at = picture.sphere
+            self.ball.visible = picture.sphere is not None
+            if picture.sphere is not None:
+                self.ball.position = picture.sphere[:3]
+                self.ball.scale = picture.sphere[3]
 
     def show_race(self, picture: RopePicture) -> None:
         """The ropes of a race, in place of the one."""
@@ -164,12 +174,12 @@ class Picture:
             self.build(picture)
         assert self.tube is not None
         assert self.beads is not None
-        self.points = picture.points
-        self.sweep(picture)
-        self.tube.set(self.vertices, self.colours(picture))
+        if not self.looks_the_same(picture):
+            self.form(picture)
+        self.tube.set(self.vertices, self.rgb)
         self.beads.visible = picture.show_points
         if picture.show_points:
-            self.beads.batched_positions = picture.points
+            self.beads.batched_positions = self.points
         held = -1 if picture.pull is None else picture.pull.particle
         if held != self.held:
             colours = np.tile(np.array(BEAD_COLOUR, np.uint8), (self.count, 1))
@@ -178,7 +188,10 @@ class Picture:
             self.beads.batched_colors = colours
             self.held = held
         self.hook.visible = True
-        self.hook.position = tuple(picture.points[0])
+        at = tuple(self.points[0].tolist())
+        if at != self.hook_at:
+            self.hook_at = at
+            self.hook.position = at
 
 
 def warm_up() -> Iterator[str]:
@@ -187,6 +200,7 @@ def warm_up() -> Iterator[str]:
     line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
     smooth_line(np.zeros((2, 3), np.float32), 2, line)
     sweep(line, THICKNESS, SIDES, vertices)
+    paint_tube(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)
 
 
 def stiffness_knob(params: Any) -> str:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from app.chart import Chart
 from app.follow import Follower
+from app.loop import FRAME
 from app.messages import Command, DivergenceError, Grab, Place, Release, Vector
 from app.method import method_for
 from app.race import Race, RaceGauge
@@ -28,6 +29,8 @@ __all__ = [
 
 TITLE = "Rope"
 GAUGE_EVERY = 0.5  # [s] of simulated time between two looks at the stability of the state
+UNMOVED = 1e-3  # of a link: a rope that has moved by less since the last look is as stable as it was
+SWIFT = 0.3  # [m/s] as seen: 5 mm, about a pixel, between pictures at their highest rate
 SAMPLE_EVERY = 1 / 30  # [s] between two plot rows
 HELP = "<b>Drag a bead</b> to pull the rope. <b>Drag the arrows</b> to move its root."
 SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "error", "tip height")
@@ -116,6 +119,13 @@ class Scene:
     @property
     def step(self) -> float:
         return self.race.tick if self.race else self.params.time_step
+
+    @property
+    def frame(self) -> float:
+        """Time [s] between pictures: half as many where nothing moves so fast that it would show."""
+        if self.race or self.held or not self.root.at_rest or not self.sphere.at_rest:
+            return FRAME
+        return FRAME if float(np.abs(self.state.v).max()) * self.params.speed > SWIFT else 2.0 * FRAME
 
     @property
     def time(self) -> float:
@@ -208,12 +218,18 @@ class Scene:
             self.state.x[:, 0, 0] = self.root.position
             self.state.v[:, 0, 0] = 0.0
         self.net = net
-        due = self.state.t - self.looked_at >= GAUGE_EVERY
+        due = self.state.t - self.looked_at >= GAUGE_EVERY and self.has_moved
         self.work.add("looks at the stability", 1, due)
         if due:
             self.look()
         if (self.params.plot_energy or self.params.plot_tip) and self.state.t - self.sampled_at >= SAMPLE_EVERY:
             self.sample()
+
+    @property
+    def has_moved(self) -> bool:
+        """Whether there is anything new to be said of the stability, or of what an implicit method takes."""
+        moved = float(np.abs(self.state.x - self.looked_x).max())
+        return self.integrator.implicit or moved > UNMOVED * self.net.families[0].rest
 
     @property
     def with_ledger(self) -> bool:
@@ -241,6 +257,9 @@ class Scene:
         before = self.sphere.position
         self.sphere.advance(t, duration)
         velocity = tuple((b - a) / duration for a, b in zip(before, self.sphere.position, strict=True))
+        still = path is None and self.held is None and before == self.sphere.position
+        if still and not (self.net.pin_paths or self.net.grab or any(self.net.sphere_velocity)):
+            return self.net  # as it was in the last frame, when nothing moved either: most of the time
         pull = None
         if self.held is not None:
             index, hand = self.held
@@ -272,7 +291,7 @@ class Scene:
         if self.params.units == "material":
             knob, largest = "axial_stiffness", largest * self.net.families[0].rest
         self.stability = RopeGauge(stability, knob, largest, self.note, self.paid())
-        self.looked_at = self.state.t
+        self.looked_at, self.looked_x = self.state.t, self.state.x.copy()
 
     def paid(self) -> Paid | None:
         """What an implicit method asks for; None of others."""

@@ -114,6 +114,31 @@ def test_a_browser_is_sent_what_changed_and_nothing_else(lab: Any):
     assert handed_over(lab, plain) == (Work(0, 2), Work(0, 2 * tube))
 
 
+def test_a_rope_that_nobody_sees_move_is_not_sent_until_it_has(lab: Any):
+    lab.close()
+    first = lab.scene.picture()
+    lab.picture.show(first)
+    tube, points = lab.picture.vertices.nbytes, 12 * lab.scene.params.points
+    kept, sent = Work(0, 2 * tube + points), Work(2 * tube + points, 0)
+    # A tenth of what shows, again and again: what has not been shown must add up.
+    creep = [first._replace(points=first.points + np.float32(k * 2e-5)) for k in range(1, 12)]
+    assert [handed_over(lab, picture)[1] for picture in creep[:9]] == [kept] * 9
+    assert handed_over(lab, creep[10])[1].done == sent.done - tube  # its colours are what they were
+    taut = creep[10]._replace(tension=creep[10].tension + np.float32(0.01 * first.full_scale))
+    assert handed_over(lab, taut)[1].done == tube
+    assert handed_over(lab, taut._replace(colour="plain"))[1].done == tube
+
+
+def test_a_rope_at_rest_is_not_looked_at_again():
+    steps = 120
+    hangs = ticked("rope", steps, gravity=0.0).latest.work["looks at the stability"]
+    falls = ticked("rope", steps).latest.work["looks at the stability"]
+    assert hangs == Work(0, steps)
+    assert falls.done in (3, 4)
+    # An implicit method's Newton corrections are news at any time.
+    assert ticked("rope", steps, gravity=0.0, integrator="tr_bdf2").latest.work["looks at the stability"].done > 0
+
+
 def test_what_other_threads_hand_over_is_not_counted(lab: Any):
     lab.close()
     lab.picture.show(lab.scene.picture())

@@ -248,3 +248,27 @@ def test_a_halt_from_outside_is_said() -> None:
     loop.tick(FRAME)
     assert loop.latest.status.halted == "The picture could not be drawn"
     assert not loop.latest.status.running
+
+
+def test_a_scene_of_fewer_pictures_has_as_much_time_to_solve_in() -> None:
+    every, other = FixedStep(), FixedStep()
+    every.cost = other.cost = 0.5 * FRAME * BUDGET  # two steps fill a frame
+    assert every.steps(FRAME, 1.0, FRAME / 3) == (2, True)
+    assert other.steps(2 * FRAME, 1.0, FRAME / 3, 2 * FRAME) == (4, True)
+    assert other.steps(2 * FRAME, 1.0, FRAME / 2, 2 * FRAME) == (4, False)
+
+
+def test_whoever_shows_is_told_of_each_new_snapshot_and_of_nothing_else() -> None:
+    loop, _ = make()
+    told = []
+    for _ in range(20):
+        loop.tick(FRAME)
+        told.append(loop.fresh.is_set())
+        loop.fresh.clear()
+    assert sum(told) == loop.latest.serial - 1
+    loop.obey(Pause())
+    loop.tick(FRAME)
+    assert not loop.fresh.is_set()
+    loop.commands.put(StepOnce())
+    loop.tick(FRAME)
+    assert loop.fresh.is_set()

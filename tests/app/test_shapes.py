@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from app.colour import SCALE, paint_tube, scale_colours
 from app.shapes import SIDES, ball, smooth_line, sweep, tube_faces
 
 
@@ -55,3 +56,16 @@ def test_a_tube_does_not_twist() -> None:
 def test_points_on_top_of_each_other_make_no_nan(points: np.ndarray) -> None:
     _, vertices = tube(points, 3, 0.05)
     assert np.isfinite(vertices).all()
+
+
+@pytest.mark.parametrize("links", [1, 2, 9])
+@pytest.mark.parametrize("between", [1, 6])
+def test_a_tube_is_painted_by_the_tension_at_the_middle_of_each_link(links: int, between: int) -> None:
+    tension = np.random.default_rng(links).uniform(-1.0, 6.0, links).astype(np.float32)
+    rings = links * between + 1
+    rgb = np.full((rings * SIDES + 2, 3), np.nan, np.float32)
+    paint_tube(tension, between, 5.0, SCALE, SIDES, rgb)
+    along = np.interp(np.arange(rings) / between, np.arange(links) + 0.5, tension)
+    each = scale_colours(along, 0.0, 5.0)
+    np.testing.assert_allclose(rgb[:-2].reshape(rings, SIDES, 3), np.repeat(each[:, None], SIDES, axis=1), atol=1e-6)
+    np.testing.assert_allclose(rgb[-2:], each[[0, -1]], atol=1e-6)

@@ -10,6 +10,7 @@ import pytest
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
+DPR = 0.4  # drawn pixels per pixel of the page, each way: what a software renderer takes its time for
 # What viser itself logs and what changes nothing: its drag layer at each drag of a node, and its splats, whose quads
 # have corners of two coordinates.
 HARMLESS = ("preventDefault inside passive", "computeBoundingSphere(): Computed radius is NaN")
@@ -42,7 +43,7 @@ class Tab:
         self.errors: list[str] = []
         self.page.on("console", self.note)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.goto(f"http://127.0.0.1:{port}/?hideViserLogo&fixedDpr=1")
+        self.page.goto(f"http://127.0.0.1:{port}/?hideViserLogo&fixedDpr={DPR}")
 
     def note(self, message: Any) -> None:
         if message.type == "error" and not any(harmless in message.text for harmless in HARMLESS):

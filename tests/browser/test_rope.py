@@ -9,6 +9,7 @@ from app.messages import Pause, Play
 from app.scenes.rope import ROOT
 from app.stability import live
 from app.viewer import Viewer
+from tests.browser.conftest import DPR
 
 
 def pixel(viewer: Viewer, point: Any) -> tuple[float, float]:
@@ -23,7 +24,7 @@ def pixel(viewer: Viewer, point: Any) -> tuple[float, float]:
     away = np.asarray(point) - camera.position
     focal = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
     x, y, z = away @ right, away @ up, away @ forward
-    return 0.5 * camera.image_width + focal * x / z, 0.5 * camera.image_height - focal * y / z
+    return (0.5 * camera.image_width + focal * x / z) / DPR, (0.5 * camera.image_height - focal * y / z) / DPR
 
 
 def watching(viewer: Viewer) -> bool:

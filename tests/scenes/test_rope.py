@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from app.follow import Follower
+from app.loop import FRAME
 from app.messages import DivergenceError, Grab, Place, Release, finite_vector
 from app.scenes.rope import PRESETS, ROOT, Params, Scene
 from sim.knobs import check, knobs
@@ -176,3 +177,17 @@ def test_what_is_no_vector_is_none(values: object) -> None:
 
 def test_far_vectors_come_within_reach() -> None:
     assert finite_vector((1e9, -1e9, 1)) == (100.0, -100.0, 1.0)
+
+
+def test_pictures_come_half_as_often_while_nothing_moves_fast():
+    scene = Scene(Params())
+    assert scene.frame == 2 * FRAME  # at rest, just let go
+    scene.advance(15)
+    assert scene.frame == FRAME
+    run(scene, 600, 2)
+    assert scene.frame == 2 * FRAME
+    scene.obey(Grab(5, (0.0, 0.0, 2.0)))
+    assert scene.frame == FRAME
+    scene.obey(Release())
+    scene.obey(Place("root", (0.5, 0.0, 3.0)))
+    assert scene.frame == FRAME

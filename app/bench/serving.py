@@ -25,7 +25,7 @@ def answer_time() -> float:
     )  # fmt: skip
     assert server.stdout is not None
     try:
-        words = server.stdout.readline().split()
+        words = (word for line in server.stdout for word in line.split())
         address = next(word for word in words if word.startswith("http"))
         urllib.request.urlopen(address, timeout=30).read()
         return time.perf_counter() - start

@@ -19,7 +19,7 @@ from sim.springs import Net
 from sim.springs.stability import critical_step
 
 PEER_STEP = 0.8  # of leapfrog's critical step, which peers take that have none of their own
-BEST = ("leapfrog", "rk4", "dopri5", "dop853", "symplectic_euler", "implicit_midpoint")  # that a peer may have to face
+BEST = ("leapfrog_lagged", "leapfrog", "rk4", "dopri5", "dop853", "symplectic_euler")  # that a peer may have to face
 
 
 class Best(NamedTuple):

@@ -17,7 +17,7 @@ from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, steps_for
 
 END = 0.25  # [s]
-LADDER = (0.95, 0.6, 0.4, 0.2, 0.1, 0.05, 0.025)  # of the critical step
+LADDER = (0.95, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.025)  # of the critical step
 LONG = (8, 32, 128, 512, 2048, 8192)  # steps of methods without one
 FLOOR = 10.0  # errors within so many times of the reference's own say nothing
 

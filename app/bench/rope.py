@@ -118,7 +118,7 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
     truths = {problem.name: truth_of(problem) for problem in PROBLEMS}
     pairs = [(problem, name) for problem in PROBLEMS for name in methods_for(problem.net)]
     for problem, name in track(pairs, "rope", transient=True):
-        table += ladder(problem, name, truths[problem.name], 20_000 if quick else 200_000, 3 if quick else 9)
+        table += ladder(problem, name, truths[problem.name], 10_000 if quick else 200_000, 2 if quick else 9)
     return table
 
 

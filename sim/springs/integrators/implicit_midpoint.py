@@ -4,7 +4,8 @@ A-stable: modes of any stiffness keep their energy, only their frequency is wron
 for good: damping takes next to nothing of a mode that is far too stiff for the step. So that links that turn far within
 a step keep theirs as well, their tensions are those of their mean lengths (`sim.springs.mean_length`): without damping
 and contact the energy stays to round-off at any stiffness, and the angular momentum too; for that the method gives up
-being symplectic. A step that Newton's method cannot take whole is taken in halves, quarters, ...
+being symplectic. A step that Newton's method cannot take whole is taken in halves, quarters, ..., in longer parts again
+after an easy one.
 """
 
 import math
@@ -50,7 +51,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
                 x[j] += part * vm[j]
                 v[j] = 2.0 * vm[j] - v[j]
             done += size
-            while done < FINEST and done % (2 * size) == 0:
+            if taken <= PATIENCE // 2 and done % (2 * size) == 0:
                 size *= 2
     set_pins(x, v, t + steps * h, p)
     return evals

@@ -134,7 +134,7 @@ ENGINES = (
     Peer("newton SemiImplicit", "newton", newton_springs("SolverSemiImplicit"), damping="axial"),
     Peer("newton VBD, 10 iterations", "newton", newton_springs("SolverVBD", iterations=10), 1 / 600, "axial"),
     Peer("newton XPBD, 10 iterations", "newton", newton_springs("SolverXPBD", iterations=10), 1 / 600, "axial"),
-    Peer("pypbd XPBD, one thread", "pypbd", pypbd_springs, 1 / 600, largest=64),
+    Peer("pypbd XPBD, one thread", "pypbd", pypbd_springs, 1 / 600),
     Peer("mujoco Euler, tendons", "mujoco", mujoco_tendons, damping="axial", largest=64),
 )
 

@@ -126,7 +126,7 @@ def test_leapfrog_needs_a_tenth_of_the_evaluations_of_the_lab_s_euler():
 def test_the_front_is_what_nothing_beats_in_both_time_and_error():
     points = {"quick": (1e-2, 1.0), "exact": (1e-6, 9.0), "between": (1e-4, 3.0), "beaten": (1e-3, 4.0)}
     table = [{"method": name, "error [m]": error, "least [ms]": time} for name, (error, time) in points.items()]
-    assert rope.front(table) == ["quick", "exact", "between"]
+    assert report.front(table) == ["quick", "exact", "between"]
 
 
 def test_tables_say_what_is_missing():

@@ -21,6 +21,8 @@ class Peer(NamedTuple):
     package: str
     make: Callable[[Net, float], Run]
     step: float = 0.0  # [s] of its own, 0: the step given
+    damping: str = "isotropic"  # or "axial": the model it can express
+    largest: int = 128  # n, beyond which a run takes minutes
 
 
 def ends(di: int, dj: int) -> tuple[Any, Any]:

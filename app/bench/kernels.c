@@ -65,6 +65,15 @@ static void damp_drag(int n, double *restrict v, const double *restrict w, doubl
         for (int j = 0; j < n; j++) v[q * n + j] *= w[j] > 0 ? keep : 1.0;
 }
 
+static void damp_all(int n, int reverse, double *restrict v, const double *restrict w, double free, double held,
+                     double keep) {
+    for (int turn = 0; turn < 2; turn++)
+        if (turn == reverse) {
+            if (free > 0) damp_links(n, reverse, v, w, free, held), damp_links(n, 1 - reverse, v, w, free, held);
+        } else if (keep < 1)
+            damp_drag(n, v, w, keep);
+}
+
 void leapfrog(int n, double *restrict x, double *restrict v, const double *restrict w, double *restrict scratch, double k,
               double b, double rest, double gx, double gy, double gz, double c, double mass, double h, int steps) {
     int m = 3 * n;
@@ -74,14 +83,12 @@ void leapfrog(int n, double *restrict x, double *restrict v, const double *restr
     for (int i = 0; i < m + 3; i++) f[i] = 0;
     accelerate(n, x, v, w, f, a, k, 0, rest, load, 0);
     for (int s = 0; s < steps; s++) {
-        if (b > 0) damp_links(n, 0, v, w, free, held), damp_links(n, 1, v, w, free, held);
-        if (c > 0) damp_drag(n, v, w, keep);
+        damp_all(n, s & 1, v, w, free, held, keep);
         for (int i = 0; i < m; i++) v[i] += h / 2 * a[i];
         for (int i = 0; i < m; i++) x[i] += h * v[i];
         accelerate(n, x, v, w, f, a, k, 0, rest, load, 0);
         for (int i = 0; i < m; i++) v[i] += h / 2 * a[i];
-        if (c > 0) damp_drag(n, v, w, keep);
-        if (b > 0) damp_links(n, 1, v, w, free, held), damp_links(n, 0, v, w, free, held);
+        damp_all(n, 1 - (s & 1), v, w, free, held, keep);
     }
 }
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.progress import track
 
+from app.bench.report import front
 from app.bench.rope_task import peer_rows
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.state import State, advance
@@ -117,7 +118,7 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
     truths = {problem.name: truth_of(problem) for problem in PROBLEMS}
     pairs = [(problem, name) for problem in PROBLEMS for name in methods_for(problem.net)]
     for problem, name in track(pairs, "rope", transient=True):
-        table += ladder(problem, name, truths[problem.name], 20_000 if quick else 200_000, 3 if quick else 9)
+        table += ladder(problem, name, truths[problem.name], 10_000 if quick else 200_000, 2 if quick else 9)
     return table
 
 
@@ -128,15 +129,6 @@ def evaluations_at(table: list[dict[str, Any]], method: str, error: float) -> fl
         return math.nan
     errors, evals = np.log(np.array(own)).T
     return float(np.exp(np.interp(math.log(error), errors, evals)))
-
-
-def front(table: list[dict[str, Any]]) -> list[str]:
-    """Methods that nothing beats in both time and error somewhere on one problem."""
-    points = [(row["error [m]"], row["least [ms]"], row["method"]) for row in table]
-    ahead = [
-        name for error, time, name in points if not any(other < error and took < time for other, took, _ in points)
-    ]
-    return list(dict.fromkeys(ahead))
 
 
 def findings(table: list[dict[str, Any]]) -> list[dict[str, Any]]:

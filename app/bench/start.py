@@ -29,15 +29,16 @@ def measured(code: str, cache: str | None = None) -> float:
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Seconds with a warm cache, the median of repeats after one that fills it; unless quick, with an empty one too."""
+    """Seconds with a warm cache, the median of repeats after one that fills it, and with an empty one.
+
+    Quick: one run with the cache as it is.
+    """
     table = []
     for name, code in STEPS.items():
-        measured(code)
-        row: dict[str, Any] = {
-            "what": name,
-            "warm [s]": statistics.median(measured(code) for _ in range(3 if quick else 7)),
-        }
+        first = measured(code)
+        row: dict[str, Any] = {"what": name, "warm [s]": first}
         if not quick:
+            row["warm [s]"] = statistics.median(measured(code) for _ in range(7))
             with tempfile.TemporaryDirectory(prefix="springtide-") as folder:
                 row["cold [s]"] = measured(code, folder)
         table.append(row)

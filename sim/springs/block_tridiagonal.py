@@ -1,21 +1,21 @@
-"""Direct solution of symmetric block-tridiagonal systems with 3 x 3 blocks: a rope's implicit step in O(points).
+"""Direct solution of block-tridiagonal systems with 3 x 3 blocks: a rope's implicit step in O(points).
 
-Block elimination without pivoting (Golub & Van Loan, 4.5.1), each pivot block as L D L^T; safe for positive definite
-matrices. A symmetric block is its six numbers xx, xy, xz, yy, yz, zz side by side: a long system is read as a few
-streams of memory, where six arrays each would be too many for the processor to foresee.
+Block elimination without pivoting (Golub & Van Loan, 4.5.1), each pivot block as L U; safe where symmetric parts are
+positive definite. A block is its nine numbers side by side, row by row: a long system is read as a few streams of
+memory, where nine arrays each would be too many for the processor to foresee.
 """
 
 from sim.jit import kernel
 
 
 @kernel(inline=True)
-def solve_block(l10, l20, l21, d0, d1, d2, x, y, z):
-    """u of L D L^T u = (x, y, z), with the reciprocals d of D."""
+def solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, x, y, z):
+    """The solution of L U s = (x, y, z), with the reciprocals d of U's diagonal."""
     y -= l10 * x
     z -= l20 * x + l21 * y
     z *= d2
-    y = y * d1 - l21 * z
-    x = x * d0 - l10 * y - l20 * z
+    y = (y - u12 * z) * d1
+    x = (x - u01 * y - u02 * z) * d0
     return x, y, z
 
 
@@ -23,53 +23,59 @@ def solve_block(l10, l20, l21, d0, d1, d2, x, y, z):
 def solve_block_tridiagonal(diagonal, beside, u):
     """Solve A u = r in place.
 
-    diagonal: (n, 6), A_jj, overwritten by the factors of its pivots. beside: (n, 6), A_j,j+1 = A_j+1,j, symmetric
-    blocks; the last is not read. u: (n, 3), r before and the solution after.
+    diagonal: (n, 9), A_jj, overwritten by the factors of its pivots. beside: (n, 9), A_j,j+1 = A_j+1,j; the last is
+    not read. u: (n, 3), r before and the solution after.
     """
     n = u.shape[0]
     # S = A_jj - A_j,j-1 S_j-1^-1 A_j-1,j, the Schur complement of all blocks before
-    sxx, sxy, sxz = diagonal[0, 0], diagonal[0, 1], diagonal[0, 2]
-    syy, syz, szz = diagonal[0, 3], diagonal[0, 4], diagonal[0, 5]
+    xx, xy, xz = diagonal[0, 0], diagonal[0, 1], diagonal[0, 2]
+    yx, yy, yz = diagonal[0, 3], diagonal[0, 4], diagonal[0, 5]
+    zx, zy, zz = diagonal[0, 6], diagonal[0, 7], diagonal[0, 8]
     rx, ry, rz = u[0, 0], u[0, 1], u[0, 2]
     for j in range(n):
-        d0 = 1.0 / sxx
-        l10, l20 = sxy * d0, sxz * d0
-        d1 = 1.0 / (syy - l10 * sxy)
-        e21 = syz - l20 * sxy
-        l21 = e21 * d1
-        d2 = 1.0 / (szz - l20 * sxz - l21 * e21)
+        d0 = 1.0 / xx
+        l10, l20 = yx * d0, zx * d0
+        d1 = 1.0 / (yy - l10 * xy)
+        u12 = yz - l10 * xz
+        l21 = (zy - l20 * xy) * d1
+        d2 = 1.0 / (zz - l20 * xz - l21 * u12)
+        u01, u02 = xy, xz
         diagonal[j, 0], diagonal[j, 1], diagonal[j, 2] = l10, l20, l21
         diagonal[j, 3], diagonal[j, 4], diagonal[j, 5] = d0, d1, d2
+        diagonal[j, 6], diagonal[j, 7], diagonal[j, 8] = u01, u02, u12
         u[j, 0], u[j, 1], u[j, 2] = rx, ry, rz
         if j + 1 == n:
             break
         bxx, bxy, bxz = beside[j, 0], beside[j, 1], beside[j, 2]
-        byy, byz, bzz = beside[j, 3], beside[j, 4], beside[j, 5]
-        # G = S^-1 B column by column, then S_next = A - B G and r_next = r - G^T r
-        gxx, gyx, gzx = solve_block(l10, l20, l21, d0, d1, d2, bxx, bxy, bxz)
-        gxy, gyy, gzy = solve_block(l10, l20, l21, d0, d1, d2, bxy, byy, byz)
-        gxz, gyz, gzz = solve_block(l10, l20, l21, d0, d1, d2, bxz, byz, bzz)
-        sxx = diagonal[j + 1, 0] - bxx * gxx - bxy * gyx - bxz * gzx
-        sxy = diagonal[j + 1, 1] - bxx * gxy - bxy * gyy - bxz * gzy
-        sxz = diagonal[j + 1, 2] - bxx * gxz - bxy * gyz - bxz * gzz
-        syy = diagonal[j + 1, 3] - bxy * gxy - byy * gyy - byz * gzy
-        syz = diagonal[j + 1, 4] - bxy * gxz - byy * gyz - byz * gzz
-        szz = diagonal[j + 1, 5] - bxz * gxz - byz * gyz - bzz * gzz
-        px, py, pz = rx, ry, rz
-        rx = u[j + 1, 0] - gxx * px - gyx * py - gzx * pz
-        ry = u[j + 1, 1] - gxy * px - gyy * py - gzy * pz
-        rz = u[j + 1, 2] - gxz * px - gyz * py - gzz * pz
+        byx, byy, byz = beside[j, 3], beside[j, 4], beside[j, 5]
+        bzx, bzy, bzz = beside[j, 6], beside[j, 7], beside[j, 8]
+        # G = S^-1 B column by column and s = S^-1 r, then S_next = A - B G and r_next = r - B s
+        gxx, gyx, gzx = solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, bxx, byx, bzx)
+        gxy, gyy, gzy = solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, bxy, byy, bzy)
+        gxz, gyz, gzz = solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, bxz, byz, bzz)
+        sx, sy, sz = solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, rx, ry, rz)
+        xx = diagonal[j + 1, 0] - bxx * gxx - bxy * gyx - bxz * gzx
+        xy = diagonal[j + 1, 1] - bxx * gxy - bxy * gyy - bxz * gzy
+        xz = diagonal[j + 1, 2] - bxx * gxz - bxy * gyz - bxz * gzz
+        yx = diagonal[j + 1, 3] - byx * gxx - byy * gyx - byz * gzx
+        yy = diagonal[j + 1, 4] - byx * gxy - byy * gyy - byz * gzy
+        yz = diagonal[j + 1, 5] - byx * gxz - byy * gyz - byz * gzz
+        zx = diagonal[j + 1, 6] - bzx * gxx - bzy * gyx - bzz * gzx
+        zy = diagonal[j + 1, 7] - bzx * gxy - bzy * gyy - bzz * gzy
+        zz = diagonal[j + 1, 8] - bzx * gxz - bzy * gyz - bzz * gzz
+        rx = u[j + 1, 0] - bxx * sx - bxy * sy - bxz * sz
+        ry = u[j + 1, 1] - byx * sx - byy * sy - byz * sz
+        rz = u[j + 1, 2] - bzx * sx - bzy * sy - bzz * sz
     ux, uy, uz = 0.0, 0.0, 0.0
     for back in range(n):
         j = n - 1 - back
         rx, ry, rz = u[j, 0], u[j, 1], u[j, 2]
         if back:
-            bxx, bxy, bxz = beside[j, 0], beside[j, 1], beside[j, 2]
-            byy, byz, bzz = beside[j, 3], beside[j, 4], beside[j, 5]
-            rx -= bxx * ux + bxy * uy + bxz * uz
-            ry -= bxy * ux + byy * uy + byz * uz
-            rz -= bxz * ux + byz * uy + bzz * uz
-        ux, uy, uz = solve_block(
-            diagonal[j, 0], diagonal[j, 1], diagonal[j, 2], diagonal[j, 3], diagonal[j, 4], diagonal[j, 5], rx, ry, rz
-        )
+            rx -= beside[j, 0] * ux + beside[j, 1] * uy + beside[j, 2] * uz
+            ry -= beside[j, 3] * ux + beside[j, 4] * uy + beside[j, 5] * uz
+            rz -= beside[j, 6] * ux + beside[j, 7] * uy + beside[j, 8] * uz
+        ux, uy, uz = solve_pivot(
+            diagonal[j, 0], diagonal[j, 1], diagonal[j, 2], diagonal[j, 3], diagonal[j, 4], diagonal[j, 5],
+            diagonal[j, 6], diagonal[j, 7], diagonal[j, 8], rx, ry, rz,
+        )  # fmt: skip
         u[j, 0], u[j, 1], u[j, 2] = ux, uy, uz

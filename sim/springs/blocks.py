@@ -1,9 +1,9 @@
-"""The matrix of an implicit step, M + g D + g^2 K, as symmetric 3 x 3 blocks: one a link and one a particle.
+"""The matrix of an implicit step, M + g D + g^2 K, as 3 x 3 blocks: one a link and one a particle.
 
-A block is its six numbers xx, xy, xz, yy, yz, zz; that of point j keeps number e at index j * stride + e * apart, so
-that a rope has them side by side for its direct solver and a grid apart, to vectorise. A link's block H stands for
-[H -H; -H H]. Where links are pressed the geometric part of K is negative; it is kept while the whole stays positive
-definite by Gershgorin's discs, so that Newton's method is exact for short steps, and cut off there for long ones.
+A particle's block is its six numbers xx, xy, xz, yy, yz, zz. A link's block H, which stands for [H -H; -H H], is
+c I + p q^T in the numbers c, q and, where it is not symmetric, p. Number e of point j is at index j + e n.
+Where links are pressed the geometric part of K is negative; it is kept while the whole stays positive definite by
+Gershgorin's discs, so that Newton's method is exact for short steps, and cut off there for long ones.
 """
 
 import math
@@ -15,29 +15,37 @@ from sim.springs.links import TINY
 KEPT = 0.4  # part of the mass that pressed links may take from a particle
 
 
+SYMMETRIC, GENERAL = 4, 7  # numbers of a link's block
+
+
 @kernel(inline=True)
-def add_block(blocks, at, apart, along, across, nx, ny, nz):
-    """blocks += across I + (along - across) n n^T."""
+def add_block(blocks, j, n, along, across, nx, ny, nz):
+    """Particle j's block += across I + (along - across) n n^T."""
     s = along - across
-    blocks[at] += across + s * nx * nx
-    blocks[at + apart] += s * nx * ny
-    blocks[at + 2 * apart] += s * nx * nz
-    blocks[at + 3 * apart] += across + s * ny * ny
-    blocks[at + 4 * apart] += s * ny * nz
-    blocks[at + 5 * apart] += across + s * nz * nz
+    blocks[j] += across + s * nx * nx
+    blocks[j + n] += s * nx * ny
+    blocks[j + 2 * n] += s * nx * nz
+    blocks[j + 3 * n] += across + s * ny * ny
+    blocks[j + 4 * n] += s * ny * nz
+    blocks[j + 5 * n] += across + s * nz * nz
+
+
+@kernel(inline=True)
+def least_across(p):
+    """What a pressed link's c may fall to [kg], beside its damping."""
+    return -KEPT * p.mass / (2.0 * p.offsets.shape[0])
 
 
 @kernel(allocates=False)
-def set_link_blocks(x, g, p, stride, apart, links):
+def set_link_blocks(x, g, p, links):
     """H = g b (I or n n^T) + g^2 k [n n^T + (1 - l0/l) (I - n n^T)] of every link, at its first end."""
     n = p.rows * p.cols
-    families = p.offsets.shape[0]
-    least = -KEPT * p.mass / (2.0 * families)
+    least = least_across(p)
     for j in range(links.shape[0]):
         links[j] = 0.0
-    for q in range(families):
-        di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest, k, b = p.links[q, 0], p.links[q, 1], p.links[q, 2]
+    for r in range(p.offsets.shape[0]):
+        di, dj = p.offsets[r, 0], p.offsets[r, 1]
+        rest, k, b = p.links[r, 0], p.links[r, 1], p.links[r, 2]
         for i in range(p.rows - di):
             for j in range(max(0, -dj), p.cols - max(0, dj)):
                 a = i * p.cols + j
@@ -47,14 +55,13 @@ def set_link_blocks(x, g, p, stride, apart, links):
                 across = max(g * g * k * (1.0 - rest / length), least)
                 if not p.axial:
                     across += g * b
-                at = 6 * n * q + a * stride
-                add_block(
-                    links, at, apart, g * g * k + g * b, across, rx / length, ry / length, rz / length
-                )  # fmt: skip
+                s = math.sqrt(max(0.0, g * g * k + g * b - across)) / length
+                at = SYMMETRIC * n * r + a
+                links[at], links[at + n], links[at + 2 * n], links[at + 3 * n] = across, s * rx, s * ry, s * rz
 
 
 @kernel(allocates=False)
-def add_surface_blocks(x, v, t, g, p, on_sphere, stride, apart, points):
+def add_surface_blocks(x, v, t, g, p, on_sphere, points):
     """Touching points: g^2 k n n^T, their damping, and friction as the secant of its force over the sliding speed."""
     n = p.rows * p.cols
     su, sv, sw = surface_velocity(p, on_sphere)
@@ -77,11 +84,11 @@ def add_surface_blocks(x, v, t, g, p, on_sphere, stride, apart, points):
             speed = math.sqrt((ru - vn * nx) ** 2 + (rv - vn * ny) ** 2 + (rw - vn * nz) ** 2)
             if p.friction > 0.0:
                 across = g * min(p.mass * p.stop_rate, p.friction * normal / (speed + TINY))
-        add_block(points, j * stride, apart, along, across, nx, ny, nz)
+        add_block(points, j, n, along, across, nx, ny, nz)
 
 
 @kernel(allocates=False)
-def add_pull_block(x, g, p, stride, apart, points):
+def add_pull_block(x, g, p, points):
     """The grab: k I within reach, (F/r) (I - n n^T) beyond."""
     n, j = p.rows * p.cols, p.grabbed
     dx, dy, dz = p.grab_x - x[j], p.grab_y - x[n + j], p.grab_z - x[2 * n + j]
@@ -90,39 +97,47 @@ def add_pull_block(x, g, p, stride, apart, points):
     if p.grab_k * r > p.grab_max:
         along = g * p.grab_b
         across = along + g * g * p.grab_max / r
-    add_block(points, j * stride, apart, along, across, dx / r, dy / r, dz / r)
+    add_block(points, j, n, along, across, dx / r, dy / r, dz / r)
 
 
 @kernel(allocates=False)
-def set_blocks(x, v, t, g, p, stride, apart, points, links):
-    """Blocks of M + g D + g^2 K about x, v: links without their share of the particles' blocks."""
+def set_point_blocks(x, v, t, g, p, points):
+    """M + g D + g^2 K about x, v, less the links' share."""
     n = p.rows * p.cols
-    set_link_blocks(x, g, p, stride, apart, links)
     alone = p.mass + g * p.drag
     for j in range(points.shape[0]):
         points[j] = 0.0
     for j in range(n):
         for e in (0, 3, 5):
-            points[j * stride + e * apart] = alone
+            points[j + e * n] = alone
     if p.has_floor:
-        add_surface_blocks(x, v, t, g, p, False, stride, apart, points)
+        add_surface_blocks(x, v, t, g, p, False, points)
     if p.has_sphere:
-        add_surface_blocks(x, v, t, g, p, True, stride, apart, points)
+        add_surface_blocks(x, v, t, g, p, True, points)
     if p.grabbed >= 0:
-        add_pull_block(x, g, p, stride, apart, points)
+        add_pull_block(x, g, p, points)
 
 
 @kernel(noalias=True, allocates=False)
-def add_links_to_points(p, stride, apart, points, links):
-    """Each link's block onto the blocks of both its ends: the matrix's true diagonal."""
+def add_links_to_points(p, links, numbers, points):
+    """Each link's block, or its symmetric part, onto the blocks of both its ends: the matrix's own diagonal."""
     n = p.rows * p.cols
-    for q in range(p.offsets.shape[0]):
-        di, dj = p.offsets[q, 0], p.offsets[q, 1]
+    left = numbers - 3
+    for r in range(p.offsets.shape[0]):
+        di, dj = p.offsets[r, 0], p.offsets[r, 1]
         for i in range(p.rows - di):
             for j in range(max(0, -dj), p.cols - max(0, dj)):
                 a = i * p.cols + j
                 c = a + di * p.cols + dj
-                for e in range(6):
-                    h = links[6 * n * q + a * stride + e * apart]
-                    points[a * stride + e * apart] += h
-                    points[c * stride + e * apart] += h
+                at = numbers * n * r + a
+                qx, qy, qz = links[at + n], links[at + 2 * n], links[at + 3 * n]
+                px, py, pz = links[at + left * n], links[at + (left + 1) * n], links[at + (left + 2) * n]
+                xx, yy, zz = links[at] + px * qx, links[at] + py * qy, links[at] + pz * qz
+                xy, xz, yz = 0.5 * (px * qy + py * qx), 0.5 * (px * qz + pz * qx), 0.5 * (py * qz + pz * qy)
+                for m in (a, c):
+                    points[m] += xx
+                    points[n + m] += xy
+                    points[2 * n + m] += xz
+                    points[3 * n + m] += yy
+                    points[4 * n + m] += yz
+                    points[5 * n + m] += zz

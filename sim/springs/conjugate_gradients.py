@@ -3,12 +3,11 @@
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.block_tridiagonal import solve_block
+from sim.springs.blocks import SYMMETRIC
 from sim.springs.forces import add_row
 from sim.springs.rows import add_scaled
 from sim.springs.tangent import dot
 
-REDUCTION = 1e-4  # of the residual, in the preconditioner's norm: Newton's method mends the rest
 MOST = 500
 
 
@@ -25,16 +24,17 @@ def set_products(blocks, o, u, n, q):
 
 
 @kernel(noalias=True, inline=True)
-def set_link_products(blocks, o, u, ia, ib, count, n, m, f):
-    """f = H (u_a - u_b) of `count` links in a row."""
+def set_link_products(blocks, o, left, u, ia, ib, count, n, m, f):
+    """f = H (u_a - u_b) = c (u_a - u_b) + p q.(u_a - u_b) of `count` links in a row; p starts at number `left`."""
+    q, p = o + n, o + left * n
     for j in range(count):
         a, b = ia + j, ib + j
         x, y, z = u[a] - u[b], u[n + a] - u[n + b], u[n + n + a] - u[n + n + b]
-        xx, xy, xz = blocks[o + a], blocks[o + n + a], blocks[o + n + n + a]
-        yy, yz, zz = blocks[o + n * 3 + a], blocks[o + n * 4 + a], blocks[o + n * 5 + a]
-        f[j] = xx * x + xy * y + xz * z
-        f[m + j] = xy * x + yy * y + yz * z
-        f[m + m + j] = xz * x + yz * y + zz * z
+        c = blocks[o + a]
+        s = blocks[q + a] * x + blocks[q + n + a] * y + blocks[q + n + n + a] * z
+        f[j] = c * x + s * blocks[p + a]
+        f[m + j] = c * y + s * blocks[p + n + a]
+        f[m + m + j] = c * z + s * blocks[p + n + n + a]
 
 
 @kernel(noalias=True, inline=True)
@@ -44,7 +44,7 @@ def hold_pinned(w, u, o, n):
 
 
 @kernel(noalias=True, allocates=False)
-def set_matrix_product(points, links, u, p, f, q):
+def set_matrix_product(points, links, numbers, u, p, f, q):
     """q = (M + g D + g^2 K) u of `sim.springs.blocks`, 0 where pinned; u is 0 there."""
     n, m = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1)
     set_products(points, np.uint64(0), u, n, q)
@@ -55,7 +55,8 @@ def set_matrix_product(points, links, u, p, f, q):
         for i in range(p.rows - di):
             ia = np.uint64(i * p.cols + first)
             ib = np.uint64((i + di) * p.cols + first + dj)
-            set_link_products(links, np.uint64(6 * r) * n, u, ia, ib, count, n, m, f)
+            o = np.uint64(numbers * r) * n
+            set_link_products(links, o, np.uint64(numbers - 3), u, ia, ib, count, n, m, f)
             for e in range(3):
                 of, o = np.uint64(e) * m, np.uint64(e) * n
                 add_row(f, of, count, 1.0, q, o + ia)
@@ -79,6 +80,17 @@ def factorise(blocks, n):
         blocks[3 * n + j], blocks[4 * n + j], blocks[5 * n + j] = d0, d1, 1.0 / (szz - l20 * sxz - l21 * e21)
 
 
+@kernel(inline=True)
+def solve_block(l10, l20, l21, d0, d1, d2, x, y, z):
+    """u of L D L^T u = (x, y, z), with the reciprocals d of D."""
+    y -= l10 * x
+    z -= l20 * x + l21 * y
+    z *= d2
+    y = y * d1 - l21 * z
+    x = x * d0 - l10 * y - l20 * z
+    return x, y, z
+
+
 @kernel(noalias=True, inline=True)
 def precondition(factors, r, n, z):
     for j in range(n):
@@ -95,18 +107,21 @@ def set_direction(d, beta, z):
 
 
 @kernel(noalias=True, allocates=False)
-def solve_conjugate_gradients(points, links, factors, r, p, f, z, d, q, u):
-    """Solve A u = r to REDUCTION; r is overwritten. factors: `factorise` of A's diagonal. f, z, d, q: scratch."""
+def solve_conjugate_gradients(points, links, factors, r, reduction, p, f, z, d, q, u):
+    """Solve A u = r until r has shrunk to `reduction` of itself in the preconditioner's norm; r is overwritten.
+
+    factors: `factorise` of A's diagonal. f, z, d, q: scratch.
+    """
     n = np.uint64(p.rows * p.cols)
     precondition(factors, r, n, z)
     for j in range(u.shape[0]):
         u[j], d[j] = 0.0, z[j]
     rho = dot(r, z)
-    goal = REDUCTION * REDUCTION * rho
+    goal = reduction * reduction * rho
     for count in range(MOST):
         if rho <= goal:
             return count
-        set_matrix_product(points, links, d, p, f, q)
+        set_matrix_product(points, links, SYMMETRIC, d, p, f, q)
         alpha = rho / dot(d, q)
         add_scaled(u, alpha, d)
         add_scaled(r, -alpha, q)

@@ -47,8 +47,8 @@ def test_the_ledger_s_residual_falls_at_the_method_s_order(name, case):
     coarsest, ratio, slack = LADDERS.get(order, (50, 2.0, 0.15))
     counts = [round(coarsest * ratio**i) for i in range(6)]
     errors = [residual(LEDGERS[case], name, 0.4, steps) for steps in counts]
-    # Some errors cancel in the sum: it may fall faster, never slower.
-    assert slope(counts[2:], errors[2:]) > order - slack
+    # Some errors cancel in the sum: it may fall faster, never slower; of the midpoint method only round-off is left.
+    assert max(errors) < 1e-9 or slope(counts[2:], errors[2:]) > order - slack
 
 
 @pytest.mark.parametrize("law", ["clipped", "lab"])

@@ -37,13 +37,15 @@ def test_a_free_net_keeps_its_momentum(make, name, model):
     assert momentum(net, state) == pytest.approx(before, abs=1e-12 * 1000)
 
 
-@pytest.mark.parametrize("name", ["leapfrog", "symplectic_euler"])
+@pytest.mark.parametrize(
+    ("name", "within"), [("leapfrog", 1e-11), ("symplectic_euler", 1e-11), ("implicit_midpoint", 1e-8)]
+)
 @pytest.mark.parametrize("make", [rope, patch])
-def test_axial_damping_keeps_the_angular_momentum(make, name):
+def test_axial_damping_keeps_the_angular_momentum(make, name, within):
     net, state = flying(make(damping_model="axial") if make is rope else make("axial"))
     before = angular_momentum(net, state)
     advance(net, state, INTEGRATORS[name], 1e-3, 1000)
-    assert angular_momentum(net, state) == pytest.approx(before, abs=1e-11)
+    assert angular_momentum(net, state) == pytest.approx(before, abs=within)
 
 
 def test_isotropic_damping_takes_the_angular_momentum():
@@ -95,7 +97,8 @@ def test_a_rope_is_a_net_of_one_row(name):
     a, b = State.at_rest(line), State.at_rest(general)
     advance(line, a, INTEGRATORS[name], 1e-3, 500)
     advance(general, b, INTEGRATORS[name], 1e-3, 500)
-    assert b.x == pytest.approx(a.x, abs=1e-11)
+    # Of the implicit methods, what Newton's method leaves of a net.
+    assert b.x == pytest.approx(a.x, abs=1e-8 if INTEGRATORS[name].implicit else 1e-11)
 
 
 @pytest.mark.parametrize("name", DAMPABLE)

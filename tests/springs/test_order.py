@@ -83,6 +83,15 @@ def test_dop853_is_of_order_eight():
     assert slope(counts, errors) == pytest.approx(8, abs=0.1)
 
 
+def test_damping_link_by_link_seeds_no_folds():
+    """A light rope of 1024 links folds where it is pressed: an error that alternates from link to link grows there."""
+    net = rope(1025, 1.0, 1.0 / 1025, 981.0 * 1024, 0.002 * 1024, 0.2 / 1025, 9.81)
+    truth = integrated(net, "rk4", 1.0, 36_000).x
+    errors = [np.abs(integrated(net, "leapfrog", 1.0, steps).x - truth).max() for steps in (34_000, 48_000)]
+    assert errors[0] < 1e-4
+    assert slope((34_000, 48_000), errors) == pytest.approx(2, abs=0.1)
+
+
 def test_a_moving_root_is_exactly_where_its_path_is():
     net = ROPES["moving root"]
     state = integrated(net, "leapfrog", SECONDS, 97)

@@ -11,7 +11,7 @@ from sim.jit import kernel
 from sim.springs.energy import add_power
 from sim.springs.forces import set_pins
 from sim.springs.integrators import Integrator
-from sim.springs.newton import make_work, solve_stage
+from sim.springs.newton import MOST, make_work, solve_stage
 
 
 def limit(zeta: float) -> float:
@@ -21,7 +21,7 @@ def limit(zeta: float) -> float:
 
 @kernel
 def advance(x, v, ledger, t, h, steps, p, with_ledger):
-    work = make_work(p)
+    work = make_work(p, False)
     x0, v0 = np.empty_like(x), np.empty_like(v)
     evals = 0
     set_pins(x, v, t, p)
@@ -29,7 +29,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
         after = t + (s + 1) * h
         x0[:] = x
         v0[:] = v
-        evals += solve_stage(x0, v0, h, after, p, x, v, work)
+        evals += solve_stage(x0, v0, h, after, p, x, v, work, MOST)[0]
         if with_ledger:
             add_power(x, v, after, p, True, h, ledger)
     return evals

@@ -1,14 +1,15 @@
 """Leapfrog (velocity Verlet) with damping split off: D(h/2) K(h/2) X(h) K(h/2) D'(h/2).
 
 K kicks with the forces of position alone, X drifts, D is the exact damping of `sim.springs.damping`, D' the same in
-reverse order; moving air blows before D and after D'. A symmetric composition: second order with damping, stable for
-h omega < 2 at any damping but the air's. One force evaluation a step, as the force at the end of a step opens the next.
+reverse order, and the two change places from step to step; moving air blows before D and after D'. A symmetric
+composition: second order with damping, stable for h omega < 2 at any damping but the air's. One force evaluation a
+step, as the force at the end of a step opens the next.
 """
 
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.damping import blow, damp, make_decay
+from sim.springs.damping import blow, damp, is_odd, make_decay
 from sim.springs.energy import add_power, kinetic_energy
 from sim.springs.forces import accelerate, make_scratch, set_pins
 from sim.springs.integrators import Integrator
@@ -31,13 +32,13 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
     set_pins(x, v, t, p)
     accelerate(x, v, t, p, False, f, a)
     for s in range(steps):
-        now = t + s * h
+        now, odd = t + s * h, is_odd(t, h, s)
         if with_ledger:
             add_power(x, v, now, p, False, 0.5 * h, ledger)
             kinetic = kinetic_energy(v, p)
         if p.has_air:
             blow(x, v, 0.5 * h, p, f, spare, middle)
-        damp(x, v, now, 0.5 * h, decay, p, False)
+        damp(x, v, now, 0.5 * h, decay, p, odd)
         if with_ledger:
             ledger[0] += kinetic - kinetic_energy(v, p)
         add_scaled(v, 0.5 * h, a)
@@ -47,7 +48,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
         add_scaled(v, 0.5 * h, a)
         if with_ledger:
             kinetic = kinetic_energy(v, p)
-        damp(x, v, now + h, 0.5 * h, decay, p, True)
+        damp(x, v, now + h, 0.5 * h, decay, p, not odd)
         if p.has_air:
             blow(x, v, 0.5 * h, p, f, spare, middle)
         if with_ledger:

@@ -12,7 +12,7 @@ from sim.jit import kernel
 from sim.springs.energy import add_power
 from sim.springs.forces import accelerate, make_scratch, set_pins
 from sim.springs.integrators import Integrator
-from sim.springs.newton import make_work, solve_stage
+from sim.springs.newton import MOST, make_work, solve_stage
 
 GAMMA = 2.0 - math.sqrt(2.0)
 W = math.sqrt(2.0) / 4.0  # weights of the quadrature: W, W, GAMMA/2
@@ -25,7 +25,7 @@ def limit(zeta: float) -> float:
 
 @kernel
 def advance(x, v, ledger, t, h, steps, p, with_ledger):
-    work = make_work(p)
+    work = make_work(p, False)
     f = make_scratch(p)
     a = np.empty_like(x)
     xs, vs, x1, v1 = np.empty_like(x), np.empty_like(x), np.empty_like(x), np.empty_like(x)
@@ -42,7 +42,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
             xs[j] = x[j] + g * v[j]
             vs[j] = v[j] + g * a[j]
             v1[j] = v[j]
-        evals += 1 + solve_stage(xs, vs, g, now + GAMMA * h, p, x1, v1, work)
+        evals += 1 + solve_stage(xs, vs, g, now + GAMMA * h, p, x1, v1, work, MOST)[0]
         if with_ledger:
             add_power(x1, v1, now + GAMMA * h, p, True, W * h, ledger)
         # y2 = y1/(gamma (2 - gamma)) - y (1 - gamma)^2/(gamma (2 - gamma)) + g f2
@@ -52,7 +52,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
             xs[j] = c1 * x1[j] + c0 * x[j]
             vs[j] = c1 * v1[j] + c0 * v[j]
             v[j] = v1[j]
-        evals += solve_stage(xs, vs, g, now + h, p, x, v, work)
+        evals += solve_stage(xs, vs, g, now + h, p, x, v, work, MOST)[0]
         if with_ledger:
             add_power(x, v, now + h, p, True, g, ledger)
     return evals

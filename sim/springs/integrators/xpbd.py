@@ -11,7 +11,7 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.constraints import sweep
-from sim.springs.damping import blow, damp, make_decay
+from sim.springs.damping import blow, damp, is_odd, make_decay
 from sim.springs.energy import add_power, kinetic_energy
 from sim.springs.forces import make_scratch, set_pins
 from sim.springs.integrators import Integrator
@@ -52,12 +52,12 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
     kinetic = 0.0
     set_pins(x, v, t, p)
     for s in range(steps):
-        now, after = t + s * h, t + (s + 1) * h
+        now, after, odd = t + s * h, t + (s + 1) * h, is_odd(t, h, s)
         if with_ledger:
             add_power(x, v, now, p, False, h, ledger)
             kinetic = kinetic_energy(v, p)
         # Damping in halves before and after, as the leapfrog has it, keeps a fall's terminal speed to second order.
-        damp(x, v, now, 0.5 * h, decay, p, False)
+        damp(x, v, now, 0.5 * h, decay, p, odd)
         if with_ledger:
             ledger[0] += kinetic - kinetic_energy(v, p)
         before[:] = x
@@ -69,7 +69,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
             kinetic = kinetic_energy(v, p)
         if p.has_air:
             blow(x, v, h, p, f, spare, middle)
-        damp(x, v, after, 0.5 * h, decay, p, True)
+        damp(x, v, after, 0.5 * h, decay, p, not odd)
         if with_ledger:
             ledger[0] += kinetic - kinetic_energy(v, p)
     return steps

@@ -5,6 +5,8 @@ from typing import Any
 
 import pytest
 
+import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread, as it does when the program runs
+
 
 @pytest.fixture
 def lab(request: pytest.FixtureRequest) -> Iterator[Any]:

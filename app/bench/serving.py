@@ -10,7 +10,7 @@ import time
 import urllib.request
 from typing import Any
 
-from app.messages import Pause, Play
+from app.messages import Pause, Play, Reset
 from app.scenes import NAMES
 
 BROWSER_FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -59,13 +59,17 @@ def scene_rows(name: str, browser: Any, seconds: float) -> list[dict[str, Any]]:
             page.wait_for_timeout(20)
         found.append({"what": f"{name}: from the page's address to its running", "s": time.perf_counter() - start})
         page.wait_for_timeout(2000)
-        for state, command in zip(STATES[1:3], (Pause(), Play()), strict=True):
-            viewer.loop.commands.put(command)
-            page.wait_for_timeout(1000)
-            found.append({"what": f"{name}: {state}", "per cent of a core": processor_share(seconds)})
-        viewer.panel.toggle_plots()
+        viewer.loop.commands.put(Pause())
         page.wait_for_timeout(1000)
-        found.append({"what": f"{name}: {STATES[3]}", "per cent of a core": processor_share(seconds)})
+        found.append({"what": f"{name}: {STATES[1]}", "per cent of a core": processor_share(seconds)})
+        # From the start each time: a rope that hangs still takes less.
+        for state in STATES[2:]:
+            if state == STATES[3]:
+                viewer.panel.toggle_plots()
+                page.wait_for_timeout(1000)
+            viewer.loop.commands.put(Reset())
+            viewer.loop.commands.put(Play())
+            found.append({"what": f"{name}: {state}", "per cent of a core": processor_share(seconds)})
         page.close()
         return found
     finally:

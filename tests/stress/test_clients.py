@@ -5,15 +5,18 @@ from collections.abc import Iterator
 
 import psutil
 import pytest
+import viser
 
 from app.messages import Play
 from app.scenes import NAMES
 from app.viewer import Viewer
 from app.warmup import prepare
 from tests.stress.clients import Clients, clients_of, until
+from tests.stress.memory import GROWTH, resident
 from tests.stress.tally import Tally
 
 MANY = 20
+BRIEF, VISITORS, CROWD = 50, 200, 10  # killed before the count begins, then counted, and so many at a time
 HANDLES = {
     "cloth": ("/cloth", None),
     "rope": ("/points", 6),
@@ -97,6 +100,43 @@ def test_a_browser_killed_in_mid_drag_lets_go(viewer: Viewer, clients: Clients, 
         clients.kill(hand)
         until(lambda: viewer.loop.latest.picture.pull is None, "it is let go")
         runs(viewer)
+
+
+def left_of_clients(viewer: Viewer) -> set[int]:
+    """How many there are of all that viser and we keep of each client: handles, connections, cursors."""
+    gc.collect()
+    server = viewer.server._websock_server
+    handles = [o for o in gc.get_objects() if isinstance(o, viser.ClientHandle) and o._viser_server is viewer.server]
+    return {len(handles), len(server._client_state_from_id), len(server._broadcast_buffer.generator_cursors)}
+
+
+def test_visitors_that_are_killed_leave_nothing_behind(viewer: Viewer, clients: Clients, tally: Tally) -> None:
+    process = psutil.Process()
+    stays = clients.join()
+    runs(viewer)
+
+    def visits(count: int) -> None:
+        for _ in range(count // CROWD):
+            for _ in range(CROWD):
+                clients.join()
+            until(lambda: viewer.audience() == 1 + CROWD, "all are there")
+            until(lambda: all(clients.received[c] > 0 for c in clients.open), "all have got something")
+            for client in [c for c in clients.open if c is not stays]:
+                clients.kill(client)
+            until(lambda: viewer.audience() == 1, "all visitors are gone")
+        until(lambda: left_of_clients(viewer) == {1}, "only who stays is kept")
+
+    with tally.fault("visitor killed", BRIEF + VISITORS):
+        visits(BRIEF)  # until caches and pools are full
+        before, descriptors = resident(), process.num_fds()
+        visits(VISITORS)
+        after = resident()
+    name = viewer.panel.scene.__name__.rpartition(".")[2]
+    tally.notes.append(f"{name}: {VISITORS} visitors were killed, {before:.0f} MB then {after:.0f} MB")
+    assert after < GROWTH * before
+    assert process.num_fds() <= descriptors
+    assert len(viewer.server._websock_server._broadcast_buffer.message_from_id) < 5000
+    runs(viewer)
 
 
 def test_the_server_stops_under_load(viewer: Viewer, clients: Clients, tally: Tally) -> None:

@@ -4,10 +4,8 @@
 an hour of simulated time is run as fast as it can be, and a served one lasts as long as it says below.
 """
 
-import gc
 import time
 
-import psutil
 import pytest
 
 from app.loop import LONGEST
@@ -18,18 +16,12 @@ from app.warmup import prepare
 from sim.knobs import knobs
 from tests.stress.clients import clients_of, until
 from tests.stress.hammer import Hammer
+from tests.stress.memory import GROWTH, resident
 from tests.stress.tally import SERVED, Tally
 
 HOUR = 3600.0  # [s] of simulated time
-GROWTH = 1.05  # of what is resident after the warm-up
 # Smaller, or in longer steps, so that an hour of it fits in a minute or two.
 PRESS = {"cloth": {"rows": 8, "cols": 8, "time_step": 1e-3}, "radial": {"time_step": 1 / 20}}
-
-
-def resident() -> float:
-    """What this process holds [MB], without what waits to be collected."""
-    gc.collect()
-    return psutil.Process().memory_info().rss / 1e6
 
 
 def test_an_hour_of_simulated_time(hammer: Hammer, tally: Tally) -> None:

@@ -2,9 +2,9 @@
 
 At every size the same number of points is solved, each matrix and right-hand side in memory of its own, in one compiled
 loop, as an implicit step calls the solver. Times are processor times. Up to some ten thousand points what the way down
-wrote is still in the processor's second cache on the way back; beyond, it comes from the third, which costs a tenth
-more, a quarter where other programs use that too. Blocks would not mend it: the way back starts from the last point, so
-that nothing can be finished while it is near, and working out a block anew costs more than reading it.
+wrote is still in the processor's second cache on the way back; beyond, it comes from the third, which costs more, the
+more so where other programs use it too. Blocks would not mend it: the way back starts from the last point, so that
+nothing can be finished while it is near, and working out a block anew costs more than reading it.
 """
 
 import statistics

@@ -1,7 +1,7 @@
 """The direct solve of an implicit rope step: its cost a point, which should not depend on the points.
 
 At every size the same number of points is solved, each matrix and right-hand side in memory of its own, in one compiled
-loop, as an implicit step calls the solver. Times are processor times. Up to some ten thousand points what the way down
+loop, as an implicit step calls the solver. Times are processor times. Up to some thousand points what the way down
 wrote is still in the processor's second cache on the way back; beyond, it comes from the third, which costs more, the
 more so where other programs use it too. Blocks would not mend it: the way back starts from the last point, so that
 nothing can be finished while it is near, and working out a block anew costs more than reading it.
@@ -21,16 +21,16 @@ WORK = 200_000  # points solved in a timed call
 
 
 @kernel
-def solve_each(diagonals, beside, us):
+def solve_each(diagonals, besides, us):
     """Many systems, one after another."""
     for i in range(diagonals.shape[0]):
-        solve_block_tridiagonal(diagonals[i], beside, us[i])
+        solve_block_tridiagonal(diagonals[i], besides[i], us[i])
 
 
 def seconds(n: int, rng: np.random.Generator) -> float:
     """Processor time of a point [s]."""
     own = np.tile([4.0, 0.1, 0.2, 0.1, 4.0, 0.1, 0.2, 0.1, 4.0], (WORK // n, n, 1))
-    beside = -0.3 * rng.random((n, 9))
+    beside = -0.3 * rng.random((WORK // n, n, 9))
     r = rng.standard_normal((WORK // n, n, 3))
     start = time.thread_time()
     solve_each(own, beside, r)

@@ -23,8 +23,8 @@ def solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, x, y, z):
 def solve_block_tridiagonal(diagonal, beside, u):
     """Solve A u = r in place.
 
-    diagonal: (n, 9), A_jj, overwritten by the factors of its pivots. beside: (n, 9), A_j,j+1 = A_j+1,j; the last is
-    not read. u: (n, 3), r before and the solution after.
+    diagonal: (n, 9), A_jj. beside: (n, 9), A_j,j+1 = A_j+1,j, overwritten by what the way back needs of the way down,
+    half of what the factors of the pivots would be; the last is not read. u: (n, 3), r before and the solution after.
     """
     n = u.shape[0]
     # S = A_jj - A_j,j-1 S_j-1^-1 A_j-1,j, the Schur complement of all blocks before
@@ -40,20 +40,20 @@ def solve_block_tridiagonal(diagonal, beside, u):
         l21 = (zy - l20 * xy) * d1
         d2 = 1.0 / (zz - l20 * xz - l21 * u12)
         u01, u02 = xy, xz
-        diagonal[j, 0], diagonal[j, 1], diagonal[j, 2] = l10, l20, l21
-        diagonal[j, 3], diagonal[j, 4], diagonal[j, 5] = d0, d1, d2
-        diagonal[j, 6], diagonal[j, 7], diagonal[j, 8] = u01, u02, u12
-        u[j, 0], u[j, 1], u[j, 2] = rx, ry, rz
+        u[j, 0], u[j, 1], u[j, 2] = solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, rx, ry, rz)
         if j + 1 == n:
             break
+        sx, sy, sz = u[j, 0], u[j, 1], u[j, 2]
         bxx, bxy, bxz = beside[j, 0], beside[j, 1], beside[j, 2]
         byx, byy, byz = beside[j, 3], beside[j, 4], beside[j, 5]
         bzx, bzy, bzz = beside[j, 6], beside[j, 7], beside[j, 8]
-        # G = S^-1 B column by column and s = S^-1 r, then S_next = A - B G and r_next = r - B s
+        # s = S^-1 r and G = S^-1 B, column by column; S_next = A - B G, r_next = r - B s, and back u = s - G u_next
         gxx, gyx, gzx = solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, bxx, byx, bzx)
         gxy, gyy, gzy = solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, bxy, byy, bzy)
         gxz, gyz, gzz = solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, bxz, byz, bzz)
-        sx, sy, sz = solve_pivot(l10, l20, l21, d0, d1, d2, u01, u02, u12, rx, ry, rz)
+        beside[j, 0], beside[j, 1], beside[j, 2] = gxx, gxy, gxz
+        beside[j, 3], beside[j, 4], beside[j, 5] = gyx, gyy, gyz
+        beside[j, 6], beside[j, 7], beside[j, 8] = gzx, gzy, gzz
         xx = diagonal[j + 1, 0] - bxx * gxx - bxy * gyx - bxz * gzx
         xy = diagonal[j + 1, 1] - bxx * gxy - bxy * gyy - bxz * gzy
         xz = diagonal[j + 1, 2] - bxx * gxz - bxy * gyz - bxz * gzz
@@ -66,16 +66,9 @@ def solve_block_tridiagonal(diagonal, beside, u):
         rx = u[j + 1, 0] - bxx * sx - bxy * sy - bxz * sz
         ry = u[j + 1, 1] - byx * sx - byy * sy - byz * sz
         rz = u[j + 1, 2] - bzx * sx - bzy * sy - bzz * sz
-    ux, uy, uz = 0.0, 0.0, 0.0
-    for back in range(n):
+    for back in range(1, n):
         j = n - 1 - back
-        rx, ry, rz = u[j, 0], u[j, 1], u[j, 2]
-        if back:
-            rx -= beside[j, 0] * ux + beside[j, 1] * uy + beside[j, 2] * uz
-            ry -= beside[j, 3] * ux + beside[j, 4] * uy + beside[j, 5] * uz
-            rz -= beside[j, 6] * ux + beside[j, 7] * uy + beside[j, 8] * uz
-        ux, uy, uz = solve_pivot(
-            diagonal[j, 0], diagonal[j, 1], diagonal[j, 2], diagonal[j, 3], diagonal[j, 4], diagonal[j, 5],
-            diagonal[j, 6], diagonal[j, 7], diagonal[j, 8], rx, ry, rz,
-        )  # fmt: skip
-        u[j, 0], u[j, 1], u[j, 2] = ux, uy, uz
+        ux, uy, uz = u[j + 1, 0], u[j + 1, 1], u[j + 1, 2]
+        u[j, 0] -= beside[j, 0] * ux + beside[j, 1] * uy + beside[j, 2] * uz
+        u[j, 1] -= beside[j, 3] * ux + beside[j, 4] * uy + beside[j, 5] * uz
+        u[j, 2] -= beside[j, 6] * ux + beside[j, 7] * uy + beside[j, 8] * uz

@@ -23,6 +23,7 @@ class Chase:
     def __init__(self) -> None:
         self.here = np.zeros(3)
         self.offset = np.zeros((2, 3))  # [m] camera and target from the body as it begins
+        self.first = np.zeros((2, 3))  # [m] where both then are: a page that has just come may take them up late
         self.mine: dict[int, np.ndarray] = {}  # client -> the same, as its user has it now
         self.placed: dict[int, np.ndarray] = {}  # client -> (KEPT, 2, 3), the last ones in a ring
         self.turn: dict[int, int] = {}
@@ -31,6 +32,7 @@ class Chase:
     def start(self, here: np.ndarray, offset: Iterable[Vector]) -> None:
         """Begin beside a body at `here` (3,) [m]; offset: camera and target from it [m]."""
         self.here, self.offset = here, np.array(list(offset))
+        self.first = here + self.offset
         self.mine, self.placed, self.turn, self.moved = {}, {}, {}, {}
 
     def go(self, here: np.ndarray, cameras: dict[int, Any], now: float | None = None) -> None:
@@ -43,6 +45,7 @@ class Chase:
                 self.mine[client], self.turn[client] = self.offset, 0
                 self.placed[client] = np.full((KEPT, 2, 3), np.inf)
                 self.remember(client, before)
+                self.remember(client, self.first)
                 self.place(client, camera, here)
                 continue
             at = np.array([camera.position, camera.look_at], float)

@@ -53,3 +53,12 @@ def test_a_hand_that_turns_the_camera_is_obeyed_and_not_disturbed() -> None:
     chase.go(np.array([3.0, 0.0, 0.0]), cameras, 0.2 + HANDS_ON)
     np.testing.assert_allclose(one.position, [3.0 + 4.0, 1.0, 3.0])
     np.testing.assert_allclose(other.position, [3.0 - 3.0, -4.0, 2.0])
+
+
+def test_a_page_that_takes_up_the_first_placing_late_is_no_hand() -> None:
+    chase, one = Chase(), camera()
+    chase.start(np.zeros(3), OFFSET)
+    chase.go(np.array([1.0, 0.0, 0.0]), {0: one}, 0.0)  # it comes when the body has moved on
+    one.position, one.look_at = (np.array(each) for each in OFFSET)
+    chase.go(np.array([1.5, 0.0, 0.0]), {0: one}, 0.1)
+    np.testing.assert_allclose(one.position, [1.5 - 3.0, -4.0, 2.0])

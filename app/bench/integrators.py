@@ -51,7 +51,7 @@ def limit(record: Integrator, zeta: float) -> str:
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """A row a method: order, limits, symplectic, force evaluations and time a step, when to choose it."""
+    """A row a method: order, limits, symplectic, force evaluations and time a step."""
     timed = {(name, points): Timed(record, points) for name, record in INTEGRATORS.items() for points in POINTS}
     for _ in range(5 if quick else 100):
         for each in timed.values():
@@ -69,6 +69,5 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
         }
         for points in POINTS:
             row[f"{points} points [µs a step]"] = 1e6 * timed[name, points].least
-        row["when"] = record.summary
         table.append(row)
     return table

@@ -70,7 +70,11 @@ def show(title: str, rows: Rows) -> None:
     names = columns(rows)
     for index, name in enumerate(names):
         is_number = any(isinstance(row.get(name), int | float) for row in rows)
-        table.add_column(escape(name), justify="right" if is_number else "left", no_wrap=index == 0)
+        # Words give way where there is little room, not numbers.
+        room = max(len(written(row.get(name))) for row in rows) if is_number else None
+        table.add_column(
+            escape(name), justify="right" if is_number else "left", no_wrap=index == 0, min_width=room, overflow="fold"
+        )
     for row in rows:
         table.add_row(*(escape(written(row.get(name))) for name in names))
     Console().print(table)

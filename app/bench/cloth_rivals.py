@@ -4,9 +4,9 @@ Ours is one thread. Times are wall times of the whole 0.25 s, the least of repea
 only is held against the reference of that model. What cannot be given the same task is listed with the reason.
 """
 
+import functools
 import math
 import time
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from rich.progress import track
@@ -14,7 +14,8 @@ from rich.progress import track
 from app.bench.cloth_engines import ENGINES, OTHER_TASKS
 from app.bench.cloth_peers import PEERS
 from app.bench.cloth_task import END, FLOOR, Reference, error_of, expected, reference, run, steps_of, task_cloth
-from app.bench.installed import is_installed
+from app.bench.installed import why_left_out
+from app.bench.timing import in_turn
 from sim.springs import Net
 from sim.springs.stability import critical_step
 
@@ -63,18 +64,6 @@ class Tried:
         return best if best.name else None
 
 
-def timed_in_turn(one: Callable[[], Any], other: Callable[[], Any] | None, most: int) -> tuple[list[float], ...]:
-    """Wall times [s] of two calls, taken in turn, until `most` of each or the first's have taken ten seconds."""
-    times: tuple[list[float], ...] = ([], [])
-    while len(times[0]) < most and sum(times[0]) < 10.0:
-        for call, own in zip((one, other), times, strict=True):
-            if call is not None:
-                start = time.perf_counter()
-                call()
-                own.append(time.perf_counter() - start)
-    return times
-
-
 def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
     """Every peer that is installed, at each size; quick: the smallest."""
     table: list[dict[str, Any]] = []
@@ -83,8 +72,8 @@ def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
     for n, peer in track([(n, peer) for n in sizes for peer in PEERS + ENGINES], "cloth peers", transient=True):
         row: dict[str, Any] = {"task": f"C({n})", "peer": peer.name, "damping": peer.damping}
         table.append(row)
-        if not is_installed(peer.package) or n > peer.largest:
-            row["note"] = "not installed" if not is_installed(peer.package) else "left out: minutes a run"
+        if absent := why_left_out(peer.package, n, peer.largest):
+            row["note"] = absent
             continue
         if (n, peer.damping) not in tried:
             net = task_cloth(n, peer.damping)
@@ -99,8 +88,10 @@ def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
             row["note"] = "diverged"
             continue
         best = ours.cheapest(error)
-        mine = None if best is None else lambda ours=ours, best=best: run(ours.net, best.name, best.steps)
-        theirs, own = timed_in_turn(lambda again=theirs_run: again(END), mine, 5 if quick else 9)
+        calls: list[functools.partial[Any]] = [functools.partial(theirs_run, END)]
+        if best is not None:
+            calls.append(functools.partial(run, ours.net, best.name, best.steps))
+        theirs, *own = in_turn(calls, 5 if quick else 9, enough=10.0)
         row["peer [ms]"] = 1e3 * min(theirs)
         if best is None:
             row["note"] = "no rung of ours is as exact"
@@ -108,8 +99,8 @@ def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
         row |= {
             "ours": best.name,
             "our steps": best.steps,
-            "ours [ms]": 1e3 * min(own),
+            "ours [ms]": 1e3 * min(own[0]),
             "our error [m]": best.error,
-            "times as long as ours": min(theirs) / min(own),
+            "times as long as ours": min(theirs) / min(own[0]),
         }
     return table + [{"task": "another", "peer": name, "note": why} for name, why in OTHER_TASKS.items()]

@@ -5,6 +5,7 @@ reference at t = 0.5 s and at t = 1 s. Times are those of one call for the whole
 """
 
 import dataclasses
+import functools
 import statistics
 import time
 from collections.abc import Callable
@@ -14,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.progress import track
 
-from app.bench.installed import is_installed
+from app.bench.installed import why_left_out
 from app.bench.kernels import task_rope
+from app.bench.timing import in_turn
 from sim.springs import INTEGRATORS, Net
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, steps_for
@@ -152,8 +154,8 @@ def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
     for links, peer in track(tasks, "rope peers", transient=True):
         row: dict[str, Any] = {"task": f"R({links})", "peer": peer.name, "damping": peer.model}
         table.append(row)
-        if not is_installed(peer.package) or links > peer.most_links:
-            row["note"] = "not installed" if not is_installed(peer.package) else "left out: minutes a run"
+        if absent := why_left_out(peer.package, links, peer.most_links):
+            row["note"] = absent
             continue
         if (links, peer.model) not in tried:
             net = dataclasses.replace(task_rope(links), damping_model=peer.model)
@@ -165,11 +167,10 @@ def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
         best = ours.cheapest(limit)
         once = seconds(lambda run=run: run(1.0))
         repeats = max(1, min(5 if quick else 15, int(4.0 / once)))
-        theirs, mine = [], []
-        for _ in range(repeats):
-            theirs.append(seconds(lambda run=run: run(1.0)))
-            if best is not None:
-                mine.append(seconds(best.run))
+        calls: list[Callable[[], Any]] = [functools.partial(run, 1.0)]
+        if best is not None:
+            calls.append(best.run)
+        theirs, *mine = in_turn(calls, repeats)
         row["peer [ms]"] = 1e3 * statistics.median(theirs)
         if best is None:
             row["note"] = f"no step of ours is as exact; the reference is good to {ours.truth.uncertainty:.1e} m"
@@ -178,8 +179,8 @@ def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
         row |= {
             "ours": best.name,
             "with": best.setting,
-            "ours [ms]": 1e3 * statistics.median(mine),
+            "ours [ms]": 1e3 * statistics.median(mine[0]),
             "our error at 1 s [m]": error[1],
-            "times as long as ours": statistics.median(theirs) / statistics.median(mine),
+            "times as long as ours": statistics.median(theirs) / statistics.median(mine[0]),
         }
     return table

@@ -29,7 +29,6 @@ class PullLine:
     """One segment, whose ends move while something is held."""
 
     def __init__(self, server: viser.ViserServer) -> None:
-        self.drawn = False
         self.line = server.scene.add_line_segments(
             "/pull",
             np.zeros((1, 2, 3), np.float32),
@@ -41,9 +40,7 @@ class PullLine:
 
     def show(self, ends: Any, load: float = 0.4) -> None:
         """ends: (2, 3) [m], or None while nothing is held; load: part of the most that the hand pulls with."""
-        if self.drawn != (ends is not None):
-            self.drawn = ends is not None
-            self.line.visible = self.drawn
+        self.line.visible = ends is not None
         if ends is not None:
             self.line.points = np.array([ends], np.float32)
             self.line.thickness = 2.0 + 5.0 * load

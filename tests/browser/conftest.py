@@ -8,12 +8,27 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.messages import Pause
+from app.viewer import Viewer
+
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
-DPR = 0.4  # drawn pixels per pixel of the page, each way: what a software renderer takes its time for
-# What viser itself logs and what changes nothing: its drag layer at each drag of a node, and its splats, whose quads
-# have corners of two coordinates.
-HARMLESS = ("preventDefault inside passive", "computeBoundingSphere(): Computed radius is NaN")
+DPR = 0.2  # drawn pixels per pixel of the page, each way
+# A software renderer takes seconds to compile the shading of a sea: where no pixel is looked at, all is one colour.
+FLAT = """const put = WebGL2RenderingContext.prototype.shaderSource;
+WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
+    const fragment = this.getShaderParameter(shader, this.SHADER_TYPE) === this.FRAGMENT_SHADER;
+    const flat = "#version 300 es\\nout lowp vec4 color; void main() { color = vec4(0.3, 0.5, 0.6, 1.0); }";
+    put.call(this, shader, fragment ? flat : source);
+};"""
+# What viser itself logs and what changes nothing: its drag layer at each drag of a node; its splats, whose quads have
+# corners of two coordinates; and its client, which gathers the updates of a frame and applies them after its removals
+# (MessageHandler.tsx), where a slow page takes both in one frame. The server sends no update after a removal.
+HARMLESS = (
+    "preventDefault inside passive",
+    "computeBoundingSphere(): Computed radius is NaN",
+    "Tried to update non-existent component",
+)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -36,10 +51,12 @@ def chromium() -> Iterator[Any]:
 
 
 class Tab:
-    """One page on a server, and what went wrong on it."""
+    """One page on a server, flat or shaded as it is for users, and what went wrong on it."""
 
-    def __init__(self, chromium: Any, port: int, width: int = 900, height: int = 560) -> None:
+    def __init__(self, chromium: Any, port: int, width: int = 900, height: int = 560, shaded: bool = False) -> None:
         self.page = chromium.new_page(viewport={"width": width, "height": height})
+        if not shaded:
+            self.page.add_init_script(FLAT)
         self.errors: list[str] = []
         self.page.on("console", self.note)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
@@ -59,6 +76,10 @@ class Tab:
             self.page.wait_for_timeout(50)
         pytest.fail(f"not within {seconds:g} s; page errors: {self.errors}")
 
+    def has(self, control: Any) -> bool:
+        """Whether the page shows this very control of the panel, and not one that was there before it."""
+        return self.page.evaluate("id => document.body.innerHTML.includes(id)", control._impl.uuid)
+
     def vertices(self, node: str) -> np.ndarray:
         """The vertices (n, 3) that the page holds of a mesh, empty where it has none."""
         numbers = self.page.evaluate(
@@ -69,11 +90,11 @@ class Tab:
         )
         return np.array(numbers).reshape(-1, 3)
 
-    def drag(self, start: tuple[float, float], end: tuple[float, float], pause: int = 80) -> None:
+    def drag(self, start: tuple[float, float], end: tuple[float, float], pause: int = 50) -> None:
         """Press at one pixel, move to another in steps, and hold; `release` lets go."""
         mouse = self.page.mouse
         mouse.move(*start)
-        self.page.wait_for_timeout(800)  # a slow page must notice what is hovered
+        self.page.wait_for_timeout(500)  # a slow page must notice what is hovered
         mouse.down()
         for step in range(1, 9):
             mouse.move(
@@ -86,13 +107,35 @@ class Tab:
         self.page.mouse.up()
 
 
+@pytest.fixture(scope="module")
+def visit(request: pytest.FixtureRequest, chromium: Any) -> Iterator[tuple[Viewer, Tab]]:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open(request.module.SCENE)
+    tab = Tab(chromium, viewer.port)
+    yield viewer, tab
+    tab.page.close()
+    viewer.shut()
+
+
+@pytest.fixture
+def shown(request: pytest.FixtureRequest, visit: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
+    """One viewer and one page for a whole module, as a page is slow to load; its scene opens anew for each test."""
+    viewer, tab = visit
+    viewer.open(request.module.SCENE, getattr(request.module, "PARAMS", None))
+    tab.errors.clear()
+    tab.wait(lambda: viewer.loop.counts["steps"] > 0 and tab.has(viewer.panel.preset))
+    tab.page.wait_for_timeout(100)  # the keys come with the panel, behind it
+    yield viewer, tab
+    viewer.loop.commands.put(Pause())  # it leaves the processor to tests with pages of their own
+
+
 @pytest.fixture
 def open_tab(chromium: Any) -> Iterator[Callable[..., Tab]]:
     """Opens tabs and closes them after the test."""
     tabs: list[Tab] = []
 
-    def new(port: int, **size: int) -> Tab:
-        tabs.append(Tab(chromium, port, **size))
+    def new(port: int, **how: int) -> Tab:
+        tabs.append(Tab(chromium, port, **how))
         return tabs[-1]
 
     yield new

@@ -4,14 +4,14 @@ import numpy as np
 
 from app.messages import Pause, Play
 from app.viewer import Viewer
-from tests.browser.test_rope import pixel, watching
+from tests.browser.conftest import Tab
+from tests.browser.test_rope import pixel
 
 SCENE = "cloth"
 
 
-def test_every_preset_is_drawn_and_moves_without_console_errors(lab: Viewer, open_tab) -> None:
-    tab = open_tab(lab.port)
-    tab.wait(lambda: watching(lab))
+def test_every_preset_is_drawn_and_moves_without_console_errors(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
     for key, particles in (("1", 32 * 32), ("2", 48 * 32), ("3", 64 * 64), ("4", 48 * 48)):
         tab.page.keyboard.press(key)
         tab.wait(lambda particles=particles: len(tab.vertices("/cloth")) == particles)
@@ -22,11 +22,11 @@ def test_every_preset_is_drawn_and_moves_without_console_errors(lab: Viewer, ope
     assert tab.errors == []
 
 
-def test_a_particle_is_dragged_by_the_mouse(lab: Viewer, open_tab) -> None:
-    tab = open_tab(lab.port)
-    tab.wait(lambda: watching(lab) and lab.loop.scene.time > 1)
+def test_a_particle_is_dragged_by_the_mouse(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.wait(lambda: lab.loop.scene.time > 1)
     lab.loop.commands.put(Pause())
-    tab.page.wait_for_timeout(1200)
+    tab.page.wait_for_timeout(500)
     here = lab.scene.state.x[:, 16, 10].copy()
     start = pixel(lab, here)
     tab.page.mouse.move(*start)
@@ -41,17 +41,15 @@ def test_a_particle_is_dragged_by_the_mouse(lab: Viewer, open_tab) -> None:
     assert tab.errors == []
 
 
-def test_a_pin_is_moved_by_its_arrow(lab: Viewer, open_tab) -> None:
-    tab = open_tab(lab.port)
-    tab.wait(lambda: watching(lab))
-    tab.page.wait_for_timeout(1500)
+def test_a_pin_is_moved_by_its_arrow(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
     pin = lab.scene.state.x[:, 0, 0].copy()
     arrow = pin + (0.0, 0.0, 0.15)
 
     def drag_up() -> bool:
         tab.drag(pixel(lab, arrow), pixel(lab, arrow + (0.0, 0.0, 0.4)))
         tab.release()
-        tab.page.wait_for_timeout(1500)
+        tab.page.wait_for_timeout(500)
         return lab.scene.handles[0].position[2] > pin[2] + 0.1
 
     tab.wait(drag_up)  # again where a slow page had not yet noticed what the mouse was over

@@ -3,17 +3,18 @@
 from app.rope_knobs import PRESETS, ROOT, Params
 from app.viewer import Viewer
 from sim.knobs import check
-from tests.browser.test_rope import pixel, watching
+from tests.browser.conftest import Tab
+from tests.browser.test_rope import pixel
 
+SCENE = "rope"
 RACES = [name for name, knobs in PRESETS.items() if knobs.get("ropes", 1) > 1]
 CHARTS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({chart}) => ({
     title: chart.root.querySelector('.u-title')?.textContent, labels: chart.series.map(s => s.label),
     rows: chart.data[0].length, log: chart.scales.y.distr === 3}))"""
 
 
-def test_every_race_is_drawn_with_its_charts_and_no_console_errors(lab: Viewer, open_tab) -> None:
-    tab = open_tab(lab.port, width=900, height=500)
-    tab.wait(lambda: watching(lab))
+def test_every_race_is_drawn_with_its_charts_and_no_console_errors(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
     for preset in RACES:
         lab.panel.load(preset)
         ropes = PRESETS[preset]["ropes"]
@@ -43,17 +44,18 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(lab: Viewer, 
     assert tab.errors == []
 
 
-def test_a_bead_of_a_race_is_dragged_and_the_single_rope_comes_back(lab: Viewer, open_tab) -> None:
-    without_charts = {**PRESETS["Leapfrog read literally"], "plot_errors": False, "plot_energies": False}
-    lab.open("rope", check(Params, without_charts))
-    tab = open_tab(lab.port)
-    tab.wait(lambda: watching(lab) and lab.scene.race is not None and lab.scene.time > 5)
+def test_a_bead_of_a_race_is_dragged_and_the_single_rope_comes_back(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    without_charts = {"plot_errors": False, "plot_energies": False, "speed": 4.0}
+    lab.open("rope", check(Params, {**PRESETS["Leapfrog read literally"], **without_charts}))
+    tab.wait(lambda: lab.scene.race is not None and lab.scene.time > 5)
+    lab.panel.set("speed", 1.0)
     tab.wait(lambda: len(tab.vertices("/race/rope_4")) > 0)
 
     def dragged() -> bool:
         start = pixel(lab, lab.scene.picture().race.ropes[0, 7])
         tab.drag(start, (start[0] - 60, start[1] - 40))
-        tab.page.wait_for_timeout(1500)
+        tab.page.wait_for_timeout(500)
         held = lab.scene.held is not None
         tab.release()
         return held

@@ -76,9 +76,12 @@ class Tab:
             self.page.wait_for_timeout(50)
         pytest.fail(f"not within {seconds:g} s; page errors: {self.errors}")
 
-    def has(self, control: Any) -> bool:
-        """Whether the page shows this very control of the panel, and not one that was there before it."""
-        return self.page.evaluate("id => document.body.innerHTML.includes(id)", control._impl.uuid)
+    def catch_up(self, viewer: Viewer) -> None:
+        """Wait until the page has taken in all that the viewer has said so far, its keys too."""
+        mark = viewer.server.gui.add_html('<i class="springtide-mark"></i>')
+        self.wait(lambda: self.page.locator(".springtide-mark").count())
+        mark.remove()
+        self.wait(lambda: not self.page.locator(".springtide-mark").count())
 
     def vertices(self, node: str) -> np.ndarray:
         """The vertices (n, 3) that the page holds of a mesh, empty where it has none."""
@@ -123,8 +126,8 @@ def shown(request: pytest.FixtureRequest, visit: tuple[Viewer, Tab]) -> Iterator
     viewer, tab = visit
     viewer.open(request.module.SCENE, getattr(request.module, "PARAMS", None))
     tab.errors.clear()
-    tab.wait(lambda: viewer.loop.counts["steps"] > 0 and tab.has(viewer.panel.preset))
-    tab.page.wait_for_timeout(100)  # the keys come with the panel, behind it
+    tab.wait(lambda: viewer.loop.counts["steps"] > 0)
+    tab.catch_up(viewer)
     yield viewer, tab
     viewer.loop.commands.put(Pause())  # it leaves the processor to tests with pages of their own
 

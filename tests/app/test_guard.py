@@ -51,7 +51,7 @@ async def say(port: int, messages: list[dict[str, Any]], origin: str | None = No
     waiting = list(reversed(messages))
     cuts = 0
     while True:
-        async with connect(address, origin=origin, subprotocols=[protocol], max_size=None) as client:
+        async with connect(address, origin=origin, subprotocols=[protocol], max_size=None, max_queue=None) as client:
             try:
                 while waiting:
                     await client.send(msgspec.msgpack.encode(waiting[-1]))

@@ -111,7 +111,7 @@ class Tab:
 
 
 @pytest.fixture(scope="module")
-def visit(request: pytest.FixtureRequest, chromium: Any) -> Iterator[tuple[Viewer, Tab]]:
+def one_page(request: pytest.FixtureRequest, chromium: Any) -> Iterator[tuple[Viewer, Tab]]:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open(request.module.SCENE)
     tab = Tab(chromium, viewer.port)
@@ -121,9 +121,9 @@ def visit(request: pytest.FixtureRequest, chromium: Any) -> Iterator[tuple[Viewe
 
 
 @pytest.fixture
-def shown(request: pytest.FixtureRequest, visit: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
+def shown(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
     """One viewer and one page for a whole module, as a page is slow to load; its scene opens anew for each test."""
-    viewer, tab = visit
+    viewer, tab = one_page
     viewer.open(request.module.SCENE, getattr(request.module, "PARAMS", None))
     tab.errors.clear()
     tab.wait(lambda: viewer.loop.counts["steps"] > 0)

@@ -63,7 +63,7 @@ async def say(port: int, messages: list[dict[str, Any]], origin: str | None = No
                 cuts += 1
 
 
-def talk(words: Coroutine[Any, Any, int]) -> int:
+def talk(words: Coroutine[Any, Any, Any]) -> Any:
     """Run a conversation on a loop of its own: the browser tests leave one running on this thread."""
     with ThreadPoolExecutor(1) as pool:
         return pool.submit(asyncio.run, words).result()

@@ -1,14 +1,13 @@
 """What the viewer's threads live through."""
 
-import asyncio
 import time
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
 
 from app.messages import Grab, StepOnce
 from app.viewer import Viewer
+from tests.app.test_guard import talk
 
 
 def wait_for(condition: Any) -> None:
@@ -36,6 +35,5 @@ def test_a_picture_that_cannot_be_drawn_halts_the_run_once_and_the_threads_live(
 def test_a_browser_that_goes_lets_go_of_what_it_held(lab: Viewer) -> None:
     lab.commands.put(Grab(5, (0.0, 0.0, 2.0)))
     wait_for(lambda: lab.scene.held is not None)
-    with ThreadPoolExecutor(1) as pool:  # a browser test's event loop may be running in this thread
-        pool.submit(asyncio.run, lab.let_go(None)).result()  # type: ignore[arg-type]
+    talk(lab.let_go(None))  # type: ignore[arg-type]
     wait_for(lambda: lab.scene.held is None)

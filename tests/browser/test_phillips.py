@@ -120,9 +120,9 @@ def test_hostile_knobs_are_bounded(shown: tuple[Viewer, Tab]) -> None:
 def test_the_rope_can_follow_the_sea(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     tab.wait(lambda: dressed(lab))
-    lab.open("rope")
+    tab.follow(lab, "rope")
     tab.wait(lambda: len(tab.vertices("/rope")) > 0)
     assert len(tab.vertices("/sea")) == 0
-    lab.open(SCENE, PARAMS)
+    tab.follow(lab, SCENE, PARAMS)
     tab.wait(lambda: len(heights(tab)) == 33 * 33)
     assert tab.errors == []

@@ -47,7 +47,7 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(shown: tuple[
 def test_a_bead_of_a_race_is_dragged_and_the_single_rope_comes_back(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     without_charts = {"plot_errors": False, "plot_energies": False, "speed": 4.0}
-    lab.open("rope", check(Params, {**PRESETS["Leapfrog read literally"], **without_charts}))
+    tab.follow(lab, SCENE, check(Params, {**PRESETS["Leapfrog read literally"], **without_charts}))
     tab.wait(lambda: lab.scene.race is not None and lab.scene.time > 5)
     lab.panel.set("speed", 1.0)
     tab.wait(lambda: len(tab.vertices("/race/rope_4")) > 0)

@@ -16,10 +16,11 @@ from PIL import Image
 from app.paint import Painted
 from app.patch import patch
 from app.water import Look, Water, sky
-from tests.browser.conftest import FLAT
+from tests.browser.conftest import new_page
 
 SIZE = 32
 LENGTH = 64.0  # [m]
+SEA = (slice(120, 200), slice(60, 260))  # the pixels that show it
 
 
 @pytest.fixture
@@ -33,9 +34,7 @@ def server() -> Iterator[viser.ViserServer]:
 
 def visit(chromium, server: viser.ViserServer, shaded: bool = True):
     """A page on the server and the list that its errors go to."""
-    page = chromium.new_page(viewport={"width": 320, "height": 200})
-    if not shaded:
-        page.add_init_script(FLAT)
+    page = new_page(chromium, 320, 200, shaded)
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
     page.on("pageerror", lambda error: errors.append(str(error)))
@@ -94,7 +93,7 @@ RED = Look(deep=(0.6, 0.1, 0.1), scatter=(0.6, 0.1, 0.1), specular=0.0, dome=Fal
 
 def redness(picture: np.ndarray) -> float:
     """How much more red than blue the sea is."""
-    sea = picture[120:200, 60:260]
+    sea = picture[SEA]
     return float(sea[..., 0].mean() - sea[..., 2].mean())
 
 
@@ -125,7 +124,7 @@ def test_foam_another_look_and_another_size_reach_the_pixels(chromium, server):
     assert redness(calm) < 0
 
     def bright(picture: np.ndarray) -> float:
-        return float(picture[120:200, 60:260].mean())
+        return float(picture[SEA].mean())
 
     with server.atomic():
         water.set_surface(*surface(foam=1.0))
@@ -277,7 +276,7 @@ def test_the_exported_page_is_dressed_without_a_server(chromium, server, tmp_pat
     make_water(server, tiles=3)
     file = tmp_path / "sea.html"
     file.write_text(server.get_scene_serializer().as_html(), encoding="utf-8")
-    page = chromium.new_page(viewport={"width": 320, "height": 200})
+    page = new_page(chromium, 320, 200, shaded=True)
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
     page.goto(file.as_uri())

@@ -189,13 +189,10 @@ class SimLoop:
     def drain(self) -> bool:
         """Obey every waiting command; True where there was one."""
         changed = False
-        while True:
-            try:
-                command = self.commands.get_nowait()
-            except queue.Empty:
-                return changed
+        while not self.commands.empty():  # nobody else takes from it
+            self.obey(self.commands.get_nowait())
             changed = True
-            self.obey(command)
+        return changed
 
     def obey(self, command: Command) -> None:
         match command:

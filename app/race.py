@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from app.ghost import CLEAR, Ghost
 from app.rope_knobs import MOST_ROPES, Params
 from sim.springs import INTEGRATORS, Integrator, Net
+from sim.springs.extremes import extremes
 from sim.springs.stability import Gauge, gauge
 from sim.springs.state import State, advance, energy, steps_for
 
@@ -128,16 +129,13 @@ class Lane:
         n = net.shape[1] - 1
         length = n * net.families[0].rest
         # A swinging rope pulls at a point with some thrice its weight; further out it is no picture of a rope.
-        self.bound = 0.5 + 1.2 * max(length + 2.0 * sag * n * (n + 1), self.extent())
+        reach = extremes(self.state.x, self.state.v).reach
+        self.bound = 0.5 + 1.2 * max(length + 2.0 * sag * n * (n + 1), reach)
 
     @property
     def stiffness(self) -> float:
         """[N/m] of its links."""
         return self.net.families[0].stiffness
-
-    def extent(self) -> float:
-        """Largest distance of a point from the root along an axis [m]."""
-        return float(np.abs(self.state.x - self.state.x[:, :, :1]).max())
 
     def advance(self, net: Net, ticks: int) -> None:
         """Take the steps of so many ticks; net: as it moves meanwhile."""
@@ -145,7 +143,7 @@ class Lane:
             return
         good = self.state.copy()
         advance(net, self.state, self.record, self.step, ticks * self.substeps, with_ledger=True)
-        if not (self.state.is_sane and self.extent() < self.bound):
+        if not extremes(self.state.x, self.state.v).reach < self.bound:  # nor is a NaN
             when = self.state.t
             self.state = good
             self.out = self.verdict(when)

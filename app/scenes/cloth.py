@@ -17,6 +17,7 @@ from app.method import method_for
 from app.spring_work import SpringWork
 from sim.springs import INTEGRATORS, Air, Net, cloth, simulate
 from sim.springs import Grab as Pull
+from sim.springs.extremes import extremes
 from sim.springs.net import PinPath
 from sim.springs.stability import Gauge, gauge, gershgorin
 from sim.springs.state import State, advance, energy, velocities
@@ -177,7 +178,7 @@ class Scene:
 
         self.cores.advance(steps, take, large=self.params.rows * self.params.cols >= LARGE)
         self.work.take(net, self.state.force_evals - good.force_evals, steps, with_ledger=self.params.plot_energy)
-        if not (self.state.is_sane and np.abs(self.state.x).max() < BOUND):
+        if not extremes(self.state.x, self.state.v).out < BOUND:  # nor is a NaN
             self.state = good
             raise DivergenceError(self.diagnosis())
         if self.integrator.implicit:

@@ -19,7 +19,8 @@ from app.rope_knobs import PRESETS, ROOT, SPHERE, THICKNESS, Params, build, hidd
 from app.spring_work import SpringWork
 from sim.springs import INTEGRATORS, Net, rope, simulate
 from sim.springs import Grab as Pull
-from sim.springs.stability import Gauge, critical_stiffness, gauge
+from sim.springs.extremes import extremes
+from sim.springs.stability import Gauge, critical_stiffness, gauge, top_modes
 from sim.springs.state import State, advance, energy, velocities
 
 __all__ = [
@@ -125,7 +126,7 @@ class Scene:
         """Time [s] between pictures: half as many where nothing moves so fast that it would show."""
         if self.race or self.held or not self.root.at_rest or not self.sphere.at_rest:
             return FRAME
-        return FRAME if float(np.abs(self.state.v).max()) * self.params.speed > SWIFT else 2.0 * FRAME
+        return FRAME if self.fastest * self.params.speed > SWIFT else 2.0 * FRAME
 
     @property
     def time(self) -> float:
@@ -140,6 +141,7 @@ class Scene:
         self.held = None
         self.net = build(self.params, self.root.position, self.sphere.position)
         self.state = State.at_rest(self.net)
+        self.fastest = 0.0  # [m/s] that a point moves at, along an axis
         self.race: Race | None = None
         if self.params.ropes > 1:
             self.race = Race(self.net, self.params)
@@ -154,7 +156,8 @@ class Scene:
         # Thrice the hanging length and some room: a picture of what happened, where 1e9 m would show nothing.
         weight = self.net.mass * abs(self.net.gravity[2]) / self.net.families[0].stiffness
         n = self.params.points - 1
-        self.bound = 4.0 + 3.0 * (self.params.length + 0.5 * weight * n * (n + 1)) + self.extent()
+        reach = extremes(self.state.x, self.state.v).reach
+        self.bound = 4.0 + 3.0 * (self.params.length + 0.5 * weight * n * (n + 1)) + reach
         self.sampled_at = -np.inf
         self.counted = self.state.force_evals, self.state.steps
         self.corrections = 0.0
@@ -210,10 +213,12 @@ class Scene:
         net = self.net_under_way(self.state.t, duration)
         advance(net, self.state, self.integrator, self.step, steps, with_ledger=self.with_ledger)
         self.work.take(net, self.state.force_evals - good.force_evals, steps, with_ledger=self.with_ledger)
-        if not (self.state.is_sane and self.extent() < self.bound):
+        found = extremes(self.state.x, self.state.v)
+        if not found.reach < self.bound:  # nor is a NaN
             self.state = good
             self.lost = True
             raise DivergenceError(self.diagnosis())
+        self.fastest = found.speed
         if self.root.at_rest:
             self.state.x[:, 0, 0] = self.root.position
             self.state.v[:, 0, 0] = 0.0
@@ -246,10 +251,6 @@ class Scene:
         if race.t - self.looked_at >= GAUGE_EVERY:
             self.look()
         self.charts.sample()
-
-    def extent(self) -> float:
-        """Largest distance of a point from the root along an axis [m]."""
-        return float(np.abs(self.state.x - self.state.x[:, :, :1]).max())
 
     def net_under_way(self, t: float, duration: float) -> Net:
         """The net with the motions of root, sphere and pull over the next `duration` [s]."""
@@ -285,8 +286,9 @@ class Scene:
             self.looked_at = self.race.t
             return
         self.integrator, self.note = method_for(self.params.integrator, self.net)
-        stability = gauge(self.net, self.integrator, self.step, self.state)
-        largest = critical_stiffness(self.net, self.integrator, self.step, self.state)
+        modes = top_modes(self.net, self.state.x, self.state.t)
+        stability = gauge(self.net, self.integrator, self.step, self.state, modes)
+        largest = critical_stiffness(self.net, self.integrator, self.step, self.state, modes)
         knob = "stiffness"
         if self.params.units == "material":
             knob, largest = "axial_stiffness", largest * self.net.families[0].rest

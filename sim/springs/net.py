@@ -5,6 +5,7 @@ Links are families of neighbour offsets, never index lists: every particle of th
 """
 
 import dataclasses
+import functools
 import math
 from typing import NamedTuple
 
@@ -189,7 +190,15 @@ class Net:
         return w.ravel()
 
     def forces(self, h: float) -> Forces:
-        """The kernels' view of this net for steps of h [s]."""
+        """The kernels' view of this net for steps of h [s]. Its arrays are shared, but for those the kernels fill."""
+        view = self._view._replace(stop_rate=1.0 / h)
+        if self.thickness == 0.0:
+            return view
+        return view._replace(pairs=np.full_like(view.pairs, -1), seen=np.zeros_like(view.seen))
+
+    @functools.cached_property
+    def _view(self) -> Forces:
+        """`forces` for a step of 1 s: a scene asks for it every frame, and a net does not change."""
         rows, cols = self.shape
         paths = np.zeros((len(self.pin_paths), 5, 3))
         for p, (_, path) in enumerate(self.pin_paths):
@@ -228,7 +237,7 @@ class Net:
             contact_k=float(self.contact.stiffness),
             contact_b=float(self.contact.damping),
             friction=float(self.contact.friction),
-            stop_rate=1.0 / h,
+            stop_rate=1.0,
             lab_contact=self.contact.law == "lab",
             pins=np.array([i * cols + j for (i, j), _ in self.pin_paths], dtype=np.int64),
             paths=paths,

@@ -179,10 +179,13 @@ def critical_step(net: Net, integrator: str | Integrator, state: State | None = 
     return min((step_limit(mode, record) for mode in modes_at(net, state)), default=math.inf)
 
 
-def critical_stiffness(net: Net, integrator: str | Integrator, h: float, state: State | None = None) -> float:
+def critical_stiffness(
+    net: Net, integrator: str | Integrator, h: float, state: State | None = None, modes: list[Mode] | None = None
+) -> float:
     """The largest stiffness [N/m] of the stiffest links that is stable at step h [s], all families scaled together.
 
     0 where none is (h too long for the damping or the contacts), inf where all are; positions are taken as they are.
+    modes: the `top_modes` of the state, where they are known.
     Raises ValueError for an unknown integrator or a step that is not above 0.
     """
     record = chosen(integrator)
@@ -190,15 +193,17 @@ def critical_stiffness(net: Net, integrator: str | Integrator, h: float, state: 
     stiffest = max((f.stiffness for f in net.families), default=0.0)
     if stiffest == 0.0:
         net = dataclasses.replace(net, families=tuple(f._replace(stiffness=1.0) for f in net.families))
-        stiffest = 1.0
+        stiffest, modes = 1.0, None
     scale = 1.0
     for _ in range(3):
-        modes = modes_at(scaled(net, scale), state)
+        if modes is None:
+            modes = modes_at(scaled(net, scale), state)
         found = largest_scale(modes, record, h)
         scale *= found
         # Beside a contact the vectors change with the links' stiffness: once more from the new ones.
         if scale == 0.0 or math.isinf(scale) or all(math.isclose(mode.links, mode.stiffness) for mode in modes):
             break
+        modes = None
     return scale * stiffest
 
 
@@ -243,10 +248,13 @@ def largest_scale(modes: list[Mode], integrator: Integrator, h: float) -> float:
     return math.exp(a)
 
 
-def gauge(net: Net, integrator: str | Integrator, h: float, state: State) -> Gauge:
-    """h omega of the mode nearest to its limit at step h [s], and that limit."""
+def gauge(net: Net, integrator: str | Integrator, h: float, state: State, modes: list[Mode] | None = None) -> Gauge:
+    """h omega of the mode nearest to its limit at step h [s], and that limit.
+
+    modes: the `top_modes` of the state, where they are known.
+    """
     record = chosen(integrator)
-    modes = modes_at(net, state)
+    modes = modes_at(net, state) if modes is None else modes
     if not modes:
         return Gauge(0.0, 0.0, 0.0, math.inf, math.inf)
     mode = min(modes, key=lambda mode: step_limit(mode, record))

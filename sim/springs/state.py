@@ -1,5 +1,6 @@
 """`State`: what changes while a net moves, and `advance`, which changes it."""
 
+import copy
 import dataclasses
 import math
 
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from sim.jit import set_threads
 from sim.knobs import refusal
 from sim.springs.energy import Energy, energies
+from sim.springs.extremes import extremes
 from sim.springs.forces import set_acceleration
 from sim.springs.integrators import Integrator
 from sim.springs.net import Net
@@ -34,13 +36,14 @@ class State:
         return cls(net.x0.copy(), np.zeros_like(net.x0))
 
     def copy(self) -> "State":
-        return dataclasses.replace(self, x=self.x.copy(), v=self.v.copy())
+        twin = copy.copy(self)
+        twin.x, twin.v = self.x.copy(), self.v.copy()
+        return twin
 
     @property
     def is_sane(self) -> bool:
         """False once anything is not finite or is out of any sane bound."""
-        # A NaN fails the comparison too.
-        return bool(np.abs(self.x).max() < SANE) and bool(np.isfinite(self.v).all())
+        return extremes(self.x, self.v).out < SANE
 
 
 def acceleration(net: Net, state: State, lag: float) -> NDArray[np.float64]:

@@ -61,6 +61,11 @@ class Patch:
         self._names[name] = time.monotonic()
         self._work.set()
 
+    def forget_all(self) -> None:
+        """Stop asking: every node is gone. Each question makes a browser draw anew."""
+        for name in list(self._names):
+            self.forget(name)
+
     def forget(self, name: str) -> None:
         """Stop asking about a removed node."""
         self._names.pop(name, None)
@@ -127,6 +132,13 @@ def patch(server: viser.ViserServer) -> Patch | None:
     if server not in _patches:
         _patches[server] = Patch(server)
     return _patches[server]
+
+
+def reset(server: viser.ViserServer) -> None:
+    """Remove every node from a server's scene, and what is expected of them."""
+    server.scene.reset()
+    if server in _patches:
+        _patches[server].forget_all()
 
 
 def hidden(server: viser.ViserServer, name: str, values: np.ndarray) -> viser.MeshHandle:

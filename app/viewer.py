@@ -14,7 +14,7 @@ from app.ledger import Unwatched, Work, gather, modules
 from app.loop import SimLoop
 from app.messages import Command, Halt, Release, Snapshot
 from app.panel import Panel
-from app.patch import decline
+from app.patch import decline, reset
 from app.pictures import picture_named
 from app.scenes import NAMES, scene_named
 from app.traffic import Traffic
@@ -53,7 +53,7 @@ class Viewer:
             self.close()
             scene, picture = scene_named(name), picture_named(name)
             self.server.gui.reset()
-            self.server.scene.reset()
+            reset(self.server)
             self.scene = scene.Scene(params or scene.Params())
             self.shown = self.drawn = 0
             self.traffic.begin()

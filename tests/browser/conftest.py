@@ -1,5 +1,6 @@
 """A real Chromium for the tests that look, rendering in software: slow, and the same everywhere."""
 
+import base64
 import shutil
 import time
 from collections.abc import Callable, Iterator
@@ -41,6 +42,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "/tests/browser/" in item.path.as_posix():
             item.add_marker(pytest.mark.browser)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def asked_often() -> Iterator[None]:
+    """Many tests wait for a browser to say that it draws water."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("app.patch.ASK_EVERY", 0.05)
+        yield
 
 
 @pytest.fixture(scope="session")
@@ -90,13 +99,19 @@ class Tab:
 
     def vertices(self, node: str) -> np.ndarray:
         """The vertices (n, 3) that the page holds of a mesh, empty where it has none."""
+        # As text: a list of 50,000 numbers takes seconds to come through.
         numbers = self.page.evaluate(
             """name => { const ref = window.__viserMutable?.nodeRefFromName?.[name]; let found = null;
                if (ref) ref.traverse(o => { if (o.isMesh && !found) found = o; });
-               return found ? Array.from(found.geometry.attributes.position.array) : []; }""",
+               if (!found) return "";
+               const bytes = new Uint8Array(new Float32Array(found.geometry.attributes.position.array).buffer);
+               let text = "";
+               for (let at = 0; at < bytes.length; at += 4096)
+                   text += String.fromCharCode(...bytes.subarray(at, at + 4096));
+               return btoa(text); }""",
             node,
         )
-        return np.array(numbers).reshape(-1, 3)
+        return np.frombuffer(base64.b64decode(numbers), np.float32).astype(float).reshape(-1, 3)
 
     def drag(self, start: tuple[float, float], end: tuple[float, float], pause: int = 50) -> None:
         """Press at one pixel, move to another in steps, and hold; `release` lets go."""
@@ -115,8 +130,8 @@ class Tab:
         self.page.mouse.up()
 
 
-@pytest.fixture(scope="module")
-def one_page(request: pytest.FixtureRequest, chromium: Any) -> Iterator[tuple[Viewer, Tab]]:
+@pytest.fixture(scope="package")
+def one_page(chromium: Any) -> Iterator[tuple[Viewer, Tab]]:
     viewer = Viewer("127.0.0.1", 0)
     tab = Tab(chromium, viewer.port)
     yield viewer, tab
@@ -126,7 +141,7 @@ def one_page(request: pytest.FixtureRequest, chromium: Any) -> Iterator[tuple[Vi
 
 @pytest.fixture
 def shown(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
-    """One viewer and one page for a whole module, as a page is slow to load; its scene opens anew for each test."""
+    """One viewer and one page for all modules, as a page is slow to load; a test's scene opens anew on it."""
     viewer, tab = one_page
     tab.errors.clear()
     tab.follow(viewer, request.module.SCENE, getattr(request.module, "PARAMS", None))

@@ -8,6 +8,8 @@ from tests.browser.conftest import Tab
 from tests.browser.test_rope import pixel
 
 SCENE = "cloth"
+COUNT_FRAMES = """() => { const scene = window.__viserMutable.scene, earlier = scene.onBeforeRender; window.frames = 0;
+    scene.onBeforeRender = function (...all) { window.frames++; return earlier.apply(this, all); }; }"""
 
 
 def test_every_preset_is_drawn_and_moves_without_console_errors(shown: tuple[Viewer, Tab]) -> None:
@@ -20,6 +22,22 @@ def test_every_preset_is_drawn_and_moves_without_console_errors(shown: tuple[Vie
         assert np.isfinite(tab.vertices("/cloth")).all()
     assert not lab.loop.halted
     assert tab.errors == []
+
+
+def test_a_browser_draws_nothing_while_paused_whatever_was_shown_before(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.follow(lab, "rope")
+    tab.wait(lambda: len(tab.vertices("/rope")) > 0)
+    lab.loop.commands.put(Pause())
+    tab.page.evaluate(COUNT_FRAMES)
+
+    def still() -> bool:
+        before = tab.page.evaluate("window.frames")
+        tab.page.wait_for_timeout(1500)
+        # viser draws once a second in any case.
+        return tab.page.evaluate("window.frames") - before <= 2
+
+    tab.wait(still, 30)
 
 
 def test_a_particle_is_dragged_by_the_mouse(shown: tuple[Viewer, Tab]) -> None:

@@ -1,4 +1,4 @@
-"""`springtide stability`, coarse and in one process."""
+"""`springtide stability`, coarse."""
 
 import csv
 
@@ -12,7 +12,7 @@ from sim.springs import INTEGRATORS
 
 @pytest.fixture(scope="module")
 def maps() -> list[linear.LinearMap]:
-    return linear.measure(quick=True, workers=1)
+    return linear.measure(quick=True)
 
 
 def test_the_linear_maps_agree_with_theory_all_over(maps):

@@ -48,7 +48,7 @@ def test_nothing_steps_until_somebody_looks(lab: Viewer, open_tab) -> None:
     tab.wait(lambda: lab.loop.counts["steps"] > 10)
     tab.page.close()
     while lab.audience():
-        pass
+        lab.stop.wait(0.01)
     lab.stop.wait(1.0)  # what was under way ends
     steps = lab.loop.counts["steps"]
     lab.stop.wait(0.5)

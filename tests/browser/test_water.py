@@ -219,7 +219,7 @@ def test_a_mesh_of_any_shape_is_water_too(chromium, server):
     water = Water(server, "/disc", rings, spokes, 60.0, faces=faces, look=sky(server, "park"))
     vertices = np.stack([r * np.cos(a), r * np.sin(a), 0 * r], -1)
     water.set_surface(vertices, np.zeros((rings, spokes, 2)), np.ones((rings, spokes)))
-    page, errors = visit(chromium, server)
+    page, errors = visit(chromium, server, shaded=False)
     assert wait(page, lambda: water.alive is True)
     assert materials(page) == {"/disc": "springtide-water/disc"}
     assert errors == []

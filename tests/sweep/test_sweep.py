@@ -41,7 +41,7 @@ seconds = 40.0
 [set]
 points = 200
 [knobs]
-time_step = [4e-3, 2e-3, 1.5e-3, 1e-3, 1e-4, 1.1e-4]
+time_step = [4e-3, 2e-3, 1.5e-3, 1e-3, 2e-4, 2.1e-4]
 """
 
 

@@ -18,7 +18,6 @@ from sim.floating import (
     pull,
     step,
 )
-from sim.floating.hydrostatics import rotation_matrix
 from sim.ocean.radial import SurfaceAt
 from sim.ocean.spill import Spill
 
@@ -135,6 +134,8 @@ class Crowd:
             bodies.append(Body(hull, density, (x, y, -hull.extents[2, 0] - sunk)))
         self.fleet: Fleet = make_fleet(bodies)
         self.home = self.fleet.position[:, :2].copy()
+        self.keel = np.array([hulls[kind].extents[2, 0] for kind in self.kinds])  # [m], negative
+        self.round = np.array([kind == "ball" for kind in self.kinds], bool)
         self.widths = np.array([np.ptp(hulls[kind].extents[0]) for kind in self.kinds])
         self.meter = HeaveMeter(self.count)
         self.held: dict[int, np.ndarray] = {}
@@ -210,12 +211,11 @@ class Crowd:
     def measure(self, t: float, at: SurfaceAt, duration: float) -> None:
         """Take drafts: how deep each keel lies below the plane of the water, which a body on a wave leans with."""
         normal = np.column_stack([-at.slope, np.ones(self.count)])
-        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-        for i, kind in enumerate(self.kinds):
-            down = -normal[i] if kind == "ball" else -rotation_matrix(self.fleet.rotation[i])[:, 2]
-            keel = self.fleet.position[i] - self.hulls[kind].extents[2, 0] * down
-            above = np.array([*self.fleet.position[i, :2], at.height[i]])
-            self.draft[i] = normal[i] @ (above - keel)
+        normal /= np.sqrt((normal * normal).sum(axis=1, keepdims=True))
+        up = np.where(self.round[:, None], normal, upward(self.fleet.rotation))
+        below = self.keel[:, None] * up  # from a body's centre to its keel
+        below[:, 2] += self.fleet.position[:, 2] - at.height
+        self.draft[:] = -(normal * below).sum(axis=1)
         self.meter.take(t, self.draft, duration)
 
     def readings(self, t: float, most: int = 6) -> tuple[Reading, ...]:
@@ -225,6 +225,12 @@ class Crowd:
             Reading(kind, float(self.draft[i]), float(self.meter.mean[i]), self.meter.period(i, t), self.theory[kind])
             for i, kind in ((i, self.kinds[i]) for i in shown)
         )
+
+
+def upward(rotation: np.ndarray) -> np.ndarray:
+    """The bodies' own z axes (n, 3) in the world, of unit quaternions (n, 4): the matrices' last columns."""
+    w, x, y, z = rotation.T
+    return np.stack([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)], axis=1)
 
 
 def theory_of(hulls: dict[str, Hull], density: float, spill: Spill) -> dict[str, Theory]:

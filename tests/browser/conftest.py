@@ -70,6 +70,7 @@ class Tab:
     def __init__(self, chromium: Any, port: int, width: int = 900, height: int = 560, shaded: bool = False) -> None:
         self.page = new_page(chromium, width, height, shaded)
         self.errors: list[str] = []
+        self.followed = 0  # scenes that were opened for it
         self.page.on("console", self.note)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.goto(f"http://127.0.0.1:{port}/?hideViserLogo&fixedDpr={DPR}")
@@ -91,10 +92,10 @@ class Tab:
     def follow(self, viewer: Viewer, scene: str, params: Any = None) -> None:
         """Open a scene in place of the one that is open, and wait until the page has it all, its keys too."""
         viewer.open(scene, params)
-        mark = viewer.server.gui.add_html('<i class="springtide-mark"></i>')
-        self.wait(lambda: self.page.locator(".springtide-mark").count())
+        self.followed += 1
+        mark = viewer.server.gui.add_html(f'<i class="springtide-mark-{self.followed}"></i>')
+        self.wait(lambda: self.page.locator(f".springtide-mark-{self.followed}").count())
         mark.remove()
-        self.wait(lambda: not self.page.locator(".springtide-mark").count())
         self.errors = [error for error in self.errors if LATE not in error]
 
     def vertices(self, node: str) -> np.ndarray:

@@ -11,12 +11,13 @@ import pytest
 
 from app.__main__ import main
 from app.blowout import Blowout, slick_reach
-from app.crowd import HeaveMeter, hull_of, place_of
+from app.crowd import HeaveMeter, hull_of, place_of, upward
 from app.messages import Grab, Place, Release
 from app.radial_knobs import PRESETS, Params, hidden, spill_of
 from app.scenes import radial
 from app.scenes.radial import Scene
 from sim.floating import equilibrium_draft, heave_period
+from sim.floating.hydrostatics import rotation_matrix
 from sim.knobs import check, clamp, knobs
 from sim.ocean.fluids import fluids
 from sim.ocean.radial import RadialSea
@@ -50,6 +51,13 @@ def test_bodies_let_go_too_high_settle_at_the_drafts_of_the_readout(changes: dic
     run(scene, 110.0)
     for reading in scene.gauge().readings:
         assert reading.draft == pytest.approx(reading.theory.draft, abs=1e-4)
+
+
+def test_the_bodies_own_axes_are_the_matrices_last_columns():
+    turns = np.random.default_rng(0).normal(size=(9, 4))
+    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    expected = [rotation_matrix(turn)[:, 2] for turn in turns]
+    np.testing.assert_allclose(upward(turns), expected, atol=1e-15)
 
 
 def test_oil_poured_on_adds_d_times_one_minus_the_ratio() -> None:

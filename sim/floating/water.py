@@ -60,9 +60,9 @@ def make_water(
     thickness = steps[-1][1]
 
     def field(name: str, value: np.ndarray | None, shape: tuple[int, ...], otherwise: np.ndarray | float) -> np.ndarray:
-        array = np.array(otherwise if value is None else value, dtype=float, order="C")
         if value is None:
-            return np.array(np.broadcast_to(array, shape), order="C")  # a view would be read-only: another signature
+            return np.full(shape, otherwise, dtype=float)
+        array = np.array(value, dtype=float, order="C")
         if array.shape != shape:
             raise refusal(name, array.shape, f"an array of shape {shape}")
         return array

@@ -10,6 +10,7 @@ from app.messages import Vector
 
 SAME = 0.02  # [m] within which a camera, or its target, is where it was put
 HANDS_ON = 0.4  # [s] since a hand last moved the camera, for which it is left alone
+SETTLING = 1.5  # [s] from a camera's first placing: until then a page may still answer with where it was before
 STEP = 0.02  # [m] that the body goes before the cameras follow
 KEPT = 900  # placings, half a minute of them, that a slow page may still answer with
 
@@ -27,13 +28,14 @@ class Chase:
         self.mine: dict[int, np.ndarray] = {}  # client -> the same, as its user has it now
         self.placed: dict[int, np.ndarray] = {}  # client -> (KEPT, 2, 3), the last ones in a ring
         self.turn: dict[int, int] = {}
+        self.since: dict[int, float] = {}  # client -> when it was first placed [s]
         self.moved: dict[int, float] = {}  # client -> when a hand last moved its camera [s]
 
     def start(self, here: np.ndarray, offset: Iterable[Vector]) -> None:
         """Begin beside a body at `here` (3,) [m]; offset: camera and target from it [m]."""
         self.here, self.offset = here, np.array(list(offset))
         self.first = here + self.offset
-        self.mine, self.placed, self.turn, self.moved = {}, {}, {}, {}
+        self.mine, self.placed, self.turn, self.since, self.moved = {}, {}, {}, {}, {}
 
     def go(self, here: np.ndarray, cameras: dict[int, Any], now: float | None = None) -> None:
         """Follow to `here` (3,) [m] with the cameras by client; now [s]: a clock."""
@@ -42,7 +44,7 @@ class Chase:
         for client, camera in cameras.items():
             if client not in self.mine:
                 before = np.array([camera.position, camera.look_at], float)
-                self.mine[client], self.turn[client] = self.offset, 0
+                self.mine[client], self.turn[client], self.since[client] = self.offset, 0, now
                 self.placed[client] = np.full((KEPT, 2, 3), np.inf)
                 self.remember(client, before)
                 self.remember(client, self.first)
@@ -51,10 +53,11 @@ class Chase:
             at = np.array([camera.position, camera.look_at], float)
             # The two arrive one after the other, so that a page may answer with a new one and an old.
             off = np.abs(at - self.placed[client]).max(axis=2).min(axis=0)
-            if off.max() > SAME:
+            elsewhere = bool(off.max() > SAME)
+            if elsewhere and now - self.since[client] > SETTLING:
                 self.mine[client], self.moved[client] = at - here, now
                 self.remember(client, at)
-            elif on and now - self.moved.get(client, -np.inf) > HANDS_ON:
+            elif (on or elsewhere) and now - self.moved.get(client, -np.inf) > HANDS_ON:
                 self.place(client, camera, here)
         if on:
             self.here = here

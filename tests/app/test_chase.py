@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from app.pictures.chase import HANDS_ON, Chase
+from app.pictures.chase import HANDS_ON, SETTLING, Chase
 
 OFFSET = ((-3.0, -4.0, 2.0), (0.0, 0.0, 0.0))
 
@@ -46,11 +46,12 @@ def test_a_hand_that_turns_the_camera_is_obeyed_and_not_disturbed() -> None:
     one, other = camera(), camera()
     chase, cameras = begun(one, other)
     one.position = np.array([5.0, 1.0, 3.0])
-    chase.go(np.array([1.0, 0.0, 0.0]), cameras, 0.1)
+    start = 1.1 * SETTLING
+    chase.go(np.array([1.0, 0.0, 0.0]), cameras, start)
     np.testing.assert_array_equal(one.position, [5.0, 1.0, 3.0])
-    chase.go(np.array([2.0, 0.0, 0.0]), cameras, 0.1 + 0.5 * HANDS_ON)
+    chase.go(np.array([2.0, 0.0, 0.0]), cameras, start + 0.5 * HANDS_ON)
     np.testing.assert_array_equal(one.position, [5.0, 1.0, 3.0])
-    chase.go(np.array([3.0, 0.0, 0.0]), cameras, 0.2 + HANDS_ON)
+    chase.go(np.array([3.0, 0.0, 0.0]), cameras, start + 1.1 * HANDS_ON)
     np.testing.assert_allclose(one.position, [3.0 + 4.0, 1.0, 3.0])
     np.testing.assert_allclose(other.position, [3.0 - 3.0, -4.0, 2.0])
 
@@ -62,3 +63,13 @@ def test_a_page_that_takes_up_the_first_placing_late_is_no_hand() -> None:
     one.position, one.look_at = (np.array(each) for each in OFFSET)
     chase.go(np.array([1.5, 0.0, 0.0]), {0: one}, 0.1)
     np.testing.assert_allclose(one.position, [1.5 - 3.0, -4.0, 2.0])
+
+
+def test_what_a_page_says_of_before_is_no_hand() -> None:
+    one = camera()
+    chase, cameras = begun(one)
+    one.position = np.array([40.0, -9.0, 7.0])  # where another scene had it
+    chase.go(np.zeros(3), cameras, 0.5 * SETTLING)
+    np.testing.assert_allclose(one.position, OFFSET[0])
+    chase.go(np.array([1.0, 0.0, 0.0]), cameras, 2.0 * SETTLING)
+    np.testing.assert_allclose(one.position - np.array([1.0, 0.0, 0.0]), OFFSET[0])

@@ -113,7 +113,7 @@ def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(shown: tuple[Vie
     load(lab, spill="layer", thickness=0.3, speed=4.0)
     tab.wait(lambda: brightness() < 0.3 * clear)
     theory = lab.scene.gauge().readings[0].theory
-    tab.wait(lambda: np.abs(lab.scene.crowd.draft - theory.draft).max() < 5e-3)
+    tab.wait(lambda: np.abs(lab.scene.crowd.draft - theory.draft).max() < 2e-3)
     assert (lab.scene.crowd.draft > theory.in_water + 0.03).all()
     tab.wait(lambda: tab.page.get_by_text(f"{theory.draft:.3f}").count() > 0)
     assert tab.errors == []

@@ -1,6 +1,5 @@
 """`State`: what changes while a net moves, and `advance`, which changes it."""
 
-import copy
 import dataclasses
 import math
 
@@ -36,9 +35,7 @@ class State:
         return cls(net.x0.copy(), np.zeros_like(net.x0))
 
     def copy(self) -> "State":
-        twin = copy.copy(self)
-        twin.x, twin.v = self.x.copy(), self.v.copy()
-        return twin
+        return dataclasses.replace(self, x=self.x.copy(), v=self.v.copy())
 
     @property
     def is_sane(self) -> bool:

@@ -87,7 +87,7 @@ def on_cluster(address: str, jobs: dict[int, Job]) -> Iterator[tuple[int, Outcom
     Raises ValueError where no scheduler or worker answers, or the workers run another program; OSError where the
     scheduler goes away.
     """
-    from distributed import Client, as_completed
+    from distributed import CancelledError, Client, as_completed
 
     check_address(address)
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
@@ -100,18 +100,20 @@ def on_cluster(address: str, jobs: dict[int, Job]) -> Iterator[tuple[int, Outcom
         numbers = {}
         for number, job in jobs.items():
             numbers[client.submit(run_case, *job, key=f"springtide-{os.getpid()}-{number}", pure=False)] = number
-        for future in as_completed(list(numbers), loop=client.loop):
+        arriving = as_completed(list(numbers), loop=client.loop)
+        for future in arriving:
+            if not future.done():
+                arriving.add(future)  # its worker died holding the outcome: it is computed again
+                continue
             number = numbers.pop(future)
-            if future.status == "finished":
-                try:
-                    outcome = future.result()
-                except OSError:
-                    raise OSError(f"the scheduler at {address} has gone") from None  # before it handed this one over
-                yield number, outcome
-            elif future.status == "error":
+            if future.status == "error":
                 yield number, failed(f"on the cluster: {one_line(future.exception())}")
-            else:
-                raise OSError(f"the scheduler at {address} has gone")
+                continue
+            try:
+                outcome = future.result()
+            except (OSError, CancelledError):
+                raise OSError(f"the scheduler at {address} has gone") from None
+            yield number, outcome
 
 
 def check_address(address: str) -> None:

@@ -44,6 +44,16 @@ def dask(tmp_path):
         process.wait(30)
 
 
+def wait_for_scheduler(address, condition) -> None:
+    from distributed import Client
+
+    end = time.monotonic() + 60
+    with Client(address, set_as_default=False) as client:
+        while not client.run_on_scheduler(condition):
+            assert time.monotonic() < end
+            time.sleep(0.02)
+
+
 def test_a_worker_is_killed_in_mid_run_and_nothing_is_lost(dask, tmp_path, capsys, monkeypatch):
     address, two, _ = dask
     jobs = rope_jobs(8)
@@ -75,6 +85,20 @@ def test_a_worker_is_killed_in_mid_run_and_nothing_is_lost(dask, tmp_path, capsy
     monkeypatch.setattr(workers, "PATIENCE", 2.0)
     assert main([*command, "--fresh"]) == 2
     assert "at least one worker" in capsys.readouterr().err
+
+
+def test_outcomes_that_die_with_their_worker_are_computed_again(dask):
+    address, two, _ = dask
+    jobs = rope_jobs(8, seconds=1.0)
+    results = on_cluster(address, jobs)
+    outcomes = dict([next(results)])
+    # All the others are computed, but still on the workers, when one of these goes.
+    wait_for_scheduler(address, lambda dask_scheduler: all(t.state == "memory" for t in dask_scheduler.tasks.values()))
+    two[0].kill()
+    wait_for_scheduler(address, lambda dask_scheduler: len(dask_scheduler.workers) == 1)
+    outcomes.update(results)
+    assert sorted(outcomes) == sorted(jobs)
+    assert {outcome.end for outcome in outcomes.values()} == {FINISHED}
 
 
 def test_a_scheduler_that_goes_away_ends_the_run_with_what_there_is(dask):

@@ -1,7 +1,7 @@
 """A mesh whose vertices move and change colour every frame, which stock viser does not have.
 
-The colours travel as the vertices of a hidden mesh and reach the material through `app/patch.py`. A browser that the
-patch does not reach draws the mesh in its plain colour.
+The colours travel in one array with the vertices, behind them, where no face names them, and reach the material through
+`app/patch.py`. A browser that the patch does not reach draws the mesh in its plain colour.
 """
 
 from typing import Any
@@ -12,7 +12,7 @@ import viser
 from app.patch import hidden, patch
 from sim.knobs import refusal
 
-SUFFIX = "paint_rgb"  # the recipe's name in patch.js
+SUFFIX = "paint"  # the recipe's name in patch.js
 
 
 class Painted:
@@ -37,20 +37,19 @@ class Painted:
     ) -> None:
         self.name = name
         self._count = len(vertices)
-        colors = self._checked(colors)
-        faces = np.asarray(faces, np.uint32)
-        self.mesh = server.scene.add_mesh_simple(name, np.asarray(vertices, np.float32), faces, color=color, **mesh)
         self._patch = None if plain else patch(server)
-        self._rgb = None if self._patch is None else hidden(server, f"{name}/{SUFFIX}", colors)
+        self._numbers = np.empty((self._count if self._patch is None else 2 * self._count, 3), np.float32)
+        self._fill(vertices, colors)
+        faces = np.asarray(faces, np.uint32)
+        self.mesh = server.scene.add_mesh_simple(name, self._numbers, faces, color=color, **mesh)
         if self._patch is not None:
+            hidden(server, f"{name}/{SUFFIX}", np.zeros((1, 3)))
             self._patch.expect(name)
 
     def set(self, vertices: np.ndarray | None = None, colors: np.ndarray | None = None) -> None:
-        """Move the vertices [m], repaint them, or both; call inside `server.atomic()`."""
-        if vertices is not None:
-            self.mesh.vertices = np.asarray(vertices, np.float32)
-        if colors is not None and self._rgb is not None:
-            self._rgb.vertices = self._checked(colors)
+        """Move the vertices [m], repaint them, or both."""
+        self._fill(vertices, colors)
+        self.mesh.vertices = self._numbers
 
     @property
     def alive(self) -> bool | None:
@@ -63,8 +62,10 @@ class Painted:
             self._patch.forget(self.name)
         self.mesh.remove()
 
-    def _checked(self, colors: np.ndarray) -> np.ndarray:
-        colors = np.asarray(colors, np.float32)
-        if colors.shape != (self._count, 3):
-            raise refusal("colors", colors.shape, f"shape ({self._count}, 3)")
-        return colors
+    def _fill(self, vertices: np.ndarray | None, colors: np.ndarray | None) -> None:
+        if colors is not None and np.shape(colors) != (self._count, 3):
+            raise refusal("colors", np.shape(colors), f"shape ({self._count}, 3)")
+        if vertices is not None:
+            self._numbers[: self._count] = vertices
+        if colors is not None and self._patch is not None:
+            self._numbers[self._count :] = colors

@@ -1,8 +1,8 @@
 // The material patch: dresses stock viser's meshes from the inside, once per frame, for every node that asks.
 //
 // A mesh asks by having a hidden child mesh whose name ends in a recipe's suffix: "/rope" is painted when there is a
-// "/rope/paint_rgb" whose "vertices" carry three numbers per vertex of "/rope". So new scenes, late joiners and
-// recordings need no further script: everything that changes travels as ordinary vertices, which viser culls.
+// "/rope/paint". So new scenes, late joiners and recordings need no further script: everything that changes travels as
+// ordinary vertices, which viser culls.
 //
 // Of viser this file uses window.__viserMutable: nodeRefFromName (the group of a node), scene (its onBeforeRender runs
 // before every frame, so that a material that viser has just made anew is never drawn undressed) and requestRender.
@@ -58,11 +58,21 @@ function splice(shader, stage, chunk, text) {
   shader[stage] = shader[stage].replace(`#include <${chunk}>`, `#include <${chunk}>\n${text}`);
 }
 
-// Per-vertex colours on any mesh: "<name>/paint_rgb" carries sRGB in 0..1.
+// Per-vertex colours on any mesh with a child "<name>/paint": the latter half of its vertices, which no face names, is the
+// sRGB in 0..1 of the former.
 recipes.push({
-  suffix: "/paint_rgb",
-  frame({ mesh, channel }) {
-    if (!share(mesh, "paint", channel)) return null;
+  suffix: "/paint",
+  frame({ mesh }) {
+    const attributes = mesh.geometry.attributes;
+    const numbers = attributes.position.array;
+    const half = numbers.length / 2;
+    if (!attributes.paint || attributes.paint.array.length !== half) {
+      mesh.geometry.setAttribute("paint", new attributes.position.constructor(numbers.subarray(half), 3));
+    } else if (attributes.paint.of !== numbers) {
+      attributes.paint.array = numbers.subarray(half);
+      attributes.paint.needsUpdate = true;
+    }
+    attributes.paint.of = numbers;
     const edit = (shader) => {
       splice(shader, "vertexShader", "common", "attribute vec3 paint; varying vec3 vPaint;");
       splice(shader, "vertexShader", "begin_vertex", "vPaint = pow(max(paint, 0.0), vec3(2.2));");

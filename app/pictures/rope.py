@@ -23,7 +23,8 @@ from app.spring_report import colour_scale, stability_bar
 ROPE_COLOUR = (196, 154, 92)
 BEAD_COLOUR = (58, 68, 86)
 RINGS = 120  # about as many rings as a rope is drawn with
-UNSEEN = 2e-4  # [m] that a point may be from where it is drawn, and of the colour scale a link: far below a pixel
+UNSEEN = 2e-4  # [m] that a point may be from where it is drawn: far below a pixel
+SHADE = 2e-3  # of the colour scale that a link may be from how it is painted: no more than a step of a screen's 256
 
 
 class Picture:
@@ -57,7 +58,7 @@ class Picture:
         rings = (n - 1) * self.between + 1
         self.line = np.zeros((rings, 3))
         self.vertices, self.rgb = np.zeros((2, rings * SIDES + 2, 3), np.float32)
-        self.form(picture)
+        self.form(picture, True)
         if self.tube is not None:
             self.tube.remove()
         if self.beads is not None:
@@ -100,24 +101,25 @@ class Picture:
             self.nearest = nearest(self.points, event)
         drag(self.post, event, self.nearest)
 
-    def form(self, picture: RopePicture) -> None:
-        """The tube and its colours, which then stand for this picture and all that look the same."""
-        self.points, self.tension = picture.points, picture.tension
-        self.painted = picture.colour, picture.full_scale
+    def form(self, picture: RopePicture, repaint: bool) -> None:
+        """The tube, and its colours, which then stand for this picture and all that look the same."""
+        self.points = picture.points
         smooth_line(picture.points, self.between, self.line)
         sweep(self.line, THICKNESS, SIDES, self.vertices)
+        if not repaint:
+            return
+        self.tension = picture.tension
+        self.painted = picture.colour, picture.full_scale
         if picture.colour == "plain":
             self.rgb[:] = np.array(ROPE_COLOUR, np.float32) / 255
         else:
             paint_tube(picture.tension, self.between, picture.full_scale, SCALE, SIDES, self.rgb)
 
-    def looks_the_same(self, picture: RopePicture) -> bool:
-        """Whether nobody could tell a picture from what is shown, as of a rope that has come to rest."""
-        return (
-            self.painted == (picture.colour, picture.full_scale)
-            and float(np.abs(picture.points - self.points).max()) < UNSEEN
-            and float(np.abs(picture.tension - self.tension).max()) < UNSEEN * picture.full_scale
-        )
+    def colours_differ(self, picture: RopePicture) -> bool:
+        """Whether anybody could tell a picture's colours from those that are shown."""
+        if self.painted != (picture.colour, picture.full_scale):
+            return True
+        return float(np.abs(picture.tension - self.tension).max()) >= SHADE * picture.full_scale
 
     def show(self, picture: RopePicture) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
@@ -174,9 +176,10 @@ class Picture:
             self.build(picture)
         assert self.tube is not None
         assert self.beads is not None
-        if not self.looks_the_same(picture):
-            self.form(picture)
-        self.tube.set(self.vertices, self.rgb)
+        repaint = self.colours_differ(picture)
+        if repaint or float(np.abs(picture.points - self.points).max()) >= UNSEEN:
+            self.form(picture, repaint)
+        self.tube.set(self.vertices, self.rgb if repaint else None)
         self.beads.visible = picture.show_points
         if picture.show_points:
             self.beads.batched_positions = self.points

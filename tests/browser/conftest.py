@@ -99,13 +99,16 @@ class Tab:
         self.errors = [error for error in self.errors if LATE not in error]
 
     def vertices(self, node: str) -> np.ndarray:
-        """The vertices (n, 3) that the page holds of a mesh, empty where it has none."""
+        """The vertices (n, 3) that the page holds of a mesh, empty where it has none; of a painted one those drawn."""
         # As text: a list of 50,000 numbers takes seconds to come through.
         numbers = self.page.evaluate(
             """name => { const ref = window.__viserMutable?.nodeRefFromName?.[name]; let found = null;
                if (ref) ref.traverse(o => { if (o.isMesh && !found) found = o; });
                if (!found) return "";
-               const bytes = new Uint8Array(new Float32Array(found.geometry.attributes.position.array).buffer);
+               const numbers = new Float32Array(found.geometry.attributes.position.array);
+               const painted = window.__viserMutable.nodeRefFromName[name + "/paint"];
+               const drawn = numbers.length / (painted ? 2 : 1);
+               const bytes = new Uint8Array(numbers.buffer, 0, 4 * drawn);
                let text = "";
                for (let at = 0; at < bytes.length; at += 4096)
                    text += String.fromCharCode(...bytes.subarray(at, at + 4096));

@@ -22,6 +22,7 @@ from sim.springs import Grab as Pull
 from sim.springs.extremes import extremes
 from sim.springs.stability import Gauge, critical_stiffness, gauge, top_modes
 from sim.springs.state import State, advance, energy, velocities
+from sim.springs.tension import rope_tension
 
 __all__ = [
     "CURVES", "HELP", "PLOTS", "PRESETS", "ROOT", "SERIES", "SPHERE", "THICKNESS", "TITLE", "Params", "Scene", "build",
@@ -31,7 +32,8 @@ __all__ = [
 TITLE = "Rope"
 GAUGE_EVERY = 0.5  # [s] of simulated time between two looks at the stability of the state
 UNMOVED = 1e-3  # of a link: a rope that has moved by less since the last look is as stable as it was
-SWIFT = 0.3  # [m/s] as seen: 5 mm, about a pixel, between pictures at their highest rate
+SWIFT = 0.6  # [m/s] as seen: 10 mm, about two pixels, between pictures at their highest rate
+SLOW = 0.05  # [m/s] as seen: 3.3 mm, less than a pixel, between pictures at a quarter of it
 SAMPLE_EVERY = 1 / 30  # [s] between two plot rows
 HELP = "<b>Drag a bead</b> to pull the rope. <b>Drag the arrows</b> to move its root."
 SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "error", "tip height")
@@ -123,10 +125,16 @@ class Scene:
 
     @property
     def frame(self) -> float:
-        """Time [s] between pictures: half as many where nothing moves so fast that it would show."""
-        if self.race or self.held or not self.root.at_rest or not self.sphere.at_rest:
+        """Time [s] between pictures: half as many, or a quarter, where nothing moves so fast that it would show."""
+        seen = self.fastest * self.params.speed
+        if seen > SWIFT or self.race or self.held or not self.root.at_rest or not self.sphere.at_rest:
             return FRAME
-        return FRAME if self.fastest * self.params.speed > SWIFT else 2.0 * FRAME
+        return 2.0 * FRAME if seen > SLOW or self.plotted else 4.0 * FRAME
+
+    @property
+    def plotted(self) -> bool:
+        """Whether a plot is open, which a picture each `SAMPLE_EVERY` feeds."""
+        return self.params.plot_energy or self.params.plot_tip
 
     @property
     def time(self) -> float:
@@ -141,7 +149,6 @@ class Scene:
         self.held = None
         self.net = build(self.params, self.root.position, self.sphere.position)
         self.state = State.at_rest(self.net)
-        self.fastest = 0.0  # [m/s] that a point moves at, along an axis
         self.race: Race | None = None
         if self.params.ropes > 1:
             self.race = Race(self.net, self.params)
@@ -159,6 +166,7 @@ class Scene:
         reach = extremes(self.state.x, self.state.v).reach
         self.bound = 4.0 + 3.0 * (self.params.length + 0.5 * weight * n * (n + 1)) + reach
         self.sampled_at = -np.inf
+        self.fastest = np.inf  # [m/s] that a point moves at, along an axis: not known yet
         self.counted = self.state.force_evals, self.state.steps
         self.corrections = 0.0
 
@@ -219,7 +227,7 @@ class Scene:
             self.lost = True
             raise DivergenceError(self.diagnosis())
         self.fastest = found.speed
-        if self.root.at_rest:
+        if net.pin_paths and self.root.at_rest:  # it has just come to rest
             self.state.x[:, 0, 0] = self.root.position
             self.state.v[:, 0, 0] = 0.0
         self.net = net
@@ -227,7 +235,7 @@ class Scene:
         self.work.add("looks at the stability", 1, due)
         if due:
             self.look()
-        if (self.params.plot_energy or self.params.plot_tip) and self.state.t - self.sampled_at >= SAMPLE_EVERY:
+        if self.plotted and self.state.t - self.sampled_at >= SAMPLE_EVERY:
             self.sample()
 
     @property
@@ -254,13 +262,13 @@ class Scene:
 
     def net_under_way(self, t: float, duration: float) -> Net:
         """The net with the motions of root, sphere and pull over the next `duration` [s]."""
+        still = self.root.at_rest and self.sphere.at_rest and self.held is None
+        if still and not (self.net.pin_paths or self.net.grab or any(self.net.sphere_velocity)):
+            return self.net  # as it was in the last frame, when nothing moved either: most of the time
         path = self.root.advance(t, duration)
         before = self.sphere.position
         self.sphere.advance(t, duration)
         velocity = tuple((b - a) / duration for a, b in zip(before, self.sphere.position, strict=True))
-        still = path is None and self.held is None and before == self.sphere.position
-        if still and not (self.net.pin_paths or self.net.grab or any(self.net.sphere_velocity)):
-            return self.net  # as it was in the last frame, when nothing moved either: most of the time
         pull = None
         if self.held is not None:
             index, hand = self.held
@@ -349,9 +357,7 @@ class Scene:
 
     def tension(self) -> NDArray[np.float64]:
         """(n - 1,) spring force along each link [N], negative where pressed."""
-        link = self.net.families[0]
-        r = np.diff(self.state.x[:, 0], axis=1)
-        return link.stiffness * (np.sqrt((r * r).sum(axis=0)) - link.rest)
+        return rope_tension(self.net, self.state.x)
 
     def picture(self) -> RopePicture:
         weight = self.net.mass * abs(self.net.gravity[2]) * (self.params.points - 1)

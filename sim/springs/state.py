@@ -35,7 +35,9 @@ class State:
         return cls(net.x0.copy(), np.zeros_like(net.x0))
 
     def copy(self) -> "State":
-        return dataclasses.replace(self, x=self.x.copy(), v=self.v.copy())
+        return State(
+            self.x.copy(), self.v.copy(), self.t, self.lag, self.dissipated, self.work, self.force_evals, self.steps
+        )
 
     @property
     def is_sane(self) -> bool:

@@ -1,5 +1,6 @@
 """What the viewer's threads live through."""
 
+import dataclasses
 import time
 from typing import Any
 
@@ -30,6 +31,12 @@ def test_a_picture_that_cannot_be_drawn_halts_the_run_once_and_the_threads_live(
     wait_for(lambda: lab.shown == lab.loop.latest.serial)
     assert all(thread.is_alive() for thread in lab.threads)
     assert capsys.readouterr().err.count("Traceback") == 1
+
+
+def test_what_is_handed_over_is_not_held_back(lab: Viewer) -> None:
+    buffer = lab.server._websock_server.get_message_buffer()
+    assert "window_duration_sec" in {field.name for field in dataclasses.fields(buffer)}  # as viser names it
+    assert buffer.window_duration_sec == 0.0
 
 
 def test_a_browser_that_goes_lets_go_of_what_it_held(lab: Viewer) -> None:

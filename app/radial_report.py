@@ -18,7 +18,7 @@ NAMES = {"buoy_red": "Red buoy", "buoy_yellow": "Yellow buoy", "crate": "Box", "
 SAMPLE_WAVE = 10.0  # [m] the wave that stands for all where one must
 TABLE = "border-collapse:collapse;font-size:10.5px"
 CELL = 'style="padding:1px 3px 1px 0;text-align:right"'
-HEAD = 'style="padding:1px 3px 1px 0;text-align:right;font-weight:600;opacity:.7"'
+HEAD = 'style="padding:1px 3px 1px 0;text-align:right;font-weight:400;opacity:.7"'
 
 
 def metres(value: float) -> str:
@@ -32,7 +32,7 @@ def seconds(value: float) -> str:
 def row(cells: list[str], style: str = CELL, tag: str = "td") -> str:
     first = cells[0]
     return (
-        f'<tr><{tag} style="padding:1px 2px 1px 0;text-align:left;white-space:nowrap">{first}</{tag}>'
+        f'<tr><{tag} style="padding:1px 6px 1px 0;text-align:left;white-space:nowrap">{first}</{tag}>'
         + "".join(f"<{tag} {style}>{cell}</{tag}>" for cell in cells[1:])
         + "</tr>"
     )

@@ -9,8 +9,8 @@ more; they are used in this file and in `patch.js` alone, and `tests/browser/tes
   server and never one per frame.
 - `window.__viserMutable` in the page: `nodeRefFromName`, `scene`, `requestRender`.
 
-Everything that changes travels as vertices, of hidden meshes or behind a mesh's own, which viser culls and replaces like
-any others. A hidden mesh named "<node>/<suffix>" is what makes the script dress "<node>".
+Everything that changes travels as vertices, of hidden meshes or behind a mesh's own, which viser culls and replaces
+like any others. A hidden mesh named "<node>/<suffix>" is what makes the script dress "<node>".
 
 Whether it worked is asked of each browser: the script writes which nodes it has drawn into the page's local storage,
 where `ClientHandle.local_storage` (public) reads it.

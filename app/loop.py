@@ -5,6 +5,7 @@ plain function of elapsed wall time, so that tests, headless runs and benchmarks
 """
 
 import collections
+import contextlib
 import queue
 import threading
 import time
@@ -31,6 +32,7 @@ FRAME = 1 / 60  # [s] between ticks
 BUDGET = 0.7  # part of a frame that solving may take; the rest is for streaming
 GROWTH = 8  # from one part to the next of steps whose cost is not known
 IDLE = 0.1  # [s] between looks while there is nothing to do
+SHORT = 2 * FRAME  # [s] that a hand may have to wait
 LONGEST = 0.25  # [s] of wall time that one tick makes up for
 WINDOW = 1.0  # [s] over which rates are measured
 
@@ -97,6 +99,7 @@ class SimLoop:
         self.read_params = read_params or (lambda: scene.params)
         self.audience = audience
         self.clock, self.effort = clock, effort
+        self.first: Command | None = None  # what ended a sleep, for the next tick
         self.running = not paused
         self.halted = ""
         self.untried = True  # nothing is known of what a step costs with the knobs as they are
@@ -188,7 +191,10 @@ class SimLoop:
 
     def drain(self) -> bool:
         """Obey every waiting command; True where there was one."""
-        changed = False
+        changed = self.first is not None
+        if self.first is not None:
+            self.obey(self.first)
+            self.first = None
         while not self.commands.empty():  # nobody else takes from it
             self.obey(self.commands.get_nowait())
             changed = True
@@ -270,12 +276,9 @@ class SimLoop:
                 self.wait(rest, stop, busy)
 
     def wait(self, seconds: float, stop: threading.Event, busy: bool) -> None:
-        """Sleep; while idle, a command ends the sleep at once."""
-        if busy:
+        """Sleep; while idle, or where pictures are few, a command ends the sleep at once."""
+        if busy and seconds <= SHORT:
             stop.wait(seconds)
             return
-        try:
-            self.obey(self.commands.get(timeout=seconds))
-            self.publish(0.0)
-        except queue.Empty:
-            pass
+        with contextlib.suppress(queue.Empty):
+            self.first = self.commands.get(timeout=seconds)

@@ -1,6 +1,7 @@
 """The loop, ticked with a clock of the test's own."""
 
 import dataclasses
+import threading
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -8,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.ledger import Work
-from app.loop import BUDGET, FRAME, FixedStep, SimLoop
+from app.loop import BUDGET, FRAME, IDLE, FixedStep, SimLoop
 from app.messages import DivergenceError, Halt, Pause, Play, Reset, StepOnce, TogglePlay, where_not_finite
 from sim.knobs import knob
 
@@ -272,3 +273,22 @@ def test_whoever_shows_is_told_of_each_new_snapshot_and_of_nothing_else() -> Non
     loop.commands.put(StepOnce())
     loop.tick(FRAME)
     assert loop.fresh.is_set()
+
+
+@pytest.mark.parametrize(("busy", "seconds"), [(False, IDLE), (True, 4 * FRAME)])
+def test_a_command_ends_a_long_sleep_and_is_obeyed_after_the_knobs(busy: bool, seconds: float) -> None:
+    given = Params()
+    loop, scene = make(read_params=lambda: given)
+    stop = threading.Event()
+    threading.Timer(0.1, lambda: loop.commands.put(Reset())).start()
+    loop.wait(1000.0 * seconds, stop, busy)
+    assert loop.first == Reset()
+    assert scene.resets == 0
+    given = Params(stiffness=3.0)
+    reset, seen = scene.reset, []
+    scene.reset = lambda: seen.append(scene.params.stiffness) or reset()
+    loop.tick(FRAME)
+    assert seen == [3.0]
+    assert scene.resets == 1
+    loop.tick(FRAME)
+    assert scene.resets == 1

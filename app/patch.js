@@ -64,6 +64,7 @@ recipes.push({
   suffix: "/paint",
   frame({ mesh }) {
     const attributes = mesh.geometry.attributes;
+    if (!attributes.position) return null;
     const numbers = attributes.position.array;
     const half = numbers.length / 2;
     if (!attributes.paint || attributes.paint.array.length !== half) {

@@ -134,6 +134,15 @@ function chooseLevels(sea, camera) {
   }
 }
 
+// Give a mesh the "vertices" of a hidden mesh as one more vertex attribute. Same object, so no copy and no upload of
+// its own: viser swaps the array behind it at each update. False while the two differ in length.
+function share(mesh, attribute, channel) {
+  const source = channel.geometry.attributes.position;
+  if (!source || source.count !== mesh.geometry.attributes.position.count) return false;
+  if (mesh.geometry.attributes[attribute] !== source) mesh.geometry.setAttribute(attribute, source);
+  return true;
+}
+
 recipes.push({
   suffix: "/water_look",
   sweep() {

@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 from app.scenes import NAMES, scene_named
 
-MOST_FACES = 20_000  # of a hull from a file: pressure is summed over all of them at each step
+MAX_HULL_FACES = 20_000  # of a hull from a file: pressure is summed over all of them at each step
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -45,7 +45,7 @@ def make_parser() -> argparse.ArgumentParser:
     run.add_argument("--seconds", type=float, required=True, metavar="S", help="simulated time")
     run.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
     run.add_argument("--rate", type=float, default=30.0, metavar="HZ", help="frames kept per simulated second (30)")
-    add_knobs(run)
+    add_parameters(run)
     run.set_defaults(command=run_headless)
 
     bench = commands.add_parser("bench", help="run time against error, kernels, start-up")
@@ -60,7 +60,7 @@ def make_parser() -> argparse.ArgumentParser:
     stability.add_argument("--out", type=Path, metavar="DIR", help="write CSV and figures here")
     stability.set_defaults(command=run_stability)
 
-    sweep = commands.add_parser("sweep", help="a scene over ranges of its knobs, into one NetCDF file")
+    sweep = commands.add_parser("sweep", help="a scene over ranges of its parameters, into one NetCDF file")
     sweep.add_argument("spec", type=Path, metavar="SPEC.toml", help="what to sweep; see assets/sweeps")
     sweep.add_argument("--out", type=Path, required=True, metavar="FILE.nc")
     sweep.add_argument("--scheduler", metavar="ADDRESS", help="run on this Dask cluster, not on this machine's cores")
@@ -79,35 +79,35 @@ def add_serving(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
     parser.add_argument("--paused", action="store_true", help="start still")
     parser.add_argument("--plain-water", action="store_true", help="draw by viser's public interface alone")
-    add_knobs(parser)
+    add_parameters(parser)
 
 
-def add_knobs(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--preset", type=Path, metavar="FILE.json", help="knobs of a scene, as JSON")
-    parser.add_argument("--set", nargs="+", default=[], metavar="KNOB=VALUE", help="set knobs of the scene")
+def add_parameters(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--preset", type=Path, metavar="FILE.json", help="parameters of a scene, as JSON")
+    parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="set parameters of the scene")
     parser.add_argument("--hull", type=Path, metavar="FILE", help="a closed mesh that floats in the radial sea besides")
 
 
 def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
     """The scene's parameters from --preset and --set; raises ValueError for what is not allowed."""
-    from app.presets import read_preset
-    from sim.knobs import check, parse
+    from app.scenes.preset_files import read_preset
+    from sim.parameters import check_record, parse_assignments
 
     values = read_preset(arguments.preset, scene) if arguments.preset else {}
-    params = check(scene.Params, {**values, **parse(scene.Params, arguments.set)})
+    params = check_record(scene.params, {**values, **parse_assignments(scene.params, arguments.set)})
     return params if arguments.hull is None else with_hull(params, arguments.hull)
 
 
 def with_hull(params: Any, path: Path) -> Any:
     """The parameters with one more hull; raises ValueError where the scene floats nothing, or the mesh is no hull."""
     from sim.floating import Hull
-    from sim.knobs import refusal
+    from sim.validation import argument_error
 
     if not hasattr(params, "hull"):
-        raise refusal("--hull", str(path), "a hull with --scene radial only")
+        raise argument_error("--hull", str(path), "a hull with --scene radial only")
     faces = len(Hull.load(path).faces)
-    if faces > MOST_FACES:
-        raise refusal("--hull", f"{path} of {faces} triangles", f"at most {MOST_FACES}")
+    if faces > MAX_HULL_FACES:
+        raise argument_error("--hull", f"{path} of {faces} triangles", f"at most {MAX_HULL_FACES}")
     return dataclasses.replace(params, hull=str(path))
 
 
@@ -116,7 +116,7 @@ def serve(arguments: argparse.Namespace) -> int:
         raise ValueError(f"--port: {arguments.port} is not allowed; allowed: 0 to 65535")
     scene = scene_named(arguments.scene)
     params = read_params(scene, arguments)
-    from app.serve import serve_lab
+    from app.commands.serve import serve_lab
 
     return serve_lab(
         arguments.scene,
@@ -132,7 +132,7 @@ def serve(arguments: argparse.Namespace) -> int:
 def run_headless(arguments: argparse.Namespace) -> int:
     scene = scene_named(arguments.scene)
     params = read_params(scene, arguments)
-    from app.headless import run_to_file
+    from app.commands.run import run_to_file
 
     return run_to_file(arguments.scene, scene, params, arguments.seconds, arguments.rate, arguments.out)
 
@@ -156,7 +156,7 @@ def run_sweep(arguments: argparse.Namespace) -> int:
 
 
 def run_warmup(arguments: argparse.Namespace) -> int:
-    from app.warmup import warm_up
+    from app.commands.warmup import warm_up
 
     return warm_up()
 

@@ -1,37 +1,37 @@
-"""All that crosses a thread: commands to the simulation, snapshots from it. Both are immutable."""
+"""All that crosses a thread: commands to the simulation, snapshots and plot rows from it. All are immutable."""
 
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.ledger import Works
-
 Vector = tuple[float, float, float]
 
-REACH = 100.0  # [m] from the origin: nothing from a browser is placed farther out
+MAX_DISTANCE = 100.0  # [m] from the origin: nothing from a browser is placed farther out
 
 
-def finite_vector(values: Any, reach: float = REACH) -> Vector | None:
-    """Three finite numbers within `reach`, or None where it is not three finite numbers."""
+def finite_vector(values: Any, max_distance: float = MAX_DISTANCE) -> Vector | None:
+    """Three finite numbers, each bounded to `max_distance`; None where it is not three finite numbers."""
     try:
         x, y, z = (float(c) for c in values)
     except (TypeError, ValueError):
         return None
     if not all(math.isfinite(c) for c in (x, y, z)):
         return None
-    return min(max(x, -reach), reach), min(max(y, -reach), reach), min(max(z, -reach), reach)
+    d = max_distance
+    return min(max(x, -d), d), min(max(y, -d), d), min(max(z, -d), d)
 
 
-def where_not_finite(picture: Any, name: str = "") -> str:
-    """Which part of a picture (records, tuples, float arrays) holds a NaN or an infinity; "" where none does."""
-    if isinstance(picture, np.ndarray):
-        return "" if picture.dtype.kind != "f" or np.isfinite(picture).all() else name or "an array"
-    if isinstance(picture, float):
-        return "" if math.isfinite(picture) else name or "a number"
-    if isinstance(picture, tuple):
-        names = getattr(picture, "_fields", (name,) * len(picture))
-        for label, part in zip(names, picture, strict=True):
+def where_not_finite(frame: object, name: str = "") -> str:
+    """Which part of a frame (records, tuples, float arrays) holds a NaN or an infinity; "" where none does."""
+    if isinstance(frame, np.ndarray):
+        return "" if frame.dtype.kind != "f" or np.isfinite(frame).all() else name or "an array"
+    if isinstance(frame, float):
+        return "" if math.isfinite(frame) else name or "a number"
+    if isinstance(frame, tuple):
+        names = getattr(frame, "_fields", (name,) * len(frame))
+        for label, part in zip(names, frame, strict=True):
             where = where_not_finite(part, label)
             if where:
                 return where
@@ -39,29 +39,38 @@ def where_not_finite(picture: Any, name: str = "") -> str:
 
 
 class Play(NamedTuple):
-    """Run on."""
+    """Run."""
 
 
 class Pause(NamedTuple):
-    """Hold still."""
+    """Stop the clock."""
 
 
 class TogglePlay(NamedTuple):
-    """Run on if still, hold still if running."""
+    """Run if paused, pause if running."""
 
 
 class StepOnce(NamedTuple):
-    """Hold still and advance by one time step."""
+    """Pause, and advance by `count` time steps."""
+
+    count: int = 1
 
 
 class Halt(NamedTuple):
-    """Hold still because something went wrong, and say what."""
+    """Pause because something went wrong, and say what."""
 
     reason: str
 
 
 class Reset(NamedTuple):
-    """Back to the start of the scene, parameters and camera kept."""
+    """Back to the start of the scene; parameters and camera stay."""
+
+
+class Load(NamedTuple):
+    """Take a whole record of parameters, as a preset has it, and start from it: one command, one step of the loop."""
+
+    params: Any  # the scene's `Params`
+    number: int  # of the preset, counted from 1: parameters polled with another number belong before or after it
 
 
 class Place(NamedTuple):
@@ -72,14 +81,17 @@ class Place(NamedTuple):
 
 
 class Grab(NamedTuple):
-    """Pull a particle, by flat index, towards a target [m]."""
+    """Pull a particle or body, by flat index, towards a target [m]."""
 
     particle: int
     target: Vector
+    client: int = 0  # the browser that drags
 
 
 class Release(NamedTuple):
-    """Let go of the grabbed particle."""
+    """Let go of what a browser drags."""
+
+    client: int = 0
 
 
 class Point(NamedTuple):
@@ -89,33 +101,51 @@ class Point(NamedTuple):
     direction: Vector
 
 
-Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Place | Grab | Release | Point
+SceneCommand = Place | Grab | Release | Point  # what a scene handles; the rest is the loop's
+Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Load | SceneCommand
+
+
+class WorkCount(NamedTuple):
+    """Work of one kind: how much was done, and how much was not needed."""
+
+    done: float
+    skipped: float = 0.0
+    unit: str = ""  # of both, where they are not plain counts
+
+    @property
+    def skipped_share(self) -> float:
+        """The part that was skipped, 0 to 1."""
+        return self.skipped / (self.done + self.skipped) if self.skipped else 0.0
+
+
+WorkCounts = Mapping[str, WorkCount]
+PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SERIES); a NaN time starts the plots anew
 
 
 class Status(NamedTuple):
-    """How the loop fares."""
+    """What the simulation loop is doing."""
 
     running: bool
     time: float  # [s] simulated
     steps: int
     speed: float  # target real-time factor
-    actual: float  # real-time factor over the last second
+    actual_speed: float  # real-time factor over the last second
     capped: bool  # time that could not be made up is being dropped
-    solve: float  # [s] per frame spent solving
-    rate: float  # frames per second published
+    solve_time: float  # [s] per frame spent solving
+    frame_rate: float  # frames per second published
     halted: str  # why the run stopped by itself, or ""
 
 
 class Snapshot(NamedTuple):
-    """One frame: what the scene shows (frozen, float32), how the loop fares, and numbers for the plots."""
+    """One moment for the viewer: what the scene shows (float32), its readings, and what the loop is doing."""
 
     serial: int
-    picture: Any
+    frame: Any  # the scene's own record
     status: Status
-    gauge: Any
-    samples: tuple[tuple[float, ...], ...]  # new plot rows, (t, ...) each
-    work: Works  # what the scene did and what it skipped, since it was opened
-    curves: Any = None  # knob -> columns of its chart, where a chart is not a course in time
+    readings: Any  # the scene's own record
+    work: WorkCounts  # what the scene did and what it skipped, since it was opened
+    params: Any  # the parameters that this moment was made with
+    curves: Any = None  # parameter -> columns of its chart, where a chart is not a course in time
 
 
 class DivergenceError(Exception):

@@ -1,12 +1,15 @@
 """`kernel`: the only compiler decorator of the repository, and where compiled code is kept.
 
-numba does not notice an edit in a *callee's* file, so the cache directory is named by a hash of all of sim's
-sources: an edit anywhere makes a new one. Where nothing is writable, kernels compile afresh at each start.
+numba does not notice an edit in a *callee's* file, so the folder that a module's kernels are kept in is named by a hash
+of the module and of all modules of ours that it imports: an edit in one of them makes a new folder. Where nothing is
+writable, kernels compile at each start.
 """
 
 import contextlib
+import functools
 import hashlib
 import os
+import re
 import shutil
 import tempfile
 import time
@@ -22,9 +25,14 @@ from numba.core.compiler import Flags
 from numba.core.options import TargetOptions
 from numba.core.registry import cpu_target
 
-__all__ = ["CACHE", "MOST_THREADS", "kernel", "prange", "set_threads"]
+__all__ = ["CACHE", "MAX_THREADS", "kernel", "prange", "set_threads"]
 
-MOST_THREADS: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
+ROOT = Path(__file__).resolve().parent.parent
+OWN_PACKAGES = ("sim", "app", "tests")
+IMPORT = re.compile(r"^\s*(?:from\s+([\w.]+)\s+import\s+(\([^)]*\)|[^\n#]+)|import\s+([\w., ]+))", re.MULTILINE)
+KERNEL_FOLDER = re.compile(r"\w+-[0-9a-f]{16}")
+
+MAX_THREADS: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
 
 # Every flag of `fastmath` but nnan and ninf: a NaN must stay visible to the checks that stop a run.
 FASTMATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
@@ -47,24 +55,73 @@ def sources_hash(root: Path) -> str:
     return digest.hexdigest()[:16]
 
 
+@functools.cache
+def source_of(module: str) -> Path | None:
+    """The file of a module of ours; None of other modules."""
+    if module.partition(".")[0] not in OWN_PACKAGES:
+        return None
+    path = ROOT.joinpath(*module.split("."))
+    return next((file for file in (path.with_suffix(".py"), path / "__init__.py") if file.is_file()), None)
+
+
+@functools.cache
+def imported_files(path: Path) -> frozenset[Path]:
+    """The files of the modules of ours that a source imports by name."""
+    found = set()
+    for module, names, modules in IMPORT.findall(path.read_text("utf-8")):
+        candidates = [name.split()[0] for name in modules.split(",") if name.strip()]
+        if module:
+            members = [name.split()[0] for name in names.strip("()").replace("\n", " ").split(",") if name.strip()]
+            candidates = [module, *(f"{module}.{name}" for name in members)]
+        found.update(file for file in map(source_of, candidates) if file is not None)
+    return frozenset(found)
+
+
+def reachable_hash(*paths: Path) -> str:
+    """Hash of these sources and of all of ours that they import, directly or not: names and contents."""
+    found, waiting = set(), list(paths)
+    while waiting:
+        path = waiting.pop()
+        if path not in found:
+            found.add(path)
+            waiting.extend(imported_files(path))
+    digest = hashlib.sha256()
+    for path in sorted(found):
+        digest.update(path.name.encode() if ROOT not in path.parents else path.relative_to(ROOT).as_posix().encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
 def cache_directory() -> Path | None:
-    """The writable directory compiled kernels are kept in, or None where there is none."""
-    base = Path(os.environ.get("SPRINGTIDE_CACHE") or platformdirs.user_cache_dir("springtide"))
-    own = base / "kernels" / sources_hash(Path(__file__).parent)
+    """The writable directory below which compiled kernels are kept, or None where there is none."""
+    base = Path(os.environ.get("SPRINGTIDE_CACHE") or platformdirs.user_cache_dir("springtide")) / "kernels"
     try:
-        own.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=own):
+        base.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=base):
             pass
-        os.utime(own)
-        for other in own.parent.iterdir():
-            if time.time() - other.stat().st_mtime > STALE_AFTER:
+        for other in base.iterdir():
+            if KERNEL_FOLDER.fullmatch(other.name) and time.time() - other.stat().st_mtime > STALE_AFTER:
                 shutil.rmtree(other, ignore_errors=True)
     except OSError:
         return None
-    return own
+    return base
 
 
 CACHE = cache_directory()
+
+
+@functools.cache
+def kernel_folder(path: Path) -> Path | None:
+    """Where the kernels of a source are kept: named by the module and by the hash of all that it can reach."""
+    if CACHE is None:
+        return None
+    try:
+        folder = CACHE / f"{path.stem}-{reachable_hash(path)}"
+        folder.mkdir(exist_ok=True)
+        os.utime(folder)
+    except OSError:
+        return None
+    return folder
 
 
 class KernelFile(IndexDataCacheFile):
@@ -129,14 +186,15 @@ def kernel(
     }
     if noalias and _HAS_NOALIAS:
         options["noalias"] = True
+    folder = kernel_folder(Path(function.__code__.co_filename).resolve())
     previous = numba.config.CACHE_DIR  # type: ignore[attr-defined]
     try:
         # numba reads the setting once, here; other libraries' kernels stay where they were.
-        numba.config.CACHE_DIR = str(CACHE) if CACHE else previous  # type: ignore[attr-defined]
-        compiled = numba.njit(cache=CACHE is not None, **options)(function)
+        numba.config.CACHE_DIR = str(folder) if folder else previous  # type: ignore[attr-defined]
+        compiled = numba.njit(cache=folder is not None, **options)(function)
     finally:
         numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
-    if CACHE is not None:
+    if folder is not None and hasattr(compiled, "_cache"):  # a plain function with NUMBA_DISABLE_JIT=1
         compiled._cache._cache_file.__class__ = KernelFile  # type: ignore[attr-defined]
         compiled._cache._impl.__class__ = KernelResult  # type: ignore[attr-defined]
     return compiled

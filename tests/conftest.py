@@ -11,7 +11,7 @@ import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread, as
 @pytest.fixture
 def lab(request: pytest.FixtureRequest) -> Iterator[Any]:
     """A viewer with the module's SCENE and PARAMS open, or the rope, on a free port of the loopback."""
-    from app.viewer import Viewer
+    from app.server.viewer import Viewer
 
     viewer = Viewer("127.0.0.1", 0)
     viewer.open(getattr(request.module, "SCENE", "rope"), getattr(request.module, "PARAMS", None))

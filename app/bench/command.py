@@ -9,16 +9,16 @@ import pkgutil
 from pathlib import Path
 from types import ModuleType
 
-import app.bench
-from app.bench import report
-from app.replacing import replacing
-from sim.knobs import refusal
+import app.bench.cases
+from app.experiments import tables as report
+from app.files import replacing
+from sim.validation import argument_error
 
 
 def benchmarks() -> dict[str, ModuleType]:
     """Name -> module, in alphabetical order."""
-    names = [info.name for info in pkgutil.iter_modules(app.bench.__path__)]
-    modules = {name: importlib.import_module(f"app.bench.{name}") for name in names}
+    names = [info.name for info in pkgutil.iter_modules(app.bench.cases.__path__)]
+    modules = {name: importlib.import_module(f"app.bench.cases.{name}") for name in names}
     return {name: module for name, module in modules.items() if hasattr(module, "rows")}
 
 
@@ -30,7 +30,7 @@ def run(names: list[str], quick: bool = False, peers: bool = False, out: Path | 
     known = benchmarks()
     for name in names:
         if name not in known:
-            raise refusal("bench", name, "one of " + ", ".join(known))
+            raise argument_error("bench", name, "one of " + ", ".join(known))
     report.make_folder(out)
     print(report.machine())
     for name in names or known:

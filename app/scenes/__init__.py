@@ -1,38 +1,43 @@
-"""The scenes: one module each, found by being here, imported on first use.
-
-To add one, write a module here, and its drawing under the same name in `app/pictures`: the two sides of the thread, so
-that a headless run imports no viewer. The module has
-
-1. `Params`, a frozen dataclass of knobs with at least `speed` (target real-time factor) and `grid`: from it come the
-   panel, the command line, presets and the clamp;
-2. `TITLE`, `HELP` (two lines on how to use it), `SERIES` and `PLOTS` (the plot rows' columns, and the charts of each
-   plot knob), `PRESETS`: name -> {knob: value}, the first being the defaults;
-3. `Scene(params)`, the simulation, on the simulation thread only: `params`, `step` [s], `time` [s], `set_params`,
-   `advance(steps)` (raises `DivergenceError`), `reset()`, `obey(command)`, `picture()` (frozen, float32), `gauge()`,
-   `take_samples()`, `arrays()` for headless runs, `work()` for the ledger (`app/ledger.py`);
-4. `hidden(params)`, the knobs that mean nothing just now, and `warm_up()`, which compiles what the scene may call.
-
-It may have `CURVES` (see `app/plots.py`) with `Scene.curves()`, and `Scene.frame` [s], the time between pictures.
-
-The drawing has `Picture(server, post)` with `show(picture, gauge)`, on the viewer's thread only, whose callbacks only
-`post` commands, `readout(snapshot)`, the HTML under the panel's
-buttons, `marks(snapshot)`, knob -> the line under it, and `warm_up()`; it may have `notes(snapshot)`, heading -> HTML
-to fold out, and `stiffness_knob(params)` with the scene's `build(params)`, the net of a map of step and stiffness.
-
-What a sweep records of it is its plot rows, or what a module of its name in `app/measures` says.
-"""
+"""The scenes: one folder each, found by being here, imported on first use. `contract.py` says what one has to offer."""
 
 import importlib
 import pkgutil
+from pathlib import Path
 from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
-from sim.knobs import refusal
+from sim.validation import argument_error
 
-NAMES = tuple(module.name for module in pkgutil.iter_modules(__path__))
+if TYPE_CHECKING:
+    from app.scenes.contract import SceneKind, View
+
+NAMES = tuple(
+    module.name
+    for module in pkgutil.iter_modules(__path__)
+    if module.ispkg and any((Path(folder) / module.name / "scene.py").exists() for folder in __path__)
+)
+FORMER_NAMES = {"phillips": "square_sea", "radial": "radial_sea"}
 
 
-def scene_named(name: str) -> ModuleType:
-    """The scene's module; raises ValueError with the names there are."""
+def check_name(name: str) -> str:
+    """The name of a scene. Raises ValueError with the names there are; a former name is told its new one."""
+    if name in FORMER_NAMES:
+        raise argument_error("scene", name, f"{FORMER_NAMES[name]}, its new name")
     if name not in NAMES:
-        raise refusal("scene", name, "one of " + ", ".join(NAMES))
-    return importlib.import_module(f"{__name__}.{name}")
+        raise argument_error("scene", name, "one of " + ", ".join(NAMES))
+    return name
+
+
+def scene_named(name: str) -> "SceneKind[Any, Any, Any]":
+    """The scene of a folder. Raises ValueError for a name that is none."""
+    return importlib.import_module(f"{__name__}.{check_name(name)}.scene").SCENE
+
+
+def view_module(name: str) -> ModuleType:
+    """The module that draws a scene; imports viser."""
+    return importlib.import_module(f"{__name__}.{check_name(name)}.view")
+
+
+def view_named(name: str) -> "type[View[Any]]":
+    """The drawing of a scene; imports viser."""
+    return view_module(name).View

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from app.bench import report
+from app.experiments import tables as report
 from app.stability import drift, figures, linear, rope
 
 PARTS: tuple[tuple[str, str, Any, Callable[[Any], Any], Callable[[Any], Any]], ...] = (

@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.report import MARKERS
-from app.colour import TOLD_APART
-from app.stability import OUTCOMES
+from app.experiments.tables import MARKERS
+from app.render.colormap import OUTCOME_COLOURS, PALETTE
 from app.stability.drift import Drift
 from app.stability.linear import LinearMap, extra_damping
 from app.stability.rope import RopeMap
@@ -93,7 +92,7 @@ def rope_figure(maps: list[RopeMap]) -> Any:
     from matplotlib.patches import Patch
 
     figure, lowest, grid = panels(len(maps), "The lab's rope of ten points, disturbed a little at rest")
-    colours = ListedColormap(list(OUTCOMES.values()))
+    colours = ListedColormap(list(OUTCOME_COLOURS.values()))
     for axes, found in zip(grid, maps, strict=True):
         x, y = edges(found.steps, logarithmic=True), edges(found.stiffnesses, logarithmic=True)
         axes.pcolormesh(x, y, found.outcomes, cmap=colours, vmin=0, vmax=2, rasterized=True)
@@ -107,7 +106,7 @@ def rope_figure(maps: list[RopeMap]) -> Any:
         axes.set_xlabel("step h [s]")
     for axes in grid[::ACROSS]:
         axes.set_ylabel("stiffness k [N/m]")
-    handles: list[Any] = [Patch(color=colour, label=name) for name, colour in OUTCOMES.items()]
+    handles: list[Any] = [Patch(color=colour, label=name) for name, colour in OUTCOME_COLOURS.items()]
     handles.append(Line2D([], [], color="black", label="critical_step"))
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
     return figure
@@ -122,7 +121,7 @@ def drift_figure(drifts: list[Drift]) -> Any:
     for axes, symplectic in zip(figure.subplots(1, 2, sharey=True), (True, False), strict=True):
         for index, drift in enumerate(drift for drift in drifts if drift.symplectic == symplectic):
             size = np.maximum.accumulate(np.abs(drift.error[1:]))
-            style = {"color": TOLD_APART[index % 8], "marker": MARKERS[index % 8], "markevery": 0.1}
+            style = {"color": PALETTE[index % 8], "marker": MARKERS[index % 8], "markevery": 0.1}
             lost = drift.t[np.isnan(drift.error)]
             label = drift.name.replace("_", " ") + (f" (gone at {lost[0]:.0f} s)" if len(lost) else "")
             axes.loglog(drift.t[1:], size, label=label, linewidth=1.2, markersize=5, **style)

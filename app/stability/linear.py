@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.stability.pool import spread
+from app.experiments.pool import spread
 from sim.springs import INTEGRATORS
-from sim.springs.growth import growth, measured_limit
+from sim.springs.analysis.growth import growth, measured_limit
 
 FARTHEST = 4.0  # h omega
 HIGHEST = 2.0  # zeta

@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.stability.pool import spread
+from app.experiments.pool import spread
 from sim.springs import INTEGRATORS, Net, rope
-from sim.springs.growth import EXPLODES, HOLDS, RATTLES, outcome
-from sim.springs.settle import settled
+from sim.springs.analysis.growth import EXPLODES, HOLDS, RATTLES, outcome
+from sim.springs.analysis.settling import settled
 from sim.springs.stability import critical_step
 from sim.springs.state import State
 

@@ -1,4 +1,4 @@
-"""`springtide sweep`: many runs of a scene over its knobs, on all cores or a Dask cluster, into one labelled NetCDF.
+"""`springtide sweep`: many runs of a scene over its parameters, on all cores or a Dask cluster, into one labelled NetCDF.
 
     scene = "rope"                                # rope, phillips, radial, cloth
     seconds = 10.0                                # simulated time of each run
@@ -8,10 +8,10 @@
     cases = 200                                   #   so many cases,
     seed = 1                                      #   drawn from this seed
 
-    [set]                                         # knobs that are the same in every case
+    [set]                                         # parameters that are the same in every case
     points = 20
 
-    [knobs]                                       # knobs that are swept
+    [parameters]                                       # parameters that are swept
     integrator = ["leapfrog", "rk4"]
     time_step = { from = 1e-3, to = 0.05, count = 12, log = true }   # no count in a random design
 

@@ -1,4 +1,4 @@
-"""One case of a sweep, from its knobs to its numbers; runs in a worker, which may be another machine."""
+"""One case of a sweep, from its parameters to its numbers; runs in a worker, which may be another machine."""
 
 import math
 import time
@@ -10,14 +10,14 @@ import numpy as np
 
 import app
 import sim
-from app.headless import steps_to
-from app.measures import measures_named, plotted
+from app.commands.run import steps_to
 from app.messages import DivergenceError
 from app.scenes import scene_named
+from app.scenes.measures import plotted
 from sim.jit import sources_hash
-from sim.knobs import check
+from sim.parameters import check_record
 
-FRAME = 1 / 30  # [s] of simulated time between two looks at whether the run still holds
+FRAME_INTERVAL = 1 / 30  # [s] of simulated time between two looks at whether the run still holds
 FINISHED, DIVERGED, FAILED = "finished", "diverged", "failed"
 ENDS = (FINISHED, DIVERGED, FAILED)
 
@@ -52,7 +52,7 @@ def failed(message: str) -> Outcome:
 def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Outcome:
     """Run one case and measure it at each of `times` [s]; never raises for what the scene does."""
     module = scene_named(scene)
-    own = measures_named(scene)
+    own = module.measures
     found: dict[str, list[float]] = {}
     labels: dict[str, tuple[str, str]] = {}
     end, message, diverged_at = FINISHED, "", math.nan
@@ -61,8 +61,8 @@ def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Ou
     start = time.thread_time()
     try:
         with np.errstate(all="ignore"):
-            running = module.Scene(check(module.Params, values))
-            if note := getattr(running, "note", ""):
+            running = module.make(check_record(module.params, values))
+            if note := running.note:
                 # The numbers of another method than the one asked for are no result.
                 return failed(note)
             for index, until in enumerate(times):
@@ -82,10 +82,10 @@ def advance_to(running: Any, until: float) -> tuple[float, ...]:
     row: tuple[float, ...] = ()
     due = steps_to(running, until)
     while due > 0:
-        count = min(due, max(1, round(FRAME / running.step)))
+        count = min(due, max(1, round(FRAME_INTERVAL / running.step)))
         advance(running, count)
         due -= count
-        rows = running.take_samples()
+        rows = running.take_plot_rows()
         row = rows[-1] if rows else row
     return row
 

@@ -8,10 +8,10 @@ from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from app.replacing import check_folder, replacing
+from app.files import check_folder, replacing
 from app.sweep.case import DIVERGED, ENDS, FAILED, Outcome
 from app.sweep.spec import Spec, read_spec
-from sim.knobs import refusal
+from sim.validation import argument_error
 
 NEEDED = ("xarray", "netCDF4", "matplotlib")
 
@@ -23,7 +23,7 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
     """
     spec = read_spec(spec_path)
     if out.suffix != ".nc":
-        raise refusal("--out", str(out), "a name that ends in .nc")
+        raise argument_error("--out", str(out), "a name that ends in .nc")
     check_folder("--out", out)
     for package in (*NEEDED, *(("distributed",) if scheduler else ())):
         if importlib.util.find_spec(package) is None:
@@ -37,7 +37,7 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
     elif out.exists() and not kept.exists():
         before = identity_in(out)
         if before is None:
-            raise refusal("--out", str(out), "a new name, or --fresh to replace what is there")
+            raise argument_error("--out", str(out), "a new name, or --fresh to replace what is there")
         refuse_other(out, before, identity(spec))
         print(f"{out}: all {len(spec.cases)} cases are there; --fresh runs them again")
         return 0
@@ -84,7 +84,7 @@ def runner(spec: Spec, jobs: dict[int, Any], scheduler: str | None) -> Any:
 
     if scheduler is not None:
         return on_cluster(scheduler, jobs)
-    from app.warmup import prepare
+    from app.scenes.warmup import prepare
 
     # Once here rather than once in each worker.
     prepare(spec.scene, drawn=False)

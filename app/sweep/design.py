@@ -1,7 +1,7 @@
-"""From ranges and lists of knobs to cases: every combination, or a Latin hypercube.
+"""From ranges and lists of parameters to cases: every combination, or a Latin hypercube.
 
 A Latin hypercube of n cases (McKay, Beckman and Conover 1979, Technometrics 21:239) has one case in each n-th of every
-knob's range, whatever the number of knobs.
+parameter's range, whatever the number of parameters.
 """
 
 import itertools
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sim.knobs import Knob
+from sim.parameters import Parameter
 
 MOST_CASES = 100_000
 
@@ -33,40 +33,40 @@ class Range(NamedTuple):
 Axis = Listed | Range
 
 
-def at(axis: Axis, share: float, knob: Knob) -> Any:
+def at(axis: Axis, share: float, parameter: Parameter) -> Any:
     """The value at `share`, 0 to 1, of the axis; equal shares of it go to each listed value and each whole number."""
     if isinstance(axis, Listed):
         return axis.values[min(int(share * len(axis.values)), len(axis.values) - 1)]
     low, high = axis.low, axis.high
-    if knob.kind is int and not axis.log:
+    if parameter.kind is int and not axis.log:
         return min(int(low + share * (high - low + 1)), int(high))
     if share >= 1.0:
         return high
     value = min(low * (high / low) ** share if axis.log else low + share * (high - low), high)
-    return round(value) if knob.kind is int else value
+    return round(value) if parameter.kind is int else value
 
 
-def grid_values(axis: Axis, knob: Knob) -> tuple[Any, ...]:
+def grid_values(axis: Axis, parameter: Parameter) -> tuple[Any, ...]:
     """The values of a grid along one axis; whole numbers are rounded to."""
     if isinstance(axis, Listed):
         return axis.values
-    real = knob._replace(default=0.0)
+    real = parameter._replace(default=0.0)
     values = [at(axis, float(share), real) for share in np.linspace(0.0, 1.0, axis.points)]
-    return tuple(round(value) for value in values) if knob.kind is int else tuple(values)
+    return tuple(round(value) for value in values) if parameter.kind is int else tuple(values)
 
 
 def grid(axes: dict[str, tuple[Any, ...]]) -> list[dict[str, Any]]:
-    """Every combination, the last knob the fastest."""
+    """Every combination, the last parameter the fastest."""
     return [dict(zip(axes, values, strict=True)) for values in itertools.product(*axes.values())]
 
 
-def hypercube(axes: dict[str, Axis], knobs: dict[str, Knob], count: int, seed: int) -> list[dict[str, Any]]:
+def hypercube(axes: dict[str, Axis], parameters: dict[str, Parameter], count: int, seed: int) -> list[dict[str, Any]]:
     """`count` cases, one in each `count`-th of every axis."""
     generator = np.random.default_rng(seed)
     columns = {}
     for name, axis in axes.items():
         shares = (generator.permutation(count) + generator.random(count)) / count
-        columns[name] = [at(axis, float(share), knobs[name]) for share in shares]
+        columns[name] = [at(axis, float(share), parameters[name]) for share in shares]
     return [{name: column[i] for name, column in columns.items()} for i in range(count)]
 
 

@@ -1,6 +1,6 @@
 """The first measures of a sweep as one figure: maps or curves of a grid, scattered points of a random design.
 
-A row a measure. Of a grid, the two knobs of most numbers are the axes of a map where there are enough of both, else the
+A row a measure. Of a grid, the two parameters of most numbers are the axes of a map where there are enough of both, else the
 first is the axis of curves and the second tells them apart; a third makes the columns; any more stay at their first
 values, which the title then says.
 """
@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.report import MARKERS
-from app.colour import TOLD_APART
+from app.experiments.tables import MARKERS
+from app.render.colormap import PALETTE
 
 ROWS, COLUMNS, CURVES = 2, 4, 8  # at most
-MAP_FROM = 5  # values of each of two knobs from which a map is drawn
+MAP_FROM = 5  # values of each of two parameters from which a map is drawn
 DECADES = 30.0  # from which ratio on logarithms are shown
 HELD = "0.93"  # grey of cases without a value
 
@@ -25,7 +25,7 @@ def draw(dataset: Any) -> Any:
 
     shown = measures_shown(dataset)
     at_end = dataset[shown].isel(time=-1) if "time" in dataset.dims else dataset[shown]
-    swept = list(json.loads(dataset.attrs["identity"])["spec"]["knobs"])
+    swept = list(json.loads(dataset.attrs["identity"])["spec"]["parameters"])
     random = dataset.attrs["design"] == "random"
     ranked = sorted(swept, key=lambda name: rank(dataset[name]))
     across = ranked[:COLUMNS] if random else [None]
@@ -61,7 +61,7 @@ def draw(dataset: Any) -> Any:
 
 
 def rank(values: Any) -> tuple[bool, int, bool]:
-    """By this knobs come as axes: numbers of many values first."""
+    """By this parameters come as axes: numbers of many values first."""
     return not is_number(values), -np.unique(values).size, values.dtype.kind != "f"
 
 
@@ -75,7 +75,7 @@ def measures_shown(dataset: Any) -> list[str]:
 
 
 def picture(axes: Any, values: Any, names: list[str], colours: Any, is_first: bool) -> Any:
-    """A map (returned, for its colour bar) or curves (None) over one or two knobs, with a legend in the first panel."""
+    """A map (returned, for its colour bar) or curves (None) over one or two parameters, with a legend in the first panel."""
     both = len(names) == 2 and all(is_number(values[n]) and values[n].size >= MAP_FROM for n in names)
     if both:
         x, y = (values[n] for n in names)
@@ -91,7 +91,7 @@ def picture(axes: Any, values: Any, names: list[str], colours: Any, is_first: bo
     curves = values[names[1]].values[:CURVES] if len(names) == 2 else [None]
     for index, curve in enumerate(curves):
         y = values if curve is None else values.sel({names[1]: curve})
-        style = {"color": TOLD_APART[index], "marker": MARKERS[index], "markersize": 4}
+        style = {"color": PALETTE[index], "marker": MARKERS[index], "markersize": 4}
         axes.plot(positions(x), y.values, label=None if curve is None else text(curve), **style)
     set_axis(axes, "x", x)
     if len(names) == 2 and is_first:
@@ -100,7 +100,7 @@ def picture(axes: Any, values: Any, names: list[str], colours: Any, is_first: bo
 
 
 def points(axes: Any, x: Any, y: Any) -> None:
-    axes.plot(positions(x), y.values, linestyle="", marker=".", color=TOLD_APART[0])
+    axes.plot(positions(x), y.values, linestyle="", marker=".", color=PALETTE[0])
     set_axis(axes, "x", x)
 
 

@@ -10,27 +10,27 @@ from typing import Any
 
 import numpy as np
 
-from app.replacing import replacing
+from app.files import replacing
 from app.sweep.case import ENDS, Outcome, program
 from app.sweep.spec import Spec
-from sim.knobs import knobs
+from sim.parameters import parameters_of
 
 PACKAGES = ("numpy", "numba", "xarray", "netCDF4")
 
 
 def to_dataset(spec: Spec, outcomes: dict[int, Outcome]) -> Any:
-    """An `xarray.Dataset` of all cases: dimensions are the swept knobs of a grid, or `case`, and time if any."""
+    """An `xarray.Dataset` of all cases: dimensions are the swept parameters of a grid, or `case`, and time if any."""
     import xarray as xr
 
-    known = knobs(spec.module.Params)
+    known = parameters_of(spec.module.Params)
     ordered = [outcomes[index] for index in range(len(spec.cases))]
     shape = tuple(len(values) for values in spec.swept.values()) if spec.design == "grid" else (len(ordered),)
     dims = tuple(spec.swept) if spec.design == "grid" else ("case",)
     coordinates: dict[str, Any] = {}
     for name, values in spec.swept.items():
-        knob = known[name]
-        attributes = {"long_name": knob.doc, "units": knob.unit or "1"}
-        if knob.choices or knob.kind is bool:
+        parameter = known[name]
+        attributes = {"long_name": parameter.doc, "units": parameter.unit or "1"}
+        if parameter.choices or parameter.kind is bool:
             del attributes["units"]
         coordinates[name] = (name if spec.design == "grid" else "case", np.array(values), attributes)
     if spec.design == "random":
@@ -68,7 +68,9 @@ def to_dataset(spec: Spec, outcomes: dict[int, Outcome]) -> Any:
 
 def about(spec: Spec) -> dict[str, Any]:
     """The attributes of the file: what would make it again."""
-    fixed = {name: getattr(spec.params(0), name) for name in knobs(spec.module.Params) if name not in spec.swept}
+    fixed = {
+        name: getattr(spec.params(0), name) for name in parameters_of(spec.module.Params) if name not in spec.swept
+    }
     versions = ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in PACKAGES)])
     return {
         "title": f"Springtide sweep of the scene {spec.scene} over {', '.join(spec.swept)}",
@@ -76,7 +78,7 @@ def about(spec: Spec) -> dict[str, Any]:
         "seconds": spec.seconds,
         "design": spec.design,
         "seed": "none" if spec.seed is None else spec.seed,
-        "knobs": json.dumps(fixed),
+        "parameters": json.dumps(fixed),
         "spec": spec.text,
         "identity": json.dumps(identity(spec)),
         "program": program(),

@@ -11,9 +11,10 @@ import numpy as np
 
 from app.scenes import NAMES, scene_named
 from app.sweep.design import MOST_CASES, Axis, Listed, Range, grid, grid_values, hypercube, size
-from sim.knobs import Knob, check, check_value, knobs, refusal
+from sim.parameters import Parameter, check_record, check_value, parameters_of
+from sim.validation import argument_error
 
-KEYS = ("scene", "seconds", "frames", "preset", "design", "cases", "seed", "set", "knobs")
+KEYS = ("scene", "seconds", "frames", "preset", "design", "cases", "seed", "set", "parameters")
 RANGE = "{ from = LOW, to = HIGH, count = N, log = true } or a list of values, such as [1, 2]"
 MOST_SECONDS = 1e5  # [s]
 MOST_FRAMES = 10_000
@@ -29,9 +30,9 @@ class Spec:
     frames: int
     design: str  # grid, random
     seed: int | None  # of a random design
-    fixed: dict[str, Any]  # knobs that are the same in every case and not their defaults
-    swept: dict[str, tuple[Any, ...]]  # the values of each swept knob: along its axis, or case by case
-    cases: list[dict[str, Any]]  # the swept knobs of each case
+    fixed: dict[str, Any]  # parameters that are the same in every case and not their defaults
+    swept: dict[str, tuple[Any, ...]]  # the values of each swept parameter: along its axis, or case by case
+    cases: list[dict[str, Any]]  # the swept parameters of each case
     text: str  # as read
 
     @property
@@ -45,12 +46,14 @@ class Spec:
 
     def params(self, index: int) -> Any:
         """The scene's parameters in case `index`."""
-        return check(self.module.Params, {**self.fixed, **self.cases[index]})
+        return check_record(self.module.Params, {**self.fixed, **self.cases[index]})
 
     def identity(self) -> dict[str, Any]:
         """All that decides the results, as JSON would have it."""
         names = ("scene", "seconds", "frames", "design", "seed", "fixed")
-        return {name: getattr(self, name) for name in names} | {"knobs": {k: list(v) for k, v in self.swept.items()}}
+        return {name: getattr(self, name) for name in names} | {
+            "parameters": {k: list(v) for k, v in self.swept.items()}
+        }
 
 
 def read_spec(path: Path) -> Spec:
@@ -59,7 +62,7 @@ def read_spec(path: Path) -> Spec:
         text = path.read_text("utf-8")
         content = tomllib.loads(text)
     except OSError as error:
-        raise refusal("SPEC", str(path), f"a file that can be read ({error.strerror})") from None
+        raise argument_error("SPEC", str(path), f"a file that can be read ({error.strerror})") from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"SPEC: {path} is not TOML ({error})") from None
     return make_spec(content, text)
@@ -70,30 +73,30 @@ def make_spec(content: dict[str, Any], text: str = "") -> Spec:
     for key in content:
         if key not in KEYS:
             raise ValueError(f"{key}: no such key of a spec; the keys are {', '.join(KEYS)}")
-    for key in ("scene", "seconds", "knobs"):
+    for key in ("scene", "seconds", "parameters"):
         if key not in content:
-            raise ValueError(f"{key}: missing; a spec has scene, seconds and [knobs]")
+            raise ValueError(f"{key}: missing; a spec has scene, seconds and [parameters]")
     name = content["scene"]
     if not isinstance(name, str) or name not in NAMES:
-        raise refusal("scene", name, "one of " + ", ".join(NAMES))
+        raise argument_error("scene", name, "one of " + ", ".join(NAMES))
     scene = scene_named(name)
-    known = knobs(scene.Params)
+    known = parameters_of(scene.Params)
     seconds = number(content, "seconds", math.nan, 0.0, MOST_SECONDS, "s", above=True)
     frames = whole(content, "frames", 1, 1, MOST_FRAMES)
     design = content.get("design", "grid")
     if design not in ("grid", "random"):
-        raise refusal("design", design, "grid or random")
-    swept = table(content, "knobs")
+        raise argument_error("design", design, "grid or random")
+    swept = table(content, "parameters")
     if not swept:
-        raise ValueError("knobs: empty; name at least one knob to sweep")
-    fixed = fixed_knobs(scene, content)
+        raise ValueError("parameters: empty; name at least one parameter to sweep")
+    fixed = fixed_parameters(scene, content)
     axes: dict[str, Axis] = {}
-    for knob_name, given in swept.items():
-        if knob_name not in known:
-            raise ValueError(f"{knob_name}: no such knob; the knobs are {', '.join(known)}")
-        if knob_name in table(content, "set"):
-            raise ValueError(f"{knob_name}: both in [set] and in [knobs]; name it once")
-        axes[knob_name] = read_axis(knob_name, known[knob_name], given, design)
+    for parameter_name, given in swept.items():
+        if parameter_name not in known:
+            raise ValueError(f"{parameter_name}: no such parameter; the parameters are {', '.join(known)}")
+        if parameter_name in table(content, "set"):
+            raise ValueError(f"{parameter_name}: both in [set] and in [parameters]; name it once")
+        axes[parameter_name] = read_axis(parameter_name, known[parameter_name], given, design)
     seed = None
     if design == "random":
         if "cases" not in content:
@@ -106,52 +109,52 @@ def make_spec(content: dict[str, Any], text: str = "") -> Spec:
             if key in content:
                 raise ValueError(f"{key}: belongs to a random design; this one is a grid")
         if size(axes) > MOST_CASES:
-            raise refusal("knobs", f"{size(axes)} cases", f"at most {MOST_CASES}")
+            raise argument_error("parameters", f"{size(axes)} cases", f"at most {MOST_CASES}")
         values = {k: grid_axis(k, known[k], axis) for k, axis in axes.items()}
         cases = grid(values)
     if len(cases) * frames > MOST_NUMBERS:
-        raise refusal("frames", f"{frames} times {len(cases)} cases", f"at most {MOST_NUMBERS} in all")
-    for knob_name in fixed.keys() & axes.keys():
-        del fixed[knob_name]
+        raise argument_error("frames", f"{frames} times {len(cases)} cases", f"at most {MOST_NUMBERS} in all")
+    for parameter_name in fixed.keys() & axes.keys():
+        del fixed[parameter_name]
     spec = Spec(name, seconds, frames, design, seed, fixed, values, cases, text)
     refuse_idle(spec, scene)
     return spec
 
 
-def fixed_knobs(scene: ModuleType, content: dict[str, Any]) -> dict[str, Any]:
+def fixed_parameters(scene: ModuleType, content: dict[str, Any]) -> dict[str, Any]:
     """Preset and [set]; the plots are on, as they decide what is measured."""
     preset = content.get("preset")
     if preset is not None and not (isinstance(preset, str) and preset in scene.PRESETS):
-        raise refusal("preset", preset, "one of " + ", ".join(scene.PRESETS))
+        raise argument_error("preset", preset, "one of " + ", ".join(scene.PRESETS))
     given = {**dict.fromkeys(scene.PLOTS, True), **(scene.PRESETS[preset] if preset else {}), **table(content, "set")}
-    params = check(scene.Params, given)
+    params = check_record(scene.Params, given)
     return {name: getattr(params, name) for name in given}
 
 
-def read_axis(name: str, knob: Knob, given: Any, design: str) -> Axis:
-    """A knob's list or range. Raises ValueError."""
+def read_axis(name: str, parameter: Parameter, given: Any, design: str) -> Axis:
+    """A parameter's list or range. Raises ValueError."""
     if isinstance(given, list):
         if not given:
-            raise refusal(name, given, RANGE)
-        values = tuple(check_value(name, knob, value) for value in given)
+            raise argument_error(name, given, RANGE)
+        values = tuple(check_value(name, parameter, value) for value in given)
         if len(set(values)) < len(values):
             raise ValueError(f"{name}: a value is there twice in {given!r}")
         return Listed(values)
     if not isinstance(given, dict) or not {"from", "to"} <= given.keys():
-        raise refusal(name, given, RANGE)
+        raise argument_error(name, given, RANGE)
     for key in given:
         if key not in ("from", "to", "count", "log"):
-            raise refusal(f"{name}.{key}", given[key], RANGE)
-    if knob.choices or knob.kind is bool:
-        raise refusal(name, given, f"a list of values, {knob.allowed}")
-    low, high = check_value(f"{name}.from", knob, given["from"]), check_value(f"{name}.to", knob, given["to"])
+            raise argument_error(f"{name}.{key}", given[key], RANGE)
+    if parameter.choices or parameter.kind is bool:
+        raise argument_error(name, given, f"a list of values, {parameter.allowed}")
+    low, high = check_value(f"{name}.from", parameter, given["from"]), check_value(f"{name}.to", parameter, given["to"])
     if not low < high:
-        raise refusal(f"{name}.to", high, f"above from, {low:g}")
+        raise argument_error(f"{name}.to", high, f"above from, {low:g}")
     log = given.get("log", False)
     if not isinstance(log, bool):
-        raise refusal(f"{name}.log", log, "true or false")
+        raise argument_error(f"{name}.log", log, "true or false")
     if log and low <= 0:
-        raise refusal(f"{name}.from", low, "above 0 where log is true")
+        raise argument_error(f"{name}.from", low, "above 0 where log is true")
     if design == "random":
         if "count" in given:
             raise ValueError(f"{name}.count: belongs to a grid; in a random design `cases` says how many")
@@ -161,36 +164,36 @@ def read_axis(name: str, knob: Knob, given: Any, design: str) -> Axis:
     return Range(low, high, whole(given, "count", 0, 2, MOST_CASES, name), log)
 
 
-def grid_axis(name: str, knob: Knob, axis: Axis) -> tuple[Any, ...]:
+def grid_axis(name: str, parameter: Parameter, axis: Axis) -> tuple[Any, ...]:
     """The values along an axis of a grid. Raises ValueError where whole numbers come twice."""
-    values = grid_values(axis, knob)
+    values = grid_values(axis, parameter)
     if len(set(values)) < len(values):
-        raise refusal(f"{name}.count", len(values), f"at most {len(set(values))}: these are whole numbers")
+        raise argument_error(f"{name}.count", len(values), f"at most {len(set(values))}: these are whole numbers")
     return values
 
 
 def refuse_idle(spec: Spec, scene: ModuleType) -> None:
-    """Raises ValueError for a swept knob that means nothing in any of the cases."""
+    """Raises ValueError for a swept parameter that means nothing in any of the cases."""
     idle = set(spec.swept)
     for index in range(len(spec.cases)):
         idle &= scene.hidden(spec.params(index))
         if not idle:
             return
     name = min(idle)
-    raise ValueError(f"{name}: means nothing with the other knobs as they are; set those that it belongs to")
+    raise ValueError(f"{name}: means nothing with the other parameters as they are; set those that it belongs to")
 
 
 def table(content: dict[str, Any], key: str) -> dict[str, Any]:
     found = content.get(key, {})
     if not isinstance(found, dict):
-        raise refusal(key, found, f"a table, [{key}]")
+        raise argument_error(key, found, f"a table, [{key}]")
     return found
 
 
 def whole(content: dict[str, Any], key: str, default: int, low: int, high: int, of: str = "") -> int:
     value = content.get(key, default)
     if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        raise refusal(f"{of}.{key}" if of else key, value, f"a whole number from {low} to {high}")
+        raise argument_error(f"{of}.{key}" if of else key, value, f"a whole number from {low} to {high}")
     return value
 
 
@@ -200,5 +203,5 @@ def number(
     value = content.get(key, default)
     good = isinstance(value, int | float) and not isinstance(value, bool) and low <= value <= high
     if not good or (above and value == low):
-        raise refusal(key, value, f"{'above ' if above else ''}{low:g} to {high:g} {unit}")
+        raise argument_error(key, value, f"{'above ' if above else ''}{low:g} to {high:g} {unit}")
     return float(value)

@@ -18,7 +18,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from app.sweep.case import Outcome, failed, program, run_case
-from sim.knobs import refusal
+from sim.validation import argument_error
 
 Job = tuple[str, dict[str, Any], tuple[float, ...]]  # what run_case takes
 PATIENCE = 20.0  # [s] for a scheduler to answer, and for its first worker
@@ -94,7 +94,9 @@ def on_cluster(address: str, jobs: dict[int, Job]) -> Iterator[tuple[int, Outcom
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:
-        raise refusal("--scheduler", address, f"the address of a running Dask scheduler ({one_line(error)})") from None
+        raise argument_error(
+            "--scheduler", address, f"the address of a running Dask scheduler ({one_line(error)})"
+        ) from None
     with client:
         check_workers(client, address)
         numbers = {}
@@ -120,11 +122,11 @@ def check_address(address: str) -> None:
     """Raises ValueError where nothing listens at `address`: a client that fails leaves threads behind."""
     host, _, port = address.rpartition("://")[2].rpartition(":")
     if not (host and port.isdecimal() and int(port) < 65536):
-        raise refusal("--scheduler", address, "an address such as tcp://host:8786")
+        raise argument_error("--scheduler", address, "an address such as tcp://host:8786")
     try:
         socket.create_connection((host.strip("[]"), int(port)), PATIENCE).close()
     except (OSError, UnicodeError) as error:
-        raise refusal("--scheduler", address, f"where a Dask scheduler listens ({error})") from None
+        raise argument_error("--scheduler", address, f"where a Dask scheduler listens ({error})") from None
 
 
 def check_workers(client: Any, address: str) -> None:
@@ -133,12 +135,12 @@ def check_workers(client: Any, address: str) -> None:
         client.wait_for_workers(1, timeout=PATIENCE)
         programs = client.run(program)
     except TimeoutError:
-        raise refusal("--scheduler", address, "a scheduler with at least one worker") from None
+        raise argument_error("--scheduler", address, "a scheduler with at least one worker") from None
     except Exception as error:
-        raise refusal("--scheduler", address, f"workers with springtide installed ({one_line(error)})") from None
+        raise argument_error("--scheduler", address, f"workers with springtide installed ({one_line(error)})") from None
     for worker, found in programs.items():
         if found != program():
-            raise refusal("--scheduler", address, f"workers that run {program()}; {worker} runs {found}")
+            raise argument_error("--scheduler", address, f"workers that run {program()}; {worker} runs {found}")
 
 
 def one_line(error: Any) -> str:

@@ -6,10 +6,10 @@ step(fleet, still_water(fleet, [(850.0, 0.2), (1025.0, math.inf)]), 1 / 60)
 
 from sim.floating.body import Body, Fleet, lowest, make_fleet, pull, vertices
 from sim.floating.equilibrium import equilibrium_draft, heave_period, roll_period
+from sim.floating.fluid_state import Water, make_water, still_water
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import Submerged, pressure_force, submerged
 from sim.floating.motion import Laws, step
-from sim.floating.water import Water, make_water, still_water
 
 __all__ = [
     "Body",

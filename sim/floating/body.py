@@ -14,7 +14,7 @@ from sim.floating.added_mass import added_mass
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import rotation_matrix
 from sim.floating.polyhedron import area_vectors
-from sim.knobs import refusal
+from sim.validation import argument_error
 
 KINDS = ("mesh", "box", "cylinder", "sphere")  # by number in Shapes.kind: how a hull meets another
 
@@ -72,13 +72,13 @@ def make_fleet(bodies: Sequence[Body]) -> Fleet:
     """The arrays of many bodies. Raises ValueError, naming the body, for what is not finite or has no mass."""
     for i, body in enumerate(bodies):
         if not isinstance(body.density, int | float | np.number) or not 0 < body.density < math.inf:
-            raise refusal(f"bodies[{i}].density", body.density, "above 0 kg/m3, finite")
+            raise argument_error(f"bodies[{i}].density", body.density, "above 0 kg/m3, finite")
         for name, length in (("position", 3), ("rotation", 4), ("velocity", 3), ("spin", 3)):
             value = np.asarray(getattr(body, name), dtype=float)
             if value.shape != (length,) or not np.isfinite(value).all():
-                raise refusal(f"bodies[{i}].{name}", getattr(body, name), f"{length} finite numbers")
+                raise argument_error(f"bodies[{i}].{name}", getattr(body, name), f"{length} finite numbers")
         if not np.linalg.norm(body.rotation) > 0:
-            raise refusal(f"bodies[{i}].rotation", body.rotation, "a quaternion that is not zero")
+            raise argument_error(f"bodies[{i}].rotation", body.rotation, "a quaternion that is not zero")
     n = len(bodies)
     hulls = list({id(body.hull): body.hull for body in bodies}.values())
     number = {id(hull): i for i, hull in enumerate(hulls)}
@@ -176,13 +176,13 @@ def pull(fleet: Fleet, body: int, point: Sequence[float], target: Sequence[float
     Raises ValueError for a body that is not there and for what is not finite.
     """
     if not 0 <= body < len(fleet.mass):
-        raise refusal("body", body, f"0 to {len(fleet.mass) - 1}")
+        raise argument_error("body", body, f"0 to {len(fleet.mass) - 1}")
     for name, value in (("point", point), ("target", target)):
         array = np.asarray(value, dtype=float)
         if array.shape != (3,) or not np.isfinite(array).all():
-            raise refusal(name, value, "three finite numbers [m]")
+            raise argument_error(name, value, "three finite numbers [m]")
     if not 0 <= limit < math.inf:
-        raise refusal("limit", limit, "0 N or more, finite")
+        raise argument_error("limit", limit, "0 N or more, finite")
     fleet.pull_point[body] = point
     fleet.pull_target[body] = target
     fleet.pull_limit[body] = limit

@@ -18,7 +18,7 @@ from sim.floating.added_mass import added_mass
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import Submerged, add_pressure, submerged
 from sim.floating.polyhedron import area_vectors
-from sim.knobs import refusal
+from sim.validation import argument_error
 
 Layers = Sequence[tuple[float, float]]
 OIL_ON_WATER: Layers = ((850.0, 0.2), (1025.0, math.inf))
@@ -80,7 +80,7 @@ def roll_period(
     inertia. Raises ValueError as `equilibrium_draft`, and for another axis.
     """
     if axis not in (0, 1):
-        raise refusal("axis", axis, "0 (roll) or 1 (pitch)")
+        raise argument_error("axis", axis, "0 (roll) or 1 (pitch)")
     draft = equilibrium_draft(hull, density, layers, gravity)
     if math.isinf(draft):
         return math.inf
@@ -141,7 +141,7 @@ def density_steps(layers: Layers) -> list[tuple[float, float]]:
     try:
         pairs = [(float(density), float(thickness)) for density, thickness in layers]
     except (TypeError, ValueError):
-        raise refusal("layers", layers, wanted) from None
+        raise argument_error("layers", layers, wanted) from None
     good = bool(pairs) and math.isinf(pairs[-1][1])
     steps, above, top = [], 0.0, 0.0
     for i, (density, thickness) in enumerate(pairs):
@@ -151,7 +151,7 @@ def density_steps(layers: Layers) -> list[tuple[float, float]]:
         steps.append((density - above, top))
         above, top = density, top + thickness
     if not good:
-        raise refusal("layers", layers, wanted)
+        raise argument_error("layers", layers, wanted)
     return steps
 
 
@@ -159,4 +159,4 @@ def check_number(name: str, value: float, unit: str) -> None:
     """Raises ValueError for what is not a positive, finite number."""
     number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
     if not number or not 0 < value < math.inf:
-        raise refusal(name, value, f"above 0 {unit}, finite")
+        raise argument_error(name, value, f"above 0 {unit}, finite")

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from sim.floating.polyhedron import open_edges, solid
-from sim.knobs import refusal
+from sim.validation import argument_error
 
 SMALLEST, LARGEST = 1e-3, 1e4  # [m]
 CYLINDER_SIDES = 32  # the second moments of the cross-section are within 2e-5 of the circle's
@@ -49,7 +49,7 @@ class Hull:
         """
         radius = check_length("radius", radius)
         if not isinstance(frequency, int) or not 1 <= frequency <= 64:
-            raise refusal("frequency", frequency, "a whole number from 1 to 64")
+            raise argument_error("frequency", frequency, "a whole number from 1 to 64")
         vertices, faces = geodesic(frequency)
         true = 4 / 3 * math.pi
         vertices = vertices * radius * (true / solid(vertices, faces).volume) ** (1 / 3)
@@ -87,7 +87,7 @@ class Hull:
             vertices = np.asarray(loaded.vertices, dtype=float).reshape(-1, 3)  # type: ignore[union-attr]
             faces = np.asarray(loaded.faces, dtype=np.int64).reshape(-1, 3)  # type: ignore[union-attr]
         except Exception as error:  # the readers of trimesh raise whatever their format leads them to
-            raise refusal("path", str(path), f"a mesh file that can be read ({error})") from error
+            raise argument_error("path", str(path), f"a mesh file that can be read ({error})") from error
         return Hull.from_arrays(vertices, faces, name=str(path))
 
     @staticmethod
@@ -98,22 +98,26 @@ class Hull:
         """
         vertices, faces = np.array(vertices, dtype=float), np.array(faces, dtype=np.int64)
         if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3 or len(faces) < 4:
-            raise refusal(name, f"{vertices.shape} vertices, {faces.shape} faces", "(n, 3), (m, 3), m at least 4")
+            raise argument_error(
+                name, f"{vertices.shape} vertices, {faces.shape} faces", "(n, 3), (m, 3), m at least 4"
+            )
         if faces.min() < 0 or faces.max() >= len(vertices):
-            raise refusal(name, f"vertex {faces.max()}", f"faces of vertices 0 to {len(vertices) - 1}")
+            raise argument_error(name, f"vertex {faces.max()}", f"faces of vertices 0 to {len(vertices) - 1}")
         used, faces = np.unique(faces, return_inverse=True)
         vertices, faces = vertices[used], faces.reshape(-1, 3)
         if not np.isfinite(vertices).all():
-            raise refusal(name, "a coordinate that is not finite", "finite coordinates")
+            raise argument_error(name, "a coordinate that is not finite", "finite coordinates")
         gaps = open_edges(faces)
         if gaps:
-            raise refusal(name, f"{gaps} edges without their one opposite", "a closed mesh, faces turned one way")
+            raise argument_error(
+                name, f"{gaps} edges without their one opposite", "a closed mesh, faces turned one way"
+            )
         size = np.ptp(vertices, axis=0)
         if not (size >= SMALLEST).all() or not (size <= LARGEST).all():
-            raise refusal(name, tuple(size.tolist()), f"extents of {SMALLEST:g} to {LARGEST:g} m")
+            raise argument_error(name, tuple(size.tolist()), f"extents of {SMALLEST:g} to {LARGEST:g} m")
         volume = solid(vertices, faces).volume
         if abs(volume) < 1e-9 * size.prod():
-            raise refusal(name, f"volume {volume:g} m3", "a mesh that encloses a volume")
+            raise argument_error(name, f"volume {volume:g} m3", "a mesh that encloses a volume")
         if volume < 0:
             faces = faces[:, ::-1]
         return from_mesh("mesh", vertices, np.ascontiguousarray(faces))
@@ -132,7 +136,7 @@ def check_length(name: str, value: float) -> float:
     """`value` if it is a length a hull may have. Raises ValueError otherwise."""
     number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
     if not number or not SMALLEST <= value <= LARGEST:
-        raise refusal(name, value, f"{SMALLEST:g} to {LARGEST:g} m")
+        raise argument_error(name, value, f"{SMALLEST:g} to {LARGEST:g} m")
     return float(value)
 
 

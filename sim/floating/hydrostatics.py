@@ -20,7 +20,7 @@ import numpy as np
 from sim.floating.hull import Hull
 from sim.floating.polyhedron import area_vectors
 from sim.jit import kernel
-from sim.knobs import refusal
+from sim.validation import argument_error
 
 
 @kernel(noalias=True)
@@ -165,12 +165,14 @@ def check_pose(hull: Hull, position, rotation, surface) -> tuple[np.ndarray, np.
     """Position (3,), rotation matrix and surface height per vertex as arrays. Raises ValueError for bad ones."""
     position, rotation = np.asarray(position, dtype=float), np.asarray(rotation, dtype=float)
     if position.shape != (3,) or not np.isfinite(position).all():
-        raise refusal("position", position.tolist(), "three finite numbers [m]")
+        raise argument_error("position", position.tolist(), "three finite numbers [m]")
     if rotation.shape != (4,) or not np.isfinite(rotation).all() or not np.linalg.norm(rotation) > 0:
-        raise refusal("rotation", rotation.tolist(), "a quaternion (w, x, y, z) that is not zero")
+        raise argument_error("rotation", rotation.tolist(), "a quaternion (w, x, y, z) that is not zero")
     heights = np.asarray(surface, dtype=float)
     if heights.shape not in ((), (len(hull.vertices),)) or not np.isfinite(heights).all():
-        raise refusal("surface", surface, f"a finite height [m], or one for each of {len(hull.vertices)} vertices")
+        raise argument_error(
+            "surface", surface, f"a finite height [m], or one for each of {len(hull.vertices)} vertices"
+        )
     return position, rotation_matrix(rotation), np.broadcast_to(heights, len(hull.vertices))
 
 

@@ -30,12 +30,12 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.floating.body import Fleet
-from sim.floating.collide import collide
+from sim.floating.body_collisions import collide
+from sim.floating.fluid_state import Water
 from sim.floating.hydrostatics import add_pressure
 from sim.floating.rigid import add_pull, drift, set_inverse, set_turn, slowed
-from sim.floating.water import Water
 from sim.jit import kernel
-from sim.knobs import refusal
+from sim.validation import argument_error
 
 PHASE = 0.4  # greatest omega h of a substep: periods within 0.7 %, and room for waves that add to gravity
 MOST_SUBSTEPS = 512
@@ -84,24 +84,24 @@ def step(fleet: Fleet, water: Water, duration: float, laws: Laws = STANDARD, sub
     """
     for name, (lo, hi, unit) in LIMITS.items():
         if not lo <= getattr(laws, name) <= hi:
-            raise refusal(name, getattr(laws, name), f"{lo:g} to {hi:g} {unit}".rstrip())
+            raise argument_error(name, getattr(laws, name), f"{lo:g} to {hi:g} {unit}".rstrip())
     if not 0 < duration < math.inf:
-        raise refusal("duration", duration, "above 0 s, finite")
+        raise argument_error("duration", duration, "above 0 s, finite")
     if len(water.height) != len(fleet.mass):
-        raise refusal("water", f"{len(water.height)} samples", f"one for each of {len(fleet.mass)} bodies")
+        raise argument_error("water", f"{len(water.height)} samples", f"one for each of {len(fleet.mass)} bodies")
     if not 0 < water.upper <= water.lower < math.inf:
-        raise refusal("water", (water.upper, water.lower), "densities above 0, the lower at least the upper")
+        raise argument_error("water", (water.upper, water.lower), "densities above 0, the lower at least the upper")
     if substeps is None:
         count = np.ceil(np.maximum(duration * stiffest(fleet, water.lower, laws) / PHASE, 1.0))
         worst = count.max(initial=1.0)
         if not worst <= MOST_SUBSTEPS:
             longest = duration * MOST_SUBSTEPS / worst
-            raise refusal("duration", duration, f"at most {longest:.3g} s for bodies this stiff")
+            raise argument_error("duration", duration, f"at most {longest:.3g} s for bodies this stiff")
         counts = count.astype(np.int64)
     elif substeps >= 1:
         counts = np.full(len(fleet.mass), int(substeps), dtype=np.int64)
     else:
-        raise refusal("substeps", substeps, "a whole number from 1")
+        raise argument_error("substeps", substeps, "a whole number from 1")
     state = fleet[:6]
     before = [array.copy() for array in state]
     advance(fleet, water, Laws(*(float(value) for value in laws)), counts, float(duration))

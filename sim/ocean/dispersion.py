@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sim.knobs import refusal
-from sim.ocean.bounds import above_zero, not_negative, wavenumbers
+from sim.validation import argument_error, check_not_negative, check_positive, check_wavenumbers
 
 INF = math.inf
 CRITICAL = 1.3114687221932  # nu k^2/omega0 above which a wave no longer oscillates: the quartic's double root
@@ -110,8 +109,8 @@ def viscous_root(k: Any, viscosity: float, gravity: float = 9.81) -> tuple[Any, 
     omega is 0 where the motion creeps without oscillating; the rate is then that of the slower root.
     Raises ValueError for a negative or non-finite argument, or gravity not above 0. Lamb, Art. 349.
     """
-    k = wavenumbers("k", k)
-    not_negative("viscosity", viscosity, "m2/s")
+    k = check_wavenumbers("k", k)
+    check_not_negative("viscosity", viscosity, "m2/s")
     w, rate = damped_root(omega(k, gravity), viscosity * k**2)
     return w[()], rate[()]
 
@@ -140,16 +139,18 @@ def film_decay(k: Any, viscosity: float, gravity: float = 9.81) -> Any:
 
     viscosity: kinematic, of the water [m2/s]. Errors as for `viscous_root`.
     """
-    k = wavenumbers("k", k)
-    not_negative("viscosity", viscosity, "m2/s")
+    k = check_wavenumbers("k", k)
+    check_not_negative("viscosity", viscosity, "m2/s")
     return (k * np.sqrt(viscosity * omega(k, gravity) / 8.0))[()]
 
 
 def _checked(k: Any, gravity: float, depth: float, tension: float, density: float) -> tuple[np.ndarray, float]:
     """k as an array and s = sigma/rho, every argument checked."""
-    above_zero("gravity", gravity, "m/s2")
-    above_zero("depth", depth, "m", infinite=True)
-    return wavenumbers("k", k), not_negative("tension", tension, "N/m") / above_zero("density", density, "kg/m3")
+    check_positive("gravity", gravity, "m/s2")
+    check_positive("depth", depth, "m", allow_infinite=True)
+    return check_wavenumbers("k", k), check_not_negative("tension", tension, "N/m") / check_positive(
+        "density", density, "kg/m3"
+    )
 
 
 def _tanh(k: np.ndarray, depth: float) -> np.ndarray:
@@ -166,16 +167,16 @@ def _two_layer_roots(
     k: Any, rho1: float, d: float, rho2: float, g: float, h2: float, s1: float, s12: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """k, X = omega^2 of the surface and of the interfacial mode, and G1 = g + s1 k^2/rho1."""
-    k = wavenumbers("k", k)
-    above_zero("upper_density", rho1, "kg/m3")
-    above_zero("thickness", d, "m", infinite=True)
-    above_zero("gravity", g, "m/s2")
-    above_zero("depth", h2, "m", infinite=True)
-    not_negative("surface_tension", s1, "N/m")
-    not_negative("interface_tension", s12, "N/m")
-    above_zero("lower_density", rho2, "kg/m3")
+    k = check_wavenumbers("k", k)
+    check_positive("upper_density", rho1, "kg/m3")
+    check_positive("thickness", d, "m", allow_infinite=True)
+    check_positive("gravity", g, "m/s2")
+    check_positive("depth", h2, "m", allow_infinite=True)
+    check_not_negative("surface_tension", s1, "N/m")
+    check_not_negative("interface_tension", s12, "N/m")
+    check_positive("lower_density", rho2, "kg/m3")
     if rho2 < rho1:
-        raise refusal("lower_density", rho2, f"at least the upper density, {rho1:g} kg/m3")
+        raise argument_error("lower_density", rho2, f"at least the upper density, {rho1:g} kg/m3")
     G1, G2 = g + s1 * k**2 / rho1, (rho2 - rho1) * g + s12 * k**2
     t1, t2 = _tanh(k, d), _tanh(k, h2)
     # X^2 (rho2 + rho1 t1 t2) - X k [rho2 G1 t1 + (rho1 G1 + G2) t2] + k^2 G1 G2 t1 t2 = 0,

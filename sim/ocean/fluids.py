@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.knobs import refusal
-from sim.ocean.bounds import above_zero, within
+from sim.validation import argument_error, check_positive, check_within
 
 
 class Fluid(NamedTuple):
@@ -53,14 +52,14 @@ def oil_index(density: float) -> float:
 
     density [kg/m3], above 0 and under 2000. Raises ValueError otherwise.
     """
-    third = within("density", density, 1.0, 2000.0, "kg/m3") / 3000.0
+    third = check_within("density", density, 1.0, 2000.0, "kg/m3") / 3000.0
     return math.sqrt((1.0 + 2.0 * third) / (1.0 - third))
 
 
 def mixed_density(first: float, second: float, fraction: float) -> float:
     """rho [kg/m3] = phi rho1 + (1 - phi) rho2, fraction phi by volume of the first."""
-    phi = within("fraction", fraction, 0.0, 1.0)
-    return phi * above_zero("first", first, "kg/m3") + (1.0 - phi) * above_zero("second", second, "kg/m3")
+    phi = check_within("fraction", fraction, 0.0, 1.0)
+    return phi * check_positive("first", first, "kg/m3") + (1.0 - phi) * check_positive("second", second, "kg/m3")
 
 
 def arrhenius(first: float, second: float, fraction: float) -> float:
@@ -106,7 +105,7 @@ def mixed(first: Fluid, second: Fluid, fraction: float, law: str = "taylor") -> 
     law: one of MIXTURE_LAWS. Raises ValueError for another, or a fraction outside 0 to 1.
     """
     if law not in MIXTURE_LAWS:
-        raise refusal("law", law, "one of " + ", ".join(MIXTURE_LAWS))
+        raise argument_error("law", law, "one of " + ", ".join(MIXTURE_LAWS))
     more = first if fraction > 0.5 else second
     return more._replace(
         name=f"{fraction:.0%} {first.name} in {second.name}",
@@ -131,7 +130,7 @@ def fresnel(angle, index: float) -> Reflectance:
 
     Raises ValueError for an index under 1. Fresnel's equations: Hecht, Optics, eq. 4.34 and 4.40, squared.
     """
-    within("index", index, 1.0, 10.0)
+    check_within("index", index, 1.0, 10.0)
     cosine = np.cos(np.asarray(angle, np.float64))
     inner = np.sqrt(1.0 - (1.0 - cosine**2) / index**2)
     s = ((cosine - index * inner) / (cosine + index * inner)) ** 2
@@ -141,7 +140,7 @@ def fresnel(angle, index: float) -> Reflectance:
 
 def normal_reflectance(index: float) -> float:
     """R0 = ((n - 1)/(n + 1))^2."""
-    return ((within("index", index, 1.0, 10.0) - 1.0) / (index + 1.0)) ** 2
+    return ((check_within("index", index, 1.0, 10.0) - 1.0) / (index + 1.0)) ** 2
 
 
 def diffuse_reflectance(index: float) -> float:
@@ -153,10 +152,10 @@ def diffuse_reflectance(index: float) -> float:
 
 def brewster_angle(index: float) -> float:
     """Angle [rad] at which p-polarised light is not reflected: arctan n."""
-    return math.atan(within("index", index, 1.0, 10.0))
+    return math.atan(check_within("index", index, 1.0, 10.0))
 
 
 def _checked(first: float, second: float, fraction: float) -> float:
-    above_zero("first", first, "")
-    above_zero("second", second, "")
-    return within("fraction", fraction, 0.0, 1.0)
+    check_positive("first", first, "")
+    check_positive("second", second, "")
+    return check_within("fraction", fraction, 0.0, 1.0)

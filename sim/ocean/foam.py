@@ -8,7 +8,7 @@ import math
 from statistics import NormalDist
 from typing import TYPE_CHECKING
 
-from sim.ocean.bounds import not_negative
+from sim.validation import check_not_negative
 
 if TYPE_CHECKING:
     from sim.ocean.sea import Sea
@@ -18,7 +18,7 @@ MOST = 0.6  # share of the sea that is foam at most: beyond 35 m/s the law has n
 
 def whitecaps(wind_speed: float) -> float:
     """Share of the sea that is foam, W = 3.84e-6 U10^3.41 (Monahan and O'Muircheartaigh 1980), at most MOST."""
-    return min(3.84e-6 * not_negative("wind_speed", wind_speed, "m/s") ** 3.41, MOST)
+    return min(3.84e-6 * check_not_negative("wind_speed", wind_speed, "m/s") ** 3.41, MOST)
 
 
 def pace(sea: "Sea", t: float) -> tuple[float, float]:

@@ -9,9 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.knobs import refusal
-from sim.ocean.bounds import is_whole, within
 from sim.ocean.spectra import Conditions, Spectrum
+from sim.validation import argument_error, check_within, is_whole_number
 
 MOST = 4096
 DECADES = (-1.7, 4.0)  # of wavenumber about the peak that are looked at: beyond lie 1e-8 of the energy
@@ -45,10 +44,10 @@ def draw_waves(spectrum: Spectrum, conditions: Conditions, count: int = 64, seed
     and a bearing drawn from the spreading there (by a golden-ratio sequence, so that few waves already spread evenly).
     Without wind all amplitudes are 0. Raises ValueError for a count that is not 1 to 4096 or a seed that is not whole.
     """
-    if not is_whole(count) or not 1 <= count <= MOST:
-        raise refusal("count", count, f"a whole number from 1 to {MOST}")
-    if not is_whole(seed):
-        raise refusal("seed", seed, "a whole number")
+    if not is_whole_number(count) or not 1 <= count <= MOST:
+        raise argument_error("count", count, f"a whole number from 1 to {MOST}")
+    if not is_whole_number(seed):
+        raise argument_error("seed", seed, "a whole number")
     random = np.random.default_rng(seed)
     peak = peak_wavenumber(spectrum, conditions)
     k = peak * np.logspace(*DECADES, CELLS)
@@ -95,5 +94,5 @@ def widened(waves: Waves, length: float) -> np.ndarray:
     The mean of a wave over a disc of radius r is 2 J1(kr)/(kr) = 1 - (kr)^2/8 + ...; exp(-(kr)^2/8) begins alike and
     does not oscillate.
     """
-    r = 0.5 * within("length", length, 0.0, 1e4, "m")
+    r = 0.5 * check_within("length", length, 0.0, 1e4, "m")
     return np.exp(-((waves.k * r) ** 2) / 8.0)

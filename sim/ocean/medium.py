@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sim.ocean.bounds import above_zero, not_negative
 from sim.ocean.dispersion import damped_root
 from sim.ocean.spectra import Conditions
+from sim.validation import check_not_negative, check_positive
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -22,10 +22,10 @@ class Medium:
     frequency: Callable[[np.ndarray], np.ndarray] | None = None  # omega(k) in place of the conditions' own
 
     def __post_init__(self) -> None:
-        not_negative("viscosity", self.viscosity, "m2/s")
-        not_negative("dispersion_scale", self.dispersion_scale, "")
+        check_not_negative("viscosity", self.viscosity, "m2/s")
+        check_not_negative("dispersion_scale", self.dispersion_scale, "")
         if self.loop_period is not None:
-            above_zero("loop_period", self.loop_period, "s")
+            check_positive("loop_period", self.loop_period, "s")
 
     def roots(self, k: np.ndarray, conditions: Conditions) -> tuple[np.ndarray, np.ndarray]:
         """omega [rad/s] and decay rate [1/s] of wavenumbers k [rad/m]."""

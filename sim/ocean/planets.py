@@ -2,8 +2,7 @@
 
 from typing import NamedTuple
 
-from sim.knobs import refusal
-from sim.ocean.bounds import above_zero
+from sim.validation import argument_error, check_positive
 
 G = 6.67430e-11  # [m3/(kg s2)] CODATA 2018
 EARTH_GRAVITY = 9.81  # [m/s2] at one Earth mass, whatever the rule
@@ -47,15 +46,15 @@ def gravity_of(mass: float, rule: str = "same_radius") -> float:
 
     rule: one of RADIUS_RULES. Raises ValueError for another rule or a mass not above 0.
     """
-    above_zero("mass", mass, "Earth masses")
+    check_positive("mass", mass, "Earth masses")
     if rule not in RADIUS_RULES:
-        raise refusal("rule", rule, "one of " + ", ".join(RADIUS_RULES))
+        raise argument_error("rule", rule, "one of " + ", ".join(RADIUS_RULES))
     return EARTH_GRAVITY * mass ** (1.0 - 2.0 * RADIUS_RULES[rule])
 
 
 def mass_for(gravity: float, rule: str = "same_density") -> float:
     """Mass [Earth masses] that has this surface gravity [m/s2] under the rule. Errors as for `gravity_of`."""
-    above_zero("gravity", gravity, "m/s2")
+    check_positive("gravity", gravity, "m/s2")
     if rule not in RADIUS_RULES:
-        raise refusal("rule", rule, "one of " + ", ".join(RADIUS_RULES))
+        raise argument_error("rule", rule, "one of " + ", ".join(RADIUS_RULES))
     return (gravity / EARTH_GRAVITY) ** (1.0 / (1.0 - 2.0 * RADIUS_RULES[rule]))

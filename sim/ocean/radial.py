@@ -1,6 +1,6 @@
 """A sea that is a sum of Gerstner waves, drawn on a radial grid and asked at points.
 
-sea = RadialSea(draw_waves(SPECTRA["jonswap"], Conditions(wind_speed=8.0), 64), Spill(thickness=0.2))
+sea = RadialSea(draw_waves(SPECTRA["jonswap"], Conditions(wind_speed=8.0), 64), FluidColumn(thickness=0.2))
 surface = sea.on(RadialGrid(), t=12.0)
 water = sea.at([[0.0, 0.0]], t=12.0)
 
@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.ocean.bounds import finite, not_negative, positions
+from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.gerstner import Waves, widened
 from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.spill import Spill
 from sim.ocean.wave_sum import add_waves, find_labels, set_mesh, set_motion
+from sim.validation import check_finite, check_not_negative, check_positions
 
-CLEAN = Spill()
+CLEAN = FluidColumn()
 
 
 class RadialSurface(NamedTuple):
@@ -48,23 +48,25 @@ class SurfaceAt(NamedTuple):
 class RadialSea:
     """Waves on a medium. Not for two threads at once."""
 
-    def __init__(self, waves: Waves, spill: Spill = CLEAN, exposure: float = 0.0, choppiness: float = 1.0) -> None:
+    def __init__(
+        self, waves: Waves, spill: FluidColumn = CLEAN, exposure: float = 0.0, choppiness: float = 1.0
+    ) -> None:
         """exposure [s]: how long the waves have run on this medium, and decayed; choppiness: factor on Gerstner's
         horizontal motion. Raises ValueError for a negative one."""
         self.evaluated = self.skipped = 0  # (wave, vertex) pairs
-        self.choppiness = not_negative("choppiness", choppiness, "")
+        self.choppiness = check_not_negative("choppiness", choppiness, "")
         self._base, self._fade = 0.0, 0.0
         self._old: tuple[np.ndarray, ...] | None = None
         self._grid: RadialGrid | None = None
-        self._set(waves, spill, not_negative("exposure", exposure, "s"), waves.phase)
+        self._set(waves, spill, check_not_negative("exposure", exposure, "s"), waves.phase)
 
     def change(
-        self, t: float, waves: Waves | None = None, spill: Spill | None = None, exposure: float | None = None,
+        self, t: float, waves: Waves | None = None, spill: FluidColumn | None = None, exposure: float | None = None,
         fade: float = 2.0,
     ) -> None:  # fmt: skip
         """From time t [s] on another medium, or other waves: phases go on without a jump, and other waves take over
         the energy of the old ones within `fade` [s]."""
-        t, fade = finite("t", t, "s"), not_negative("fade", fade, "s")
+        t, fade = check_finite("t", t, "s"), check_not_negative("fade", fade, "s")
         turned = self.phases(t)
         if waves is None:
             n = len(self.waves.kx)
@@ -83,7 +85,7 @@ class RadialSea:
             kx, ky, amplitude, rate, phase, ratio = self._old
             self._old = (kx, ky, amplitude, rate, turn(phase, rate, t - self._base), ratio)
 
-    def _set(self, waves: Waves, spill: Spill, exposure: float, phase: np.ndarray, t: float = 0.0) -> None:
+    def _set(self, waves: Waves, spill: FluidColumn, exposure: float, phase: np.ndarray, t: float = 0.0) -> None:
         self.waves, self.spill, self.exposure, self._base = waves, spill, exposure, t
         k = waves.k
         omega, decay = spill.roots(k)
@@ -95,7 +97,7 @@ class RadialSea:
 
     def age(self, exposure: float) -> None:
         """The same waves, grown older: they have now run `exposure` [s] in all on this medium, and decayed."""
-        self.exposure = not_negative("exposure", exposure, "s")
+        self.exposure = check_not_negative("exposure", exposure, "s")
         self.amplitude = self.waves.amplitude * np.exp(-self.decay * self.exposure)
 
     @property
@@ -136,7 +138,7 @@ class RadialSea:
 
     def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
         """The sea on a grid about `centre` (x, y) [m] at time t [s]."""
-        kx, ky, amplitude, _, phase, _ = self.current(finite("t", t, "s"))
+        kx, ky, amplitude, _, phase, _ = self.current(check_finite("t", t, "s"))
         if self._grid is not grid:
             self._plan(grid, np.hypot(kx, ky))
         order, weight, active = self._order, self._weight, self._active
@@ -182,9 +184,9 @@ class RadialSea:
         size [m]: one number or one a point: diameter over which the surface is averaged, as a hull of that size feels
         it. Raises ValueError for points of another shape or not finite.
         """
-        where = positions("points", points)
+        where = check_positions("points", points)
         n = len(where)
-        kx, ky, amplitude, rate, phase, ratio = self.current(finite("t", t, "s"))
+        kx, ky, amplitude, rate, phase, ratio = self.current(check_finite("t", t, "s"))
         weight = self._footprint(np.broadcast_to(np.asarray(size, np.float64), (n,)), kx, ky)
         chop = self.choppiness
         label, found, residual = np.zeros((n, 2)), np.zeros((n, 8)), np.zeros(n)

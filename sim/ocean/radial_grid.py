@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 
-from sim.knobs import refusal
-from sim.ocean.bounds import above_zero, is_whole, within
+from sim.validation import argument_error, check_positive, check_within, is_whole_number
 
 LAWS = ("geometric", "power")
 FADE = (2.0, 4.0)  # a wave is drawn in full from the second number of cells a wavelength, not at all below the first
@@ -32,13 +31,13 @@ class RadialGrid:
         in the lab (inner is then not used). Raises ValueError for values that are not allowed.
         """
         for name, value in (("rings", rings), ("spokes", spokes)):
-            if not is_whole(value) or not 3 <= value <= 4096:
-                raise refusal(name, value, "a whole number from 3 to 4096")
+            if not is_whole_number(value) or not 3 <= value <= 4096:
+                raise argument_error(name, value, "a whole number from 3 to 4096")
         if law not in LAWS:
-            raise refusal("law", law, "one of " + ", ".join(LAWS))
-        radius = above_zero("radius", radius, "m")
-        within("inner", inner, 1e-3, radius / rings, "m")
-        within("power", power, 1.0, 8.0)
+            raise argument_error("law", law, "one of " + ", ".join(LAWS))
+        radius = check_positive("radius", radius, "m")
+        check_within("inner", inner, 1e-3, radius / rings, "m")
+        check_within("power", power, 1.0, 8.0)
         self.rings, self.spokes = int(rings), int(spokes)
         index = np.arange(1, rings + 1)
         if law == "power":

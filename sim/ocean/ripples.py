@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.jit import kernel
-from sim.knobs import refusal
-from sim.ocean.bounds import above_zero, finite, not_negative, positions
 from sim.ocean.evolve import add_heights, turn
+from sim.validation import argument_error, check_finite, check_not_negative, check_positions, check_positive
 
 QUIET = 1e-6  # [m] root mean square height below which rings are dropped
 EVALUATIONS_BETWEEN_CHECKS = 64
@@ -54,13 +53,13 @@ class Ripples:
         width, volume and impulse are one number or one a point. Raises ValueError for shapes that do not fit, a width
         not above 0, anything not finite, or a time before that of the last change.
         """
-        at = positions("points", points)
+        at = check_positions("points", points)
         n = len(at)
         widths, volumes, impulses = (
             _one_a_point(name, value, n) for name, value in (("width", width), ("volume", volume), ("impulse", impulse))
         )
         if n and not widths.min() > 0.0:
-            raise refusal("width", float(widths.min()), "a number above 0 m")
+            raise argument_error("width", float(widths.min()), "a number above 0 m")
         if n == 0:
             return
         self.advance(t)
@@ -137,22 +136,22 @@ class Ripples:
 
     def check_time(self, t: float) -> float:
         """t [s] as a float. Raises ValueError for a time before that of the last change of the rings."""
-        t = finite("t", t, "s")
+        t = check_finite("t", t, "s")
         if t < self.time and (self.alive or self.mean):
-            raise refusal("t", t, f"{self.time:g} s or later: rings do not run back before the last impulse")
-        not_negative("leak", self.leak, "1/s")
+            raise argument_error("t", t, f"{self.time:g} s or later: rings do not run back before the last impulse")
+        check_not_negative("leak", self.leak, "1/s")
         return t
 
 
 def gaussian_volume(depth: float, width: float) -> float:
     """Volume [m3] of a Gaussian of width [m] that is `depth` [m] high at its middle: 2 pi depth width^2."""
-    return 2.0 * math.pi * depth * above_zero("width", width, "m") ** 2
+    return 2.0 * math.pi * depth * check_positive("width", width, "m") ** 2
 
 
 def _one_a_point(name: str, value: ArrayLike, n: int) -> np.ndarray:
     array = np.asarray(value, np.float64)
     if array.shape not in ((), (n,)) or not np.isfinite(array).all():
-        raise refusal(name, value, f"one finite number, or {n} of them")
+        raise argument_error(name, value, f"one finite number, or {n} of them")
     return np.ascontiguousarray(np.broadcast_to(array, (n,)))
 
 

@@ -12,9 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.knobs import refusal
 from sim.ocean.amplitudes import KINDS, fold, integers, resolved, unit_amplitudes
-from sim.ocean.bounds import above_zero, finite, is_whole, not_negative, positions
 from sim.ocean.evolve import set_heights
 from sim.ocean.medium import Medium
 from sim.ocean.query import query
@@ -22,6 +20,14 @@ from sim.ocean.ripples import Ripples
 from sim.ocean.spectra import SPECTRA, Conditions
 from sim.ocean.surface import Surface
 from sim.ocean.transforms import PRECISIONS, Transforms
+from sim.validation import (
+    argument_error,
+    check_finite,
+    check_not_negative,
+    check_positions,
+    check_positive,
+    is_whole_number,
+)
 
 SETTLED = 1e-7  # share of a change still to come below which it counts as done
 SIZES = (8, 4096)
@@ -57,15 +63,15 @@ class Sea:
         viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of `Conditions` and `Medium`.
         Raises ValueError for a value that is not allowed, TypeError for an unknown name.
         """
-        if not is_whole(size) or size % 2 or not SIZES[0] <= size <= SIZES[1]:
-            raise refusal("size", size, f"an even whole number from {SIZES[0]} to {SIZES[1]}")
+        if not is_whole_number(size) or size % 2 or not SIZES[0] <= size <= SIZES[1]:
+            raise argument_error("size", size, f"an even whole number from {SIZES[0]} to {SIZES[1]}")
         if amplitudes not in KINDS:
-            raise refusal("amplitudes", amplitudes, "one of " + ", ".join(KINDS))
-        if not is_whole(seed):
-            raise refusal("seed", seed, "a whole number")
+            raise argument_error("amplitudes", amplitudes, "one of " + ", ".join(KINDS))
+        if not is_whole_number(seed):
+            raise argument_error("seed", seed, "a whole number")
         if precision not in PRECISIONS:
-            raise refusal("precision", precision, "one of " + ", ".join(PRECISIONS))
-        self.size, self.length, self.seed = int(size), above_zero("length", length, "m"), int(seed)
+            raise argument_error("precision", precision, "one of " + ", ".join(PRECISIONS))
+        self.size, self.length, self.seed = int(size), check_positive("length", length, "m"), int(seed)
         self.precision, self.amplitudes = precision, amplitudes
         self.choppiness = choppiness
         self._real = PRECISIONS[precision][0]
@@ -108,14 +114,14 @@ class Sea:
 
     @choppiness.setter
     def choppiness(self, value: float) -> None:
-        self._choppiness = not_negative("choppiness", value, "")
+        self._choppiness = check_not_negative("choppiness", value, "")
 
     def surface(self, t: float) -> Surface:
         """The surface at time t [s]; each field is computed when first read. Raises ValueError for a time not allowed:
         not finite, or before the last change where waves decay or relax."""
-        t = finite("t", t, "s")
+        t = check_finite("t", t, "s")
         if t < self._base and (self._relax > 0.0 or self._decays):
-            raise refusal("t", t, f"{self._base:g} s or later: decaying and relaxing waves do not run back")
+            raise argument_error("t", t, f"{self._base:g} s or later: decaying and relaxing waves do not run back")
         key = self._key(t)
         if self._latest is None or self._latest[0] != key:
             self._latest = key, {}
@@ -129,7 +135,7 @@ class Sea:
         surface does not fold, and where it stays large the surface above the point is folded. Between grid points
         fields are bicubic; exact: the sum over all waves instead, slow. Raises ValueError for another shape.
         """
-        return query(self.surface(t), positions("points", points), exact)
+        return query(self.surface(t), check_positions("points", points), exact)
 
     def change(self, t: float, relax: float = 0.0, spectrum: str | None = None, **changes: Any) -> None:
         """From time t [s] on, other conditions: any of the constructor's that describe wind, gravity or the medium.
@@ -137,9 +143,9 @@ class Sea:
         Phases go on without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
         relax = 0. Raises ValueError for a value that is not allowed, TypeError for an unknown name.
         """
-        t, relax = finite("t", t, "s"), not_negative("relax", relax, "s")
+        t, relax = check_finite("t", t, "s"), check_not_negative("relax", relax, "s")
         if t < self._base and (self._relax > 0.0 or self._decays):
-            raise refusal("t", t, f"{self._base:g} s or later")
+            raise argument_error("t", t, f"{self._base:g} s or later")
         if self._ripples is not None:
             self._ripples.check_time(t)
         before = self._rate, self._decay, self._magnitude(t)
@@ -239,7 +245,7 @@ class Sea:
     def _set_conditions(self, spectrum: str, values: dict[str, Any], conditions: Conditions, medium: Medium) -> None:
         """Check everything, then set spectrum, conditions, medium, and what follows from them."""
         if spectrum not in SPECTRA:
-            raise refusal("spectrum", spectrum, "one of " + ", ".join(SPECTRA))
+            raise argument_error("spectrum", spectrum, "one of " + ", ".join(SPECTRA))
         for name in values:
             if name not in _CONDITIONS | _MEDIUM:
                 raise TypeError(f"{name}: no such condition; there are {', '.join(sorted(_CONDITIONS | _MEDIUM))}")

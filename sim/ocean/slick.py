@@ -1,6 +1,6 @@
 """How a spill of oil spreads on calm water: Fay's regimes, and the thickness that follows from the volume.
 
-Source: J. A. Fay, Physical processes in the spread of oil on a water surface (1971), Int. Oil Spill Conf. Proc.
+Source: J. A. Fay, Physical processes in the spread of oil on a water surface (1971), Int. Oil FluidColumn Conf. Proc.
 463-467: R = 1.14 (D g V t^2)^(1/4) while inertia holds oil back, 1.45 (D g V^2 t^(3/2)/nu^(1/2))^(1/6) when the
 viscosity nu of the water does; D = 1 - rho_oil/rho_water. The slower of the two is in force. The third regime, surface
 tension, takes over at thicknesses of a tenth of a millimetre and is left out. Stated for a volume spilt at once; used
@@ -9,7 +9,7 @@ here with what has been spilt so far.
 
 import math
 
-from sim.knobs import refusal
+from sim.validation import argument_error
 
 INERTIAL, VISCOUS = 1.14, 1.45
 
@@ -22,11 +22,11 @@ def slick_radius(
     Raises ValueError for a negative volume or time, or an oil that is not lighter than the water.
     """
     if not 0.0 <= volume < math.inf:
-        raise refusal("volume", volume, "0 or above, finite m3")
+        raise argument_error("volume", volume, "0 or above, finite m3")
     if not 0.0 <= time < math.inf:
-        raise refusal("time", time, "0 or above, finite s")
+        raise argument_error("time", time, "0 or above, finite s")
     if not 0.0 < oil < water:
-        raise refusal("oil", oil, f"above 0 and below the water's {water:g} kg/m3")
+        raise argument_error("oil", oil, f"above 0 and below the water's {water:g} kg/m3")
     lift = (1.0 - oil / water) * gravity
     inertial = INERTIAL * (lift * volume * time**2) ** 0.25
     viscous = VISCOUS * (lift * volume**2 * time**1.5 / math.sqrt(viscosity)) ** (1.0 / 6.0)

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from sim.knobs import refusal
-from sim.ocean.bounds import not_negative
 from sim.ocean.spectra import Conditions, Spectrum
+from sim.validation import argument_error, check_not_negative
 
 if TYPE_CHECKING:
     from sim.ocean.sea import Sea
@@ -34,7 +33,7 @@ class Statistics(NamedTuple):
 
 def beaufort(wind_speed: float) -> tuple[int, str]:
     """Beaufort force 0 to 12 and its name, of U10 [m/s]. Raises ValueError for a negative or non-finite speed."""
-    force = int(np.searchsorted(BEAUFORT_FROM, not_negative("wind_speed", wind_speed, "m/s"), side="right"))
+    force = int(np.searchsorted(BEAUFORT_FROM, check_not_negative("wind_speed", wind_speed, "m/s"), side="right"))
     return force, BEAUFORT_NAMES[force]
 
 
@@ -76,7 +75,7 @@ def measured(
     Raises ValueError where the fields do not fit.
     """
     if height.ndim != 2 or height.shape[0] != height.shape[1]:
-        raise refusal("height", height.shape, "a square field")
+        raise argument_error("height", height.shape, "a square field")
     n = height.shape[0]
     k1 = np.fft.fftfreq(n, length / n) * 2.0 * math.pi
     kx, ky = k1[:, None], k1[None, : n // 2 + 1]
@@ -91,7 +90,7 @@ def measured(
     direction = math.nan
     if earlier is not None:
         if earlier.shape != height.shape:
-            raise refusal("earlier", earlier.shape, f"a field of shape {height.shape}")
+            raise argument_error("earlier", earlier.shape, f"a field of shape {height.shape}")
         # h = P e^(-i omega t) + Q e^(i omega t): the phase of h falls where the wave runs along k, rises against it.
         turned = twice * np.imag(np.fft.rfft2(np.asarray(earlier, np.float64)) / n**2 * np.conj(h))
         direction = _direction(float((turned * kx).sum()), float((turned * ky).sum()))

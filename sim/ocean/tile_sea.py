@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.jit import kernel
-from sim.ocean.bounds import positions
 from sim.ocean.query import bicubic, sample
 from sim.ocean.radial import RadialSurface, SurfaceAt
 from sim.ocean.radial_grid import FADE, RadialGrid
 from sim.ocean.sea import Sea
+from sim.validation import check_positions
 
 INSTANT = 1 / 60  # [s] between the three heights from which rise and acceleration are differences
 REACH = 0.05  # [m] of the differences that give the slope at a point
@@ -69,7 +69,7 @@ class TileSea:
     def at(self, points: ArrayLike, t: float, size: ArrayLike = 0.0) -> SurfaceAt:
         """The sea above points (n, 2) [m] at time t [s]; `size` is not used, the tile has no shorter waves than its
         cells. Velocity is that of the water that is there now, acceleration that of the surface above the point."""
-        where = positions("points", points)
+        where = check_positions("points", points)
         n = len(where)
         around = np.concatenate([where + REACH * np.array(d) for d in ((1, 0), (-1, 0), (0, 1), (0, -1), (0, 0))])
         height, residual = self.sea.height_at(around, t)

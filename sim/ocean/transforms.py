@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import platformdirs
 
-from sim.ocean.grids import Grids
+from sim.ocean.buffer_pool import BufferPool
 
 PRECISIONS = {"single": (np.float32, np.complex64), "double": (np.float64, np.complex128)}
 
@@ -31,7 +31,7 @@ class Transforms:
         real, complex_ = PRECISIONS[precision]
         self.count = 0  # transforms run so far
         self.spectrum = pyfftw.zeros_aligned((size, size // 2 + 1), dtype=complex_)  # input; destroyed by each run
-        self.grids = Grids(size, real)
+        self.grids = BufferPool(size, real)
         self._plan = make_plan(self.spectrum, self.grids.take(1)[0])
         self.spectrum[...] = 0.0
 

@@ -15,8 +15,8 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.knobs import refusal
 from sim.particles.random import uniform
+from sim.validation import argument_error
 
 RISE = 23.3  # [m/s2] b
 DRAG_TIME = 1.2  # [s] tau
@@ -50,16 +50,16 @@ class Fire:
         """
         for name, value in (("power", power), ("diameter", diameter), ("life", life)):
             if not (math.isfinite(value) and value > 0.0):
-                raise refusal(name, value, "a finite number above 0")
+                raise argument_error(name, value, "a finite number above 0")
         for name, values, length in (("position", position, 3), ("wind", wind, 2)):
             if len(values) != length or not all(math.isfinite(v) for v in values):
-                raise refusal(name, values, f"{length} finite numbers")
+                raise argument_error(name, values, f"{length} finite numbers")
         if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
-            raise refusal("count", count, "a whole number from 1")
+            raise argument_error("count", count, "a whole number from 1")
         if not (math.isfinite(eddies) and eddies >= 0.0):
-            raise refusal("eddies", eddies, "0 or above, finite")
+            raise argument_error("eddies", eddies, "0 or above, finite")
         if not math.isfinite(updraft):
-            raise refusal("updraft", updraft, "a finite number")
+            raise argument_error("updraft", updraft, "a finite number")
         self.place, self.diameter, self.wind, self.eddies = position, diameter, wind, eddies
         self.updraft = float(updraft)
         self.height = flame_height(power, diameter)
@@ -79,7 +79,7 @@ class Fire:
     def step(self, dt: float) -> None:
         """Let dt [s] pass. Raises ValueError for a negative or infinite one."""
         if not 0.0 <= dt < math.inf:
-            raise refusal("dt", dt, "0 or above, finite s")
+            raise argument_error("dt", dt, "0 or above, finite s")
         x, y, z = self.place
         self.started += burn(
             self.position, self.velocity, self.age, self.life, self.heat, self.turn, np.float32(dt), np.float32(x),

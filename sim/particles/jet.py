@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.jit import kernel
-from sim.knobs import refusal
 from sim.particles.rain import bilinear
 from sim.particles.random import uniform
+from sim.validation import argument_error
 
 
 class Landed(NamedTuple):
@@ -44,16 +44,16 @@ class Jet:
         """
         for name, values, length in (("nozzle", nozzle, 3), ("velocity", velocity, 3), ("wind", wind, 2)):
             if len(values) != length or not all(math.isfinite(v) for v in values):
-                raise refusal(name, values, f"{length} finite numbers")
+                raise argument_error(name, values, f"{length} finite numbers")
         for name, value in (("flow", flow), ("gravity", gravity), ("flight", flight)):
             if not (math.isfinite(value) and value > 0.0):
-                raise refusal(name, value, "a finite number above 0")
+                raise argument_error(name, value, "a finite number above 0")
         if not drag_time > 0.0:
-            raise refusal("drag_time", drag_time, "above 0 s, or inf")
+            raise argument_error("drag_time", drag_time, "above 0 s, or inf")
         if not (math.isfinite(spread) and spread >= 0.0):
-            raise refusal("spread", spread, "0 or above, finite")
+            raise argument_error("spread", spread, "0 or above, finite")
         if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
-            raise refusal("count", count, "a whole number from 1")
+            raise argument_error("count", count, "a whole number from 1")
         self.nozzle, self.axis, self.flow, self.spread = nozzle, velocity, float(flow), float(spread)
         self.gravity, self.drag_time, self.wind = float(gravity), float(drag_time), wind
         self.rate = count / flight  # [1/s] parcels
@@ -78,7 +78,7 @@ class Jet:
         Beyond that patch the surface counts as it is at its edge. Raises ValueError for a bad dt.
         """
         if not 0.0 <= dt < math.inf:
-            raise refusal("dt", dt, "0 or above, finite s")
+            raise argument_error("dt", dt, "0 or above, finite s")
         fly(self.position, self.velocity, self.flying, dt, self.gravity, self.drag_time, *self.wind)
         self._emit(dt)
         m = height.shape[0]

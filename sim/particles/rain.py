@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.jit import kernel
-from sim.knobs import refusal
+from sim.validation import argument_error
 
 N0 = 8000.0 * 1e3  # [1/m4] Marshall-Palmer intercept, 8000 per m3 and mm
 SMALLEST, LARGEST = 0.5e-3, 6.0e-3  # [m] drops outside are not counted: mist below, broken up above
@@ -81,11 +81,11 @@ class Rain:
         """
         for name, value in (("rate", rate), ("length", length), ("ceiling", ceiling), ("gravity", gravity)):
             if not (math.isfinite(value) and value > 0.0):
-                raise refusal(name, value, "a finite number above 0")
+                raise argument_error(name, value, "a finite number above 0")
         if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
-            raise refusal("count", count, "a whole number from 1")
+            raise argument_error("count", count, "a whole number from 1")
         if len(wind) != 2 or not all(math.isfinite(w) for w in wind):
-            raise refusal("wind", wind, "two finite numbers [m/s]")
+            raise argument_error("wind", wind, "two finite numbers [m/s]")
         self.rate, self.length, self.ceiling, self.gravity = float(rate), float(length), float(ceiling), float(gravity)
         self.wind = float(wind[0]), float(wind[1])
         self.rainfall = rainfall(rate, gravity)
@@ -117,7 +117,7 @@ class Rain:
         Raises ValueError for a dt that is negative or not finite.
         """
         if not 0.0 <= dt < math.inf:
-            raise refusal("dt", dt, "0 or above, finite s")
+            raise argument_error("dt", dt, "0 or above, finite s")
         if displacement is None:
             displacement = np.zeros((1, 1, 2), height.dtype)
         moved = fall(

@@ -6,9 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from sim.knobs import refusal
-from sim.springs.checks import check_choice, check_number, check_vector
 from sim.springs.net import CLOTH, DAMPING_MODELS, Air, Contact, Family, Net, Vector, check_surroundings
+from sim.validation import argument_error, check_choice, check_number, check_vector
 
 HOLDS = ("corners", "edge", "all corners", "rim", "free")
 MOST = 1024  # rows or columns
@@ -59,7 +58,7 @@ def cloth(
     """
     for name, count in (("rows", rows), ("cols", cols)):
         if not isinstance(count, int | np.integer) or isinstance(count, bool) or not 2 <= count <= MOST:
-            raise refusal(name, count, f"a whole number from 2 to {MOST}")
+            raise argument_error(name, count, f"a whole number from 2 to {MOST}")
     check_number("width", width, 0, math.inf, "m", above=True)
     check_number("length", length, 0, math.inf, "m", above=True)
     check_number("density", density, 0, math.inf, "kg/m^2", above=True)
@@ -75,7 +74,7 @@ def cloth(
     contact = check_surroundings(contact, floor, sphere)
     if air is not None:
         if not isinstance(air, Air):
-            raise refusal("air", air, "an Air, or None")
+            raise argument_error("air", air, "an Air, or None")
         check_vector("air.wind", air.wind)
         for name in ("density", "drag", "lift"):
             check_number(f"air.{name}", getattr(air, name), 0, math.inf, "")
@@ -112,10 +111,10 @@ def pinned_particles(pinned: object, rows: int, cols: int) -> frozenset[tuple[in
     try:
         pairs = frozenset((int(i), int(j)) for i, j in pinned)  # type: ignore[attr-defined]
     except (TypeError, ValueError):
-        raise refusal("pinned", pinned, "one of " + ", ".join(HOLDS) + ", or (row, column) pairs") from None
+        raise argument_error("pinned", pinned, "one of " + ", ".join(HOLDS) + ", or (row, column) pairs") from None
     for i, j in pairs:
         if not (0 <= i < rows and 0 <= j < cols):
-            raise refusal("pinned", (i, j), f"a row from 0 to {rows - 1} and a column from 0 to {cols - 1}")
+            raise argument_error("pinned", (i, j), f"a row from 0 to {rows - 1} and a column from 0 to {cols - 1}")
     return pairs
 
 

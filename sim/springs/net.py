@@ -12,9 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.jit import MOST_THREADS
-from sim.knobs import refusal
-from sim.springs.checks import check_choice, check_number, check_vector
+from sim.jit import MAX_THREADS
+from sim.validation import argument_error, check_choice, check_number, check_vector
 
 Vector = tuple[float, float, float]
 
@@ -257,7 +256,7 @@ class Net:
             thickness=float(self.thickness),
             pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1, dtype=np.int64),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
-            bands=max(1, min(self.threads, MOST_THREADS, rows // LEAST_BAND)),
+            bands=max(1, min(self.threads, MAX_THREADS, rows // LEAST_BAND)),
         )
 
 
@@ -267,7 +266,7 @@ def check_surroundings(
     """The contact, or the plain one for None; raises ValueError, naming what of the three cannot be and why."""
     contact = PLAIN_CONTACT if contact is None else contact
     if not isinstance(contact, Contact):
-        raise refusal("contact", contact, "a Contact, or None")
+        raise argument_error("contact", contact, "a Contact, or None")
     check_number("contact.stiffness", contact.stiffness, 0, math.inf, "N/m")
     check_number("contact.damping", contact.damping, 0, math.inf, "N s/m")
     check_number("contact.friction", contact.friction, 0, math.inf, "")

@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
-from sim.knobs import refusal
-from sim.springs.checks import check_choice, check_number, check_vector
 from sim.springs.net import DAMPING_MODELS, Contact, Family, Net, Vector, check_surroundings
+from sim.validation import argument_error, check_choice, check_number, check_vector
 
 
 def rope(
@@ -37,7 +36,7 @@ def rope(
     Raises ValueError, naming the argument, its value and what is allowed.
     """
     if not isinstance(points, int | np.integer) or isinstance(points, bool) or not 1 <= points <= 1_000_000:
-        raise refusal("points", points, "a whole number from 1 to 1000000")
+        raise argument_error("points", points, "a whole number from 1 to 1000000")
     check_number("length", length, 0, math.inf, "m", above=True)
     check_number("mass", mass, 0, math.inf, "kg", above=True)
     check_number("stiffness", stiffness, 0, math.inf, "N/m")

@@ -7,12 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.knobs import refusal
-from sim.springs.checks import check_choice, check_number
-from sim.springs.energy import energies
+from sim.springs.analysis.energy import energies
 from sim.springs.integrators import Integrator
 from sim.springs.net import Net
 from sim.springs.state import SANE, State, advance, check_damping, energy, steps_for, velocities
+from sim.validation import argument_error, check_choice, check_number
 
 CALM = 1e-3 * SANE  # [m]: a net within this has not yet been out of the sane bound
 STEP = 1 / 1200  # [s]
@@ -64,10 +63,12 @@ def simulate(
         if value is not None:
             check_number(name, value, 0, 1, "", above=True)
             if not record.adaptive or step is not None:
-                raise refusal(name, value, "None, as the step is given" if record.adaptive else "adaptive methods only")
+                raise argument_error(
+                    name, value, "None, as the step is given" if record.adaptive else "adaptive methods only"
+                )
     check_number("duration", duration, 0, math.inf, "s", above=True)
     if not isinstance(frames, int | np.integer) or isinstance(frames, bool) or not 2 <= frames <= MOST_FRAMES:
-        raise refusal("frames", frames, f"a whole number from 2 to {MOST_FRAMES}")
+        raise argument_error("frames", frames, f"a whole number from 2 to {MOST_FRAMES}")
     check_damping(net, record)
     t = np.linspace(0.0, duration, int(frames))
     if record.adaptive and step is None:

@@ -17,12 +17,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.springs.checks import check_number
 from sim.springs.integrators import Integrator
+from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos
 from sim.springs.net import Forces, Net
 from sim.springs.simulate import integrator_named
 from sim.springs.state import State
-from sim.springs.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos
+from sim.validation import check_number
 
 VECTORS = 32  # of Lanczos: the stiffest frequency to 0.1 % on nets of any size
 MOST_DAMPED = 1000.0  # zeta above which only the rate matters, not the frequency
@@ -134,7 +134,7 @@ def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) ->
     """The stiffest mode about positions x (3, rows, cols) [m] (None: x0) at time t [s], then the most damped one and,
     across the links, the most damped one again or, of axially damped nets, the stiffest.
 
-    Points that touch floor or sphere, and the grab, count; friction does not (see `sim.springs.tangent`).
+    Points that touch floor or sphere, and the grab, count; friction does not (see `sim.springs.integrators.implicit.tangent`).
     Empty where nothing is free to move.
     """
     x = net.x0 if x is None else x

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import set_threads
-from sim.knobs import refusal
-from sim.springs.energy import Energy, energies
-from sim.springs.extremes import extremes
-from sim.springs.forces import set_acceleration
+from sim.springs.analysis.energy import Energy, energies
+from sim.springs.analysis.extremes import extremes
+from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.integrators import Integrator
 from sim.springs.net import Net
+from sim.validation import argument_error
 
 SANE = 1e9  # [m]: a net that has left this bound has diverged, long before its numbers overflow
 
@@ -70,7 +70,7 @@ def velocities(net: Net, state: State) -> NDArray[np.float64]:
 def check_damping(net: Net, integrator: Integrator) -> None:
     """Raises ValueError where a damped net is given to a method that takes none."""
     if integrator.undamped_only and net.is_damped:
-        raise refusal("integrator", integrator.name, "another, as this net is damped: by links, drag or contact")
+        raise argument_error("integrator", integrator.name, "another, as this net is damped: by links, drag or contact")
 
 
 def advance(net: Net, state: State, integrator: Integrator, h: float, steps: int, *, with_ledger: bool = False) -> None:

@@ -6,9 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.knobs import refusal
-from sim.springs.checks import check_number
 from sim.springs.net import Net
+from sim.validation import argument_error, check_number
 
 ITERATIONS = 200  # of Newton: a dozen is usual
 
@@ -28,7 +27,7 @@ def hanging_chain(net: Net) -> Equilibrium:
     """
     family = single_family(net)
     if net.pinned != {(0, 0)}:
-        raise refusal("net", sorted(net.pinned), "a rope pinned at point 0 only")
+        raise argument_error("net", sorted(net.pinned), "a rope pinned at point 0 only")
     links = net.shape[1] - 1
     weight = net.mass * np.asarray(net.gravity)
     g = math.sqrt(float(weight @ weight))
@@ -55,7 +54,7 @@ def catenary(
     Raises ValueError, naming the argument, its value and what is allowed.
     """
     if not isinstance(points, int | np.integer) or isinstance(points, bool) or points < 2:
-        raise refusal("points", points, "a whole number from 2")
+        raise argument_error("points", points, "a whole number from 2")
     check_number("length", length, 0, math.inf, "m", above=True)
     check_number("span", span, -math.inf, math.inf, "m")
     check_number("rise", rise, -math.inf, math.inf, "m")
@@ -101,7 +100,7 @@ def catenary(
             break
         force, gap, jacobian = new, new_gap, new_jacobian
     if not np.hypot(*gap) <= 1e-11 * (length + math.hypot(span, rise)):
-        raise refusal("span", span, "a distance at which gravity or stretch keeps every link taut")
+        raise argument_error("span", span, "a distance at which gravity or stretch keeps every link taut")
     H, V = force[0], force[1] + load
     T = np.hypot(H, V)
     links_xz = (rest / T + 1.0 / stiffness)[:, None] * np.stack([np.full_like(V, H), V], axis=1)
@@ -121,9 +120,9 @@ def equilibrium(net: Net) -> Equilibrium:
     if net.pinned == {(0, 0)}:
         return hanging_chain(net)
     if last == 0 or net.pinned != {(0, 0), (0, last)}:
-        raise refusal("net", sorted(net.pinned), "a rope pinned at point 0, and at the last one or not")
+        raise argument_error("net", sorted(net.pinned), "a rope pinned at point 0, and at the last one or not")
     if net.gravity[:2] != (0.0, 0.0):
-        raise refusal("gravity", net.gravity, "along z")
+        raise argument_error("gravity", net.gravity, "along z")
     start, chord = net.x0[:, 0, 0], net.x0[:, 0, last] - net.x0[:, 0, 0]
     span = math.hypot(chord[0], chord[1])
     flat = catenary(
@@ -136,7 +135,7 @@ def equilibrium(net: Net) -> Equilibrium:
 def single_family(net: Net):
     """The links of a rope; raises ValueError for any other net, or where they have no stiffness."""
     if not net.is_rope:
-        raise refusal("net", net.shape, "a rope")
+        raise argument_error("net", net.shape, "a rope")
     family = net.families[0]
     check_number("stiffness", family.stiffness, 0, math.inf, "N/m", above=True)
     return family

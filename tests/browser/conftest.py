@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from app.messages import Pause
-from app.viewer import Viewer
+from app.server.viewer import Viewer
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
@@ -48,7 +48,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def asked_often() -> Iterator[None]:
     """Many tests wait for a browser to say that it draws water."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.patch.ASK_EVERY", 0.05)
+        patch.setattr("app.render.injection.ASK_EVERY", 0.05)
         yield
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from app.messages import Pause, Play
-from app.viewer import Viewer
+from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 from tests.browser.test_rope import pixel
 
@@ -53,7 +53,7 @@ def test_a_particle_is_dragged_by_the_mouse(shown: tuple[Viewer, Tab]) -> None:
     tab.wait(lambda: lab.scene.held is not None, 20)
     row, col = divmod(lab.scene.held[0], 32)
     assert np.linalg.norm(lab.scene.state.x[:, row, col] - here) < 1.0
-    tab.wait(lambda: lab.loop.latest.picture.pull is not None, 20)
+    tab.wait(lambda: lab.loop.latest.frame.pull is not None, 20)
     tab.release()
     tab.wait(lambda: lab.scene.held is None, 20)
     assert tab.errors == []

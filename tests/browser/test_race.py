@@ -1,13 +1,13 @@
 """The race presets in a real browser: ropes, flags and charts."""
 
-from app.rope_knobs import PRESETS, ROOT, Params
-from app.viewer import Viewer
-from sim.knobs import check
+from app.scenes.rope.parameters import PRESETS, ROOT, Params
+from app.server.viewer import Viewer
+from sim.parameters import check_record
 from tests.browser.conftest import Tab
 from tests.browser.test_rope import pixel
 
 SCENE = "rope"
-RACES = [name for name, knobs in PRESETS.items() if knobs.get("ropes", 1) > 1]
+RACES = [name for name, parameters in PRESETS.items() if parameters.get("ropes", 1) > 1]
 CHARTS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({chart}) => ({
     title: chart.root.querySelector('.u-title')?.textContent, labels: chart.series.map(s => s.label),
     rows: chart.data[0].length, log: chart.scales.y.distr === 3}))"""
@@ -47,13 +47,13 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(shown: tuple[
 def test_a_bead_of_a_race_is_dragged_and_the_single_rope_comes_back(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     without_charts = {"plot_errors": False, "plot_energies": False, "speed": 4.0}
-    tab.follow(lab, SCENE, check(Params, {**PRESETS["Leapfrog read literally"], **without_charts}))
+    tab.follow(lab, SCENE, check_record(Params, {**PRESETS["Leapfrog read literally"], **without_charts}))
     tab.wait(lambda: lab.scene.race is not None and lab.scene.time > 5)
     lab.panel.set("speed", 1.0)
     tab.wait(lambda: len(tab.vertices("/race/rope_4")) > 0)
 
     def dragged() -> bool:
-        start = pixel(lab, lab.scene.picture().race.ropes[0, 7])
+        start = pixel(lab, lab.scene.frame().race.ropes[0, 7])
         tab.drag(start, (start[0] - 60, start[1] - 40))
         tab.page.wait_for_timeout(500)
         held = lab.scene.held is not None

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from app.messages import Pause, Play
-from app.scenes.rope import ROOT
-from app.stability import live
-from app.viewer import Viewer
+from app.panel.panel import stability_map as live
+from app.scenes.rope.scene import ROOT
+from app.server.viewer import Viewer
 from tests.browser.conftest import DPR, Tab
 
 SCENE = "rope"
@@ -87,7 +87,7 @@ def test_dragging_a_bead_pulls_it_and_lets_go(shown: tuple[Viewer, Tab]) -> None
     held, _ = lab.scene.held
     assert abs(held - particle) <= 1
     tab.wait(lambda: np.linalg.norm(lab.scene.state.x[:, 0, held] - bead) > 0.15)
-    assert lab.loop.latest.picture.pull is not None
+    assert lab.loop.latest.frame.pull is not None
     tab.release()
     tab.wait(lambda: lab.scene.held is None)
     assert tab.errors == []

@@ -13,9 +13,9 @@ import pytest
 import viser
 from PIL import Image
 
-from app.paint import Painted
-from app.patch import patch
-from app.water import Look, Water, sky
+from app.render.coloured_mesh import ColouredMesh
+from app.render.injection import patch
+from app.render.water import Look, Water, sky
 from tests.browser.conftest import new_page
 
 SIZE = 32
@@ -230,7 +230,7 @@ def test_colours_reach_the_vertices_of_a_streaming_mesh(chromium, server):
     corners = np.array([[0, 0, 0], [64, 0, 0], [64, 64, 0], [0, 64, 0]], float)
     faces = np.array([[0, 1, 2], [0, 2, 3]])
     red = np.tile([0.5, 0.0, 0.0], (4, 1))
-    painted = Painted(server, "/quad", corners, faces, red, color=(0, 0, 255))
+    painted = ColouredMesh(server, "/quad", corners, faces, red, color=(0, 0, 255))
     page, errors = visit(chromium, server)
     assert wait(page, lambda: painted.alive is True)
 
@@ -248,8 +248,10 @@ def test_colours_reach_the_vertices_of_a_streaming_mesh(chromium, server):
 
 
 def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, monkeypatch):
-    monkeypatch.setattr("app.patch.GRACE", 1.0)
-    monkeypatch.setattr("app.patch.Patch.script", lambda self: "/* a viser whose inner names have changed */")
+    monkeypatch.setattr("app.render.injection.GRACE", 1.0)
+    monkeypatch.setattr(
+        "app.render.injection.ShaderInjector.script", lambda self: "/* a viser whose inner names have changed */"
+    )
     water = make_water(server)
     page, errors = visit(chromium, server)
     assert wait(page, lambda: water.alive is False)

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from app.loop import FRAME
 from app.messages import Grab, Pause, Place, Play, Point, Release, Reset, StepOnce
-from app.viewer import Viewer
-from app.warmup import prepare
-from sim.knobs import Knob, knobs
-from tests.stress.tally import Tally
+from app.scenes.contract import FRAME_INTERVAL
+from app.scenes.warmup import prepare
+from app.server.viewer import Viewer
+from sim.parameters import Parameter, parameters_of
+from tests.stress.tally import OilBudget
 
 CRASHES = "stopped with", "no number", "could not be drawn"  # how a halt is worded that is no divergence
 
@@ -47,7 +47,7 @@ def infinite(value: Any, path: str = "") -> Iterator[str]:
 class Hammer:
     """One scene and what is done to it."""
 
-    def __init__(self, name: str, tally: Tally) -> None:
+    def __init__(self, name: str, tally: OilBudget) -> None:
         prepare(name)
         self.name, self.tally = name, tally
         self.viewer = Viewer("127.0.0.1", 0)
@@ -72,15 +72,15 @@ class Hammer:
         return self.viewer.loop
 
     @property
-    def knobs(self) -> dict[str, Knob]:
-        return knobs(self.viewer.panel.params)
+    def parameters_of(self) -> dict[str, Parameter]:
+        return parameters_of(self.viewer.panel.params)
 
     def set(self, name: str, value: Any) -> None:
-        """Turn one knob, as the panel does."""
+        """Turn one parameter, as the panel does."""
         self.tally.counts[self.name]["changes"] += 1
         self.viewer.panel.controls[name].take(value)
 
-    def frame(self, count: int = 1, wall: float = FRAME) -> None:
+    def frame(self, count: int = 1, wall: float = FRAME_INTERVAL) -> None:
         """Frames `wall` [s] apart as the two threads would make them, each checked."""
         panel = self.viewer.panel
         for _ in range(count):
@@ -103,12 +103,14 @@ class Hammer:
             assert math.isfinite(status.time)
 
     def unusual(self) -> dict[str, Any]:
-        """The knobs that are not at their defaults."""
+        """The parameters that are not at their defaults."""
         params = self.viewer.panel.params
-        return {name: getattr(params, name) for name, k in self.knobs.items() if getattr(params, name) != k.default}
+        return {
+            name: getattr(params, name) for name, k in self.parameters.items() if getattr(params, name) != k.default
+        }
 
     def go_on(self) -> None:
-        """After a halt: reset, and where the knobs cannot hold, the defaults; then it must run."""
+        """After a halt: reset, and where the parameters cannot hold, the defaults; then it must run."""
         if self.loop.halted:
             self.tally.counts[self.name]["halts"] += 1
             self.loop.commands.put(Reset())
@@ -133,22 +135,22 @@ class Hammer:
         self.viewer.shut()
 
 
-def ends(knob: Knob) -> tuple[Any, ...]:
-    """Both ends of a knob, or all its choices."""
-    if knob.choices:
-        return knob.choices
-    return (False, True) if knob.kind is bool else (knob.kind(knob.lo), knob.kind(knob.hi))
+def ends(parameter: Parameter) -> tuple[Any, ...]:
+    """Both ends of a parameter, or all its choices."""
+    if parameter.choices:
+        return parameter.choices
+    return (False, True) if parameter.kind is bool else (parameter.kind(parameter.low), parameter.kind(parameter.high))
 
 
-def anywhere(knob: Knob, rng: random.Random) -> Any:
-    """Any value a knob may have, its ends among them more often than chance has it."""
-    if knob.choices or knob.kind is bool or rng.random() < 0.1:
-        return rng.choice(ends(knob))
-    if knob.log_from:
-        value = 10.0 ** rng.uniform(math.log10(knob.log_from), math.log10(knob.hi))
+def anywhere(parameter: Parameter, rng: random.Random) -> Any:
+    """Any value a parameter may have, its ends among them more often than chance has it."""
+    if parameter.choices or parameter.kind is bool or rng.random() < 0.1:
+        return rng.choice(ends(parameter))
+    if parameter.log_from:
+        value = 10.0 ** rng.uniform(math.log10(parameter.log_from), math.log10(parameter.high))
     else:
-        value = rng.uniform(knob.lo, knob.hi)
-    return min(max(round(value), int(knob.lo)), int(knob.hi)) if knob.kind is int else value
+        value = rng.uniform(parameter.low, parameter.high)
+    return min(max(round(value), int(parameter.low)), int(parameter.high)) if parameter.kind is int else value
 
 
 def some_command(rng: random.Random) -> Any:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 SERVED = float(os.environ.get("SPRINGTIDE_STRESS_SOAK", "30"))  # [s] of wall time that each scene is served
 
 
-class Tally:
+class OilBudget:
     """Counts by kind, and the faults that were injected and survived."""
 
     def __init__(self) -> None:
@@ -33,7 +33,7 @@ class Tally:
             for name, row in self.counts.items():
                 yield f"{name:{width}}  " + "  ".join(f"{row[column]:>{len(column)},}" for column in columns)
             total = sum(row["changes"] for row in self.counts.values())
-            yield f"{total:,} changes of knobs tried with the simulation running"
+            yield f"{total:,} changes of parameters tried with the simulation running"
         yield from self.notes
         for kind in self.injected:
             yield f"{self.survived[kind]:,} of {self.injected[kind]:,} survived: {kind}"

@@ -9,11 +9,11 @@ import viser
 
 from app.messages import Play
 from app.scenes import NAMES
-from app.viewer import Viewer
-from app.warmup import prepare
+from app.scenes.warmup import prepare
+from app.server.viewer import Viewer
 from tests.stress.clients import Clients, clients_of, until
 from tests.stress.memory import GROWTH, resident
-from tests.stress.tally import Tally
+from tests.stress.tally import OilBudget
 
 MANY = 20
 BRIEF, VISITORS, CROWD = 50, 200, 10  # killed before the count begins, then counted, and so many at a time
@@ -49,7 +49,7 @@ def runs(viewer: Viewer) -> None:
     assert all(thread.is_alive() for thread in viewer.threads)
 
 
-def test_twenty_clients_at_once_all_are_served(viewer: Viewer, clients: Clients, tally: Tally) -> None:
+def test_twenty_clients_at_once_all_are_served(viewer: Viewer, clients: Clients, tally: OilBudget) -> None:
     with tally.fault("client joins", MANY):
         for _ in range(MANY):
             clients.join()
@@ -65,7 +65,7 @@ def test_twenty_clients_at_once_all_are_served(viewer: Viewer, clients: Clients,
     runs(viewer)
 
 
-def test_a_client_that_stops_reading_holds_up_nobody(viewer: Viewer, clients: Clients, tally: Tally) -> None:
+def test_a_client_that_stops_reading_holds_up_nobody(viewer: Viewer, clients: Clients, tally: OilBudget) -> None:
     with tally.fault("client stops reading"):
         clients.join(reads=False)
         good = clients.join()
@@ -81,7 +81,7 @@ def test_a_client_that_stops_reading_holds_up_nobody(viewer: Viewer, clients: Cl
         assert len(pending) < 5000
 
 
-def test_a_browser_killed_in_mid_drag_lets_go(viewer: Viewer, clients: Clients, tally: Tally) -> None:
+def test_a_browser_killed_in_mid_drag_lets_go(viewer: Viewer, clients: Clients, tally: OilBudget) -> None:
     name = viewer.panel.scene.__name__.rpartition(".")[2]
     if name not in HANDLES:
         pytest.skip("nothing to be dragged")
@@ -94,11 +94,11 @@ def test_a_browser_killed_in_mid_drag_lets_go(viewer: Viewer, clients: Clients, 
         def held() -> bool:
             for phase in ("start", "update"):  # again, where the first came before the thing was drawn
                 clients.drag(hand, node, phase, instance, (-1.0, 0.5, 2.0))
-            return viewer.loop.latest.picture.pull is not None
+            return viewer.loop.latest.frame.pull is not None
 
         until(held, "it is held")
         clients.kill(hand)
-        until(lambda: viewer.loop.latest.picture.pull is None, "it is let go")
+        until(lambda: viewer.loop.latest.frame.pull is None, "it is let go")
         runs(viewer)
 
 
@@ -110,7 +110,7 @@ def left_of_clients(viewer: Viewer) -> set[int]:
     return {len(handles), len(server._client_state_from_id), len(server._broadcast_buffer.generator_cursors)}
 
 
-def test_visitors_that_are_killed_leave_nothing_behind(viewer: Viewer, clients: Clients, tally: Tally) -> None:
+def test_visitors_that_are_killed_leave_nothing_behind(viewer: Viewer, clients: Clients, tally: OilBudget) -> None:
     process = psutil.Process()
     stays = clients.join()
     runs(viewer)
@@ -139,7 +139,7 @@ def test_visitors_that_are_killed_leave_nothing_behind(viewer: Viewer, clients: 
     runs(viewer)
 
 
-def test_the_server_stops_under_load(viewer: Viewer, clients: Clients, tally: Tally) -> None:
+def test_the_server_stops_under_load(viewer: Viewer, clients: Clients, tally: OilBudget) -> None:
     with tally.fault("server stopped under load"):
         for number in range(MANY // 2):
             clients.join(reads=number % 4 > 0)

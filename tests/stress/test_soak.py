@@ -8,26 +8,26 @@ import time
 
 import pytest
 
-from app.loop import LONGEST
 from app.messages import Play, Reset
 from app.scenes import NAMES
-from app.viewer import Viewer
-from app.warmup import prepare
-from sim.knobs import knobs
+from app.scenes.warmup import prepare
+from app.server.loop import LONGEST
+from app.server.viewer import Viewer
+from sim.parameters import parameters_of
 from tests.stress.clients import clients_of, until
 from tests.stress.hammer import Hammer
 from tests.stress.memory import GROWTH, resident
-from tests.stress.tally import SERVED, Tally
+from tests.stress.tally import SERVED, OilBudget
 
 HOUR = 3600.0  # [s] of simulated time
 # Smaller, or in longer steps, so that an hour of it fits in a minute or two.
 PRESS = {"cloth": {"rows": 8, "cols": 8, "time_step": 1e-3}, "radial": {"time_step": 1 / 20}}
 
 
-def test_an_hour_of_simulated_time(hammer: Hammer, tally: Tally) -> None:
+def test_an_hour_of_simulated_time(hammer: Hammer, tally: OilBudget) -> None:
     for name, value in PRESS.get(hammer.name, {}).items():
         hammer.set(name, value)
-    speed = hammer.knobs["speed"].hi
+    speed = hammer.parameters["speed"].high
     hammer.set("speed", speed)
     hammer.loop.effort = lambda: 0.0  # as on a machine that always keeps up
     hammer.loop.untried = True
@@ -45,11 +45,11 @@ def test_an_hour_of_simulated_time(hammer: Hammer, tally: Tally) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_served_while_clients_come_and_go(name: str, tally: Tally) -> None:
+def test_served_while_clients_come_and_go(name: str, tally: OilBudget) -> None:
     prepare(name)
     viewer = Viewer("127.0.0.1", 0)
     viewer.open(name)
-    plots = [knob for knob in knobs(viewer.panel.params) if knob.startswith("plot_")]
+    plots = [parameter for parameter in parameters_of(viewer.panel.params) if parameter.startswith("plot_")]
     with clients_of(viewer.port) as clients:
         stays = clients.join()
         for plot in plots:

@@ -7,10 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.knobs import refusal
-from sim.ocean.bounds import above_zero, finite, not_negative, within
 from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.spreading import SPREADINGS, spread
+from sim.validation import argument_error, check_finite, check_not_negative, check_positive, check_within
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -33,21 +32,21 @@ class Conditions:
     low_pass: float = 0.0  # [m] l: S is multiplied by exp(-k^2 l^2); l = 2 sqrt(nu T) is fluid nu left for a time T
 
     def __post_init__(self) -> None:
-        not_negative("wind_speed", self.wind_speed, "m/s")
-        finite("wind_direction", self.wind_direction, "rad")
-        above_zero("gravity", self.gravity, "m/s2")
-        above_zero("depth", self.depth, "m", infinite=True)
-        not_negative("tension", self.tension, "N/m")
-        above_zero("density", self.density, "kg/m3")
-        above_zero("fetch", self.fetch, "m")
-        within("peak_enhancement", self.peak_enhancement, 1.0, 20.0)
-        within("inverse_wave_age", self.inverse_wave_age, 0.84, 5.0)
-        not_negative("phillips_constant", self.phillips_constant, "")
-        within("spread_exponent", self.spread_exponent, 0.0, 1000.0)
-        within("swell", self.swell, 0.0, 1.0)
-        not_negative("low_pass", self.low_pass, "m")
+        check_not_negative("wind_speed", self.wind_speed, "m/s")
+        check_finite("wind_direction", self.wind_direction, "rad")
+        check_positive("gravity", self.gravity, "m/s2")
+        check_positive("depth", self.depth, "m", allow_infinite=True)
+        check_not_negative("tension", self.tension, "N/m")
+        check_positive("density", self.density, "kg/m3")
+        check_positive("fetch", self.fetch, "m")
+        check_within("peak_enhancement", self.peak_enhancement, 1.0, 20.0)
+        check_within("inverse_wave_age", self.inverse_wave_age, 0.84, 5.0)
+        check_not_negative("phillips_constant", self.phillips_constant, "")
+        check_within("spread_exponent", self.spread_exponent, 0.0, 1000.0)
+        check_within("swell", self.swell, 0.0, 1.0)
+        check_not_negative("low_pass", self.low_pass, "m")
         if self.spreading not in SPREADINGS:
-            raise refusal("spreading", self.spreading, "one of " + ", ".join(SPREADINGS))
+            raise argument_error("spreading", self.spreading, "one of " + ", ".join(SPREADINGS))
 
     def omega(self, k: np.ndarray) -> np.ndarray:
         """Angular frequency [rad/s] under these conditions."""

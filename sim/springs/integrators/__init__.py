@@ -45,6 +45,8 @@ class Integrator(NamedTuple):
 def discover() -> dict[str, Integrator]:
     """Every RECORD in this folder, the simplest methods first."""
     records: list[Any] = [
-        importlib.import_module(f"{__name__}.{module.name}").RECORD for module in pkgutil.iter_modules(__path__)
+        importlib.import_module(f"{__name__}.{module.name}").RECORD
+        for module in pkgutil.iter_modules(__path__)
+        if not module.ispkg
     ]
     return {r.name: r for r in sorted(records, key=lambda r: (r.order, r.evals, r.symplectic, r.name))}

@@ -4,11 +4,11 @@ Twelve force evaluations a step of eighth order: the reference that the others a
 errors below 1e-8.
 """
 
-from sim.springs.amplification import limit_of_polynomial, polynomial_of
-from sim.springs.embedded.dop853 import METHOD, A, B
-from sim.springs.embedded.march import march as march_to_frames
-from sim.springs.embedded.stages import take_steps
+from sim.springs.analysis.amplification import limit_of_polynomial, polynomial_of
 from sim.springs.integrators import Integrator
+from sim.springs.integrators.embedded.dop853 import METHOD, A, B
+from sim.springs.integrators.embedded.march import march as march_to_frames
+from sim.springs.integrators.embedded.stages import take_steps
 
 POLYNOMIAL = polynomial_of(A, B)
 

@@ -4,11 +4,11 @@ Six force evaluations a step of fifth order. Undamped modes hold to h omega = 1 
 tolerance of 1e-5 to 1e-8 on a soft net is where it pays.
 """
 
-from sim.springs.amplification import limit_of_polynomial, polynomial_of
-from sim.springs.embedded.dopri5 import METHOD, A, B
-from sim.springs.embedded.march import march as march_to_frames
-from sim.springs.embedded.stages import take_steps
+from sim.springs.analysis.amplification import limit_of_polynomial, polynomial_of
 from sim.springs.integrators import Integrator
+from sim.springs.integrators.embedded.dopri5 import METHOD, A, B
+from sim.springs.integrators.embedded.march import march as march_to_frames
+from sim.springs.integrators.embedded.stages import take_steps
 
 POLYNOMIAL = polynomial_of(A, B)
 

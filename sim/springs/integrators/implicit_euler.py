@@ -8,10 +8,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.energy import add_power
-from sim.springs.forces import set_pins
+from sim.springs.analysis.energy import add_power
+from sim.springs.forces.acceleration import set_pins
 from sim.springs.integrators import Integrator
-from sim.springs.newton import MOST, make_work, solve_stage
+from sim.springs.integrators.implicit.newton import MOST, make_work, solve_stage
 
 
 def limit(zeta: float) -> float:

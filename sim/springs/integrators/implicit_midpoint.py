@@ -2,7 +2,7 @@
 
 A-stable: modes of any stiffness keep their energy, only their frequency is wrong, (2/h) atan(h omega/2). They keep it
 for good: damping takes next to nothing of a mode that is far too stiff for the step. So that links that turn far within
-a step keep theirs as well, their tensions are those of their mean lengths (`sim.springs.mean_length`): without damping
+a step keep theirs as well, their tensions are those of their mean lengths (`sim.springs.integrators.implicit.mean_length`): without damping
 and contact the energy stays to round-off at any stiffness, and the angular momentum too; for that the method gives up
 being symplectic. A step that Newton's method cannot take whole is taken in halves, quarters, ..., in longer parts again
 after an easy one.
@@ -13,10 +13,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.energy import add_power
-from sim.springs.forces import set_pins
+from sim.springs.analysis.energy import add_power
+from sim.springs.forces.acceleration import set_pins
 from sim.springs.integrators import Integrator
-from sim.springs.newton import make_work, solve_stage
+from sim.springs.integrators.implicit.newton import make_work, solve_stage
 
 PATIENCE = 12  # corrections, after which halves are quicker than going on
 FINEST = 64  # parts of a step, which are taken as they are

@@ -1,6 +1,6 @@
 """Leapfrog (velocity Verlet) with damping split off: D(h/2) K(h/2) X(h) K(h/2) D'(h/2).
 
-K kicks with the forces of position alone, X drifts, D is the exact damping of `sim.springs.damping`, D' the same in
+K kicks with the forces of position alone, X drifts, D is the exact damping of `sim.springs.forces.damping`, D' the same in
 reverse order, and the two change places from step to step; moving air blows before D and after D'. A symmetric
 composition: second order with damping, stable for h omega < 2 at any damping but the air's. One force evaluation a
 step, as the force at the end of a step opens the next.
@@ -9,11 +9,11 @@ step, as the force at the end of a step opens the next.
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.damping import blow, damp, is_odd, make_decay
-from sim.springs.energy import add_power, kinetic_energy
-from sim.springs.forces import accelerate, make_scratch, set_pins
+from sim.springs.analysis.energy import add_power, kinetic_energy
+from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.forces.damping import blow, damp, is_odd, make_decay
 from sim.springs.integrators import Integrator
-from sim.springs.rows import add_scaled
+from sim.springs.vector_ops import add_scaled
 
 
 def limit(zeta: float) -> float:

@@ -7,11 +7,11 @@ Some of them run backwards, where damping would drive: a damped net is refused.
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.amplification import limit_of
-from sim.springs.energy import add_power
-from sim.springs.forces import accelerate, make_scratch, set_pins
+from sim.springs.analysis.amplification import limit_of
+from sim.springs.analysis.energy import add_power
+from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.integrators import Integrator
-from sim.springs.rows import add_scaled
+from sim.springs.vector_ops import add_scaled
 
 XI = 0.1786178958448091
 LAMBDA = -0.2123418310626054

@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.energy import add_power
-from sim.springs.forces import accelerate, make_scratch, set_pins
+from sim.springs.analysis.energy import add_power
+from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.integrators import Integrator
-from sim.springs.rows import add_scaled
+from sim.springs.vector_ops import add_scaled
 
 
 def limit(zeta: float) -> float:

@@ -9,10 +9,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.energy import add_power
-from sim.springs.forces import accelerate, make_scratch, set_pins
+from sim.springs.analysis.energy import add_power
+from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.integrators import Integrator
-from sim.springs.newton import MOST, make_work, solve_stage
+from sim.springs.integrators.implicit.newton import MOST, make_work, solve_stage
 
 GAMMA = 2.0 - math.sqrt(2.0)
 W = math.sqrt(2.0) / 4.0  # weights of the quadrature: W, W, GAMMA/2

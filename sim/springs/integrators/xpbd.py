@@ -10,11 +10,11 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.constraints import sweep
-from sim.springs.damping import blow, damp, is_odd, make_decay
-from sim.springs.energy import add_power, kinetic_energy
-from sim.springs.forces import make_scratch, set_pins
+from sim.springs.analysis.energy import add_power, kinetic_energy
+from sim.springs.forces.acceleration import make_scratch, set_pins
+from sim.springs.forces.damping import blow, damp, is_odd, make_decay
 from sim.springs.integrators import Integrator
+from sim.springs.integrators.implicit.xpbd_constraints import sweep
 
 
 def limit(zeta: float) -> float:

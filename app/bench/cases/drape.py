@@ -1,0 +1,43 @@
+"""The presets of the cloth scene as the scene runs them, picture and all: what real time takes of one core."""
+
+import statistics
+import time
+from typing import Any
+
+from app.scenes.cloth.parameters import PRESETS, Params
+from app.scenes.cloth.scene import Scene
+from sim.parameters import check_record
+
+FRAME_INTERVAL = 1 / 60  # [s]
+
+
+def row(preset: str, frames: int) -> dict[str, Any]:
+    """Frames of 1/60 s on one thread, in processor time, so that what else runs on the machine does not count."""
+    scene = Scene(check_record(Params, PRESETS[preset]))
+    scene.cores.count = 1
+    steps = round(FRAME_INTERVAL / scene.step)
+    times = []
+    for _ in range(frames):
+        start = time.thread_time()
+        scene.advance(steps)
+        scene.frame()
+        times.append(time.thread_time() - start)
+    # From when the cloth is on the sphere, and on itself, which costs most.
+    later = times[frames // 3 :]
+    median = statistics.median(later)
+    return {
+        "preset": preset,
+        "particles": f"{scene.params.rows} x {scene.params.cols}",
+        "integrator": scene.params.integrator,
+        "steps a frame": steps,
+        "self-contact": "yes" if scene.params.thickness > 0.0 else "no",
+        "frame [ms]": 1e3 * median,
+        "longest [ms]": 1e3 * max(later),
+        "per cent of a core": 100.0 * median / FRAME_INTERVAL,
+        "x real time": FRAME_INTERVAL / median,
+    }
+
+
+def rows(quick: bool = False) -> list[dict[str, Any]]:
+    """Every preset."""
+    return [row(preset, 90 if quick else 300) for preset in PRESETS]

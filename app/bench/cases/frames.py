@@ -1,0 +1,60 @@
+"""Where a frame's time goes, scene by scene: solving, the snapshot, handing it to viser; and what is sent."""
+
+import statistics
+import time
+from typing import Any
+
+from app.messages import WorkCount
+from app.scenes import NAMES
+
+FRAME_INTERVAL = 1 / 30  # [s] of simulated time, whatever pace a scene keeps
+
+
+def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]], dict[str, WorkCount]]:
+    """(solve, snapshot, hand over) [s] of processor time of each frame of a scene, and its ledger afterwards.
+
+    Without threads, and without a browser: viser takes what it is handed all the same.
+    """
+    from app.server.viewer import Viewer
+
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        viewer.open(name)
+        viewer.close()
+        loop, scene = viewer.loop, viewer.scene
+        steps = max(1, round(FRAME_INTERVAL / scene.step))
+        times = []
+        for _ in range(frames):
+            start = time.thread_time()
+            loop.advance(steps)
+            solved = time.thread_time()
+            loop.latest = loop.snapshot(0.0)
+            taken = time.thread_time()
+            with viewer.traffic.counted():
+                viewer.show_latest()
+            times.append((solved - start, taken - solved, time.thread_time() - taken))
+        return times, viewer.work()
+    finally:
+        viewer.shut()
+
+
+def rows(quick: bool = False) -> list[dict[str, Any]]:
+    """Medians [ms], their sum as a share of a core at 30 Hz, and bytes a frame to each browser."""
+    table = []
+    for name in NAMES:
+        times, works = run_scene(name, 40 if quick else 300)
+        solve, snapshot, hand = (1e3 * statistics.median(part) for part in zip(*times, strict=True))
+        sent = works["sent to each browser"]
+        shown = works["pictures handed over"].done
+        table.append(
+            {
+                "scene": name,
+                "solve [ms]": solve,
+                "snapshot [ms]": snapshot,
+                "hand over [ms]": hand,
+                "of a core at 30 Hz [%]": 0.1 * (solve + snapshot + hand) / FRAME_INTERVAL,
+                "sent a frame [kB]": 1e-3 * sent.done / shown,
+                "unchanged a frame [kB]": 1e-3 * sent.skipped / shown,
+            }
+        )
+    return table

@@ -1,0 +1,99 @@
+"""The radial scene: many bodies on its waves, a frame of each preset, and all of it served to one client."""
+
+import math
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+from app.bench.cases.radial import default_sea
+from app.scenes.radial_sea.bodies import place_of
+from app.scenes.radial_sea.parameters import PRESETS, Params
+from app.scenes.radial_sea.scene import Scene
+from sim.floating import Body, Hull, make_fleet, make_water, step
+from sim.parameters import check_record
+
+BODIES = 200
+
+
+def rows(quick: bool = False) -> list[dict[str, Any]]:
+    """Rows of name, ms of processor time, share of a core in real time; quick: only the first preset served."""
+    repeats = 31 if quick else 201
+    presets = list(PRESETS)[:1] if quick else list(PRESETS)
+    return [bodies_row(repeats), *scene_rows(repeats), *served_rows(presets, 3.0 if quick else 15.0)]
+
+
+def processor_time(work: Callable[[], Any], repeats: int) -> float:
+    """Median processor time of this thread [s], which a busy machine does not stretch as it does the clock."""
+    work()
+    taken = []
+    for _ in range(repeats):
+        start = time.thread_time()
+        work()
+        taken.append(time.thread_time() - start)
+    return statistics.median(taken)
+
+
+def bodies_row(repeats: int) -> dict[str, Any]:
+    """200 bodies of 500 triangles on 64 waves, one step of 1/60 s: query, pressure, motion, collisions."""
+    sea, hull = default_sea(), Hull.sphere(0.5, 5)
+    places = [place_of(i, 1.0) for i in range(BODIES)]
+    fleet = make_fleet([Body(hull, 500.0, (x, y, 0.0)) for x, y in places])
+    times = iter(range(1, 10**9))
+
+    def frame() -> None:
+        at = sea.at(fleet.position[:, :2], next(times) / 60.0, 1.0)
+        water = make_water(fleet, [(1025.0, math.inf)], at.height, slope=at.slope, velocity=at.velocity,
+                           acceleration=at.acceleration)  # fmt: skip
+        step(fleet, water, 1 / 60)
+
+    seconds = processor_time(frame, repeats)
+    name = f"{BODIES} bodies of {len(hull.faces)} triangles, 1/60 s"
+    return {"name": name, "ms": seconds * 1e3, "share of a core": seconds * 60.0}
+
+
+def scene_rows(repeats: int) -> list[dict[str, Any]]:
+    """The scene itself, by preset, without the sending: two steps and a picture every 1/30 s."""
+    found = []
+    for preset, changes in PRESETS.items():
+        scene = Scene(check_record(Params, changes))
+
+        def frame(scene: Scene = scene) -> None:
+            scene.advance(2)
+            scene.frame()
+            scene.readings()
+
+        seconds = processor_time(frame, repeats)
+        found.append({"name": f"scene: {preset}", "ms": seconds * 1e3, "share of a core": seconds / scene.frame})
+    return found
+
+
+def served_rows(presets: list[str], seconds: float) -> list[dict[str, Any]]:
+    """This process's time while it serves each preset to one client that takes all it is sent, in another process."""
+    from app.server.viewer import Viewer
+
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("radial")
+    client = subprocess.Popen([sys.executable, "-m", "app.bench.listener", str(viewer.port)])
+    try:
+        found = []
+        for preset in presets:
+            viewer.panel.load(preset)
+            time.sleep(3.0)
+            if client.poll() is not None or not viewer.audience():
+                raise RuntimeError("the client that was to listen does not")
+            start, before, shown = time.monotonic(), os.times(), viewer.shown
+            time.sleep(seconds)
+            after, taken = os.times(), time.monotonic() - start
+            spent = after.user + after.system - before.user - before.system
+            rate = (viewer.shown - shown) / taken
+            row = {"name": f"served: {preset}", "ms": 1e3 * spent / max(viewer.shown - shown, 1)}
+            found.append({**row, "share of a core": spent / taken, "frames/s": rate})
+        return found
+    finally:
+        client.terminate()
+        client.wait()
+        viewer.shut()

@@ -1,0 +1,1 @@
+"""The same loops in C, as a floor."""

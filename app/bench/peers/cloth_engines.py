@@ -1,0 +1,142 @@
+"""The cloth as physics engines are given it: the same particles, springs and pins, each engine's own method.
+
+An engine's springs damp along themselves only, or not at all; so little is damped here that the error hardly tells.
+"""
+
+import math
+import os
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from app.bench.peers.cloth_peers import Peer, Run
+from sim.springs import Net
+
+
+def particles(net: Net) -> Iterator[tuple[tuple[float, float, float], float]]:
+    """Each particle's place [m] and mass [kg], 0 where it is pinned, row by row."""
+    for place, weight in zip(net.x0.reshape(3, -1).T, net.weights(), strict=True):
+        yield (float(place[0]), float(place[1]), float(place[2])), net.mass if weight else 0.0
+
+
+def springs(net: Net) -> Iterator[tuple[int, int, float, float, float]]:
+    """Each link: its two particles, rest length [m], stiffness [N/m], damping [N s/m]."""
+    rows, cols = net.shape
+    for di, dj, rest, k, b in net.families:
+        for i in range(rows - di):
+            for j in range(max(0, -dj), cols - max(0, dj)):
+                yield i * cols + j, (i + di) * cols + j + dj, rest, k, b
+
+
+def newton_springs(solver: str, **options: Any) -> Callable[[Net, float], Run]:
+    """Newton's particles and springs, in single precision, on the processor."""
+
+    def make(net, h):
+        import newton  # type: ignore[import-not-found]
+        import warp as wp  # type: ignore[import-not-found]
+
+        wp.config.quiet = True
+        builder = newton.ModelBuilder(gravity=tuple(map(float, net.gravity)))
+        for place, mass in particles(net):
+            builder.add_particle(place, (0.0, 0.0, 0.0), mass, radius=0.0)
+        for i, j, _, k, b in springs(net):
+            builder.add_spring(i, j, k, b, 0.0)  # at rest as it starts, as ours
+        builder.color()
+        model = builder.finalize(device="cpu")
+        model.particle_grid = None  # particles do not touch each other
+        control = model.control()
+        engine = getattr(newton.solvers, solver)(model, **options)
+
+        def run(seconds):
+            steps = math.ceil(seconds / h * (1 - 1e-9))
+            now, then = model.state(), model.state()
+            for _ in range(steps):
+                now.clear_forces()
+                engine.step(now, then, control, None, seconds / steps)
+                now, then = then, now
+            return now.particle_q.numpy().T.reshape(net.x0.shape).astype(np.float64)
+
+        return run
+
+    return make
+
+
+def pypbd_springs(net: Net, h: float) -> Run:
+    """PositionBasedDynamics: extended position-based distance constraints, each step in five parts; undamped.
+
+    On one thread: its two wait for each other after every colour of links, twice as slow at best, and hundreds of
+    times where a core is lent to another program.
+    """
+    os.environ["OMP_NUM_THREADS"] = "1"  # read as it is loaded
+    import pypbd  # type: ignore[import-not-found]
+
+    simulation = pypbd.Simulation.getCurrent()
+    simulation.initDefault()
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # it pulls along -y, by 9.81 m/s^2
+
+    def run(seconds):
+        model = pypbd.SimulationModel()
+        model.init()
+        simulation.setModel(model)
+        points = model.getParticles()
+        for index, (place, mass) in enumerate(particles(net)):
+            points.addVertex(turn @ place)
+            points.setMass(index, mass)
+        for i, j, _, k, _ in springs(net):
+            model.addDistanceConstraint_XPBD(i, j, k)
+        steps = math.ceil(seconds / h * (1 - 1e-9))
+        controller = simulation.getTimeStep()
+        controller.setValueUInt(pypbd.TimeStepController.NUM_SUB_STEPS, 5)
+        pypbd.TimeManager.getCurrent().setTimeStepSize(seconds / steps)
+        for _ in range(steps):
+            controller.step(model)
+        return (turn.T @ np.array(points.getVertices()).reshape(-1, 3).T).reshape(net.x0.shape)
+
+    return run
+
+
+def mujoco_tendons(net: Net, h: float) -> Run:
+    """Point masses on three sliders each, joined by spatial tendons."""
+    import mujoco  # type: ignore[import-not-found]
+
+    slides = "".join(f'<joint type="slide" axis="{axis}"/>' for axis in ("1 0 0", "0 1 0", "0 0 1"))
+    bodies = ""
+    for index, ((x, y, z), mass) in enumerate(particles(net)):
+        site, place = f'<site name="p{index}"', f'pos="{x!r} {y!r} {z!r}"'
+        inside = f'{slides}<inertial pos="0 0 0" mass="{mass!r}" diaginertia="1e-9 1e-9 1e-9"/>{site}/>'
+        bodies += f"<body {place}>{inside}</body>" if mass else f"{site} {place}/>"
+    tendons = "".join(
+        f'<spatial stiffness="{k!r}" damping="{b!r}" springlength="{rest!r}">'
+        f'<site site="p{i}"/><site site="p{j}"/></spatial>'
+        for i, j, rest, k, b in springs(net)
+    )
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><option integrator="Euler" jacobian="sparse" gravity="0 0 {net.gravity[2]}">'
+        f'<flag contact="disable" eulerdamp="disable"/></option><worldbody>{bodies}</worldbody>'
+        f"<tendon>{tendons}</tendon></mujoco>"
+    )
+    moves = net.weights() > 0.0
+
+    def run(seconds):
+        steps = math.ceil(seconds / h * (1 - 1e-9))
+        model.opt.timestep = seconds / steps
+        data = mujoco.MjData(model)
+        mujoco.mj_step(model, data, steps)
+        x = net.x0.reshape(3, -1).copy()
+        x[:, moves] += data.qpos.reshape(-1, 3).T
+        return x.reshape(net.x0.shape)
+
+    return run
+
+
+ENGINES = (
+    Peer("newton SemiImplicit", "newton", newton_springs("SolverSemiImplicit"), damping="axial"),
+    Peer("newton VBD, 10 iterations", "newton", newton_springs("SolverVBD", iterations=10), 1 / 600, "axial"),
+    Peer("newton XPBD, 10 iterations", "newton", newton_springs("SolverXPBD", iterations=10), 1 / 600, "axial"),
+    Peer("pypbd XPBD, one thread", "pypbd", pypbd_springs, 1 / 600),
+    Peer("mujoco Euler, tendons", "mujoco", mujoco_tendons, damping="axial", largest=64),
+)
+
+# What cannot be given this task, and why.
+OTHER_TASKS = {"mujoco 2-D flex": "its sheets are elastic triangles or edges of fixed length, not springs"}

@@ -1,0 +1,1 @@
+"""The tasks that Springtide and its peers are both given."""

@@ -1,0 +1,1 @@
+"""The commands `springtide`, `springtide run` and `springtide warmup`: one module each."""

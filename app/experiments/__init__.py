@@ -1,0 +1,1 @@
+"""What sweep, stability and bench share: a process pool, tables and figures."""

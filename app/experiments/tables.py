@@ -1,0 +1,170 @@
+"""How benchmark results are shown and kept: tables on screen, CSV, and work-precision figures as SVG and PNG."""
+
+import csv
+import os
+import platform
+from collections.abc import Iterable
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.files import replacing
+from app.render.colormap import PALETTE
+from sim.validation import argument_error
+
+Rows = list[dict[str, Any]]
+
+# Told apart by shape too, where two curves share a colour.
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h", "p", "d")
+
+
+def machine() -> str:
+    """What the figures were measured on, in one line."""
+    name = platform.processor() or platform.machine()
+    try:
+        models = [line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
+        name = models[0].partition(":")[2].strip() if models else name
+    except OSError:
+        pass
+    versions = []
+    for package in ("springtide", "numpy", "numba"):
+        try:
+            versions.append(f"{package} {version(package)}")
+        except PackageNotFoundError:
+            versions.append(f"{package} from its sources")
+    return f"{name}, {os.cpu_count()} cores; Python {platform.python_version()}, " + ", ".join(versions)
+
+
+def make_folder(out: Path | None) -> None:
+    """Make the folder for results, where one is asked for; raises ValueError where it cannot be made."""
+    if out is None:
+        return
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise argument_error("--out", str(out), f"a folder that can be written ({problem.strerror})") from None
+
+
+def columns(rows: Rows) -> list[str]:
+    """Every column of any row, in the order they first come."""
+    return list(dict.fromkeys(name for row in rows for name in row))
+
+
+def written(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, float | np.floating):
+        return f"{value:.4g}" if np.isfinite(value) else "-"
+    return str(value)
+
+
+def show(title: str, rows: Rows) -> None:
+    """Print a table."""
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    table = Table(title=escape(title), title_justify="left")
+    names = columns(rows)
+    for index, name in enumerate(names):
+        is_number = any(isinstance(row.get(name), int | float) for row in rows)
+        # Words give way where there is little room, not numbers.
+        room = max(len(written(row.get(name))) for row in rows) if is_number else None
+        table.add_column(
+            escape(name), justify="right" if is_number else "left", no_wrap=index == 0, min_width=room, overflow="fold"
+        )
+    for row in rows:
+        table.add_row(*(escape(written(row.get(name))) for name in names))
+    Console().print(table)
+
+
+def save_table(rows: Rows, path: Path) -> None:
+    """One CSV file, columns with their units in the head."""
+    with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, columns(rows))
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def save_figures(figures: dict[str, Any], folder: Path) -> list[Path]:
+    """Each figure by name, as SVG and as PNG."""
+    paths = []
+    for name, figure in figures.items():
+        for suffix in ("svg", "png"):
+            paths.append(folder / f"{name}.{suffix}")
+            with replacing(paths[-1]) as draft:
+                figure.savefig(draft, dpi=150, bbox_inches="tight")
+    return paths
+
+
+def front(rows: Rows) -> list[str]:
+    """Methods that nothing beats in both time and error somewhere."""
+    points = [(row["error [m]"], row["least [ms]"], row["method"]) for row in rows]
+    ahead = [
+        name for error, time, name in points if not any(other < error and took < time for other, took, _ in points)
+    ]
+    return list(dict.fromkeys(ahead))
+
+
+def slope_mark(axes: Any, x: float, y: float, order: int) -> None:
+    """A small triangle with the slope of a method of `order`, its upper left corner at (x, y)."""
+    right, low = 2.0 * x, y / 2.0**order
+    axes.plot([x, x, right, x], [y, low, low, y], color="0.45", linewidth=0.9)
+    axes.annotate(str(order), (x, (y * low) ** 0.5), (-4, 0), textcoords="offset points", ha="right", va="center",
+                  fontsize=8, color="0.3")  # fmt: skip
+
+
+def mark_slopes(axes: Any, curves: Iterable[tuple[list[float], list[float]]]) -> None:
+    """A mark of each whole order that a curve plainly has, below the middle of the first such curve."""
+    marked = set()
+    for x, y in curves:
+        good = [(a, b) for a, b in zip(x, y, strict=True) if b > 0.0 and np.isfinite(b)]
+        if len(good) < 3:
+            continue
+        logs = np.log(np.array(good))
+        slope = -float(np.polyfit(logs[:, 0], logs[:, 1], 1)[0])
+        middle = good[len(good) // 2]
+        order = round(slope)
+        if abs(slope - order) < 0.3 and order > 0 and order not in marked:
+            slope_mark(axes, middle[0], middle[1] / 4.0, order)
+            marked.add(order)
+
+
+def work_precision(rows: Rows, title: str, error: str = "error [m]") -> Any:
+    """The column `error` over run time and over force evaluations, a curve a method, both logarithmic."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.0, 5.2), layout="constrained")
+    figure.suptitle(title)
+    panels = figure.subplots(1, 2, sharey=True)
+    methods = list(dict.fromkeys(row["method"] for row in rows))
+    for axes, column, label in zip(
+        panels,
+        ("least [ms]", "force evaluations"),
+        ("run time, the least of repeats [ms]", "force evaluations"),
+        strict=True,
+    ):
+        curves = []
+        for index, method in enumerate(methods):
+            own = sorted((row for row in rows if row["method"] == method), key=lambda row: row["force evaluations"])
+            x, y = [row[column] for row in own], [row[error] for row in own]
+            dash = "-" if index < len(PALETTE) else "--"
+            style = {"color": PALETTE[index % 8], "marker": MARKERS[index % 13], "markersize": 5, "linestyle": dash}
+            axes.loglog(x, y, label=method.replace("_", " "), **style)
+            curves.append((x, y))
+        if column == "force evaluations":
+            mark_slopes(axes, curves)
+        axes.set_xlabel(label)
+        axes.grid(visible=True, which="major", color="0.9")
+        axes.spines[["top", "right"]].set_visible(False)
+    floor = max(row["reference good to [m]"] for row in rows)
+    panels[0].set_ylabel(error)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False, fontsize=8)
+    for axes in panels:
+        axes.axhline(floor, color="0.6", linestyle=":", linewidth=1.0)
+    panels[1].annotate("reference good to here", (0.02, floor), (0, 3), xycoords=("axes fraction", "data"),
+                       textcoords="offset points", ha="left", fontsize=8, color="0.4")  # fmt: skip
+    return figure

@@ -1,0 +1,1 @@
+"""The control panel: controls made from parameters, plots, presets, the stability map."""

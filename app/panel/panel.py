@@ -1,0 +1,242 @@
+"""The control panel, generated from a scene's parameters. The simulation polls `read`; callbacks only touch the panel.
+
+Every callback is a coroutine, so that all of them run on viser's event loop, one after the other: two changes at once
+cannot lose each other.
+"""
+
+import dataclasses
+import html
+import time
+from collections.abc import Callable
+from typing import Any
+
+import viser
+
+from app.messages import Command, Load, PlotRow, Reset, Snapshot, StepOnce, TogglePlay, WorkCounts
+from app.panel.control import Control
+from app.panel.plots import Plots
+from app.panel.work_table import work_table
+from app.scenes.contract import SceneKind, View
+from sim.parameters import check_record, parameters_of
+
+STATUS_INTERVAL = 0.25  # [s]
+MARKS_INTERVAL = 0.5  # [s]
+WORK_INTERVAL = 2.0  # [s]
+BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
+OPEN_GROUPS = 2  # the first groups of parameters start open
+
+
+class Panel:
+    """The panel of one scene."""
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        kind: SceneKind[Any, Any, Any],
+        view: View[Any],
+        params: Any,
+        post: Callable[[Command], None],
+        *,
+        work: Callable[[], WorkCounts],
+        scenes: tuple[str, ...] = (),
+        open_scene: Callable[[str], None] = lambda name: None,
+    ) -> None:
+        """post: takes commands for the simulation. open_scene: takes the name of a scene to show instead; both at once.
+
+        work: the work counts of the open scene.
+        """
+        self.server, self.kind, self.view, self.post, self.work = server, kind, view, post, work
+        self.gui = gui = server.gui
+        self.state = params, 0  # parameters as set now, and how many presets were loaded: read by another thread
+        self.status_at = self.marks_at = self.work_at = 0.0
+        self.halted = ""
+        self.plots = Plots(server, kind)
+        self.add_chooser(scenes, open_scene)
+        gui.add_html(
+            '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">'
+            f"{kind.help}<br><b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · "
+            "<b>G</b> grid · <b>1-9</b> presets</div>"
+        )
+        self.preset = gui.add_dropdown("Preset", tuple(kind.presets), hint="Sets every parameter and starts over")
+        self.preset.on_update(self.on_preset)
+        self.buttons = gui.add_button_group(" ", ("Play / pause", "Step", "Reset"))
+        self.buttons.on_click(self.on_button)
+        self.status = gui.add_html("")
+        self.readout = gui.add_html("")
+        self.controls: dict[str, Control] = {}
+        groups: dict[str, Any] = {}
+        for name, parameter in parameters_of(params).items():
+            if parameter.group not in groups:
+                groups[parameter.group] = gui.add_folder(parameter.group, expand_by_default=len(groups) < OPEN_GROUPS)
+            folder = groups[parameter.group]
+            with folder:
+                self.controls[name] = Control(gui, folder, name, parameter, getattr(params, name), self.on_change)
+        self.notes: dict[str, Any] = {}
+        self.map: Any = None
+        with gui.add_folder("Advanced", expand_by_default=False):
+            if kind.stability_map is not None:
+                from app.panel.stability_map import StabilityMapPanel  # no sea imports what springs need
+
+                self.map = StabilityMapPanel(gui, kind.stability_map, lambda: self.params, self.set)
+            gui.add_html(note("What this scene did since it was opened, and what it did not have to do."))
+            self.work_counts = gui.add_html("")
+        self.hide()
+        self.add_keys()
+
+    @property
+    def params(self) -> Any:
+        """The parameters as set now."""
+        return self.state[0]
+
+    def add_chooser(self, scenes: tuple[str, ...], open_scene: Callable[[str], None]) -> None:
+        """The list of scenes, where there is more than one."""
+        if len(scenes) > 1:
+            add_scene_chooser(self.gui, scenes, self.kind.name, open_scene)
+
+    def add_keys(self) -> None:
+        """Keyboard and command palette. W A S D Q E and the arrows already move the camera."""
+        actions: list[tuple[str, Any, Callable[[], None]]] = [
+            ("Play or pause", "space", lambda: self.post(TogglePlay())),
+            ("Single step", "N", lambda: self.post(StepOnce())),
+            ("Reset", "R", lambda: self.post(Reset())),
+            ("Plots", "P", self.toggle_plots),
+            ("Grid", "G", lambda: self.set("grid", not self.params.grid)),
+        ]
+        for number, preset in enumerate(self.kind.presets, 1):
+            key = str(number) if number <= 9 else None  # the rest in the command palette and the list only
+            actions.append((f"Preset: {preset}", key, lambda preset=preset: self.load(preset)))
+        for label, key, action in actions:
+            command = self.gui.add_command(label, hotkey=key)
+
+            @command.on_trigger
+            async def _(_: Any, action: Callable[[], None] = action) -> None:
+                action()
+
+    def read(self) -> tuple[Any, int]:
+        """The parameters as set now, and the number of the last preset; polled by the simulation once a frame."""
+        return self.state
+
+    def set(self, name: str, value: Any) -> None:
+        """Set one parameter, as its control would; on viser's event loop."""
+        self.controls[name].set(value)
+
+    def on_change(self, name: str, value: Any) -> None:
+        """A control has a new value."""
+        params, number = self.state
+        self.state = dataclasses.replace(params, **{name: value}), number
+        self.hide()
+
+    def hide(self) -> None:
+        """Hide the controls that mean nothing just now."""
+        hidden = self.kind.hidden(self.params)
+        for name, control in self.controls.items():
+            control.show(name not in hidden)
+
+    async def on_preset(self, event: Any) -> None:
+        """A browser has chosen a preset; viser also calls this where `load` assigns the list, without a client."""
+        if event.client_id is not None:
+            self.load(event.target.value)
+
+    def load(self, preset: str) -> None:
+        """Every parameter as the preset has it, and the scene from its start: one command."""
+        params, number = self.state
+        kept = {f.name: getattr(params, f.name) for f in dataclasses.fields(params) if "parameter" not in f.metadata}
+        loaded = dataclasses.replace(check_record(type(params), self.kind.presets[preset]), **kept)
+        self.state = loaded, number + 1
+        self.post(Load(loaded, number + 1))
+        for name, control in self.controls.items():
+            control.show_value(getattr(loaded, name))
+        self.hide()
+        if self.preset.value != preset:
+            self.preset.value = preset
+
+    async def on_button(self, event: Any) -> None:
+        """Play or pause, step, reset."""
+        self.post({"Play / pause": TogglePlay(), "Step": StepOnce(), "Reset": Reset()}[event.target.value])
+
+    def toggle_plots(self) -> None:
+        """Open all plots, or close them where one is open."""
+        shown = [c for name, c in self.controls.items() if name in self.kind.plots or name in self.kind.curves]
+        on = not any(c.value for c in shown)
+        for control in shown:
+            control.set(on)
+
+    def update(self, snapshot: Snapshot, rows: list[PlotRow], send_time: float, busy: float = 0.0) -> None:
+        """Show what the loop is doing, at a few hertz.
+
+        rows: new plot rows. send_time: [s] that a frame took to hand over. busy: [s] that the present tick has taken.
+        """
+        now = time.monotonic()
+        self.plots.update(snapshot, rows)
+        if snapshot.status.halted != self.halted:
+            self.halted = snapshot.status.halted
+            self.status_at = 0.0
+            if self.halted:
+                self.notify(self.halted)
+        if now - self.status_at >= STATUS_INTERVAL:
+            self.status_at = now
+            self.status.content = status_line(snapshot, send_time, busy)
+            readout = self.view.readout(snapshot)
+            self.readout.content = f'<div style="padding:2px 12px 6px;font-size:12px">{readout}</div>'
+        if now - self.marks_at >= MARKS_INTERVAL:
+            self.marks_at = now
+            for name, text in self.view.marks(snapshot).items():
+                self.controls[name].write(text)
+            self.write_notes(self.view.notes(snapshot))
+            if self.map is not None:
+                self.map.draw()
+        if now - self.work_at >= WORK_INTERVAL:
+            self.work_at = now
+            self.work_counts.content = note(work_table(self.work()))
+
+    def write_notes(self, notes: dict[str, str]) -> None:
+        """Foldable texts below the controls, as HTML: made once, then kept up to date."""
+        for heading, text in notes.items():
+            if heading not in self.notes:
+                with self.gui.add_folder(heading, expand_by_default=False):
+                    self.notes[heading] = self.gui.add_html("")
+            self.notes[heading].content = note(text)
+
+    def notify(self, text: str) -> None:
+        """Tell every browser."""
+        for client in self.server.get_clients().values():
+            client.add_notification("Paused", text, color="red", auto_close_seconds=10.0)
+
+    def close(self) -> None:
+        """Stop what runs for this panel."""
+        if self.map is not None:
+            self.map.close()
+
+
+def add_scene_chooser(
+    gui: viser.GuiApi, scenes: tuple[str, ...], shown: str | None, open_scene: Callable[[str], None]
+) -> None:
+    """The list of scenes."""
+    chooser = gui.add_dropdown("Scene", scenes, initial_value=shown)
+
+    @chooser.on_update
+    async def _(event: Any) -> None:
+        if event.client_id is not None:
+            open_scene(event.target.value)
+
+
+def note(text: str) -> str:
+    """Text in small print, as HTML."""
+    return f'<div style="padding:2px 12px 8px;font-size:12px">{text}</div>'
+
+
+def status_line(snapshot: Snapshot, send_time: float, busy: float = 0.0) -> str:
+    """Running or not, the clock, real-time factors, rates; and why it halted."""
+    s = snapshot.status
+    state = "Running" if s.running else "Paused"
+    colour = "#2b8a3e" if s.running else "#e67700"
+    capped = ' <b style="color:#c92a2a">[CAPPED]</b>' if s.capped else ""
+    box = "margin-top:6px;padding:6px 8px;border-left:3px solid #c92a2a;background:rgba(201,42,42,.1)"
+    halted = f'<div style="{box}">{html.escape(s.halted)}</div>' if s.halted else ""
+    slow = f"<br>this step has taken {busy:.1f} s so far" if busy >= BUSY_SHOWN_FROM else ""
+    return (
+        '<div style="padding:0 12px 4px;font-size:12px">'
+        f'<b style="color:{colour}">{state}</b> t = {s.time:.2f} s<br>'
+        f"real time ×{s.actual_speed:.2f} of ×{s.speed:g}{capped} · {s.frame_rate:.0f} frames/s · "
+        f"solve {s.solve_time * 1e3:.2f} ms · send {send_time * 1e3:.2f} ms{slow}{halted}</div>"
+    )

@@ -1,0 +1,232 @@
+"""The map of the open scene over step and stiffness: measured on request, drawn in the panel, clickable.
+
+viser has no picture that answers a click. The map is SVG in an HTML element, whose click handler moves a hidden slider
+of two handles; from there on a click is a change like any other, bounded by `app/guard.py` and taken by the controls.
+Of viser's inner names the handler uses `window.__viserMutable.sendMessage`; `tests/browser/test_rope.py` clicks it.
+"""
+
+import dataclasses
+import html
+import itertools
+import math
+import threading
+import traceback
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.render.colormap import OUTCOME_COLOURS
+from app.scenes.contract import StabilityMap
+from sim.parameters import Parameter, parameters_of
+from sim.springs import INTEGRATORS
+from sim.springs.analysis.growth import outcome
+from sim.springs.analysis.settling import settled
+from sim.springs.stability import critical_step
+from sim.springs.state import State
+
+ROWS, COLS = 20, 28
+DECADES = 1.5  # of step and of stiffness to each side of where the parameters stand
+WORK = 200_000  # steps times points that a cell may take
+LEFT, TOP, WIDE, HIGH = 54.0, 8.0, 238.0, 168.0  # of the map within its picture
+PICTURE = (300.0, 214.0)
+
+
+class Axes(NamedTuple):
+    """What a map was asked for."""
+
+    params: Any
+    parameter: str  # of the stiffness
+    steps: NDArray[np.float64]  # (COLS,) [s]
+    stiffnesses: NDArray[np.float64]  # (ROWS,) in the parameter's unit
+
+    def is_of(self, params: Any) -> bool:
+        """Whether nothing but step and stiffness has changed since."""
+        moved = {"time_step": params.time_step, self.parameter: getattr(params, self.parameter)}
+        return shown(dataclasses.replace(self.params, **moved)) == shown(params)
+
+
+class Row(NamedTuple):
+    """One stiffness of a map."""
+
+    outcomes: NDArray[np.int64]  # (COLS,)
+    critical: float  # [s]
+
+
+def shown(params: Any) -> tuple[Any, ...]:
+    """The parameters that a map depends on."""
+    aside = ("Look", "Plots", "Race")
+    names = [
+        name for name, parameter in parameters_of(params).items() if parameter.group not in aside and name != "speed"
+    ]
+    return tuple(getattr(params, name) for name in names)
+
+
+def span(parameter: Parameter, value: float, count: int) -> NDArray[np.float64]:
+    """Values (count,) about `value`, evenly in their logarithms, within what the parameter allows."""
+    low = max(value / 10.0**DECADES, parameter.log_from)
+    return np.geomspace(low, max(min(value * 10.0**DECADES, parameter.high), 1.01 * low), count)
+
+
+def axes_of(params: Any, parameter: str) -> Axes:
+    """The axes of a map about where the parameters stand."""
+    known = parameters_of(params)
+    return Axes(
+        params,
+        parameter,
+        span(known["time_step"], params.time_step, COLS),
+        span(known[parameter], getattr(params, parameter), ROWS),
+    )
+
+
+def measure_row(scene: StabilityMap, axes: Axes, stiffness: float) -> Row:
+    """What becomes of the scene's net at rest at each step of the map."""
+    params = dataclasses.replace(axes.params, **{axes.parameter: stiffness})
+    net, record = scene.build(params), INTEGRATORS[params.integrator]
+    state = State.at_rest(net)
+    state.x[:] = settled(net)
+    most = min(max(WORK // params.points, 256), 4096)
+    outcomes = [outcome(record, net, float(h), state.x, most) for h in axes.steps]
+    return Row(np.array(outcomes), critical_step(net, record, state))
+
+
+class StabilityMapPanel:
+    """The map in the panel: a button, the picture, and a thread of its own while it is measured."""
+
+    def __init__(
+        self, gui: Any, scene: StabilityMap, read: Callable[[], Any], take: Callable[[str, float], None]
+    ) -> None:
+        """read: the parameters as set now; take: sets a parameter, on viser's event loop."""
+        self.scene, self.read, self.take = scene, read, take
+        self.button = gui.add_button(
+            "Map of step and stiffness", hint="Measures which steps and stiffnesses hold; click the map to go there"
+        )
+        self.html = gui.add_html("")
+        self.click = gui.add_multi_slider(" ", 0.0, 1.0, step=1e-4, initial_value=(0.0, 0.0), visible=False)
+        self.axes: Axes | None = None
+        self.rows: list[Row] = []
+        self.problem = ""  # why there is no map, or no more of it
+        self.asked = 0  # how often: a thread that is no longer the latest stops
+
+        @self.button.on_click
+        async def _(_: Any) -> None:
+            self.ask()
+
+        @self.click.on_update
+        async def _(event: Any) -> None:
+            if event.client_id is not None:
+                self.go(event.target.value)
+
+    def ask(self) -> None:
+        """Measure anew, in place of what is being measured."""
+        self.asked += 1
+        threading.Thread(target=self.measure, args=(self.asked,), name="stability map", daemon=True).start()
+
+    def close(self) -> None:
+        """Stop measuring."""
+        self.asked += 1
+
+    def measure(self, number: int) -> None:
+        """Measure row by row, in a thread of its own; the panel draws what is there."""
+        params = self.read()
+        record = INTEGRATORS[params.integrator]
+        try:
+            if record.undamped_only and self.scene.build(params).is_damped:
+                self.axes, self.problem = None, f"{record.name} takes no damping."
+                return
+            axes, rows = axes_of(params, self.scene.stiffness(params)), []
+            for stiffness in axes.stiffnesses:
+                rows.append(measure_row(self.scene, axes, float(stiffness)))
+                if self.asked != number:
+                    return
+                self.axes, self.rows, self.problem = axes, list(rows), ""
+        except Exception as error:
+            traceback.print_exc()
+            if self.asked == number:
+                self.problem = f"The map could not be measured: {type(error).__name__}: {error}"
+
+    def draw(self) -> None:
+        """Show the map as far as it is known, with a dot where the parameters stand; on the viewer thread."""
+        axes = self.axes
+        found = picture(axes, self.rows, self.read(), self.click._impl.uuid) if axes is not None else ""
+        problem = f'<div style="padding:0 12px">{html.escape(self.problem)}</div>' if self.problem else ""
+        self.html.content = found + problem
+
+    def go(self, place: tuple[float, ...]) -> None:
+        """Set step and stiffness to a place in the map, (0, 0) its lower left corner and (1, 1) its upper right."""
+        if self.axes is None:
+            return
+        for name, values, part in (
+            ("time_step", self.axes.steps, place[0]),
+            (self.axes.parameter, self.axes.stiffnesses, place[1]),
+        ):
+            self.take(name, float(f"{values[0] * (values[-1] / values[0]) ** min(max(part, 0.0), 1.0):.3g}"))
+
+
+def short(value: float) -> str:
+    """A tick's number: plain where that is short."""
+    return f"{value:.3g}" if 1e-3 <= value < 1e3 else f"{value:.1e}".replace("e+0", "e").replace("e-0", "e-")
+
+
+def place_of(values: NDArray[np.float64], value: float) -> float:
+    """Where a value lies between the first and the last, 0 to 1, by logarithms."""
+    return math.log(max(value, 1e-300) / values[0]) / math.log(values[-1] / values[0])
+
+
+def picture(axes: Axes, rows: list[Row], params: Any, slider: str) -> str:
+    """The map as HTML. slider: the uuid of what a click moves."""
+    colours = list(OUTCOME_COLOURS.values())
+    height, width = HIGH / (ROWS - 1), WIDE / (COLS - 1)
+    parts = []
+    for i, row in enumerate(rows):
+        y = TOP + HIGH - (i + 0.5) * height
+        ends = [0, *(np.flatnonzero(np.diff(row.outcomes)) + 1).tolist(), COLS]
+        for a, b in itertools.pairwise(ends):
+            left, right = max((a - 0.5) * width, 0.0), min((b - 0.5) * width, WIDE)
+            parts.append(
+                f'<rect x="{LEFT + left:.1f}" y="{y:.1f}" width="{right - left:.1f}" height="{height + 0.3:.1f}" '
+                f'fill="{colours[int(row.outcomes[a])]}"/>'
+            )
+    limits = [
+        f"{LEFT + WIDE * place_of(axes.steps, row.critical):.1f},{TOP + HIGH - i * height:.1f}"
+        for i, row in enumerate(rows)
+        if 0.0 < row.critical < math.inf
+    ]
+    x = LEFT + WIDE * place_of(axes.steps, params.time_step)
+    y = TOP + HIGH * (1.0 - place_of(axes.stiffnesses, getattr(params, axes.parameter)))
+    known = parameters_of(params)
+    ticks = ""
+    for values, unit, across in ((axes.steps, "s", True), (axes.stiffnesses, known[axes.parameter].unit, False)):
+        for part in (0.0, 0.5, 1.0):
+            value = values[0] * (values[-1] / values[0]) ** part
+            at = (LEFT + WIDE * part, TOP + HIGH + 12) if across else (LEFT - 4, TOP + HIGH * (1.0 - part) + 4)
+            anchor = ("start", "middle", "end")[int(2 * part)] if across else "end"
+            ticks += f'<text x="{at[0]:.0f}" y="{at[1]:.0f}" text-anchor="{anchor}">{short(value)}</text>'
+        name = f"h [{unit}]" if across else f"k [{unit}]"
+        at = (LEFT + WIDE / 2, TOP + HIGH + 25) if across else (8, TOP + HIGH / 2)
+        turn = "" if across else f' transform="rotate(-90 {at[0]} {at[1]})"'
+        ticks += f'<text x="{at[0]}" y="{at[1]}" text-anchor="middle"{turn}>{name}</text>'
+    done = len(rows) == ROWS
+    words = " · ".join(
+        f'<span style="border-left:9px solid {colour};padding-left:4px">{name}</span>'
+        for name, colour in OUTCOME_COLOURS.items()
+    )
+    stale = "" if axes.is_of(params) else "<br><b>Of other parameters than now: measure again.</b>"
+    progress = "" if done else f"<br>measuring, {len(rows)} of {ROWS} stiffnesses"
+    send = (
+        "const p=new DOMPoint(event.clientX,event.clientY).matrixTransform(this.getScreenCTM().inverse());"
+        f"const x=(p.x-{LEFT})/{WIDE},y=1-(p.y-{TOP})/{HIGH};"
+        f"if(x>=0&&x<=1&&y>=0&&y<=1)window.__viserMutable.sendMessage("
+        f"{{type:'GuiUpdateMessage',uuid:'{slider}',updates:{{value:[x,y]}}}})"
+    )
+    clip = f'<clipPath id="springtide-map"><rect x="{LEFT}" y="{TOP}" width="{WIDE}" height="{HIGH}"/></clipPath>'
+    return (
+        f'<div style="padding:2px 12px 8px;font-size:12px"><svg viewBox="0 0 {PICTURE[0]:.0f} {PICTURE[1]:.0f}" '
+        f'class="springtide-map" style="width:100%;cursor:crosshair;font-size:10px" fill="currentColor" '
+        f'onclick="{send}">{clip}<g clip-path="url(#springtide-map)" shape-rendering="crispEdges">{"".join(parts)}'
+        f'</g><g clip-path="url(#springtide-map)">'
+        f'<polyline points="{" ".join(limits)}" fill="none" stroke="#000" stroke-width="1.6"/>'
+        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="#fff" stroke="#000" stroke-width="2"/></g>{ticks}</svg>'
+        f"{words} · line: critical step{progress}{stale}</div>"
+    )

@@ -1,0 +1,1 @@
+"""Drawing on viser: meshes, water, cameras, gizmos, dragging, and the scripts for the page."""

@@ -1,0 +1,65 @@
+"""Colour scales that read alike for colour-blind eyes and in grey."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.jit import kernel
+
+# Okabe and Ito's palette, told apart with any colour vision; black and yellow last.
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+
+# What becomes of a disturbance, as `sim.springs.analysis.growth` numbers it; light, middle, dark also in grey.
+OUTCOME_COLOURS = {"holds": "#CFE6F5", "rattles": "#E69F00", "explodes": "#8C2D04"}
+
+# Anchors of matplotlib's "plasma" without its darkest end, sRGB; from calm violet to hot yellow.
+ANCHORS = np.array(
+    [[62, 4, 156], [126, 3, 168], [179, 38, 131], [218, 91, 105], [248, 149, 64], [253, 197, 39], [240, 249, 33]]
+)
+SCALE = ANCHORS.astype(np.float64)  # for the kernel
+
+
+def scale_colours(values: NDArray[np.float64], low: float, high: float) -> NDArray[np.float32]:
+    """sRGB in 0..1, (n, 3), of values on the scale from `low` to `high`, clipped at its ends."""
+    span = high - low
+    at = np.clip((values - low) / span if span > 0 else np.zeros_like(values), 0.0, 1.0) * (len(ANCHORS) - 1)
+    i = np.minimum(at.astype(int), len(ANCHORS) - 2)
+    part = (at - i)[:, None]
+    return ((ANCHORS[i] * (1 - part) + ANCHORS[i + 1] * part) / 255.0).astype(np.float32)
+
+
+@kernel
+def paint_tube(tension, between, full, anchors, sides, rgb):
+    """The same for a tube of (n - 1) between + 1 rings around n points, into rgb (rings sides + 2, 3) (float32).
+
+    tension: (n - 1,) of each link, held at its middle, linear between two and constant beyond the last; the scale goes
+    from 0 to `full`. anchors: `SCALE`.
+    """
+    links, last = tension.shape[0], anchors.shape[0] - 1
+    rings = links * between + 1
+    for ring in range(rings):
+        along = min(max(ring / between - 0.5, 0.0), links - 1.0)
+        i = min(int(along), max(links - 2, 0))
+        value = tension[i]
+        if links > 1:
+            value += (along - i) * (tension[i + 1] - tension[i])
+        at = min(max(value / full, 0.0), 1.0) * last
+        a = min(int(at), last - 1)
+        for e in range(3):
+            shade = np.float32((anchors[a, e] + (at - a) * (anchors[a + 1, e] - anchors[a, e])) / 255.0)
+            for side in range(sides):
+                rgb[ring * sides + side, e] = shade
+            if ring == 0:
+                rgb[rings * sides, e] = shade
+            if ring == rings - 1:
+                rgb[rings * sides + 1, e] = shade
+
+
+def css_scale() -> str:
+    """The same scale as a CSS gradient."""
+    stops = ", ".join(f"rgb({r},{g},{b})" for r, g, b in ANCHORS)
+    return f"linear-gradient(90deg, {stops})"
+
+
+def rgb(colour: str) -> tuple[int, int, int]:
+    """A colour written #rrggbb, as numbers in 0..255."""
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)

@@ -1,0 +1,183 @@
+"""The contract of a scene: what the simulation loop, the viewer, the panel, sweeps and headless runs use.
+
+To add a scene, add one folder here, named as the scene is on the command line:
+
+1. `parameters.py`: `Params`, a frozen dataclass of parameters (`sim/parameters.py`) with at least `speed` and `grid`,
+   each declaring what its change affects, and `PRESETS`, name -> the values that differ from the defaults; the first
+   preset is the defaults.
+2. `scene.py`: the simulation, a class that satisfies `Scene`, and `SCENE = SceneKind(...)`. It imports no viewer.
+3. `view.py`: the drawing, a class `View` that satisfies `View` below and `warm_up()`. It alone imports viser.
+
+The folder is found by being here: command line, panel, sweeps, benchmarks and tests take it up from there.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import PlotRow, SceneCommand, Snapshot, Vector, WorkCounts
+from app.scenes.charts import Chart, CurveAxes, PlotAxes
+
+if TYPE_CHECKING:
+    from sim.springs.net import Net
+
+FRAME_INTERVAL = 1 / 60  # [s] between ticks of the loop, and between two frames of a scene that asks for nothing else
+
+
+class BaseParams(Protocol):
+    """What every scene's `Params` has."""
+
+    @property
+    def speed(self) -> float:
+        """Target real-time factor."""
+        ...
+
+    @property
+    def grid(self) -> bool:
+        """Whether the grid is drawn (key G)."""
+        ...
+
+
+P = TypeVar("P", bound=BaseParams)
+F = TypeVar("F")
+R = TypeVar("R")
+FrameIn = TypeVar("FrameIn", contravariant=True)
+
+
+class Measure(NamedTuple):
+    """One number of a running scene, as a sweep records it."""
+
+    value: float
+    unit: str
+    meaning: str
+
+
+class Scene(Protocol[P, F, R]):
+    """A simulation, used on the simulation thread only. P: its parameters, F: its frames, R: its readings."""
+
+    params: P
+
+    @property
+    def step(self) -> float:
+        """Time step [s]; what `advance` counts in."""
+        ...
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        ...
+
+    @property
+    def frame_interval(self) -> float:
+        """Time [s] between two frames that the scene asks for just now."""
+        ...
+
+    @property
+    def note(self) -> str:
+        """Why something else runs than the parameters ask for, or ""."""
+        ...
+
+    def change_forces(self, params: P) -> None:
+        """Take parameters of which at least one that affects the forces differs; the motion goes on.
+
+        A change that affects only the look is assigned to `params`; one that affects the start is assigned, and then
+        `reset` is called.
+        """
+        ...
+
+    def reset(self) -> None:
+        """Begin again with `params`."""
+        ...
+
+    def handle(self, command: SceneCommand) -> None:
+        """Carry out what a browser asks of the scene; a command that means nothing to it is ignored."""
+        ...
+
+    def advance(self, steps: int) -> None:
+        """Take steps. Raises DivergenceError where the state leaves its bounds, and then keeps the last good one."""
+        ...
+
+    def frame(self) -> F:
+        """What to draw: immutable, arrays float32."""
+        ...
+
+    def readings(self) -> R:
+        """Numbers for the panel: immutable."""
+        ...
+
+    def take_plot_rows(self) -> tuple[PlotRow, ...]:
+        """The plot rows since the last call."""
+        ...
+
+    def curves(self) -> Mapping[str, Chart | tuple[NDArray[np.floating], ...]] | None:
+        """Parameter -> columns of its chart, for the charts that are not a course in time; None where there is none."""
+        ...
+
+    def arrays(self) -> dict[str, tuple[NDArray[np.floating], str]]:
+        """The state for a file: name -> (array, unit)."""
+        ...
+
+    def work(self) -> WorkCounts:
+        """What was done and what was skipped since the scene was made."""
+        ...
+
+
+class View(Protocol[FrameIn]):
+    """The drawing of a scene, used on the viewer's thread only: `View(server, post)`, and `post` takes commands.
+
+    CAMERA: position and target [m] of the first view. FIELD_OF_VIEW: vertical [rad].
+    """
+
+    CAMERA: tuple[Vector, Vector]
+    FIELD_OF_VIEW: float
+
+    def show(self, frame: FrameIn) -> None:
+        """Assign a frame to the handles; called inside `server.atomic()`."""
+        ...
+
+    def readout(self, snapshot: Snapshot) -> str:
+        """HTML under the panel's status line."""
+        ...
+
+    def marks(self, snapshot: Snapshot) -> dict[str, str]:
+        """Parameter -> the line under its control."""
+        ...
+
+    def notes(self, snapshot: Snapshot) -> dict[str, str]:
+        """Heading -> HTML of the folders below the controls."""
+        ...
+
+    def close(self) -> None:
+        """Give back what removing the scene's nodes does not: callbacks, threads."""
+        ...
+
+
+class StabilityMap(NamedTuple):
+    """What the panel's map of step and stiffness needs of a scene of springs."""
+
+    stiffness: Callable[[Any], str]  # params -> name of the stiffness parameter in force
+    build: Callable[[Any], "Net"]  # params -> the net
+
+
+@dataclass(frozen=True)
+class SceneKind(Generic[P, F, R]):
+    """All there is to know of a scene without making one."""
+
+    name: str  # of its folder
+    title: str
+    help: str  # two lines on how to use it, as HTML
+    params: type[P]
+    presets: Mapping[str, Mapping[str, Any]]  # name -> the values that differ from the defaults
+    make: Callable[[P], Scene[P, F, R]]
+    hidden: Callable[[P], set[str]]  # the parameters that mean nothing with the others as they are
+    warm_up: Callable[[], Iterator[str]]  # compiles what the scene may call, piece by piece; yields what comes next
+    series: tuple[str, ...]  # names of the columns of a plot row after its time
+    plots: Mapping[str, PlotAxes]  # parameter that opens the plot -> what it shows
+    curves: Mapping[str, CurveAxes] = field(
+        default_factory=dict[str, CurveAxes]
+    )  # parameter that opens the chart -> its axes
+    measures: Callable[[Any], dict[str, Measure]] | None = None  # what a sweep records; None: the plot rows
+    stability_map: StabilityMap | None = None

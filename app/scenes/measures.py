@@ -1,0 +1,28 @@
+"""What a sweep records of a scene that declares no measures of its own: its plot rows."""
+
+import math
+from typing import Any
+
+from app.messages import PlotRow
+from app.scenes.contract import Measure, SceneKind
+from sim.parameters import parameters_of
+
+
+def plotted(scene: SceneKind[Any, Any, Any], row: PlotRow) -> dict[str, Measure]:
+    """A plot row (t, ...) of a scene's module as measures; () is a row of nothing."""
+    values = dict(zip(scene.series, row[1:], strict=True)) if row else {}
+    taken = parameters_of(scene.params)
+    found = {}
+    for title, unit, series in scene.plots.values():
+        for column in series:
+            name = slug(column)
+            # The energy of gravity is not the parameter gravity.
+            name = f"{name}_{slug(title)}" if name in taken else name
+            meaning = column if column == title.lower() else f"{title}: {column}"
+            found[name] = Measure(values.get(column, math.nan), unit, meaning)
+    return found
+
+
+def slug(words: str) -> str:
+    """Words as a name: "Red buoy's height" is red_buoys_height."""
+    return "_".join("".join(c for c in words.lower() if c.isalnum() or c in " -_").replace("-", " ").split())

@@ -1,0 +1,1 @@
+"""Ropes side by side."""

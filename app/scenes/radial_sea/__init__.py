@@ -1,0 +1,1 @@
+"""The radial sea with floating bodies, oil and a rig."""

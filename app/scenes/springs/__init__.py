@@ -1,0 +1,1 @@
+"""What the spring scenes share."""

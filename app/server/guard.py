@@ -1,0 +1,290 @@
+"""Who may connect, and what they may say.
+
+viser checks neither the Origin of a websocket nor any value that arrives on it, so any page in the user's browser could
+drive a loopback server, and any client could set a slider out of its range or open the public share tunnel. Everything
+from a browser passes `screen`: a short list of message types, only finite bounded numbers, and GUI values within what
+their control offers. The names with a leading underscore are viser's own and the reason for the pin in pyproject.toml.
+"""
+
+import asyncio
+import collections
+import contextlib
+import dataclasses
+import io
+import ipaddress
+import logging
+import math
+import socket
+import time
+from collections.abc import Awaitable, Callable, Iterator
+from http import HTTPStatus
+from typing import Any
+from urllib.parse import urlsplit
+
+import viser
+import websockets.asyncio.server
+from viser import _messages as vm
+
+MAX_NUMBER = 1e6  # any number in a message beyond this is refused
+MAX_LENGTH = 1000  # of a text, or of a list
+INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
+MAX_WAITING = 64  # messages of one browser that wait for their turn
+
+Handler = Callable[[Any, Any], Awaitable[None]]
+
+# What a browser of ours sends. No uploads, no forms, no share tunnel.
+ALLOWED = (
+    vm.CommandTriggerMessage,
+    vm.GetRenderResponseMessage,
+    vm.GuiButtonHoldMessage,
+    vm.GuiUpdateMessage,
+    vm.LocalStorageGetItemResponseMessage,
+    vm.SceneNodeClickMessage,
+    vm.SceneNodeDragMessage,
+    vm.ScenePointerMessage,
+    vm.TransformControlsDragEndMessage,
+    vm.TransformControlsDragStartMessage,
+    vm.TransformControlsUpdateMessage,
+    vm.ViewerCameraMessage,
+)
+
+
+def is_own_origin(origin: str | None, host: str | None, bound: str) -> bool:
+    """Whether a websocket with these headers comes from our own page, on a server bound to address `bound`.
+
+    A browser always sends an Origin; programs that send none are not what is defended against. The Host must be a name
+    of this machine, as a page of another name that resolves to it (DNS rebinding) has Origin and Host alike.
+    """
+    if origin is None:
+        return True
+    page = urlsplit(origin)
+    if page.scheme not in ("http", "https") or page.netloc != (host or ""):
+        return False
+    name = page.hostname or ""
+    if name in ("localhost", bound, socket.gethostname()):
+        return True
+    try:
+        address = ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return address.is_loopback or not is_loopback(bound)
+
+
+def is_loopback(host: str) -> bool:
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+@contextlib.contextmanager
+def checked_origins(bound: str) -> Iterator[None]:
+    """While open, a websocket server that starts refuses upgrades from other pages with 403."""
+    serve = websockets.asyncio.server.serve
+
+    def guarded_serve(*args: Any, process_request: Any = None, **options: Any) -> Any:
+        def check(connection: Any, request: Any) -> Any:
+            if not is_own_origin(request.headers.get("Origin"), request.headers.get("Host"), bound):
+                return connection.respond(HTTPStatus.FORBIDDEN, "This page may not connect here.\n")
+            return process_request(connection, request)
+
+        return serve(*args, process_request=check, **options)
+
+    websockets.asyncio.server.serve = guarded_serve  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        websockets.asyncio.server.serve = serve  # type: ignore[assignment]
+
+
+def is_bounded(value: Any) -> bool:
+    """Whether every number in a message is finite and of a sane size, and no text is long."""
+    if isinstance(value, bool) or value is None:
+        return True
+    if isinstance(value, int | float):
+        return math.isfinite(value) and abs(value) <= MAX_NUMBER
+    if isinstance(value, str):
+        return len(value) <= MAX_LENGTH
+    if isinstance(value, bytes | bytearray | memoryview):
+        return True
+    if isinstance(value, dict):
+        return all(is_bounded(k) and is_bounded(v) for k, v in value.items())
+    if isinstance(value, list | tuple):
+        return len(value) <= MAX_LENGTH and all(is_bounded(v) for v in value)
+    return False
+
+
+def allowed_value(handle: Any, value: Any) -> Any:
+    """`value` within what a GUI control offers, clamped where it has a range; None where it is no such value."""
+    if isinstance(handle, viser.GuiCheckboxHandle | viser.GuiButtonHandle):
+        return value if isinstance(value, bool) else None
+    if isinstance(handle, viser.GuiSliderHandle | viser.GuiNumberHandle):
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            return None
+        low = -MAX_NUMBER if handle.min is None else handle.min
+        high = MAX_NUMBER if handle.max is None else handle.max
+        bounded = min(max(value, low), high)
+        return round(bounded) if isinstance(handle.value, int) else float(bounded)
+    if isinstance(handle, viser.GuiMultiSliderHandle):
+        if not isinstance(value, list | tuple) or len(value) != len(handle.value) or not is_bounded(value):
+            return None
+        if not all(isinstance(v, int | float) and not isinstance(v, bool) for v in value):
+            return None
+        return tuple(float(min(max(v, handle.min), handle.max)) for v in value)
+    if isinstance(handle, viser.GuiDropdownHandle | viser.GuiButtonGroupHandle):
+        return value if value in handle.options else None
+    return None
+
+
+def same(good: Any, sent: Any) -> bool:
+    """Whether a browser already shows the value that was made of what it sent."""
+    return list(good) == list(sent) if isinstance(good, tuple) else good == sent
+
+
+class Screen:
+    """Lets through of a browser's messages what is allowed, and counts what is not."""
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self.server = server
+        self.refused: collections.Counter[str] = collections.Counter()
+
+    def __call__(self, message: Any) -> Any:
+        """The message, with a value bounded where it only had to be bounded, or None where it is refused.
+
+        Counts what is refused, and tells every browser of a value that was bounded.
+        """
+        if not isinstance(message, vm.GuiUpdateMessage):
+            good = message if isinstance(message, ALLOWED) and is_bounded(dataclasses.asdict(message)) else None
+        else:
+            good = self.judge_update(message)
+            if good is not None and not same(good.updates["value"], message.updates["value"]):
+                # The sender shows what it sent; tell it, and everyone, what was made of it.
+                self.server._websock_server.queue_message(good)
+        if good is None:
+            self.refused[type(message).__name__] += 1
+        return good
+
+    def judge_update(self, message: vm.GuiUpdateMessage) -> vm.GuiUpdateMessage | None:
+        """A new value of a control, within what the control offers; None where it is no such value."""
+        handle = self.server.gui._gui_input_handle_from_uuid.get(message.uuid)
+        if handle is None or set(message.updates) != {"value"}:
+            return None
+        good = allowed_value(handle, message.updates["value"])
+        if good is None or getattr(handle, "disabled", False):
+            return None
+        return vm.GuiUpdateMessage(message.uuid, {"value": good})
+
+
+def merge_key(message: Any) -> tuple[Any, ...] | None:
+    """Messages with the same key supersede each other: the last counts. None of what is never merged."""
+    match message:
+        case vm.GuiUpdateMessage() | vm.CommandTriggerMessage() | vm.GuiButtonHoldMessage():
+            return type(message), message.uuid
+        case vm.SceneNodeDragMessage():
+            return type(message), message.name, message.instance_index, message.phase
+        case vm.SceneNodeClickMessage() | vm.TransformControlsUpdateMessage():
+            return type(message), message.name
+        case vm.ViewerCameraMessage() | vm.ScenePointerMessage():
+            return (type(message),)
+        case _:
+            return None
+
+
+class Intake:
+    """The messages of one browser on their way to viser's handlers, on viser's event loop.
+
+    A message that comes alone is handled at once. What comes faster than `INTAKE_INTERVAL` waits for the next turn, and
+    of messages that supersede each other only the last is handled: a browser that floods is slowed, others are not.
+    """
+
+    def __init__(self, screen: Callable[[Any], Any], handlers: "list[Handler]") -> None:
+        self.screen, self.handlers = screen, handlers
+        self.waiting: dict[tuple[Any, ...], Any] = {}
+        self.unmerged = 0  # counts messages that are never merged, for keys of their own
+        self.turn: asyncio.Task[None] | None = None
+        self.turned_at = -math.inf  # [s] when a message was last handled
+
+    def take(self, client: Any, message: Any) -> None:
+        """Queue a message, over one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""
+        key = merge_key(message)
+        if key is None:
+            self.unmerged += 1
+            key = (type(message), self.unmerged)
+        self.waiting.pop(key, None)
+        self.waiting[key] = message
+        if len(self.waiting) > MAX_WAITING:
+            self.waiting.pop(next(iter(self.waiting)))
+        if self.turn is None:
+            self.turn = asyncio.get_running_loop().create_task(self.handle_waiting(client))
+
+    async def handle_waiting(self, client: Any) -> None:
+        """Handle what waits, in turns."""
+        try:
+            while self.waiting:
+                pause = self.turned_at + INTAKE_INTERVAL - time.monotonic()
+                if pause > 0.0:
+                    await asyncio.sleep(pause)
+                waiting, self.waiting = self.waiting, {}
+                for message in waiting.values():
+                    good = self.screen(message)
+                    if good is not None:
+                        for handle in self.handlers:
+                            await handle(client, good)
+                self.turned_at = time.monotonic()
+        finally:
+            self.turn = None
+
+
+def put_intakes(server: viser.ViserServer, screen: Screen) -> None:
+    """Pass every message of every browser through an intake of its own before viser's handlers see it."""
+    connection = server._websock_server
+    handle = connection._handle_incoming_message
+    intakes: dict[Any, Intake] = {}
+
+    async def take(client_id: Any, message: Any) -> None:
+        if client_id in intakes:
+            intakes[client_id].take(client_id, message)
+
+    async def ignore(client_id: Any, message: Any) -> None:
+        """The same message as the server is given: one intake serves both."""
+
+    def join(client: Any) -> None:
+        intakes[client.client_id] = Intake(screen, [handle, client._handle_incoming_message])
+        client._handle_incoming_message = ignore
+
+    connection._handle_incoming_message = take
+    connection.on_client_connect(join)
+    connection.on_client_disconnect(lambda client: intakes.pop(client.client_id, None))
+
+
+def check_port(host: str, port: int) -> None:
+    """Raise OSError where `port` cannot be bound: viser would silently take the next one."""
+    if port == 0:
+        return
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with socket.socket(family, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        probe.bind((host, port))
+
+
+def open_server(host: str, port: int) -> tuple[viser.ViserServer, Screen]:
+    """A viser server that only our own page may connect to and that only takes what `Screen` lets through.
+
+    Raises OSError where the port is busy or may not be bound.
+    """
+    check_port(host, port)
+    # A message that cannot be decoded ends its connection, and would print a traceback each time.
+    logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
+    with checked_origins(host), contextlib.redirect_stdout(io.StringIO()):  # we print our own address
+        server = viser.ViserServer(host=host, port=port, label="Springtide", verbose=False)
+    if port not in (0, server.get_port()):
+        server.stop()
+        raise OSError(f"port {port} was taken while starting")
+    screen = Screen(server)
+    connection = server._websock_server
+    for request in (vm.ShareUrlRequest, vm.ShareUrlDisconnect):
+        connection.unregister_handler(request)
+    put_intakes(server, screen)
+    return server, screen

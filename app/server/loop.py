@@ -1,0 +1,349 @@
+"""The simulation thread's loop: handle commands, read parameters, take fixed steps, publish a snapshot.
+
+One accumulator and one wall deadline. Time that cannot be made up is dropped and shown, never owed. `SimLoop.tick` is a
+plain function of elapsed wall time, so that tests, headless runs and benchmarks call it without a thread.
+"""
+
+import collections
+import contextlib
+import queue
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+from app.messages import (
+    Command,
+    DivergenceError,
+    Halt,
+    Load,
+    Pause,
+    Play,
+    PlotRow,
+    Reset,
+    Snapshot,
+    Status,
+    StepOnce,
+    TogglePlay,
+    WorkCount,
+    where_not_finite,
+)
+from app.scenes.contract import FRAME_INTERVAL, Scene
+from app.server.merging import merged
+from sim.parameters import effect_of_change
+
+SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
+PART_GROWTH = 8  # ratio of two successive parts of a frame's steps while the cost of a step is not known
+IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
+MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
+MAX_CATCH_UP = 0.25  # [s] of wall time that one tick makes up for
+RATE_WINDOW = 1.0  # [s] over which rates are measured
+MAX_PLOT_ROWS = 20_000  # waiting for the viewer; beyond that the oldest are dropped
+
+
+class FixedStep:
+    """Turns elapsed wall time into whole steps, dropping what does not fit the budget."""
+
+    def __init__(self) -> None:
+        self.debt = 0.0  # [s] of simulated time not yet stepped
+        self.cost = 0.0  # [s] of processor time that a step takes, lately
+        self.dropped = 0  # steps that were due and never taken
+
+    def steps(self, wall: float, speed: float, h: float, frame: float = FRAME_INTERVAL) -> tuple[int, bool]:
+        """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s].
+
+        frame: [s] between pictures; where that is longer, there is more time to solve in.
+        """
+        self.debt += min(wall, MAX_CATCH_UP) * speed
+        due = int(self.debt / h * (1 + 1e-9))
+        most = max(1, int(SOLVE_SHARE * max(frame, FRAME_INTERVAL) / self.cost)) if self.cost > 0 else due
+        if due > most:
+            self.debt = 0.0
+            self.dropped += due - most
+            return most, True
+        self.debt = max(0.0, self.debt - due * h)
+        return due, False
+
+    def next_part(self, last: int, spent: float) -> int:
+        """Steps to try next, after `spent` [s] of this frame and a last part of `last` steps; 0 when it is full."""
+        left = SOLVE_SHARE * FRAME_INTERVAL - spent
+        if left <= 0.0:
+            return 0
+        return min(PART_GROWTH * last, int(left / self.cost)) if self.cost > 0 else PART_GROWTH * last
+
+    def learn(self, steps: int, seconds: float) -> None:
+        """Record that `steps` steps took `seconds` of processor time."""
+        if steps:
+            each = seconds / steps
+            # Down at once, up slowly: the first step of a method loads its kernel.
+            self.cost = each if not 0 < self.cost < each else 0.8 * self.cost + 0.2 * each
+
+
+class SimLoop:
+    """Owns a scene and its clock."""
+
+    def __init__(
+        self,
+        scene: Scene[Any, Any, Any],
+        commands: "queue.SimpleQueue[Command] | None" = None,
+        read_params: Callable[[], tuple[Any, int]] | None = None,
+        audience: Callable[[], int] = lambda: 1,
+        *,
+        paused: bool = False,
+        clock: Callable[[], float] = time.perf_counter,
+        effort: Callable[[], float] = time.thread_time,
+    ) -> None:
+        """read_params: the parameters as set now, and the number of the last `Load`; audience: how many browsers look.
+
+        clock: wall time [s]. effort: what solving is charged by, this thread's processor time [s], so that a busy
+        machine that takes the processor away does not make the scene look expensive.
+        """
+        self.scene = scene
+        self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
+        self.read_params = read_params or (lambda: (scene.params, self.loaded))
+        self.audience = audience
+        self.clock, self.effort = clock, effort
+        self.first: Command | None = None  # what ended a sleep, for the next tick
+        self.running = not paused
+        self.halted = ""
+        self.cost_unknown = True  # the cost of a step with the parameters as they are is not known
+        self.loaded = 0  # number of the last `Load` that was handled
+        self.pacer = FixedStep()
+        self.capped = False
+        self.counts: collections.Counter[str] = collections.Counter()
+        self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
+        self.wall = 0.0
+        self.busy_since: float | None = None  # [s] of the clock, while a tick runs
+        self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
+        self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
+        self.latest: Snapshot = self.snapshot(0.0)
+
+    @property
+    def frame_interval(self) -> float:
+        """Time [s] between pictures: a scene may ask for fewer."""
+        return self.scene.frame_interval
+
+    def tick(self, wall: float) -> None:
+        """One frame, `wall` seconds after the last."""
+        self.wall += wall
+        self.busy_since = self.clock()
+        params, loads = self.read_params()
+        changed = self.handle_waiting()
+        # A record that is older than the last `Load`, or newer with its `Load` still on the way, is not taken.
+        if loads == self.loaded and params is not self.scene.params:
+            changed |= self.take(params)
+        solve = 0.0
+        if self.running and self.audience():
+            n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame_interval)
+            if n:
+                solve = self.advance_within_budget(n) if self.cost_unknown else self.advance(n)
+                changed = True
+        else:
+            self.counts["idle ticks"] += 1
+        self.counts["ticks"] += 1
+        if changed:
+            self.publish(solve)
+        self.busy_since = None
+
+    def take(self, params: Any) -> bool:
+        """Take parameters by what their change affects; False where they are those of the scene."""
+        effect = effect_of_change(self.scene.params, params)
+        if effect is None:
+            return False
+        if effect == "look":
+            self.scene.params = params
+            return True
+        self.cost_unknown = True
+        if effect == "forces":
+            self.guarded(lambda: self.scene.change_forces(params))
+            self.scene.params = params  # also where the scene failed: not to be tried again in every tick
+        else:
+            self.scene.params = params
+            self.reset()
+        return True
+
+    def advance_within_budget(self, n: int) -> float:
+        """Take up to n steps in growing parts while the frame's budget lasts; returns what they took [s].
+
+        Another method or more points may make a step a thousand times as expensive as the last one was.
+        """
+        part, spent = 1, 0.0
+        while n > 0 and part > 0 and self.running:
+            part = min(part, n)
+            self.pacer.cost = 0.0
+            spent += self.advance(part)
+            n -= part
+            part = self.pacer.next_part(part, spent)
+        self.cost_unknown = False
+        if n > 0 and self.running:
+            self.capped, self.pacer.debt = True, 0.0
+            self.pacer.dropped += n
+        return spent
+
+    def work(self) -> dict[str, WorkCount]:
+        """What ran against what had no need to, paused or unwatched, or no time to."""
+        c = self.counts
+        return {
+            "ticks": WorkCount(c["ticks"] - c["idle ticks"], c["idle ticks"]),
+            "steps": WorkCount(c["steps"], self.pacer.dropped),
+            "snapshots": WorkCount(c["snapshots"], max(c["ticks"] - c["snapshots"], 0)),
+        }
+
+    def advance(self, n: int) -> float:
+        """Take n steps; returns the processor time they took [s]."""
+        start = self.effort()
+        self.guarded(lambda: self.scene.advance(n))
+        seconds = self.effort() - start
+        self.pacer.learn(n, seconds)
+        self.counts["steps"] += n
+        return seconds
+
+    def guarded(self, action: Callable[[], None]) -> None:
+        """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say."""
+        try:
+            action()
+        except DivergenceError as reason:
+            self.halt(str(reason))
+        except Exception as error:
+            traceback.print_exc()
+            self.halt(f"The scene stopped with {type(error).__name__}: {error}")
+
+    def halt(self, reason: str) -> None:
+        """Pause, and keep the reason for the panel."""
+        self.running = False
+        self.halted = reason
+
+    def handle_waiting(self) -> bool:
+        """Handle what is left of the waiting commands once they are merged; True where there was one."""
+        waiting = [] if self.first is None else [self.first]
+        self.first = None
+        for _ in range(
+            self.commands.qsize()
+        ):  # nobody else takes from it; what comes meanwhile waits for the next tick
+            waiting.append(self.commands.get_nowait())
+        for command in merged(waiting):
+            self.handle(command)
+        return bool(waiting)
+
+    def handle(self, command: Command) -> None:
+        """Carry out one command."""
+        match command:
+            case Play():
+                self.running, self.halted = True, ""
+            case Pause():
+                self.running = False
+            case TogglePlay():
+                self.handle(Pause() if self.running else Play())
+            case StepOnce(count):
+                self.running = False
+                self.step_by_hand(count)
+            case Halt(reason):
+                self.halt(reason)
+            case Load(params, number):
+                self.loaded = number
+                self.scene.params = params
+                self.cost_unknown = True
+                self.reset()
+            case Reset():
+                self.reset()
+            case _:
+                self.guarded(lambda: self.scene.handle(command))
+
+    def step_by_hand(self, count: int) -> None:
+        """Take up to `count` single steps, at least one, while the frame's budget lasts; the rest is dropped."""
+        spent = 0.0
+        for done in range(count):
+            spent += self.advance(1)
+            if self.halted or spent > SOLVE_SHARE * FRAME_INTERVAL:
+                self.pacer.dropped += count - done - 1
+                return
+
+    def reset(self) -> None:
+        """The scene from its start; a run that had halted goes on."""
+        self.running, self.halted = self.running or bool(self.halted), ""
+        self.pacer.debt = 0.0
+        self.guarded(self.scene.reset)
+
+    def publish(self, solve: float) -> None:
+        """Hand the viewer what there is now."""
+        self.latest = self.snapshot(solve)
+        self.fresh.set()
+
+    def snapshot(self, solve: float) -> Snapshot:
+        """What there is to show now; the last good frame where the scene has none."""
+        self.counts["snapshots"] += 1
+        serial = self.counts["snapshots"]
+        last: Snapshot | None = getattr(self, "latest", None)
+        try:
+            found = self.collect()
+        except Exception as error:
+            if last is None:
+                raise  # nothing to show instead: the scene cannot be opened
+            if not isinstance(error, DivergenceError):
+                traceback.print_exc()
+                error = DivergenceError(f"The scene stopped with {type(error).__name__}: {error}")
+            self.halt(str(error))
+            return last._replace(serial=serial, status=self.status(solve))
+        frame, readings, work, params, curves = found
+        return Snapshot(serial, frame, self.status(solve), readings, work, params, curves)
+
+    def collect(self) -> tuple[Any, ...]:
+        """The scene's frame, readings, work, parameters and curves; hands its plot rows over.
+
+        Raises DivergenceError where the frame holds a number that is not finite.
+        """
+        scene = self.scene
+        frame = scene.frame()
+        where = where_not_finite(frame)
+        if where:
+            raise DivergenceError(f"The {where} to draw is not finite. Reset, or take a smaller step.")
+        found = frame, scene.readings(), scene.work(), scene.params, scene.curves()
+        self.plot_rows.extend(scene.take_plot_rows())
+        return found
+
+    def status(self, solve: float) -> Status:
+        """The clock and the rates."""
+        simulated = self.scene.time
+        self.history.append((self.wall, simulated))
+        while len(self.history) > 2 and self.history[0][0] < self.wall - RATE_WINDOW:
+            self.history.popleft()
+        elapsed = self.wall - self.history[0][0]
+        return Status(
+            running=self.running,
+            time=simulated,
+            steps=self.counts["steps"],
+            speed=self.scene.params.speed,
+            actual_speed=max(0.0, (simulated - self.history[0][1]) / elapsed) if elapsed > 0 and self.running else 0.0,
+            capped=self.capped and self.running,
+            solve_time=solve,
+            frame_rate=(len(self.history) - 1) / elapsed if elapsed > 0 else 0.0,
+            halted=self.halted,
+        )
+
+    def run(self, stop: threading.Event) -> None:
+        """Tick until `stop` is set, at the frame rate while there is something to do."""
+        last = self.clock()
+        while not stop.is_set():
+            busy = self.running and self.audience() > 0
+            now = self.clock()
+            try:
+                self.tick(now - last)
+            except Exception as error:  # outside what `guarded` covers: the thread lives to say so
+                traceback.print_exc()
+                self.halt(f"The scene stopped with {type(error).__name__}: {error}")
+                self.busy_since = None
+            last = now
+            rest = (self.frame_interval if busy else IDLE_INTERVAL) - (self.clock() - now)
+            if rest > 0:
+                self.wait(rest, stop)
+
+    def wait(self, seconds: float, stop: threading.Event) -> None:
+        """Sleep for `seconds`; a command ends a sleep that is longer than a hand should have to wait."""
+        if seconds <= MAX_DEAF_TIME:
+            stop.wait(seconds)
+            return
+        start = self.clock()
+        with contextlib.suppress(queue.Empty):
+            self.first = self.commands.get(timeout=seconds)
+            stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # many commands make no more ticks than frames

@@ -1,0 +1,79 @@
+"""What supersedes is merged before it is handled: of many waiting commands only those that still matter are left."""
+
+from collections.abc import Iterable
+from typing import Literal
+
+from app.messages import (
+    Command,
+    Grab,
+    Halt,
+    Load,
+    Pause,
+    Place,
+    Play,
+    Point,
+    Release,
+    Reset,
+    SceneCommand,
+    StepOnce,
+    TogglePlay,
+)
+
+Motion = Literal["play", "pause", "toggle"]
+AFTER: dict[tuple[Motion | None, type], Motion | None] = {  # (waiting, next) -> what both together ask for
+    ("play", TogglePlay): "pause",
+    ("pause", TogglePlay): "play",
+    ("toggle", TogglePlay): None,
+    (None, TogglePlay): "toggle",
+}
+COMMAND_OF: dict[Motion, Command] = {"play": Play(), "pause": Pause(), "toggle": TogglePlay()}
+
+
+def merged(commands: Iterable[Command]) -> list[Command]:
+    """The commands that have the same effect as all of them in order.
+
+    Of presets and resets the last is left, and nothing that a scene was asked for before it; single steps are added
+    up; of the positions of one thing, and of the drags of one browser, the last is left.
+    """
+    halt: Halt | None = None
+    start: Load | Reset | None = None
+    motion: Motion | None = None
+    steps = 0
+    scene: dict[tuple[str, str | int], SceneCommand] = {}
+    for command in commands:
+        match command:
+            case Halt():
+                halt = halt or command
+            case Load():
+                start, steps = command, 0
+                scene.clear()
+            case Reset():
+                start = start if isinstance(start, Load) else command
+                steps = 0
+                scene.clear()
+            case Play() | Pause() | TogglePlay():
+                steps = 0 if isinstance(command, Play) else steps
+                motion = AFTER.get((motion, type(command)), "play" if isinstance(command, Play) else "pause")
+            case StepOnce(count):
+                steps, motion = steps + count, None
+            case Place(thing, _):
+                put_last(scene, ("place", thing), command)
+            case Grab() | Release():
+                put_last(scene, ("drag", command.client), command)
+            case Point():
+                put_last(scene, ("point", ""), command)
+    found: list[Command] = [halt] if halt else []
+    if start is not None:
+        found.append(start)
+    found.extend(scene.values())
+    if steps:
+        found.append(StepOnce(steps))
+    if motion is not None:
+        found.append(COMMAND_OF[motion])
+    return found
+
+
+def put_last(waiting: dict[tuple[str, str | int], SceneCommand], key: tuple[str, str | int], new: SceneCommand) -> None:
+    """Replace what waits under a key, and move it to the end: the order of the last ones is kept."""
+    waiting.pop(key, None)
+    waiting[key] = new

@@ -1,0 +1,227 @@
+"""Owns the server: opens scenes, runs the open scene's loop in a thread, and shows its latest snapshot in another."""
+
+import html
+import queue
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+import viser
+
+from app.messages import Command, Halt, Release, WorkCount
+from app.panel.panel import Panel, add_scene_chooser, note
+from app.render.injection import decline, reset
+from app.scenes import NAMES, scene_named, view_named
+from app.scenes.warmup import compile_scene, is_compiled
+from app.server.counters import Unwatched, gather, modules
+from app.server.guard import open_server
+from app.server.loop import SimLoop
+from app.server.transport import TransportCounters
+
+HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
+SEND_WINDOW = (
+    0.0  # [s] for which viser holds back what it has to send, by default 17 ms: flushing each picture costs more
+)
+MAX_JOIN_TIME = 1.0  # [s] that ending waits for a thread: a long solve does not hold up the end
+
+
+class Viewer:
+    """The lab in a browser. Everything drawn is assigned on the viewer thread, everything simulated on the loop's."""
+
+    def __init__(self, host: str, port: int, *, plain: bool = False) -> None:
+        """plain: draw by viser's public API alone. Raises OSError where the port cannot be bound."""
+        self.server, self.screen = open_server(host, port)
+        if plain:
+            decline(self.server)
+        self.server._websock_server.get_message_buffer().window_duration_sec = SEND_WINDOW
+        self.transport = TransportCounters(self.server)
+        self.port = self.server.get_port()
+        self.commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        self.server.on_client_disconnect(self.on_disconnect)
+        self.stop = threading.Event()
+        self.ended = False
+        self.threads: list[threading.Thread] = []
+        self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
+        self.unwatched = Unwatched()
+        self.send_time = 0.0  # [s] that the last frame took to hand over
+        self.view: Any = None
+        self.panel: Any = None
+        self.first_params: dict[str, Any] = {}  # scene -> the parameters that it was first opened with
+        self.changing = threading.Lock()
+        self.wanted: queue.SimpleQueue[str] = queue.SimpleQueue()  # scenes that browsers ask for
+        threading.Thread(target=self.open_wanted, name="scene changes", daemon=True).start()
+        gui = self.server.gui
+        gui.configure_theme(
+            show_logo=False, show_share_button=False, control_width="medium", brand_color=(28, 106, 168)
+        )
+        gui.set_panel_label("Springtide")
+
+    def open(self, name: str, params: Any = None, *, paused: bool = False) -> None:
+        """Show a scene, in place of the one that is open.
+
+        params: None for those that the scene was first opened with, or the defaults. Whatever fails leaves a page that
+        says why and offers the scenes; the exception is raised.
+        """
+        with self.changing:
+            if self.ended:
+                return
+            self.close()
+            try:
+                self.make(name, params, paused)
+            except BaseException as error:
+                self.show_failure(name, error)
+                raise
+
+    def make(self, name: str, params: Any, paused: bool) -> None:
+        """Make scene, view, panel and threads."""
+        kind = scene_named(name)
+        self.compile(name, kind.title)
+        if params is None:
+            params = self.first_params.get(name) or kind.params()
+        self.first_params.setdefault(name, params)
+        view = view_named(name)
+        self.clear()
+        self.scene = kind.make(params)
+        commands = self.commands = queue.SimpleQueue()
+        self.view = view(self.server, commands.put)
+        position, target = self.view.CAMERA
+        for camera in (self.server.initial_camera, *(c.camera for c in self.server.get_clients().values())):
+            camera.position, camera.look_at, camera.fov = position, target, self.view.FIELD_OF_VIEW
+        self.panel = Panel(
+            self.server, kind, self.view, params, commands.put, work=self.work, scenes=NAMES, open_scene=self.wanted.put
+        )
+        self.loop = SimLoop(self.scene, commands, self.panel.read, self.audience, paused=paused)
+        self.stop = threading.Event()
+        self.threads = [
+            threading.Thread(target=self.loop.run, args=(self.stop,), name="simulation", daemon=True),
+            threading.Thread(target=self.show_snapshots, args=(self.stop,), name="viewer", daemon=True),
+        ]
+        for thread in self.threads:
+            thread.start()
+
+    def compile(self, name: str, title: str) -> None:
+        """Compile what a scene needs, with progress in the page and on the terminal."""
+        if is_compiled(name):
+            return
+        self.clear()
+        progress = self.server.gui.add_html("")
+
+        def show(part: str) -> None:
+            text = f"<b>{html.escape(title)}</b>: compiling {html.escape(part)}. This is done once."
+            progress.content = note(text)
+
+        show("kernels")
+        compile_scene(name, show=show)
+
+    def clear(self) -> None:
+        """An empty panel and an empty scene."""
+        self.server.gui.reset()
+        reset(self.server)
+        self.shown = self.drawn = 0
+        self.transport.begin()
+        self.unwatched = Unwatched()
+
+    def show_failure(self, name: str, error: BaseException) -> None:
+        """A page that says why a scene could not be opened, and offers the scenes."""
+        self.close()
+        self.clear()
+        add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.choose)
+        reason = html.escape(f"{type(error).__name__}: {error}")
+        self.server.gui.add_html(note(f"<b>{html.escape(name)} could not be opened.</b><br>{reason}"))
+
+    def choose(self, name: str) -> None:
+        """A scene was chosen on the page that says why another could not be opened."""
+        if name in NAMES:
+            self.wanted.put(name)
+
+    def open_wanted(self) -> None:
+        """Open the scenes that browsers ask for; of several waiting only the last."""
+        while not self.ended:
+            name = self.wanted.get()
+            while not self.wanted.empty():
+                name = self.wanted.get()
+            try:
+                if name in NAMES:
+                    self.open(name)
+            except Exception:
+                traceback.print_exc()
+
+    def audience(self) -> int:
+        """How many browsers look."""
+        return len(self.server._connected_clients)
+
+    async def on_disconnect(self, client: viser.ClientHandle) -> None:
+        """A browser that is gone lets go of what it drags."""
+        self.commands.put(Release(client.client_id))
+
+    def show_snapshots(self, stop: threading.Event) -> None:
+        """Show each new snapshot once, as soon as it is there, and keep the panel's status up to date."""
+        while not stop.is_set():
+            self.loop.fresh.wait(HEARTBEAT)
+            self.loop.fresh.clear()
+            self.unwatched.note(self.audience())
+            self.show_latest()
+
+    def show_latest(self) -> None:
+        """Hand the latest snapshot over; without a new one only the panel."""
+        loop, snapshot = self.loop, self.loop.latest
+        rows = [loop.plot_rows.popleft() for _ in range(len(loop.plot_rows))]
+        since = loop.busy_since
+        busy = 0.0 if since is None else loop.clock() - since
+        # All of it in one message: each wakes a thread of viser's, which costs as much as drawing the rope.
+        with self.transport.counted(), self.server.atomic():
+            if snapshot.serial != self.shown:
+                self.shown = snapshot.serial
+                self.drawn += 1
+                start = time.perf_counter()
+                self.attempt("picture", self.view.show, snapshot.frame)
+                self.send_time = time.perf_counter() - start
+            self.attempt("panel", self.panel.update, snapshot, rows, self.send_time, busy)
+
+    def attempt(self, what: str, action: Callable[..., None], *arguments: Any) -> None:
+        """Show something; what goes wrong halts the run once, and this thread lives to say so."""
+        try:
+            action(*arguments)
+        except Exception as error:
+            if not self.loop.halted:
+                traceback.print_exc()
+                self.loop.commands.put(Halt(f"The {what} could not be drawn, {type(error).__name__}: {error}"))
+
+    def work(self) -> dict[str, WorkCount]:
+        """The work counts of the open scene."""
+        latest = self.loop.latest
+        return gather(
+            self.loop.work(),
+            {"pictures handed over": WorkCount(self.drawn, self.shown - self.drawn)},
+            self.transport.work(),
+            self.panel.plots.work(),
+            latest.work,
+            self.unwatched.work(),
+            modules(),
+        )
+
+    def close(self, wait: float | None = None) -> None:
+        """Stop the threads of the open scene and give back what it holds. wait: [s] for each thread; None: no limit."""
+        self.stop.set()
+        for thread in self.threads:
+            thread.join(wait)
+        self.threads = []
+        if self.panel is not None:
+            self.panel.close()
+        if self.view is not None:
+            self.view.close()
+        self.panel = self.view = None
+
+    def shut(self) -> None:
+        """End: stop the threads and the server. A scene that is being opened is not waited for."""
+        self.ended = True
+        self.stop.set()
+        if self.changing.acquire(timeout=MAX_JOIN_TIME):
+            try:
+                self.close(MAX_JOIN_TIME)
+            finally:
+                self.changing.release()
+        self.wanted.put("")
+        self.server.stop()

@@ -1,0 +1,96 @@
+"""What waves run on: clean water, a layer of oil on water, or the two entirely mixed; and what that does to them.
+
+Choose a thickness for oil on water, which is what happens; `mixed` for the lab's other reading. Limits: only the
+surface mode is excited (the interfacial one, slow and hidden, is not), and the viscosity that a wave feels through a
+layer is an average, see `FluidColumn.felt_viscosity`.
+"""
+
+import dataclasses
+import math
+
+import numpy as np
+
+from sim.ocean.dispersion import damped_root, film_decay, mode_ratios, omega, two_layer
+from sim.ocean.fluids import MIXTURE_LAWS, Fluid, fluids, mixed
+from sim.validation import argument_error, check_not_negative, check_positive, check_within
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class FluidColumn:
+    """Oil on, or in, deep water. Raises ValueError for a value that is not allowed, or oil heavier than the water."""
+
+    oil: Fluid = fluids()["Alaska North Slope 2002"]
+    water: Fluid = fluids()["sea water"]
+    thickness: float = 0.0  # [m] of the layer; 0: clean water
+    fraction: float = 0.0  # of oil by volume, entirely mixed; above 0 there is no layer
+    law: str = "taylor"  # of the mixture's viscosity
+    film: bool = False  # an inextensible film besides
+    gravity: float = 9.81  # [m/s2]
+
+    def __post_init__(self) -> None:
+        check_not_negative("thickness", self.thickness, "m")
+        check_within("fraction", self.fraction, 0.0, 1.0)
+        check_positive("gravity", self.gravity, "m/s2")
+        if self.law not in MIXTURE_LAWS:
+            raise argument_error("law", self.law, "one of " + ", ".join(MIXTURE_LAWS))
+        if self.oil.density > self.water.density:
+            raise argument_error("oil", self.oil.name, f"an oil lighter than the water, {self.water.density:g} kg/m3")
+
+    @property
+    def kind(self) -> str:
+        """ "water", "layer" or "mixed"."""
+        return "mixed" if self.fraction > 0.0 else "layer" if self.thickness > 0.0 else "water"
+
+    @property
+    def surface(self) -> Fluid:
+        """The fluid whose surface is seen."""
+        if self.kind == "mixed":
+            return mixed(self.oil, self.water, self.fraction, self.law)
+        return self.oil if self.kind == "layer" else self.water
+
+    @property
+    def layers(self) -> tuple[tuple[float, float], ...]:
+        """(density [kg/m3], thickness [m]) from the top, for `sim.floating`."""
+        if self.kind == "layer":
+            return ((self.oil.density, self.thickness), (self.water.density, math.inf))
+        return ((self.surface.density, math.inf),)
+
+    def omega(self, k: np.ndarray) -> np.ndarray:
+        """Angular frequency [rad/s] of surface waves of wavenumber k [rad/m]; the exact surface mode over a layer."""
+        if self.kind != "layer":
+            f = self.surface
+            return np.asarray(omega(k, self.gravity, math.inf, f.surface_tension or 0.0, f.density))
+        return np.asarray(two_layer(k, *self._two())[0])
+
+    def interface_ratio(self, k: np.ndarray) -> np.ndarray:
+        """Height of the interface over the surface's in these waves; e^(-kd) without tension."""
+        if self.kind != "layer":
+            return np.ones_like(np.asarray(k, np.float64))
+        return np.asarray(mode_ratios(k, *self._two()).surface)
+
+    def felt_viscosity(self, k: np.ndarray) -> np.ndarray:
+        """Kinematic viscosity [m2/s] that a wave of wavenumber k feels.
+
+        A weak wave loses energy as e^(2kz) with depth, so a layer of thickness d takes the share 1 - e^(-2kd).
+        """
+        k = np.asarray(k, np.float64)
+        if self.kind != "layer":
+            return np.full_like(k, self.surface.kinematic_viscosity)
+        share = np.exp(-2.0 * k * self.thickness)
+        return (1.0 - share) * self.oil.kinematic_viscosity + share * self.water.kinematic_viscosity
+
+    def roots(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """omega [rad/s] and decay rate [1/s] of waves of wavenumber k: Lamb's exact root with the felt viscosity.
+
+        film: the decay is at least that of an inextensible film on this water (Lamb, Art. 351).
+        """
+        k = np.asarray(k, np.float64)
+        w, decay = damped_root(self.omega(k), self.felt_viscosity(k) * k**2)
+        if self.film:
+            decay = np.maximum(decay, film_decay(k, self.water.kinematic_viscosity, self.gravity))
+        return w, decay
+
+    def _two(self) -> tuple[float, float, float, float, float, float, float]:
+        o = self.oil
+        tensions = (o.surface_tension or 0.0, o.interface_tension or 0.0)
+        return (o.density, self.thickness, self.water.density, self.gravity, math.inf, *tensions)

@@ -1,0 +1,85 @@
+"""A chart recorder on the sea: the height above one place, its trace, and the spectrum of the trace beside theory."""
+
+import collections
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import Vector
+from sim.ocean import Sea
+
+RATE = 10.0  # [Hz] of the trace that the spectrum is made of
+KEPT = 600.0  # [s] of trace kept
+LEAST = 10.0  # [s] of trace that a spectrum needs
+SEGMENT = 50.0  # [s] at most of one of Welch's segments
+MARCH = 200  # places looked at along a ray that was clicked
+
+
+class WaveGauge:
+    """One place on the water. The height is that of the displaced surface above it."""
+
+    def __init__(self) -> None:
+        self.at = (0.0, 0.0)  # [m]
+        self.height = 0.0  # [m]
+        self.residual = 0.0  # [m]
+        self.trace: collections.deque[tuple[float, float]] = collections.deque()
+
+    def put(self, at: tuple[float, float]) -> None:
+        """Move it, and begin the trace anew."""
+        self.at = at
+        self.trace.clear()
+
+    def read(self, sea: Sea, t: float, scale: float) -> None:
+        """Take the height at time t [s]; scale: factor on the height as drawn."""
+        height, residual = sea.height_at([self.at], t)
+        self.height, self.residual = scale * float(height[0]), float(residual[0])
+        if self.trace and t <= self.trace[-1][0]:
+            return
+        self.trace.append((t, self.height))
+        while self.trace[-1][0] - self.trace[0][0] > KEPT:
+            self.trace.popleft()
+
+    def spectrum(self, sea: Sea, t: float, scale: float) -> tuple[NDArray[np.floating], ...]:
+        """(frequency [Hz], measured, theory [m2/Hz]) by Welch's method (1967, IEEE Trans. Audio 15:70); empty if short.
+
+        Theory is the energy of the tile's waves, in the same bins.
+        """
+        none = np.zeros(0)
+        if not self.trace or self.trace[-1][0] - self.trace[0][0] < LEAST:
+            return none, none, none
+        times, heights = np.array(self.trace).T
+        even = np.arange(times[0], times[-1], 1.0 / RATE)
+        heights = np.interp(even, times, heights)
+        n = min(len(even) // 2, int(SEGMENT * RATE))
+        window = np.hanning(n)
+        pieces = [heights[i : i + n] for i in range(0, len(heights) - n + 1, n // 2)]
+        power = np.mean([np.abs(np.fft.rfft(window * (piece - piece.mean()))) ** 2 for piece in pieces], axis=0)
+        measured = 2.0 * power / (RATE * (window**2).sum())
+        f = np.fft.rfftfreq(n, 1.0 / RATE)
+        edges = np.append(f - 0.5 * f[1], f[-1] + 0.5 * f[1])
+        energy, _ = np.histogram(sea.frequencies / (2.0 * math.pi), edges, weights=scale**2 * sea.energy_at(t))
+        theory = energy / f[1]
+        # Up to where 99 % of the energy is: the rest is an empty chart.
+        shown = max(8, int(np.searchsorted(np.cumsum(energy), 0.99 * energy.sum())) + 2)
+        return f[1:shown], measured[1:shown], theory[1:shown]
+
+
+def where_hit(sea: Sea, t: float, origin: Vector, direction: Vector, scale: float) -> tuple[float, float] | None:
+    """Where a ray first meets the water at time t [s], None where it does not: (x, y) [m]."""
+    start, way = np.array(origin), np.array(direction)
+    length = float(np.linalg.norm(way))
+    if not length > 0.0:
+        return None
+    way /= length
+    highest = scale * float(sea.surface(t).height.max())
+    if way[2] > -1e-4 or start[2] <= -highest:
+        return None
+    # From where it dips under the highest crest to where it is as far below: waves are about as deep as high.
+    near = max(0.0, (highest - start[2]) / way[2])
+    far = (-highest - start[2]) / way[2]
+    places = start + np.linspace(near, far, MARCH)[:, None] * way
+    heights, _ = sea.height_at(places[:, :2], t)
+    under = np.nonzero(places[:, 2] <= scale * heights)[0]
+    hit = places[under[0]] if under.size else places[-1]
+    return float(hit[0]), float(hit[1])

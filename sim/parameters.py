@@ -1,0 +1,186 @@
+"""A parameter declared once: `parameter(default, low, high, unit, doc)` in a frozen dataclass.
+
+From the declaration come the control in the panel, its range and hint, the command-line flag, the preset file, the
+sweep axis and the random test values. It also says what a change of the value affects, so that no scene keeps a list
+of parameter names.
+
+Two readings of a value from outside: `clamp_value` bounds it (live controls), `check_value` raises an error that names
+the parameter, the value, its range and unit (command line, files).
+"""
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from typing import Any, Literal, NamedTuple, TypeVar
+
+from sim.validation import argument_error
+
+P = TypeVar("P")
+
+Effect = Literal["look", "forces", "start"]
+EFFECTS: tuple[Effect, ...] = ("look", "forces", "start")  # from the least to the greatest
+
+TRUE = ("true", "yes", "on", "1")
+FALSE = ("false", "no", "off", "0")
+
+
+class Parameter(NamedTuple):
+    """What the value of one parameter may be. `choices` is non-empty for named values only; low and high bound numbers.
+
+    affects: what a change does. "look": only the picture or the pace of the clock; "forces": the motion goes on under
+    other forces; "start": the scene begins again.
+    """
+
+    default: Any
+    low: float
+    high: float
+    unit: str
+    doc: str
+    log_from: float = 0.0
+    choices: tuple[str, ...] = ()
+    group: str = ""
+    affects: Effect = "forces"
+
+    @property
+    def kind(self) -> type:
+        """float, int, bool or str."""
+        return type(self.default)
+
+    @property
+    def allowed(self) -> str:
+        """The allowed values in words, for messages and hints."""
+        if self.choices:
+            return "one of " + ", ".join(self.choices)
+        if self.kind is bool:
+            return "true or false"
+        unit = f" {self.unit}" if self.unit else ""
+        whole = "a whole number from " if self.kind is int else ""
+        return f"{whole}{self.low:g} to {self.high:g}{unit}"
+
+
+def parameter(
+    default: Any,
+    low: float = -math.inf,
+    high: float = math.inf,
+    unit: str = "",
+    doc: str = "",
+    *,
+    log_from: float = 0.0,
+    choices: tuple[str, ...] = (),
+    group: str = "",
+    affects: Effect = "forces",
+) -> Any:
+    """A dataclass field that is a parameter; see `Parameter` for `affects`.
+
+    log_from: above 0, the slider moves over the logarithm from here to `high`; its left end is `low`, which may be 0.
+    Raises ValueError for a declaration that contradicts itself.
+    """
+    if choices and default not in choices:
+        raise argument_error("default", default, f"one of {', '.join(choices)}")
+    if not choices and not isinstance(default, bool) and not low <= default <= high:
+        raise argument_error("default", default, f"{low:g} to {high:g}")
+    if log_from and not max(low, 0.0) <= log_from < high:
+        raise argument_error("log_from", log_from, f"{max(low, 0.0):g} to below {high:g}")
+    if affects not in EFFECTS:
+        raise argument_error("affects", affects, f"one of {', '.join(EFFECTS)}")
+    declared = Parameter(default, low, high, unit, doc, log_from, choices, group, affects)
+    return dataclasses.field(default=default, metadata={"parameter": declared})
+
+
+def parameters_of(record: Any) -> dict[str, Parameter]:
+    """The parameters of a dataclass (or of an instance) by name, in order of declaration."""
+    return {f.name: f.metadata["parameter"] for f in dataclasses.fields(record) if "parameter" in f.metadata}
+
+
+def changed_names(old: object, new: object) -> frozenset[str]:
+    """Names of the fields in which two records of one dataclass differ."""
+    return frozenset(name for name, value in vars(new).items() if value != getattr(old, name))
+
+
+def effect_of_change(old: object, new: object) -> Effect | None:
+    """The greatest effect of the parameters in which two records differ; None where they are equal.
+
+    A field that is not declared as a parameter affects the start.
+    """
+    declared = parameters_of(new)
+    effects = {declared[name].affects if name in declared else "start" for name in changed_names(old, new)}
+    return max(effects, key=EFFECTS.index, default=None)
+
+
+def clamp_value(parameter: Parameter, value: Any) -> Any:
+    """`value` as the parameter's kind, within its range. What is no such value at all becomes the default."""
+    if parameter.choices:
+        return value if isinstance(value, str) and value in parameter.choices else parameter.default
+    if parameter.kind is bool:
+        return value if isinstance(value, bool) else parameter.default
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return parameter.default
+    if value != value:  # NaN; a whole number may be too long for math.isnan
+        return parameter.default
+    bounded = min(max(value, parameter.low), parameter.high)
+    return round(bounded) if parameter.kind is int else float(bounded)
+
+
+def clamp(record: P) -> P:
+    """The same record with every parameter bounded: NaN and wrong types become defaults."""
+    fixed = {name: clamp_value(p, getattr(record, name)) for name, p in parameters_of(record).items()}
+    return dataclasses.replace(record, **fixed)  # type: ignore[type-var]
+
+
+def check_value(name: str, parameter: Parameter, value: Any) -> Any:
+    """`value` as the parameter's kind. Raises ValueError where `clamp_value` would have changed it."""
+    if parameter.choices or parameter.kind is bool:
+        good = clamp_value(parameter, value)
+        if good is not value and good != value:
+            raise argument_error(name, value, parameter.allowed)
+        return good
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not number or not parameter.low <= value <= parameter.high:
+        raise argument_error(name, value, parameter.allowed)
+    if parameter.kind is int and value != int(value):
+        raise argument_error(name, value, parameter.allowed)
+    return parameter.kind(value)
+
+
+def unknown_parameter(name: str, known: Mapping[str, Parameter]) -> ValueError:
+    """The error for a name that is no parameter."""
+    return ValueError(f"{name}: no such parameter; the parameters are {', '.join(known)}")
+
+
+def check_record(cls: type[P], values: Mapping[str, Any]) -> P:
+    """Make `cls` from named values; raises ValueError for an unknown name or a value out of range."""
+    known = parameters_of(cls)
+    for name in values:
+        if name not in known:
+            raise unknown_parameter(name, known)
+    return cls(**{name: check_value(name, known[name], value) for name, value in values.items()})
+
+
+def parse_value(name: str, parameter: Parameter, text: str) -> Any:
+    """Read a parameter's value from command-line text. Raises ValueError as `check_value` does."""
+    word = text.strip()
+    if parameter.choices:
+        return check_value(name, parameter, word)
+    if parameter.kind is bool:
+        if word.lower() not in TRUE + FALSE:
+            raise argument_error(name, text, parameter.allowed)
+        return word.lower() in TRUE
+    try:
+        number = float(word)
+    except ValueError:
+        raise argument_error(name, text, parameter.allowed) from None
+    return check_value(name, parameter, number)
+
+
+def parse_assignments(cls: type, assignments: list[str]) -> dict[str, Any]:
+    """Values from ["name=value", ...]. Raises ValueError for what is not of that form or not allowed."""
+    known = parameters_of(cls)
+    values: dict[str, Any] = {}
+    for assignment in assignments:
+        name, equals, text = assignment.partition("=")
+        if not equals:
+            raise ValueError(f"--set: {assignment!r} is not allowed; allowed: name=value")
+        if name not in known:
+            raise unknown_parameter(name, known)
+        values[name] = parse_value(name, known[name], text)
+    return values

@@ -1,0 +1,175 @@
+"""The energy ledger: kinetic, elastic, gravity, contact; what damping took; what pins, pull and sphere put in.
+
+energy - initial + dissipated - work is numerical error: the exact motion keeps it at 0.
+Potential of gravity and kinetic energy are those of the free particles; pins trade through `work`.
+"""
+
+import math
+from typing import NamedTuple
+
+from sim.jit import kernel
+from sim.springs.forces.acceleration import grab_secant
+from sim.springs.forces.contact import contact_force, surface_velocity, touches, touching
+from sim.springs.forces.links import TINY
+from sim.springs.forces.self_contact import self_contact_energy
+from sim.springs.forces.wind import wind_power
+
+
+class Energy(NamedTuple):
+    """Stored energies [J]."""
+
+    kinetic: float
+    elastic: float
+    gravity: float
+    contact: float
+
+    @property
+    def total(self) -> float:
+        return self.kinetic + self.elastic + self.gravity + self.contact
+
+
+@kernel(allocates=False)
+def kinetic_energy(v, p):
+    """1/2 m v^2 over the free particles [J]."""
+    total = 0.0
+    n = p.rows * p.cols
+    for j in range(n):
+        if p.weights[j] > 0.0:
+            total += v[j] ** 2 + v[n + j] ** 2 + v[2 * n + j] ** 2
+    return 0.5 * p.mass * total
+
+
+@kernel(allocates=False)
+def elastic_energy(x, p):
+    """1/2 k (|r| - d)^2 over the links [J]."""
+    total = 0.0
+    n = p.rows * p.cols
+    for q in range(p.offsets.shape[0]):
+        di, dj = p.offsets[q, 0], p.offsets[q, 1]
+        rest, k = p.links[q, 0], p.links[q, 1]
+        for i in range(p.rows - di):
+            for j in range(max(0, -dj), p.cols - max(0, dj)):
+                a = i * p.cols + j
+                b = a + di * p.cols + dj
+                rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+                total += 0.5 * k * (math.sqrt(rx * rx + ry * ry + rz * rz) - rest) ** 2
+    return total
+
+
+@kernel(allocates=False)
+def gravity_energy(x, p):
+    """-m g . x over the free particles [J]."""
+    total = 0.0
+    n = p.rows * p.cols
+    for j in range(n):
+        if p.weights[j] > 0.0:
+            total -= p.gx * x[j] + p.gy * x[n + j] + p.gz * x[2 * n + j]
+    return p.mass * total
+
+
+@kernel(allocates=False)
+def contact_energy(x, t, p):
+    """1/2 k depth^2 over the touching points [J]."""
+    total = 0.0
+    n = p.rows * p.cols
+    for surface in range(2):
+        on_sphere = surface == 1
+        if p.has_sphere if on_sphere else p.has_floor:
+            for j in range(n):
+                depth, _, _, _ = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+                if depth > 0.0 and p.weights[j] > 0.0:
+                    total += 0.5 * p.contact_k * depth * depth
+    return total
+
+
+@kernel(allocates=False)
+def link_power(x, v, p, with_damping):
+    """(dissipated, put in by moving pins) [W] through the links."""
+    dissipated = 0.0
+    work = 0.0
+    n = p.rows * p.cols
+    pins_move = p.pins.shape[0] > 0
+    for q in range(p.offsets.shape[0]):
+        di, dj = p.offsets[q, 0], p.offsets[q, 1]
+        rest, k, c = p.links[q, 0], p.links[q, 1], p.links[q, 2] if with_damping else 0.0
+        if c == 0.0 and not pins_move:
+            continue
+        for i in range(p.rows - di):
+            for j in range(max(0, -dj), p.cols - max(0, dj)):
+                a = i * p.cols + j
+                b = a + di * p.cols + dj
+                rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+                du, dv, dw = v[b] - v[a], v[n + b] - v[n + a], v[2 * n + b] - v[2 * n + a]
+                rr = rx * rx + ry * ry + rz * rz + TINY
+                if p.axial:
+                    along = (du * rx + dv * ry + dw * rz) / rr
+                    du, dv, dw = along * rx, along * ry, along * rz
+                dissipated += c * (du * du + dv * dv + dw * dw)
+                if pins_move:
+                    s = k - k * rest / math.sqrt(rr)
+                    fx, fy, fz = s * rx + c * du, s * ry + c * dv, s * rz + c * dw
+                    if p.weights[a] == 0.0:
+                        work -= fx * v[a] + fy * v[n + a] + fz * v[2 * n + a]
+                    if p.weights[b] == 0.0:
+                        work += fx * v[b] + fy * v[n + b] + fz * v[2 * n + b]
+    return dissipated, work
+
+
+@kernel(allocates=False)
+def contact_power(x, v, t, p, with_damping):
+    """(dissipated, put in by a moving sphere) [W] through contact."""
+    dissipated = 0.0
+    work = 0.0
+    n = p.rows * p.cols
+    for surface in range(2):
+        on_sphere = surface == 1
+        if not touches(x, t, p, on_sphere):
+            continue
+        su, sv, sw = surface_velocity(p, on_sphere)
+        for j in range(n):
+            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+            if depth > 0.0 and p.weights[j] > 0.0:
+                ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
+                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, p, on_sphere, with_damping)
+                push = p.contact_k * depth
+                dissipated -= (fx - push * nx) * ru + (fy - push * ny) * rv + (fz - push * nz) * rw
+                work += fx * su + fy * sv + fz * sw
+    return dissipated, work
+
+
+@kernel(allocates=False)
+def power(x, v, t, p, with_damping):
+    """(dissipated, put in) [W]. with_damping False: without every force that depends on v."""
+    dissipated, work = link_power(x, v, p, with_damping)
+    if with_damping and p.drag > 0.0:
+        dissipated += 2.0 * p.drag / p.mass * kinetic_energy(v, p)
+    if with_damping and p.has_air:
+        work += wind_power(x, v, p)
+    if p.has_floor or p.has_sphere:
+        lost, done = contact_power(x, v, t, p, with_damping)
+        dissipated += lost
+        work += done
+    if p.grabbed >= 0:
+        n, g = p.rows * p.cols, p.grabbed
+        dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
+        work += grab_secant(dx, dy, dz, p) * (dx * v[g] + dy * v[n + g] + dz * v[2 * n + g])
+        if with_damping:
+            dissipated += p.grab_b * (v[g] ** 2 + v[n + g] ** 2 + v[2 * n + g] ** 2)
+    return dissipated, work
+
+
+@kernel(allocates=False)
+def add_power(x, v, t, p, with_damping, weight, ledger):
+    """Add weight [s] times the power dissipated to ledger[0] [J], and of what was put in to ledger[1]."""
+    dissipated, work = power(x, v, t, p, with_damping)
+    ledger[0] += weight * dissipated
+    ledger[1] += weight * work
+
+
+@kernel(allocates=False)
+def energies(x, v, t, p):
+    """(kinetic, elastic, gravity, contact) [J]."""
+    contact = contact_energy(x, t, p) if p.has_floor or p.has_sphere else 0.0
+    if p.thickness > 0.0:
+        contact += self_contact_energy(x, p)
+    return kinetic_energy(v, p), elastic_energy(x, p), gravity_energy(x, p), contact

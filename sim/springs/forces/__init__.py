@@ -1,0 +1,1 @@
+"""Forces of springs, contact and air on the particles of a net."""

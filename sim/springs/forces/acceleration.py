@@ -1,0 +1,152 @@
+"""`accelerate`: springs, gravity, air drag, pull, floor and sphere of a whole net.
+
+Kernels take positions and velocities flat, (3 rows cols,): all x, then all y, then all z. Flat arrays with unsigned
+indices cost nothing beside the arithmetic, where views and signed indices cost several times it (numba checks each for
+a negative). Two passes over a rope, link forces and then their differences, vectorise where one pass with a carried
+force does not.
+"""
+
+import math
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch
+from sim.springs.forces.contact import add_contacts
+from sim.springs.forces.links import link_forces
+from sim.springs.forces.self_contact import add_self_contacts
+from sim.springs.forces.wind import add_wind, wind_scratch
+
+
+@kernel(noalias=True, inline=True)
+def set_from_differences(f, v, w, a, o, of, n, load, c):
+    """a_j = w_j (f_j - f_{j-1} + load - c v_j); f is padded with a zero at both ends."""
+    for j in range(n):
+        a[o + j] = w[j] * (f[of + j + np.uint64(1)] - f[of + j] + load - c * v[o + j])
+
+
+@kernel(noalias=True, inline=True)
+def accelerate_rope(x, v, p, b, c, f, a):
+    """One row of links: forces into f (3 (cols + 1),), whose ends stay zero, then differences into a."""
+    one = np.uint64(1)
+    n = np.uint64(p.cols)
+    m = n + one
+    link_forces(
+        x, v, f, np.uint64(0), one, one, n - one, n, m,
+        p.links[0, 1], b * p.links[0, 2], p.links[0, 0], p.axial and b > 0,
+    )  # fmt: skip
+    set_from_differences(f, v, p.weights, a, np.uint64(0), np.uint64(0), n, p.mass * p.gx, c)
+    set_from_differences(f, v, p.weights, a, n, m, n, p.mass * p.gy, c)
+    set_from_differences(f, v, p.weights, a, n + n, m + m, n, p.mass * p.gz, c)
+
+
+@kernel(noalias=True, inline=True)
+def set_load(v, a, o, n, load, c):
+    for j in range(n):
+        a[o + j] = load - c * v[o + j]
+
+
+@kernel(noalias=True, inline=True)
+def add_row(f, of, n, sign, a, o):
+    for j in range(n):
+        a[o + j] += sign * f[of + j]
+
+
+@kernel(noalias=True, inline=True)
+def scale_rows(w, n, a, o):
+    for j in range(n):
+        a[o + j] *= w[j]
+
+
+@kernel(noalias=True, allocates=False)
+def accelerate_grid(x, v, p, b, c, f, a):
+    """Any families of links, row pair by row pair."""
+    n = np.uint64(p.rows * p.cols)
+    m = np.uint64(p.cols + 1)
+    set_load(v, a, np.uint64(0), n, p.mass * p.gx, c)
+    set_load(v, a, n, n, p.mass * p.gy, c)
+    set_load(v, a, n + n, n, p.mass * p.gz, c)
+    for q in range(p.offsets.shape[0]):
+        di, dj = p.offsets[q, 0], p.offsets[q, 1]
+        first = max(0, -dj)
+        count = np.uint64(max(0, p.cols - abs(dj)))
+        for i in range(p.rows - di):
+            ia = np.uint64(i * p.cols + first)
+            ib = np.uint64((i + di) * p.cols + first + dj)
+            link_forces(
+                x, v, f, ia, ib, np.uint64(0), count, n, m,
+                p.links[q, 1], b * p.links[q, 2], p.links[q, 0], p.axial and b > 0,
+            )  # fmt: skip
+            for s in range(3):
+                of, o = np.uint64(s) * m, np.uint64(s) * n
+                add_row(f, of, count, 1.0, a, o + ia)
+                add_row(f, of, count, -1.0, a, o + ib)
+    scale_rows(p.weights, n, a, np.uint64(0))
+    scale_rows(p.weights, n, a, n)
+    scale_rows(p.weights, n, a, n + n)
+
+
+@kernel(allocates=False)
+def add_grab(x, v, p, b, a):
+    """The pull on the grabbed particle: at most grab_max from its spring, plus its damping."""
+    n, g = p.rows * p.cols, p.grabbed
+    dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
+    s = grab_secant(dx, dy, dz, p)
+    w = p.weights[g]
+    a[g] += w * (s * dx - b * p.grab_b * v[g])
+    a[n + g] += w * (s * dy - b * p.grab_b * v[n + g])
+    a[2 * n + g] += w * (s * dz - b * p.grab_b * v[2 * n + g])
+
+
+@kernel(allocates=False)
+def grab_secant(dx, dy, dz, p):
+    """Secant stiffness of the pull [N/m]: grab_k within reach, grab_max / distance beyond."""
+    distance = math.sqrt(dx * dx + dy * dy + dz * dz)
+    return p.grab_max / distance if p.grab_k * distance > p.grab_max else p.grab_k
+
+
+@kernel(noalias=True, inline=True)
+def accelerate(x, v, t, p, with_damping, f, a):
+    """Acceleration a of every particle at time t, 0 where pinned.
+
+    with_damping False leaves out every force that depends on v, for integrators that treat damping apart.
+    f: scratch of `make_scratch`.
+    """
+    b = 1.0 if with_damping else 0.0
+    if p.is_rope:
+        accelerate_rope(x, v, p, b, b * p.drag, f, a)
+    elif p.is_cloth:
+        accelerate_cloth(x, v, p, b, b * p.drag, f, a)
+    else:
+        accelerate_grid(x, v, p, b, b * p.drag, f, a)
+    if p.has_air and with_damping:
+        add_wind(x, v, p, f, a)
+    if p.thickness > 0.0:
+        add_self_contacts(x, v, p, with_damping, a)
+    if p.has_floor or p.has_sphere:
+        add_contacts(x, v, t, p, with_damping, a)
+    if p.grabbed >= 0:
+        add_grab(x, v, p, b, a)
+
+
+@kernel
+def make_scratch(p):
+    return np.zeros((p.bands * cloth_scratch(p.cols) if p.is_cloth else 3 * (p.cols + 1)) + wind_scratch(p.cols))
+
+
+@kernel(inline=True)
+def set_pins(x, v, t, p):
+    """Put moving pins where their paths are at time t, with their paths' velocity."""
+    n = p.rows * p.cols
+    for q in range(p.pins.shape[0]):
+        s = t - p.paths[q, 4, 0]
+        for e in range(3):
+            c0, c1, c2, c3 = p.paths[q, 0, e], p.paths[q, 1, e], p.paths[q, 2, e], p.paths[q, 3, e]
+            x[e * n + p.pins[q]] = c0 + s * (c1 + s * (c2 + s * c3))
+            v[e * n + p.pins[q]] = c1 + s * (2.0 * c2 + s * 3.0 * c3)
+
+
+@kernel(noalias=True)
+def set_acceleration(x, v, t, p, a):
+    """`accelerate` with every force, for callers outside the kernels."""
+    accelerate(x, v, t, p, True, make_scratch(p), a)

@@ -1,0 +1,111 @@
+"""The forces of a cloth's six families, structural, shear and bend, row by row.
+
+The links of a row go into a buffer of the last three rows, padded with zeros to its sides, and each particle then sums
+its twelve in one loop: every link is worked out once, written once and read twice, all within the fastest cache.
+"""
+
+import numpy as np
+
+from sim.jit import kernel, prange
+from sim.springs.forces.links import link_forces
+
+PAD = 2  # zeros on either side of a row: no link reaches further
+REACH = 2  # rows on, where a link of the bend family ends
+RING = REACH + 1  # rows kept
+
+
+@kernel(inline=True)
+def cloth_scratch(cols):
+    """Numbers in the buffer."""
+    return 6 * RING * 3 * (cols + 2 * PAD)
+
+
+@kernel(inline=True)
+def place(q, i, m):
+    """Where the row i of family q begins, its padding behind it."""
+    return np.uint64(((q * RING + i % RING) * 3) * m + PAD)
+
+
+@kernel(noalias=True, inline=True)
+def clear(f, o, n):
+    for j in range(n):
+        f[o + j] = 0.0
+
+
+@kernel(noalias=True, inline=True)
+def sum_row(f, w, v, a, o, ow, n, load, c, f01, f10, g10, f11, g11, f1m, g1m, f02, f20, g20):
+    """a = w (load - c v + what each link pulls at its first end - what it pulls at its second)."""
+    one, two = np.uint64(1), np.uint64(2)
+    for j in range(n):
+        along = f[f01 + j] - f[f01 + j - one] + f[f10 + j] - f[g10 + j]
+        across = f[f11 + j] - f[g11 + j - one] + f[f1m + j] - f[g1m + j + one]
+        far = f[f02 + j] - f[f02 + j - two] + f[f20 + j] - f[g20 + j]
+        a[o + j] = w[ow + j] * (load - c * v[o + j] + along + across + far)
+
+
+@kernel(noalias=True, allocates=False)
+def accelerate_rows(x, v, p, b, c, f, o, a, start, stop):
+    """Accelerations of the rows from `start` up to `stop`; f: the buffer, from index o.
+
+    The links that reach in from up to two rows before are worked out here too.
+    """
+    n = np.uint64(p.rows * p.cols)
+    width = p.cols + 2 * PAD
+    m = np.uint64(width)
+    cols = np.uint64(p.cols)
+    axial = p.axial and b > 0.0
+    if start == 0:
+        for q in (1, 2, 3, 5):
+            for before in (1, 2):
+                clear(f, o + place(q, before, width) - np.uint64(PAD), np.uint64(3) * m)
+    for i in range(max(0, start - REACH), stop):
+        for q in range(6):
+            di, dj = p.offsets[q, 0], p.offsets[q, 1]
+            if i + di < start:
+                continue
+            first = max(0, -dj)
+            count = np.uint64(max(0, p.cols - abs(dj)))
+            of = o + place(q, i, width)
+            if i + di < p.rows:
+                ia = np.uint64(i * p.cols + first)
+                ib = np.uint64((i + di) * p.cols + first + dj)
+                link_forces(
+                    x, v, f, ia, ib, of + np.uint64(first), count, n, m,
+                    p.links[q, 1], b * p.links[q, 2], p.links[q, 0], axial,
+                )  # fmt: skip
+            else:
+                clear(f, of - np.uint64(PAD), np.uint64(3) * m)
+        if i < start:
+            continue
+        row = np.uint64(i * p.cols)
+        for e in range(3):
+            load = p.mass * (p.gx if e == 0 else p.gy if e == 1 else p.gz)
+            s = o + np.uint64(e) * m
+            sum_row(
+                f, p.weights, v, a, np.uint64(e) * n + row, row, cols, load, c,
+                place(0, i, width) + s,
+                place(1, i, width) + s, place(1, i + 2, width) + s,
+                place(2, i, width) + s, place(2, i + 2, width) + s,
+                place(3, i, width) + s, place(3, i + 2, width) + s,
+                place(4, i, width) + s,
+                place(5, i, width) + s, place(5, i + 1, width) + s,
+            )  # fmt: skip
+
+
+@kernel(parallel=True)
+def accelerate_bands(x, v, p, b, c, f, a):
+    """`accelerate_rows` in p.bands bands of rows at once, each on a thread and in a buffer of its own."""
+    for k in prange(p.bands):
+        accelerate_rows(
+            x, v, p, b, c, f, np.uint64(k * cloth_scratch(p.cols)), a,
+            p.rows * k // p.bands, p.rows * (k + 1) // p.bands,
+        )  # fmt: skip
+
+
+@kernel(allocates=False)
+def accelerate_cloth(x, v, p, b, c, f, a):
+    """Accelerations of the six families, gravity and drag; f: the buffers, (p.bands cloth_scratch,)."""
+    if p.bands > 1:
+        accelerate_bands(x, v, p, b, c, f, a)
+    else:
+        accelerate_rows(x, v, p, b, c, f, np.uint64(0), a, 0, p.rows)

@@ -1,0 +1,253 @@
+"""Damping alone, exact for each link and particle, for integrators that split it from the elastic forces.
+
+Velocities under v' = -D v for a time s, positions held: each link's relative velocity decays exactly by
+exp(-b (w1 + w2) s), link after link, each particle's drag by exp(-c w s). No such step can overshoot, and each
+shrinks the kinetic energy. Applied for h/2 before and, in reverse order, for h/2 after an undamped kick-drift-kick step
+it makes a symmetric composition: second order (Strang 1968), and, as kick-drift-kick keeps
+v^T M v + x^T (K - h^2/4 K M^-1 K) x and damping only lowers its first term, stable for h omega < 2 at any damping.
+
+Taking even links before odd ones leaves an error of the shortest wave that a net can carry, its sign that of the order.
+It is small, but it seeds the folds of whatever is pressed; so the order alternates from step to step.
+"""
+
+import math
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.forces.contact import surface_velocity, touches, touching
+from sim.springs.forces.links import TINY
+from sim.springs.forces.self_contact import damp_self_contacts
+from sim.springs.forces.wind import add_wind
+
+
+@kernel(noalias=True, inline=True)
+def damp_pairs(v, w, ia, ib, stride, count, o, free, held):
+    """One component of links (ia, ib), (ia + stride, ib + stride), ...: no particle twice, so that they vectorise.
+
+    free, held: the share (1 - exp(-b (w1 + w2) s)) / (w1 + w2) of a link with no pinned end, or one.
+    """
+    for j in range(count):
+        a, b = ia + stride * j, ib + stride * j
+        share = free if w[a] * w[b] > 0.0 else held
+        d = share * (v[o + b] - v[o + a])
+        v[o + a] += w[a] * d
+        v[o + b] -= w[b] * d
+
+
+@kernel(noalias=True, inline=True)
+def damp_pairs_along(x, v, w, ia, ib, stride, count, n, free, held):
+    """The same for the part of the relative velocity along each link, all components at once."""
+    for j in range(count):
+        a, b = ia + stride * j, ib + stride * j
+        rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[n + n + b] - x[n + n + a]
+        closing = (v[b] - v[a]) * rx + (v[n + b] - v[n + a]) * ry + (v[n + n + b] - v[n + n + a]) * rz
+        share = free if w[a] * w[b] > 0.0 else held
+        d = share * closing / (rx * rx + ry * ry + rz * rz + TINY)
+        v[a] += w[a] * d * rx
+        v[n + a] += w[a] * d * ry
+        v[n + n + a] += w[a] * d * rz
+        v[b] -= w[b] * d * rx
+        v[n + b] -= w[b] * d * ry
+        v[n + n + b] -= w[b] * d * rz
+
+
+@kernel(noalias=True, allocates=False)
+def damp_set(x, v, w, ia, ib, stride, count, n, free, held, axial):
+    """A set of links without a particle in common."""
+    if axial:
+        damp_pairs_along(x, v, w, ia, ib, stride, count, n, free, held)
+    else:
+        for e in range(3):
+            damp_pairs(v, w, ia, ib, stride, count, np.uint64(e) * n, free, held)
+
+
+@kernel(noalias=True, inline=True)
+def damp_next(v, w, first, count, o, free, held):
+    """`damp_pairs` for links (first, first + 1), (first + 2, first + 3), ...: a 2 in LLVM's sight vectorises."""
+    for j in range(count):
+        a = first + np.uint64(2) * j
+        b = a + np.uint64(1)
+        share = free if w[a] * w[b] > 0.0 else held
+        d = share * (v[o + b] - v[o + a])
+        v[o + a] += w[a] * d
+        v[o + b] -= w[b] * d
+
+
+@kernel(noalias=True, allocates=False)
+def damp_row(x, v, w, start, cols, dj, colour, n, free, held, axial):
+    """Links (j, j + dj) within one row, those that start in an even block of dj points (colour 0) or an odd one (1)."""
+    for j0 in range(colour * dj, colour * dj + dj):
+        count = (cols - dj - j0 + 2 * dj - 1) // (2 * dj)
+        if count > 0:
+            a = np.uint64(start + j0)
+            if dj == 1 and not axial:
+                for e in range(3):
+                    damp_next(v, w, a, np.uint64(count), np.uint64(e) * n, free, held)
+            else:
+                damp_set(x, v, w, a, a + np.uint64(dj), np.uint64(2 * dj), np.uint64(count), n, free, held, axial)
+
+
+@kernel(allocates=False)
+def damp_links(x, v, decay, p, reverse):
+    """Every link of every family, in order or in the reverse order."""
+    n = np.uint64(p.rows * p.cols)
+    families = p.offsets.shape[0]
+    for step in range(families):
+        q = families - 1 - step if reverse else step
+        di, dj, b = p.offsets[q, 0], p.offsets[q, 1], p.links[q, 2]
+        if b == 0.0:
+            continue
+        free, held = decay[q, 0], decay[q, 1]
+        first = max(0, -dj)
+        count = max(0, p.cols - abs(dj))
+        for line in range(p.rows - di):
+            i = p.rows - di - 1 - line if reverse else line
+            if di == 0:
+                for turn in range(2):
+                    colour = 1 - turn if reverse else turn
+                    damp_row(x, v, p.weights, i * p.cols, p.cols, dj, colour, n, free, held, p.axial)
+            else:
+                a, b0 = np.uint64(i * p.cols + first), np.uint64((i + di) * p.cols + first + dj)
+                damp_set(x, v, p.weights, a, b0, np.uint64(1), np.uint64(count), n, free, held, p.axial)
+
+
+@kernel(noalias=True, inline=True)
+def scale_free(v, w, o, n, keep):
+    for j in range(n):
+        v[o + j] *= keep if w[j] > 0.0 else 1.0
+
+
+@kernel(allocates=False)
+def damp_contact(x, v, t, s, p, on_sphere):
+    """Contact damping and friction of every touching point, exact or capped at standstill."""
+    if not touches(x, t, p, on_sphere):
+        return
+    n = p.rows * p.cols
+    su, sv, sw = surface_velocity(p, on_sphere)
+    for j in range(n):
+        w = p.weights[j]
+        depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+        if depth <= 0.0 or w == 0.0:
+            continue
+        ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
+        b = p.contact_b
+        if p.lab_contact:
+            keep = math.exp(-(b * depth if on_sphere else b) * w * s)
+            ru, rv, rw = ru * keep, rv * keep, rw * keep
+        else:
+            vn = ru * nx + rv * ny + rw * nz
+            tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
+            # The whole normal force, k depth - b v_n, never pulls: separating, damping takes at most k depth.
+            after = max(vn * math.exp(-b * w * s), vn - p.contact_k * depth * w * s)
+            normal = max(0.0, p.contact_k * depth - b * vn)
+            speed = math.sqrt(tx * tx + ty * ty + tz * tz)
+            slow = p.friction * normal * w * s
+            keep = 1.0 - slow / speed if slow < speed else 0.0
+            ru, rv, rw = keep * tx + after * nx, keep * ty + after * ny, keep * tz + after * nz
+        v[j], v[n + j], v[2 * n + j] = ru + su, rv + sv, rw + sw
+
+
+@kernel(allocates=False)
+def damp_grab(v, s, p):
+    n, g = p.rows * p.cols, p.grabbed
+    keep = math.exp(-p.grab_b * p.weights[g] * s)
+    v[g] *= keep
+    v[n + g] *= keep
+    v[2 * n + g] *= keep
+
+
+@kernel
+def make_decay(p, s):
+    """What `damp` needs of a time s [s], (families + 1, 2): each family's two shares, then the drag's factor."""
+    families = p.offsets.shape[0]
+    decay = np.zeros((families + 1, 2))
+    m = 1.0 / p.mass
+    for q in range(families):
+        b = p.links[q, 2]
+        decay[q, 0] = -math.expm1(-2.0 * b * m * s) / (2.0 * m)
+        decay[q, 1] = -math.expm1(-b * m * s) / m
+    decay[families, 0] = math.exp(-p.drag * m * s)
+    return decay
+
+
+@kernel(noalias=True, inline=True)
+def damp_rope(v, decay, p, reverse):
+    """`damp_links` of a rope with isotropic damping: its even links, then its odd ones, or in reverse."""
+    n = np.uint64(p.cols)
+    one = np.uint64(1)
+    free, held = decay[0, 0], decay[0, 1]
+    for e in range(3):
+        o = np.uint64(e) * n
+        if reverse:
+            damp_next(v, p.weights, one, (n - one) >> one, o, free, held)
+        damp_next(v, p.weights, np.uint64(0), n >> one, o, free, held)
+        if not reverse:
+            damp_next(v, p.weights, one, (n - one) >> one, o, free, held)
+
+
+@kernel(noalias=True, inline=True)
+def damp_motion(x, v, decay, p, reverse):
+    """Link damping, then drag, or in reverse. Drag scales every free velocity; moving pins keep theirs."""
+    n = np.uint64(p.rows * p.cols)
+    keep = decay[p.offsets.shape[0], 0]
+    for turn in range(2):
+        if (turn == 0) != reverse:
+            if p.is_rope and not p.axial:
+                if p.damped:
+                    damp_rope(v, decay, p, reverse)
+            elif p.damped:
+                damp_links(x, v, decay, p, reverse)
+        elif keep < 1.0:
+            scale_free(v, p.weights, np.uint64(0), n, keep)
+            scale_free(v, p.weights, n, n, keep)
+            scale_free(v, p.weights, n + n, n, keep)
+
+
+@kernel(allocates=False)
+def blow(x, v, s, p, f, a, middle):
+    """The air's push for a time s [s], by the explicit midpoint rule.
+
+    a, middle: scratch (3 rows cols,); f: of `make_scratch`.
+    """
+    for j in range(v.shape[0]):
+        a[j], middle[j] = 0.0, v[j]
+    add_wind(x, v, p, f, a)
+    for j in range(v.shape[0]):
+        middle[j] += 0.5 * s * a[j]
+        a[j] = 0.0
+    add_wind(x, middle, p, f, a)
+    for j in range(v.shape[0]):
+        v[j] += s * a[j]
+
+
+@kernel(allocates=False)
+def damp_surfaces(x, v, t, s, p, reverse):
+    """Itself, floor, sphere, pull, or in reverse."""
+    for step in range(4):
+        part = 2 - step if reverse else step - 1
+        if part == -1 and p.thickness > 0.0:
+            damp_self_contacts(x, v, s, p, reverse)
+        if part == 0 and p.has_floor:
+            damp_contact(x, v, t, s, p, False)
+        elif part == 1 and p.has_sphere:
+            damp_contact(x, v, t, s, p, True)
+        elif part == 2 and p.grabbed >= 0:
+            damp_grab(v, s, p)
+
+
+@kernel(inline=True)
+def is_odd(t, h, s):
+    """Whether the step s steps after time t is of the odd ones, however steps are shared out among calls."""
+    return (math.floor(t / h + 0.5) + s) % 2 == 1
+
+
+@kernel(inline=True)
+def damp(x, v, t, s, decay, p, reverse):
+    """All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards."""
+    outside = p.has_floor or p.has_sphere or p.grabbed >= 0 or p.thickness > 0.0
+    if outside and reverse:
+        damp_surfaces(x, v, t, s, p, reverse)
+    damp_motion(x, v, decay, p, reverse)
+    if outside and not reverse:
+        damp_surfaces(x, v, t, s, p, reverse)

@@ -1,0 +1,113 @@
+"""From frame to frame with steps that keep an estimated error within a tolerance.
+
+The step's error is measured per position [m] and velocity [m/s] against atol + rtol |value|, root mean square
+(Solving ODEs I, II.4.11). Order 5 steps freely past the frames and fills them by a quintic from positions, velocities
+and accelerations at both ends, of the order of the method; order 8, or a ledger, lets the steps end on the frames.
+"""
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.forces.acceleration import accelerate, set_pins
+from sim.springs.integrators.embedded.errors import error_of
+from sim.springs.integrators.embedded.stages import accept, make_stages, take_step
+from sim.springs.state import SANE
+
+SAFETY = 0.9
+NOW, BEFORE = 0.7, 0.4  # exponents of this step's error and the last one's (Gustafsson's PI), over the order
+SHRINK, GROW = 0.2, 6.0  # least and largest factor between two steps
+SMALLEST = 1e-14  # step over the whole time, below which the search is given up
+
+
+@kernel(noalias=True, allocates=False)
+def fill_frame(x, v, a, xn, vn, an, h, s, x_out, v_out):
+    """State at part s of a step of h: the quintic through both ends' positions, velocities and accelerations."""
+    for j in range(x.shape[0]):
+        d0 = xn[j] - x[j] - h * v[j] - 0.5 * h * h * a[j]
+        d1 = h * (vn[j] - v[j]) - h * h * a[j]
+        d2 = h * h * (an[j] - a[j])
+        c3, c4, c5 = 10.0 * d0 - 4.0 * d1 + 0.5 * d2, 7.0 * d1 - 15.0 * d0 - d2, 6.0 * d0 - 3.0 * d1 + 0.5 * d2
+        x_out[j] = x[j] + s * (h * v[j] + s * (0.5 * h * h * a[j] + s * (c3 + s * (c4 + s * c5))))
+        v_out[j] = v[j] + s * (h * a[j] + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)) / h)
+
+
+@kernel(allocates=False)
+def first_step(x, v, a, rtol, atol):
+    """A hundredth of the time in which the state changes by its own size, in units of the tolerance."""
+    size = change = 0.0
+    for j in range(x.shape[0]):
+        wx, wv = 1.0 / (atol + rtol * abs(x[j])), 1.0 / (atol + rtol * abs(v[j]))
+        size += (wx * x[j]) ** 2 + (wv * v[j]) ** 2
+        change += (wx * v[j]) ** 2 + (wv * a[j]) ** 2
+    return 0.01 * np.sqrt(size / change) if size > 0.0 and change > 0.0 else 1e-6
+
+
+@kernel(allocates=False)
+def is_sane(x):
+    sane = True
+    for j in range(x.shape[0]):
+        # A NaN fails the comparison too.
+        sane &= abs(x[j]) < SANE
+    return sane
+
+
+@kernel
+def march(method, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
+    """Fill xs, vs (frames, 3 rows cols) and ledgers (frames, 2) at `times`, starting from x, v at the first.
+
+    Returns force evaluations, steps taken, frames filled, and the time reached [s]; fewer frames than there are where
+    no step was short enough or the state left any sane bound.
+    """
+    stages = make_stages(method, x, p)
+    size = x.shape[0]
+    a, an = stages.k[:size], stages.k[method.stages * stages.stride :][:size]
+    xn, vn = np.empty_like(x), np.empty_like(x)
+    spent, ledger = np.zeros(2), np.zeros(2)
+    t, last = times[0], times[-1]
+    set_pins(x, v, t, p)
+    accelerate(x, v, t, p, True, stages.f, stages.a)
+    a[:] = stages.a
+    evals, steps, frame = 1, 0, 1
+    xs[0], vs[0] = x, v
+    lands = method.order > 5 or with_ledger
+    h = first_step(x, v, a, rtol, atol)
+    power, before = -1.0 / method.order, 1.0
+    grow = GROW
+    while frame < len(times):
+        goal = times[frame] if lands else last
+        landing = t + 1.01 * h >= goal
+        step = goal - t if landing else h
+        spent[:] = 0.0
+        take_step(method, x, v, t, step, p, stages, xn, vn, spent, with_ledger)
+        error = error_of(method, x, v, step, stages, xn, vn, rtol, atol)
+        evals += method.stages
+        if not error <= 1.0:
+            # Written so that a NaN shrinks the step as well.
+            h = step * max(SHRINK, SAFETY * error**power) if error < 1e9 else SHRINK * step
+            grow = 1.0
+            if h < SMALLEST * last:
+                break
+            continue
+        after = goal if landing else t + step
+        ledger += spent
+        while frame < len(times) and times[frame] <= after:
+            if times[frame] == after:
+                xs[frame], vs[frame] = xn, vn
+            else:
+                fill_frame(x, v, a, xn, vn, an, step, (times[frame] - t) / step, xs[frame], vs[frame])
+                set_pins(xs[frame], vs[frame], times[frame], p)
+            ledgers[frame] = ledger
+            frame += 1
+        accept(method, x, v, stages, xn, vn)
+        t = after
+        steps += 1
+        if not is_sane(x):
+            break
+        factor = grow
+        if error > 0.0:
+            factor = min(grow, SAFETY * error ** (NOW * power) / before ** (BEFORE * power))
+            before = max(error, 1e-4)
+        # A step cut short to land says little about the next.
+        h = max(h, step * factor) if landing else step * max(SHRINK, factor)
+        grow = GROW
+    return evals, steps, frame, t

@@ -1,0 +1,291 @@
+"""The stages of any explicit Runge-Kutta method of x'' = a(x, x', t), read from its tableau.
+
+In Nystroem form a stage's velocity is v + h sum A_ij a_j and its position x + C_i h v + h^2 sum (A A)_ij a_j, so that
+only accelerations are kept. They lie in one array, a row a stage: loops over many arrays do not vectorise.
+
+A rope on its own is taken in blocks of points that stay in the fastest cache through all stages of a step. Each stage
+needs its neighbours' last one, so a block moves back by a point a stage, and no point is worked out twice.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.jit import kernel
+from sim.springs.analysis.energy import add_power
+from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.forces.links import link_forces
+
+WHOLE = 160  # points: a rope no longer than this is one block
+BLOCK = 96  # points in a block of a longer one: the rows of their stages are 30 kB
+WIDEST = 16  # terms of a row, padded
+
+
+class Tableau(NamedTuple):
+    """A method of s stages; row s of each array is the new state, rows beyond it error estimates."""
+
+    c: NDArray[np.float64]  # (rows,) times of the stages
+    counts: NDArray[np.int64]  # (rows,) terms of each, even
+    terms: NDArray[np.uint64]  # (rows, WIDEST) whose accelerations
+    a: NDArray[np.float64]  # (rows, WIDEST) their weights in the velocity
+    g: NDArray[np.float64]  # (rows, WIDEST) and in the position
+    stages: int  # s
+    order: int
+
+
+class Stages(NamedTuple):
+    """Room for a step."""
+
+    k: NDArray[np.float64]  # ((s + 1) stride,) accelerations of the stages and of the new state
+    stride: int  # numbers from row to row, at least 3 rows cols
+    a: NDArray[np.float64]  # (3 rows cols,) one of them
+    xs: NDArray[np.float64]  # (3 rows cols,) a stage
+    vs: NDArray[np.float64]
+    f: NDArray[np.float64]  # scratch of `accelerate`
+
+
+Rows = tuple[tuple[float, ...], ...]
+
+
+def tableau(order: int, c: tuple[float, ...], slopes: Rows, weights: tuple[float, ...], errors: Rows) -> Tableau:
+    """A method from Butcher's tableau: `slopes` below the diagonal, `weights`, and the weights of its error estimates.
+
+    An estimate may have one weight more than there are stages, that of the new state's own acceleration.
+    """
+    s = len(weights)
+    full = np.zeros((s + 1, s + 1))
+    for i, row in enumerate((*slopes, weights)):
+        full[i, : len(row)] = row
+    velocity = np.zeros((s + 1 + len(errors), s + 1))
+    velocity[: s + 1] = full
+    for i, row in enumerate(errors):
+        velocity[s + 1 + i, : len(row)] = row
+    # What no path leads to is 0 there but for round-off of products with zeros, that is, exactly.
+    position = velocity @ full
+    counts, terms = np.zeros(len(velocity), dtype=np.int64), np.zeros((len(velocity), WIDEST), dtype=np.uint64)
+    a, g = np.zeros((2, len(velocity), WIDEST))
+    for i in range(len(velocity)):
+        used = np.flatnonzero((velocity[i] != 0.0) | (position[i] != 0.0))
+        counts[i] = len(used) + len(used) % 2
+        terms[i, : len(used)] = used
+        a[i, : len(used)], g[i, : len(used)] = velocity[i, used], position[i, used]
+    times = np.array([*c, 1.0, *(0.0 for _ in errors)])
+    return Tableau(times, counts, terms, a, g, s, order)
+
+
+@kernel
+def make_stages(method, x, p):
+    size = x.shape[0]
+    # Rows a multiple of 4 kB apart would all fight for the same few lines of the cache.
+    stride = size if size < 512 else size + (40 - size) % 512
+    k = np.zeros((method.stages + 1) * stride)
+    return Stages(k, stride, np.zeros(size), np.zeros(size), np.zeros(size), make_scratch(p))
+
+
+@kernel(noalias=True, inline=True)
+def set_two(x, v, o, d, k, k0, k1, a0, a1, g0, g1, n, s, xs, vs):
+    for j in range(n):
+        q0, q1 = k[k0 + j], k[k1 + j]
+        xs[s + j] = x[o + j] + d * v[o + j] + (g0 * q0 + g1 * q1)
+        vs[s + j] = v[o + j] + (a0 * q0 + a1 * q1)
+
+
+@kernel(noalias=True, inline=True)
+def set_four(x, v, o, d, k, k0, k1, k2, k3, a0, a1, a2, a3, g0, g1, g2, g3, n, s, xs, vs):
+    for j in range(n):
+        q0, q1, q2, q3 = k[k0 + j], k[k1 + j], k[k2 + j], k[k3 + j]
+        xs[s + j] = x[o + j] + d * v[o + j] + (g0 * q0 + g1 * q1 + g2 * q2 + g3 * q3)
+        vs[s + j] = v[o + j] + (a0 * q0 + a1 * q1 + a2 * q2 + a3 * q3)
+
+
+@kernel(noalias=True, inline=True)
+def set_six(x, v, o, d, k, k0, k1, k2, k3, k4, k5, a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5, n, s, xs, vs):
+    for j in range(n):
+        q0, q1, q2, q3, q4, q5 = k[k0 + j], k[k1 + j], k[k2 + j], k[k3 + j], k[k4 + j], k[k5 + j]
+        xs[s + j] = x[o + j] + d * v[o + j] + (g0 * q0 + g1 * q1 + g2 * q2 + g3 * q3 + g4 * q4 + g5 * q5)
+        vs[s + j] = v[o + j] + (a0 * q0 + a1 * q1 + a2 * q2 + a3 * q3 + a4 * q4 + a5 * q5)
+
+
+@kernel(noalias=True, inline=True)
+def add_four(k, k0, k1, k2, k3, a0, a1, a2, a3, g0, g1, g2, g3, n, s, xs, vs):
+    for j in range(n):
+        q0, q1, q2, q3 = k[k0 + j], k[k1 + j], k[k2 + j], k[k3 + j]
+        xs[s + j] += g0 * q0 + g1 * q1 + g2 * q2 + g3 * q3
+        vs[s + j] += a0 * q0 + a1 * q1 + a2 * q2 + a3 * q3
+
+
+@kernel(noalias=True, inline=True)
+def set_stage(method, i, x, v, h, k, m, o, n, s, xs, vs):
+    """Row i: x + c h v + h^2 sum g k and v + h sum a k of n numbers from o on, to xs, vs from s on; m numbers a row."""
+    t, hh, d = method.terms, h * h, method.c[i] * h
+    a, g = method.a, method.g
+    count = method.counts[i]
+    k0, k1, k2, k3, k4, k5 = (
+        t[i, 0] * m + o, t[i, 1] * m + o, t[i, 2] * m + o, t[i, 3] * m + o, t[i, 4] * m + o, t[i, 5] * m + o
+    )  # fmt: skip
+    a0, a1, a2, a3, a4, a5 = h * a[i, 0], h * a[i, 1], h * a[i, 2], h * a[i, 3], h * a[i, 4], h * a[i, 5]
+    g0, g1, g2, g3, g4, g5 = hh * g[i, 0], hh * g[i, 1], hh * g[i, 2], hh * g[i, 3], hh * g[i, 4], hh * g[i, 5]
+    done = 6
+    if count == 2:
+        set_two(x, v, o, d, k, k0, k1, a0, a1, g0, g1, n, s, xs, vs)
+    elif count == 4 or count == 8:
+        set_four(x, v, o, d, k, k0, k1, k2, k3, a0, a1, a2, a3, g0, g1, g2, g3, n, s, xs, vs)
+        done = 4
+    else:
+        set_six(
+            x, v, o, d, k, k0, k1, k2, k3, k4, k5, a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5, n, s, xs, vs
+        )  # fmt: skip
+    while done < count:
+        k0, k1, k2, k3 = (
+            t[i, done] * m + o, t[i, done + 1] * m + o, t[i, done + 2] * m + o, t[i, done + 3] * m + o
+        )  # fmt: skip
+        a0, a1, a2, a3 = h * a[i, done], h * a[i, done + 1], h * a[i, done + 2], h * a[i, done + 3]
+        g0, g1, g2, g3 = hh * g[i, done], hh * g[i, done + 1], hh * g[i, done + 2], hh * g[i, done + 3]
+        add_four(k, k0, k1, k2, k3, a0, a1, a2, a3, g0, g1, g2, g3, n, s, xs, vs)
+        done += 4
+
+
+@kernel(noalias=True, inline=True)
+def copy(x, o, n, y, s):
+    """y from s on = x from o on."""
+    for j in range(n):
+        y[s + j] = x[o + j]
+
+
+@kernel(noalias=True, allocates=False)
+def accelerate_all(x, v, t, p, f, a):
+    """`accelerate` compiled once for all who have no need of it inline."""
+    accelerate(x, v, t, p, True, f, a)
+
+
+@kernel(inline=True)
+def is_bare(p):
+    """Whether links, gravity and drag of a row of points are all there is."""
+    touched = p.has_floor or p.has_sphere or p.has_air or p.thickness > 0.0
+    return p.is_rope and not touched and p.grabbed < 0 and p.pins.shape[0] == 0
+
+
+@kernel(noalias=True, inline=True)
+def set_differences(f, v, w, k, of, ov, ow, ok, n, load, c):
+    """k = w (f_j+1 - f_j + load - c v) of n points, each array from its own offset on."""
+    for j in range(n):
+        k[ok + j] = w[ow + j] * (f[of + j + np.uint64(1)] - f[of + j] + load - c * v[ov + j])
+
+
+@kernel(noalias=True, inline=True)
+def accelerate_span(xs, vs, p, f, first, n, M, inner, count, k, o, N):
+    """Accelerations of `count` points of a bare rope into k from o on, a component N further.
+
+    xs, vs (3 M,): n points in a row, of which those from `inner` on are asked for; p.weights from `first` on.
+    """
+    zero, one = np.uint64(0), np.uint64(1)
+    F = M + one
+    link_forces(
+        xs, vs, f, zero, one, one, n - one, M, F, p.links[0, 1], p.links[0, 2], p.links[0, 0], p.axial
+    )  # fmt: skip
+    for e in range(3):
+        b, of = np.uint64(e) * M + inner, np.uint64(e) * F
+        # Beyond the rope's ends there is no link; of other ends the point there is not asked for.
+        f[of], f[of + n] = 0.0, 0.0
+        load = p.mass * (p.gx if e == 0 else p.gy if e == 1 else p.gz)
+        set_differences(
+            f, vs, p.weights, k, of + inner, b, first + inner, o + np.uint64(e) * N, count, load, p.drag
+        )  # fmt: skip
+
+
+@kernel(noalias=True, allocates=False)
+def step_bare_rope(method, x, v, h, p, stages, xn, vn):
+    """`take_step` of a bare rope, block by block."""
+    k, xs, vs, f = stages.k, stages.xs, stages.vs, stages.f
+    n = p.cols
+    parts = 1 if n <= WHOLE else (n + BLOCK - 1) // BLOCK
+    N = np.uint64(n)
+    m = np.uint64(stages.stride)
+    M = N if parts == 1 else np.uint64(BLOCK + method.stages + 2)
+    for part in range(parts):
+        start, end = n * part // parts, n * (part + 1) // parts
+        for i in range(1, method.stages + 1):
+            low = max(start - i, 0)
+            high = n if end == n else end - i
+            left, right = max(low - 1, 0), min(high + 1, n)
+            first, count = np.uint64(left), np.uint64(right - left)
+            inner, own = np.uint64(low - left), np.uint64(high - low)
+            if parts == 1:
+                set_stage(method, i, x, v, h, k, m, np.uint64(0), np.uint64(3) * N, np.uint64(0), xs, vs)
+            else:
+                for e in range(3):
+                    set_stage(method, i, x, v, h, k, m, np.uint64(e) * N + first, count, np.uint64(e) * M, xs, vs)
+            accelerate_span(xs, vs, p, f, first, count, M, inner, own, k, np.uint64(i) * m + np.uint64(low), N)
+            if i == method.stages:
+                for e in range(3):
+                    copy(xs, np.uint64(e) * M + inner, own, xn, np.uint64(e) * N + np.uint64(low))
+                    copy(vs, np.uint64(e) * M + inner, own, vn, np.uint64(e) * N + np.uint64(low))
+
+
+@kernel(noalias=True, allocates=False)
+def step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_ledger):
+    """`take_step` of any net, stage by stage."""
+    k, xs, vs, a = stages.k, stages.xs, stages.vs, stages.a
+    last = method.stages
+    zero, size, m = np.uint64(0), np.uint64(x.shape[0]), np.uint64(stages.stride)
+    if with_ledger:
+        add_power(x, v, t, p, True, weight_of(method, 0) * h, ledger)
+    for i in range(1, last + 1):
+        now = t + method.c[i] * h
+        set_stage(method, i, x, v, h, k, m, zero, size, zero, xs, vs)
+        set_pins(xs, vs, now, p)
+        accelerate_all(xs, vs, now, p, stages.f, a)
+        copy(a, zero, size, k, np.uint64(i) * m)
+        if with_ledger and i < last:
+            add_power(xs, vs, now, p, True, weight_of(method, i) * h, ledger)
+    copy(xs, zero, size, xn, zero)
+    copy(vs, zero, size, vn, zero)
+
+
+@kernel(inline=True)
+def weight_of(method, i):
+    """That of stage i in the new velocity."""
+    found = 0.0
+    for q in range(method.counts[method.stages]):
+        if method.terms[method.stages, q] == np.uint64(i):
+            found += method.a[method.stages, q]
+    return found
+
+
+@kernel(allocates=False)
+def take_step(method, x, v, t, h, p, stages, xn, vn, ledger, with_ledger):
+    """The state a step h after x, v at t into xn, vn, and its acceleration into the last row of stages.k.
+
+    The acceleration at x, v is given in its first row. With `with_ledger`, ledger gets what was dissipated and put in
+    [J].
+    """
+    if is_bare(p) and not with_ledger:
+        step_bare_rope(method, x, v, h, p, stages, xn, vn)
+    else:
+        step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_ledger)
+
+
+@kernel(noalias=True, allocates=False)
+def accept(method, x, v, stages, xn, vn):
+    """The new state becomes the old one."""
+    zero, size = np.uint64(0), np.uint64(x.shape[0])
+    k, last = stages.k, np.uint64(method.stages * stages.stride)
+    copy(xn, zero, size, x, zero)
+    copy(vn, zero, size, v, zero)
+    for j in range(size):
+        k[j] = k[last + j]
+
+
+@kernel
+def take_steps(method, x, v, ledger, t, h, steps, p, with_ledger):
+    """`steps` steps of h [s] from t; returns the force evaluations."""
+    stages = make_stages(method, x, p)
+    xn, vn = np.empty_like(x), np.empty_like(x)
+    set_pins(x, v, t, p)
+    accelerate(x, v, t, p, True, stages.f, stages.a)
+    stages.k[: x.shape[0]] = stages.a
+    for s in range(steps):
+        take_step(method, x, v, t + s * h, h, p, stages, xn, vn, ledger, with_ledger)
+        accept(method, x, v, stages, xn, vn)
+    return 1 + method.stages * steps

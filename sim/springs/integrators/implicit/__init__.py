@@ -1,0 +1,1 @@
+"""What the implicit integrators share."""

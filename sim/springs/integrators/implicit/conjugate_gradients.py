@@ -1,0 +1,131 @@
+"""Conjugate gradients for a net's implicit step, preconditioned by each particle's own 3 x 3 block (block Jacobi)."""
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.forces.acceleration import add_row
+from sim.springs.integrators.implicit.blocks import SYMMETRIC
+from sim.springs.integrators.implicit.tangent import dot
+from sim.springs.vector_ops import add_scaled
+
+MOST = 500
+
+
+@kernel(noalias=True, inline=True)
+def set_products(blocks, o, u, n, q):
+    """q = B u, particle by particle."""
+    for j in range(n):
+        x, y, z = u[j], u[n + j], u[n + n + j]
+        xx, xy, xz = blocks[o + j], blocks[o + n + j], blocks[o + n + n + j]
+        yy, yz, zz = blocks[o + n * 3 + j], blocks[o + n * 4 + j], blocks[o + n * 5 + j]
+        q[j] = xx * x + xy * y + xz * z
+        q[n + j] = xy * x + yy * y + yz * z
+        q[n + n + j] = xz * x + yz * y + zz * z
+
+
+@kernel(noalias=True, inline=True)
+def set_link_products(blocks, o, left, u, ia, ib, count, n, m, f):
+    """f = H (u_a - u_b) = c (u_a - u_b) + p q.(u_a - u_b) of `count` links in a row; p starts at number `left`."""
+    q, p = o + n, o + left * n
+    for j in range(count):
+        a, b = ia + j, ib + j
+        x, y, z = u[a] - u[b], u[n + a] - u[n + b], u[n + n + a] - u[n + n + b]
+        c = blocks[o + a]
+        s = blocks[q + a] * x + blocks[q + n + a] * y + blocks[q + n + n + a] * z
+        f[j] = c * x + s * blocks[p + a]
+        f[m + j] = c * y + s * blocks[p + n + a]
+        f[m + m + j] = c * z + s * blocks[p + n + n + a]
+
+
+@kernel(noalias=True, inline=True)
+def hold_pinned(w, u, o, n):
+    for j in range(n):
+        u[o + j] = u[o + j] if w[j] > 0.0 else 0.0
+
+
+@kernel(noalias=True, allocates=False)
+def set_matrix_product(points, links, numbers, u, p, f, q):
+    """q = (M + g D + g^2 K) u of `sim.springs.integrators.implicit.blocks`, 0 where pinned; u is 0 there."""
+    n, m = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1)
+    set_products(points, np.uint64(0), u, n, q)
+    for r in range(p.offsets.shape[0]):
+        di, dj = p.offsets[r, 0], p.offsets[r, 1]
+        first = max(0, -dj)
+        count = np.uint64(max(0, p.cols - abs(dj)))
+        for i in range(p.rows - di):
+            ia = np.uint64(i * p.cols + first)
+            ib = np.uint64((i + di) * p.cols + first + dj)
+            o = np.uint64(numbers * r) * n
+            set_link_products(links, o, np.uint64(numbers - 3), u, ia, ib, count, n, m, f)
+            for e in range(3):
+                of, o = np.uint64(e) * m, np.uint64(e) * n
+                add_row(f, of, count, 1.0, q, o + ia)
+                add_row(f, of, count, -1.0, q, o + ib)
+    for e in range(3):
+        hold_pinned(p.weights, q, np.uint64(e) * n, n)
+
+
+@kernel(noalias=True, allocates=False)
+def factorise(blocks, n):
+    """Each particle's block (6, n) flat into its L and reciprocal D, in place."""
+    for j in range(n):
+        sxx, sxy, sxz = blocks[j], blocks[n + j], blocks[2 * n + j]
+        syy, syz, szz = blocks[3 * n + j], blocks[4 * n + j], blocks[5 * n + j]
+        d0 = 1.0 / sxx
+        l10, l20 = sxy * d0, sxz * d0
+        d1 = 1.0 / (syy - l10 * sxy)
+        e21 = syz - l20 * sxy
+        l21 = e21 * d1
+        blocks[j], blocks[n + j], blocks[2 * n + j] = l10, l20, l21
+        blocks[3 * n + j], blocks[4 * n + j], blocks[5 * n + j] = d0, d1, 1.0 / (szz - l20 * sxz - l21 * e21)
+
+
+@kernel(inline=True)
+def solve_block(l10, l20, l21, d0, d1, d2, x, y, z):
+    """u of L D L^T u = (x, y, z), with the reciprocals d of D."""
+    y -= l10 * x
+    z -= l20 * x + l21 * y
+    z *= d2
+    y = y * d1 - l21 * z
+    x = x * d0 - l10 * y - l20 * z
+    return x, y, z
+
+
+@kernel(noalias=True, inline=True)
+def precondition(factors, r, n, z):
+    for j in range(n):
+        z[j], z[n + j], z[n + n + j] = solve_block(
+            factors[j], factors[n + j], factors[n + n + j], factors[n * 3 + j], factors[n * 4 + j], factors[n * 5 + j],
+            r[j], r[n + j], r[n + n + j],
+        )  # fmt: skip
+
+
+@kernel(noalias=True, inline=True)
+def set_direction(d, beta, z):
+    for j in range(d.shape[0]):
+        d[j] = z[j] + beta * d[j]
+
+
+@kernel(noalias=True, allocates=False)
+def solve_conjugate_gradients(points, links, factors, r, reduction, p, f, z, d, q, u):
+    """Solve A u = r until r has shrunk to `reduction` of itself in the preconditioner's norm; r is overwritten.
+
+    factors: `factorise` of A's diagonal. f, z, d, q: scratch.
+    """
+    n = np.uint64(p.rows * p.cols)
+    precondition(factors, r, n, z)
+    for j in range(u.shape[0]):
+        u[j], d[j] = 0.0, z[j]
+    rho = dot(r, z)
+    goal = reduction * reduction * rho
+    for count in range(MOST):
+        if rho <= goal:
+            return count
+        set_matrix_product(points, links, SYMMETRIC, d, p, f, q)
+        alpha = rho / dot(d, q)
+        add_scaled(u, alpha, d)
+        add_scaled(r, -alpha, q)
+        precondition(factors, r, n, z)
+        before, rho = rho, dot(r, z)
+        set_direction(d, rho / before, z)
+    return MOST

@@ -1,0 +1,160 @@
+"""The linearised forces of a net: products with its stiffness and damping matrices, and their extreme vectors.
+
+About a state x the free particles obey M u'' + D u' + K u = 0. Neither matrix is ever formed. Products come divided
+by the mass, with zeros where pinned, so that eigenvalues are squared frequencies [1/s^2] and damping rates [1/s].
+"""
+
+import math
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.forces.contact import touching
+
+STIFFNESS = 0  # K
+DAMPING = 1  # D
+TRANSVERSE = 2  # the part of K across the links, which axial damping does not reach
+
+
+@kernel(noalias=True, allocates=False)
+def add_links(x, u, p, part, out):
+    """Links: K = k [n n^T + (1 - l0/l) (I - n n^T)]; D = b I, or b n n^T where damping is axial."""
+    n = p.rows * p.cols
+    for q in range(p.offsets.shape[0]):
+        di, dj = p.offsets[q, 0], p.offsets[q, 1]
+        rest, k, b = p.links[q, 0], p.links[q, 1], p.links[q, 2]
+        for i in range(p.rows - di):
+            for j in range(max(0, -dj), p.cols - max(0, dj)):
+                a = i * p.cols + j
+                c = a + di * p.cols + dj
+                rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
+                du, dv, dw = u[c] - u[a], u[n + c] - u[n + a], u[2 * n + c] - u[2 * n + a]
+                rr = rx * rx + ry * ry + rz * rz
+                # Of a link shorter than half its rest length only -k counts: it buckles, which no step can mend.
+                across = k - k * rest / math.sqrt(rr) if 4.0 * rr > rest * rest else -k
+                along = k
+                if part == DAMPING:
+                    across = 0.0 if p.axial else b
+                    along = b
+                elif part == TRANSVERSE:
+                    along = 0.0
+                s = (along - across) * (rx * du + ry * dv + rz * dw) / rr if rr > 0.0 else 0.0
+                fx, fy, fz = across * du + s * rx, across * dv + s * ry, across * dw + s * rz
+                out[a] -= fx
+                out[n + a] -= fy
+                out[2 * n + a] -= fz
+                out[c] += fx
+                out[n + c] += fy
+                out[2 * n + c] += fz
+
+
+@kernel(noalias=True, allocates=False)
+def add_surface(x, u, t, p, part, on_sphere, out):
+    """Every touching point: K = k [n n^T - depth/r (I - n n^T)] with r the distance to the sphere's centre."""
+    n = p.rows * p.cols
+    for j in range(n):
+        depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+        if depth <= 0.0:
+            continue
+        along = p.contact_k
+        across = -p.contact_k * depth / max(p.sr - depth, depth) if on_sphere else 0.0
+        if part == DAMPING:
+            along = p.contact_b
+            if p.lab_contact and on_sphere:
+                along *= depth
+            across = along if p.lab_contact else 0.0
+        un = (along - across) * (u[j] * nx + u[n + j] * ny + u[2 * n + j] * nz)
+        out[j] += across * u[j] + un * nx
+        out[n + j] += across * u[n + j] + un * ny
+        out[2 * n + j] += across * u[2 * n + j] + un * nz
+
+
+@kernel(noalias=True, allocates=False)
+def add_pull(x, u, p, part, out):
+    """The grab: K = k I within reach; beyond it the force is capped and K = (F/r) (I - n n^T)."""
+    n, g = p.rows * p.cols, p.grabbed
+    dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
+    r = math.sqrt(dx * dx + dy * dy + dz * dz)
+    across, inward = p.grab_k, 0.0
+    if part == DAMPING:
+        across = p.grab_b
+    elif p.grab_k * r > p.grab_max:
+        across = p.grab_max / r
+        inward = across * (dx * u[g] + dy * u[n + g] + dz * u[2 * n + g]) / (r * r)
+    out[g] += across * u[g] - inward * dx
+    out[n + g] += across * u[n + g] - inward * dy
+    out[2 * n + g] += across * u[2 * n + g] - inward * dz
+
+
+@kernel(noalias=True, allocates=False)
+def set_tangent(x, u, t, p, part, out):
+    """out = M^-1 K u, or M^-1 D u (part DAMPING), about x at time t; all flat (3 rows cols,).
+
+    Friction is left out: its strongest damping is 1/h by construction, inside every integrator's limit.
+    """
+    n = p.rows * p.cols
+    for j in range(3 * n):
+        out[j] = p.drag * u[j] if part == DAMPING else 0.0
+    add_links(x, u, p, part, out)
+    if part != TRANSVERSE:
+        if p.has_floor:
+            add_surface(x, u, t, p, part, False, out)
+        if p.has_sphere:
+            add_surface(x, u, t, p, part, True, out)
+        if p.grabbed >= 0:
+            add_pull(x, u, p, part, out)
+    for e in range(3):
+        for j in range(n):
+            out[e * n + j] *= p.weights[j]
+
+
+@kernel(noalias=True, inline=True)
+def dot(a, b):
+    total = 0.0
+    for j in range(a.shape[0]):
+        total += a[j] * b[j]
+    return total
+
+
+@kernel(noalias=True, inline=True)
+def add_multiple(y, s, x):
+    for j in range(y.shape[0]):
+        y[j] += s * x[j]
+
+
+@kernel(noalias=True)
+def set_lanczos(x, t, p, part, basis, diagonal, beside):
+    """Lanczos from the unit vector in basis[0]: the tridiagonal T = Q^T A Q, and how many rows of Q were filled.
+
+    basis (count, 3 rows cols); diagonal, beside (count,). Every new vector is made orthogonal to all before it: counts
+    are small, and without that the largest eigenvalue comes back as false copies (Golub & Van Loan, 10.3).
+    """
+    count = basis.shape[0]
+    w = np.empty_like(x)
+    largest = 0.0
+    for s in range(count):
+        set_tangent(x, basis[s], t, p, part, w)
+        diagonal[s] = dot(w, basis[s])
+        for _ in range(2):
+            for r in range(s + 1):
+                add_multiple(w, -dot(w, basis[r]), basis[r])
+        beside[s] = math.sqrt(dot(w, w))
+        largest = max(largest, abs(diagonal[s]), beside[s])
+        if s + 1 == count or beside[s] <= 1e-9 * largest:
+            return s + 1
+        for j in range(x.shape[0]):
+            basis[s + 1, j] = w[j] / beside[s]
+    return count
+
+
+@kernel(noalias=True)
+def quotients(x, u, t, p):
+    """(u K u, u K u of the links alone, u D u) over u M u [1/s^2, 1/s^2, 1/s], of a unit vector u, 0 where pinned."""
+    w = np.empty_like(x)
+    set_tangent(x, u, t, p, STIFFNESS, w)
+    stiffness = dot(u, w)
+    w[:] = 0.0
+    add_links(x, u, p, STIFFNESS, w)
+    links = dot(u, w) / p.mass
+    set_tangent(x, u, t, p, DAMPING, w)
+    return stiffness, links, dot(u, w)

@@ -1,0 +1,107 @@
+"""Checks of arguments: every error names the argument, the value given and what is allowed, in one line."""
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+
+def argument_error(name: str, value: object, allowed: str) -> ValueError:
+    """The one form of an argument error: the name, the value given, and what is allowed."""
+    return ValueError(f"{name}: {value!r} is not allowed; allowed: {allowed}")
+
+
+def as_float(value: object) -> float:
+    """A real number of any kind as a float; NaN for anything else, True and "1" included."""
+    if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
+        return math.nan
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
+def is_whole_number(value: object) -> bool:
+    """Whether `value` is an integer (and no bool)."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
+
+
+def check_number(name: str, value: object, low: float, high: float, unit: str, *, above: bool = False) -> float:
+    """`value` as a finite float in [low, high], or in (low, high] with `above`.
+
+    Raises ValueError with the name, the value and the range.
+    """
+    number = as_float(value)
+    if math.isfinite(number) and low <= number <= high and not (above and number == low):
+        return number
+    start = f"above {low:g}" if above else f"from {low:g}"
+    allowed = f"{start}{f' to {high:g}' if high < math.inf else ''} {unit}".rstrip()
+    raise argument_error(name, value, allowed if allowed != "from -inf" else "a finite number")
+
+
+def check_positive(name: str, value: object, unit: str, *, allow_infinite: bool = False) -> float:
+    """`value` as a float above 0, finite unless `allow_infinite`. Raises ValueError otherwise."""
+    number = as_float(value)
+    if not number > 0.0 or (math.isinf(number) and not allow_infinite):
+        raise argument_error(name, value, f"a number above 0 {unit}" + (", or inf" if allow_infinite else ""))
+    return number
+
+
+def check_not_negative(name: str, value: object, unit: str) -> float:
+    """`value` as a finite float, 0 or above. Raises ValueError otherwise."""
+    number = as_float(value)
+    if not 0.0 <= number < math.inf:
+        raise argument_error(name, value, f"0 or above, finite {unit}")
+    return number
+
+
+def check_within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
+    """`value` as a float in [low, high]. Raises ValueError otherwise."""
+    number = as_float(value)
+    if not low <= number <= high:
+        raise argument_error(name, value, f"{low:g} to {high:g} {unit}".rstrip())
+    return number
+
+
+def check_finite(name: str, value: object, unit: str = "") -> float:
+    """`value` as a finite float. Raises ValueError otherwise."""
+    number = as_float(value)
+    if not math.isfinite(number):
+        raise argument_error(name, value, f"a finite number {unit}".rstrip())
+    return number
+
+
+def check_choice(name: str, value: object, choices: Iterable[str]) -> str:
+    """`value` as one of `choices`. Raises ValueError otherwise."""
+    allowed = tuple(choices)
+    if not isinstance(value, str) or value not in allowed:
+        raise argument_error(name, value, "one of " + ", ".join(allowed))
+    return value
+
+
+def check_vector(name: str, value: object, length: int = 3) -> tuple[float, ...]:
+    """`value` as `length` finite floats. Raises ValueError otherwise."""
+    numbers = tuple(as_float(c) for c in value) if isinstance(value, Iterable) else ()
+    if len(numbers) != length or not all(math.isfinite(c) for c in numbers):
+        raise argument_error(name, value, f"{length} finite numbers [m]")
+    return numbers
+
+
+def check_positions(name: str, value: Any) -> np.ndarray:
+    """`value` as contiguous float64 of shape (n, 2). Raises ValueError for another shape or what is not finite."""
+    array = np.ascontiguousarray(value, np.float64)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise argument_error(name, array.shape, "positions of shape (n, 2) [m]")
+    if not np.isfinite(array).all():
+        raise argument_error(name, float(array[~np.isfinite(array)][0]), "finite positions [m]")
+    return array
+
+
+def check_wavenumbers(name: str, value: Any) -> np.ndarray:
+    """`value` as a float64 array. Raises ValueError unless every entry is finite and 0 or above."""
+    array = np.asarray(value, dtype=np.float64)
+    bad = ~((array >= 0.0) & np.isfinite(array))
+    if bad.any():
+        raise argument_error(name, float(array[bad].flat[0]), "0 or above, finite rad/m")
+    return array

@@ -1,0 +1,114 @@
+"""The map in the panel, without a browser."""
+
+import dataclasses
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.panel.panel import stability_map as live
+from app.scenes.rope.scene import scene as rope
+from sim.springs.analysis.growth import EXPLODES, HOLDS
+from sim.springs.stability import critical_step
+
+
+class Handle:
+    """Stands for whatever the panel adds."""
+
+    def __init__(self) -> None:
+        self.content = ""
+        self._impl = self
+        self.uuid = "the-slider"
+
+    def on_click(self, action: Any) -> None:
+        self.click = action
+
+    def on_update(self, action: Any) -> None:
+        self.update = action
+
+
+class Gui:
+    def __getattr__(self, name: str) -> Any:
+        return lambda *_, **__: Handle()
+
+
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(live, "ROWS", 5)
+    monkeypatch.setattr(live, "COLS", 12)
+
+
+def make(params: Any) -> tuple[live.LiveMap, dict[str, float]]:
+    """A map and what its clicks have set."""
+    taken: dict[str, float] = {}
+    parameter = "stiffness" if params.units == "lab" else "axial_stiffness"
+    return live.LiveMap(Gui(), rope, lambda: params, lambda: parameter, taken.__setitem__), taken
+
+
+@pytest.mark.usefixtures("small")
+@pytest.mark.parametrize("units", ["lab", "material"])
+def test_the_map_turns_at_the_critical_step(units: str):
+    params = rope.Params(units=units, time_step=1 / 120, floor=False)
+    shown, _ = make(params)
+    shown.measure(shown.asked)
+    assert shown.axes is not None
+    assert len(shown.rows) == 5
+    for stiffness, row in zip(shown.axes.stiffnesses, shown.rows, strict=True):
+        net = rope.build(dataclasses.replace(params, **{shown.axes.parameter: float(stiffness)}))
+        assert row.critical == pytest.approx(critical_step(net, "leapfrog"), rel=0.05)
+        holds = shown.axes.steps < row.critical
+        np.testing.assert_array_equal(row.outcomes == HOLDS, holds)
+    assert shown.rows[-1].outcomes[-1] == EXPLODES
+    assert "measuring" not in shown.html.content
+
+
+@pytest.mark.usefixtures("small")
+def test_a_click_sets_step_and_stiffness_within_the_map():
+    params = rope.Params()
+    shown, taken = make(params)
+    shown.go((0.5, 0.5))
+    assert taken == {}  # no map yet
+    shown.axes = live.axes_of(params, "stiffness")
+    shown.go((0.0, 1.0))
+    assert taken["time_step"] == pytest.approx(shown.axes.steps[0], rel=0.01)
+    assert taken["stiffness"] == pytest.approx(shown.axes.stiffnesses[-1], rel=0.01)
+    shown.go((-9.0, 7.0))
+    assert taken["time_step"] == pytest.approx(shown.axes.steps[0], rel=0.01)
+
+
+def test_the_map_keeps_to_what_the_parameters_allow():
+    low = live.axes_of(rope.Params(time_step=1e-5, stiffness=1.0), "stiffness")
+    assert low.steps[0] == pytest.approx(1e-5)
+    assert low.stiffnesses[0] == pytest.approx(1.0)
+    high = live.axes_of(rope.Params(time_step=0.1, stiffness=1e9), "stiffness")
+    assert high.steps[-1] == pytest.approx(0.1)
+    assert high.stiffnesses[-1] == pytest.approx(1e9)
+
+
+def test_a_map_of_other_parameters_says_so():
+    params = rope.Params()
+    axes = live.axes_of(params, "stiffness")
+    moved = dataclasses.replace(params, time_step=0.001, stiffness=5e3, colour="plain", plot_energy=True, speed=2.0)
+    assert axes.is_of(moved)
+    other = dataclasses.replace(params, damping=0.0)
+    assert not axes.is_of(other)
+    assert "measure again" in live.picture(axes, [], other, "")
+    assert "measure again" not in live.picture(axes, [], moved, "")
+
+
+@pytest.mark.usefixtures("small")
+def test_a_method_that_takes_no_damping_says_so():
+    shown, _ = make(rope.Params(integrator="pefrl"))
+    shown.measure(shown.asked)
+    assert "takes no damping" in shown.html.content
+
+
+@pytest.mark.usefixtures("small")
+def test_asking_again_ends_the_measurement_before():
+    shown, _ = make(rope.Params())
+    shown.asked = 2
+    before = threading.active_count()
+    shown.measure(1)
+    assert shown.rows == []
+    assert threading.active_count() == before

@@ -1,0 +1,190 @@
+"""The cloth scene without a browser: presets, handles, pulls, and what it says when it goes wrong."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from app.messages import DivergenceError, Grab, Place, Release
+from app.panel.panel import status_line
+from app.scenes.cloth.parameters import PRESETS, Params, hidden
+from app.scenes.cloth.scene import TOP_SPEED, Scene
+from app.scenes.cloth.start import resample
+from app.scenes.cloth.view import faces, marks, readout
+from app.server.loop import SimLoop
+from sim.parameters import check_record, parameters_of
+
+SMALL = Params(rows=10, cols=10, time_step=1 / 1200, wind=0.0)
+
+
+def run(scene: Scene, seconds: float) -> None:
+    for _ in range(round(seconds * 60)):
+        scene.advance(max(1, round(1 / 60 / scene.step)))
+
+
+def snapshot_of(scene: Scene):
+    return SimLoop(scene, paused=True).latest
+
+
+def test_the_presets_are_the_four_and_the_first_is_the_defaults():
+    assert list(PRESETS) == ["Curtain", "Flag in wind", "Drape over the sphere", "Trampoline"]
+    assert check_record(Params, PRESETS["Curtain"]) == Params()
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_a_preset_runs_and_is_drawn(preset):
+    scene = Scene(check_record(Params, PRESETS[preset]))
+    start = scene.frame().points
+    run(scene, 0.4)
+    picture = scene.frame()
+    assert picture.points.dtype == np.float32
+    assert np.isfinite(picture.points).all()
+    assert np.abs(picture.points - start).max() > 0.02
+    assert picture.points[..., 2].min() > -0.02
+    gauge = scene.readings().stability
+    assert gauge.h_omega < gauge.limit
+    assert scene.params.integrator in ("leapfrog", "symplectic_euler")
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_parameters_that_are_hidden_are_parameters(preset):
+    params = check_record(Params, PRESETS[preset])
+    assert hidden(params) <= set(parameters_of(params))
+
+
+def test_a_dragged_particle_comes_and_is_let_go():
+    scene = Scene(SMALL)
+    run(scene, 0.5)
+    index = 7 * 10 + 4
+    before = scene.state.x[:, 7, 4].copy()
+    target = (float(before[0]), float(before[1]) - 0.4, float(before[2]))
+    scene.handle(Grab(index, target))
+    run(scene, 0.7)
+    assert scene.frame().pull is not None
+    assert scene.state.x[1, 7, 4] < before[1] - 0.2
+    scene.handle(Release())
+    run(scene, 0.1)
+    assert scene.frame().pull is None
+
+
+def test_a_moved_pin_takes_its_end_of_the_edge_along():
+    scene = Scene(SMALL)
+    run(scene, 0.1)
+    ends = scene.state.x[:, 0, [0, -1]].copy()
+    scene.handle(Place("pin b", (float(ends[0, 1]) + 0.3, float(ends[1, 1]), float(ends[2, 1]))))
+    run(scene, 1.0)
+    assert scene.state.x[:, 0, 0] == pytest.approx(ends[:, 0], abs=1e-6)
+    assert scene.state.x[:, 0, -1] == pytest.approx(ends[:, 1] + (0.3, 0.0, 0.0), abs=1e-4)
+    middle = 0.5 * (scene.state.x[0, 0, 4] + scene.state.x[0, 0, 5])
+    assert middle > 0.5 * (ends[0, 0] + ends[0, 1]) + 0.1
+    scene.reset()
+    assert scene.state.x[:, 0, -1] == pytest.approx(ends[:, 1], abs=1e-9)
+
+
+def test_the_sphere_pushes_the_cloth():
+    scene = Scene(dataclasses.replace(SMALL, sphere=True, gather=1.0))
+    run(scene, 0.2)
+    scene.handle(Place("sphere", (0.0, 0.3, 1.2)))
+    run(scene, 1.0)
+    sphere = np.array(scene.frame().sphere)
+    gap = np.linalg.norm(scene.state.x - sphere[:3, None, None], axis=0).min() - sphere[3]
+    assert scene.state.x[1].max() > 0.3
+    assert gap > 0.0
+
+
+def test_a_sphere_torn_through_the_curtain_takes_the_cloth_along():
+    """Dragged away at once, far beyond: it goes at its top speed, and no particle ends inside what is drawn of it."""
+    scene = Scene(dataclasses.replace(Params(), sphere=True, wind=0.0))
+    run(scene, 0.3)
+    scene.handle(Place("sphere", (0.0, 50.0, 1.2)))
+    fastest, before, least = 0.0, np.array(scene.frame().sphere), np.inf
+    for _ in range(20):
+        scene.advance(round(1 / 60 / scene.step))
+        sphere = np.array(scene.frame().sphere)
+        fastest = max(fastest, (sphere[1] - before[1]) * 60)
+        before = sphere
+        least = min(least, np.linalg.norm(scene.state.x - sphere[:3, None, None], axis=0).min() / sphere[3])
+    assert 0.9 * TOP_SPEED < fastest <= TOP_SPEED
+    assert least > 0.99
+    # Whatever of the cloth the sphere met it has before it.
+    near = np.abs(scene.state.x[0]) + np.abs(scene.state.x[2] - 1.2) < 0.1
+    assert near.any()
+    assert (scene.state.x[1][near] > sphere[1]).all()
+
+
+def test_a_new_grid_keeps_the_shape():
+    scene = Scene(SMALL)
+    run(scene, 0.3)
+    old = scene.state.x.copy()
+    scene.set_params(dataclasses.replace(SMALL, rows=19, cols=28))
+    assert scene.state.x[:, ::2, ::3] == pytest.approx(old, abs=1e-12)
+    run(scene, 0.2)
+    plane = np.random.default_rng(0).random((3, 6, 5))
+    assert (resample(plane, 6, 5) == plane).all()
+
+
+def test_an_explosion_keeps_the_last_good_state_and_names_a_step_that_holds():
+    scene = Scene(dataclasses.replace(SMALL, integrator="explicit_euler", time_step=0.01))
+    with pytest.raises(DivergenceError, match=r"h ω = .* over explicit_euler's limit"):
+        run(scene, 20.0)
+    assert np.isfinite(scene.frame().points).all()
+
+
+def test_where_the_chosen_method_refuses_damping_another_runs_and_the_panel_says_so():
+    scene = Scene(dataclasses.replace(SMALL, integrator="pefrl"))
+    run(scene, 0.1)
+    assert scene.integrator.name == "leapfrog"
+    assert "takes no damping" in scene.readings().note
+    assert "takes no damping" in marks(snapshot_of(scene))["integrator"]
+    scene.set_params(dataclasses.replace(scene.params, damping=0.0, air=0.0, floor=False))
+    run(scene, 0.1)
+    assert scene.integrator.name == "pefrl"
+    assert scene.readings().note == marks(snapshot_of(scene))["integrator"] == ""
+
+
+def test_an_implicit_step_says_what_it_takes():
+    scene = Scene(dataclasses.replace(SMALL, integrator="implicit_euler", time_step=1 / 60, stiffness=1e5))
+    run(scene, 0.5)
+    assert 1.0 <= scene.readings().corrections <= 25.0
+    assert scene.readings().stability.limit == np.inf
+
+
+def test_while_a_step_takes_longer_than_a_frame_one_is_taken_and_dropped_time_is_said():
+    """Counted by a clock that says 0.3 s of each implicit step: never more than one a frame, however much is due."""
+    spent = 0.0
+
+    class Dear(Scene):
+        def advance(self, steps: int) -> None:
+            nonlocal spent
+            super().advance(steps)
+            spent += 0.3 * steps
+
+    params = dataclasses.replace(SMALL, integrator="implicit_euler", time_step=1 / 240, stiffness=1e5)
+    loop = SimLoop(Dear(params), effort=lambda: spent)
+    for _ in range(12):
+        before = loop.counts["steps"]
+        loop.tick(0.3)
+        assert loop.counts["steps"] - before <= 1
+    assert loop.latest.status.capped
+    assert "[CAPPED]" in status_line(loop.latest, 0.0)
+    assert loop.work()["steps"].skipped > 100
+    assert "Newton corrections a step" in readout(loop.latest)
+
+
+def test_the_mesh_has_two_triangles_a_cell_all_turned_alike():
+    found = faces(4, 6)
+    assert found.shape == (2 * 3 * 5, 3)
+    i, j = np.divmod(np.arange(24), 6)
+    points = np.stack([j, i, 0 * i], 1)
+    a, b, c = (points[found[:, k]] for k in range(3))
+    assert len(set(np.sign(np.cross(b - a, c - a)[:, 2]))) == 1
+
+
+def test_samples_and_arrays_carry_what_the_plots_and_files_want():
+    scene = Scene(dataclasses.replace(SMALL, plot_energy=True))
+    run(scene, 0.3)
+    rows = scene.take_plot_rows()
+    assert len(rows) > 3
+    assert all(len(row) == 7 for row in rows)
+    assert scene.take_plot_rows() == ()
+    assert scene.arrays()["x"][0].shape == (10, 10, 3)

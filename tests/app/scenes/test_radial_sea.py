@@ -1,0 +1,374 @@
+"""The radial scene without a browser: bodies settle where Archimedes says, oil adds what it should, nothing breaks."""
+
+import dataclasses
+import itertools
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.__main__ import main
+from app.messages import Grab, Place, Release
+from app.scenes.radial_sea import scene as radial
+from app.scenes.radial_sea.bodies import HeaveMeter, hull_of, place_of, upward
+from app.scenes.radial_sea.parameters import PRESETS, Params, hidden, spill_of
+from app.scenes.radial_sea.scene import Scene
+from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
+from sim.floating import equilibrium_draft, heave_period
+from sim.floating.hydrostatics import rotation_matrix
+from sim.ocean.fluids import fluids
+from sim.ocean.radial import RadialSea
+from sim.parameters import check_record, clamp, parameters_of
+
+CALM = {"waves": False, "rig": False, "ripples": False}
+
+
+def with_parameters(**changes: Any) -> Params:
+    return check_record(Params, changes)
+
+
+def run(scene: Scene, seconds: float) -> Scene:
+    for _ in range(round(seconds / scene.step / 6)):
+        scene.advance(6)
+    return scene
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"spill": "layer", "thickness": 0.2},
+        {"spill": "layer", "thickness": 2.0, "density": 300.0},
+        {"spill": "layer", "thickness": 0.05, "oil": "IFO 180"},
+        {"spill": "mixed", "fraction": 0.4, "oil": "Arabian Light"},
+    ],
+)
+def test_bodies_let_go_too_high_settle_at_the_drafts_of_the_readout(changes: dict) -> None:
+    scene = Scene(with_parameters(**CALM, **changes))
+    scene.crowd.fleet.position[:, 2] += 0.1
+    run(scene, 110.0)
+    for reading in scene.readings().readings:
+        assert reading.draft == pytest.approx(reading.theory.draft, abs=1e-4)
+
+
+def test_the_bodies_own_axes_are_the_matrices_last_columns():
+    turns = np.random.default_rng(0).normal(size=(9, 4))
+    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    expected = [rotation_matrix(turn)[:, 2] for turn in turns]
+    np.testing.assert_allclose(upward(turns), expected, atol=1e-15)
+
+
+def test_oil_poured_on_adds_d_times_one_minus_the_ratio() -> None:
+    scene = Scene(with_parameters(**CALM))
+    run(scene, 10.0)
+    before = scene.crowd.draft.copy()
+    scene.set_params(with_parameters(**CALM, spill="layer", thickness=0.2))
+    run(scene, 110.0)
+    extra = 0.2 * (1.0 - fluids()["Alaska North Slope 2002"].density / 1025.0)
+    np.testing.assert_allclose(scene.crowd.draft - before, extra, atol=1e-4)
+    theory = scene.readings().readings[0].theory
+    assert theory.draft - theory.in_water == pytest.approx(extra, abs=1e-9)
+
+
+def test_theory_is_that_of_the_hulls() -> None:
+    params = Params(spill="layer", density=700.0, size=2.0)
+    scene, spill = Scene(params), spill_of(params)
+    for reading in scene.readings().readings:
+        hull = hull_of(reading.kind, 2.0)
+        assert reading.theory.draft == equilibrium_draft(hull, 700.0, spill.layers)
+        assert reading.theory.period == heave_period(hull, 700.0, spill.layers)
+
+
+def test_a_body_pushed_under_bobs_at_the_predicted_period() -> None:
+    scene = Scene(with_parameters(**CALM, time_step=1 / 120))
+    scene.crowd.fleet.position[:, 2] -= 0.1
+    run(scene, 7.0)
+    for reading in scene.readings().readings:
+        assert reading.period == pytest.approx(reading.theory.period, rel=0.04)
+
+
+def test_the_heave_meter_times_a_sine() -> None:
+    meter = HeaveMeter(1)
+    for i in range(1200):
+        meter.take(i / 60, np.array([0.5 + 0.1 * math.sin(2 * math.pi * i / 60 / 1.7)]), 1 / 60)
+    assert meter.period(0, 20.0) == pytest.approx(1.7, rel=0.01)
+    assert math.isnan(meter.period(0, 100.0))
+
+
+def test_what_is_denser_than_the_fluid_sinks_and_comes_to_rest_deep() -> None:
+    scene = Scene(with_parameters(**CALM, density=1010.0, spill="mixed", fraction=0.6))
+    assert math.isinf(scene.readings().readings[0].theory.draft)
+    run(scene, 90.0)
+    assert (scene.crowd.fleet.position[:, 2] >= -61.0).all()
+    assert (scene.crowd.fleet.position[:, 2] < -20.0).all()
+
+
+def test_a_grabbed_buoy_goes_under_and_comes_back() -> None:
+    scene = Scene(with_parameters(**CALM))
+    rest = scene.crowd.fleet.position[0].copy()
+    for _ in range(60):
+        scene.handle(Grab(0, (rest[0], rest[1], rest[2] - 0.8)))
+        scene.advance(2)
+    assert scene.crowd.fleet.position[0, 2] < rest[2] - 0.4
+    assert scene.frame().pull is not None
+    scene.handle(Release())
+    run(scene, 80.0)
+    assert scene.crowd.fleet.position[0, 2] == pytest.approx(rest[2], abs=1e-3)
+    assert scene.frame().pull is None
+
+
+def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
+    scene = Scene(with_parameters(**CALM))
+    home = scene.crowd.home[2]
+    scene.crowd.fleet.velocity[2] = (6.0, 0.0, 5.0)
+    run(scene, 1.0)
+    assert np.hypot(*(scene.crowd.fleet.position[2, :2] - home)) > 3.0
+    run(scene, 60.0)
+    assert np.hypot(*(scene.crowd.fleet.position[2, :2] - home)) < 3.0
+
+
+def test_a_nonsense_grab_is_no_grab() -> None:
+    scene = Scene(Params())
+    scene.handle(Grab(10**6, (0.0, 0.0, 0.0)))
+    scene.handle(Grab(-1, (0.0, 0.0, 0.0)))
+    scene.advance(2)
+    assert scene.frame().pull is None
+
+
+@pytest.mark.parametrize("name", list(PRESETS))
+def test_each_preset_runs_and_its_picture_is_finite(name: str) -> None:
+    scene = Scene(check_record(Params, PRESETS[name]))
+    run(scene, 4.0)
+    picture = scene.frame()
+    for array in (picture.surface.vertices, picture.surface.slope, picture.foam, picture.positions, picture.rotations):
+        assert np.isfinite(array).all()
+        assert array.dtype == np.float32
+    gauge = scene.readings()
+    assert len(gauge.readings) == min(6, scene.params.bodies)
+    waves = scene.work()["waves summed at vertices"]
+    assert waves.done > 0
+    assert waves.skipped > 0
+    assert set(gauge.compared) == {"sum", "fft"}
+
+
+def test_presets_are_those_that_were_asked_for() -> None:
+    assert list(PRESETS) == [
+        "Clear water", "Light crude spill 0.2 m", "Heavy fuel oil", "Entirely mixed", "Storm with buoys", "Burning rig",
+    ]  # fmt: skip
+    assert PRESETS["Clear water"] == {}
+
+
+def test_hostile_values_are_clamped_to_what_runs() -> None:
+    low = clamp(
+        dataclasses.replace(
+            Params(), **{n: -1e30 for n, k in parameters_of(Params()).items() if k.kind in (int, float)}
+        )
+    )
+    high = clamp(
+        dataclasses.replace(Params(), **{n: 1e30 for n, k in parameters_of(Params()).items() if k.kind in (int, float)})
+    )
+    odd = clamp(dataclasses.replace(Params(), oil="; rm -rf", surface=7, wind_speed=math.nan, waves="yes"))  # type: ignore[arg-type]
+    assert odd == Params()
+    for params in (low, dataclasses.replace(high, bodies=20, rings=40, spokes=40, wave_count=32)):
+        scene = Scene(params)
+        run(scene, 20 * params.time_step)
+        assert np.isfinite(scene.frame().surface.vertices).all()
+
+
+def test_parameters_change_under_way_without_a_jump_of_the_bodies() -> None:
+    scene = run(Scene(Params()), 2.0)
+    changes = [
+        {"wind_speed": 12.0}, {"spill": "layer"}, {"oil": "Maya"}, {"surface": "fft"}, {"surface": "sum"},
+        {"density": 700.0}, {"fire": True, "jet": True}, {"fire_power": 50.0}, {"rings": 60}, {"choppiness": 0.3},
+        {"film": True}, {"jet": False}, {"spill": "mixed"}, {"waves": False}, {"centre": "camera"},
+    ]  # fmt: skip
+    params = Params()
+    for change in changes:
+        before = scene.crowd.fleet.position.copy()
+        params = dataclasses.replace(params, **change)
+        scene.set_params(params)
+        scene.advance(2)
+        assert np.abs(scene.crowd.fleet.position - before).max() < 0.3
+        assert np.isfinite(scene.frame().surface.vertices).all()
+
+
+def test_the_surface_drawn_is_the_one_the_bodies_float_on() -> None:
+    scene = run(Scene(Params(ripples=False)), 3.0)
+    vertices = scene.frame().surface.vertices[: 4 * 128]
+    at = scene.sea.at(vertices[:, :2], scene.time)
+    np.testing.assert_allclose(at.height, vertices[:, 2], atol=2e-5)
+
+
+def test_the_camera_takes_the_rings_along() -> None:
+    scene = run(Scene(Params(centre="camera")), 0.2)
+    scene.handle(Place("eye", (30.0, -12.0, 4.0)))
+    scene.advance(1)
+    vertices = scene.frame().surface.vertices
+    assert np.abs(vertices[-1, :2] - (30.0, -12.0)).max() < 3.0
+
+
+def test_bodies_that_bob_make_rings_and_bodies_at_rest_make_none() -> None:
+    still = run(Scene(Params(waves=False, rig=False)), 8.0)
+    level = np.abs(still.frame().surface.vertices[:, 2]).max()
+    bobbing = Scene(Params(waves=False, rig=False))
+    bobbing.crowd.fleet.position[:, 2] -= 0.3
+    run(bobbing, 1.5)
+    assert np.abs(bobbing.frame().surface.vertices[:, 2]).max() > 5e-3
+    assert level < 1e-3
+
+
+def test_oil_from_the_jet_makes_a_slick_that_grows() -> None:
+    scene = run(Scene(Params(jet=True)), 6.0)
+    early = scene.readings().tally
+    run(scene, 12.0)
+    late = scene.readings().tally
+    assert late.radius > early.radius > 0.0
+    assert late.ejected == pytest.approx(late.in_flight + late.fed)
+    assert late.fed == pytest.approx(math.pi * late.radius**2 * late.thickness)
+    assert late.hits > early.hits > 0
+    slick = scene.frame().slick
+    assert slick is not None
+    assert (slick.radius, slick.thickness) == (late.radius, late.thickness)
+    x, y = slick.centre
+    rim = np.array([x, x + slick.radius, x + 2 * slick.radius])
+    np.testing.assert_allclose(slick_reach(slick, rim, np.full(3, y)), [slick.radius, 0.0, -slick.radius], atol=1e-9)
+
+
+@pytest.mark.parametrize("surface", ["sum", "fft"])
+def test_the_window_is_cut_where_sea_and_interface_are(surface: str) -> None:
+    scene = run(Scene(with_parameters(spill="layer", thickness=0.3, section=True, surface=surface, ripples=False)), 2.0)
+    section = scene.frame().section
+    assert section is not None
+    assert section.oiled
+    at = scene.sea.at(section.points, scene.time)
+    np.testing.assert_allclose(section.top, at.height, atol=1e-6)
+    np.testing.assert_allclose(section.interface, np.minimum(at.interface - 0.3, at.height), atol=1e-6)
+    assert section.floor < section.interface.min()
+    buoy = scene.crowd.fleet.position[0, :2]
+    wall = section.points[:65]
+    np.testing.assert_allclose(wall.mean(axis=0), buoy, atol=1e-9)
+    np.testing.assert_allclose((wall - buoy) @ section.way, 0.0, atol=1e-9)
+    np.testing.assert_allclose(np.ptp(wall @ [-section.way[1], section.way[0]]), 2 * section.half, rtol=1e-6)
+    # the line goes around once, the pit on its left, and closes
+    x, y = section.points.T
+    assert 0.5 * float(x[:-1] @ np.diff(y) - y[:-1] @ np.diff(x)) == pytest.approx(2 * section.half * section.length)
+    np.testing.assert_allclose(section.points[0], section.points[-1], atol=1e-9)
+
+
+def test_a_window_into_clean_water_has_no_interface_and_none_is_cut_unasked() -> None:
+    scene = Scene(with_parameters(section=True, bodies=0))
+    section = scene.frame().section
+    assert section is not None
+    assert not section.oiled
+    assert (section.interface == section.top).all()
+    assert Scene(Params()).frame().section is None
+
+
+def test_closing_the_jet_keeps_its_oil() -> None:
+    scene = run(Scene(Params(jet=True)), 6.0)
+    ejected = scene.readings().tally.ejected
+    scene.set_params(Params(jet=False))
+    tally = scene.readings().tally
+    assert tally.fed == pytest.approx(ejected)
+    assert tally.in_flight == 0.0
+    assert isinstance(scene.blowout, WellBlowout)
+
+
+def test_square_and_radial_surfaces_are_as_high_under_the_same_wind() -> None:
+    radial_sea = Scene(Params())
+    square = Scene(Params(surface="fft"))
+    assert square.sea.significant_height == pytest.approx(radial_sea.sea.significant_height, rel=0.15)
+    run(square, 2.0)
+    assert np.isfinite(square.crowd.fleet.position).all()
+
+
+def test_bodies_start_apart() -> None:
+    places = [place_of(i, 1.0) for i in range(200)]
+    closest = min(math.dist(a, b) for a, b in itertools.combinations(places, 2))
+    assert closest > 1.8
+
+
+def test_hidden_parameters_are_parameters() -> None:
+    for changes in PRESETS.values():
+        assert hidden(check_record(Params, changes)) <= set(parameters_of(Params()))
+    assert "thickness" in hidden(Params())
+    assert "thickness" not in hidden(Params(spill="layer"))
+
+
+def test_arrays_have_units() -> None:
+    for array, unit in radial.Scene(Params()).arrays().values():
+        assert np.isfinite(array).all()
+        assert unit
+
+
+@pytest.mark.parametrize("surface", ["sum", "fft"])
+def test_a_spill_ages_and_its_parameter_sets_its_age_anew(surface: str) -> None:
+    heavy = {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 10.0, "bodies": 0, "surface": surface}
+    scene = Scene(with_parameters(**heavy))
+    before, square = scene.sum.significant_height, scene.make_tile().significant_height
+    run(scene, 60.0)
+    assert scene.readings().age == pytest.approx(70.0, abs=0.2)
+    aged = RadialSea(scene.waves(), scene.spill, 70.0)
+    assert scene.sum.significant_height == pytest.approx(aged.significant_height, rel=1e-3)
+    assert scene.sum.significant_height < 0.995 * before
+    scene.frame()
+    assert scene.tile is not None
+    assert scene.tile.significant_height < 0.995 * square
+    scene.set_params(with_parameters(**{**heavy, "exposure": 20.0}))
+    assert scene.readings().age == 20.0
+    still = Scene(with_parameters(**heavy, ageing=False))
+    assert run(still, 5.0).readings().age == 10.0
+
+
+def write_boat(path: Path, *, closed: bool = True) -> Path:
+    """An STL of a wedge, 2 m long, 1 m wide, 0.5 m deep; without its stern unless closed."""
+    corners = np.array([[-1, -0.5, 0], [-1, 0.5, 0], [1, 0, 0], [-1, -0.5, -0.5], [-1, 0.5, -0.5], [1, 0, -0.5]], float)
+    faces = [(0, 2, 1), (3, 4, 5), (0, 3, 5), (0, 5, 2), (1, 2, 5), (1, 5, 4), (0, 1, 4), (0, 4, 3)]
+    lines = ["solid boat"]
+    for face in faces[: None if closed else 6]:
+        lines += ["facet normal 0 0 0", "outer loop"]
+        lines += ["vertex {} {} {}".format(*corners[v]) for v in face]
+        lines += ["endloop", "endfacet"]
+    path.write_text("\n".join([*lines, "endsolid boat"]))
+    return path
+
+
+def test_a_hull_from_a_file_floats_besides_at_the_draft_of_the_readout(tmp_path: Path) -> None:
+    path = write_boat(tmp_path / "boat.stl")
+    scene = Scene(dataclasses.replace(with_parameters(**CALM, spill="layer", thickness=0.1), hull=str(path)))
+    run(scene, 90.0)
+    reading = scene.readings().readings[-1]
+    assert reading.kind == "hull"
+    prism = 450.0 * 0.5  # [kg/m2] over its waterplane, which is the same at every draft
+    rho = scene.spill.oil.density
+    assert reading.theory.draft == pytest.approx(0.1 + (prism - rho * 0.1) / 1025.0, abs=1e-9)
+    picture = scene.frame()
+    assert picture.kinds[-1] == "hull"
+    assert picture.own is not None
+    assert len(picture.positions) == 4
+    scene.set_params(dataclasses.replace(scene.params, bodies=1))
+    assert scene.crowd.kinds == ["buoy_red", "hull"]
+
+
+def test_a_mesh_that_is_not_closed_ends_the_command_with_one_line(tmp_path: Path, capsys) -> None:
+    path = write_boat(tmp_path / "open.stl", closed=False)
+    out = ["--seconds", "1", "--out", str(tmp_path / "a.npz"), "--hull"]
+    assert main(["run", "radial", *out, str(path)]) == 2
+    said = capsys.readouterr().err
+    assert "closed" in said
+    assert said.count("\n") == 1
+    assert main(["run", "radial", *out, str(tmp_path / "none.stl")]) == 2
+    assert main(["run", "rope", *out, str(write_boat(tmp_path / "boat.stl"))]) == 2
+    assert "radial" in capsys.readouterr().err
+    assert main(["run", "radial", *out, str(tmp_path / "boat.stl")]) == 0
+
+
+def test_plot_rows_are_numbers_with_fewer_bodies_than_curves():
+    scene = Scene(Params(bodies=1, plot_draft=True))
+    scene.take_plot_rows()
+    scene.advance(20)
+    rows = scene.take_plot_rows()
+    assert rows
+    assert np.isfinite(rows).all()

@@ -1,0 +1,199 @@
+"""What a hostile page or program can say to the server, and what becomes of it."""
+
+import asyncio
+import http.client
+import math
+import random
+import socket
+from collections.abc import Coroutine
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+import viser
+import websockets
+from websockets.asyncio.client import connect
+
+from app.server.guard import allowed_value, is_bounded, is_own_origin, open_server
+from app.server.viewer import Viewer
+
+
+@pytest.mark.parametrize(
+    ("origin", "host", "bound", "own"),
+    [
+        (None, "localhost:8080", "127.0.0.1", True),
+        ("http://localhost:8080", "localhost:8080", "127.0.0.1", True),
+        ("http://127.0.0.1:8080", "127.0.0.1:8080", "127.0.0.1", True),
+        ("http://[::1]:8080", "[::1]:8080", "::1", True),
+        ("http://evil.example", "localhost:8080", "127.0.0.1", False),
+        ("http://localhost:9999", "localhost:8080", "127.0.0.1", False),
+        ("null", "localhost:8080", "127.0.0.1", False),
+        ("file://", "localhost:8080", "127.0.0.1", False),
+        # A name of someone else's that resolves to this machine.
+        ("http://evil.example:8080", "evil.example:8080", "127.0.0.1", False),
+        ("http://192.0.2.7:8080", "192.0.2.7:8080", "0.0.0.0", True),
+        ("http://192.0.2.7:8080", "192.0.2.7:8080", "127.0.0.1", False),
+    ],
+)
+def test_only_the_page_itself_is_its_own_origin(origin: str | None, host: str, bound: str, own: bool) -> None:
+    assert is_own_origin(origin, host, bound) is own
+
+
+async def say(port: int, messages: list[dict[str, Any]], origin: str | None = None) -> int:
+    """Connect as a client of the right version and send messages; how often the server cut the connection.
+
+    It does so at a message that cannot be decoded. The next message then goes out on a new one.
+    """
+    address = f"ws://127.0.0.1:{port}"
+    protocol = websockets.Subprotocol(f"viser-v{viser.__version__}")
+    waiting = list(reversed(messages))
+    cuts = 0
+    while True:
+        async with connect(address, origin=origin, subprotocols=[protocol], max_size=None, max_queue=None) as client:
+            try:
+                while waiting:
+                    await client.send(msgspec.msgpack.encode(waiting[-1]))
+                    waiting.pop()
+                    await asyncio.sleep(0.001)
+                await asyncio.sleep(0.3)
+                return cuts
+            except websockets.exceptions.ConnectionClosed:
+                cuts += 1
+
+
+def talk(words: Coroutine[Any, Any, Any]) -> Any:
+    """Run a conversation on a loop of its own: the browser tests leave one running on this thread."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(asyncio.run, words).result()
+
+
+def test_a_foreign_page_is_refused(lab: Viewer) -> None:
+    with pytest.raises(websockets.exceptions.InvalidStatus) as refusal:
+        talk(say(lab.port, [], "http://evil.example"))
+    assert refusal.value.response.status_code == 403
+
+
+def test_the_page_itself_is_let_in(lab: Viewer) -> None:
+    talk(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
+
+
+def test_the_page_is_served(lab: Viewer) -> None:
+    connection = http.client.HTTPConnection("127.0.0.1", lab.port)
+    connection.request("GET", "/")
+    assert connection.getresponse().status == 200
+
+
+def hostile_value(rng: random.Random) -> Any:
+    return rng.choice(
+        [
+            math.nan,
+            math.inf,
+            -math.inf,
+            1e300,
+            -1e300,
+            rng.uniform(-1e9, 1e9),
+            2**60,
+            -1,
+            0,
+            True,
+            None,
+            "",
+            "explicit_euler",
+            "__import__('os')",
+            "x" * 5000,
+            [],
+            [math.nan],
+            [1e9],
+            [1, 2, 3],
+            {"a": 1},
+            b"\x00\xff",
+        ]
+    )
+
+
+def hostile_message(rng: random.Random, uuids: list[str]) -> dict[str, Any]:
+    vector = [hostile_value(rng) for _ in range(3)]
+    number = [rng.choice([math.nan, math.inf, 1e300, -1e30, 0.0]) for _ in range(4)]
+    uuid = rng.choice([*uuids, "no-such-handle"])
+    field = rng.choice(["value", "value", "value", "visible", "min", "options", "_order", "__class__"])
+    node = rng.choice(["/root_gizmo", "/points", "/rope", "/nowhere"])
+    return rng.choice(
+        [
+            {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {field: hostile_value(rng)}},
+            {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {field: hostile_value(rng)}},
+            {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {field: hostile_value(rng)}},
+            {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {}},
+            {"type": "TransformControlsUpdateMessage", "name": node, "wxyz": number, "position": number[:3]},
+            {"type": "TransformControlsUpdateMessage", "name": node, "wxyz": [*vector, 0], "position": vector},
+            {
+                "type": "SceneNodeDragMessage", "phase": rng.choice(["start", "update", "end"]), "name": "/points",
+                "instance_index": rng.choice([0, 5, -7, 10**9, None]), "start_position": number[:3],
+                "start_screen_pos": number[:2], "end_position": rng.choice([number[:3], [9e5, 0.0, 0.0], [0.1] * 3]),
+                "end_screen_pos": number[:2], "button": "left", "modifier": None, "owner": "",
+            },
+            {"type": "ShareUrlRequest"},
+            {"type": "ShareUrlDisconnect"},
+            {"type": "RunJavascriptMessage", "source": "alert(1)"},
+            {
+                "type": "FileTransferStartUpload", "source_component_uuid": uuid, "transfer_uuid": "t",
+                "filename": "../../x", "mime_type": "x", "part_count": 1, "size_bytes": 10**12,
+            },
+            {"type": "CommandTriggerMessage", "uuid": uuid},
+        ]
+    )  # fmt: skip
+
+
+def test_2000_hostile_messages_leave_the_server_running_and_the_state_finite(lab: Viewer) -> None:
+    rng = random.Random(2)
+    uuids = list(lab.server.gui._gui_input_handle_from_uuid)
+    messages = [hostile_message(rng, uuids) for _ in range(2000)]
+    cuts = talk(say(lab.port, messages))
+    assert cuts < 500
+    assert sum(lab.screen.refused.values()) > 500
+    lab.loop.audience = lambda: 1
+    for _ in range(30):
+        lab.loop.tick(1 / 60)
+    assert np.isfinite(lab.scene.state.x).all() or lab.loop.halted
+    assert np.isfinite(lab.loop.latest.frame.points).all()
+    params = lab.panel.read()
+    for name, control in lab.panel.controls.items():
+        value = getattr(params, name)
+        if control.parameter.choices:
+            assert value in control.parameter.choices
+        elif not isinstance(value, bool):
+            assert control.parameter.low <= value <= control.parameter.high, name
+    assert lab.server._share_tunnel is None
+    talk(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
+
+
+def test_the_share_tunnel_has_no_handler(lab: Viewer) -> None:
+    handlers = {kind.__name__ for kind in lab.server._websock_server._incoming_handlers}
+    assert not any("Share" in name for name in handlers)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 1e7, [math.nan], {"k": [1, math.inf]}, "x" * 2000, object()])
+def test_unbounded_values_are_seen(value: Any) -> None:
+    assert not is_bounded(value)
+
+
+def test_gui_values_are_clamped_or_refused(lab: Viewer) -> None:
+    controls = lab.panel.controls
+    assert allowed_value(controls["gravity"].field, 1e9) == 100.0
+    assert allowed_value(controls["gravity"].field, -5) == 0.0
+    assert allowed_value(controls["gravity"].field, math.nan) is None
+    assert allowed_value(controls["gravity"].field, "9.81") is None
+    assert allowed_value(controls["integrator"].field, "rk4") == "rk4"
+    assert allowed_value(controls["integrator"].field, "rk5") is None
+    assert allowed_value(controls["floor"].field, 1) is None
+    assert allowed_value(controls["stiffness"].slider, [99.0]) == (9.0,)
+    assert allowed_value(controls["stiffness"].slider, [math.nan]) is None
+
+
+def test_a_busy_port_is_an_error_not_another_port() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        with pytest.raises(OSError, match=r"[Aa]ddress"):
+            open_server("127.0.0.1", taken.getsockname()[1])

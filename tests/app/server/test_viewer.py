@@ -1,0 +1,46 @@
+"""What the viewer's threads live through."""
+
+import dataclasses
+import time
+from typing import Any
+
+import pytest
+
+from app.messages import Grab, StepOnce
+from app.server.viewer import Viewer
+from tests.app.server.test_guard import talk
+
+
+def wait_for(condition: Any) -> None:
+    end = time.monotonic() + 60.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def test_a_picture_that_cannot_be_drawn_halts_the_run_once_and_the_threads_live(
+    lab: Viewer, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    def fail(picture: Any) -> None:
+        raise ValueError("no such colour")
+
+    monkeypatch.setattr(lab.view, "show", fail)
+    lab.commands.put(StepOnce())
+    wait_for(lambda: lab.loop.halted)
+    assert lab.loop.halted == "The picture could not be drawn, ValueError: no such colour"
+    wait_for(lambda: lab.shown == lab.loop.latest.serial)
+    assert all(thread.is_alive() for thread in lab.threads)
+    assert capsys.readouterr().err.count("Traceback") == 1
+
+
+def test_what_is_handed_over_is_not_held_back(lab: Viewer) -> None:
+    buffer = lab.server._websock_server.get_message_buffer()
+    assert "window_duration_sec" in {field.name for field in dataclasses.fields(buffer)}  # as viser names it
+    assert buffer.window_duration_sec == 0.0
+
+
+def test_a_browser_that_goes_lets_go_of_what_it_held(lab: Viewer) -> None:
+    lab.commands.put(Grab(5, (0.0, 0.0, 2.0)))
+    wait_for(lambda: lab.scene.held is not None)
+    talk(lab.let_go(None))  # type: ignore[arg-type]
+    wait_for(lambda: lab.scene.held is None)

@@ -1,0 +1,83 @@
+"""`springtide stability`, coarse."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from app.__main__ import main
+from app.experiments import pool
+from app.stability import command, drift, linear, rope
+from sim.springs import INTEGRATORS
+
+
+@pytest.fixture(scope="module")
+def maps() -> list[linear.LinearMap]:
+    return linear.measure(quick=True)
+
+
+def test_the_linear_maps_agree_with_theory_all_over(maps):
+    table = linear.rows(maps)
+    assert [row["integrator"] for row in table] == list(INTEGRATORS)
+    for row in table:
+        assert row["disagree"] == 0, row
+        assert row["limit off at most [%]"] is None or row["limit off at most [%]"] < 2.0, row
+        unlimited = np.isinf(INTEGRATORS[row["integrator"]].limit(0.5))
+        assert (row["grow"] == 0) == unlimited
+
+
+def test_a_wrong_limit_is_noticed(maps):
+    found = next(m for m in maps if m.name == "rk4")
+    wrong = found._replace(theory=1.2 * found.theory)
+    assert linear.disagreements(wrong)[1] > 0
+    assert np.nanmax(linear.deviations(wrong)) > 0.1
+    nowhere = found._replace(theory=np.full_like(found.theory, np.inf))
+    assert linear.disagreements(nowhere)[0] == (found.rates > 0).sum()
+
+
+def test_methods_add_the_damping_that_they_do(maps):
+    by_name = {m.name: linear.extra_damping(m) for m in maps}
+    z = maps[0].steps
+    # Undamped implicit Euler loses ln(1 + z^2)/2 of the amplitude's logarithm a step.
+    np.testing.assert_allclose(by_name["implicit_euler"][0], np.log1p(z * z) / (2.0 * z), rtol=0.02)
+    assert np.abs(by_name["implicit_midpoint"][0]).max() == 0.0
+    assert by_name["explicit_euler"][0].max() < 0.0
+
+
+def test_symplectic_energies_are_bounded_and_the_others_drift():
+    names = ("symplectic_euler", "leapfrog", "implicit_euler", "explicit_euler")
+    drifts = [drift.Drift(name, INTEGRATORS[name].symplectic, *drift.course(name, 20_000)) for name in names]
+    courses = {row["integrator"]: row["course"] for row in drift.rows(drifts)}
+    assert courses == {
+        "symplectic_euler": "bounded",
+        "leapfrog": "bounded",
+        "implicit_euler": "comes to rest",
+        "explicit_euler": "diverged",
+    }
+
+
+def test_the_command_keeps_tables_and_figures(tmp_path, monkeypatch, capsys, maps):
+    monkeypatch.setattr(linear, "measure", lambda **_: maps[:2])
+    names = {name: INTEGRATORS[name] for name in ("leapfrog", "implicit_euler")}
+    monkeypatch.setattr(rope, "INTEGRATORS", names)
+    monkeypatch.setattr(drift, "INTEGRATORS", names)
+    assert command.run(quick=True, out=tmp_path, workers=1) == 0
+    assert "leapfrog" in capsys.readouterr().out
+    kept = {path.name for path in tmp_path.iterdir()}
+    for name in ("linear", "rope", "drift"):
+        assert {f"{name}.csv", f"{name}_curves.csv", f"{name}.svg", f"{name}.png"} <= kept
+    with (tmp_path / "rope.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert rows[0]["integrator"] == "leapfrog"
+    assert float(rows[0]["step off, median [%]"]) < 2.0
+
+
+def test_work_is_spread_in_order():
+    assert pool.spread(divmod, [(7, 2), (9, 4)], "division", workers=1) == [(3, 1), (2, 1)]
+    assert pool.spread(divmod, [(7, 2), (9, 4)], "division", workers=2) == [(3, 1), (2, 1)]
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert main(["stability", "--quick", "--out", str(tmp_path / "file" / "inner")]) == 2
+    assert "--out" in capsys.readouterr().err

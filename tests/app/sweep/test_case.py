@@ -1,0 +1,113 @@
+"""One case: measured when asked, diverged to the step, failed without harm."""
+
+import dataclasses
+import math
+
+import pytest
+
+import app.scenes.rope.scene
+from app.scenes import NAMES, scene_named
+from app.scenes.measures import measures_named, plotted
+from app.sweep.case import DIVERGED, FAILED, FINISHED, run_case
+from sim.floating import Hull, equilibrium_draft
+from sim.parameters import parameters_of
+from sim.springs import simulate
+from sim.springs.statics import hanging_chain
+
+SMALL = {
+    "rope": {"plot_energy": True, "plot_tip": True},
+    "cloth": {"rows": 6, "cols": 6, "plot_energy": True, "plot_strain": True},
+    "phillips": {"size": "64", "mesh": "32"},
+    "radial": {"wave_count": 16, "particles": 100},
+}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_scene_gives_labelled_numbers_and_none_bears_the_name_of_a_parameter(name):
+    outcome = run_case(name, SMALL[name], (0.0, 0.1))
+    assert (outcome.end, outcome.message) == (FINISHED, "")
+    assert all(len(values) == 2 for values in outcome.measures.values())
+    assert len([v for v in outcome.measures.values() if math.isfinite(v[-1])]) >= 4
+    assert outcome.measures.keys() == outcome.labels.keys()
+    assert not outcome.measures.keys() & parameters_of(scene_named(name).Params).keys()
+    assert not outcome.measures.keys() & {"time", "case", "end", "message", "diverged_at", "run_time"}
+    assert all(meaning for _, meaning in outcome.labels.values())
+
+
+def test_a_rope_that_has_come_to_rest_hangs_as_statics_say():
+    values = {"time_step": 5e-3, "drag": 20.0, "damping": 50.0, "floor": False, "plot_energy": True}
+    found = run_case("rope", values, (60.0,)).measures
+    net = app.scenes.rope.scene.build(app.scenes.rope.scene.Params(**values))
+    assert found["tip_height"][0] == pytest.approx(hanging_chain(net).x[-1, 2], abs=1e-6)
+    assert found["kinetic_energy"][0] < 1e-9
+
+
+def test_the_rope_of_a_case_is_the_rope_of_the_library():
+    found = run_case("rope", {"time_step": 1e-3, "floor": False}, (0.5, 1.0)).measures["tip_height"]
+    net = app.scenes.rope.scene.build(app.scenes.rope.scene.Params(floor=False))
+    run = simulate(net, "leapfrog", 1e-3, 1.0, 3)
+    assert found == pytest.approx(run.x[1:, -1, 2], abs=1e-12)
+
+
+def test_a_divergence_is_dated_to_the_step_and_what_came_before_it_is_kept():
+    values = {"integrator": "explicit_euler", "time_step": 0.02, "floor": False}
+    outcome = run_case("rope", values, (0.0, 0.2, 100.0))
+    assert outcome.end == DIVERGED
+    assert "explicit_euler" in outcome.message
+    tips = outcome.measures["tip_height"]
+    assert math.isfinite(tips[1])
+    assert math.isnan(tips[2])
+    # It holds until then, and does not a step later.
+    assert run_case("rope", values, (outcome.diverged_at,)).end == FINISHED
+    assert run_case("rope", values, (outcome.diverged_at + 0.02,)).end == DIVERGED
+
+
+def test_drafts_are_archimedes():
+    values = {"waves": False, "spill": "layer", "thickness": 0.3, "bodies": 3, "density": 500.0, "size": 1.0}
+    found = run_case("radial", values, (2.0,)).measures
+    from sim.ocean.fluids import fluids
+
+    oil = fluids()["Alaska North Slope 2002"].density
+    water = found["box_draft_at_rest"][0]
+    draft = equilibrium_draft(Hull.box(1.2, 1.2, 0.7), 500.0, layers=[(oil, 0.3), (1025.0, math.inf)])
+    assert water == pytest.approx(draft, abs=2e-3)
+    assert found["box_mean_draft"][0] == pytest.approx(water, abs=1e-3)
+
+
+def test_bodies_that_are_not_there_have_no_draft():
+    found = run_case("radial", {"bodies": 1, "waves": False}, (0.1,)).measures
+    assert math.isfinite(found["red_buoy_draft"][0])
+    assert math.isnan(found["box_draft"][0])
+
+
+def test_what_a_scene_raises_is_the_outcome(monkeypatch):
+    def burst(self, steps):
+        raise MemoryError("no room for it")
+
+    monkeypatch.setattr(app.scenes.rope.scene.Scene, "advance", burst)
+    outcome = run_case("rope", {}, (0.0, 1.0))
+    assert outcome.end == FAILED
+    assert outcome.message == "MemoryError: no room for it"
+    assert math.isfinite(outcome.measures["tip_height"][0])
+    assert math.isnan(outcome.measures["tip_height"][1])
+
+
+def test_a_scene_without_measures_gives_its_plot_rows():
+    scene = scene_named("cloth")
+    assert measures_named("cloth") is None
+    row = (0.5, *range(len(scene.SERIES)))
+    found = plotted(scene, row)
+    assert found["gravity_energy"] == (2, "J", "Energy: gravity")
+    assert found["largest_strain"].unit == "%"
+    assert all(math.isnan(measure.value) for measure in plotted(scene, ()).values())
+
+
+def test_an_integrator_that_would_be_replaced_is_a_failed_case(monkeypatch):
+    @dataclasses.dataclass
+    class Stub:
+        params: object
+        note: str = "pefrl takes no damping, so leapfrog runs instead"
+
+    monkeypatch.setattr(app.scenes.rope.scene, "Scene", Stub)
+    outcome = run_case("rope", {}, (1.0,))
+    assert (outcome.end, outcome.message) == (FAILED, Stub.note)

@@ -1,0 +1,135 @@
+"""The radial scene in a real browser: every preset as water, a buoy dragged under, oil poured on."""
+
+from typing import Any
+
+import numpy as np
+
+from app.messages import Pause, Play, Reset
+from app.scenes.radial_sea.parameters import PRESETS
+from app.server.viewer import Viewer
+from tests.browser.conftest import Tab
+from tests.browser.test_rope import pixel
+
+SCENE = "radial"
+
+
+def drawn(lab: Viewer) -> bool:
+    """The sea is there, as water, and moves."""
+    return lab.view.water is not None and lab.view.water.alive is True and lab.scene.time > 0.3
+
+
+def load(lab: Viewer, **changes: Any) -> None:
+    """Set parameters as the panel would."""
+    for name, value in changes.items():
+        lab.panel.controls[name].take(value)
+
+
+def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
+    lab.panel.load("Burning rig")
+    tab = open_tab(lab.port, width=420, height=260, shaded=True)
+    tab.wait(lambda: drawn(lab))
+    tab.wait(lambda: lab.view.flames is not None and lab.view.flames.handle.visible)
+    tab.wait(lambda: lab.view.look.slick is not None and lab.view.look.slick.radius > 3.0)
+    # The look's last six rows are the slick's four and the window's two.
+    tab.wait(lambda: tab.vertices("/sea/water_look")[-6, 2] > 3.0)
+    assert tab.errors == []
+
+
+def test_every_preset_is_drawn_as_water_without_console_errors(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    for preset in PRESETS:
+        lab.panel.load(preset)
+        tab.wait(lambda: lab.scene.params == lab.panel.read())
+        tab.wait(lambda: drawn(lab) and len(tab.vertices("/sea")) == len(lab.scene.grid))
+        first = tab.vertices("/sea")
+        tab.wait(lambda first=first: np.abs(tab.vertices("/sea") - first).max() > 0.02)
+        assert np.isfinite(tab.vertices("/sea")).all()
+        assert lab.loop.halted == "", preset
+        assert tab.errors == [], preset
+
+
+def test_a_window_shows_the_interface_and_the_camera_goes_along(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    load(lab, spill="layer", thickness=0.4, section=True, follow="window", rings=32, spokes=32, bodies=1)
+    lab.loop.commands.put(Reset())
+    tab.wait(lambda: drawn(lab))
+    tab.wait(lambda: len(tab.vertices("/section")) > 0)
+    tab.wait(lambda: lab.view.walls.mesh.alive is True)
+    n = (len(tab.vertices("/section")) - 1) // 4
+
+    def thickness() -> float:
+        walls = tab.vertices("/section")
+        return float((walls[:n, 2] - walls[n : 2 * n, 2]).mean())
+
+    tab.wait(lambda: abs(thickness() - 0.4) < 0.05)
+
+    def beside() -> float:
+        """How far the page's camera is from where it belongs beside the buoy [m]."""
+        (client,) = lab.server.get_clients().values()
+        wanted = lab.scene.crowd.fleet.position[0, :2] + lab.view.chase.offset[0, :2]
+        return float(np.abs(np.asarray(client.camera.position)[:2] - wanted).max())
+
+    lab.loop.commands.put(Pause())
+    tab.wait(lambda: not lab.loop.running)
+    lab.scene.crowd.fleet.velocity[0] = (3.0, 2.0, 0.0)
+    lab.loop.commands.put(Play())
+    tab.wait(lambda: np.hypot(*(lab.scene.crowd.fleet.position[0, :2] - lab.scene.crowd.home[0])) > 1.0)
+    tab.wait(lambda: beside() < 0.5)
+    assert tab.errors == []
+
+
+def test_a_buoy_dragged_under_bobs_back(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    load(lab, waves=False, rig=False, rings=32, spokes=32)
+    lab.loop.commands.put(Reset())
+    tab.wait(lambda: drawn(lab))
+    lab.loop.commands.put(Pause())
+    tab.page.wait_for_timeout(500)
+    rest = lab.scene.crowd.fleet.position[0].copy()
+    start = pixel(lab, rest)
+    tab.page.mouse.move(*start)
+    lab.loop.commands.put(Play())
+    tab.drag(start, (start[0], start[1] + 110), pause=100)
+    tab.wait(lambda: bool(lab.scene.crowd.held))
+    tab.wait(lambda: lab.scene.crowd.fleet.position[0, 2] < rest[2] - 0.15)
+    tab.release()
+    tab.wait(lambda: not lab.scene.crowd.held)
+    tab.wait(lambda: abs(lab.scene.crowd.fleet.position[0, 2] - rest[2]) < 0.02)
+    assert tab.errors == []
+
+
+def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    load(lab, waves=False, rig=False, rings=32, spokes=32, ripples=False)
+    lab.loop.commands.put(Reset())
+    tab.wait(lambda: drawn(lab))
+
+    def brightness() -> float:
+        """Of the colours, deep and scattered, that the page holds of the water."""
+        return float(tab.vertices("/sea/water_look")[:2].sum())
+
+    tab.wait(lambda: len(tab.vertices("/sea/water_look")) > 0)
+    clear = brightness()
+    load(lab, spill="layer", thickness=0.3, speed=4.0)
+    tab.wait(lambda: brightness() < 0.3 * clear)
+    theory = lab.scene.readings().readings[0].theory
+    tab.wait(lambda: np.abs(lab.scene.crowd.draft - theory.draft).max() < 2e-3)
+    assert (lab.scene.crowd.draft > theory.in_water + 0.03).all()
+    tab.wait(lambda: tab.page.get_by_text(f"{theory.draft:.3f}").count() > 0)
+    assert tab.errors == []
+
+
+def test_hostile_values_clamp(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.wait(lambda: drawn(lab))
+    lab.panel.controls["wind_speed"].take(1e30)
+    lab.panel.controls["bodies"].take(-5)
+    lab.panel.controls["oil"].take("<script>")
+    field = tab.page.get_by_label("Wave count").first
+    field.fill("1000000000")
+    field.press("Enter")
+    tab.wait(lambda: lab.scene.params.wave_count == 512)
+    params = lab.scene.params
+    assert (params.wind_speed, params.bodies, params.oil) == (25.0, 0, "Alaska North Slope 2002")
+    assert lab.loop.halted == ""
+    assert tab.errors == []

@@ -1,0 +1,128 @@
+"""The square sea in a real browser."""
+
+from typing import Any
+
+import numpy as np
+
+from app.messages import Pause, Play
+from app.scenes.square_sea.scene import Params
+from app.server.viewer import Viewer
+from tests.browser.conftest import Tab
+
+SCENE = "phillips"
+PARAMS = Params(size="64", mesh="32", length=64.0)  # a small sea, in place of the scene's own
+
+
+def set_parameters(viewer: Viewer, **values: Any) -> None:
+    """As a browser does it: through the controls of the panel."""
+    for name, value in values.items():
+        viewer.panel.controls[name].take(value)
+
+
+def dressed(lab: Viewer) -> bool:
+    water = lab.view.water
+    return water is not None and water.alive is True
+
+
+def heights(tab: Any) -> np.ndarray:
+    return tab.vertices("/sea")[:, 2]
+
+
+def test_the_water_is_patched_moves_and_leaves_no_console_errors(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port, width=420, height=260, shaded=True)
+    tab.wait(lambda: dressed(lab))
+    first = heights(tab)
+    assert len(first) == 33 * 33
+    tab.wait(lambda: np.abs(heights(tab) - first).max() > 0.1)
+    assert np.isfinite(tab.vertices("/sea")).all()
+    assert tab.errors == []
+
+
+def test_the_tile_closes_on_itself(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.wait(lambda: dressed(lab))
+    lab.loop.commands.put(Pause())
+    tab.wait(lambda: lab.loop.running is False)
+    tab.page.wait_for_timeout(500)
+    mesh = tab.vertices("/sea").reshape(33, 33, 3)
+    np.testing.assert_allclose(mesh[32] - mesh[0], np.tile([64.0, 0.0, 0.0], (33, 1)), atol=1e-4)
+    np.testing.assert_allclose(mesh[:, 32] - mesh[:, 0], np.tile([0.0, 64.0, 0.0], (33, 1)), atol=1e-4)
+
+
+def test_the_wind_changes_the_sea_and_a_calm_flattens_it(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.wait(lambda: dressed(lab))
+    rough = heights(tab).std()
+    set_parameters(lab, transition=0.2, wind_speed=2.0)
+    tab.wait(lambda: heights(tab).std() < 0.3 * rough)
+    assert tab.errors == []
+
+
+def test_rain_draws_drops_and_makes_rings(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.wait(lambda: dressed(lab))
+    set_parameters(lab, length=32.0, size="128", transition=0.0, wind_speed=0.0, rain=50.0, drops=400)
+    tab.wait(lambda: len(tab.vertices("/rain/drops")) == 4 * 400)
+    # Without wind there is no other wave.
+    tab.wait(lambda: lab.scene.counts["rings"] > 20 and heights(tab).std() > 1e-4)
+    set_parameters(lab, rain=0.0)
+    tab.wait(lambda: len(tab.vertices("/rain/drops")) == 0)
+    assert tab.errors == []
+
+
+def test_sizes_change_live(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    for size, mesh in (("512", "64"), ("64", "32"), ("512", "64")):
+        set_parameters(lab, size=size, mesh=mesh)
+        tab.wait(lambda n=int(mesh) + 1: len(heights(tab)) == n * n)
+        tab.wait(lambda: dressed(lab))
+    assert tab.errors == []
+
+
+def test_a_click_on_the_water_places_the_probe(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.wait(lambda: dressed(lab))
+    assert lab.loop.latest.frame.probe is None
+    tab.page.mouse.click(300, 480)
+    x, y, z = tab.wait(lambda: lab.loop.latest.frame.probe)
+    (client,) = lab.server.get_clients().values()
+    assert np.hypot(x - client.camera.position[0], y - client.camera.position[1]) < 64.0
+    assert np.isfinite(z)
+    set_parameters(lab, plot_probe=True)
+    tab.page.wait_for_selector(".uplot", state="attached", timeout=120_000)  # too small a window to show it
+    assert tab.errors == []
+
+
+def test_a_longer_tile_takes_the_camera_along(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.wait(lambda: dressed(lab))
+    (client,) = lab.server.get_clients().values()
+    eye, target = np.array(client.camera.position), np.array(client.camera.look_at)
+    set_parameters(lab, length=128.0)
+    along = np.array([32.0, 32.0, 0.0])  # from the middle of the one to that of the other
+    tab.wait(lambda: np.allclose(client.camera.position, eye + along, atol=1e-2))
+    np.testing.assert_allclose(client.camera.look_at, target + along, atol=1e-2)
+
+
+def test_hostile_parameters_are_bounded(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.wait(lambda: dressed(lab))
+    set_parameters(lab, size="100000", wind_speed=float("nan"), depth=-5.0, deep=False, length=1e300)
+    tab.wait(lambda: lab.scene.params.length == 4096.0)
+    params = lab.scene.params
+    assert (params.size, params.depth) == (Params().size, 0.1)
+    assert params.wind_speed == Params().wind_speed
+    lab.loop.commands.put(Play())
+    tab.wait(lambda: np.isfinite(tab.vertices("/sea")).all())
+    assert lab.loop.halted == ""
+
+
+def test_the_rope_can_follow_the_sea(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.wait(lambda: dressed(lab))
+    tab.follow(lab, "rope")
+    tab.wait(lambda: len(tab.vertices("/rope")) > 0)
+    assert len(tab.vertices("/sea")) == 0
+    tab.follow(lab, SCENE, PARAMS)
+    tab.wait(lambda: len(heights(tab)) == 33 * 33)
+    assert tab.errors == []

@@ -1,0 +1,311 @@
+"""Bodies in motion: settling, periods, waves, drift, energy, the limit of stability."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sim.floating import (
+    Body,
+    Hull,
+    Laws,
+    equilibrium_draft,
+    heave_period,
+    lowest,
+    make_fleet,
+    make_water,
+    roll_period,
+    step,
+    still_water,
+    vertices,
+)
+from sim.floating.motion import stiffest
+from tests.naive_floating import lumpy, naive_step, quaternion
+
+FRAME_INTERVAL = 1 / 60
+WATER = [(1025.0, math.inf)]
+SPILL = [(850.0, 0.2), (1025.0, math.inf)]
+FREE = Laws(linear_drag=0.0, quadratic_drag=0.0)
+
+
+def afloat(hull, density, layers, above=0.0, **more):
+    """A body upright at its equilibrium, or `above` it [m]."""
+    lift = -hull.extents[2, 0] - equilibrium_draft(hull, density, layers) + above
+    return Body(hull, density, (0.0, 0.0, lift), **more)
+
+
+def period_of(times, values):
+    """Mean time between upward crossings of zero, by linear interpolation."""
+    up = np.flatnonzero((values[:-1] < 0) & (values[1:] >= 0))
+    crossing = times[up] + (times[up + 1] - times[up]) * -values[up] / (values[up + 1] - values[up])
+    return np.diff(crossing).mean()
+
+
+@pytest.mark.parametrize("layers", [WATER, SPILL, [(850.0, 3.0), (1025.0, math.inf)]])
+def test_what_is_dropped_settles_at_its_draft(layers):
+    """Stable upright hulls dropped from above, tilted a little, in one fluid, at the interface and in oil only."""
+    raft, buoy, ball = Hull.box(1.0, 1.5, 0.4), Hull.cylinder(0.5, 0.4), Hull.sphere(0.5)
+    mesh = Hull.from_arrays(Hull.sphere(0.5).vertices * [1.5, 1.2, 0.5], Hull.sphere(0.5).faces)
+    bodies = [
+        Body(hull, density, (10.0 * i, 0.0, 0.6), (1.0, 0.05, 0.08, 0.3))
+        for i, (hull, density) in enumerate([(raft, 400.0), (buoy, 300.0), (ball, 420.0), (mesh, 600.0)])
+    ]
+    fleet = make_fleet(bodies)
+    water = still_water(fleet, layers)
+    for _ in range(120 * 60):
+        step(fleet, water, FRAME_INTERVAL)
+    expected = [equilibrium_draft(body.hull, body.density, layers) for body in bodies]
+    assert -lowest(fleet) == pytest.approx(expected, abs=1e-4)
+    assert np.abs(fleet.velocity).max() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("hull", "density", "period"),
+    [
+        # m + A33 and C33 from the closed forms of ocean.md 3.8 and the plate of DNV-RP-C205
+        (Hull.sphere(0.5), 512.5, 1.419),
+        (Hull.cylinder(0.5, 4.0), 512.5, 2.984),
+        (
+            Hull.box(2.0, 2.0, 1.0),
+            410.0,
+            2 * math.pi * math.sqrt((0.4 * 4 + 0.579 * math.pi / 8 * 8) / (9.81 * 4)),
+        ),
+    ],
+)
+def test_heave_period_is_that_of_theory(hull, density, period):
+    fleet = make_fleet([afloat(hull, density, WATER, above=0.01)])
+    rest = afloat(hull, density, WATER).position[2]
+    water = still_water(fleet, WATER)
+    z = []
+    for _ in range(round(5 * period / FRAME_INTERVAL)):
+        step(fleet, water, FRAME_INTERVAL, FREE)
+        z.append(fleet.position[0, 2] - rest)
+    measured = period_of(FRAME_INTERVAL * np.arange(len(z)), np.array(z))
+    assert measured == pytest.approx(period, rel=0.01)
+    assert measured == pytest.approx(heave_period(hull, density, WATER), rel=0.01)
+
+
+@pytest.mark.parametrize("layers", [WATER, SPILL])
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("added", [0.0, 1.0])
+def test_roll_period_is_that_of_the_metacentric_height(layers, axis, added):
+    hull, density = Hull.box(3.0, 2.0, 0.6), 400.0
+    tilt = [math.cos(0.01), 0.0, 0.0, 0.0]
+    tilt[1 + axis] = math.sin(0.01)
+    fleet = make_fleet([afloat(hull, density, layers, rotation=tuple(tilt))])
+    water = still_water(fleet, layers)
+    laws = FREE._replace(added_mass=added)
+    expected = roll_period(hull, density, layers, added=added, axis=axis)
+    angle = []
+    for _ in range(round(6 * expected / FRAME_INTERVAL)):
+        step(fleet, water, FRAME_INTERVAL, laws)
+        angle.append(2 * fleet.rotation[0, 1 + axis])
+    assert period_of(FRAME_INTERVAL * np.arange(len(angle)), np.array(angle)) == pytest.approx(expected, rel=0.01)
+
+
+def test_heave_between_two_fluids_has_the_period_of_both_waterplanes():
+    hull = Hull.cylinder(1.0, 0.8)
+    fleet = make_fleet([afloat(hull, 500.0, SPILL, above=0.01)])
+    rest = afloat(hull, 500.0, SPILL).position[2]
+    water = still_water(fleet, SPILL)
+    z = []
+    for _ in range(600):
+        step(fleet, water, FRAME_INTERVAL, FREE)
+        z.append(fleet.position[0, 2] - rest)
+    expected = heave_period(hull, 500.0, SPILL)
+    assert period_of(FRAME_INTERVAL * np.arange(600), np.array(z)) == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize("with_acceleration", [True, False])
+def test_a_small_hull_follows_a_long_wave(with_acceleration):
+    """Airy wave of 100 m and 0.5 m: heave and surge of the hull are those of the water, within 2 %.
+
+    Without the surface's acceleration the hull still follows, within (omega/omega_heave)^2.
+    """
+    k, amplitude = 2 * math.pi / 100, 0.5
+    omega = math.sqrt(9.81 * k)
+    hulls = [Hull.box(1.0, 1.0, 0.4), Hull.sphere(0.5), Hull.cylinder(0.5, 0.4)]
+    fleet = make_fleet([afloat(hull, 500.0, WATER)._replace(position=(20.0 * i, 0, 0)) for i, hull in enumerate(hulls)])
+    rest = np.array([afloat(hull, 500.0, WATER).position[2] for hull in hulls])
+    heave, wave, surge, orbit = [], [], [], []
+    for frame in range(60 * 90):
+        phase = k * fleet.position[:, 0] - omega * frame * FRAME_INTERVAL
+        eta = amplitude * np.cos(phase)
+        zero = np.zeros(3)
+        water = make_water(
+            fleet,
+            WATER,
+            eta,
+            slope=np.stack([-k * amplitude * np.sin(phase), zero], axis=1),
+            velocity=np.stack([omega * eta, zero, omega * amplitude * np.sin(phase)], axis=1),
+            acceleration=-(omega**2) * eta if with_acceleration else None,
+        )
+        step(fleet, water, FRAME_INTERVAL)
+        if frame > 60 * 30:
+            phase = k * fleet.position[:, 0] - omega * (frame + 1) * FRAME_INTERVAL
+            heave.append(fleet.position[:, 2] - rest)
+            wave.append(amplitude * np.cos(phase))
+            surge.append(fleet.velocity[:, 0].copy())
+            orbit.append(omega * amplitude * np.cos(phase))
+    response = np.std(heave, axis=0) / np.std(wave, axis=0)
+    lost = [(omega * heave_period(hull, 500.0, WATER) / 2 / math.pi) ** 2 for hull in hulls]
+    bound = 0.02 if with_acceleration else 0.02 + max(lost)
+    assert response == pytest.approx(np.ones(3), abs=bound)
+    if with_acceleration:
+        assert np.std(np.subtract(heave, wave), axis=0) / np.std(wave, axis=0) == pytest.approx(np.zeros(3), abs=0.02)
+    assert np.std(surge, axis=0) / np.std(orbit, axis=0) == pytest.approx(np.ones(3), abs=bound)
+
+
+def test_still_water_moves_nothing_in_an_hour():
+    """One simulated hour, hulls at rest where they float."""
+    hulls = [Hull.box(1.0, 1.5, 0.4), Hull.cylinder(0.5, 0.4), Hull.sphere(0.5)]
+    fleet = make_fleet([
+        afloat(hull, 400.0, SPILL)._replace(position=(5.0 * i, 0.0, afloat(hull, 400.0, SPILL).position[2]))
+        for i, hull in enumerate(hulls)
+    ])  # fmt: skip
+    water = still_water(fleet, SPILL)
+    for _ in range(3600 * 10):
+        step(fleet, water, 0.1)
+    assert fleet.position[:, 0] == pytest.approx([0, 5, 10], abs=1e-6)
+    assert fleet.position[:, 1] == pytest.approx(np.zeros(3), abs=1e-6)
+    assert np.abs(fleet.velocity).max() < 1e-7  # the sphere of triangles still rolls towards its lowest face
+    assert fleet.rotation[:2, 0] == pytest.approx(np.ones(2), abs=1e-9)
+
+
+def test_energy_of_undamped_heave_stays_bounded():
+    """A thousand periods of a box: the energy (m + A) v^2/2 + C z^2/2 stays within omega h of its start."""
+    hull, density = Hull.box(2.0, 2.0, 0.6), 500.0
+    fleet = make_fleet([afloat(hull, density, WATER, above=0.05)])
+    rest = afloat(hull, density, WATER).position[2]
+    water = still_water(fleet, WATER)
+    omega = 2 * math.pi / heave_period(hull, density, WATER)
+    energy = []
+    for _ in range(round(1000 * 2 * math.pi / omega / 0.05)):
+        step(fleet, water, 0.05, FREE, substeps=1)
+        energy.append(fleet.velocity[0, 2] ** 2 / 2 + omega**2 * (fleet.position[0, 2] - rest) ** 2 / 2)
+    assert np.ptp(energy) < 1.1 * omega * 0.05 * energy[0]
+    assert np.mean(energy[-1000:]) == pytest.approx(np.mean(energy[:1000]), rel=0.01)
+
+
+def test_undamped_rocking_stays_bounded():
+    """Tilted, spinning and bobbing at once for ten minutes without drag: speeds stay those of the first minute."""
+    hulls = [Hull.box(1.0, 1.5, 0.4), Hull.cylinder(0.5, 1.0), Hull.sphere(0.5)]
+    fleet = make_fleet([
+        Body(hull, 400.0, (9.0 * i, 0, 0.2), (1.0, 0.2, 0.1, 0.0), spin=(0.3, 0.2, 0.5)) for i, hull in enumerate(hulls)
+    ])  # fmt: skip
+    water = still_water(fleet, WATER)
+    speeds = []
+    for _ in range(600 * 60):
+        step(fleet, water, FRAME_INTERVAL, FREE)
+        speeds.append(np.abs(fleet.velocity[:, 2]) + np.abs(fleet.spin).max(axis=1))
+    speeds = np.array(speeds)
+    assert (speeds[-3600:].max(axis=0) < 1.5 * speeds[:3600].max(axis=0)).all()
+
+
+def test_the_step_is_stable_below_omega_h_of_two_and_not_above():
+    hull, density = Hull.box(2.0, 2.0, 0.6), 500.0
+    omega = 2 * math.pi / heave_period(hull, density, WATER)
+    for ratio, stable in ((1.95, True), (2.05, False)):
+        fleet = make_fleet([afloat(hull, density, WATER, above=1e-6)])
+        rest = afloat(hull, density, WATER).position[2]
+        water = still_water(fleet, WATER)
+        reach = 0.0
+        for _ in range(100):
+            step(fleet, water, ratio / omega, FREE, substeps=1)
+            reach = max(reach, abs(fleet.position[0, 2] - rest))
+        assert (reach < 1e-4) == stable
+
+
+@pytest.mark.parametrize("density", [10.0, 100.0, 1000.0, 20000.0])
+@pytest.mark.parametrize("size", [0.1, 1.0, 10.0])
+@pytest.mark.parametrize("gravity", [0.1, 9.81, 981.0])
+def test_the_bound_of_frequency_holds_over_all_parameters(density, size, gravity):
+    """The frequency of heave and of roll of every hull at every pose it may float in lies below `stiffest`."""
+    laws = Laws(gravity=gravity)
+    hulls = [Hull.box(size, size, size), Hull.box(size, size, size / 10), Hull.sphere(size / 2)]
+    hulls += [Hull.cylinder(size / 2, size), Hull.cylinder(size / 2, size / 10)]
+    fleet = make_fleet([Body(hull, density) for hull in hulls])
+    bound = stiffest(fleet, 1025.0, laws)
+    for hull, limit in zip(hulls, bound, strict=True):
+        for shortest in (heave_period(hull, density, WATER, gravity), roll_period(hull, density, WATER, gravity)):
+            assert 2 * math.pi / shortest <= limit
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_two_steps_match_the_naive_ones(seed):
+    """Two tilted fluids, flow and rise, all forces but the pull; random hull, pose and speeds."""
+    rng = np.random.default_rng(seed)
+    hull = [
+        Hull.box(*rng.uniform(0.3, 2.0, 3)),
+        Hull.cylinder(0.4, 1.1),
+        Hull.from_arrays(lumpy(rng, Hull.sphere(0.5, 2).vertices) * [1, 0.8, 0.6], Hull.sphere(0.5, 2).faces),
+        Hull.sphere(0.5, 2),
+    ][seed % 4]
+    position, rotation = np.append(rng.uniform(-2, 2, 2), rng.uniform(-0.2, 0.2)), quaternion(rng)
+    velocity, spin, flow, lift = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3), rng.normal()
+    slopes = rng.normal(0, 0.1, (2, 2))
+    laws = Laws(9.0, 0.4, 0.9, 0.8)
+    body = Body(hull, 600.0, tuple(position), tuple(rotation), tuple(velocity), tuple(spin))
+    fleet = make_fleet([body])
+    water = make_water(
+        fleet,
+        [(850.0, 0.3), (1025.0, math.inf)],
+        np.array([position[:2] @ slopes[0] + 0.2]),
+        slope=slopes[:1],
+        velocity=flow[None],
+        acceleration=np.array([lift]),
+        interface=np.array([position[:2] @ slopes[1] - 5.0 * (seed == 7) - 0.15]),
+        interface_slope=slopes[1:],
+    )
+    planes = (850.0, 0.2, slopes[0]), (1025.0, -5.0 * (seed == 7) - 0.15, slopes[1])
+    step(fleet, water, 0.02, laws, substeps=2)
+    state = (position, rotation, velocity, spin, None)
+    for middle in (0.005, 0.015):
+        rise = middle * np.array([flow[2] - flow[:2] @ slopes[0], 0.0])
+        risen = [(rho, height + up, slope) for (rho, height, slope), up in zip(planes, rise, strict=True)]
+        state = naive_step(hull, 600.0, state, *risen, flow, lift, laws, 0.01)
+    for value, wanted in zip(fleet[:5], state, strict=True):
+        assert value[0] == pytest.approx(wanted, abs=1e-7)
+
+
+def test_relief_of_a_plane_is_the_plane():
+    hulls = [Hull.box(1.0, 1.5, 0.4), Hull.sphere(0.5, 3)]
+    laws = Laws(added_mass=0.0)
+    fleets = [make_fleet([Body(h, 500.0, (3.0 * i, 0, 0)) for i, h in enumerate(hulls)]) for _ in range(2)]
+    place = vertices(fleets[0])
+    slope = np.array([[0.1, -0.05], [0.02, 0.2]])
+    centre = np.repeat(fleets[0].position[:, :2], [len(h.vertices) for h in hulls], axis=0)
+    tilt = np.repeat(slope, [len(h.vertices) for h in hulls], axis=0)
+    relief = ((place[:, :2] - centre) * tilt).sum(axis=1)
+    step(fleets[0], make_water(fleets[0], SPILL, np.zeros(2), slope=slope), FRAME_INTERVAL, laws, substeps=1)
+    bumpy = make_water(fleets[1], SPILL, np.zeros(2), relief=relief, interface_relief=relief)
+    step(fleets[1], bumpy, FRAME_INTERVAL, laws, substeps=1)
+    assert fleets[0].velocity == pytest.approx(fleets[1].velocity, abs=1e-12)
+    assert fleets[0].spin == pytest.approx(fleets[1].spin, abs=1e-12)
+
+
+def test_free_spin_keeps_its_angular_momentum():
+    """A box thrown in the air about its middle axis tumbles, its angular momentum stays."""
+    hull = Hull.box(0.3, 1.0, 2.0)
+    fleet = make_fleet([Body(hull, 500.0, (0, 0, 1e6), spin=(0.01, 5.0, 0.02))])
+    water = still_water(fleet, WATER)
+
+    def momentum():
+        from sim.floating.hydrostatics import rotation_matrix
+
+        turn = rotation_matrix(fleet.rotation[0])
+        return turn @ hull.inertia @ turn.T @ fleet.spin[0]
+
+    before = momentum()
+    seen = []
+    for _ in range(1200):
+        step(fleet, water, FRAME_INTERVAL)
+        seen.append(fleet.rotation[0].copy())
+    assert momentum() == pytest.approx(before, rel=1e-10)
+    assert np.ptp(np.array(seen)[:, 1]) > 0.5  # it did tumble
+
+
+def test_buoyancy_at_rest_is_the_weight():
+    fleet = make_fleet([afloat(Hull.box(1.0, 1.0, 0.3), 500.0, SPILL)])
+    step(fleet, still_water(fleet, SPILL), FRAME_INTERVAL)
+    assert fleet.buoyancy[0] == pytest.approx(fleet.mass[0] * 9.81, rel=1e-9)

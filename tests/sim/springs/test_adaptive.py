@@ -1,0 +1,133 @@
+"""Adaptive methods, and the methods that refuse what they cannot do."""
+
+import numpy as np
+import pytest
+from scipy.integrate._ivp import dop853_coefficients
+from scipy.integrate._ivp.rk import RK45
+
+from sim.springs import INTEGRATORS, rope, simulate
+from sim.springs.analysis.amplification import polynomial_of
+from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.integrators.embedded import dop853, dopri5, stages
+from sim.springs.integrators.embedded.errors import error_of
+from sim.springs.state import State, advance, energy
+from tests.sim.springs.reference import integrated
+
+ADAPTIVE = [name for name, record in INTEGRATORS.items() if record.adaptive]
+
+
+def test_the_coefficients_are_those_of_an_independent_source():
+    def lower(rows):
+        return np.array([[*row, *(0.0,) * (len(rows) - len(row))] for row in rows])
+
+    assert lower(dopri5.A)[:, :5] == pytest.approx(RK45.A, abs=1e-15)
+    assert np.array(dopri5.B) == pytest.approx(RK45.B, abs=1e-15)
+    assert np.abs(dopri5.E) == pytest.approx(np.abs(RK45.E), abs=1e-15)
+    assert lower(dop853.A) == pytest.approx(dop853_coefficients.A[:12, :12], abs=1e-15)
+    assert np.array(dop853.B) == pytest.approx(dop853_coefficients.B, abs=1e-15)
+    assert np.array(dop853.E5) == pytest.approx(dop853_coefficients.E5[:12], abs=1e-15)
+    assert np.array(dop853.E3) == pytest.approx(dop853_coefficients.E3[:12], abs=1e-15)
+
+
+@pytest.mark.parametrize(("module", "order"), [(dopri5, 5), (dop853, 8)])
+def test_the_stability_polynomial_is_the_exponential_s_to_the_order(module, order):
+    exact = np.cumprod([1.0, *(1.0 / i for i in range(1, order + 1))])
+    assert polynomial_of(module.A, module.B)[: order + 1] == pytest.approx(exact, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ADAPTIVE)
+def test_the_error_follows_the_tolerance(name):
+    net = rope(10)
+    fine = integrated(net, "dop853", 2.0, 2000)
+    evals, errors = [], []
+    for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
+        run = simulate(net, name, rtol=rtol, atol=1e-3 * rtol, duration=2.0, frames=2)
+        errors.append(np.abs(run.x[-1].T - fine.x[:, 0]).max())
+        evals.append(run.force_evals)
+        assert errors[-1] < 10.0 * rtol
+    assert errors == sorted(errors, reverse=True)
+    assert evals == sorted(evals)
+
+
+@pytest.mark.parametrize("name", ADAPTIVE)
+def test_frames_are_as_good_between_steps_as_at_their_ends(name):
+    net = rope(6)
+    run = simulate(net, name, rtol=1e-8, atol=1e-10, duration=1.0, frames=333)
+    truth = simulate(net, "dop853", step=1e-4, duration=1.0, frames=333)
+    assert np.abs(run.x - truth.x).max() < 1e-7
+    assert np.abs(run.v - truth.v).max() < 1e-6
+
+
+@pytest.mark.parametrize("points", [7, 200, 385])
+def test_a_bare_rope_s_blocks_change_nothing(points):
+    """Against the same step stage by stage, for one block, two, and five of which the last is cut."""
+    net = rope(points, length=0.1 * points, stiffness=2e4)
+    p, x = net.forces(1.0), net.x0.ravel() + 1e-3 * np.random.default_rng(0).standard_normal(net.x0.size)
+    v, start, found = 0.1 * np.sin(np.arange(x.size)), np.zeros(x.size), []
+    set_acceleration(x, v, 0.0, p, start)
+    for whole in (False, True):
+        room = stages.make_stages(dop853.METHOD, x, p)
+        room.k[: x.size] = start
+        xn, vn = np.zeros(x.size), np.zeros(x.size)
+        if whole:
+            stages.step_any(dop853.METHOD, x, v, 0.0, 1e-3, p, room, xn, vn, np.zeros(2), False)
+        else:
+            stages.step_bare_rope(dop853.METHOD, x, v, 1e-3, p, room, xn, vn)
+        error = error_of(dop853.METHOD, x, v, 1e-3, room, xn, vn, 1e-6, 1e-9)
+        found.append(np.concatenate([xn, vn, room.k[12 * room.stride :][: x.size], [error]]))
+    assert found[0] == pytest.approx(found[1], rel=1e-13, abs=1e-13)
+
+
+@pytest.mark.parametrize("name", ADAPTIVE)
+def test_few_steps_are_taken_in_vain_where_stability_limits_them(name):
+    net = rope(40, stiffness=2e5)
+    x, v = net.x0.ravel().copy(), np.zeros(net.x0.size)
+    march = INTEGRATORS[name].march
+    assert march is not None
+    kept, times = np.zeros((2, x.size)), np.array([0.0, 1.0])
+    evals, steps, _, _ = march(x, v, times, 1e-5, 1e-7, net.forces(1.0), False, kept, kept.copy(), np.zeros((2, 2)))
+    assert evals - 1 <= 1.05 * steps * INTEGRATORS[name].evals
+
+
+def test_dense_output_costs_nothing():
+    few, many = (simulate(rope(6), "dopri5", rtol=1e-6, duration=1.0, frames=frames) for frames in (2, 1001))
+    assert few.force_evals == many.force_evals
+
+
+@pytest.mark.parametrize("name", ADAPTIVE)
+def test_the_ledger_closes_within_the_tolerance(name):
+    run = simulate(rope(8), name, rtol=1e-9, atol=1e-12, duration=1.0, frames=11, with_ledger=True)
+    balance = run.energy[:, :4].sum(axis=1) + run.energy[:, 4] - run.energy[:, 5]
+    assert np.abs(balance - balance[0]).max() < 1e-5
+
+
+def test_a_tolerance_is_for_adaptive_methods_and_without_a_step():
+    with pytest.raises(ValueError, match=r"^rtol: .* adaptive methods only"):
+        simulate(rope(), "rk4", rtol=1e-6)
+    with pytest.raises(ValueError, match=r"^atol: .* the step is given"):
+        simulate(rope(), "dopri5", 1e-3, atol=1e-6)
+    for bad in (0.0, -1.0, float("nan"), "1", 2.0):
+        with pytest.raises(ValueError, match=r"^rtol: "):
+            simulate(rope(), "dopri5", rtol=bad)  # type: ignore[arg-type]
+
+
+def test_pefrl_refuses_damping():
+    for net in (rope(), rope(damping=0.0), rope(damping=0.0, drag=0.0, floor=-1.0)):
+        with pytest.raises(ValueError, match=r"^integrator: 'pefrl' is not allowed; .* damped"):
+            simulate(net, "pefrl")
+        with pytest.raises(ValueError, match="damped"):
+            advance(net, State.at_rest(net), INTEGRATORS["pefrl"], 1e-3, 1)
+
+
+def test_pefrl_keeps_its_energy_far_better_than_leapfrog_at_the_same_cost():
+    net = rope(2, length=1e3, stiffness=1.0, damping=0.0, drag=0.0, gravity=0.0)
+    swings = []
+    for name, z in (("leapfrog", 0.1), ("pefrl", 0.4)):
+        state = State.at_rest(net)
+        state.x[0, 0, 1] -= 0.4
+        total = []
+        for _ in range(2000):
+            advance(net, state, INTEGRATORS[name], z, 1)
+            total.append(energy(net, state).total)
+        swings.append(np.ptp(total))
+    assert swings[1] < 0.05 * swings[0]

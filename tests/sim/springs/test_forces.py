@@ -1,0 +1,127 @@
+import dataclasses
+
+import numpy as np
+import pytest
+
+from sim.jit import kernel
+from sim.springs import Contact, Grab, rope
+from sim.springs.forces.acceleration import accelerate, make_scratch, set_acceleration
+from sim.springs.forces.damping import damp, make_decay
+from tests import naive
+from tests.sim.springs.nets import patch, touching_patch
+
+
+@kernel
+def set_undamped(x, v, t, p, a):
+    accelerate(x, v, t, p, False, make_scratch(p), a)
+
+
+@kernel
+def damp_for(x, v, t, s, p, reverse):
+    damp(x, v, t, s, make_decay(p, s), p, reverse)
+
+
+def shaken(net, seed=1):
+    """Positions and velocities off any symmetry."""
+    rng = np.random.default_rng(seed)
+    v = rng.standard_normal(net.x0.shape)
+    for i, j in net.pinned:
+        v[:, i, j] = 0.0
+    return net.x0 + 0.05 * rng.standard_normal(net.x0.shape), v
+
+
+def ours(net, x, v, t, h, function=set_acceleration):
+    a = np.full(net.x0.size, np.nan)
+    function(x.reshape(-1).copy(), v.reshape(-1).copy(), t, net.forces(h), a)
+    return a.reshape(net.x0.shape)
+
+
+def agrees(net, x, v, t=0.3, h=0.01):
+    expected = naive.acceleration(net, x, v, t, h)
+    assert np.abs(ours(net, x, v, t, h) - expected).max() <= 1e-12 * max(1.0, np.abs(expected).max())
+
+
+@pytest.mark.parametrize("model", ["isotropic", "axial"])
+@pytest.mark.parametrize("points", [1, 2, 3, 7, 64])
+def test_a_rope_s_forces_are_the_formulas(points, model):
+    net = rope(points, damping_model=model, end=None)
+    agrees(net, *shaken(net))
+    agrees(dataclasses.replace(net, gravity=(1.0, -2.0, 3.0)), *shaken(net))
+    agrees(dataclasses.replace(net, families=(net.families[0]._replace(damping=0.0),)), *shaken(net))
+
+
+@pytest.mark.parametrize("law", ["clipped", "lab"])
+@pytest.mark.parametrize("model", ["isotropic", "axial"])
+@pytest.mark.parametrize("shape", [(1, 9), (3, 4), (5, 3), (2, 2), (6, 1)])
+def test_a_net_s_forces_are_the_formulas(shape, model, law):
+    rows, cols = shape
+    contact = Contact(900.0, 20.0, 0.4, law)
+    grab = Grab(rows - 1, cols - 1, (1.0, 1.0, 1.0), 200.0, 5.0, 30.0)
+    net = dataclasses.replace(touching_patch(model, contact, rows=rows, cols=cols), grab=grab, radius=0.02)
+    for seed in range(3):
+        x, v = shaken(net, seed)
+        agrees(net, x, v)
+        agrees(net, x, 30.0 * v)
+
+
+@pytest.mark.parametrize("max_force", [1.0, 1e6])
+def test_the_grab_pulls_at_most_its_cap(max_force):
+    net = dataclasses.replace(rope(5), grab=Grab(0, 3, (1.0, 2.0, 3.0), 500.0, 3.0, max_force))
+    agrees(net, *shaken(net))
+
+
+def test_without_damping_no_force_depends_on_the_velocity():
+    net = touching_patch("isotropic", Contact(900.0, 20.0, 0.4))
+    x, v = shaken(net)
+    still = dataclasses.replace(net, sphere_velocity=(0.0, 0.0, 0.0), sphere=(0.36, 0.36, -0.93, 1.0))
+    # The sphere is at that place at t = 0.1.
+    assert ours(net, x, v, 0.1, 0.01, set_undamped) == pytest.approx(
+        naive.acceleration(still, x, 0.0 * v), rel=1e-12, abs=1e-10
+    )
+
+
+def test_pinned_particles_have_no_acceleration():
+    net = dataclasses.replace(patch(), pinned=frozenset({(0, 0), (1, 2), (2, 3)}))
+    a = ours(net, *shaken(net), 0.0, 0.01)
+    assert all((a[:, i, j] == 0.0).all() for i, j in net.pinned)
+
+
+def test_coincident_points_are_pulled_nowhere():
+    net = rope(4)
+    x, v = net.x0.copy(), np.zeros_like(net.x0)
+    x[:, 0, 2] = x[:, 0, 1]
+    assert np.isfinite(ours(net, x, v, 0.0, 0.01)).all()
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+@pytest.mark.parametrize("model", ["isotropic", "axial"])
+def test_split_damping_starts_as_the_damping_forces(model, reverse):
+    """For a short time s, v changes by s times the accelerations that depend on v."""
+    net = touching_patch(model, Contact(900.0, 20.0, 0.4))
+    x, v = shaken(net)
+    changes = []
+    for s in (1e-5, 5e-6):
+        w = v.reshape(-1).copy()
+        damp_for(x.reshape(-1), w, 0.1, s, net.forces(1.0), reverse)
+        changes.append((w - v.ravel()) / s)
+    rate = (2.0 * changes[1] - changes[0]).reshape(v.shape)
+    forces = naive.acceleration(net, x, v, 0.1, 1e-9) - ours(net, x, v, 0.1, 1.0, set_undamped)
+    assert rate == pytest.approx(forces, rel=1e-5, abs=1e-5 * np.abs(forces).max())
+
+
+@pytest.mark.parametrize("s", [1e-3, 1.0, 1e4])
+@pytest.mark.parametrize("model", ["isotropic", "axial"])
+def test_split_damping_only_takes_kinetic_energy(model, s):
+    net = patch(model)
+    x, v = shaken(net)
+    w = v.reshape(-1).copy()
+    damp_for(x.reshape(-1), w, 0.0, s, net.forces(1.0), False)
+    assert (w**2).sum() < (v**2).sum()
+
+
+def test_split_damping_keeps_momentum_of_a_free_net():
+    net = dataclasses.replace(patch("isotropic"), pinned=frozenset(), drag=0.0)
+    x, v = shaken(net)
+    w = v.reshape(-1).copy()
+    damp_for(x.reshape(-1), w, 0.0, 0.02, net.forces(1.0), False)
+    assert w.reshape(3, -1).sum(axis=1) == pytest.approx(v.reshape(3, -1).sum(axis=1), abs=1e-13)

@@ -1,0 +1,147 @@
+"""The implicit methods: their direct solver, what stiffness does to them, and what they do to energy."""
+
+import numpy as np
+import pytest
+
+from sim.springs import INTEGRATORS, cloth, rope, simulate
+from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridiagonal
+from sim.springs.state import State, advance, energy
+from sim.springs.statics import hanging_chain
+
+IMPLICIT = [name for name, record in INTEGRATORS.items() if record.implicit]
+STIFF = rope(2, stiffness=1e12, damping=0.0, drag=0.0, gravity=0.0)  # omega = 1e6 1/s
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 60])
+def test_the_block_solver_agrees_with_a_dense_solve(n):
+    rng = np.random.default_rng(n)
+    off = rng.standard_normal((n, 3, 3))
+    own = (12.0 + rng.random((n, 1, 1))) * np.eye(3) + rng.standard_normal((n, 3, 3))
+    dense = np.zeros((3 * n, 3 * n))
+    for j in range(n):
+        at, after = slice(3 * j, 3 * j + 3), slice(3 * j + 3, 3 * j + 6)
+        dense[at, at] = own[j]
+        if j + 1 < n:
+            dense[at, after] = dense[after, at] = off[j]
+    r = rng.standard_normal((n, 3))
+    u = r.copy()
+    solve_block_tridiagonal(own.reshape(n, 9).copy(), off.reshape(n, 9), u)
+    assert u.ravel() == pytest.approx(np.linalg.solve(dense, r.ravel()), abs=1e-12)
+
+
+def struck(net):
+    """The oscillator, its end at 1e-3 m from rest along the link."""
+    state = State.at_rest(net)
+    state.x[0, 0, 1] -= 1e-3
+    return state
+
+
+@pytest.mark.parametrize("name", [name for name in IMPLICIT if INTEGRATORS[name].l_stable])
+def test_an_l_stable_method_makes_an_end_of_what_it_cannot_follow(name):
+    """z = 1e6: |R| is 1e-6 of implicit Euler, and 2.4e-6 of TR-BDF2, so that round-off is all that is left."""
+    state = struck(STIFF)
+    advance(STIFF, state, INTEGRATORS[name], 1.0, 3)
+    assert abs(state.x[0, 0, 1] + 2.0) < 1e-12
+
+
+def test_the_midpoint_method_keeps_what_it_cannot_follow_within_bounds():
+    state = struck(STIFF)
+    for _ in range(200):
+        advance(STIFF, state, INTEGRATORS["implicit_midpoint"], 1.0, 1)
+        assert abs(state.x[0, 0, 1] + 2.0) < 1.001e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "stiffness"),
+    [
+        ("implicit_euler", 800.0),
+        ("implicit_euler", 1e9),
+        ("tr_bdf2", 800.0),
+        ("tr_bdf2", 1e9),
+        ("implicit_midpoint", 800.0),
+    ],
+)
+def test_the_equilibrium_is_the_exact_one_even_in_long_steps(name, stiffness):
+    """The midpoint method keeps what it cannot follow, so it only settles where it can."""
+    net = rope(10, stiffness=stiffness, drag=20.0)
+    state = State.at_rest(net)
+    exact = hanging_chain(net).x.T[:, None]
+    state.x[:] = exact
+    state.x[0, 0, 1:] += 1e-3 * np.arange(1, 10)
+    advance(net, state, INTEGRATORS[name], 0.1, 2000)
+    assert np.abs(state.x - exact).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", ["implicit_euler", "tr_bdf2"])
+def test_a_rope_of_1e9_newtons_a_metre_neither_explodes_nor_stalls(name):
+    """A fall from level at the lab's own 1/60 s; a correction is one force evaluation and one direct solve."""
+    net = rope(50, stiffness=1e9)
+    state = State.at_rest(net)
+    for _ in range(120):
+        before = state.force_evals
+        advance(net, state, INTEGRATORS[name], 1 / 60, 1)
+        assert state.force_evals - before <= 40
+        assert np.linalg.norm(state.x, axis=0).max() < 2.001
+    assert np.abs(state.v).max() < 20.0
+
+
+@pytest.mark.parametrize("stiffness", [800.0, 1e5, 1e7, 1e9])
+def test_the_midpoint_method_keeps_the_energy_at_any_stiffness(stiffness):
+    """A fall of an undamped rope from level at the lab's own 1/60 s, in a whip that turns links by radians a step."""
+    net = rope(50, stiffness=stiffness, damping=0.0, drag=0.0)
+    run = simulate(net, "implicit_midpoint", 1 / 60, 2.0, 121)
+    total = run.energy[:, :4].sum(axis=1)
+    assert run.energy[:, 0].max() > 400.0
+    assert np.abs(total - total[0]).max() < 1e-8
+    # What is paid stays within the step's 64 parts.
+    assert run.force_evals < 120 * 60
+
+
+@pytest.mark.parametrize("stiffness", [800.0, 1e9])
+def test_the_midpoint_method_takes_what_damping_takes(stiffness):
+    net = rope(50, stiffness=stiffness)
+    run = simulate(net, "implicit_midpoint", 1 / 60, 2.0, 121, with_ledger=True)
+    total = run.energy[:, :5].sum(axis=1)
+    assert run.energy[-1, 4] > 100.0
+    assert np.abs(total - total[0]).max() < 1e-8
+
+
+def test_the_midpoint_method_keeps_the_energy_of_a_stiff_cloth():
+    net = cloth(12, 12, stiffness=1e5, shear=5e4, bend=1e4, damping=0.0)
+    run = simulate(net, "implicit_midpoint", 1 / 60, 0.5, 31)
+    total = run.energy[:, :4].sum(axis=1)
+    assert run.energy[:, 0].max() > 0.5
+    assert np.abs(total - total[0]).max() < 1e-8
+
+
+def test_a_stiff_rope_in_long_steps_moves_as_in_short_ones():
+    """Second order in the motion that the steps can follow, whatever becomes of the modes they cannot."""
+    net = rope(50, stiffness=1e7)
+    ends = []
+    for count in (60, 120, 3840):
+        state = State.at_rest(net)
+        advance(net, state, INTEGRATORS["implicit_midpoint"], 1 / count, count // 2)
+        ends.append(state.x)
+    errors = [np.linalg.norm(x - ends[2], axis=0).max() for x in ends[:2]]
+    assert errors[0] < 5e-3
+    assert errors[1] < 0.4 * errors[0]
+
+
+@pytest.mark.parametrize("z", [0.05, 0.3, 0.93, 1.5, 10.0])
+def test_implicit_euler_takes_exactly_its_share_of_the_energy(z):
+    """1/(1 + z^2) a step, of a link that stays straight."""
+    net = rope(2, length=1e3, stiffness=1.0, damping=0.0, drag=0.0, gravity=0.0)
+    state = State.at_rest(net)
+    state.x[0, 0, 1] -= 0.4
+    before = energy(net, state).total
+    advance(net, state, INTEGRATORS["implicit_euler"], z, 1)
+    assert energy(net, state).total == pytest.approx(before / (1.0 + z * z), rel=1e-9)
+
+
+def test_the_midpoint_method_runs_backwards_to_where_it_began():
+    net = rope(10, damping=0.0, drag=0.0)
+    state = State.at_rest(net)
+    advance(net, state, INTEGRATORS["implicit_midpoint"], 1 / 240, 240)
+    state.v *= -1.0
+    advance(net, state, INTEGRATORS["implicit_midpoint"], 1 / 240, 240)
+    assert np.abs(state.x - net.x0).max() < 1e-8

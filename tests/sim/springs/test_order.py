@@ -1,0 +1,115 @@
+import dataclasses
+import functools
+
+import numpy as np
+import pytest
+
+from sim.springs import INTEGRATORS, PinPath, rope
+from sim.springs.net import Net
+from tests.sim.springs.nets import patch
+from tests.sim.springs.reference import exact, integrated, slope
+
+SECONDS = 0.5
+COARSEST = {1: 400, 2: 50, 4: 50, 5: 100}  # steps that are well inside the asymptotic range, by order
+LOW = [name for name, record in INTEGRATORS.items() if record.order <= 5]  # the order that doubles can show at length
+PATH = PinPath(-0.1, ((0.01, -0.02, 0.03), (0.2, -0.1, 0.5), (-0.6, 0.4, 2.0), (1.0, 0.5, -3.0)))
+ROPES = {
+    "isotropic": rope(10),
+    "axial": rope(10, damping_model="axial"),
+    "undamped": rope(10, damping=0.0, drag=0.0),
+    "moving root": dataclasses.replace(rope(10), pin_paths=(((0, 0), PATH),)),
+    "moving root, axial": dataclasses.replace(rope(10, damping_model="axial"), pin_paths=(((0, 0), PATH),)),
+}
+
+
+@functools.cache
+def reference(name: str):
+    return exact(ROPES[name], SECONDS)
+
+
+@functools.cache
+def finer(name: str):
+    """To round-off, where the other reference is good to 1e-12."""
+    state = integrated(ROPES[name], "dop853", SECONDS, 400)
+    return state.x, state.v
+
+
+def counts_of(name: str, least: int = 0) -> list[int]:
+    """Numbers of steps over five halvings, or over two and a half where round-off is near."""
+    order = INTEGRATORS[name].order
+    least = 32 if name == "pefrl" else max(least, COARSEST[order])  # its errors are a hundredth of rk4's
+    return [round(least * 2 ** (i if order < 5 else 0.5 * i)) for i in range(6)]
+
+
+def errors_of(net: Net, name: str, counts, truth, seconds: float = SECONDS):
+    """Largest error of any position [m] or velocity [m/s] at the end, for each number of steps."""
+    found = []
+    for steps in counts:
+        state = integrated(net, name, seconds, steps)
+        found.append(max(np.abs(state.x - truth[0]).max(), np.abs(state.v - truth[1]).max()))
+    return found
+
+
+def expected(name: str, *, damped: bool) -> int:
+    record = INTEGRATORS[name]
+    return record.order if damped else record.undamped_order or record.order
+
+
+@pytest.mark.parametrize("case", ROPES)
+@pytest.mark.parametrize("name", LOW)
+def test_the_error_falls_at_the_declared_order_over_five_halvings(name, case):
+    if INTEGRATORS[name].undamped_only and case != "undamped":
+        pytest.skip("refuses damping")
+    counts = counts_of(name)
+    truth = reference(case) if INTEGRATORS[name].order < 5 else finer(case)
+    errors = errors_of(ROPES[case], name, counts, truth)
+    assert slope(counts, errors) == pytest.approx(expected(name, damped=case != "undamped"), abs=0.1)
+
+
+@pytest.mark.parametrize("name", [name for name in LOW if not INTEGRATORS[name].undamped_only])
+def test_a_net_of_many_families_converges_at_the_declared_order(name):
+    net = patch("axial")
+    counts = counts_of(name, 100)
+    errors = errors_of(net, name, counts, exact(net, 0.2), 0.2)
+    assert slope(counts, errors) == pytest.approx(expected(name, damped=True), abs=0.1)
+
+
+def test_dop853_is_of_order_eight():
+    # Soft, so that errors are above round-off over two halvings; the reference is the method itself, far finer.
+    net = rope(6, stiffness=300.0, damping=0.5, drag=0.1)
+    fine = integrated(net, "dop853", 1.0, 300)
+    counts = [16, 20, 24, 32, 40, 48, 64]
+    errors = errors_of(net, "dop853", counts, (fine.x, fine.v), 1.0)
+    assert slope(counts, errors) == pytest.approx(8, abs=0.1)
+
+
+def test_damping_link_by_link_seeds_no_folds():
+    """A light rope of 1024 links folds where it is pressed: an error that alternates from link to link grows there."""
+    net = rope(1025, 1.0, 1.0 / 1025, 981.0 * 1024, 0.002 * 1024, 0.2 / 1025, 9.81)
+    truth = integrated(net, "rk4", 1.0, 36_000).x
+    errors = [np.abs(integrated(net, "leapfrog", 1.0, steps).x - truth).max() for steps in (34_000, 48_000)]
+    assert errors[0] < 1e-4
+    assert slope((34_000, 48_000), errors) == pytest.approx(2, abs=0.1)
+
+
+def test_a_moving_root_is_exactly_where_its_path_is():
+    net = ROPES["moving root"]
+    state = integrated(net, "leapfrog", SECONDS, 97)
+    s = SECONDS - PATH.start
+    c = np.array(PATH.coefficients)
+    assert state.x[:, 0, 0] == pytest.approx(c[0] + c[1] * s + c[2] * s**2 + c[3] * s**3, rel=1e-14)
+    assert state.v[:, 0, 0] == pytest.approx(c[1] + 2 * c[2] * s + 3 * c[3] * s**2, rel=1e-14)
+
+
+def test_the_lab_s_own_figures_of_error_come_out():
+    # Lab defaults from horizontal, two seconds: RK4 at 1/60 s is off by 2.0e-6 m and the damped leapfrog is second
+    # order where the lab's Euler at the same cost is a hundred times as far off.
+    net = rope(10)
+    truth = exact(net, 2.0)
+    rk4, leapfrog, euler = (
+        np.abs(integrated(net, name, 2.0, steps).x - truth[0]).max()
+        for name, steps in (("rk4", 120), ("leapfrog", 240), ("symplectic_euler", 240))
+    )
+    assert rk4 == pytest.approx(2.0e-6, rel=0.1)
+    assert leapfrog < 0.02 * euler
+    assert euler == pytest.approx(8.4e-3, rel=0.1)

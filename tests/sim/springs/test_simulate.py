@@ -1,0 +1,118 @@
+import math
+
+import numpy as np
+import pytest
+
+from sim.springs import INTEGRATORS, rope, simulate
+from sim.springs.state import State, advance, steps_for
+from sim.springs.statics import hanging_chain
+from tests.sim.springs.nets import DAMPABLE, patch
+
+NOT_NUMBERS = [math.nan, math.inf, -math.inf, True, "1", None, [1.0], 10**400]
+REFUSED = {
+    "integrator": ["", "rk5", "RK4", None, 4, ["rk4"]],
+    "step": [*(bad for bad in NOT_NUMBERS if bad is not None), 0.0, -1.0],
+    "duration": [*NOT_NUMBERS, 0.0, -1.0],
+    "frames": [*NOT_NUMBERS, 0, 1, -5, 2.0],
+}
+
+
+@pytest.mark.parametrize(("name", "value"), [(name, value) for name, values in REFUSED.items() for value in values])
+def test_a_bad_argument_is_refused_by_name_value_and_what_is_allowed(name, value):
+    with pytest.raises(ValueError, match=rf"^{name}: .* is not allowed; allowed: \S") as refusal:
+        simulate(rope(), **{name: value})
+    assert repr(value) in str(refusal.value)
+
+
+def test_frames_are_equally_spaced_from_the_start_to_the_end():
+    run = simulate(rope(6), "rk4", 1 / 1200, 2.0, 61)
+    assert run.t.tolist() == np.linspace(0.0, 2.0, 61).tolist()
+    assert run.x.shape == run.v.shape == (61, 6, 3)
+    assert run.energy.shape == (61, 6)
+    assert (rope(6).x0[:, 0] == run.x[0].T).all()
+    assert (run.v[0] == 0.0).all()
+    assert run.diverged_at is None
+    assert np.isfinite(run.x).all()
+
+
+def test_a_net_of_rows_has_frames_of_rows():
+    run = simulate(patch(), "leapfrog", 1e-3, 0.1, 3)
+    assert run.x.shape == (3, 3, 4, 3)
+    assert (np.moveaxis(run.x[0], -1, 0) == patch().x0).all()
+
+
+@pytest.mark.parametrize(
+    ("duration", "step", "per_frame"), [(1.0, 0.1, 1), (1.0, 0.03, 4), (1.0, 0.05, 2), (2.0, 5.0, 1)]
+)
+def test_steps_are_shortened_equally_to_fill_a_frame(duration, step, per_frame):
+    run = simulate(rope(4, stiffness=8.0, damping=0.1), "rk4", step, duration, 11)
+    assert run.force_evals == 4 * per_frame * 10
+
+
+def test_round_off_in_the_ratio_costs_no_extra_step():
+    assert steps_for(0.3, 0.1) == 3
+    assert steps_for(2.0 / 60, 1 / 1200) == 40
+    assert steps_for(0.31, 0.1) == 4
+
+
+@pytest.mark.parametrize("name", DAMPABLE)
+def test_frames_are_the_states_that_advance_passes_through(name):
+    net = rope(7)
+    run = simulate(net, name, 1e-3, 0.2, 3)
+    state = State.at_rest(net)
+    for _ in range(200):
+        advance(net, state, INTEGRATORS[name], 1e-3, 1)
+    assert np.moveaxis(run.x[-1], -1, 0) == pytest.approx(state.x[:, 0], abs=1e-13)
+
+
+@pytest.mark.parametrize("name", DAMPABLE)
+def test_velocities_are_at_the_frame_s_time_even_where_the_method_s_trail(name):
+    run = simulate(rope(5), name, 1e-4, 0.5, 5001)
+    differences = (run.x[2:] - run.x[:-2]) / (run.t[2:] - run.t[:-2])[:, None, None]
+    # Half a step of an acceleration of tens of m/s^2 would be 1e-3 m/s off and more.
+    order = max(INTEGRATORS[name].order, INTEGRATORS[name].undamped_order)
+    assert np.abs(differences - run.v[1:-1])[1:].max() < (1e-4 if order > 1 else 5e-3)
+
+
+def test_explicit_euler_explodes_at_the_lab_s_defaults_at_the_step_that_left_the_bound():
+    net = rope()
+    run = simulate(net, "explicit_euler", 1 / 60, 10.0, 61)
+    state = State.at_rest(net)
+    steps = 0
+    while np.abs(state.x).max() < 1e9:
+        advance(net, state, INTEGRATORS["explicit_euler"], 10.0 / 60 / 10, 1)
+        steps += 1
+    assert run.diverged_at == pytest.approx(steps / 60, abs=1e-9)
+    good = run.t < run.diverged_at
+    assert np.isfinite(run.x[good]).all()
+    assert np.isnan(run.x[~good]).all()
+    assert np.isnan(run.energy[~good]).all()
+    assert 0 < good.sum() < 61
+
+
+def test_explicit_euler_grows_by_the_lab_s_factor():
+    """rho = 1.181 a step, of a small disturbance of the hanging rope."""
+    net = rope()
+    state = State(np.ascontiguousarray(hanging_chain(net).x.T[:, None]), np.zeros_like(net.x0))
+    state.v[2, 0, 1:] = 1e-9 * (-1.0) ** np.arange(9)
+    sizes = []
+    for _ in range(2):
+        advance(net, state, INTEGRATORS["explicit_euler"], 1 / 60, 40)
+        sizes.append(np.abs(state.v).max())
+    assert (sizes[1] / sizes[0]) ** (1 / 40) == pytest.approx(1.181, rel=5e-3)
+
+
+def test_the_other_integrators_hold_the_lab_s_defaults():
+    for name in set(DAMPABLE) - {"explicit_euler"}:
+        assert simulate(rope(), name, 1 / 60, 5.0, 11).diverged_at is None
+
+
+def test_progress_is_told_of_every_frame():
+    told = []
+    simulate(rope(3), "leapfrog", 0.01, 0.1, 6, progress=lambda done, frames: told.append((done, frames)))
+    assert told == [(i, 6) for i in range(1, 7)]
+
+
+def test_a_lone_pinned_point_stays():
+    run = simulate(rope(1), "rk4", 0.01, 0.1, 3)
+    assert (run.x == 0.0).all()

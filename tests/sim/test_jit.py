@@ -1,0 +1,179 @@
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from sim.jit import kernel, sources_hash
+
+ROOT = Path(__file__).parent.parent
+
+
+def python(code: str, **environment: str) -> str:
+    """What a fresh interpreter prints."""
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+@kernel
+def halved(x):
+    return 0.5 * x
+
+
+@kernel(noalias=True)
+def add(x, y):
+    for j in range(x.shape[0]):
+        x[j] += y[j]
+
+
+def test_the_hash_changes_with_any_edit_and_any_new_name(tmp_path):
+    (tmp_path / "a.py").write_text("x = 1\n")
+    (tmp_path / "inner").mkdir()
+    (tmp_path / "inner" / "b.py").write_text("y = 1\n")
+    first = sources_hash(tmp_path)
+    assert sources_hash(tmp_path) == first
+    (tmp_path / "inner" / "b.py").write_text("y = 2\n")
+    second = sources_hash(tmp_path)
+    (tmp_path / "inner" / "b.py").rename(tmp_path / "inner" / "c.py")
+    assert len({first, second, sources_hash(tmp_path)}) == 3
+
+
+def test_other_files_do_not_change_the_hash(tmp_path):
+    (tmp_path / "a.py").write_text("x = 1\n")
+    first = sources_hash(tmp_path)
+    (tmp_path / "notes.txt").write_text("nothing")
+    assert sources_hash(tmp_path) == first
+
+
+def test_the_cache_directory_is_named_by_the_hash_of_sim(tmp_path):
+    found = python("from sim.jit import CACHE; print(CACHE)", SPRINGTIDE_CACHE=str(tmp_path))
+    assert Path(found) == tmp_path / "kernels" / sources_hash(ROOT / "sim")
+    assert Path(found).is_dir()
+
+
+def test_kernels_are_kept_in_the_cache(tmp_path):
+    code = "from sim.springs.forces.acceleration import make_scratch; from sim.springs import rope; make_scratch(rope().forces(1.0))"
+    python(code, SPRINGTIDE_CACHE=str(tmp_path))
+    assert list(tmp_path.rglob("*make_scratch*.nbi"))
+
+
+def test_without_a_writable_cache_kernels_still_compile(tmp_path):
+    nowhere = tmp_path / "file"
+    nowhere.write_text("not a folder")
+    code = """
+from sim.jit import CACHE, kernel
+@kernel
+def doubled(x):
+    return 2.0 * x
+print(CACHE, doubled(21.0))
+"""
+    assert python(code, SPRINGTIDE_CACHE=str(nowhere)) == "None 42.0"
+    assert nowhere.read_text() == "not a folder"
+
+
+def test_directories_of_long_edited_sources_are_removed(tmp_path):
+    stale = tmp_path / "kernels" / "0123456789abcdef"
+    fresh = tmp_path / "kernels" / "fedcba9876543210"
+    for folder in (stale, fresh):
+        folder.mkdir(parents=True)
+    os.utime(stale, (0, 0))
+    python("import sim.jit", SPRINGTIDE_CACHE=str(tmp_path))
+    assert not stale.exists()
+    assert fresh.exists()
+
+
+def test_other_libraries_caches_stay_where_they_were():
+    python("import numba; before = numba.config.CACHE_DIR; import sim.springs; assert numba.config.CACHE_DIR == before")
+
+
+def test_springs_import_nothing_that_a_rope_does_not_need():
+    # numba itself looks at scipy's version where there is one.
+    code = (
+        "import sys, numba; before = set(sys.modules); import sim.springs, sim.springs.stability, sim.springs.statics; "
+    )
+    imported = python(code + "print(*set(sys.modules) - before)").split()
+    assert "sim.springs.statics" in imported
+    packages = {name.split(".")[0] for name in imported}
+    assert not packages & {"pyfftw", "scipy", "viser", "trimesh", "matplotlib", "rich", "app", "assets"}
+
+
+def test_a_nan_stays_visible():
+    """The flags of fast arithmetic leave out those that let a compiler assume there is none."""
+    x = np.array([1.0, np.nan, np.inf, -np.inf])
+    add(x, np.ones(4))
+    assert np.isnan(x[1])
+    assert np.isinf(x[2:]).all()
+    assert np.isnan(halved(np.nan))
+
+
+def test_kernels_let_other_threads_run():
+    assert halved.targetoptions["nogil"]  # type: ignore[attr-defined]
+    assert add.targetoptions["nogil"]  # type: ignore[attr-defined]
+
+
+ADDS = """
+import numpy as np
+from sim.jit import kernel
+import tests.sim.test_jit as t
+x = np.ones(3)
+t.add(x, x.copy())
+print(x[0])
+"""
+
+
+def test_a_full_disk_and_rubbish_in_the_cache_cost_a_compilation_and_no_more(tmp_path):
+    full = f"import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))\n{ADDS}"
+    assert python(full, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"
+    assert not list(tmp_path.rglob("*.nbc"))
+    assert python(ADDS, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"
+    for pattern in ("*.nbc", "*.nb?"):
+        kept = list(tmp_path.rglob(pattern))
+        assert kept
+        for path in kept:
+            path.write_bytes(path.read_bytes()[:40])
+        assert python(ADDS, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"
+        # Kept again, and whole.
+        assert all(path.stat().st_size > 40 for path in kept)
+
+
+CALLERS = """
+import numpy as np
+from sim.jit import kernel, prange
+
+@kernel(parallel=True)
+def add_one(x):
+    for j in prange(x.shape[0]):
+        x[j] += 1.0
+
+@kernel
+def add_two(x):
+    add_one(x)
+    add_one(x)
+
+@kernel
+def add_four(x):
+    add_two(x)
+    add_two(x)
+"""
+
+
+def test_a_kernel_from_the_cache_starts_the_threads_its_callees_need(tmp_path):
+    (tmp_path / "callers.py").write_text(CALLERS)
+    call = "import callers, numpy as np; x = np.zeros(4); callers.{}(x); print(x.sum())"
+    folders = {"SPRINGTIDE_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
+    # The second compiles its caller on what the first kept, the third only loads what the second did.
+    assert [python(call.format(name), **folders) for name in ("add_two", "add_four", "add_four")] == [
+        "8.0",
+        "16.0",
+        "16.0",
+    ]

@@ -1,0 +1,120 @@
+import dataclasses
+import math
+
+import pytest
+
+from sim.parameters import check_record, clamp, clamp_value, parameter, parameters_of, parse_assignments
+from sim.validation import argument_error
+
+
+@dataclasses.dataclass(frozen=True)
+class Params:
+    points: int = parameter(10, 2, 200, "", "points of the rope")
+    stiffness: float = parameter(800.0, 1.0, 1e6, "N/m", "of each link", log_from=1.0)
+    floor: bool = parameter(True, doc="is there a floor")
+    integrator: str = parameter("rk4", choices=("rk4", "leapfrog"))
+
+
+WILD = [math.nan, math.inf, -math.inf, 1e300, -1e300, 10**400, True, None, "x", "", [], {}, (1,), b"1", 1j, object()]
+
+
+def test_parameters_are_listed_in_order_of_declaration():
+    assert list(parameters_of(Params)) == ["points", "stiffness", "floor", "integrator"]
+    assert parameters_of(Params())["stiffness"].unit == "N/m"
+    assert parameters_of(Params)["points"].kind is int
+
+
+@pytest.mark.parametrize("value", WILD)
+@pytest.mark.parametrize("name", list(parameters_of(Params)))
+def test_clamped_values_are_always_of_the_kind_and_in_range(name, value):
+    declared = parameters_of(Params)[name]
+    found = clamp_value(declared, value)
+    assert type(found) is declared.kind
+    if declared.kind in (int, float):
+        assert declared.low <= found <= declared.high
+    if declared.choices:
+        assert found in declared.choices
+
+
+def test_clamping_bounds_numbers_and_makes_defaults_of_nonsense():
+    found = clamp(dataclasses.replace(Params(), points=10_000, stiffness=math.nan, integrator="none"))
+    assert found == Params(points=200)
+
+
+@pytest.mark.parametrize("value", [10.6, 11.4])
+def test_whole_numbers_are_rounded(value):
+    assert clamp_value(parameters_of(Params)["points"], value) == 11
+
+
+@pytest.mark.parametrize("value", WILD)
+@pytest.mark.parametrize("name", list(parameters_of(Params)))
+def test_checked_values_are_refused_by_name_and_what_is_allowed(name, value):
+    if name == "floor" and value is True:
+        assert check_record(Params, {name: value}).floor is True
+        return
+    with pytest.raises(ValueError, match=rf"^{name}: .* is not allowed; allowed: "):
+        check_record(Params, {name: value})
+
+
+def test_good_values_pass_unchanged():
+    values = {"points": 2, "stiffness": 1e6, "floor": False, "integrator": "leapfrog"}
+    assert check_record(Params, values) == Params(**values)
+
+
+def test_a_refusal_names_the_range_and_the_unit():
+    with pytest.raises(ValueError, match=r"^stiffness: 0 is not allowed; allowed: 1 to 1e\+06 N/m$"):
+        check_record(Params, {"stiffness": 0})
+    with pytest.raises(ValueError, match=r"^points: 2\.5 is not allowed; allowed: a whole number from 2 to 200$"):
+        check_record(Params, {"points": 2.5})
+
+
+def test_unknown_parameters_are_refused_with_the_known_ones():
+    with pytest.raises(
+        ValueError, match=r"^mass: no such parameter; the parameters are points, stiffness, floor, integrator$"
+    ):
+        check_record(Params, {"mass": 1.0})
+    with pytest.raises(ValueError, match="no such parameter"):
+        parse_assignments(Params, ["mass=1"])
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("points=20", {"points": 20}),
+        ("points = 2e1", {}),
+        ("stiffness=1e3", {"stiffness": 1000.0}),
+        ("floor=off", {"floor": False}),
+        ("floor=YES", {"floor": True}),
+        ("integrator=leapfrog", {"integrator": "leapfrog"}),
+    ],
+)
+def test_assignments_are_read(text, value):
+    if not value:
+        with pytest.raises(ValueError, match="no such parameter"):
+            parse_assignments(Params, [text])
+    else:
+        assert parse_assignments(Params, [text]) == value
+
+
+@pytest.mark.parametrize("text", ["points", "points=", "points=x", "points=nan", "floor=maybe", "stiffness=inf", "=3"])
+def test_assignments_of_nonsense_are_refused(text):
+    with pytest.raises(ValueError, match=r"not allowed; allowed|no such parameter"):
+        parse_assignments(Params, [text])
+
+
+@pytest.mark.parametrize(
+    "declare",
+    [
+        lambda: parameter(5.0, 0.0, 1.0),
+        lambda: parameter("c", choices=("a", "b")),
+        lambda: parameter(1.0, 0.5, 2.0, log_from=0.1),
+        lambda: parameter(math.nan, 0.0, 1.0),
+    ],
+)
+def test_a_parameter_that_contradicts_itself_cannot_be_declared(declare):
+    with pytest.raises(ValueError, match="not allowed"):
+        declare()
+
+
+def test_a_refusal_has_one_form():
+    assert str(argument_error("h", -1, "above 0 s")) == "h: -1 is not allowed; allowed: above 0 s"

@@ -51,9 +51,9 @@ class TogglePlay(NamedTuple):
 
 
 class StepOnce(NamedTuple):
-    """Pause, and advance by `count` time steps."""
+    """Pause, and advance by `steps` time steps."""
 
-    count: int = 1
+    steps: int = 1
 
 
 class Halt(NamedTuple):

@@ -125,7 +125,11 @@ def kernel_folder(path: Path) -> Path | None:
 
 
 class KernelFile(IndexDataCacheFile):
-    """numba's cache file of one kernel, where neither a full disk nor rubbish ends the program: it compiles anew."""
+    """numba's cache file of one kernel, where neither a full disk nor rubbish ends the program: it compiles anew.
+
+    numba keeps the kernels of each checkout apart by the path and the time of the source. The folder is already named
+    by the contents, so that checkouts and environments with the same sources share their kernels.
+    """
 
     def load(self, key: Any) -> Any:
         try:
@@ -195,8 +199,9 @@ def kernel(
     finally:
         numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
     if folder is not None and hasattr(compiled, "_cache"):  # a plain function with NUMBA_DISABLE_JIT=1
-        compiled._cache._cache_file.__class__ = KernelFile  # type: ignore[attr-defined]
-        compiled._cache._impl.__class__ = KernelResult  # type: ignore[attr-defined]
+        cache = compiled._cache  # type: ignore[attr-defined]
+        cache._cache_file = KernelFile(str(folder), cache._impl.filename_base, "")
+        cache._impl.__class__ = KernelResult
     return compiled
 
 

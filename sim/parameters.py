@@ -103,7 +103,7 @@ def effect_of_change(old: object, new: object) -> Effect | None:
     A field that is not declared as a parameter affects the start.
     """
     declared = parameters_of(new)
-    effects = {declared[name].affects if name in declared else "start" for name in changed_names(old, new)}
+    effects: set[Effect] = {declared[name].affects if name in declared else "start" for name in changed_names(old, new)}
     return max(effects, key=EFFECTS.index, default=None)
 
 

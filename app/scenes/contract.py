@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
 
-import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import PlotRow, SceneCommand, Snapshot, Vector, WorkCounts
@@ -112,11 +111,11 @@ class Scene(Protocol[P, F, R]):
         """The plot rows since the last call."""
         ...
 
-    def curves(self) -> Mapping[str, Chart | tuple[NDArray[np.floating], ...]] | None:
+    def curves(self) -> Mapping[str, Chart | tuple[NDArray[Any], ...]] | None:
         """Parameter -> columns of its chart, for the charts that are not a course in time; None where there is none."""
         ...
 
-    def arrays(self) -> dict[str, tuple[NDArray[np.floating], str]]:
+    def arrays(self) -> Mapping[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""
         ...
 

@@ -1,14 +1,10 @@
 """Compile a scene's kernels ahead, and remember which scenes are compiled."""
 
-import hashlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from app.scenes import scene_named
 from sim.jit import CACHE, ROOT, reachable_hash
-
-# numba keeps the kernels of each installation apart, though all share the one directory.
-INSTALLATION = hashlib.sha256(str(ROOT).encode()).hexdigest()[:8]
 
 
 def mark_of(name: str, drawn: bool) -> Path | None:
@@ -17,7 +13,7 @@ def mark_of(name: str, drawn: bool) -> Path | None:
         return None
     folder = ROOT / "app" / "scenes" / name
     sources = [folder / "scene.py", *([folder / "view.py"] if drawn else [])]
-    return CACHE / f"{name}{'' if drawn else '-headless'}-{INSTALLATION}-{reachable_hash(*sources)}.warm"
+    return CACHE / f"{name}{'' if drawn else '-headless'}-{reachable_hash(*sources)}.warm"
 
 
 def is_compiled(name: str, *, drawn: bool = True) -> bool:

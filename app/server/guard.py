@@ -254,9 +254,12 @@ def put_intakes(server: viser.ViserServer, screen: Screen) -> None:
         intakes[client.client_id] = Intake(screen, [handle, client._handle_incoming_message])
         client._handle_incoming_message = ignore
 
+    def leave(client: Any) -> None:
+        intakes.pop(client.client_id, None)
+
     connection._handle_incoming_message = take
     connection.on_client_connect(join)
-    connection.on_client_disconnect(lambda client: intakes.pop(client.client_id, None))
+    connection.on_client_disconnect(leave)
 
 
 def check_port(host: str, port: int) -> None:

@@ -54,8 +54,8 @@ def merged(commands: Iterable[Command]) -> list[Command]:
             case Play() | Pause() | TogglePlay():
                 steps = 0 if isinstance(command, Play) else steps
                 motion = AFTER.get((motion, type(command)), "play" if isinstance(command, Play) else "pause")
-            case StepOnce(count):
-                steps, motion = steps + count, None
+            case StepOnce(more):
+                steps, motion = steps + more, None
             case Place(thing, _):
                 put_last(scene, ("place", thing), command)
             case Grab() | Release():

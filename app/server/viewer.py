@@ -81,7 +81,7 @@ class Viewer:
         if params is None:
             params = self.first_params.get(name) or kind.params()
         self.first_params.setdefault(name, params)
-        view = view_named(name)
+        view: Any = view_named(name)
         self.clear()
         self.scene = kind.make(params)
         commands = self.commands = queue.SimpleQueue()

@@ -4,12 +4,12 @@ import dataclasses
 import math
 import tomllib
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from app.scenes import NAMES, scene_named
+from app.scenes.contract import SceneKind
 from app.sweep.design import MOST_CASES, Axis, Listed, Range, grid, grid_values, hypercube, size
 from sim.parameters import Parameter, check_record, check_value, parameters_of
 from sim.validation import argument_error
@@ -41,12 +41,12 @@ class Spec:
         return (self.seconds,) if self.frames == 1 else tuple(np.linspace(0.0, self.seconds, self.frames).tolist())
 
     @property
-    def module(self) -> ModuleType:
+    def module(self) -> SceneKind[Any, Any, Any]:
         return scene_named(self.scene)
 
     def params(self, index: int) -> Any:
         """The scene's parameters in case `index`."""
-        return check_record(self.module.Params, {**self.fixed, **self.cases[index]})
+        return check_record(self.module.params, {**self.fixed, **self.cases[index]})
 
     def identity(self) -> dict[str, Any]:
         """All that decides the results, as JSON would have it."""
@@ -80,7 +80,7 @@ def make_spec(content: dict[str, Any], text: str = "") -> Spec:
     if not isinstance(name, str) or name not in NAMES:
         raise argument_error("scene", name, "one of " + ", ".join(NAMES))
     scene = scene_named(name)
-    known = parameters_of(scene.Params)
+    known = parameters_of(scene.params)
     seconds = number(content, "seconds", math.nan, 0.0, MOST_SECONDS, "s", above=True)
     frames = whole(content, "frames", 1, 1, MOST_FRAMES)
     design = content.get("design", "grid")
@@ -121,13 +121,13 @@ def make_spec(content: dict[str, Any], text: str = "") -> Spec:
     return spec
 
 
-def fixed_parameters(scene: ModuleType, content: dict[str, Any]) -> dict[str, Any]:
+def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any]) -> dict[str, Any]:
     """Preset and [set]; the plots are on, as they decide what is measured."""
     preset = content.get("preset")
-    if preset is not None and not (isinstance(preset, str) and preset in scene.PRESETS):
-        raise argument_error("preset", preset, "one of " + ", ".join(scene.PRESETS))
-    given = {**dict.fromkeys(scene.PLOTS, True), **(scene.PRESETS[preset] if preset else {}), **table(content, "set")}
-    params = check_record(scene.Params, given)
+    if preset is not None and not (isinstance(preset, str) and preset in scene.presets):
+        raise argument_error("preset", preset, "one of " + ", ".join(scene.presets))
+    given = {**dict.fromkeys(scene.plots, True), **(scene.presets[preset] if preset else {}), **table(content, "set")}
+    params = check_record(scene.params, given)
     return {name: getattr(params, name) for name in given}
 
 
@@ -172,7 +172,7 @@ def grid_axis(name: str, parameter: Parameter, axis: Axis) -> tuple[Any, ...]:
     return values
 
 
-def refuse_idle(spec: Spec, scene: ModuleType) -> None:
+def refuse_idle(spec: Spec, scene: SceneKind[Any, Any, Any]) -> None:
     """Raises ValueError for a swept parameter that means nothing in any of the cases."""
     idle = set(spec.swept)
     for index in range(len(spec.cases)):

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from sim.jit import kernel, sources_hash
+from sim import jit
+from sim.jit import kernel, reachable_hash, sources_hash
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 
 
 def python(code: str, **environment: str) -> str:
@@ -55,14 +56,47 @@ def test_other_files_do_not_change_the_hash(tmp_path):
     assert sources_hash(tmp_path) == first
 
 
-def test_the_cache_directory_is_named_by_the_hash_of_sim(tmp_path):
-    found = python("from sim.jit import CACHE; print(CACHE)", SPRINGTIDE_CACHE=str(tmp_path))
-    assert Path(found) == tmp_path / "kernels" / sources_hash(ROOT / "sim")
-    assert Path(found).is_dir()
+def test_a_kernels_folder_is_named_by_what_the_kernel_can_reach(tmp_path):
+    code = "import sim.jit as j, pathlib; print(j.kernel_folder(pathlib.Path('sim/ocean/evolve.py').resolve()))"
+    found = Path(python(code, SPRINGTIDE_CACHE=str(tmp_path)))
+    assert found == tmp_path / "kernels" / f"evolve-{reachable_hash(ROOT / 'sim' / 'ocean' / 'evolve.py')}"
+    assert found.is_dir()
+
+
+def test_the_hash_of_a_kernel_follows_its_imports_and_nothing_else(tmp_path, monkeypatch):
+    """An edit in a module that is imported indirectly makes a new folder; one in a module that is not does not."""
+    monkeypatch.setattr(jit, "ROOT", tmp_path)
+    sources = {
+        "kernel": "from sim.near import (\n    a,\n)\n",
+        "near": "import sim.far\n",
+        "far": "x = 1\n",
+        "other": "",
+    }
+    (tmp_path / "sim").mkdir()
+
+    def reached() -> str:
+        jit.source_of.cache_clear()
+        jit.imported_files.cache_clear()
+        return reachable_hash(tmp_path / "sim" / "kernel.py")
+
+    for name, text in sources.items():
+        (tmp_path / "sim" / f"{name}.py").write_text(text)
+    first = reached()
+    (tmp_path / "sim" / "other.py").write_text("y = 2\n")
+    assert reached() == first
+    (tmp_path / "sim" / "far.py").write_text("x = 2\n")
+    assert reached() != first
+    monkeypatch.undo()
+    jit.source_of.cache_clear()
+    jit.imported_files.cache_clear()
 
 
 def test_kernels_are_kept_in_the_cache(tmp_path):
-    code = "from sim.springs.forces.acceleration import make_scratch; from sim.springs import rope; make_scratch(rope().forces(1.0))"
+    code = """
+from sim.springs import rope
+from sim.springs.forces.acceleration import make_scratch
+make_scratch(rope().forces(1.0))
+"""
     python(code, SPRINGTIDE_CACHE=str(tmp_path))
     assert list(tmp_path.rglob("*make_scratch*.nbi"))
 
@@ -82,14 +116,17 @@ print(CACHE, doubled(21.0))
 
 
 def test_directories_of_long_edited_sources_are_removed(tmp_path):
-    stale = tmp_path / "kernels" / "0123456789abcdef"
-    fresh = tmp_path / "kernels" / "fedcba9876543210"
-    for folder in (stale, fresh):
+    stale = tmp_path / "kernels" / "leapfrog-0123456789abcdef"
+    fresh = tmp_path / "kernels" / "leapfrog-fedcba9876543210"
+    other = tmp_path / "kernels" / "somebody_elses"
+    for folder in (stale, fresh, other):
         folder.mkdir(parents=True)
-    os.utime(stale, (0, 0))
+    for folder in (stale, other):
+        os.utime(folder, (0, 0))
     python("import sim.jit", SPRINGTIDE_CACHE=str(tmp_path))
     assert not stale.exists()
     assert fresh.exists()
+    assert other.exists()  # not made by us
 
 
 def test_other_libraries_caches_stay_where_they_were():

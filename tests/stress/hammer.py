@@ -121,7 +121,7 @@ class Hammer:
     def calm(self) -> None:
         """Back to the defaults and running."""
         panel = self.viewer.panel
-        panel.load(next(iter(panel.scene.PRESETS)))
+        panel.load(next(iter(panel.kind.presets)))
         self.loop.commands.put(Play())
         self.frame(2)
         assert not self.loop.halted, self.loop.halted

@@ -154,7 +154,7 @@ def test_a_server_that_is_told_to_end_under_load(end: signal.Signals, tally: Oil
 
 def rubbish(rng: random.Random, scene: Any) -> bytes:
     """The text of a preset file that is none, in one of many ways."""
-    good = {name: k.default for name, k in parameters_of(scene.Params).items()}
+    good = {name: k.default for name, k in parameters_of(scene.params).items()}
     name = rng.choice(list(good))
     bad = rng.choice([None, "x", [], {}, 1e400, float("nan"), -1e9, 10**400, "9" * 5000, [[[[]]]], "\0"])
     text = json.dumps(rng.choice([

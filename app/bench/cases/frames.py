@@ -30,7 +30,7 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
             solved = time.thread_time()
             loop.latest = loop.snapshot(0.0)
             taken = time.thread_time()
-            with viewer.traffic.counted():
+            with viewer.transport.counted():
                 viewer.show_latest()
             times.append((solved - start, taken - solved, time.thread_time() - taken))
         return times, viewer.work()

@@ -67,7 +67,9 @@ def scene_rows(repeats: int) -> list[dict[str, Any]]:
             scene.readings()
 
         seconds = processor_time(frame, repeats)
-        found.append({"name": f"scene: {preset}", "ms": seconds * 1e3, "share of a core": seconds / scene.frame})
+        found.append(
+            {"name": f"scene: {preset}", "ms": seconds * 1e3, "share of a core": seconds / scene.frame_interval}
+        )
     return found
 
 

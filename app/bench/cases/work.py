@@ -1,16 +1,16 @@
-"""The skip ledger of each scene as it opens: what a few seconds of it did, and what they did not have to do."""
+"""The work counts of each scene as it opens: what a few seconds of it did, and what they did not have to do."""
 
 from typing import Any
 
 from app.bench.cases.frames import run_scene
+from app.panel.work_table import work_rows
 from app.scenes import NAMES
-from app.server.counters import rows as ledger_rows
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
     """Rows of scene, what, done, skipped, skipped [%]; modules count for the process, whatever scenes it has opened."""
     table = []
     for name in NAMES:
-        _, works = run_scene(name, 20 if quick else 150)
-        table += [{"scene": name, **row} for row in ledger_rows(works) if row["done"] or row["skipped"]]
+        _, counts = run_scene(name, 20 if quick else 150)
+        table += [{"scene": name, **row} for row in work_rows(counts) if row["done"] or row["skipped"]]
     return table

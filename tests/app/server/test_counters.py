@@ -16,7 +16,7 @@ from app.server.loop import FRAME_INTERVAL, SimLoop
 def ticked(name: str, ticks: int, **parameters: Any) -> SimLoop:
     """A loop of a scene after so many frames."""
     module = scene_named(name)
-    loop = SimLoop(module.Scene(module.Params(**parameters)))
+    loop = SimLoop(module.make(module.params(**parameters)))
     loop.pacer.learn = lambda steps, seconds: None  # a busy machine drops steps
     for _ in range(ticks):
         loop.tick(FRAME_INTERVAL)
@@ -154,7 +154,7 @@ def test_what_other_threads_hand_over_is_not_counted(lab: Any):
 def test_closed_charts_are_not_drawn(lab: Any):
     lab.close()
     plots = lab.panel.plots
-    charts = len(lab.panel.scene.PLOTS) + len(lab.panel.scene.CURVES)
+    charts = len(lab.panel.kind.plots) + len(lab.panel.kind.curves)
     drawn, spared = plots.work()["charts drawn"][:2]
     plots.sent_at = -1e9
     plots.update(lab.loop.latest, lab.scene.params)

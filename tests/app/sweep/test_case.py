@@ -29,7 +29,7 @@ def test_every_scene_gives_labelled_numbers_and_none_bears_the_name_of_a_paramet
     assert all(len(values) == 2 for values in outcome.measures.values())
     assert len([v for v in outcome.measures.values() if math.isfinite(v[-1])]) >= 4
     assert outcome.measures.keys() == outcome.labels.keys()
-    assert not outcome.measures.keys() & parameters_of(scene_named(name).Params).keys()
+    assert not outcome.measures.keys() & parameters_of(scene_named(name).params).keys()
     assert not outcome.measures.keys() & {"time", "case", "end", "message", "diverged_at", "run_time"}
     assert all(meaning for _, meaning in outcome.labels.values())
 
@@ -95,7 +95,7 @@ def test_what_a_scene_raises_is_the_outcome(monkeypatch):
 def test_a_scene_without_measures_gives_its_plot_rows():
     scene = scene_named("cloth")
     assert measures_named("cloth") is None
-    row = (0.5, *range(len(scene.SERIES)))
+    row = (0.5, *range(len(scene.series)))
     found = plotted(scene, row)
     assert found["gravity_energy"] == (2, "J", "Energy: gravity")
     assert found["largest_strain"].unit == "%"

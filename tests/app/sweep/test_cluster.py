@@ -15,7 +15,7 @@ from app.sweep.case import FINISHED, run_case
 from app.sweep.workers import on_cluster
 from tests.app.sweep.cases import rope_jobs
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture

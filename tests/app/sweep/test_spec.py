@@ -8,7 +8,7 @@ import pytest
 from app.__main__ import main
 from app.sweep.spec import make_spec, read_spec
 
-ASSETS = Path(__file__).parents[2] / "assets" / "sweeps"
+ASSETS = Path(__file__).parents[3] / "assets" / "sweeps"
 HEAD = 'scene = "rope"\nseconds = 1.0\n'
 RANDOM = HEAD + 'design = "random"\ncases = 4\n'
 KNOBS = "[parameters]\nmass = [1, 2]\n"

@@ -20,7 +20,8 @@ COLOURS = ("#4c6ef5", "#f76707", "#12b886", "#ae3ec9", "#868e96", "#e03131", "#1
 class Plots:
     """What a scene's `PLOTS` declares: parameter -> (title, unit, names of the series in SERIES).
 
-    `CURVES`, where a scene has it, declares charts whose columns each snapshot brings whole: parameter -> (title, label of
+    `CURVES`, where a scene has it, declares charts whose columns each snapshot brings whole: parameter -> (title, label
+    of
     the first column, names of the others) and, for a logarithmic scale, its ticks, (value, word) from end to end. In
     place of the columns may come a `Chart`, which has the looks of its lines as well.
     """

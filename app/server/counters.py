@@ -1,6 +1,7 @@
 """The skip ledger: what was done for a scene since it was opened, and what did not have to be done.
 
-Whoever works counts, and offers its counts as `work()`: what -> `WorkCount`. Here they are put together for the panel, the
+Whoever works counts, and offers its counts as `work()`: what -> `WorkCount`. Here they are put together for the panel,
+the
 benchmark and the tests. Each count is written by one thread only.
 """
 

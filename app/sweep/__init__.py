@@ -1,4 +1,4 @@
-"""`springtide sweep`: many runs of a scene over its parameters, on all cores or a Dask cluster, into one labelled NetCDF.
+"""`springtide sweep`: many runs of a scene over its parameters, on all cores or a Dask cluster, into one NetCDF file.
 
     scene = "rope"                                # rope, phillips, radial, cloth
     seconds = 10.0                                # simulated time of each run

@@ -1,6 +1,6 @@
 """The first measures of a sweep as one figure: maps or curves of a grid, scattered points of a random design.
 
-A row a measure. Of a grid, the two parameters of most numbers are the axes of a map where there are enough of both, else the
+Each measure has a row. The two parameters with most values are the axes of a map where both have enough, else the
 first is the axis of curves and the second tells them apart; a third makes the columns; any more stay at their first
 values, which the title then says.
 """
@@ -75,7 +75,7 @@ def measures_shown(dataset: Any) -> list[str]:
 
 
 def picture(axes: Any, values: Any, names: list[str], colours: Any, is_first: bool) -> Any:
-    """A map (returned, for its colour bar) or curves (None) over one or two parameters, with a legend in the first panel."""
+    """A map (returned, for its colour bar) or curves (None) over one or two parameters; a legend in the first panel."""
     both = len(names) == 2 and all(is_number(values[n]) and values[n].size >= MAP_FROM for n in names)
     if both:
         x, y = (values[n] for n in names)

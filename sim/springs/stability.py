@@ -134,7 +134,8 @@ def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) ->
     """The stiffest mode about positions x (3, rows, cols) [m] (None: x0) at time t [s], then the most damped one and,
     across the links, the most damped one again or, of axially damped nets, the stiffest.
 
-    Points that touch floor or sphere, and the grab, count; friction does not (see `sim.springs.integrators.implicit.tangent`).
+    Points that touch floor or sphere, and the grab, count; friction does not (see
+    `sim.springs.integrators.implicit.tangent`).
     Empty where nothing is free to move.
     """
     x = net.x0 if x is None else x

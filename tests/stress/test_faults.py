@@ -158,8 +158,8 @@ def rubbish(rng: random.Random, scene: Any) -> bytes:
     name = rng.choice(list(good))
     bad = rng.choice([None, "x", [], {}, 1e400, float("nan"), -1e9, 10**400, "9" * 5000, [[[[]]]], "\0"])
     text = json.dumps(rng.choice([
-        {"parameters": {**good, name: bad}}, {"parameters": {name + "_": 1}}, {"parameters": bad}, {"scene": bad, "parameters": good}, bad,
-        [good], {"scene": "moon", "parameters": {}},
+        {"parameters": {**good, name: bad}}, {"parameters": {name + "_": 1}}, {"parameters": bad},
+        {"scene": bad, "parameters": good}, bad, [good], {"scene": "moon", "parameters": {}},
     ])).encode()  # fmt: skip
     return rng.choice([text, text, text[: rng.randrange(len(text))], bytes(rng.randrange(256) for _ in range(50)), b""])
 

@@ -2,7 +2,8 @@
 
 Explicit methods take a ladder of fractions of their critical step, those that have none a ladder of steps. The
 reference is dop853, as good as another method, dopri5, agrees with it. A rung that would take too long, that diverges,
-or whose error the reference cannot tell is left out, and its row says so. `--peers` runs `app.bench.peers.cloth_rivals`.
+or whose error the reference cannot tell is left out, and its row says so. `--peers` runs
+`app.bench.peers.cloth_rivals`.
 
 The whole takes some five minutes; `--quick`, 32 x 32 particles and rungs of up to a quarter of a second, ten seconds.
 """

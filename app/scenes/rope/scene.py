@@ -172,7 +172,9 @@ class Scene:
         self.corrections = 0.0
 
     def change_forces(self, params: Params) -> None:
-        """Take new parameters; the motion goes on, resampled where the points change. A race on other terms starts anew."""
+        """Take new parameters; the motion goes on, resampled where the points change.
+
+        A race on other terms starts anew."""
         old, self.params = self.params, params
         if Race.line_up(params) != Race.line_up(old) and max(params.ropes, old.ropes) > 1:
             self.reset()

@@ -168,7 +168,8 @@ class View:
                 else "no rings on so wide a grid"
             )
             lines.append(
-                f"Rain: {r.fallen:.3g} drops have fallen on {r.span:.0f} m × {r.span:.0f} m. Drawn: {r.drawn} in the air, "
+                f"Rain: {r.fallen:.3g} drops have fallen on {r.span:.0f} m × {r.span:.0f} m. "
+                f"Drawn: {r.drawn} in the air, "
                 f"each for {r.weight:.3g}; {r.hits} have hit; {rings}."
             )
         if snapshot.frame.probe is not None:

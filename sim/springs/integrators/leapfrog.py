@@ -1,7 +1,7 @@
 """Leapfrog (velocity Verlet) with damping split off: D(h/2) K(h/2) X(h) K(h/2) D'(h/2).
 
-K kicks with the forces of position alone, X drifts, D is the exact damping of `sim.springs.forces.damping`, D' the same in
-reverse order, and the two change places from step to step; moving air blows before D and after D'. A symmetric
+K kicks with the forces of position alone, X drifts, D is the exact damping of `sim.springs.forces.damping`, D' the
+same in reverse order, and the two change places from step to step; moving air blows before D and after D'. A symmetric
 composition: second order with damping, stable for h omega < 2 at any damping but the air's. One force evaluation a
 step, as the force at the end of a step opens the next.
 """

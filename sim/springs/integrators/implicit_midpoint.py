@@ -3,9 +3,9 @@
 A-stable: modes of any stiffness keep their energy, only their frequency is wrong, (2/h) atan(h omega/2). They keep it
 for good: damping takes next to nothing of a mode that is far too stiff for the step. So that links that turn far within
 a step keep theirs as well, their tensions are those of their mean lengths
-(`sim.springs.integrators.implicit.mean_length`): without damping and contact the energy stays to round-off at any stiffness, and the angular momentum too; for that the method gives up
-being symplectic. A step that Newton's method cannot take whole is taken in halves, quarters, ..., in longer parts again
-after an easy one.
+(`sim.springs.integrators.implicit.mean_length`): without damping and contact the energy stays to round-off at any
+stiffness, and the angular momentum too; for that the method gives up being symplectic. A step that Newton's method
+cannot take whole is taken in halves, quarters, ..., in longer parts again after an easy one.
 """
 
 import math

@@ -49,7 +49,7 @@ class RadialSea:
     """Waves on a medium. Not for two threads at once."""
 
     def __init__(
-        self, waves: Waves, spill: FluidColumn = CLEAN, exposure: float = 0.0, choppiness: float = 1.0
+        self, waves: Waves, column: FluidColumn = CLEAN, exposure: float = 0.0, choppiness: float = 1.0
     ) -> None:
         """exposure [s]: how long the waves have run on this medium, and decayed; choppiness: factor on Gerstner's
         horizontal motion. Raises ValueError for a negative one."""
@@ -58,10 +58,10 @@ class RadialSea:
         self._base, self._fade = 0.0, 0.0
         self._old: tuple[np.ndarray, ...] | None = None
         self._grid: RadialGrid | None = None
-        self._set(waves, spill, check_not_negative("exposure", exposure, "s"), waves.phase)
+        self._set(waves, column, check_not_negative("exposure", exposure, "s"), waves.phase)
 
     def change(
-        self, t: float, waves: Waves | None = None, spill: FluidColumn | None = None, exposure: float | None = None,
+        self, t: float, waves: Waves | None = None, column: FluidColumn | None = None, exposure: float | None = None,
         fade: float = 2.0,
     ) -> None:  # fmt: skip
         """From time t [s] on another medium, or other waves: phases go on without a jump, and other waves take over
@@ -72,11 +72,13 @@ class RadialSea:
             n = len(self.waves.kx)
             self._old = None if self._share(t) >= 1.0 else self._old
             self._turn_old(t)
-            self._set(self.waves, spill or self.spill, self.exposure if exposure is None else exposure, turned[-n:], t)
+            self._set(
+                self.waves, column or self.column, self.exposure if exposure is None else exposure, turned[-n:], t
+            )
             return
         n = len(self.waves.kx)
         self._old = (self.waves.kx, self.waves.ky, self.amplitude, self.rate, turned[-n:], self.ratio)
-        self._set(waves, spill or self.spill, self.exposure if exposure is None else exposure, waves.phase, t)
+        self._set(waves, column or self.column, self.exposure if exposure is None else exposure, waves.phase, t)
         self._began, self._fade = t, fade
 
     def _turn_old(self, t: float) -> None:
@@ -85,11 +87,11 @@ class RadialSea:
             kx, ky, amplitude, rate, phase, ratio = self._old
             self._old = (kx, ky, amplitude, rate, turn(phase, rate, t - self._base), ratio)
 
-    def _set(self, waves: Waves, spill: FluidColumn, exposure: float, phase: np.ndarray, t: float = 0.0) -> None:
-        self.waves, self.spill, self.exposure, self._base = waves, spill, exposure, t
+    def _set(self, waves: Waves, column: FluidColumn, exposure: float, phase: np.ndarray, t: float = 0.0) -> None:
+        self.waves, self.column, self.exposure, self._base = waves, column, exposure, t
         k = waves.k
-        omega, decay = spill.roots(k)
-        self.rate, self.decay, self.ratio = omega, decay, spill.interface_ratio(k)
+        omega, decay = column.roots(k)
+        self.rate, self.decay, self.ratio = omega, decay, column.interface_ratio(k)
         self.amplitude = waves.amplitude * np.exp(-decay * exposure)
         self._phase = phase
         self._grid = None

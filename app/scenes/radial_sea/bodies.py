@@ -101,7 +101,7 @@ class HeaveMeter:
 class FloatingBodies:
     """The bodies on the simulation thread."""
 
-    def __init__(self, count: int, size: float, density: float, spill: FluidColumn, own: Hull | None = None) -> None:
+    def __init__(self, count: int, size: float, density: float, column: FluidColumn, own: Hull | None = None) -> None:
         """own: a hull that floats besides, as large as it is."""
         self.size, self.density = size, density
         self.kinds = [kind_of(i) for i in range(count)]
@@ -114,7 +114,7 @@ class FloatingBodies:
             places.append((OWN_PLACE[0] * size + 0.35 * beyond, OWN_PLACE[1] * size + 0.94 * beyond))
         self.count = len(self.kinds)
         self.hulls = hulls
-        self.theory = theory_of(hulls, density, spill)
+        self.theory = theory_of(hulls, density, column)
         bodies = []
         for kind, (x, y) in zip(self.kinds, places, strict=True):
             t = self.theory[kind]
@@ -132,10 +132,10 @@ class FloatingBodies:
         self.impulse = np.zeros(self.count)  # [N s] pressed on the water since last taken
         self.touched = self.stepped = 0
 
-    def restate(self, density: float, spill: FluidColumn) -> None:
+    def restate(self, density: float, column: FluidColumn) -> None:
         """Other density or fluids: theory anew, masses changed under way, nothing moved."""
         self.density = density
-        self.theory = theory_of(self.hulls, density, spill)
+        self.theory = theory_of(self.hulls, density, column)
         self.fleet.mass[:] *= density / self.fleet.density
         self.fleet.density[:] = density
         self.meter = HeaveMeter(self.count)
@@ -168,18 +168,18 @@ class FloatingBodies:
             if i not in self.held:
                 self.fleet.pull_limit[i] = 0.0
 
-    def step(self, spill: FluidColumn, at: SurfaceAt, t: float, h: float, layer: np.ndarray, laws: Laws) -> None:
+    def step(self, column: FluidColumn, at: SurfaceAt, t: float, h: float, layer: np.ndarray, laws: Laws) -> None:
         """One step of h [s] from t on the sea `at` the bodies; layer (n,) [m]: thickness of oil at each.
 
         Raises FloatingPointError where a body's state is no longer finite.
         """
         if self.count == 0:
             return
-        oil = spill.kind != "mixed" and bool((layer > 0.0).any())
-        layers = ((spill.oil.density, 1.0), (spill.water.density, math.inf)) if oil else spill.layers
+        oil = column.kind != "mixed" and bool((layer > 0.0).any())
+        layers = ((column.oil.density, 1.0), (column.water.density, math.inf)) if oil else column.layers
         more = {}
         if oil:
-            # The spill's own interface; where a slick adds to it the interface is that much deeper.
+            # The interface of the fluid column; where a slick adds oil, the interface lies that much deeper.
             more = {
                 "interface": at.interface - layer,
                 "interface_slope": at.interface_slope,
@@ -224,13 +224,13 @@ def upward(rotation: np.ndarray) -> np.ndarray:
     return np.stack([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)], axis=1)
 
 
-def theory_of(hulls: dict[str, Hull], density: float, spill: FluidColumn) -> dict[str, Theory]:
+def theory_of(hulls: dict[str, Hull], density: float, column: FluidColumn) -> dict[str, Theory]:
     """Archimedes for each kind of body."""
-    clean = ((spill.water.density, math.inf),)
+    clean = ((column.water.density, math.inf),)
     found = {}
     for kind, hull in hulls.items():
         height = float(hull.extents[2, 1] - hull.extents[2, 0])
-        draft = equilibrium_draft(hull, density, spill.layers)
+        draft = equilibrium_draft(hull, density, column.layers)
         in_water = equilibrium_draft(hull, density, clean)
-        found[kind] = Theory(draft, in_water, height, heave_period(hull, density, spill.layers))
+        found[kind] = Theory(draft, in_water, height, heave_period(hull, density, column.layers))
     return found

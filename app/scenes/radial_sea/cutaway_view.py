@@ -53,7 +53,7 @@ class Walls:
         middle = np.append(section.points[:-1].mean(axis=0), section.floor)
         return np.concatenate([*rows, middle[None]]).astype(np.float32)
 
-    def show(self, section: Section | None, light: Look, spill: FluidColumn) -> None:
+    def show(self, section: Section | None, light: Look, column: FluidColumn) -> None:
         """The walls as they are now, or nothing; call inside `server.atomic()`."""
         visible = section is not None
         if self.mesh.mesh.visible != visible:
@@ -62,21 +62,21 @@ class Walls:
             line.visible = visible and (line is self.lines[0] or section.oiled)
         if section is None:
             return
-        colours = self.paint(light, spill)
+        colours = self.paint(light, column)
         self.mesh.set(self.vertices(section), colours)
         for line, height in zip(self.lines, (section.top, section.interface), strict=True):
             at = np.column_stack([section.points[:FAR] + BEFORE * np.array(section.way), height[:FAR]])
             line.points = np.stack([at[:-1], at[1:]], axis=1).astype(np.float32)
 
-    def paint(self, light: Look, spill: FluidColumn) -> np.ndarray | None:
+    def paint(self, light: Look, column: FluidColumn) -> np.ndarray | None:
         """Colours where they changed, else None."""
-        key = (spill.kind, spill.oil.name, spill.fraction)
+        key = (column.kind, column.oil.name, column.fraction)
         if key == self.painted:
             return None
         self.painted = key
-        n, oil = self.n, blend(rgb_of(spill.oil.colour), OILY, 0.55)
-        share = min(1.0, 0.35 + spill.fraction) if spill.kind == "mixed" else 0.0
-        high, low = blend(SHALLOW, oil, share), blend(DEEP, rgb_of(spill.oil.colour), share)
+        n, oil = self.n, blend(rgb_of(column.oil.colour), OILY, 0.55)
+        share = min(1.0, 0.35 + column.fraction) if column.kind == "mixed" else 0.0
+        high, low = blend(SHALLOW, oil, share), blend(DEEP, rgb_of(column.oil.colour), share)
         self.colours[: 2 * n] = oil
         self.colours[2 * n : 3 * n] = high
         self.colours[3 * n :] = low

@@ -33,7 +33,7 @@ class RadialFrame(NamedTuple):
     pull: tuple[Vector, Vector] | None  # from a held body to where it is pulled [m]
     fire: tuple[NDArray[np.float32], NDArray[np.float32]] | None  # (3, n) [m], (2, n) heat and age over life
     jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
-    spill: FluidColumn
+    column: FluidColumn
     age: float  # [s] that the waves have run under the oil
 
 
@@ -53,7 +53,7 @@ class RadialReadings(NamedTuple):
     """Numbers for the panel."""
 
     readings: tuple[BodyReading, ...]
-    spill: FluidColumn
+    column: FluidColumn
     height: float  # Hs [m] of the waves as they are
     height_clean: float  # without the oil
     slope: float  # mean square slope as it is

@@ -27,38 +27,38 @@ def blend(a: RGB | np.ndarray, b: RGB | np.ndarray, share: float) -> RGB:
     return x, y, z
 
 
-def ripple_slope(p: Params, spill: FluidColumn, age: float) -> float:
+def ripple_slope(p: Params, column: FluidColumn, age: float) -> float:
     """Root mean square slope of the material's ripples: Cox and Munk's, less what `age` [s] of the fluid took."""
     clean = math.sqrt(0.003 + 0.00512 * p.wind_speed) if p.waves else 0.02
     k = np.array([2.0 * math.pi / RIPPLE])
-    kept = math.exp(-float(spill.roots(k)[1][0]) * age)
+    kept = math.exp(-float(column.roots(k)[1][0]) * age)
     return min(clean, 0.24) * max(kept, 0.12)
 
 
 def look_of(light: Look, picture: RadialFrame) -> Look:
     """The look under a light (`app.render.water.sky`), with a slick on clean water and a window into it."""
-    p, spill, section = picture.params, picture.spill, picture.section
+    p, column, section = picture.params, picture.column, picture.section
     common = {
-        "ripple_slope": round(ripple_slope(p, spill, picture.age), 3),
-        "ripple_length": 1.6 if spill.kind == "water" else 2.4,
+        "ripple_slope": round(ripple_slope(p, column, picture.age), 3),
+        "ripple_length": 1.6 if column.kind == "water" else 2.4,
         "ripple_direction": math.radians(p.wind_direction),
         "wireframe": p.grid,
         "specular": LAB_SPECULAR if p.optics == "lab" and p.spill != "none" else 1.0,
-        "refractive_index": spill.surface.refractive_index,
+        "refractive_index": column.surface.refractive_index,
         "clouds": min(0.15 + 0.045 * p.wind_speed, 0.9),
         "pit": None if section is None else Cutout(section.middle, section.half, section.way, section.length),
     }
-    if spill.kind == "water":
-        patch = None if picture.slick is None else slick_patch(light, p, spill, picture.slick)
+    if column.kind == "water":
+        patch = None if picture.slick is None else slick_patch(light, p, column, picture.slick)
         return dataclasses.replace(light, **common, slick=patch)
-    return dataclasses.replace(light, **common, **oil_colours(light, spill))
+    return dataclasses.replace(light, **common, **oil_colours(light, column))
 
 
-def oil_colours(light: Look, spill: FluidColumn) -> dict[str, Any]:
+def oil_colours(light: Look, column: FluidColumn) -> dict[str, Any]:
     """Body colours. Oil sends nearly no light back from below; a mixture is brown and turbid."""
-    oil = rgb_of(spill.oil.colour)
-    if spill.kind == "mixed":
-        share = min(1.0, 0.35 + spill.fraction)
+    oil = rgb_of(column.oil.colour)
+    if column.kind == "mixed":
+        share = min(1.0, 0.35 + column.fraction)
         deep = blend(light.deep, blend(oil, MOUSSE, 0.45), share)
         return {
             "deep": deep,
@@ -67,17 +67,17 @@ def oil_colours(light: Look, spill: FluidColumn) -> dict[str, Any]:
             "roughness": 0.06,
         }
     # A thin layer lets some of the water's colour through: light is halved every few millimetres of crude.
-    seen = 1.0 - math.exp(-spill.thickness / 0.004)
+    seen = 1.0 - math.exp(-column.thickness / 0.004)
     deep, scatter = blend(light.deep, oil, seen), blend(light.scatter, 1.3 * oil, seen)
     return {"deep": deep, "scatter": scatter, "foam": blend(light.foam, (0.45, 0.36, 0.26), seen), "roughness": 0.02}
 
 
-def slick_patch(light: Look, p: Params, spill: FluidColumn, slick: Slick) -> SlickRegion:
+def slick_patch(light: Look, p: Params, column: FluidColumn, slick: Slick) -> SlickRegion:
     """A slick of this oil, drawn as if it were thick: what thin oil shows of the water is left out."""
-    layer = dataclasses.replace(spill, thickness=max(slick.thickness, 0.05), fraction=0.0)
+    layer = dataclasses.replace(column, thickness=max(slick.thickness, 0.05), fraction=0.0)
     colours = oil_colours(light, layer)
-    calm = ripple_slope(p, layer, p.exposure) / ripple_slope(p, spill, 0.0)
+    calm = ripple_slope(p, layer, p.exposure) / ripple_slope(p, column, 0.0)
     return SlickRegion(
-        slick.centre, round(slick.radius, 1), colours["deep"], colours["scatter"], spill.oil.refractive_index,
+        slick.centre, round(slick.radius, 1), colours["deep"], colours["scatter"], column.oil.refractive_index,
         colours["roughness"], round(calm, 2),
     )  # fmt: skip

@@ -151,7 +151,7 @@ def hidden(params: Params) -> set[str]:
     return names
 
 
-def spill_of(params: Params) -> FluidColumn:
+def column_of(params: Params) -> FluidColumn:
     """The fluids that the parameters describe."""
     return FluidColumn(
         oil=fluids()[params.oil],

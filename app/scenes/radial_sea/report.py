@@ -56,7 +56,7 @@ def table(snapshot: Snapshot) -> str:
     lines = [
         f'<table style="{TABLE};font-variant-numeric:tabular-nums">{"".join(rows)}</table>',
         '<div style="opacity:.7;font-size:11px">m and s; at rest: Archimedes in these fluids; mean over 8 s</div>',
-        archimedes(g.spill),
+        archimedes(g.column),
         f"<div>Waves: Hs {g.height:.2f} m, {g.height_clean:.2f} m without; slope {math.sqrt(g.slope):.3f} rms</div>",
     ]
     if g.tally.ejected > 0.0:
@@ -68,17 +68,17 @@ def table(snapshot: Snapshot) -> str:
     return "".join(lines)
 
 
-def archimedes(spill: FluidColumn) -> str:
+def archimedes(column: FluidColumn) -> str:
     """The extra sinkage that the fluids give, in symbols and in numbers."""
-    oil, water = spill.oil.density, spill.water.density
-    if spill.kind == "layer":
-        extra = spill.thickness * (1.0 - oil / water)
+    oil, water = column.oil.density, column.water.density
+    if column.kind == "layer":
+        extra = column.thickness * (1.0 - oil / water)
         return (
-            f"<div>d (1 − ρ₁/ρ₂) = {spill.thickness:g} × (1 − {oil:g}/{water:g}) = <b>{extra:.4f} m</b> "
+            f"<div>d (1 − ρ₁/ρ₂) = {column.thickness:g} × (1 − {oil:g}/{water:g}) = <b>{extra:.4f} m</b> "
             "deeper, if the body reaches through the oil</div>"
         )
-    if spill.kind == "mixed":
-        mixed = spill.surface.density
+    if column.kind == "mixed":
+        mixed = column.surface.density
         return (
             f"<div>draft × {water / mixed:.4f} where sides are straight: "
             f"ρ = {mixed:.1f} instead of {water:g} kg/m³</div>"
@@ -89,14 +89,14 @@ def archimedes(spill: FluidColumn) -> str:
 def lab_says(snapshot: Snapshot) -> str:
     """The lab's questions of section 1.1, with what physics says and the numbers of just now."""
     g, p = snapshot.readings, snapshot.frame.params
-    spill: FluidColumn = g.spill
-    surface, water = spill.surface, spill.water
+    column: FluidColumn = g.column
+    surface, water = column.surface, column.water
     k = np.array([2.0 * math.pi / SAMPLE_WAVE])
-    speed, clean = float(spill.roots(k)[0][0] / k[0]), float(FluidColumn(water=water).omega(k)[0] / k[0])
+    speed, clean = float(column.roots(k)[0][0] / k[0]), float(FluidColumn(water=water).omega(k)[0] / k[0])
     lost = 1.0 - (g.height / g.height_clean if g.height_clean > 0 else 1.0)
     calmer = 1.0 - (g.slope / g.slope_clean if g.slope_clean > 0 else 1.0)
     short = np.array([2.0 * math.pi])
-    decay = float(spill.roots(short)[1][0])
+    decay = float(column.roots(short)[1][0])
     r_oil, r_water = normal_reflectance(surface.refractive_index), normal_reflectance(water.refractive_index)
     d_oil, d_water = diffuse_reflectance(surface.refractive_index), diffuse_reflectance(water.refractive_index)
     shift = 1.0 - float(viscous_root(2.0 * math.pi, surface.kinematic_viscosity)[0] / math.sqrt(9.81 * 2.0 * math.pi))
@@ -106,7 +106,7 @@ def lab_says(snapshot: Snapshot) -> str:
     claims = [
         (
             "1. Which fluid is on top?",
-            f"The lighter: {spill.oil.density:g} < {water.density:g} kg/m³. p = ρ g z; "
+            f"The lighter: {column.oil.density:g} < {water.density:g} kg/m³. p = ρ g z; "
             "a swap would lift the centre of mass.",
         ),
         (
@@ -115,7 +115,7 @@ def lab_says(snapshot: Snapshot) -> str:
         ),
         (
             "5. The mixture's viscosity.",
-            f"{surface.viscosity * 1e3:.3g} mPa s ({p.mixture_law if spill.kind == 'mixed' else surface.name}); water "
+            f"{surface.viscosity * 1e3:.3g} mPa s ({p.mixture_law if column.kind == 'mixed' else surface.name}); water "
             f"{water.viscosity * 1e3:.3g}. Oil and water do not dissolve: Taylor's emulsion is what happens, "
             "Arrhenius' law the reading of 'entirely mixed'.",
         ),
@@ -141,11 +141,11 @@ def lab_says(snapshot: Snapshot) -> str:
 
 def fluids_html(snapshot: Snapshot) -> str:
     """The fluids in use."""
-    spill: FluidColumn = snapshot.readings.spill
+    column: FluidColumn = snapshot.readings.column
     rows = [row(["", "ρ kg/m³", "μ mPa s", "ν m²/s", "n"], HEAD, "th")]
-    chosen = [spill.water, spill.oil, *([spill.surface] if spill.kind == "mixed" else [])]
+    chosen = [column.water, column.oil, *([column.surface] if column.kind == "mixed" else [])]
     for f in chosen:
-        name = "mixture" if f is not spill.water and f is not spill.oil else html.escape(f.name)
+        name = "mixture" if f is not column.water and f is not column.oil else html.escape(f.name)
         rows.append(
             row([
                 name, f"{f.density:.1f}", f"{f.viscosity * 1e3:.3g}", f"{f.kinematic_viscosity:.2e}",
@@ -179,9 +179,9 @@ def compared_html(snapshot: Snapshot) -> str:
 def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """What is written under a parameter."""
     g = snapshot.readings
-    spill: FluidColumn = g.spill
+    column: FluidColumn = g.column
     grid = snapshot.frame.grid
-    oil = spill.oil
+    oil = column.oil
     out = {
         "wind_speed": f"Hs {g.height_clean:.2f} m, middle period {g.peak_period:.1f} s",
         "oil": f"{oil.density:g} kg/m³, {oil.viscosity * 1e3:g} mPa s, n = {oil.refractive_index:.3f}",
@@ -190,11 +190,11 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
     if g.readings:
         t = g.readings[0].theory
         out["density"] = f"buoys at rest {metres(t.draft)} m deep of {t.height:.2f} m"
-    if spill.kind == "mixed":
-        out["mixture_law"] = f"{spill.surface.viscosity * 1e3:.3g} mPa s, {spill.surface.density:.0f} kg/m³"
-    if spill.kind != "water":
+    if column.kind == "mixed":
+        out["mixture_law"] = f"{column.surface.viscosity * 1e3:.3g} mPa s, {column.surface.density:.0f} kg/m³"
+    if column.kind != "water":
         k = np.array([peak_wavenumber_of(snapshot)])
-        kept = math.exp(-float(spill.roots(k)[1][0]) * g.age)
+        kept = math.exp(-float(column.roots(k)[1][0]) * g.age)
         out["exposure"] = f"{g.age:.0f} s by now: the peak wave keeps {kept:.2%}"
     return out
 

@@ -16,7 +16,7 @@ from app.scenes.radial_sea.bodies import FloatingBodies
 from app.scenes.radial_sea.cutaway import Section, outline, section_at
 from app.scenes.radial_sea.frame import Compared, RadialFrame, RadialReadings
 from app.scenes.radial_sea.measures import measures
-from app.scenes.radial_sea.parameters import PRESETS, Params, conditions_of, exposure_of, hidden, spill_of
+from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, conditions_of, exposure_of, hidden
 from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
 from sim.floating import Hull, Laws
 from sim.ocean import Sea
@@ -90,12 +90,12 @@ class Scene:
         """The bodies at rest in their places, and no oil but the layer the parameters ask for."""
         p = self.params
         self.time = 0.0
-        self.spill, self.age = spill_of(p), exposure_of(p)
-        self.sum = RadialSea(self.waves(), self.spill, self.age, p.choppiness)
+        self.column, self.age = column_of(p), exposure_of(p)
+        self.sum = RadialSea(self.waves(), self.column, self.age, p.choppiness)
         self.tile: TileSea | None = None
         self.tile_age = 0.0
         self.grid = self.make_grid()
-        self.crowd = FloatingBodies(p.bodies, p.size, p.density, self.spill, self.own)
+        self.crowd = FloatingBodies(p.bodies, p.size, p.density, self.column, self.own)
         self.wakes = RadiatedWaves()
         self.blowout = WellBlowout(p)
         self.eye = (0.0, 0.0)
@@ -117,12 +117,12 @@ class Scene:
 
     def make_tile(self) -> TileSea:
         """The square sea under the same wind and oil; what oil took of a wave, exp(-2 nu k^2 T), is its low-pass."""
-        p, fluid = self.params, self.spill.surface
+        p, fluid = self.params, self.column.surface
         low_pass = 2.0 * math.sqrt(fluid.kinematic_viscosity * self.age)
         self.tile_age = self.age
         conditions = dataclasses.replace(conditions_of(p), low_pass=low_pass)
         wind = {name: getattr(conditions, name) for name in ("wind_speed", "wind_direction", "low_pass")}
-        sea = Sea(TILE, TILE_LENGTH, p.spectrum, choppiness=p.choppiness, frequency=self.spill.omega, **wind)
+        sea = Sea(TILE, TILE_LENGTH, p.spectrum, choppiness=p.choppiness, frequency=self.column.omega, **wind)
         return TileSea(sea)
 
     @property
@@ -141,23 +141,23 @@ class Scene:
         def changed(*names: str) -> bool:
             return any(getattr(params, name) != getattr(old, name) for name in names)
 
-        self.spill = spill_of(params)
+        self.column = column_of(params)
         sea = changed("waves", "wind_speed", "wind_direction", "spectrum", "wave_count")
         fluids = changed("spill", "oil", "thickness", "fraction", "mixture_law", "film", "exposure")
         if fluids:
             self.age = exposure_of(params)
         if sea or fluids:
-            self.sum.change(self.time, self.waves() if sea else None, self.spill, self.age)
+            self.sum.change(self.time, self.waves() if sea else None, self.column, self.age)
         self.sum.choppiness = params.choppiness
         if sea or fluids or changed("choppiness"):
             self.tile = None
         if changed("rings", "spokes", "ring_law"):
             self.grid = self.make_grid()
         if changed("bodies", "size"):
-            self.crowd = FloatingBodies(params.bodies, params.size, params.density, self.spill, self.own)
+            self.crowd = FloatingBodies(params.bodies, params.size, params.density, self.column, self.own)
             self.target = None
         elif fluids or changed("density"):
-            self.crowd.restate(params.density, self.spill)
+            self.crowd.restate(params.density, self.column)
         if not params.ripples and old.ripples:
             self.wakes = RadiatedWaves()
         self.blowout.set_params(params, old)
@@ -188,14 +188,14 @@ class Scene:
                 if self.params.mooring:
                     crowd.moor()
                 try:
-                    crowd.step(self.spill, at, self.time, h, layer, laws)
+                    crowd.step(self.column, at, self.time, h, layer, laws)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
                 plotted = self.params.plot_draft or self.params.plot_surface
                 if plotted and self.time - self.sampled_at >= SAMPLE_EVERY:
                     self.sample(float(at.height[0]))
             self.time += h
-        if self.params.ageing and self.spill.kind != "water":
+        if self.params.ageing and self.column.kind != "water":
             self.grow_old(steps * h)
         n = crowd.count
         done = {"body steps": steps * n, "pairs": steps * n * (n - 1) // 2, "touches": crowd.touched - touched}
@@ -215,9 +215,9 @@ class Scene:
 
     def layer_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Thickness (n,) [m] of oil under the surface at points (n, 2) [m]."""
-        found = np.full(len(points), self.spill.thickness)
-        slick = self.blowout.slick(self.spill)
-        if slick is not None and self.spill.kind != "mixed":
+        found = np.full(len(points), self.column.thickness)
+        slick = self.blowout.slick(self.column)
+        if slick is not None and self.column.kind != "mixed":
             found[slick_reach(slick, points[:, 0], points[:, 1]) > 0.0] += slick.thickness
         return found
 
@@ -254,7 +254,7 @@ class Scene:
             grid=self.grid,
             surface=self.surface,
             foam=self.foam,
-            slick=self.blowout.slick(self.spill) if self.spill.kind == "water" else None,
+            slick=self.blowout.slick(self.column) if self.column.kind == "water" else None,
             section=self.section,
             kinds=tuple(crowd.kinds),
             own=self.own,
@@ -263,7 +263,7 @@ class Scene:
             pull=pull,
             fire=flames,
             jet=None if jet is None else jet.position[:, jet.flying].T.astype(np.float32),
-            spill=self.spill,
+            column=self.column,
             age=self.age,
         )
 
@@ -327,7 +327,7 @@ class Scene:
             self.wakes.lay(self.time, walls, np.zeros((len(walls), 2), np.float32), len(walls))
         top = walls[:, 2].astype(np.float64)
         layer = self.layer_at(points)
-        oiled = self.spill.kind != "mixed" and bool(layer.max() > 0.0)
+        oiled = self.column.kind != "mixed" and bool(layer.max() > 0.0)
         interface = at.interface - layer + (top - at.height) if oiled else top
         return section_at((x, y), size, points, top, interface, oiled)
 
@@ -347,13 +347,13 @@ class Scene:
             compared["fft"] = Compared(self.costs["fft"], TILE * TILE // 2, *numbers, error)
         return RadialReadings(
             readings=self.crowd.readings(self.time),
-            spill=self.spill,
+            column=self.column,
             height=s.significant_height,
             height_clean=clean.significant_height,
             slope=s.mean_square_slope,
             slope_clean=0.5 * float(np.square(clean.k * clean.amplitude).sum()),
             peak_period=2 * math.pi / float(s.rate[len(s.rate) // 2]),
-            tally=self.blowout.tally(self.spill),
+            tally=self.blowout.tally(self.column),
             compared=compared,
             age=self.age,
         )

@@ -84,7 +84,7 @@ class View:
         if self.walls is None and picture.section is not None:
             self.walls = Walls(self.server, "/section", picture.section)
         if self.walls is not None:
-            self.walls.show(picture.section, self.light, picture.spill)
+            self.walls.show(picture.section, self.light, picture.column)
         self.show_bodies(picture)
         if self.rig.visible != p.rig:
             self.rig.visible = p.rig

@@ -100,17 +100,17 @@ class WellBlowout:
         """Oil on the sea from the jet [m3]."""
         return self.gone[1] + (self.jet.fed if self.jet is not None else 0.0)
 
-    def slick(self, spill: FluidColumn) -> Slick | None:
+    def slick(self, column: FluidColumn) -> Slick | None:
         """The slick, spread as Fay says, or None where there is none."""
         if self.volume <= 0.0 or self.since <= 0.0:
             return None
-        viscosity = spill.water.kinematic_viscosity
-        radius = slick_radius(self.volume, self.since, spill.oil.density, spill.water.density, viscosity)
+        viscosity = column.water.kinematic_viscosity
+        radius = slick_radius(self.volume, self.since, column.oil.density, column.water.density, viscosity)
         return Slick(self.landing, radius, slick_thickness(self.volume, radius))
 
-    def tally(self, spill: FluidColumn) -> OilBudget:
+    def tally(self, column: FluidColumn) -> OilBudget:
         """Where the oil is."""
-        slick, jet = self.slick(spill), self.jet
+        slick, jet = self.slick(column), self.jet
         ejected, _, hits = self.gone
         return OilBudget(
             ejected + (jet.ejected if jet is not None else 0.0),

@@ -13,7 +13,7 @@ from app.__main__ import main
 from app.messages import Grab, Place, Release
 from app.scenes.radial_sea import scene as radial
 from app.scenes.radial_sea.bodies import HeaveMeter, hull_of, place_of, upward
-from app.scenes.radial_sea.parameters import PRESETS, Params, hidden, spill_of
+from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden
 from app.scenes.radial_sea.scene import Scene
 from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
 from sim.floating import equilibrium_draft, heave_period
@@ -74,11 +74,11 @@ def test_oil_poured_on_adds_d_times_one_minus_the_ratio() -> None:
 
 def test_theory_is_that_of_the_hulls() -> None:
     params = Params(spill="layer", density=700.0, size=2.0)
-    scene, spill = Scene(params), spill_of(params)
+    scene, column = Scene(params), column_of(params)
     for reading in scene.readings().readings:
         hull = hull_of(reading.kind, 2.0)
-        assert reading.theory.draft == equilibrium_draft(hull, 700.0, spill.layers)
-        assert reading.theory.period == heave_period(hull, 700.0, spill.layers)
+        assert reading.theory.draft == equilibrium_draft(hull, 700.0, column.layers)
+        assert reading.theory.period == heave_period(hull, 700.0, column.layers)
 
 
 def test_a_body_pushed_under_bobs_at_the_predicted_period() -> None:
@@ -310,7 +310,7 @@ def test_a_spill_ages_and_its_parameter_sets_its_age_anew(surface: str) -> None:
     before, square = scene.sum.significant_height, scene.make_tile().significant_height
     run(scene, 60.0)
     assert scene.readings().age == pytest.approx(70.0, abs=0.2)
-    aged = RadialSea(scene.waves(), scene.spill, 70.0)
+    aged = RadialSea(scene.waves(), scene.column, 70.0)
     assert scene.sum.significant_height == pytest.approx(aged.significant_height, rel=1e-3)
     assert scene.sum.significant_height < 0.995 * before
     scene.frame()
@@ -342,7 +342,7 @@ def test_a_hull_from_a_file_floats_besides_at_the_draft_of_the_readout(tmp_path:
     reading = scene.readings().readings[-1]
     assert reading.kind == "hull"
     prism = 450.0 * 0.5  # [kg/m2] over its waterplane, which is the same at every draft
-    rho = scene.spill.oil.density
+    rho = scene.column.oil.density
     assert reading.theory.draft == pytest.approx(0.1 + (prism - rho * 0.1) / 1025.0, abs=1e-9)
     picture = scene.frame()
     assert picture.kinds[-1] == "hull"

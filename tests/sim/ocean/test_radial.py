@@ -18,8 +18,8 @@ MONTH = 30 * 24 * 3600.0
 WIND = Conditions(wind_speed=8.0)
 
 
-def sea_of(count: int = 64, **spill) -> RadialSea:
-    return RadialSea(draw_waves(SPECTRA["jonswap"], WIND, count), FluidColumn(**spill))
+def sea_of(count: int = 64, **column) -> RadialSea:
+    return RadialSea(draw_waves(SPECTRA["jonswap"], WIND, count), FluidColumn(**column))
 
 
 def naive(sea: RadialSea, x: np.ndarray, y: np.ndarray, t: float, weights: np.ndarray | None = None) -> np.ndarray:
@@ -164,11 +164,11 @@ def test_waves_on_a_layer_are_the_exact_surface_mode() -> None:
 
 def test_on_a_thick_layer_waves_decay_at_the_exact_viscous_root() -> None:
     oil = fluids()["IFO 180"]
-    spill = FluidColumn(oil=oil, thickness=1e4)
+    column = FluidColumn(oil=oil, thickness=1e4)
     k = np.array([0.1, 1.0, 10.0])
     _, exact = viscous_root(k, oil.kinematic_viscosity)
-    np.testing.assert_allclose(spill.roots(k)[1], exact, rtol=3e-2)  # the root here has the surface tension too
-    np.testing.assert_allclose(spill.roots(k[:2])[1], exact[:2], rtol=1e-3)
+    np.testing.assert_allclose(column.roots(k)[1], exact, rtol=3e-2)  # the root here has the surface tension too
+    np.testing.assert_allclose(column.roots(k[:2])[1], exact[:2], rtol=1e-3)
 
 
 def test_heavy_oil_takes_the_short_waves_and_leaves_the_long_ones() -> None:
@@ -193,7 +193,7 @@ def test_oil_poured_in_lets_phases_run_on() -> None:
     sea = sea_of()
     where = [[2.0, 3.0]]
     before = sea.at(where, 100.0)
-    sea.change(100.0, spill=FluidColumn(thickness=0.2))
+    sea.change(100.0, column=FluidColumn(thickness=0.2))
     after = sea.at(where, 100.0)
     np.testing.assert_allclose(after.height, before.height, atol=1e-9)
 
@@ -206,7 +206,7 @@ def test_other_waves_take_over_smoothly_and_wholly() -> None:
     np.testing.assert_allclose(sea.at([[0.0, 0.0]], 50.0 + 1e-9).height, before, atol=1e-3)
     grid = RadialGrid(32, 32)
     sea.on(grid, 51.0)
-    sea.change(51.5, spill=FluidColumn(thickness=0.3))
+    sea.change(51.5, column=FluidColumn(thickness=0.3))
     assert len(sea.current(51.6)[0]) == 64 + 80
     assert len(sea.current(52.1)[0]) == 80
     assert sea.significant_height == pytest.approx(storm.significant_height)

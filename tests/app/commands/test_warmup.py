@@ -1,4 +1,4 @@
-"""What is compiled ahead is compiled once an installation, not once a cache directory."""
+"""A scene is compiled ahead once, and again when a source that its kernels can reach has changed."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -6,12 +6,11 @@ from types import SimpleNamespace
 
 import pytest
 
+import app.scenes
 from app.scenes import warmup
 
 
-def test_an_installation_does_not_rely_on_what_another_compiled(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_scene_is_compiled_once_and_again_after_an_edit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     compiled: list[str] = []
 
     def side(name: str) -> SimpleNamespace:
@@ -23,14 +22,13 @@ def test_an_installation_does_not_rely_on_what_another_compiled(
 
     monkeypatch.setattr(warmup, "CACHE", tmp_path)
     monkeypatch.setattr(warmup, "scene_named", side)
-    monkeypatch.setattr(warmup, "view_named", side)
+    monkeypatch.setattr(app.scenes, "view_module", side)
     warmup.prepare("rope", drawn=False)
     warmup.prepare("rope", drawn=False)
     assert len(compiled) == 1
     warmup.prepare("rope")
     warmup.prepare("rope", drawn=False)
     assert len(compiled) == 3  # the scene again, and its drawing
-    # numba files kernels by where their source is: those of another place are of no use here.
-    monkeypatch.setattr(warmup, "PLACE", "elsewhere")
+    monkeypatch.setattr(warmup, "reachable_hash", lambda *_: "hash after an edit")
     warmup.prepare("rope", drawn=False)
     assert len(compiled) == 4

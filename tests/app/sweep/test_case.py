@@ -7,7 +7,7 @@ import pytest
 
 import app.scenes.rope.scene
 from app.scenes import NAMES, scene_named
-from app.scenes.measures import measures_named, plotted
+from app.scenes.measures import plotted
 from app.sweep.case import DIVERGED, FAILED, FINISHED, run_case
 from sim.floating import Hull, equilibrium_draft
 from sim.parameters import parameters_of
@@ -17,8 +17,8 @@ from sim.springs.statics import hanging_chain
 SMALL = {
     "rope": {"plot_energy": True, "plot_tip": True},
     "cloth": {"rows": 6, "cols": 6, "plot_energy": True, "plot_strain": True},
-    "phillips": {"size": "64", "mesh": "32"},
-    "radial": {"wave_count": 16, "particles": 100},
+    "square_sea": {"size": "64", "mesh": "32"},
+    "radial_sea": {"wave_count": 16, "particles": 100},
 }
 
 
@@ -64,7 +64,7 @@ def test_a_divergence_is_dated_to_the_step_and_what_came_before_it_is_kept():
 
 def test_drafts_are_archimedes():
     values = {"waves": False, "spill": "layer", "thickness": 0.3, "bodies": 3, "density": 500.0, "size": 1.0}
-    found = run_case("radial", values, (2.0,)).measures
+    found = run_case("radial_sea", values, (2.0,)).measures
     from sim.ocean.fluids import fluids
 
     oil = fluids()["Alaska North Slope 2002"].density
@@ -75,7 +75,7 @@ def test_drafts_are_archimedes():
 
 
 def test_bodies_that_are_not_there_have_no_draft():
-    found = run_case("radial", {"bodies": 1, "waves": False}, (0.1,)).measures
+    found = run_case("radial_sea", {"bodies": 1, "waves": False}, (0.1,)).measures
     assert math.isfinite(found["red_buoy_draft"][0])
     assert math.isnan(found["box_draft"][0])
 
@@ -94,7 +94,7 @@ def test_what_a_scene_raises_is_the_outcome(monkeypatch):
 
 def test_a_scene_without_measures_gives_its_plot_rows():
     scene = scene_named("cloth")
-    assert measures_named("cloth") is None
+    assert scene.measures is None
     row = (0.5, *range(len(scene.series)))
     found = plotted(scene, row)
     assert found["gravity_energy"] == (2, "J", "Energy: gravity")
@@ -108,6 +108,7 @@ def test_an_integrator_that_would_be_replaced_is_a_failed_case(monkeypatch):
         params: object
         note: str = "pefrl takes no damping, so leapfrog runs instead"
 
-    monkeypatch.setattr(app.scenes.rope.scene, "Scene", Stub)
+    kind = dataclasses.replace(app.scenes.rope.scene.SCENE, make=Stub)
+    monkeypatch.setattr(app.scenes.rope.scene, "SCENE", kind)
     outcome = run_case("rope", {}, (1.0,))
     assert (outcome.end, outcome.message) == (FAILED, Stub.note)

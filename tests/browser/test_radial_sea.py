@@ -10,7 +10,7 @@ from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 from tests.browser.test_rope import pixel
 
-SCENE = "radial"
+SCENE = "radial_sea"
 
 
 def drawn(lab: Viewer) -> bool:
@@ -21,7 +21,7 @@ def drawn(lab: Viewer) -> bool:
 def load(lab: Viewer, **changes: Any) -> None:
     """Set parameters as the panel would."""
     for name, value in changes.items():
-        lab.panel.controls[name].take(value)
+        lab.panel.set(name, value)
 
 
 def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
@@ -39,7 +39,7 @@ def test_every_preset_is_drawn_as_water_without_console_errors(shown: tuple[View
     lab, tab = shown
     for preset in PRESETS:
         lab.panel.load(preset)
-        tab.wait(lambda: lab.scene.params == lab.panel.read())
+        tab.wait(lambda: lab.scene.params == lab.panel.params)
         tab.wait(lambda: drawn(lab) and len(tab.vertices("/sea")) == len(lab.scene.grid))
         first = tab.vertices("/sea")
         tab.wait(lambda first=first: np.abs(tab.vertices("/sea") - first).max() > 0.02)
@@ -122,9 +122,9 @@ def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(shown: tuple[Vie
 def test_hostile_values_clamp(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     tab.wait(lambda: drawn(lab))
-    lab.panel.controls["wind_speed"].take(1e30)
-    lab.panel.controls["bodies"].take(-5)
-    lab.panel.controls["oil"].take("<script>")
+    lab.panel.set("wind_speed", 1e30)
+    lab.panel.set("bodies", -5)
+    lab.panel.set("oil", "<script>")
     field = tab.page.get_by_label("Wave count").first
     field.fill("1000000000")
     field.press("Enter")

@@ -12,7 +12,7 @@ from typing import Any
 from app.bench.cases.radial import default_sea
 from app.scenes.radial_sea.bodies import place_of
 from app.scenes.radial_sea.parameters import PRESETS, Params
-from app.scenes.radial_sea.scene import Scene
+from app.scenes.radial_sea.scene import RadialSeaScene
 from sim.floating import Body, Hull, make_fleet, make_water, step
 from sim.parameters import check_record
 
@@ -59,9 +59,9 @@ def scene_rows(repeats: int) -> list[dict[str, Any]]:
     """The scene itself, by preset, without the sending: two steps and a picture every 1/30 s."""
     found = []
     for preset, changes in PRESETS.items():
-        scene = Scene(check_record(Params, changes))
+        scene = RadialSeaScene(check_record(Params, changes))
 
-        def frame(scene: Scene = scene) -> None:
+        def frame(scene: RadialSeaScene = scene) -> None:
             scene.advance(2)
             scene.frame()
             scene.readings()
@@ -78,7 +78,7 @@ def served_rows(presets: list[str], seconds: float) -> list[dict[str, Any]]:
     from app.server.viewer import Viewer
 
     viewer = Viewer("127.0.0.1", 0)
-    viewer.open("radial")
+    viewer.open("radial_sea")
     client = subprocess.Popen([sys.executable, "-m", "app.bench.listener", str(viewer.port)])
     try:
         found = []

@@ -9,10 +9,10 @@ from app.scenes.radial_sea.bodies import KINDS
 from app.scenes.radial_sea.report import NAMES
 
 if TYPE_CHECKING:
-    from app.scenes.radial_sea.scene import Scene
+    from app.scenes.radial_sea.scene import RadialSeaScene
 
 
-def measures(scene: "Scene") -> dict[str, Measure]:
+def measures(scene: "RadialSeaScene") -> dict[str, Measure]:
     """Of bodies and waves as they are; nan for a body that is not there, inf for the draft of what sinks."""
     gauge = scene.readings()
     found: dict[str, Measure] = {}

@@ -38,7 +38,7 @@ def row(cells: list[str], style: str = CELL, tag: str = "td") -> str:
     )
 
 
-def table(snapshot: Snapshot) -> str:
+def readout_of(snapshot: Snapshot) -> str:
     """Draft now, its mean, Archimedes' draft, what oil adds to it, and heave periods, a row a body."""
     g = snapshot.readings
     if not g.readings:
@@ -174,6 +174,15 @@ def compared_html(snapshot: Snapshot) -> str:
         "as near by. Off: of Hs, against the spectrum's."
     )
     return f'<table style="{TABLE}">{"".join(rows)}</table>{verdict}'
+
+
+def notes_of(snapshot: Snapshot) -> dict[str, str]:
+    """Heading -> HTML of the folders below the controls."""
+    return {
+        "Lab says, physics says": lab_says(snapshot),
+        "Fluids": fluids_html(snapshot),
+        "Radial or square": compared_html(snapshot),
+    }
 
 
 def marks_of(snapshot: Snapshot) -> dict[str, str]:

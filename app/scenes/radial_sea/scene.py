@@ -57,7 +57,7 @@ def warm_up() -> Iterator[str]:
     """Compile everything the scene may call, piece by piece; yields what comes next."""
     for name, changes in WARM.items():
         yield name
-        scene = Scene(check_record(Params, changes))
+        scene = RadialSeaScene(check_record(Params, changes))
         scene.handle(Grab(0, (0.0, 0.0, 0.0)))
         for _ in range(8):
             scene.advance(1)
@@ -65,7 +65,7 @@ def warm_up() -> Iterator[str]:
         scene.readings()
 
 
-class Scene:
+class RadialSeaScene:
     """The radial sea on the simulation thread."""
 
     frame_interval = FRAME_INTERVAL
@@ -390,7 +390,7 @@ SCENE = SceneKind(
     help=HELP,
     params=Params,
     presets=PRESETS,
-    make=Scene,
+    make=RadialSeaScene,
     hidden=hidden,
     warm_up=warm_up,
     series=SERIES,

@@ -19,7 +19,7 @@ from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.fire_view import Flames
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.materials import look_of
-from app.scenes.radial_sea.report import compared_html, fluids_html, lab_says, marks_of, table
+from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
 from app.scenes.radial_sea.scene import RADIUS
 from app.scenes.radial_sea.well_blowout import FIRE, RIG
 
@@ -213,7 +213,7 @@ class View:
 
     def readout(self, snapshot: Snapshot) -> str:
         """The bodies' drafts and periods, as HTML."""
-        return table(snapshot)
+        return readout_of(snapshot)
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
         """What is written under a parameter."""
@@ -221,11 +221,7 @@ class View:
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """What folds out below the controls."""
-        return {
-            "Lab says, physics says": lab_says(snapshot),
-            "Fluids": fluids_html(snapshot),
-            "Radial or square": compared_html(snapshot),
-        }
+        return notes_of(snapshot)
 
     def close(self) -> None:
         """Nothing to give back: removing the nodes removes all."""

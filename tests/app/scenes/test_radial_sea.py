@@ -11,10 +11,9 @@ import pytest
 
 from app.__main__ import main
 from app.messages import Grab, Place, Release
-from app.scenes.radial_sea import scene as radial
 from app.scenes.radial_sea.bodies import HeaveMeter, hull_of, place_of, upward
 from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden
-from app.scenes.radial_sea.scene import Scene
+from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
 from sim.floating import equilibrium_draft, heave_period
 from sim.floating.hydrostatics import rotation_matrix
@@ -29,7 +28,7 @@ def with_parameters(**changes: Any) -> Params:
     return check_record(Params, changes)
 
 
-def run(scene: Scene, seconds: float) -> Scene:
+def run(scene: RadialSeaScene, seconds: float) -> RadialSeaScene:
     for _ in range(round(seconds / scene.step / 6)):
         scene.advance(6)
     return scene
@@ -46,7 +45,7 @@ def run(scene: Scene, seconds: float) -> Scene:
     ],
 )
 def test_bodies_let_go_too_high_settle_at_the_drafts_of_the_readout(changes: dict) -> None:
-    scene = Scene(with_parameters(**CALM, **changes))
+    scene = RadialSeaScene(with_parameters(**CALM, **changes))
     scene.crowd.fleet.position[:, 2] += 0.1
     run(scene, 110.0)
     for reading in scene.readings().readings:
@@ -61,10 +60,10 @@ def test_the_bodies_own_axes_are_the_matrices_last_columns():
 
 
 def test_oil_poured_on_adds_d_times_one_minus_the_ratio() -> None:
-    scene = Scene(with_parameters(**CALM))
+    scene = RadialSeaScene(with_parameters(**CALM))
     run(scene, 10.0)
     before = scene.crowd.draft.copy()
-    scene.set_params(with_parameters(**CALM, spill="layer", thickness=0.2))
+    scene.change_forces(with_parameters(**CALM, spill="layer", thickness=0.2))
     run(scene, 110.0)
     extra = 0.2 * (1.0 - fluids()["Alaska North Slope 2002"].density / 1025.0)
     np.testing.assert_allclose(scene.crowd.draft - before, extra, atol=1e-4)
@@ -74,7 +73,7 @@ def test_oil_poured_on_adds_d_times_one_minus_the_ratio() -> None:
 
 def test_theory_is_that_of_the_hulls() -> None:
     params = Params(spill="layer", density=700.0, size=2.0)
-    scene, column = Scene(params), column_of(params)
+    scene, column = RadialSeaScene(params), column_of(params)
     for reading in scene.readings().readings:
         hull = hull_of(reading.kind, 2.0)
         assert reading.theory.draft == equilibrium_draft(hull, 700.0, column.layers)
@@ -82,7 +81,7 @@ def test_theory_is_that_of_the_hulls() -> None:
 
 
 def test_a_body_pushed_under_bobs_at_the_predicted_period() -> None:
-    scene = Scene(with_parameters(**CALM, time_step=1 / 120))
+    scene = RadialSeaScene(with_parameters(**CALM, time_step=1 / 120))
     scene.crowd.fleet.position[:, 2] -= 0.1
     run(scene, 7.0)
     for reading in scene.readings().readings:
@@ -98,7 +97,7 @@ def test_the_heave_meter_times_a_sine() -> None:
 
 
 def test_what_is_denser_than_the_fluid_sinks_and_comes_to_rest_deep() -> None:
-    scene = Scene(with_parameters(**CALM, density=1010.0, spill="mixed", fraction=0.6))
+    scene = RadialSeaScene(with_parameters(**CALM, density=1010.0, spill="mixed", fraction=0.6))
     assert math.isinf(scene.readings().readings[0].theory.draft)
     run(scene, 90.0)
     assert (scene.crowd.fleet.position[:, 2] >= -61.0).all()
@@ -106,7 +105,7 @@ def test_what_is_denser_than_the_fluid_sinks_and_comes_to_rest_deep() -> None:
 
 
 def test_a_grabbed_buoy_goes_under_and_comes_back() -> None:
-    scene = Scene(with_parameters(**CALM))
+    scene = RadialSeaScene(with_parameters(**CALM))
     rest = scene.crowd.fleet.position[0].copy()
     for _ in range(60):
         scene.handle(Grab(0, (rest[0], rest[1], rest[2] - 0.8)))
@@ -120,7 +119,7 @@ def test_a_grabbed_buoy_goes_under_and_comes_back() -> None:
 
 
 def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
-    scene = Scene(with_parameters(**CALM))
+    scene = RadialSeaScene(with_parameters(**CALM))
     home = scene.crowd.home[2]
     scene.crowd.fleet.velocity[2] = (6.0, 0.0, 5.0)
     run(scene, 1.0)
@@ -130,7 +129,7 @@ def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
 
 
 def test_a_nonsense_grab_is_no_grab() -> None:
-    scene = Scene(Params())
+    scene = RadialSeaScene(Params())
     scene.handle(Grab(10**6, (0.0, 0.0, 0.0)))
     scene.handle(Grab(-1, (0.0, 0.0, 0.0)))
     scene.advance(2)
@@ -139,7 +138,7 @@ def test_a_nonsense_grab_is_no_grab() -> None:
 
 @pytest.mark.parametrize("name", list(PRESETS))
 def test_each_preset_runs_and_its_picture_is_finite(name: str) -> None:
-    scene = Scene(check_record(Params, PRESETS[name]))
+    scene = RadialSeaScene(check_record(Params, PRESETS[name]))
     run(scene, 4.0)
     picture = scene.frame()
     for array in (picture.surface.vertices, picture.surface.slope, picture.foam, picture.positions, picture.rotations):
@@ -172,13 +171,13 @@ def test_hostile_values_are_clamped_to_what_runs() -> None:
     odd = clamp(dataclasses.replace(Params(), oil="; rm -rf", surface=7, wind_speed=math.nan, waves="yes"))  # type: ignore[arg-type]
     assert odd == Params()
     for params in (low, dataclasses.replace(high, bodies=20, rings=40, spokes=40, wave_count=32)):
-        scene = Scene(params)
+        scene = RadialSeaScene(params)
         run(scene, 20 * params.time_step)
         assert np.isfinite(scene.frame().surface.vertices).all()
 
 
 def test_parameters_change_under_way_without_a_jump_of_the_bodies() -> None:
-    scene = run(Scene(Params()), 2.0)
+    scene = run(RadialSeaScene(Params()), 2.0)
     changes = [
         {"wind_speed": 12.0}, {"spill": "layer"}, {"oil": "Maya"}, {"surface": "fft"}, {"surface": "sum"},
         {"density": 700.0}, {"fire": True, "jet": True}, {"fire_power": 50.0}, {"rings": 60}, {"choppiness": 0.3},
@@ -188,21 +187,21 @@ def test_parameters_change_under_way_without_a_jump_of_the_bodies() -> None:
     for change in changes:
         before = scene.crowd.fleet.position.copy()
         params = dataclasses.replace(params, **change)
-        scene.set_params(params)
+        scene.change_forces(params)
         scene.advance(2)
         assert np.abs(scene.crowd.fleet.position - before).max() < 0.3
         assert np.isfinite(scene.frame().surface.vertices).all()
 
 
 def test_the_surface_drawn_is_the_one_the_bodies_float_on() -> None:
-    scene = run(Scene(Params(ripples=False)), 3.0)
+    scene = run(RadialSeaScene(Params(ripples=False)), 3.0)
     vertices = scene.frame().surface.vertices[: 4 * 128]
     at = scene.sea.at(vertices[:, :2], scene.time)
     np.testing.assert_allclose(at.height, vertices[:, 2], atol=2e-5)
 
 
 def test_the_camera_takes_the_rings_along() -> None:
-    scene = run(Scene(Params(centre="camera")), 0.2)
+    scene = run(RadialSeaScene(Params(centre="camera")), 0.2)
     scene.handle(Place("eye", (30.0, -12.0, 4.0)))
     scene.advance(1)
     vertices = scene.frame().surface.vertices
@@ -210,9 +209,9 @@ def test_the_camera_takes_the_rings_along() -> None:
 
 
 def test_bodies_that_bob_make_rings_and_bodies_at_rest_make_none() -> None:
-    still = run(Scene(Params(waves=False, rig=False)), 8.0)
+    still = run(RadialSeaScene(Params(waves=False, rig=False)), 8.0)
     level = np.abs(still.frame().surface.vertices[:, 2]).max()
-    bobbing = Scene(Params(waves=False, rig=False))
+    bobbing = RadialSeaScene(Params(waves=False, rig=False))
     bobbing.crowd.fleet.position[:, 2] -= 0.3
     run(bobbing, 1.5)
     assert np.abs(bobbing.frame().surface.vertices[:, 2]).max() > 5e-3
@@ -220,7 +219,7 @@ def test_bodies_that_bob_make_rings_and_bodies_at_rest_make_none() -> None:
 
 
 def test_oil_from_the_jet_makes_a_slick_that_grows() -> None:
-    scene = run(Scene(Params(jet=True)), 6.0)
+    scene = run(RadialSeaScene(Params(jet=True)), 6.0)
     early = scene.readings().tally
     run(scene, 12.0)
     late = scene.readings().tally
@@ -238,7 +237,9 @@ def test_oil_from_the_jet_makes_a_slick_that_grows() -> None:
 
 @pytest.mark.parametrize("surface", ["sum", "fft"])
 def test_the_window_is_cut_where_sea_and_interface_are(surface: str) -> None:
-    scene = run(Scene(with_parameters(spill="layer", thickness=0.3, section=True, surface=surface, ripples=False)), 2.0)
+    scene = run(
+        RadialSeaScene(with_parameters(spill="layer", thickness=0.3, section=True, surface=surface, ripples=False)), 2.0
+    )
     section = scene.frame().section
     assert section is not None
     assert section.oiled
@@ -258,18 +259,18 @@ def test_the_window_is_cut_where_sea_and_interface_are(surface: str) -> None:
 
 
 def test_a_window_into_clean_water_has_no_interface_and_none_is_cut_unasked() -> None:
-    scene = Scene(with_parameters(section=True, bodies=0))
+    scene = RadialSeaScene(with_parameters(section=True, bodies=0))
     section = scene.frame().section
     assert section is not None
     assert not section.oiled
     assert (section.interface == section.top).all()
-    assert Scene(Params()).frame().section is None
+    assert RadialSeaScene(Params()).frame().section is None
 
 
 def test_closing_the_jet_keeps_its_oil() -> None:
-    scene = run(Scene(Params(jet=True)), 6.0)
+    scene = run(RadialSeaScene(Params(jet=True)), 6.0)
     ejected = scene.readings().tally.ejected
-    scene.set_params(Params(jet=False))
+    scene.change_forces(Params(jet=False))
     tally = scene.readings().tally
     assert tally.fed == pytest.approx(ejected)
     assert tally.in_flight == 0.0
@@ -277,8 +278,8 @@ def test_closing_the_jet_keeps_its_oil() -> None:
 
 
 def test_square_and_radial_surfaces_are_as_high_under_the_same_wind() -> None:
-    radial_sea = Scene(Params())
-    square = Scene(Params(surface="fft"))
+    radial_sea = RadialSeaScene(Params())
+    square = RadialSeaScene(Params(surface="fft"))
     assert square.sea.significant_height == pytest.approx(radial_sea.sea.significant_height, rel=0.15)
     run(square, 2.0)
     assert np.isfinite(square.crowd.fleet.position).all()
@@ -298,7 +299,7 @@ def test_hidden_parameters_are_parameters() -> None:
 
 
 def test_arrays_have_units() -> None:
-    for array, unit in radial.Scene(Params()).arrays().values():
+    for array, unit in RadialSeaScene(Params()).arrays().values():
         assert np.isfinite(array).all()
         assert unit
 
@@ -306,7 +307,7 @@ def test_arrays_have_units() -> None:
 @pytest.mark.parametrize("surface", ["sum", "fft"])
 def test_a_spill_ages_and_its_parameter_sets_its_age_anew(surface: str) -> None:
     heavy = {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 10.0, "bodies": 0, "surface": surface}
-    scene = Scene(with_parameters(**heavy))
+    scene = RadialSeaScene(with_parameters(**heavy))
     before, square = scene.sum.significant_height, scene.make_tile().significant_height
     run(scene, 60.0)
     assert scene.readings().age == pytest.approx(70.0, abs=0.2)
@@ -316,9 +317,9 @@ def test_a_spill_ages_and_its_parameter_sets_its_age_anew(surface: str) -> None:
     scene.frame()
     assert scene.tile is not None
     assert scene.tile.significant_height < 0.995 * square
-    scene.set_params(with_parameters(**{**heavy, "exposure": 20.0}))
+    scene.change_forces(with_parameters(**{**heavy, "exposure": 20.0}))
     assert scene.readings().age == 20.0
-    still = Scene(with_parameters(**heavy, ageing=False))
+    still = RadialSeaScene(with_parameters(**heavy, ageing=False))
     assert run(still, 5.0).readings().age == 10.0
 
 
@@ -337,7 +338,7 @@ def write_boat(path: Path, *, closed: bool = True) -> Path:
 
 def test_a_hull_from_a_file_floats_besides_at_the_draft_of_the_readout(tmp_path: Path) -> None:
     path = write_boat(tmp_path / "boat.stl")
-    scene = Scene(dataclasses.replace(with_parameters(**CALM, spill="layer", thickness=0.1), hull=str(path)))
+    scene = RadialSeaScene(dataclasses.replace(with_parameters(**CALM, spill="layer", thickness=0.1), hull=str(path)))
     run(scene, 90.0)
     reading = scene.readings().readings[-1]
     assert reading.kind == "hull"
@@ -348,25 +349,25 @@ def test_a_hull_from_a_file_floats_besides_at_the_draft_of_the_readout(tmp_path:
     assert picture.kinds[-1] == "hull"
     assert picture.own is not None
     assert len(picture.positions) == 4
-    scene.set_params(dataclasses.replace(scene.params, bodies=1))
+    scene.change_forces(dataclasses.replace(scene.params, bodies=1))
     assert scene.crowd.kinds == ["buoy_red", "hull"]
 
 
 def test_a_mesh_that_is_not_closed_ends_the_command_with_one_line(tmp_path: Path, capsys) -> None:
     path = write_boat(tmp_path / "open.stl", closed=False)
     out = ["--seconds", "1", "--out", str(tmp_path / "a.npz"), "--hull"]
-    assert main(["run", "radial", *out, str(path)]) == 2
+    assert main(["run", "radial_sea", *out, str(path)]) == 2
     said = capsys.readouterr().err
     assert "closed" in said
     assert said.count("\n") == 1
-    assert main(["run", "radial", *out, str(tmp_path / "none.stl")]) == 2
+    assert main(["run", "radial_sea", *out, str(tmp_path / "none.stl")]) == 2
     assert main(["run", "rope", *out, str(write_boat(tmp_path / "boat.stl"))]) == 2
     assert "radial" in capsys.readouterr().err
-    assert main(["run", "radial", *out, str(tmp_path / "boat.stl")]) == 0
+    assert main(["run", "radial_sea", *out, str(tmp_path / "boat.stl")]) == 0
 
 
 def test_plot_rows_are_numbers_with_fewer_bodies_than_curves():
-    scene = Scene(Params(bodies=1, plot_draft=True))
+    scene = RadialSeaScene(Params(bodies=1, plot_draft=True))
     scene.take_plot_rows()
     scene.advance(20)
     rows = scene.take_plot_rows()

@@ -9,14 +9,14 @@ from app.scenes.square_sea.scene import Params
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
-SCENE = "phillips"
+SCENE = "square_sea"
 PARAMS = Params(size="64", mesh="32", length=64.0)  # a small sea, in place of the scene's own
 
 
 def set_parameters(viewer: Viewer, **values: Any) -> None:
     """As a browser does it: through the controls of the panel."""
     for name, value in values.items():
-        viewer.panel.controls[name].take(value)
+        viewer.panel.controls[name].set(value)
 
 
 def dressed(lab: Viewer) -> bool:
@@ -79,16 +79,16 @@ def test_sizes_change_live(shown: tuple[Viewer, Tab]) -> None:
     assert tab.errors == []
 
 
-def test_a_click_on_the_water_places_the_probe(shown: tuple[Viewer, Tab]) -> None:
+def test_a_click_on_the_water_places_the_wave_gauge(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     tab.wait(lambda: dressed(lab))
-    assert lab.loop.latest.frame.probe is None
+    assert lab.loop.latest.frame.gauge is None
     tab.page.mouse.click(300, 480)
-    x, y, z = tab.wait(lambda: lab.loop.latest.frame.probe)
+    x, y, z = tab.wait(lambda: lab.loop.latest.frame.gauge)
     (client,) = lab.server.get_clients().values()
     assert np.hypot(x - client.camera.position[0], y - client.camera.position[1]) < 64.0
     assert np.isfinite(z)
-    set_parameters(lab, plot_probe=True)
+    set_parameters(lab, plot_wave_gauge=True)
     tab.page.wait_for_selector(".uplot", state="attached", timeout=120_000)  # too small a window to show it
     assert tab.errors == []
 

@@ -1,4 +1,4 @@
-"""Numbers of the square sea: its statistics as drawn, beside theory of the same tile."""
+"""What a sweep records of the square sea: its statistics as drawn, and theory of the same tile."""
 
 from typing import TYPE_CHECKING
 
@@ -6,11 +6,11 @@ from app.scenes.contract import Measure
 from app.scenes.square_sea.report import measure, theory
 
 if TYPE_CHECKING:
-    from app.scenes.square_sea.scene import Scene
+    from app.scenes.square_sea.scene import SquareSeaScene
 
 
-def measures(scene: "Scene") -> dict[str, Measure]:
-    """Of the sea as it is; no picture is drawn for it."""
+def measures(scene: "SquareSeaScene") -> dict[str, Measure]:
+    """Measures of the sea at its present time; no frame is drawn for them."""
     sea, t, p = scene.sea, scene.time, scene.params
     height = sea.surface(t).height
     found, expected = measure(sea, height, None, p), theory(sea, t, p)

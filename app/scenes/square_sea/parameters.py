@@ -1,8 +1,8 @@
-"""The parameters of the square sea, and what of the sea they describe."""
+"""The parameters of the square sea, its presets, and what of the sea they describe."""
 
 import dataclasses
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from sim.ocean.planets import RADIUS_RULES, SOLAR_SYSTEM, gravity_of
 from sim.ocean.spectra import SPECTRA
@@ -11,8 +11,8 @@ from sim.parameters import parameter
 SIZES = ("64", "128", "256", "512")
 MESHES = ("32", "64", "128", "256")
 VIEWS = ("swimmer", "deck", "bridge", "mast", "gull")
-TENSION = 0.0728  # [N/m] of water against air
-CALM = 0.05  # [m/s] wind below which there are no waves: squares of smaller numbers run out of range
+SURFACE_TENSION = 0.0728  # [N/m] of water against air
+MIN_WIND_SPEED = 0.05  # [m/s] below which there are no waves: the spectra square it, and smaller squares underflow
 
 
 @dataclasses.dataclass(frozen=True)
@@ -20,104 +20,179 @@ class Params:
     """The square sea's parameters; the defaults are the first preset."""
 
     spectrum: str = parameter(
-        "pierson_moskowitz", choices=tuple(SPECTRA), doc="Law of the waves' energy", group="Weather"
+        "pierson_moskowitz", choices=tuple(SPECTRA), doc="Formula of the wave spectrum", group="Weather"
     )
     wind_speed: float = parameter(
-        8.0, 0.0, 60.0, "m/s", "Wind 10 m up, 19.5 m up for pierson_moskowitz", group="Weather"
+        8.0, 0.0, 60.0, "m/s", "Wind speed 10 m above the sea; for pierson_moskowitz 19.5 m above it", group="Weather"
     )
     wind_direction: float = parameter(
-        20.0, -180.0, 180.0, "°", "Where the wind goes to, from x towards y", group="Weather"
+        20.0, -180.0, 180.0, "°", "Direction the wind blows to, from x towards y", group="Weather"
     )
-    rain: float = parameter(0.0, 0.0, 200.0, "mm/h", "Rain; 0 is none", log_from=0.1, group="Weather")
+    rain: float = parameter(0.0, 0.0, 200.0, "mm/h", "Rainfall; 0 is no rain", log_from=0.1, group="Weather")
     transition: float = parameter(
-        3.0, 0.0, 600.0, "s", "Time in which the sea takes to new weather", log_from=0.1, group="Weather"
+        3.0, 0.0, 600.0, "s", "Time in which the sea adapts to new weather", log_from=0.1, group="Weather"
     )
     start: str = parameter(
         "as set",
         choices=("as set", "calm", "storm"),
-        doc="The sea at reset: as set here, or a calm or a storm that then gives way to it",
+        doc="The sea at reset: as set here, or a calm or a storm from which it then develops",
         group="Weather",
         affects="start",
     )
-    fetch: float = parameter(100e3, 1e3, 1e6, "m", "Way of the wind over water", log_from=1e3, group="Weather")
-    peak_enhancement: float = parameter(3.3, 1.0, 10.0, "", "Gamma: how peaked", group="Weather")
-    inverse_wave_age: float = parameter(0.84, 0.84, 5.0, "", "Omega: 0.84 full grown, 5 very young", group="Weather")
+    fetch: float = parameter(
+        100e3, 1e3, 1e6, "m", "Distance over which the wind has blown", log_from=1e3, group="Weather"
+    )
+    peak_enhancement: float = parameter(
+        3.3, 1.0, 10.0, "", "Gamma: height of the peak of the spectrum", group="Weather"
+    )
+    inverse_wave_age: float = parameter(
+        0.84, 0.84, 5.0, "", "Omega: 0.84 is a fully developed sea, 5 a very young one", group="Weather"
+    )
     phillips_constant: float = parameter(
-        1.7421e-3, 0.0, 0.1, "", "A of Phillips; 1.74e-3 gives Pierson and Moskowitz's height", log_from=1e-5,
+        1.7421e-3,
+        0.0,
+        0.1,
+        "",
+        "Constant A of Phillips; 1.74e-3 gives the wave height of Pierson and Moskowitz",
+        log_from=1e-5,
         group="Weather",
-    )  # fmt: skip
-    swell: float = parameter(0.0, 0.0, 1.0, "", "0 wind sea to 1 long crests", group="Weather")
+    )
+    swell: float = parameter(0.0, 0.0, 1.0, "", "0 is a wind sea, 1 is swell with long crests", group="Weather")
 
     planet: str = parameter(
-        "by mass", choices=("by mass", "by gravity", *SOLAR_SYSTEM), doc="What sets gravity", group="Planet"
+        "by mass", choices=("by mass", "by gravity", *SOLAR_SYSTEM), doc="What sets the gravity", group="Planet"
     )
     planet_mass: float = parameter(1.0, 0.01, 100.0, "Earths", "Mass of the planet", log_from=0.01, group="Planet")
     radius_rule: str = parameter(
-        "same_density", choices=tuple(RADIUS_RULES), doc="How the planet's radius goes with its mass", group="Planet"
+        "same_density",
+        choices=tuple(RADIUS_RULES),
+        doc="How the radius of the planet depends on its mass",
+        group="Planet",
     )
     gravity: float = parameter(9.81, 0.01, 1000.0, "m/s^2", "Gravity", log_from=0.01, group="Planet")
 
-    deep: bool = parameter(True, doc="No bottom; off: water of the depth below", group="Water")
-    depth: float = parameter(20.0, 0.1, 5000.0, "m", "Depth", log_from=0.1, group="Water")
+    deep: bool = parameter(True, doc="Water without a bottom; off: water of the depth below", group="Water")
+    depth: float = parameter(20.0, 0.1, 5000.0, "m", "Depth of the water", log_from=0.1, group="Water")
     choppiness: float = parameter(
         1.0, 0.0, 2.0, "", "Horizontal motion that sharpens crests; 1 is physics", group="Water"
     )
-    amplitude: float = parameter(1.0, 0.0, 5.0, "", "Factor on every height as drawn; 1 is physics", group="Water")
+    amplitude: float = parameter(1.0, 0.0, 5.0, "", "Factor on every drawn height; 1 is physics", group="Water")
     low_pass: float = parameter(
-        0.0, 0.0, 100.0, "m", "The lab's damping: waves shorter than this length l are left out", log_from=1e-2,
+        0.0,
+        0.0,
+        100.0,
+        "m",
+        "The damping of the course lab: a length l, below which waves are left out",
+        log_from=1e-2,
         group="Water",
-    )  # fmt: skip
+    )
     viscosity: float = parameter(
-        0.0, 0.0, 10.0, "m^2/s", "Kinematic viscosity: waves decay from the last change on; water 1e-6, heavy oil 2e-2",
-        log_from=1e-7, group="Water",
-    )  # fmt: skip
+        0.0,
+        0.0,
+        10.0,
+        "m^2/s",
+        "Kinematic viscosity: waves decay after the last change; water 1e-6, heavy oil 2e-2",
+        log_from=1e-7,
+        group="Water",
+    )
     dispersion_scale: float = parameter(1.0, 0.0, 4.0, "", "Factor on every frequency; 1 is physics", group="Water")
     loop_period: float = parameter(
-        0.0, 0.0, 1000.0, "s", "The lab's dispersion: the sea repeats after this time; 0 is never", log_from=1.0,
+        0.0,
+        0.0,
+        1000.0,
+        "s",
+        "The dispersion of the course lab: the sea repeats after this time; 0 is never",
+        log_from=1.0,
         group="Water",
-    )  # fmt: skip
+    )
 
     length: float = parameter(
-        192.0, 32.0, 4096.0, "m", "Side of the tile that repeats", log_from=32.0, group="Grid", affects="start"
+        192.0, 32.0, 4096.0, "m", "Side of the square tile that repeats", log_from=32.0, group="Grid", affects="start"
     )
-    size: str = parameter("256", choices=SIZES, doc="Waves solved along a side", group="Grid")
+    size: str = parameter("256", choices=SIZES, doc="Grid points of the solved sea along a side", group="Grid")
     mesh: str = parameter(
-        "128", choices=MESHES, doc="Points drawn along a side, at most as many as solved", group="Grid"
+        "128", choices=MESHES, doc="Points of the drawn mesh along a side, at most as many as are solved", group="Grid"
     )
     grid: bool = parameter(False, doc="Show the grid of the drawn mesh (key G)", group="Grid", affects="look")
-    frame_rate: float = parameter(30.0, 5.0, 60.0, "Hz", "Pictures a second", group="Grid", affects="look")
-    speed: float = parameter(1.0, 0.01, 8.0, "", "Simulated per real time", log_from=0.01, group="Grid", affects="look")
-    seed: int = parameter(4, 0, 999, "", "Another sea under the same weather", group="Grid", affects="start")
+    frame_rate: float = parameter(30.0, 5.0, 60.0, "Hz", "Frames per second", group="Grid", affects="look")
+    speed: float = parameter(
+        1.0, 0.01, 8.0, "", "Simulated time per real time", log_from=0.01, group="Grid", affects="look"
+    )
+    seed: int = parameter(
+        4, 0, 999, "", "Seed of the random waves: another sea under the same weather", group="Grid", affects="start"
+    )
 
     foam: bool = parameter(True, doc="Foam where crests fold", group="Foam and rain")
-    foam_by_wind: bool = parameter(True, doc="As much as Monahan measured at this wind", group="Foam and rain")
+    foam_by_wind: bool = parameter(
+        True, doc="As much foam as Monahan measured at this wind speed", group="Foam and rain"
+    )
     foam_threshold: float = parameter(0.5, -1.0, 1.0, "", "Jacobian below which there is foam", group="Foam and rain")
     foam_fade: float = parameter(4.0, 0.1, 60.0, "s", "Time in which foam fades", log_from=0.1, group="Foam and rain")
-    drops: int = parameter(1500, 1, 5000, "", "Drops drawn at most", log_from=1, group="Foam and rain")
-    rings: float = parameter(1.0, 0.0, 5.0, "", "Strength of the rings; 0 is none", group="Foam and rain")
-
-    view: str = parameter("deck", choices=VIEWS, doc="Where to look from", group="Look", affects="look")
-    sky: str = parameter(
-        "park", choices=("park", "sunset", "dawn", "night"), doc="Sky and light", group="Look", affects="look"
+    drops: int = parameter(1500, 1, 5000, "", "Largest number of drops drawn", log_from=1, group="Foam and rain")
+    rings: float = parameter(
+        1.0, 0.0, 5.0, "", "Strength of the rings that drops make; 0 is no rings", group="Foam and rain"
     )
-    sun: float = parameter(18.0, -180.0, 180.0, "°", "Bearing of the sun", group="Look", affects="look")
+
+    view: str = parameter("deck", choices=VIEWS, doc="Where the camera stands", group="Look", affects="look")
+    sky: str = parameter(
+        "park", choices=("park", "sunset", "dawn", "night"), doc="Sky and its light", group="Look", affects="look"
+    )
+    sun: float = parameter(
+        18.0, -180.0, 180.0, "°", "Direction of the sun, from x towards y", group="Look", affects="look"
+    )
     clouds: float = parameter(0.4, 0.0, 1.0, "", "Cloud cover", group="Look", affects="look")
     daylight: float = parameter(0.85, 0.05, 3.0, "", "Brightness", group="Look", affects="look")
     visibility: float = parameter(
-        3000.0, 50.0, 20000.0, "m", "Distance at which haze hides", log_from=50.0, group="Look", affects="look"
+        3000.0, 50.0, 20000.0, "m", "Distance at which haze hides the sea", log_from=50.0, group="Look", affects="look"
     )
 
     statistics: bool = parameter(
-        True, doc="Measure the drawn sea and hold it against theory", group="Plots", affects="look"
+        True, doc="Measure the drawn sea and compare it with theory", group="Plots", affects="look"
     )
-    plot_probe: bool = parameter(
-        False, doc="Height at the probe; click the water to place it", group="Plots", affects="look"
+    plot_wave_gauge: bool = parameter(
+        False, doc="Height at the wave gauge; click the water to place it", group="Plots", affects="look"
     )
-    plot_spectrum: bool = parameter(False, doc="Spectrum at the probe beside theory", group="Plots", affects="look")
+    plot_wave_spectrum: bool = parameter(
+        False, doc="Spectrum at the wave gauge beside theory", group="Plots", affects="look"
+    )
+
+
+PRESETS: dict[str, dict[str, Any]] = {
+    "Earth breeze": {},
+    "Storm arriving": {
+        "spectrum": "jonswap", "wind_speed": 24.0, "fetch": 200e3, "start": "calm", "transition": 20.0, "rain": 15.0,
+        "length": 600.0, "choppiness": 1.2, "clouds": 1.0, "daylight": 0.7, "visibility": 1200.0, "drops": 3000,
+        "view": "bridge",
+    },
+    "Storm over": {
+        "wind_speed": 7.0, "start": "storm", "transition": 20.0, "length": 384.0, "sky": "sunset", "clouds": 0.45,
+    },
+    "Light planet": {
+        "planet_mass": 0.01, "length": 1024.0, "wind_speed": 10.0, "visibility": 6000.0, "sky": "dawn", "view": "mast",
+    },
+    "Heavy planet": {"planet_mass": 100.0, "length": 128.0, "wind_speed": 10.0, "visibility": 1500.0, "view": "mast"},
+    "Rain shower": {
+        "rain": 30.0, "length": 32.0, "wind_speed": 0.5, "wind_direction": 70.0, "mesh": "256", "rings": 2.5,
+        "frame_rate": 24.0, "view": "swimmer", "drops": 600, "visibility": 500.0, "foam": False, "sky": "dawn",
+        "clouds": 0.8, "sun": 8.0,
+    },
+}  # fmt: skip
+
+
+class RainSettings(NamedTuple):
+    """What the rainfall depends on: it is made anew where one of these changes."""
+
+    rate: float  # [mm/h]
+    drops: int  # largest number of drops drawn
+    ring_strength: float
+    wind: tuple[float, float]  # [m/s]
+    gravity: float  # [m/s2]
+    size: int  # grid points of the sea along a side
+    amplitude: float  # factor on every drawn height
 
 
 def gravity(params: Params) -> float:
-    """Gravity [m/s2] that the parameters ask for."""
+    """Gravity [m/s2] of the chosen planet."""
     if params.planet == "by gravity":
         return params.gravity
     if params.planet == "by mass":
@@ -126,15 +201,15 @@ def gravity(params: Params) -> float:
 
 
 def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any]:
-    """What `Sea` and `Sea.change` take, at another wind where one is given [m/s]."""
+    """The arguments of `Sea` and `Sea.change`. wind_speed: [m/s] in place of the one in `params`."""
     wind = params.wind_speed if wind_speed is None else wind_speed
     return {
         "spectrum": params.spectrum,
-        "wind_speed": wind if wind >= CALM else 0.0,
+        "wind_speed": wind if wind >= MIN_WIND_SPEED else 0.0,
         "wind_direction": math.radians(params.wind_direction),
         "gravity": gravity(params),
         "depth": math.inf if params.deep else params.depth,
-        "tension": TENSION,
+        "tension": SURFACE_TENSION,
         "fetch": params.fetch,
         "peak_enhancement": params.peak_enhancement,
         "inverse_wave_age": params.inverse_wave_age,
@@ -147,8 +222,16 @@ def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any
     }
 
 
+def rain_settings(params: Params) -> RainSettings:
+    """What the rainfall depends on."""
+    p = params
+    bearing = math.radians(p.wind_direction)
+    wind = p.wind_speed * math.cos(bearing), p.wind_speed * math.sin(bearing)
+    return RainSettings(p.rain, p.drops, p.rings, wind, gravity(p), int(p.size), p.amplitude)
+
+
 def hidden(params: Params) -> set[str]:
-    """The parameters that mean nothing with the others as they are."""
+    """Names of the parameters that have no effect while the others are as they are."""
     names = {"fetch", "peak_enhancement", "inverse_wave_age", "phillips_constant", "swell"}
     names -= set(SPECTRA[params.spectrum].parameters)
     if params.planet != "by mass":

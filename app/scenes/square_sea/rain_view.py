@@ -8,7 +8,7 @@ import numpy as np
 import viser
 
 from app.render.injection import hidden, patch
-from app.scenes.square_sea.rainfall import LASTING, SPLASHES, RainFrame
+from app.scenes.square_sea.rainfall import MAX_SPLASHES, SPLASH_DURATION, RainFrame
 
 EXPOSURE = 1 / 40  # [s] over which a falling drop leaves its streak
 THIN = 0.004  # [m] half the width of a streak
@@ -58,7 +58,7 @@ class RainMesh:
         """exposure: of the water's look."""
         self.count = len(picture.drops)
         self.drops = Needles(server, "/rain/drops", self.count, exposure)
-        self.crowns = Needles(server, "/rain/splashes", SPLASHES * CROWN, exposure)
+        self.crowns = Needles(server, "/rain/splashes", MAX_SPLASHES * CROWN, exposure)
         angle = 2.0 * np.pi * (np.arange(CROWN) / CROWN + 0.1)
         lean = np.where(np.arange(CROWN) % 2 == 0, 1.0, 0.55)
         up = np.where(np.arange(CROWN) % 2 == 0, 1.0, 1.4)
@@ -72,8 +72,8 @@ class RainMesh:
         self.crowns.show(self.crown(picture, before), self.crown(picture, age))
 
     def crown(self, picture: RainFrame, age: np.ndarray) -> np.ndarray:
-        """(SPLASHES CROWN, 3) [m]: thrown up and out on parabolas, `age` (SPLASHES) [s] ago."""
-        part = (age / LASTING)[:, None]  # 0 to 1
+        """(MAX_SPLASHES CROWN, 3) [m]: thrown up and out on parabolas, `age` (MAX_SPLASHES) [s] ago."""
+        part = (age / SPLASH_DURATION)[:, None]  # 0 to 1
         ways = np.stack([part, part, 4.0 * part * (1.0 - part)], -1) * self.ways
         points = picture.splashes[:, None, :3] + ways
         points[picture.splashes[:, 3] < 0.0] = BURIED

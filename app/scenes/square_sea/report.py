@@ -1,19 +1,35 @@
-"""What the panel says of a sea: its statistics beside theory, and the lab's sentences beside the physics."""
+"""The texts of the panel: the statistics of the sea beside theory, and statements of the course lab beside physics."""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 
+from app.messages import Snapshot
+from app.render.html import (
+    WARNING_COLOUR,
+    Html,
+    bold,
+    coloured,
+    faint,
+    fill,
+    fixed,
+    join,
+    lines,
+    number,
+    seconds,
+    table,
+)
 from app.scenes.square_sea.parameters import Params, gravity
 from sim.ocean import Sea
 from sim.ocean.planets import RADIUS_RULES, gravity_of
 from sim.ocean.statistics import Statistics, beaufort, expected, height_scatter, measured
 
-STILL_HIGHER = 1.2  # of the height of an endless sea: what no tile holds of this wind alone
-BAND = 2.0  # standard deviations: 95 of 100 seas lie within
-NEAR_PEAK = 0.08  # of the peak frequency: waves within are called dominant
-WATER, HEAVY_OIL = 1e-6, 1e-3  # [m2/s] kinematic viscosities to compare with
+MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
+BAND_WIDTH = 2.0  # standard deviations to each side: 95 of 100 seas lie within
+PEAK_WIDTH = 0.08  # of the peak frequency: waves no farther from the peak are called dominant
+WATER_VISCOSITY, HEAVY_OIL_VISCOSITY = 1e-6, 1e-3  # [m2/s] kinematic, to compare with
+HEADING = "Lab says, physics says"
 
 
 class Theory(NamedTuple):
@@ -65,7 +81,7 @@ def dominant(sea: Sea, t: float, period: float) -> tuple[float, float]:
     energy = sea.energy_at(t)
     away = np.where(energy > 0.0, np.abs(sea.frequencies / peak - 1.0), math.inf)
     # A tile of few waves may have none so near: then the nearest.
-    energy = np.where(away <= max(NEAR_PEAK, float(away.min())), energy, 0.0)
+    energy = np.where(away <= max(PEAK_WIDTH, float(away.min())), energy, 0.0)
     total = float(energy.sum())
     if not total > 0.0:
         return math.nan, math.nan
@@ -73,121 +89,161 @@ def dominant(sea: Sea, t: float, period: float) -> tuple[float, float]:
     return 2.0 * math.pi / k, peak / k
 
 
-def table(r: Report) -> str:
-    """The statistics as HTML: drawn, expected of this tile with its band, and of an endless sea."""
-
-    def row(name: str, drawn: str, theory: str, good: bool = True) -> str:
-        colour = "" if good else ";color:#e67700"
-        return (
-            f"<tr><td>{name}</td><td style='text-align:right;font-weight:600{colour}'>{drawn}</td>"
-            f"<td style='text-align:right'>{theory}</td></tr>"
+def readout(snapshot: Snapshot) -> Html:
+    """Statistics, foam, rain and wave gauge."""
+    frame, r = snapshot.frame, snapshot.readings
+    texts: list[object] = []
+    if r.report is not None:
+        texts.append(statistics_table(r.report))
+    if frame.params.foam:
+        texts.append(f"Foam covers {r.foam_cover:.1%} of the sea; by Monahan's law {r.expected_foam_cover:.1%}.")
+    if r.rain is not None:
+        rain = r.rain
+        rings = (
+            f"A ring is drawn as strong as that of {rain.drops_per_ring:.1e} drops."
+            if rain.drops_per_ring
+            else "The grid is too coarse for rings."
         )
+        texts.append(
+            f"Rain: {rain.fallen:.3g} drops have fallen on {rain.span:.0f} m × {rain.span:.0f} m. {rain.drawn} drops "
+            f"are drawn, each in place of {rain.weight:.3g}; {rain.hits} of them have reached the water. {rings}"
+        )
+    if frame.gauge is not None:
+        x, y, z = frame.gauge
+        texts.append(f"Wave gauge at ({x:.1f}, {y:.1f}) m: {z:+.2f} m, accurate to {r.gauge_residual:.0e} m.")
+    return lines(texts)
 
-    m, e, whole = r.measured, r.theory.statistics, r.theory.whole
-    band = BAND * r.theory.scatter * e.significant_height
+
+def statistics_table(r: Report) -> Html:
+    """The statistics: as drawn, as expected of this tile, and of an endless sea."""
+    m, e, endless = r.measured, r.theory.statistics, r.theory.whole
+    band = BAND_WIDTH * r.theory.scatter * e.significant_height
     inside = abs(m.significant_height - e.significant_height) <= band + 1e-9
-    rows = [
-        row("H<sub>s</sub> [m]", f"{m.significant_height:.3g}", f"{e.significant_height:.3g} ± {band:.2g}", inside),
-        row("T<sub>p</sub> [s]", number(m.peak_period), number(e.peak_period)),
-        row("mean square slope", f"{m.mean_square_slope:.3g}", f"{e.mean_square_slope:.3g}"),
-        row("direction [°]", number(math.degrees(m.direction), ".0f"), number(math.degrees(e.direction), ".0f")),
-    ]
-    share = ""
-    if whole > 0.0:
-        held = e.significant_height / whole
-        said = (
-            f"The tile holds {held:.0%} of the {whole:.3g} m of an endless, undamped sea."
-            if held < STILL_HIGHER
-            else f"Waves of the old weather are still here; this wind alone would raise {whole:.3g} m."
-        )
-        share = f"<div style='opacity:.75'>{said}</div>"
-    return (
-        "<table style='width:100%;border-spacing:0;font-size:12px'><tr style='opacity:.75'><td></td>"
-        "<td style='text-align:right'>drawn</td><td style='text-align:right'>theory, 95 %</td></tr>"
-        + "".join(rows)
-        + f"</table>{share}"
+    height = number(m.significant_height)
+    measured = table(
+        ("", "drawn", "theory, 95 %"),
+        (
+            (
+                Html("H<sub>s</sub> [m]"),
+                bold(height) if inside else coloured(height, WARNING_COLOUR),
+                f"{number(e.significant_height)} ± {number(band, 2)}",
+            ),
+            (Html("T<sub>p</sub> [s]"), bold(number(m.peak_period)), number(e.peak_period)),
+            ("mean square slope", bold(number(m.mean_square_slope)), number(e.mean_square_slope)),
+            ("direction [°]", bold(fixed(math.degrees(m.direction), 0)), fixed(math.degrees(e.direction), 0)),
+        ),
     )
+    if not endless > 0.0:
+        return measured
+    share = e.significant_height / endless
+    if share < MAX_SHARE_OF_ENDLESS_SEA:
+        text = f"The waves of this tile have {share:.0%} of the height of an endless, undamped sea, {endless:.3g} m."
+    else:
+        text = f"Waves of the earlier weather are still here; this wind alone would make {endless:.3g} m."
+    return join((measured, faint(text)))
 
 
-def number(value: float, form: str = ".3g") -> str:
-    return "–" if math.isnan(value) else format(value, form)
+def marks(snapshot: Snapshot) -> dict[str, str]:
+    """Parameter -> the line under its control."""
+    p: Params = snapshot.frame.params
+    limit = snapshot.readings.foam_limit
+    cell = p.length / int(p.size)
+    return {
+        "wind_speed": wind_line(p),
+        "planet_mass": planet_line(p),
+        "low_pass": low_pass_line(p),
+        "viscosity": viscosity_line(p, snapshot.readings.age),
+        "loop_period": f"repeats every {seconds(p.loop_period, 2)}" if p.loop_period else "never repeats",
+        "size": f"grid spacing {cell:.3g} m, shortest wave {2 * cell:.3g} m",
+        "mesh": f"drawn every {p.length / len(snapshot.frame.vertices):.3g} m",
+        "foam_by_wind": f"foam where the Jacobian is below {limit:.2f}" if math.isfinite(limit) else "no foam",
+    }
 
 
-def span(seconds: float) -> str:
-    """A time in words, two digits."""
-    for unit, size in (("years", 3.156e7), ("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
-        if seconds >= 1.5 * size:
-            return f"{seconds / size:.2g} {unit}"
-    return f"{seconds:.2g} s"
+def notes(snapshot: Snapshot) -> dict[str, str]:
+    """Heading -> text of the folders below the controls."""
+    return {HEADING: lab_statements(snapshot.frame.params, snapshot.readings.report)}
 
 
 def wind_line(params: Params) -> str:
+    """The wind on Beaufort's scale."""
     force, name = beaufort(params.wind_speed)
     return f"Beaufort {force}, {name}"
 
 
 def planet_line(params: Params) -> str:
-    """The three readings of a planet's mass."""
+    """Gravity of a planet of this mass by each rule for its radius."""
     each = ", ".join(f"{rule.replace('_', ' ')} {gravity_of(params.planet_mass, rule):.3g}" for rule in RADIUS_RULES)
     return f"g = {gravity(params):.3g} m/s² ({each})"
 
 
 def low_pass_line(params: Params) -> str:
-    """l = 2 sqrt(nu T), read the other way."""
+    """How long a fluid at rest takes to lose the waves that the low pass l leaves out: T = l^2/(4 nu)."""
     if params.low_pass == 0.0:
-        return "l = 2 √(ν T): none"
-    water, oil = (params.low_pass**2 / (4.0 * nu) for nu in (WATER, HEAVY_OIL))
-    return f"water left still for {span(water)}, heavy oil (1e-3 m²/s) for {span(oil)}"
+        return "no wave is left out"
+    water, oil = (params.low_pass**2 / (4.0 * nu) for nu in (WATER_VISCOSITY, HEAVY_OIL_VISCOSITY))
+    return f"as after {seconds(water, 2)} of decay in water, or {seconds(oil, 2)} in heavy oil (1e-3 m²/s)"
 
 
 def viscosity_line(params: Params, age: float) -> str:
+    """What viscosity has done after `age` [s], and how fast it damps a wave of 1 m."""
     if params.viscosity == 0.0:
         return "no decay"
     length = 2.0 * math.sqrt(params.viscosity * age)
-    half = 1.0 / (2.0 * params.viscosity * (2.0 * math.pi / 1.0) ** 2)
-    return f"after {age:.0f} s: the lab's l = 2 √(ν T) = {length:.2g} m; a wave of 1 m fades in {span(half)}"
+    decay = 1.0 / (2.0 * params.viscosity * (2.0 * math.pi / 1.0) ** 2)
+    return (
+        f"after {age:.0f} s: the lab's l = 2 √(ν T) = {length:.2g} m; a wave of 1 m falls to 37 % in "
+        f"{seconds(decay, 2)}"
+    )
 
 
-def lab_says(params: Params, r: Report | None) -> str:
-    """The lab's sentences and the physics, with this sea's own numbers, as HTML."""
+def lab_statements(params: Params, r: Report | None) -> Html:
+    """Statements of the course lab beside the physics, with the numbers of this sea."""
     g, U = gravity(params), params.wind_speed
-    pairs = [
-        (
-            "In a storm waves are higher and move faster.",
-            f"Both. A full-grown sea has H<sub>s</sub> = 0.209 U²/g and crests at c = U/0.877: for {U:.3g} m/s "
-            f"{0.20925 * U * U / g:.3g} m and {U / 0.877:.3g} m/s."
-            + (
-                f" The dominant waves here are {r.theory.wave[0]:.3g} m long and run at {r.theory.wave[1]:.3g} m/s."
-                if r and not math.isnan(r.theory.wave[0])
-                else ""
-            ),
-        ),
-        (
-            "On a planet of 100 times the mass waves are different.",
-            f"It takes the radius too: here g = {g:.3g} m/s². Heights and lengths go as 1/g at one wind, speeds stay: "
-            f"H<sub>s</sub> g/U² is 0.209 on every planet.",
-        ),
-        (
-            "The damping parameter is viscosity.",
-            "It is a length l that cuts off short waves once, exp(−k²l²). A fluid of viscosity ν does the same in a "
-            f"time T = l²/4ν{': ' + low_pass_line(params) if params.low_pass else ''}. "
-            "Viscosity itself takes 2νk² a second from each wave: texture first, height last, speed hardly at all.",
-        ),
-        (
-            "When the storm is over, change the dispersion.",
-            "The lab's dispersion rounds frequencies down so that the sea repeats after 200 s; a scale slows it down. "
-            "Neither lowers a wave: "
-            + (f"H<sub>s</sub> stays {r.measured.significant_height:.3g} m. " if r else "")
-            + "A calm is less wind: try the preset Storm over.",
-        ),
+    storm = fill(
+        "Both are true. A fully developed sea has H<sub>s</sub> = 0.209 U²/g, and its crests run at c = U/0.877: "
+        "for {:.3g} m/s these are {:.3g} m and {:.3g} m/s.",
+        U, 0.20925 * U * U / g, U / 0.877,
+    )  # fmt: skip
+    if r is not None and not math.isnan(r.theory.wave[0]):
+        length, speed = r.theory.wave
+        storm = join((storm, f" The dominant waves here are {length:.3g} m long and run at {speed:.3g} m/s."))
+    planet = fill(
+        "That depends on its radius too: here g = {:.3g} m/s². At one wind, heights and lengths are proportional to "
+        "1/g, and speeds stay as they are: H<sub>s</sub> g/U² is 0.209 on every planet.",
+        g,
+    )
+    time = f": {low_pass_line(params)}" if params.low_pass else ""
+    damping = (
+        "It is a length l that cuts off short waves once, by exp(−k²l²). A fluid of viscosity ν does the same in a "
+        f"time T = l²/4ν{time}. Viscosity itself damps each wave at the rate 2νk²: it removes the short waves first, lowers "
+        "the sea last, and hardly changes any speed."
+    )
+    height = ""
+    if r is not None:
+        height = fill("H<sub>s</sub> stays {:.3g} m. ", r.measured.significant_height)
+    after_storm = fill(
+        "The lab's dispersion rounds frequencies down so that the sea repeats after 200 s, and a factor slows it down. "
+        "Neither lowers a wave. {}A calm sea needs less wind: try the preset Storm over.",
+        height,
+    )
+    pairs: list[tuple[str, object]] = [
+        ("In a storm waves are higher and move faster.", storm),
+        ("On a planet of 100 times the mass waves are different.", planet),
+        ("The damping parameter is viscosity.", damping),
+        ("When the storm is over, change the dispersion.", after_storm),
         (
             "Which grid is more realistic, which scales better?",
-            "This square one costs N² log N, carries every wave of its tile exactly, and repeats; the radial one "
-            "spends its points near the eye and never repeats, at a cost of points times waves.",
+            "The cost of this square grid grows as N² log N. It carries every wave of its tile exactly, and repeats. "
+            "The radial grid has most of its points near the camera and never repeats; its cost is the number of "
+            "points times the number of waves.",
         ),
     ]
-    return "".join(
-        f"<div style='margin-bottom:8px'><div style='opacity:.7'><b>Lab:</b> {lab}</div><div><b>Physics:</b> {physics}"
-        "</div></div>"
-        for lab, physics in pairs
-    )
+    return join(
+        fill(
+            '<div style="margin-bottom:8px"><div style="opacity:.7"><b>Lab:</b> {}</div>'
+            "<div><b>Physics:</b> {}</div></div>",
+            statement, physics,
+        )
+        for statement, physics in pairs
+    )  # fmt: skip

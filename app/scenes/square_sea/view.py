@@ -10,9 +10,9 @@ import viser
 
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
 from app.render.water import Look, Water, sky
-from app.scenes.square_sea.parameters import TENSION, gravity
+from app.scenes.square_sea import report
+from app.scenes.square_sea.parameters import SURFACE_TENSION, gravity
 from app.scenes.square_sea.rain_view import RainMesh
-from app.scenes.square_sea.report import lab_says, low_pass_line, planet_line, span, table, viscosity_line, wind_line
 from app.scenes.square_sea.scene import Params, SeaFrame
 
 LENGTH = Params().length  # [m] tile of the first view
@@ -89,7 +89,7 @@ class View:
         if self.last is None or picture.vertices is not self.last.vertices:
             self.water.set_surface(picture.vertices, picture.slopes, picture.foam, picture.time)
             self.show_rain(picture)
-            self.show_probe(picture)
+            self.show_gauge(picture)
         self.last = picture
 
     def dress(self, picture: SeaFrame) -> Look:
@@ -97,7 +97,7 @@ class View:
         p: Params = picture.params
         missing = max(min(0.003, 0.0015 * p.wind_speed) + 0.00512 * p.wind_speed - picture.slope_resolved, 0.001)
         cell, g = p.length / len(picture.vertices), gravity(p)
-        capillary = 2.0 * math.pi * math.sqrt(TENSION / (1000.0 * g))
+        capillary = 2.0 * math.pi * math.sqrt(SURFACE_TENSION / (1000.0 * g))
         # Under a closed cover there is no sun, and its colour is gone from the sky.
         overcast = min(max((p.clouds - 0.6) / 0.4, 0.0), 1.0)
         grey = np.array(OVERCAST) * overcast + np.array(self.light.tint) * (1.0 - overcast)
@@ -129,15 +129,15 @@ class View:
                 self.rain = RainMesh(self.server, rain, self.look.exposure)
             self.rain.show(rain)
 
-    def show_probe(self, picture: SeaFrame) -> None:
-        if picture.probe is None:
+    def show_gauge(self, picture: SeaFrame) -> None:
+        if picture.gauge is None:
             if self.buoy is not None:
                 self.buoy.visible = False
             return
         if self.buoy is None:
             self.buoy = add_buoy(self.server)
         self.buoy.visible = True
-        self.buoy.position = picture.probe
+        self.buoy.position = picture.gauge
 
     def cameras(self) -> list[Any]:
         """The camera of each browser, and the one that new browsers begin with."""
@@ -155,46 +155,16 @@ class View:
                 camera.position, camera.look_at = to, to + target - eye
 
     def readout(self, snapshot: Snapshot) -> str:
-        """The statistics, the foam and the rain, as HTML."""
-        g = snapshot.readings
-        lines = [table(g.report)] if g.report is not None else []
-        if snapshot.frame.params.foam:
-            lines.append(f"Foam on {g.foam:.1%} of the sea; Monahan measured {g.foam_asked:.1%}.")
-        if g.rain is not None:
-            r = g.rain
-            rings = (
-                f"a ring is as of {r.drops_a_ring:.1e} drops at once"
-                if r.drops_a_ring
-                else "no rings on so wide a grid"
-            )
-            lines.append(
-                f"Rain: {r.fallen:.3g} drops have fallen on {r.span:.0f} m × {r.span:.0f} m. "
-                f"Drawn: {r.drawn} in the air, "
-                f"each for {r.weight:.3g}; {r.hits} have hit; {rings}."
-            )
-        if snapshot.frame.probe is not None:
-            x, y, z = snapshot.frame.probe
-            lines.append(f"WaveGauge at ({x:.1f}, {y:.1f}) m: {z:+.2f} m, found to {g.residual:.0e} m.")
-        return "".join(f'<div style="margin-top:4px">{line}</div>' for line in lines)
+        """Statistics, foam, rain and wave gauge, as HTML."""
+        return report.readout(snapshot)
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
-        """What is written under a parameter."""
-        p, g = snapshot.frame.params, snapshot.readings
-        cell = p.length / int(p.size)
-        return {
-            "wind_speed": wind_line(p),
-            "planet_mass": planet_line(p),
-            "low_pass": low_pass_line(p),
-            "viscosity": viscosity_line(p, g.age),
-            "loop_period": f"repeats every {span(p.loop_period)}" if p.loop_period else "never repeats",
-            "size": f"cells of {cell:.3g} m, shortest wave {2 * cell:.3g} m",
-            "mesh": f"drawn every {p.length / len(snapshot.frame.vertices):.3g} m",
-            "foam_by_wind": f"Jacobian below {g.threshold:.2f}" if math.isfinite(g.threshold) else "no foam",
-        }
+        """Parameter -> the line under its control."""
+        return report.marks(snapshot)
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
-        """What folds out below the controls."""
-        return {"Lab says, physics says": lab_says(snapshot.frame.params, snapshot.readings.report)}
+        """Heading -> HTML of the folders below the controls."""
+        return dict(report.notes(snapshot))
 
     def close(self) -> None:
         """Nothing to give back: removing the nodes removes all."""
@@ -203,10 +173,10 @@ class View:
 def add_buoy(server: viser.ViserServer) -> viser.FrameHandle:
     """A spar with a ball, 3 m high."""
     scene = server.scene
-    frame = scene.add_frame("/probe", show_axes=False)
-    scene.add_cylinder("/probe/spar", radius=0.09, height=4.2, color=(245, 245, 240), position=(0, 0, 0.9))
-    scene.add_cylinder("/probe/float", radius=0.45, height=0.6, color=BUOY, position=(0, 0, 0.2))
-    scene.add_icosphere("/probe/ball", radius=0.3, color=BUOY, position=(0, 0, 3.0))
+    frame = scene.add_frame("/gauge", show_axes=False)
+    scene.add_cylinder("/gauge/spar", radius=0.09, height=4.2, color=(245, 245, 240), position=(0, 0, 0.9))
+    scene.add_cylinder("/gauge/float", radius=0.45, height=0.6, color=BUOY, position=(0, 0, 0.2))
+    scene.add_icosphere("/gauge/ball", radius=0.3, color=BUOY, position=(0, 0, 3.0))
     return frame
 
 

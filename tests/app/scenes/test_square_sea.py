@@ -5,16 +5,16 @@ import re
 import numpy as np
 import pytest
 
-from app import pictures
 from app.messages import Point, Reset
-from app.scenes.square_sea import report as sea_report
-from app.scenes.square_sea import scene as phillips
-from app.scenes.square_sea.parameters import conditions
-from app.scenes.square_sea.scene import PRESETS, Params, Scene
+from app.scenes.square_sea import report
+from app.scenes.square_sea import scene as square_sea
+from app.scenes.square_sea.parameters import PRESETS, Params, conditions, rain_settings
+from app.scenes.square_sea.rainfall import RING_STEEPNESS, Rainfall
+from app.scenes.square_sea.scene import SquareSeaScene
 from app.server.loop import SimLoop
 from sim.ocean import Sea
 from sim.ocean.foam import whitecaps
-from sim.parameters import parameters_of
+from sim.parameters import effect_of_change, parameters_of
 
 SMALL = {"size": "64", "mesh": "32"}
 EVERY_OTHER = {  # a parameter that is hidden by default, and what shows it
@@ -31,17 +31,28 @@ EVERY_OTHER = {  # a parameter that is hidden by default, and what shows it
 }
 
 
-def run(scene: Scene, frames: int, steps: int = 2) -> None:
+def change_parameters(scene: SquareSeaScene, **values: object) -> None:
+    """Give the scene other parameters as the simulation loop does."""
+    params = dataclasses.replace(scene.params, **values)
+    effect = effect_of_change(scene.params, params)
+    if effect == "forces":
+        scene.change_forces(params)
+    scene.params = params
+    if effect == "start":
+        scene.reset()
+
+
+def run(scene: SquareSeaScene, frames: int, steps: int = 2) -> None:
     for _ in range(frames):
         scene.advance(steps)
         scene.frame()
 
 
-def arrays(scene: Scene) -> list[np.ndarray]:
-    picture = scene.frame()
-    found = [picture.vertices, picture.slopes, picture.foam]
-    if picture.rain is not None:
-        found += [picture.rain.drops, picture.rain.velocity, picture.rain.splashes]
+def arrays(scene: SquareSeaScene) -> list[np.ndarray]:
+    frame = scene.frame()
+    found = [frame.vertices, frame.slopes, frame.foam]
+    if frame.rain is not None:
+        found += [frame.rain.drops, frame.rain.velocity, frame.rain.splashes]
     return found
 
 
@@ -53,7 +64,7 @@ def test_the_presets_are_the_six_and_the_first_is_the_defaults():
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_preset_runs_three_seconds_and_everything_drawn_is_finite(name):
-    scene = Scene(Params(**PRESETS[name]))
+    scene = SquareSeaScene(Params(**PRESETS[name]))
     for _ in range(30):
         run(scene, 1, 6)
         assert all(np.isfinite(array).all() for array in arrays(scene))
@@ -65,18 +76,18 @@ def test_a_preset_runs_three_seconds_and_everything_drawn_is_finite(name):
     "change", [{"wind_speed": 22.0}, {"spectrum": "jonswap"}, {"planet_mass": 10.0}, {"deep": False}]
 )
 def test_new_weather_grows_out_of_the_sea_without_a_jump(change):
-    scene = Scene(Params(**SMALL, foam=False, transition=10.0))
+    scene = SquareSeaScene(Params(**SMALL, foam=False, transition=10.0))
     scene.advance(180)
     before = scene.frame().vertices
-    scene.set_params(dataclasses.replace(scene.params, **change))
+    change_parameters(scene, **change)
     after = scene.frame().vertices
     assert after is not before
     assert np.abs(after - before).max() <= 1e-3 * np.abs(before[..., 2]).max()
 
 
 def test_a_storm_arrives_from_a_calm_and_leaves_one():
-    arriving = Scene(Params(**{**PRESETS["Storm arriving"], **SMALL, "rain": 0.0}))
-    leaving = Scene(Params(**{**PRESETS["Storm over"], **SMALL}))
+    arriving = SquareSeaScene(Params(**{**PRESETS["Storm arriving"], **SMALL, "rain": 0.0}))
+    leaving = SquareSeaScene(Params(**{**PRESETS["Storm over"], **SMALL}))
     heights = {scene: [] for scene in (arriving, leaving)}
     for scene, found in heights.items():
         for _ in range(5):
@@ -88,37 +99,57 @@ def test_a_storm_arrives_from_a_calm_and_leaves_one():
     assert heights[leaving][-1] < 0.4 * heights[leaving][0]
 
 
-def test_a_picture_costs_three_transforms_and_one_without_choppiness():
+def test_a_frame_costs_three_transforms_and_one_without_choppiness():
     for choppiness, each in ((1.0, 3), (0.0, 1)):
-        scene = Scene(Params(**SMALL, choppiness=choppiness))
+        scene = SquareSeaScene(Params(**SMALL, choppiness=choppiness))
         run(scene, 10)
         assert scene.counts["transforms"] == 10 * each
         assert scene.counts["steps"] == 20
 
 
-def test_steps_cost_nothing_and_an_unchanged_sea_is_the_same_picture():
-    scene = Scene(Params(**SMALL))
+def test_steps_cost_nothing_and_an_unchanged_sea_is_the_same_frame():
+    scene = SquareSeaScene(Params(**SMALL))
     scene.advance(10_000)
     assert scene.counts["transforms"] == 0
     assert scene.frame() is scene.frame()
-    assert scene.counts["pictures"] == 1
+    assert scene.counts["frames"] == 1
 
 
 def test_a_new_look_on_a_paused_sea_computes_and_sends_no_surface():
-    scene = Scene(Params(**SMALL))
+    scene = SquareSeaScene(Params(**SMALL))
     scene.advance(5)
     before, done = scene.frame(), scene.counts["transforms"]
-    scene.set_params(dataclasses.replace(scene.params, clouds=0.9, daylight=0.3, grid=True))
+    change_parameters(scene, clouds=0.9, daylight=0.3, grid=True)
     after = scene.frame()
     assert after.params.clouds == 0.9
     assert after.vertices is before.vertices  # what the viewer sends only where it is new
     assert scene.counts["transforms"] == done
-    scene.set_params(dataclasses.replace(scene.params, amplitude=2.0))
+    change_parameters(scene, amplitude=2.0)
     assert scene.frame().vertices is not before.vertices
 
 
+def test_a_paused_sea_shows_its_wave_gauge_and_statistics_as_soon_as_they_are_wanted():
+    scene = SquareSeaScene(Params(**SMALL, statistics=False))
+    scene.advance(5)
+    assert scene.frame().gauge is None
+    change_parameters(scene, statistics=True, plot_wave_gauge=True)
+    assert scene.frame().gauge is not None
+    assert scene.readings().report is not None
+    assert scene.frame() is scene.frame()
+
+
+def test_another_length_starts_the_sea_again_with_the_wave_gauge_as_far_from_the_middle():
+    scene = SquareSeaScene(Params(**SMALL, length=64.0))
+    scene.gauge.put((40.0, 30.0))
+    scene.advance(5)
+    change_parameters(scene, length=128.0)
+    assert scene.time == 0.0
+    assert scene.sea.length == 128.0
+    assert scene.gauge.at == (72.0, 62.0)
+
+
 def test_nobody_looking_costs_nothing():
-    scene = Scene(Params(**SMALL, rain=20.0))
+    scene = SquareSeaScene(Params(**SMALL, rain=20.0))
     loop = SimLoop(scene, audience=lambda: 0)
     done = dict(scene.counts)
     for _ in range(60):
@@ -127,28 +158,28 @@ def test_nobody_looking_costs_nothing():
 
 
 def test_without_rain_no_ring_is_begun_and_no_drop_falls():
-    scene = Scene(Params(**SMALL, length=32.0))
+    scene = SquareSeaScene(Params(**SMALL, length=32.0))
     run(scene, 20)
-    assert scene.counts["rings"] == scene.counts["showers"] == 0
+    assert scene.counts["rings"] == scene.counts["rainfall steps"] == 0
     assert scene.sea._ripples is None
     assert scene.frame().rain is None
 
 
-def test_statistics_probe_and_spectrum_are_computed_only_where_shown():
-    scene = Scene(Params(**SMALL, statistics=False))
+def test_statistics_wave_gauge_and_spectrum_are_computed_only_where_shown():
+    scene = SquareSeaScene(Params(**SMALL, statistics=False))
     run(scene, 30)
-    assert scene.counts["statistics"] == scene.counts["probe readings"] == scene.counts["probe spectra"] == 0
+    assert scene.counts["statistics"] == scene.counts["gauge readings"] == scene.counts["gauge spectra"] == 0
     assert scene.readings().report is None
-    shown = Scene(Params(**SMALL, plot_probe=True, plot_spectrum=True))
+    shown = SquareSeaScene(Params(**SMALL, plot_wave_gauge=True, plot_wave_spectrum=True))
     run(shown, 30)
-    assert shown.counts["probe readings"] == 30
+    assert shown.counts["gauge readings"] == 30
     assert 1 <= shown.counts["statistics"] <= 3
 
 
 def test_the_rain_that_is_counted_is_the_rain_that_theory_has():
-    scene = Scene(Params(**SMALL, length=32.0, wind_speed=3.0, rain=25.0, drops=1500, rings=0.0))
+    scene = SquareSeaScene(Params(**SMALL, length=32.0, wind_speed=3.0, rain=25.0, drops=1500, rings=0.0))
     run(scene, 30)  # a second for the first drops to reach the water
-    shower = scene.shower
+    shower = scene.rainfall
     begun, start = shower.rain.hits, scene.time
     run(scene, 240)
     hits = shower.rain.hits - begun
@@ -159,52 +190,51 @@ def test_the_rain_that_is_counted_is_the_rain_that_theory_has():
 
 
 def test_rain_makes_rings_where_the_grid_can_carry_them():
-    fine = Scene(Params(length=32.0, size="128", mesh="64", rain=25.0))
+    fine = SquareSeaScene(Params(length=32.0, size="128", mesh="64", rain=25.0))
     run(fine, 60)
-    assert fine.counts["rings"] == fine.shower.rain.hits > 0
+    assert fine.counts["rings"] == fine.rainfall.rain.hits > 0
     assert fine.sea.ripples.rms > 0.0
-    coarse = Scene(Params(length=1024.0, size="128", mesh="64", rain=25.0))
+    coarse = SquareSeaScene(Params(length=1024.0, size="128", mesh="64", rain=25.0))
     run(coarse, 60)
-    assert coarse.shower.rain.hits > 0
+    assert coarse.rainfall.rain.hits > 0
     assert coarse.counts["rings"] == 0
-    assert coarse.readings().rain.drops_a_ring == 0.0
+    assert coarse.readings().rain.drops_per_ring == 0.0
 
 
 def test_a_ring_is_as_deep_as_its_blow_says():
-    from app.scenes.square_sea.rainfall import STEEPNESS, Rainfall
-
     sea = Sea(256, 32.0, wind_speed=0.0, choppiness=0.0)
-    shower = Rainfall(sea, 25.0, 100, (0.0, 0.0), 1.0, 1.0, 0)
-    sea.ripples.add(0.0, [[16.0, 16.0]], shower.width, impulse=shower.drops_a_ring * shower.momentum)
+    settings = rain_settings(Params(rain=25.0, drops=100, wind_speed=0.0))
+    rainfall = Rainfall(sea, settings, 1.0, 0)
+    sea.ripples.add(0.0, [[16.0, 16.0]], rainfall.ring_width, impulse=rainfall.drops_per_ring * rainfall.momentum)
     deepest = min(float(sea.surface(t).height[128, 128]) for t in np.linspace(0.0, 0.6, 61))
-    assert -deepest == pytest.approx(STEEPNESS * shower.width, rel=0.03)
+    assert -deepest == pytest.approx(RING_STEEPNESS * rainfall.ring_width, rel=0.03)
 
 
 def test_the_sea_is_as_white_as_monahan_measured():
-    scene = Scene(Params(wind_speed=15.0, length=512.0, size="128", statistics=False))
+    scene = SquareSeaScene(Params(wind_speed=15.0, length=512.0, size="128", statistics=False))
     covered = []
     for frame in range(900):
         run(scene, 1)
         if frame >= 450:
-            covered.append(scene.covered)
+            covered.append(scene.foam_cover)
     assert np.mean(covered) == pytest.approx(whitecaps(15.0), rel=0.15)
 
 
 def test_slopes_of_the_mesh_are_those_of_the_displaced_surface():
-    scene = Scene(Params(size="128", mesh="128", length=512.0, choppiness=0.6, low_pass=8.0))
+    scene = SquareSeaScene(Params(size="128", mesh="128", length=512.0, choppiness=0.6, low_pass=8.0))
     scene.advance(60)
-    picture = scene.frame()
+    frame = scene.frame()
     surface = scene.sea.surface(scene.time)
     Dxx, Dyy, Dxy = surface.strain
     hx, hy = surface.slope[..., 0], surface.slope[..., 1]
     J = surface.jacobian
     exact = np.stack([((1 + Dyy) * hx - Dxy * hy) / J, ((1 + Dxx) * hy - Dxy * hx) / J], axis=-1)
     assert J.min() > 0.3
-    assert np.sqrt(np.mean((picture.slopes - exact) ** 2)) < 0.01 * np.sqrt(np.mean(exact**2))
+    assert np.sqrt(np.mean((frame.slopes - exact) ** 2)) < 0.01 * np.sqrt(np.mean(exact**2))
 
 
 def test_the_amplitude_scales_heights_and_displacements_alike():
-    plain, double = (Scene(Params(**SMALL, amplitude=a, foam=False)) for a in (1.0, 2.0))
+    plain, double = (SquareSeaScene(Params(**SMALL, amplitude=a, foam=False)) for a in (1.0, 2.0))
     rest = np.arange(32) * plain.params.length / 32
     flat = np.stack([*np.meshgrid(rest, rest, indexing="ij"), np.zeros((32, 32))], -1)
     np.testing.assert_allclose(
@@ -212,14 +242,14 @@ def test_the_amplitude_scales_heights_and_displacements_alike():
     )
 
 
-def test_a_click_puts_the_probe_where_the_ray_meets_the_water():
-    scene = Scene(Params(**SMALL))
+def test_a_click_puts_the_wave_gauge_where_the_ray_meets_the_water():
+    scene = SquareSeaScene(Params(**SMALL))
     scene.advance(60)
     scene.frame()
     origin, direction = (40.0, 60.0, 8.0), (0.9, 0.3, -0.12)
     scene.handle(Point(origin, direction))
     scene.advance(1)
-    x, y, z = scene.frame().probe
+    x, y, z = scene.frame().gauge
     height, _ = scene.sea.height_at([[x, y]], scene.time)
     assert z == pytest.approx(float(height[0]), abs=1e-4)
     along = ((x - origin[0]) * direction[0] + (y - origin[1]) * direction[1]) / (0.9**2 + 0.3**2)
@@ -232,17 +262,17 @@ def test_a_click_puts_the_probe_where_the_ray_meets_the_water():
     [((0.0, 0.0, 5.0), (0.0, 0.0, 1.0)), ((0.0, 0.0, -50.0), (0.0, 0.0, -1.0)), ((0.0, 0.0, 5.0), (0.0, 0.0, 0.0))],
 )
 def test_a_click_that_meets_no_water_moves_nothing(ray):
-    scene = Scene(Params(**SMALL))
-    at = scene.probe.at
+    scene = SquareSeaScene(Params(**SMALL))
+    at = scene.gauge.at
     scene.handle(Point(*ray))
-    assert scene.probe.at == at
-    assert not scene.placed
+    assert scene.gauge.at == at
+    assert not scene.gauge_placed
 
 
-def test_the_probe_finds_the_energy_of_the_sea_in_its_trace():
-    scene = Scene(Params(**SMALL, wind_speed=6.0, plot_spectrum=True, statistics=False, foam=False))
+def test_the_wave_gauge_finds_the_energy_of_the_sea_in_its_trace():
+    scene = SquareSeaScene(Params(**SMALL, wind_speed=6.0, plot_wave_spectrum=True, statistics=False, foam=False))
     run(scene, 4000, 6)  # 400 s
-    f, measured, theory = scene.curves()["plot_spectrum"]
+    f, measured, theory = scene.curves()["plot_wave_spectrum"]
     band = f[1] - f[0]
     drawn = (scene.sea.significant_height / 4.0) ** 2
     assert measured.sum() * band == pytest.approx(drawn, rel=0.35)  # one place of a sea of few waves
@@ -251,16 +281,16 @@ def test_the_probe_finds_the_energy_of_the_sea_in_its_trace():
 
 
 def test_another_size_shows_the_same_sea_and_keeps_time():
-    scene = Scene(Params(size="128", mesh="64"))
+    scene = SquareSeaScene(Params(size="128", mesh="64"))
     scene.advance(100)
     shared = scene.sea.amplitudes_at(scene.time)[:20, :20]
-    scene.set_params(dataclasses.replace(scene.params, size="64"))
+    change_parameters(scene, size="64")
     np.testing.assert_allclose(scene.sea.amplitudes_at(scene.time)[:20, :20], shared)
     assert scene.time == pytest.approx(100 / 60)
 
 
 def test_a_reset_is_the_same_sea_again():
-    scene = Scene(Params(**{**PRESETS["Storm arriving"], **SMALL}))
+    scene = SquareSeaScene(Params(**{**PRESETS["Storm arriving"], **SMALL}))
     first = scene.frame().vertices
     run(scene, 20)
     loop = SimLoop(scene)
@@ -282,50 +312,49 @@ def ends() -> list[tuple[str, object]]:
 @pytest.mark.parametrize(("name", "value"), ends())
 def test_both_ends_of_every_parameter_survive(name, value):
     start = Params(**{**SMALL, **EVERY_OTHER.get(name, {})})
-    scene = Scene(start)
+    scene = SquareSeaScene(start)
     run(scene, 3)
     # Set live, and from the start.
-    scene.set_params(dataclasses.replace(start, **{name: value}))
+    change_parameters(scene, **{name: value})
     run(scene, 60)
-    fresh = Scene(dataclasses.replace(start, **{name: value}))
+    fresh = SquareSeaScene(dataclasses.replace(start, **{name: value}))
     run(fresh, 3)
     for each in (scene, fresh):
         assert all(np.isfinite(array).all() for array in arrays(each))
-        assert math.isfinite(each.readings().foam)
+        assert math.isfinite(each.readings().foam_cover)
 
 
 @pytest.mark.parametrize("spectrum", ["phillips", "pierson_moskowitz", "jonswap", "tma", "elfouhaily"])
 @pytest.mark.parametrize("wind", [0.0, 1e-200, 0.05, 60.0])
 def test_any_wind_makes_a_finite_sea(spectrum, wind):
-    scene = Scene(Params(**SMALL, spectrum=spectrum, wind_speed=wind, planet_mass=0.01, deep=False, depth=0.1))
+    scene = SquareSeaScene(Params(**SMALL, spectrum=spectrum, wind_speed=wind, planet_mass=0.01, deep=False, depth=0.1))
     run(scene, 2)
     assert all(np.isfinite(array).all() for array in arrays(scene))
     assert conditions(scene.params)["wind_speed"] in (0.0, wind)
 
 
 def test_the_warm_up_compiles_what_a_scene_calls():
-    assert len(list(phillips.warm_up())) == 5
+    assert len(list(square_sea.warm_up())) == 5
 
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_the_panel_has_words_for_every_preset(name):
-    picture = pictures.view_named("phillips")
-    loop = SimLoop(Scene(Params(**{**PRESETS[name], **SMALL, "plot_probe": True})))
+    loop = SimLoop(SquareSeaScene(Params(**{**PRESETS[name], **SMALL, "plot_wave_gauge": True})))
     for _ in range(40):
         loop.tick(1 / 30)
-    assert set(picture.marks(loop.latest)) <= set(parameters_of(Params))
-    texts = [picture.readout(loop.latest), *picture.marks(loop.latest).values()]
-    texts += picture.notes(loop.latest).values()
+    assert set(report.marks(loop.latest)) <= set(parameters_of(Params))
+    texts = [report.readout(loop.latest), *report.marks(loop.latest).values()]
+    texts += report.notes(loop.latest).values()
     assert all(texts)
     assert not any(re.search(r"\b(nan|inf)\b", text) for text in texts)
-    assert "Lab says, physics says" in picture.notes(loop.latest)
+    assert "Lab says, physics says" in report.notes(loop.latest)
 
 
 @pytest.mark.parametrize("change", [{"deep": False}, {"planet": "Enceladus"}, {"wind_speed": 0.0}])
 def test_the_dominant_waves_have_a_length_or_no_words(change):
-    scene = Scene(Params(**change))
+    scene = SquareSeaScene(Params(**change))
     scene.advance(1)
-    picture, gauge = scene.frame(), scene.readings()
-    words = sea_report.lab_says(picture.params, gauge.report)
+    frame, readings = scene.frame(), scene.readings()
+    words = report.lab_statements(frame.params, readings.report)
     assert not re.search(r"\bnan\b", words)
-    assert ("dominant waves here" in words) == (gauge.report.theory.wave[0] > 0.0) == ("wind_speed" not in change)
+    assert ("dominant waves here" in words) == (readings.report.theory.wave[0] > 0.0) == ("wind_speed" not in change)

@@ -216,8 +216,8 @@ def lab_statements(params: Params, r: Report | None) -> Html:
     time = f": {low_pass_line(params)}" if params.low_pass else ""
     damping = (
         "It is a length l that cuts off short waves once, by exp(−k²l²). A fluid of viscosity ν does the same in a "
-        f"time T = l²/4ν{time}. Viscosity itself damps each wave at the rate 2νk²: it removes the short waves first, lowers "
-        "the sea last, and hardly changes any speed."
+        f"time T = l²/4ν{time}. Viscosity itself damps each wave at the rate 2νk²: it removes the short waves first, "
+        "lowers the sea last, and hardly changes any speed."
     )
     height = ""
     if r is not None:

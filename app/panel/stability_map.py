@@ -22,7 +22,7 @@ from app.scenes.contract import StabilityMap
 from sim.parameters import Parameter, parameters_of
 from sim.springs import INTEGRATORS
 from sim.springs.analysis.growth import outcome
-from sim.springs.analysis.settling import settled
+from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.stability import critical_step
 from sim.springs.state import State
 
@@ -85,7 +85,7 @@ def measure_row(scene: StabilityMap, axes: Axes, stiffness: float) -> Row:
     params = dataclasses.replace(axes.params, **{axes.parameter: stiffness})
     net, record = scene.build(params), INTEGRATORS[params.integrator]
     state = State.at_rest(net)
-    state.x[:] = settled(net)
+    state.x[:] = find_rest_positions(net)
     most = min(max(WORK // params.points, 256), 4096)
     outcomes = [outcome(record, net, float(h), state.x, most) for h in axes.steps]
     return Row(np.array(outcomes), critical_step(net, record, state))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from app.experiments.pool import spread
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.analysis.growth import energy_course
-from sim.springs.analysis.settling import settled
+from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.state import State, energy
 from sim.springs.statics import hanging_chain
 
@@ -49,7 +49,7 @@ def course(name: str, steps: int) -> NDArray[np.float64]:
 
 def resting(net: Net) -> State:
     state = State.at_rest(net)
-    state.x[:] = settled(net)
+    state.x[:] = find_rest_positions(net)
     return state
 
 

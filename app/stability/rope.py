@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from app.experiments.pool import spread
 from sim.springs import INTEGRATORS, Net, rope
-from sim.springs.analysis.growth import EXPLODES, HOLDS, RATTLES, outcome
-from sim.springs.analysis.settling import settled
+from sim.springs.analysis.growth import BOUNDED_GROWTH, EXPLODING, STABLE, outcome
+from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.stability import critical_step
 from sim.springs.state import State
 
@@ -25,7 +25,7 @@ class RopeMap(NamedTuple):
     name: str
     steps: NDArray[np.float64]  # (cols,) [s]
     stiffnesses: NDArray[np.float64]  # (rows,) [N/m]
-    outcomes: NDArray[np.int64]  # (rows, cols) HOLDS, RATTLES or EXPLODES
+    outcomes: NDArray[np.int64]  # (rows, cols) STABLE, BOUNDED_GROWTH or EXPLODING
     measured: NDArray[np.float64]  # (rows,) [s] step at which a disturbance begins to grow; inf: none does
     theory: NDArray[np.float64]  # (rows,) [s] critical_step
 
@@ -40,18 +40,18 @@ def row(
 ) -> tuple[NDArray[np.int64], float, float]:
     """(outcomes at each step, the step at which disturbances begin to grow [s], critical_step [s])."""
     record, net = INTEGRATORS[name], with_stiffness(net, stiffness)
-    rest = settled(net)
+    rest = find_rest_positions(net)
     state = State.at_rest(net)
     state.x[:] = rest
     found = np.array([outcome(record, net, float(h), rest, most) for h in steps])
-    grows = np.flatnonzero(found != HOLDS)
+    grows = np.flatnonzero(found != STABLE)
     measured = math.inf
     if len(grows):
         high = float(steps[grows[0]])
         low = float(steps[grows[0] - 1]) if grows[0] else 0.3 * high
         while high > FINE * low:
             middle = math.sqrt(low * high)
-            low, high = (middle, high) if outcome(record, net, middle, rest, 16 * most) == HOLDS else (low, middle)
+            low, high = (middle, high) if outcome(record, net, middle, rest, 16 * most) == STABLE else (low, middle)
         measured = math.sqrt(low * high)
     return found, measured, critical_step(net, name, state)
 
@@ -76,7 +76,7 @@ def rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
     """The table: how the rope fares, and how far critical_step is from where growth begins."""
     table = []
     for m in maps:
-        grows = m.outcomes != HOLDS
+        grows = m.outcomes != STABLE
         wrong = grows != (m.steps[None, :] > m.theory[:, None])
         within = (m.theory < m.steps[-1]) & (m.theory > m.steps[0]) & np.isfinite(m.measured)
         apart = np.abs(m.measured[within] / m.theory[within] - 1.0)
@@ -84,9 +84,9 @@ def rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
             {
                 "integrator": m.name,
                 "cells": grows.size,
-                "hold": int((m.outcomes == HOLDS).sum()),
-                "rattle": int((m.outcomes == RATTLES).sum()),
-                "explode": int((m.outcomes == EXPLODES).sum()),
+                "hold": int((m.outcomes == STABLE).sum()),
+                "rattle": int((m.outcomes == BOUNDED_GROWTH).sum()),
+                "explode": int((m.outcomes == EXPLODING).sum()),
                 "disagree": int(wrong.sum()),
                 "step off, median [%]": 100.0 * float(np.median(apart)) if len(apart) else None,
                 "at most [%]": 100.0 * float(apart.max()) if len(apart) else None,

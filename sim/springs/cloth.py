@@ -9,13 +9,13 @@ import numpy as np
 from sim.springs.net import CLOTH, DAMPING_MODELS, Air, Contact, Family, Net, Vector, check_surroundings
 from sim.validation import argument_error, check_choice, check_number, check_vector
 
-HOLDS = ("corners", "edge", "all corners", "rim", "free")
+PIN_CHOICES = ("corners", "edge", "all corners", "rim", "free")
 MOST = 1024  # rows or columns
 
 
 def held(hold: str, rows: int, cols: int) -> frozenset[tuple[int, int]]:
     """The pinned particles: corners (0, 0) and (0, cols - 1), the edge between them, four corners, the rim, or none."""
-    check_choice("pinned", hold, HOLDS)
+    check_choice("pinned", hold, PIN_CHOICES)
     corners = {(0, 0), (0, cols - 1)}
     far = {(rows - 1, 0), (rows - 1, cols - 1)}
     edge = {(0, j) for j in range(cols)}
@@ -111,14 +111,16 @@ def pinned_particles(pinned: object, rows: int, cols: int) -> frozenset[tuple[in
     try:
         pairs = frozenset((int(i), int(j)) for i, j in pinned)  # type: ignore[attr-defined]
     except (TypeError, ValueError):
-        raise argument_error("pinned", pinned, "one of " + ", ".join(HOLDS) + ", or (row, column) pairs") from None
+        raise argument_error(
+            "pinned", pinned, "one of " + ", ".join(PIN_CHOICES) + ", or (row, column) pairs"
+        ) from None
     for i, j in pairs:
         if not (0 <= i < rows and 0 <= j < cols):
             raise argument_error("pinned", (i, j), f"a row from 0 to {rows - 1} and a column from 0 to {cols - 1}")
     return pairs
 
 
-def turned_down(net: Net) -> Net:
+def vertical_cloth(net: Net) -> Net:
     """The same cloth hanging in the vertical plane below its first row instead of lying level."""
     x, y, z = net.x0
     return dataclasses.replace(net, x0=np.ascontiguousarray(np.stack([x, np.full_like(y, y[0, 0]), z - (y - y[0, 0])])))

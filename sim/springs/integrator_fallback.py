@@ -4,7 +4,7 @@ from sim.springs import INTEGRATORS, Net
 from sim.springs.integrators import Integrator
 
 
-def method_for(name: str, net: Net) -> tuple[Integrator, str]:
+def integrator_or_fallback(name: str, net: Net) -> tuple[Integrator, str]:
     """The integrator to take `net` on with, and the line that says why it is not the one called `name`, or ""."""
     chosen = INTEGRATORS[name]
     if not (chosen.undamped_only and net.is_damped):

@@ -82,14 +82,14 @@ class PinPath(NamedTuple):
     coefficients: tuple[Vector, Vector, Vector, Vector]
 
 
-class Forces(NamedTuple):
+class NetArrays(NamedTuple):
     """What the kernels read: flat numbers and arrays, one type for every net, so that each kernel compiles once."""
 
     rows: int
     cols: int
     is_rope: bool  # one row, linked to the next point only
     is_cloth: bool  # the families of CLOTH
-    weights: NDArray[np.float64]  # (rows cols,) inverse masses [1/kg], 0 where pinned
+    inverse_masses: NDArray[np.float64]  # (rows cols,) inverse masses [1/kg], 0 where pinned
     mass: float  # [kg] per point
     drag: float  # [N s/m] per point
     gx: float  # gravity [m/s^2]
@@ -181,23 +181,23 @@ class Net:
             or (touched and rough)
         )
 
-    def weights(self) -> NDArray[np.float64]:
+    def inverse_masses(self) -> NDArray[np.float64]:
         """(rows cols,) inverse masses [1/kg]; 0 where pinned."""
         w = np.full(self.shape, 1.0 / self.mass)
         for i, j in self.pinned:
             w[i, j] = 0.0
         return w.ravel()
 
-    def forces(self, h: float) -> Forces:
+    def kernel_view(self, h: float) -> NetArrays:
         """The kernels' view of this net for steps of h [s]. Its arrays are shared, but for those the kernels fill."""
-        view = self._view._replace(stop_rate=1.0 / h)
+        view = self._unit_step_view._replace(stop_rate=1.0 / h)
         if self.thickness == 0.0:
             return view
         return view._replace(pairs=np.full_like(view.pairs, -1), seen=np.zeros_like(view.seen))
 
     @functools.cached_property
-    def _view(self) -> Forces:
-        """`forces` for a step of 1 s: a scene asks for it every frame, and a net does not change."""
+    def _unit_step_view(self) -> NetArrays:
+        """`kernel_view` for a step of 1 s: a scene asks for it every frame, and a net does not change."""
         rows, cols = self.shape
         paths = np.zeros((len(self.pin_paths), 5, 3))
         for p, (_, path) in enumerate(self.pin_paths):
@@ -207,12 +207,12 @@ class Net:
         svx, svy, svz = self.sphere_velocity
         grab = self.grab or Grab(0, 0, (0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
         air = self.air or Air()
-        return Forces(
+        return NetArrays(
             rows=rows,
             cols=cols,
             is_rope=self.is_rope,
             is_cloth=[f[:2] for f in self.families] == CLOTH,
-            weights=self.weights(),
+            inverse_masses=self.inverse_masses(),
             mass=float(self.mass),
             drag=float(self.drag),
             gx=float(self.gravity[0]),

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from sim.springs.analysis.energy import energies
 from sim.springs.integrators import Integrator
 from sim.springs.net import Net
-from sim.springs.state import SANE, State, advance, check_damping, energy, steps_for, velocities
+from sim.springs.state import DIVERGENCE_BOUND, State, advance, check_damping, energy, steps_for, velocities
 from sim.validation import argument_error, check_choice, check_number
 
-CALM = 1e-3 * SANE  # [m]: a net within this has not yet been out of the sane bound
+CALM = 1e-3 * DIVERGENCE_BOUND  # [m]: a net within this has not yet been out of the sane bound
 STEP = 1 / 1200  # [s]
 RTOL, ATOL = 1e-6, 1e-9  # of adaptive methods
 FRICTION_STEP = 1e-3  # [s] that regularises friction where the step varies
@@ -42,14 +42,14 @@ def simulate(
     *,
     rtol: float | None = None,
     atol: float | None = None,
-    with_ledger: bool = False,
+    with_account: bool = False,
     progress: Progress = None,
 ) -> Run:
     """Integrate `net` from rest and sample it at `frames` equal times from 0 to `duration` [s].
 
     step: [s], 1/1200 by default; shortened equally where it does not divide a frame interval. rtol, atol: adaptive
     methods choose steps whose error is within atol + rtol |value| of each position [m] and velocity [m/s], 1e-6 and
-    1e-9 by default; given a step instead they take that. with_ledger: also integrate what damping takes and pins
+    1e-9 by default; given a step instead they take that. with_account: also integrate what damping takes and pins
     put in; the stored energies are always there. progress: called with (frames done, frames).
     A run that diverges ends there: `diverged_at` is the time of the first step that left any sane bound, and later
     frames are NaN.
@@ -72,12 +72,12 @@ def simulate(
     check_damping(net, record)
     t = np.linspace(0.0, duration, int(frames))
     if record.adaptive and step is None:
-        return marched(net, record, t, rtol or RTOL, atol or ATOL, with_ledger, progress)
-    return stepped(net, record, t, step or STEP, with_ledger, progress)
+        return marched(net, record, t, rtol or RTOL, atol or ATOL, with_account, progress)
+    return stepped(net, record, t, step or STEP, with_account, progress)
 
 
 def stepped(
-    net: Net, record: Integrator, t: NDArray[np.float64], step: float, with_ledger: bool, progress: Progress
+    net: Net, record: Integrator, t: NDArray[np.float64], step: float, with_account: bool, progress: Progress
 ) -> Run:
     """The run at times `t` [s] in equal steps of at most `step` [s]."""
     interval = float(t[-1]) / (len(t) - 1)
@@ -92,8 +92,8 @@ def stepped(
     diverged_at = None
     for frame in range(len(t)):
         if frame:
-            advance(net, state, record, h, steps, with_ledger=with_ledger)
-            if not state.is_sane:
+            advance(net, state, record, h, steps, with_account=with_account)
+            if not state.is_bounded:
                 diverged_at = first_insane_time(net, calm, record, h, steps * (frame - calm_frame))
                 # What blows up may have passed the bound between frames, and come back for one.
                 for rows in (xs, vs, ledger):
@@ -114,7 +114,7 @@ def marched(
     t: NDArray[np.float64],
     rtol: float,
     atol: float,
-    with_ledger: bool,
+    with_account: bool,
     progress: Progress,
 ) -> Run:
     """The run at times `t` [s] in steps of an adaptive method's own choosing."""
@@ -123,8 +123,8 @@ def marched(
     vs = np.full_like(xs, np.nan)
     taken = np.zeros((len(t), 2))
     x, v = net.x0.reshape(-1).copy(), np.zeros(net.x0.size)
-    p = net.forces(FRICTION_STEP)
-    evals, _, filled, stopped_at = record.march(x, v, t, rtol, atol, p, with_ledger, xs, vs, taken)
+    p = net.kernel_view(FRICTION_STEP)
+    evals, _, filled, stopped_at = record.march(x, v, t, rtol, atol, p, with_account, xs, vs, taken)
     shape = (len(t), *net.x0.shape)
     xs[filled:], vs[filled:] = np.nan, np.nan
     ledger = np.full((len(t), 6), np.nan)
@@ -147,7 +147,7 @@ def first_insane_time(net: Net, state: State, integrator: Integrator, h: float, 
     """Repeat, step by step, the end of a run that diverged, and return the time of the first bad step [s]."""
     for _ in range(steps):
         advance(net, state, integrator, h, 1)
-        if not state.is_sane:
+        if not state.is_bounded:
             break
     return state.t
 

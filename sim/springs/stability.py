@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos
-from sim.springs.net import Forces, Net
+from sim.springs.net import Net, NetArrays
 from sim.springs.simulate import integrator_named
 from sim.springs.state import State
 from sim.validation import check_number
@@ -82,13 +82,13 @@ def gershgorin(net: Net) -> tuple[float, float]:
     if net.grab is not None:
         stiffness[net.grab.row, net.grab.col] += net.grab.stiffness
         damping[net.grab.row, net.grab.col] += net.grab.damping
-    free = net.weights().reshape(rows, cols) > 0.0
+    free = net.inverse_masses().reshape(rows, cols) > 0.0
     if not free.any():
         return 0.0, 0.0
     return math.sqrt(float(stiffness[free].max()) / net.mass), float(damping[free].max()) / net.mass
 
 
-def sawtooth(net: Net, x: NDArray[np.float64], p: Forces) -> NDArray[np.float64]:
+def sawtooth(net: Net, x: NDArray[np.float64], p: NetArrays) -> NDArray[np.float64]:
     """A unit vector (3 rows cols,) near the stiffest mode: neighbours move against each other along their links.
 
     A rope's top mode is one almost exactly, so that Lanczos starts where it is to end. The fixed noise keeps anything
@@ -101,11 +101,11 @@ def sawtooth(net: Net, x: NDArray[np.float64], p: Forces) -> NDArray[np.float64]
         if count > 1:
             along = np.gradient(x, axis=axis)
             u += alternating * along / np.sqrt((along * along).sum(axis=0) + 1e-300)
-    flat = u.reshape(3, -1) * (p.weights > 0.0)
+    flat = u.reshape(3, -1) * (p.inverse_masses > 0.0)
     return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
 
 
-def across(net: Net, x: NDArray[np.float64], p: Forces) -> NDArray[np.float64]:
+def across(net: Net, x: NDArray[np.float64], p: NetArrays) -> NDArray[np.float64]:
     """The same, (3 rows cols,), at right angles to the links, where they are least stiff."""
     rows, cols = net.shape
     along = np.gradient(x, axis=2) if cols > 1 else np.gradient(x, axis=1)
@@ -115,11 +115,13 @@ def across(net: Net, x: NDArray[np.float64], p: Forces) -> NDArray[np.float64]:
     least[int(np.abs(along).sum(axis=(1, 2)).argmin())] = 1.0
     normal = np.cross(along, other if other.any() else least[:, None, None], axis=0)
     alternating = (-1.0) ** np.add.outer(np.arange(rows), np.arange(cols))
-    flat = (alternating * normal / np.sqrt((normal * normal).sum(axis=0) + 1e-300)).reshape(3, -1) * (p.weights > 0.0)
+    flat = (alternating * normal / np.sqrt((normal * normal).sum(axis=0) + 1e-300)).reshape(3, -1) * (
+        p.inverse_masses > 0.0
+    )
     return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
 
 
-def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Forces, part: int):
+def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: NetArrays, part: int):
     """The unit vector (3 rows cols,) of the largest eigenvalue of `part` of the tangent about x."""
     basis = np.zeros((min(VECTORS, x.size), x.size))
     basis[0] = start
@@ -141,7 +143,7 @@ def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) ->
     x = net.x0 if x is None else x
     if not np.isfinite(x).all():
         return []
-    p = net.forces(1.0)
+    p = net.kernel_view(1.0)
     start = sawtooth(net, x, p)
     flat = np.ascontiguousarray(x).reshape(-1)
     if not start.any():

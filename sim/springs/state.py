@@ -14,7 +14,7 @@ from sim.springs.integrators import Integrator
 from sim.springs.net import Net
 from sim.validation import argument_error
 
-SANE = 1e9  # [m]: a net that has left this bound has diverged, long before its numbers overflow
+DIVERGENCE_BOUND = 1e9  # [m]: a net that has left this bound has diverged, long before its numbers overflow
 
 
 @dataclasses.dataclass
@@ -40,15 +40,15 @@ class State:
         )
 
     @property
-    def is_sane(self) -> bool:
+    def is_bounded(self) -> bool:
         """False once anything is not finite or is out of any sane bound."""
-        return extremes(self.x, self.v).out < SANE
+        return extremes(self.x, self.v).out < DIVERGENCE_BOUND
 
 
 def acceleration(net: Net, state: State, lag: float) -> NDArray[np.float64]:
     """Accelerations (3, rows, cols) [m/s^2] of the state as stored; its velocities may trail by half a step."""
     a = np.empty_like(state.x)
-    set_acceleration(state.x.reshape(-1), state.v.reshape(-1), state.t, net.forces(2.0 * lag), a.reshape(-1))
+    set_acceleration(state.x.reshape(-1), state.v.reshape(-1), state.t, net.kernel_view(2.0 * lag), a.reshape(-1))
     return a
 
 
@@ -73,15 +73,17 @@ def check_damping(net: Net, integrator: Integrator) -> None:
         raise argument_error("integrator", integrator.name, "another, as this net is damped: by links, drag or contact")
 
 
-def advance(net: Net, state: State, integrator: Integrator, h: float, steps: int, *, with_ledger: bool = False) -> None:
+def advance(
+    net: Net, state: State, integrator: Integrator, h: float, steps: int, *, with_account: bool = False
+) -> None:
     """Advance `state` in place by `steps` steps of h [s]. Raises ValueError for a net the integrator refuses."""
     check_damping(net, integrator)
     set_lag(net, state, integrator.lag * h)
-    ledger, p = np.zeros(2), net.forces(h)
+    ledger, p = np.zeros(2), net.kernel_view(h)
     if p.bands > 1:
         set_threads(p.bands)
     state.force_evals += integrator.advance(
-        state.x.reshape(-1), state.v.reshape(-1), ledger, state.t, h, steps, p, with_ledger
+        state.x.reshape(-1), state.v.reshape(-1), ledger, state.t, h, steps, p, with_account
     )
     state.t += steps * h
     state.steps += steps
@@ -91,7 +93,7 @@ def advance(net: Net, state: State, integrator: Integrator, h: float, steps: int
 
 def energy(net: Net, state: State) -> Energy:
     """Stored energies at the state's time [J]."""
-    return Energy(*energies(state.x.reshape(-1), velocities(net, state).reshape(-1), state.t, net.forces(1.0)))
+    return Energy(*energies(state.x.reshape(-1), velocities(net, state).reshape(-1), state.t, net.kernel_view(1.0)))
 
 
 def steps_for(interval: float, step: float) -> int:

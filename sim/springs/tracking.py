@@ -50,6 +50,6 @@ class CriticallyDampedTracker:
             c3.append((2 * (p0 - p1) / duration + s0 + s1) / duration**2)
         return PinPath(start, (x0, v0, tuple(c2), tuple(c3)))  # type: ignore[arg-type]
 
-    def put(self, position: Vector) -> None:
+    def place_at(self, position: Vector) -> None:
         """Be at rest there at once."""
         self.__init__(position, self.top)

@@ -95,7 +95,7 @@ def test_kernels_are_kept_in_the_cache(tmp_path):
     code = """
 from sim.springs import rope
 from sim.springs.forces.acceleration import make_scratch
-make_scratch(rope().forces(1.0))
+make_scratch(rope().kernel_view(1.0))
 """
     python(code, SPRINGTIDE_CACHE=str(tmp_path))
     assert list(tmp_path.rglob("*make_scratch*.nbi"))

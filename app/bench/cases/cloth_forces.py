@@ -16,7 +16,7 @@ import numpy as np
 from app.bench.cases.cloth import task_cloth
 from app.bench.cases.kernels import build
 from sim.jit import MAX_THREADS, kernel, set_threads
-from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch
+from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size
 
 
 @kernel
@@ -40,14 +40,14 @@ def row(n: int, library: ctypes.CDLL | None, repeats: int) -> dict[str, Any]:
     count = max(1, 100_000 // (n * n))
 
     def made(threads: int) -> tuple[Callable[[], None], np.ndarray]:
-        p = dataclasses.replace(net, threads=threads).forces(1.0)
-        f, a = np.zeros(p.bands * cloth_scratch(n)), np.zeros_like(x)
+        p = dataclasses.replace(net, threads=threads).kernel_view(1.0)
+        f, a = np.zeros(p.bands * cloth_scratch_size(n)), np.zeros_like(x)
         return lambda: repeat(x.reshape(-1), v.reshape(-1), p, f, a.reshape(-1), count), a
 
     one, mine = made(1)
     two, shared = made(2)
     theirs, f = np.zeros_like(x), np.zeros(54 * (n + 4))
-    w, links = net.weights(), np.array([family[2:4] for family in net.families])
+    w, links = net.inverse_masses(), np.array([family[2:4] for family in net.families])
     rest, k = np.ascontiguousarray(links[:, 0]), np.ascontiguousarray(links[:, 1])
     arrays = [q.ctypes.data_as(ctypes.c_void_p) for q in (x, v, w, f, theirs, k, rest)]
     numbers = [ctypes.c_double(q) for q in (0.002, *(net.mass * g for g in net.gravity), net.drag)]

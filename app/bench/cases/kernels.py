@@ -41,7 +41,7 @@ def task_rope(links: int) -> Net:
 
 def run_ours(net: Net, name: str, h: float, steps: int) -> tuple[float, np.ndarray]:
     x, v, ledger = net.x0.copy(), np.zeros_like(net.x0), np.zeros(2)
-    p = net.forces(h)
+    p = net.kernel_view(h)
     start = time.perf_counter()
     INTEGRATORS[name].advance(x.reshape(-1), v.reshape(-1), ledger, 0.0, h, steps, p, False)
     return time.perf_counter() - start, x
@@ -50,7 +50,7 @@ def run_ours(net: Net, name: str, h: float, steps: int) -> tuple[float, np.ndarr
 def run_c(library: ctypes.CDLL, net: Net, name: str, h: float, steps: int) -> tuple[float, np.ndarray]:
     x, v = net.x0.copy(), np.zeros_like(net.x0)
     n = x.shape[2]
-    w, scratch = net.weights(), np.zeros(7 * x.size + 64)
+    w, scratch = net.inverse_masses(), np.zeros(7 * x.size + 64)
     link = net.families[0]
     numbers = (link.stiffness, link.damping, link.rest, *(net.mass * g for g in net.gravity), net.drag, net.mass, h)
     pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (x, v, w, scratch)]

@@ -53,7 +53,7 @@ def marched(problem: Problem, name: str, rtol: float) -> tuple[NDArray[np.float6
     net, march = problem.net, INTEGRATORS[name].march
     assert march is not None
     xs, vs = np.zeros((2, 2, net.x0.size))
-    start, times, p = net.x0.reshape(-1).copy(), np.array([0.0, problem.seconds]), net.forces(1e-3)
+    start, times, p = net.x0.reshape(-1).copy(), np.array([0.0, problem.seconds]), net.kernel_view(1e-3)
     evals, _, filled, _ = march(
         start, np.zeros(net.x0.size), times, rtol, 0.01 * rtol, p, False, xs, vs, np.zeros((2, 2))
     )

@@ -16,7 +16,7 @@ from sim.springs import Net
 
 def particles(net: Net) -> Iterator[tuple[tuple[float, float, float], float]]:
     """Each particle's place [m] and mass [kg], 0 where it is pinned, row by row."""
-    for place, weight in zip(net.x0.reshape(3, -1).T, net.weights(), strict=True):
+    for place, weight in zip(net.x0.reshape(3, -1).T, net.inverse_masses(), strict=True):
         yield (float(place[0]), float(place[1]), float(place[2])), net.mass if weight else 0.0
 
 
@@ -116,7 +116,7 @@ def mujoco_tendons(net: Net, h: float) -> Run:
         f'<flag contact="disable" eulerdamp="disable"/></option><worldbody>{bodies}</worldbody>'
         f"<tendon>{tendons}</tendon></mujoco>"
     )
-    moves = net.weights() > 0.0
+    moves = net.inverse_masses() > 0.0
 
     def run(seconds):
         steps = math.ceil(seconds / h * (1 - 1e-9))

@@ -34,7 +34,7 @@ def ends(di: int, dj: int) -> tuple[Any, Any]:
 
 def numpy_slices(net: Net, h: float) -> Run:
     """Whole-array arithmetic on (3, rows, cols)."""
-    w = net.weights().reshape(net.shape)
+    w = net.inverse_masses().reshape(net.shape)
     load = net.mass * np.array(net.gravity)[:, None, None]
 
     def acceleration(x, v):
@@ -66,7 +66,7 @@ def jax_slices(net: Net, h: float) -> Run:
     jax.config.update("jax_enable_x64", True)
     import jax.numpy as jnp  # type: ignore[import-not-found]
 
-    w = jnp.asarray(net.weights().reshape(net.shape))
+    w = jnp.asarray(net.inverse_masses().reshape(net.shape))
     load = jnp.asarray(net.mass * np.array(net.gravity)[:, None, None] * np.ones_like(net.x0))
 
     def step(_, state):
@@ -108,7 +108,7 @@ def taichi_gather(net: Net, h: float) -> Run:
     offsets, links = neighbours(net)
     x, v = ti.Vector.field(3, ti.f64, (rows, cols)), ti.Vector.field(3, ti.f64, (rows, cols))
     w, g = ti.field(ti.f64, (rows, cols)), ti.Vector(list(net.gravity))
-    w.from_numpy(net.weights().reshape(rows, cols))
+    w.from_numpy(net.inverse_masses().reshape(rows, cols))
     mass = net.mass
     fixed = [(int(di), int(dj), *map(float, link)) for (di, dj), link in zip(offsets, links, strict=True)]
 
@@ -154,7 +154,7 @@ def warp_gather(net: Net, h: float) -> Run:
     offsets, links = neighbours(net)
     step = make_step(wp)
     where, what = wp.array(offsets, dtype=wp.vec2i, device="cpu"), wp.array(links, dtype=wp.vec3d, device="cpu")
-    w = wp.array(net.weights(), dtype=wp.float64, device="cpu")
+    w = wp.array(net.inverse_masses(), dtype=wp.float64, device="cpu")
     start = np.ascontiguousarray(net.x0.reshape(3, -1).T)
 
     def run(seconds):

@@ -57,7 +57,7 @@ class Ours(NamedTuple):
         assert record.march is not None
         size = self.net.x0.size
         xs, vs, ledger = np.zeros((3, size)), np.zeros((3, size)), np.zeros((3, 2))
-        start, times, p = self.net.x0.reshape(-1).copy(), np.array([0.0, 0.5, 1.0]), self.net.forces(1.0)
+        start, times, p = self.net.x0.reshape(-1).copy(), np.array([0.0, 0.5, 1.0]), self.net.kernel_view(1.0)
         record.march(start, np.zeros(size), times, self.rtol, 0.01 * self.rtol, p, False, xs, vs, ledger)
         half, end = xs[1:].reshape(2, *self.net.x0.shape)
         return half, end

@@ -6,7 +6,7 @@ from typing import Any
 
 from sim.parameters import parameter
 from sim.springs import INTEGRATORS
-from sim.springs.cloth import HOLDS
+from sim.springs.cloth import PIN_CHOICES
 
 STARTS = ("hanging", "level", "flag")
 
@@ -27,7 +27,7 @@ class Params:
         affects="start",
     )
     pinned: str = parameter(
-        "edge", choices=HOLDS, doc="What is held: corners, an edge, the rim, nothing", group="Cloth"
+        "edge", choices=PIN_CHOICES, doc="What is held: corners, an edge, the rim, nothing", group="Cloth"
     )
     rows: int = parameter(32, 4, 128, "", "Particles down the cloth", group="Cloth")
     cols: int = parameter(32, 4, 128, "", "Particles across the cloth", group="Cloth")

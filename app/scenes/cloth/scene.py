@@ -18,7 +18,7 @@ from app.scenes.springs.work_counts import SpringWorkCounts
 from sim.springs import INTEGRATORS, Air, Net, cloth, simulate
 from sim.springs import Grab as Pull
 from sim.springs.analysis.extremes import extremes
-from sim.springs.integrator_fallback import method_for
+from sim.springs.integrator_fallback import integrator_or_fallback
 from sim.springs.net import PinPath
 from sim.springs.stability import Gauge, gauge, gershgorin
 from sim.springs.state import State, advance, energy, velocities
@@ -87,7 +87,7 @@ def warm_up() -> Iterator[str]:
     for name, record in INTEGRATORS.items():
         yield name
         quiet = cloth(4, 4, damping=0.0)
-        simulate(quiet if record.undamped_only else net, name, 1e-4, 2e-4, 2, with_ledger=True)
+        simulate(quiet if record.undamped_only else net, name, 1e-4, 2e-4, 2, with_account=True)
     yield "stability"
     Scene(Params(rows=4, cols=4))
 
@@ -176,11 +176,11 @@ class Scene:
 
         def take(threads: int, count: int) -> None:
             shared = dataclasses.replace(net, threads=threads)
-            advance(shared, self.state, self.integrator, self.step, count, with_ledger=self.params.plot_energy)
+            advance(shared, self.state, self.integrator, self.step, count, with_account=self.params.plot_energy)
             self.counts.add("steps on two threads", count, threads == 2)
 
         self.cores.advance(steps, take, large=self.params.rows * self.params.cols >= LARGE)
-        self.counts.take(net, self.state.force_evals - good.force_evals, steps, with_ledger=self.params.plot_energy)
+        self.counts.take(net, self.state.force_evals - good.force_evals, steps, with_account=self.params.plot_energy)
         if not extremes(self.state.x, self.state.v).out < BOUND:  # nor is a NaN
             self.state = good
             raise DivergenceError(self.diagnosis())
@@ -248,7 +248,7 @@ class Scene:
 
     def look(self) -> None:
         """Judge the stability: of the state as it is where that is quick, else by a bound for all states."""
-        self.integrator, self.fallback_note = method_for(self.params.integrator, self.net)
+        self.integrator, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net)
         record = self.integrator
         exact = self.params.rows * self.params.cols <= LOOKED_THROUGH
         if exact:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from app.messages import Vector
 from app.scenes.cloth.parameters import Params
 from sim.springs import Air, Contact, Net, cloth
-from sim.springs.cloth import turned_down
+from sim.springs.cloth import vertical_cloth
 
 SKIN = 0.012  # [m] that the cloth keeps from sphere and floor, so that it is drawn outside them
 PLEATS = 4
@@ -55,7 +55,7 @@ def build(params: Params, sphere: Vector) -> Net:
         thickness=params.thickness,
     )
     if params.start == "hanging":
-        return pleated(turned_down(net), params.gather)
+        return pleated(vertical_cloth(net), params.gather)
     if params.start == "flag":
         # Rows along the wind, columns down the pole, and a breath out of plane, as nothing flies quite straight.
         x, y, z = net.x0

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from app.scenes.rope.parameters import MOST_ROPES, Params
 from sim.springs import INTEGRATORS, Integrator, Net
 from sim.springs.analysis.extremes import extremes
-from sim.springs.analysis.reference_run import CLEAR, ReferenceRun
+from sim.springs.analysis.reference_run import TRUST_FACTOR, ReferenceRun
 from sim.springs.stability import Gauge, gauge
 from sim.springs.state import State, advance, energy, steps_for
 
@@ -50,7 +50,7 @@ class RaceReadings(NamedTuple):
     """The standings, and of the reference: when chaos took it [s], and why there is none."""
 
     standings: tuple[Standing, ...]
-    lost_at: float | None
+    horizon: float | None
     no_ghost: str
 
 
@@ -142,7 +142,7 @@ class Lane:
         if self.out:
             return
         good = self.state.copy()
-        advance(net, self.state, self.record, self.step, ticks * self.substeps, with_ledger=True)
+        advance(net, self.state, self.record, self.step, ticks * self.substeps, with_account=True)
         if not extremes(self.state.x, self.state.v).reach < self.bound:  # nor is a NaN
             when = self.state.t
             self.state = good
@@ -170,7 +170,7 @@ class Lane:
         if steps > self.counted[1]:
             if self.record.implicit:
                 self.evals = (evals - self.counted[0]) / (steps - self.counted[1])
-                self.corrections = max(0.0, self.evals - self.record.outside)
+                self.corrections = max(0.0, self.evals - self.record.evals_outside_newton)
             self.counted = evals, steps
 
     def timed(self) -> float:
@@ -232,7 +232,7 @@ class Race:
             lane.take(stiffened(net, self.ratio ** (lane.number - 1)))
             lane.look()
         for ghost, lane in zip(self.ghosts, self.lanes, strict=False):
-            ghost.take(lane.net)
+            ghost.update(lane.net)
 
     def advance(self, moving: Net, ticks: int) -> tuple[int, int]:
         """Advance all by so many ticks; moving: rope 1's net as root and pull move meanwhile.
@@ -272,7 +272,7 @@ class Race:
     def certain(self, lane: Lane) -> float:
         """What an error must exceed [m] to be the method's own; NaN where there is no reference."""
         ghost = self.ghost_of(lane)
-        return CLEAR * ghost.separation if ghost.is_there and ghost.lost_at is None else math.nan
+        return TRUST_FACTOR * ghost.separation if ghost.is_available and ghost.horizon is None else math.nan
 
     def standings(self) -> RaceReadings:
         found = tuple(
@@ -282,8 +282,8 @@ class Race:
             )
             for lane in self.lanes
         )  # fmt: skip
-        lost = [ghost.lost_at for ghost in self.ghosts if ghost.lost_at is not None]
-        return RaceReadings(found, min(lost, default=None), next((g.gone for g in self.ghosts if g.gone), ""))
+        lost = [ghost.horizon for ghost in self.ghosts if ghost.horizon is not None]
+        return RaceReadings(found, min(lost, default=None), next((g.failure for g in self.ghosts if g.failure), ""))
 
     def points(self) -> NDArray[np.float64]:
         """(ropes, points, 3) [m], all from the one root."""
@@ -292,6 +292,6 @@ class Race:
     def ghost_points(self) -> NDArray[np.float64] | None:
         """The same of the references, or None where one is missing."""
         ghosts = [self.ghost_of(lane) for lane in self.lanes]
-        if any(not ghost.is_there or ghost.lost_at is not None for ghost in ghosts):
+        if any(not ghost.is_available or ghost.horizon is not None for ghost in ghosts):
             return None
         return np.stack([ghost.x.T for ghost in ghosts])

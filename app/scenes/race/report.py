@@ -118,9 +118,9 @@ def standings(g: RaceReadings) -> str:
     rows = "".join(row(s, risen) for s in g.standings)
     if g.no_ghost:
         note = f"There is no reference: {html.escape(g.no_ghost)}."
-    elif g.lost_at is not None:
+    elif g.horizon is not None:
         note = (
-            f"<b>Chaos took the reference at t = {g.lost_at:.1f} s</b>: a start 0.1 nm away had by then parted by a "
+            f"<b>Chaos took the reference at t = {g.horizon:.1f} s</b>: a start 0.1 nm away had by then parted by a "
             "hundredth of the rope, so errors mean nothing from there on. Reset begins anew."
         )
     else:

@@ -22,7 +22,7 @@ def measures(scene: "Scene") -> dict[str, Measure]:
         return race_measures(scene.race)
     e, state, gauge = energy(scene.net, scene.state), scene.state, scene.stability.stability
     error = e.total + state.dissipated - state.work - scene.initial.total
-    known = scene.with_ledger
+    known = scene.with_account
     return {
         "tip_height": Measure(float(state.x[2, 0, -1]), "m", "Height of the tip"),
         "tip_speed": Measure(float(np.linalg.norm(velocities(scene.net, state)[:, 0, -1])), "m/s", "Speed of the tip"),

@@ -20,7 +20,7 @@ from sim.springs import INTEGRATORS, Net, rope, simulate
 from sim.springs import Grab as Pull
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.tension import rope_tension
-from sim.springs.integrator_fallback import method_for
+from sim.springs.integrator_fallback import integrator_or_fallback
 from sim.springs.stability import Gauge, critical_stiffness, gauge, top_modes
 from sim.springs.state import State, advance, energy, velocities
 from sim.springs.tracking import CriticallyDampedTracker
@@ -95,7 +95,7 @@ def warm_up() -> Iterator[str]:
     net = rope(4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2))
     for name, record in INTEGRATORS.items():
         yield name
-        simulate(UNDAMPED if record.undamped_only else net, name, 1e-3, 2e-3, 2, with_ledger=True)
+        simulate(UNDAMPED if record.undamped_only else net, name, 1e-3, 2e-3, 2, with_account=True)
     yield "stability"
     Scene(Params())
     yield "race"
@@ -145,8 +145,8 @@ class Scene:
         """The rope at rest, level from where its root is going; from home where it was lost, in the floor perhaps."""
         if self.lost:
             self.root.target, self.sphere.target, self.lost = ROOT, SPHERE, False
-        self.root.put(self.root.target)
-        self.sphere.put(self.sphere.target)
+        self.root.place_at(self.root.target)
+        self.sphere.place_at(self.sphere.target)
         self.held = None
         self.net = build(self.params, self.root.position, self.sphere.position)
         self.state = State.at_rest(self.net)
@@ -222,8 +222,8 @@ class Scene:
         duration = steps * self.step
         good = self.state.copy()
         net = self.net_under_way(self.state.t, duration)
-        advance(net, self.state, self.integrator, self.step, steps, with_ledger=self.with_ledger)
-        self.counts.take(net, self.state.force_evals - good.force_evals, steps, with_ledger=self.with_ledger)
+        advance(net, self.state, self.integrator, self.step, steps, with_account=self.with_account)
+        self.counts.take(net, self.state.force_evals - good.force_evals, steps, with_account=self.with_account)
         found = extremes(self.state.x, self.state.v)
         if not found.reach < self.bound:  # nor is a NaN
             self.state = good
@@ -248,7 +248,7 @@ class Scene:
         return self.integrator.implicit or moved > UNMOVED * self.net.families[0].rest
 
     @property
-    def with_ledger(self) -> bool:
+    def with_account(self) -> bool:
         """Whether to keep account of what damping takes: for the plot, and to see what an implicit method takes."""
         return self.params.plot_energy or self.integrator.implicit
 
@@ -256,7 +256,7 @@ class Scene:
         """Take ticks of a race, whatever becomes of its ropes."""
         self.net = self.net_under_way(race.t, ticks * race.tick)
         evals, steps = race.advance(self.net, ticks)
-        self.counts.take(self.net, evals, steps, with_ledger=True)
+        self.counts.take(self.net, evals, steps, with_account=True)
         if self.root.at_rest:
             race.pin(self.root.position)
         if race.t - self.looked_at >= GAUGE_EVERY:
@@ -296,7 +296,7 @@ class Scene:
             self.fallback_note = ""
             self.looked_at = self.race.t
             return
-        self.integrator, self.fallback_note = method_for(self.params.integrator, self.net)
+        self.integrator, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net)
         modes = top_modes(self.net, self.state.x, self.state.t)
         stability = gauge(self.net, self.integrator, self.step, self.state, modes)
         largest = critical_stiffness(self.net, self.integrator, self.step, self.state, modes)
@@ -313,7 +313,7 @@ class Scene:
         steps = self.state.steps - self.counted[1]
         if steps:
             evals = (self.state.force_evals - self.counted[0]) / steps
-            self.corrections = max(0.0, evals - self.integrator.outside)
+            self.corrections = max(0.0, evals - self.integrator.evals_outside_newton)
             self.counted = self.state.force_evals, self.state.steps
         return Paid(self.corrections, -self.imbalance(), self.state.dissipated)
 

@@ -34,7 +34,7 @@ def kinetic_energy(v, p):
     total = 0.0
     n = p.rows * p.cols
     for j in range(n):
-        if p.weights[j] > 0.0:
+        if p.inverse_masses[j] > 0.0:
             total += v[j] ** 2 + v[n + j] ** 2 + v[2 * n + j] ** 2
     return 0.5 * p.mass * total
 
@@ -62,7 +62,7 @@ def gravity_energy(x, p):
     total = 0.0
     n = p.rows * p.cols
     for j in range(n):
-        if p.weights[j] > 0.0:
+        if p.inverse_masses[j] > 0.0:
             total -= p.gx * x[j] + p.gy * x[n + j] + p.gz * x[2 * n + j]
     return p.mass * total
 
@@ -77,7 +77,7 @@ def contact_energy(x, t, p):
         if p.has_sphere if on_sphere else p.has_floor:
             for j in range(n):
                 depth, _, _, _ = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-                if depth > 0.0 and p.weights[j] > 0.0:
+                if depth > 0.0 and p.inverse_masses[j] > 0.0:
                     total += 0.5 * p.contact_k * depth * depth
     return total
 
@@ -108,9 +108,9 @@ def link_power(x, v, p, with_damping):
                 if pins_move:
                     s = k - k * rest / math.sqrt(rr)
                     fx, fy, fz = s * rx + c * du, s * ry + c * dv, s * rz + c * dw
-                    if p.weights[a] == 0.0:
+                    if p.inverse_masses[a] == 0.0:
                         work -= fx * v[a] + fy * v[n + a] + fz * v[2 * n + a]
-                    if p.weights[b] == 0.0:
+                    if p.inverse_masses[b] == 0.0:
                         work += fx * v[b] + fy * v[n + b] + fz * v[2 * n + b]
     return dissipated, work
 
@@ -128,7 +128,7 @@ def contact_power(x, v, t, p, with_damping):
         su, sv, sw = surface_velocity(p, on_sphere)
         for j in range(n):
             depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-            if depth > 0.0 and p.weights[j] > 0.0:
+            if depth > 0.0 and p.inverse_masses[j] > 0.0:
                 ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
                 fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, p, on_sphere, with_damping)
                 push = p.contact_k * depth

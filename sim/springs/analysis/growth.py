@@ -21,7 +21,7 @@ TALL, LOW = 30.0, 0.1  # the same of a run that was cut short: a leapfrog that h
 STIR = 1e-9  # energy of a disturbance, in parts of what is large for its net
 GROWN = 1e4  # times its energy at which a disturbance has grown: still far too small for the rope not to be linear
 MUCH = 100.0  # parts of what is large, which no link comes back from
-HOLDS, RATTLES, EXPLODES = range(3)
+STABLE, BOUNDED_GROWTH, EXPLODING = range(3)
 
 
 def oscillator(zeta: float) -> Net:
@@ -37,7 +37,7 @@ def growth(integrator: Integrator, zeta: float, z: float, most: int = 1 << 17) -
     are FAR or NEAR, or for `most` steps; the rate is that of the second half, 0 where they did neither.
     """
     net = oscillator(zeta)
-    p = net.forces(z)
+    p = net.kernel_view(z)
     x, v, ledger = np.zeros(6), np.zeros(6), np.zeros(2)
     x[1], v[3] = 1.0, 1.0
     steps, before, rate = 0, math.sqrt(2.0), 0.0
@@ -81,14 +81,14 @@ def measured_limit(
 def energy_scale(net: Net, x: NDArray[np.float64]) -> float:
     """An energy [J] that is large for a net at rest at x (3, rows, cols): a fall by its own length, or a stretch."""
     span = float(np.ptp(x.reshape(3, -1), axis=1).max())
-    fall = net.mass * math.hypot(*net.gravity) * span * np.count_nonzero(net.weights())
+    fall = net.mass * math.hypot(*net.gravity) * span * np.count_nonzero(net.inverse_masses())
     stretch = max((f.stiffness * f.rest**2 for f in net.families), default=0.0)
     return max(fall, 1e-3 * stretch, 1e-12)
 
 
 def stir(net: Net, state: State, joule: float) -> None:
     """Give the free points random velocities that carry `joule` [J]: something of every mode."""
-    free = net.weights().reshape(net.shape) > 0.0
+    free = net.inverse_masses().reshape(net.shape) > 0.0
     kick = np.random.default_rng(0).standard_normal(state.v.shape) * free
     square = 0.5 * net.mass * float((kick * kick).sum())
     if square > 0.0:
@@ -98,9 +98,9 @@ def stir(net: Net, state: State, joule: float) -> None:
 def outcome(integrator: Integrator, net: Net, h: float, rest: NDArray[np.float64], most: int = 1 << 14) -> int:
     """What becomes of a small disturbance of `net` at rest at `rest` (3, rows, cols) [m] in steps of h [s].
 
-    HOLDS: it has decayed, or not grown in `most` steps. RATTLES: it has grown a hundredfold, and is then bounded by
-    what links do far from their length. EXPLODES: nothing bounds it. The size of a disturbance is its energy above
-    that at rest, which is the least there is.
+    STABLE: it decayed, or did not grow within `most` steps. BOUNDED_GROWTH: its amplitude grew a hundredfold, and then
+    the nonlinear links bounded it. EXPLODING: nothing bounds it. The size of a disturbance is its energy above the
+    energy at rest, which is the minimum.
     """
     state = State.at_rest(net)
     state.x[:] = rest
@@ -111,16 +111,16 @@ def outcome(integrator: Integrator, net: Net, h: float, rest: NDArray[np.float64
         more = max(done, FIRST)
         advance(net, state, integrator, h, more)
         done += more
-        if not state.is_sane:
-            return EXPLODES
+        if not state.is_bounded:
+            return EXPLODING
         above = energy(net, state).total - least
         if not above < MUCH * scale:
-            return EXPLODES
+            return EXPLODING
         if not grown_at and above > GROWN * STIR * scale:
             grown_at = done
         if above < STIR * scale / GROWN:
             break
-    return RATTLES if grown_at else HOLDS
+    return BOUNDED_GROWTH if grown_at else STABLE
 
 
 def energy_course(
@@ -133,7 +133,7 @@ def energy_course(
     total[0] = energy(net, state).total
     for i in range(1, samples + 1):
         advance(net, state, integrator, h, steps // samples)
-        if not state.is_sane:
+        if not state.is_bounded:
             break
         total[i] = energy(net, state).total
     return t, total

@@ -15,13 +15,13 @@ from sim.springs import INTEGRATORS, Net
 from sim.springs.analysis.energy import energies
 from sim.springs.simulate import FRICTION_STEP
 from sim.springs.stability import gershgorin
-from sim.springs.state import SANE
+from sim.springs.state import DIVERGENCE_BOUND
 
 RTOL = 1e-10
 ATOL = 1e-13  # [m], [m/s]
 NUDGE = 1e-10  # [m] between the two at the start
-CLEAR = 10.0  # separations above which an error is the racing method's own
-LOST = 1e-2  # of the rope's length: a separation at which there is nothing left to compare with
+TRUST_FACTOR = 10.0  # separations above which an error is the racing method's own
+HORIZON_SEPARATION = 1e-2  # of the rope's length: a separation at which there is nothing left to compare with
 DEAREST = 5e7  # evaluations of a point that a second of all references may take, some half a second
 METHOD = INTEGRATORS["dopri5"]
 
@@ -43,14 +43,14 @@ class ReferenceRun:
         self.length = length
         self.runs = [[x.copy(), np.zeros(x.size)], [nudged(x), np.zeros(x.size)]]
         self.separation = NUDGE  # [m]
-        self.lost_at: float | None = None  # [s] when chaos took it
+        self.horizon: float | None = None  # [s] when chaos took it
         self.count = count
-        self.gone = ""  # why there is none, or ""
-        self.take(net)
+        self.failure = ""  # why there is none, or ""
+        self.update(net)
 
     @property
-    def is_there(self) -> bool:
-        return not self.gone
+    def is_available(self) -> bool:
+        return not self.failure
 
     @property
     def x(self) -> NDArray[np.float64]:
@@ -62,29 +62,29 @@ class ReferenceRun:
         """(3, points) [m/s]."""
         return self.runs[0][1].reshape(3, -1)
 
-    def take(self, net: Net) -> None:
+    def update(self, net: Net) -> None:
         """Other parameters, which may be too dear to follow."""
-        self.gone = self.gone or too_dear(net, self.count)
+        self.failure = self.failure or too_dear(net, self.count)
 
     def advance(self, net: Net, t: float, duration: float) -> None:
         """Follow the motion for `duration` [s] from time t [s]."""
-        if not self.is_there:
+        if not self.is_available:
             return
-        p = net.forces(FRICTION_STEP)
+        p = net.kernel_view(FRICTION_STEP)
         times = np.array([t, t + duration])
         for run, finer in zip(self.runs, (1.0, 0.1), strict=True):
             xs, vs, ledgers = np.empty((2, run[0].size)), np.empty((2, run[0].size)), np.zeros((2, 2))
             assert METHOD.march is not None
             _, _, filled, _ = METHOD.march(*run, times, finer * RTOL, finer * ATOL, p, False, xs, vs, ledgers)
-            if filled < 2 or not np.abs(xs[1]).max() < SANE:
-                self.gone = f"it found no step short enough at t = {t:.2f} s"
+            if filled < 2 or not np.abs(xs[1]).max() < DIVERGENCE_BOUND:
+                self.failure = f"it found no step short enough at t = {t:.2f} s"
                 return
             run[:] = xs[1], vs[1]
         apart = (self.runs[0][0] - self.runs[1][0]).reshape(3, -1)
         # Where a rope comes to rest the two meet again; below the nudge they say nothing new.
         self.separation = max(NUDGE, float(np.linalg.norm(apart, axis=0).max()))
-        if self.lost_at is None and self.separation > LOST * self.length:
-            self.lost_at = t + duration
+        if self.horizon is None and self.separation > HORIZON_SEPARATION * self.length:
+            self.horizon = t + duration
 
     def pin(self, position: tuple[float, float, float]) -> None:
         """Put the root to rest at a place [m]."""
@@ -94,15 +94,15 @@ class ReferenceRun:
 
     def distance(self, x: NDArray[np.float64]) -> float:
         """Largest distance [m] of a point of x (3, 1, points) from the ghost's; NaN where there is none."""
-        if not self.is_there:
+        if not self.is_available:
             return math.nan
         return float(np.linalg.norm(x[:, 0] - self.x, axis=0).max())
 
     def energy(self, net: Net, t: float) -> float:
         """Stored energy [J] at time t [s]; NaN where there is none."""
-        if not self.is_there:
+        if not self.is_available:
             return math.nan
-        return sum(energies(*self.runs[0], t, net.forces(1.0)))
+        return sum(energies(*self.runs[0], t, net.kernel_view(1.0)))
 
 
 def too_dear(net: Net, count: int) -> str:

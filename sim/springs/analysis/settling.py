@@ -15,7 +15,7 @@ LOOKS, STEPS = 4000, 20  # most looks, and steps between two
 STILL = 1e-16  # kinetic energy of a peak, over the potential's, at which it rests
 
 
-def settled(net: Net, x: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+def find_rest_positions(net: Net, x: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
     """Positions (3, rows, cols) [m] of `net` at rest, from x (None: x0), its pins, sphere and hands held still.
 
     Dynamic relaxation with kinetic damping: whenever the kinetic energy has passed a peak, a minimum of the potential

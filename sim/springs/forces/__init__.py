@@ -1,1 +1,1 @@
-"""Forces of springs, contact and air on the particles of a net."""
+"""NetArrays of springs, contact and air on the particles of a net."""

@@ -11,11 +11,11 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch
+from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size
 from sim.springs.forces.contact import add_contacts
 from sim.springs.forces.links import link_forces
 from sim.springs.forces.self_contact import add_self_contacts
-from sim.springs.forces.wind import add_wind, wind_scratch
+from sim.springs.forces.wind import add_wind, wind_scratch_size
 
 
 @kernel(noalias=True, inline=True)
@@ -35,9 +35,9 @@ def accelerate_rope(x, v, p, b, c, f, a):
         x, v, f, np.uint64(0), one, one, n - one, n, m,
         p.links[0, 1], b * p.links[0, 2], p.links[0, 0], p.axial and b > 0,
     )  # fmt: skip
-    set_from_differences(f, v, p.weights, a, np.uint64(0), np.uint64(0), n, p.mass * p.gx, c)
-    set_from_differences(f, v, p.weights, a, n, m, n, p.mass * p.gy, c)
-    set_from_differences(f, v, p.weights, a, n + n, m + m, n, p.mass * p.gz, c)
+    set_from_differences(f, v, p.inverse_masses, a, np.uint64(0), np.uint64(0), n, p.mass * p.gx, c)
+    set_from_differences(f, v, p.inverse_masses, a, n, m, n, p.mass * p.gy, c)
+    set_from_differences(f, v, p.inverse_masses, a, n + n, m + m, n, p.mass * p.gz, c)
 
 
 @kernel(noalias=True, inline=True)
@@ -81,9 +81,9 @@ def accelerate_grid(x, v, p, b, c, f, a):
                 of, o = np.uint64(s) * m, np.uint64(s) * n
                 add_row(f, of, count, 1.0, a, o + ia)
                 add_row(f, of, count, -1.0, a, o + ib)
-    scale_rows(p.weights, n, a, np.uint64(0))
-    scale_rows(p.weights, n, a, n)
-    scale_rows(p.weights, n, a, n + n)
+    scale_rows(p.inverse_masses, n, a, np.uint64(0))
+    scale_rows(p.inverse_masses, n, a, n)
+    scale_rows(p.inverse_masses, n, a, n + n)
 
 
 @kernel(allocates=False)
@@ -92,7 +92,7 @@ def add_grab(x, v, p, b, a):
     n, g = p.rows * p.cols, p.grabbed
     dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
     s = grab_secant(dx, dy, dz, p)
-    w = p.weights[g]
+    w = p.inverse_masses[g]
     a[g] += w * (s * dx - b * p.grab_b * v[g])
     a[n + g] += w * (s * dy - b * p.grab_b * v[n + g])
     a[2 * n + g] += w * (s * dz - b * p.grab_b * v[2 * n + g])
@@ -131,7 +131,9 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 @kernel
 def make_scratch(p):
-    return np.zeros((p.bands * cloth_scratch(p.cols) if p.is_cloth else 3 * (p.cols + 1)) + wind_scratch(p.cols))
+    return np.zeros(
+        (p.bands * cloth_scratch_size(p.cols) if p.is_cloth else 3 * (p.cols + 1)) + wind_scratch_size(p.cols)
+    )
 
 
 @kernel(inline=True)

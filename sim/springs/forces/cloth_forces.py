@@ -15,7 +15,7 @@ RING = REACH + 1  # rows kept
 
 
 @kernel(inline=True)
-def cloth_scratch(cols):
+def cloth_scratch_size(cols):
     """Numbers in the buffer."""
     return 6 * RING * 3 * (cols + 2 * PAD)
 
@@ -82,7 +82,7 @@ def accelerate_rows(x, v, p, b, c, f, o, a, start, stop):
             load = p.mass * (p.gx if e == 0 else p.gy if e == 1 else p.gz)
             s = o + np.uint64(e) * m
             sum_row(
-                f, p.weights, v, a, np.uint64(e) * n + row, row, cols, load, c,
+                f, p.inverse_masses, v, a, np.uint64(e) * n + row, row, cols, load, c,
                 place(0, i, width) + s,
                 place(1, i, width) + s, place(1, i + 2, width) + s,
                 place(2, i, width) + s, place(2, i + 2, width) + s,
@@ -97,14 +97,14 @@ def accelerate_bands(x, v, p, b, c, f, a):
     """`accelerate_rows` in p.bands bands of rows at once, each on a thread and in a buffer of its own."""
     for k in prange(p.bands):
         accelerate_rows(
-            x, v, p, b, c, f, np.uint64(k * cloth_scratch(p.cols)), a,
+            x, v, p, b, c, f, np.uint64(k * cloth_scratch_size(p.cols)), a,
             p.rows * k // p.bands, p.rows * (k + 1) // p.bands,
         )  # fmt: skip
 
 
 @kernel(allocates=False)
 def accelerate_cloth(x, v, p, b, c, f, a):
-    """Accelerations of the six families, gravity and drag; f: the buffers, (p.bands cloth_scratch,)."""
+    """Accelerations of the six families, gravity and drag; f: the buffers, (p.bands cloth_scratch_size,)."""
     if p.bands > 1:
         accelerate_bands(x, v, p, b, c, f, a)
     else:

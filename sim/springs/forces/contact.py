@@ -101,7 +101,7 @@ def add_contacts(x, v, t, p, with_damping, a):
             if depth > 0.0:
                 ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
                 fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, p, on_sphere, with_damping)
-                w = p.weights[j]
+                w = p.inverse_masses[j]
                 a[j] += w * fx
                 a[n + j] += w * fy
                 a[2 * n + j] += w * fz

@@ -106,10 +106,10 @@ def damp_links(x, v, decay, p, reverse):
             if di == 0:
                 for turn in range(2):
                     colour = 1 - turn if reverse else turn
-                    damp_row(x, v, p.weights, i * p.cols, p.cols, dj, colour, n, free, held, p.axial)
+                    damp_row(x, v, p.inverse_masses, i * p.cols, p.cols, dj, colour, n, free, held, p.axial)
             else:
                 a, b0 = np.uint64(i * p.cols + first), np.uint64((i + di) * p.cols + first + dj)
-                damp_set(x, v, p.weights, a, b0, np.uint64(1), np.uint64(count), n, free, held, p.axial)
+                damp_set(x, v, p.inverse_masses, a, b0, np.uint64(1), np.uint64(count), n, free, held, p.axial)
 
 
 @kernel(noalias=True, inline=True)
@@ -126,7 +126,7 @@ def damp_contact(x, v, t, s, p, on_sphere):
     n = p.rows * p.cols
     su, sv, sw = surface_velocity(p, on_sphere)
     for j in range(n):
-        w = p.weights[j]
+        w = p.inverse_masses[j]
         depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
         if depth <= 0.0 or w == 0.0:
             continue
@@ -151,7 +151,7 @@ def damp_contact(x, v, t, s, p, on_sphere):
 @kernel(allocates=False)
 def damp_grab(v, s, p):
     n, g = p.rows * p.cols, p.grabbed
-    keep = math.exp(-p.grab_b * p.weights[g] * s)
+    keep = math.exp(-p.grab_b * p.inverse_masses[g] * s)
     v[g] *= keep
     v[n + g] *= keep
     v[2 * n + g] *= keep
@@ -180,10 +180,10 @@ def damp_rope(v, decay, p, reverse):
     for e in range(3):
         o = np.uint64(e) * n
         if reverse:
-            damp_next(v, p.weights, one, (n - one) >> one, o, free, held)
-        damp_next(v, p.weights, np.uint64(0), n >> one, o, free, held)
+            damp_next(v, p.inverse_masses, one, (n - one) >> one, o, free, held)
+        damp_next(v, p.inverse_masses, np.uint64(0), n >> one, o, free, held)
         if not reverse:
-            damp_next(v, p.weights, one, (n - one) >> one, o, free, held)
+            damp_next(v, p.inverse_masses, one, (n - one) >> one, o, free, held)
 
 
 @kernel(noalias=True, inline=True)
@@ -199,9 +199,9 @@ def damp_motion(x, v, decay, p, reverse):
             elif p.damped:
                 damp_links(x, v, decay, p, reverse)
         elif keep < 1.0:
-            scale_free(v, p.weights, np.uint64(0), n, keep)
-            scale_free(v, p.weights, n, n, keep)
-            scale_free(v, p.weights, n + n, n, keep)
+            scale_free(v, p.inverse_masses, np.uint64(0), n, keep)
+            scale_free(v, p.inverse_masses, n, n, keep)
+            scale_free(v, p.inverse_masses, n + n, n, keep)
 
 
 @kernel(allocates=False)

@@ -133,7 +133,7 @@ def add_self_contacts(x, v, p, with_damping, a):
             opening = (v[j] - v[i]) * dx + (v[n + j] - v[n + i]) * dy + (v[2 * n + j] - v[2 * n + i]) * dz
             push = max(0.0, push - p.contact_b * opening / r)
         push /= r
-        push_apart(a, i, j, n, p.weights[i] * push, p.weights[j] * push, dx, dy, dz)
+        push_apart(a, i, j, n, p.inverse_masses[i] * push, p.inverse_masses[j] * push, dx, dy, dz)
 
 
 @kernel(allocates=False)
@@ -146,14 +146,14 @@ def damp_self_contacts(x, v, s, p, reverse):
         i, j = p.pairs[pair, 0], p.pairs[pair, 1]
         dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
         rr = dx * dx + dy * dy + dz * dz
-        both = p.weights[i] + p.weights[j]
+        both = p.inverse_masses[i] + p.inverse_masses[j]
         if rr >= p.thickness * p.thickness or rr == 0.0 or both == 0.0:
             continue
         r = math.sqrt(rr)
         opening = ((v[j] - v[i]) * dx + (v[n + j] - v[n + i]) * dy + (v[2 * n + j] - v[2 * n + i]) * dz) / r
         after = max(opening * math.exp(-p.contact_b * both * s), opening - p.contact_k * (p.thickness - r) * both * s)
         change = (after - opening) / (both * r)
-        push_apart(v, i, j, n, p.weights[i] * change, p.weights[j] * change, dx, dy, dz)
+        push_apart(v, i, j, n, p.inverse_masses[i] * change, p.inverse_masses[j] * change, dx, dy, dz)
 
 
 @kernel(allocates=False)

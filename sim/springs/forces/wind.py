@@ -14,7 +14,7 @@ STILL = 1e-300  # under the roots: no air or no area gives no force instead of 0
 
 
 @kernel(inline=True)
-def wind_scratch(cols):
+def wind_scratch_size(cols):
     """Numbers that a row of cells takes at the end of the scratch."""
     return 3 * (cols + 1)
 
@@ -54,10 +54,10 @@ def add_quarter(f, of, count, w, ow, a, o):
 
 @kernel(noalias=True, allocates=False)
 def add_wind(x, v, p, f, a):
-    """Add the accelerations by the air; f: scratch whose last (wind_scratch,) are free."""
+    """Add the accelerations by the air; f: scratch whose last (wind_scratch_size,) are free."""
     n, m, cols = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1), np.uint64(p.cols)
     count = np.uint64(p.cols - 1)
-    start = np.uint64(f.shape[0] - wind_scratch(p.cols))
+    start = np.uint64(f.shape[0] - wind_scratch_size(p.cols))
     for i in range(p.rows - 1):
         ia = np.uint64(i * p.cols)
         set_cell_forces(
@@ -67,14 +67,14 @@ def add_wind(x, v, p, f, a):
             of, o = start + np.uint64(e) * m, np.uint64(e) * n
             for corner in range(4):
                 at = ia + np.uint64(corner % 2) + np.uint64(corner // 2) * cols
-                add_quarter(f, of, count, p.weights, at, a, o + at)
+                add_quarter(f, of, count, p.inverse_masses, at, a, o + at)
 
 
 @kernel
 def wind_power(x, v, p):
     """What the air puts into the free particles [W]; negative where it takes."""
     a = np.zeros(v.shape[0])
-    add_wind(x, v, p, np.zeros(wind_scratch(p.cols)), a)
+    add_wind(x, v, p, np.zeros(wind_scratch_size(p.cols)), a)
     total = 0.0
     for j in range(v.shape[0]):
         total += p.mass * a[j] * v[j]

@@ -2,9 +2,9 @@
 
 To add one, write a module in this folder with
 
-1. `advance(x, v, ledger, t, h, steps, p, with_ledger) -> evals`, one `kernel` that advances the flat x and v
+1. `advance(x, v, ledger, t, h, steps, p, with_account) -> evals`, one `kernel` that advances the flat x and v
    (3 rows cols,) in place by `steps` steps of h [s] from time t, calls `accelerate` inside its loop and `set_pins` at
-   every time it evaluates forces, and returns how many force evaluations that took. With `with_ledger` it adds what
+   every time it evaluates forces, and returns how many force evaluations that took. With `with_account` it adds what
    damping took and what pins put in [J] to ledger[0] and ledger[1], by a quadrature of its own order.
 2. `limit(zeta)`: the largest stable h omega of x'' + 2 zeta omega x' + omega^2 x = 0, in closed form or from
    the largest h omega at which the method's amplification stays within 1.
@@ -30,7 +30,7 @@ class Integrator(NamedTuple):
     lag: float = 0.0  # v is stored this part of a step before x
     undamped_order: int = 0  # where it differs from `order`
     implicit: bool = False  # a force evaluation is then one correction of Newton's method, `evals` the least number
-    outside: int = 0  # of implicit methods: force evaluations a step beside those corrections
+    evals_outside_newton: int = 0  # of implicit methods: force evaluations a step beside those corrections
     l_stable: bool = False  # what it cannot follow decays within a step
     softens: bool = False  # its equilibrium, and a net's symmetry, are exact only as the step goes to 0
     undamped_only: bool = False  # refuses nets with damping

@@ -20,14 +20,14 @@ def limit(zeta: float) -> float:
 
 
 @kernel(noalias=True)
-def advance(x, v, ledger, t, h, steps, p, with_ledger):
+def advance(x, v, ledger, t, h, steps, p, with_account):
     a = np.empty_like(x)
     f = make_scratch(p)
     for s in range(steps):
         now = t + s * h
         set_pins(x, v, now, p)
         accelerate(x, v, now, p, True, f, a)
-        if with_ledger:
+        if with_account:
             add_power(x, v, now, p, True, h, ledger)
         add_scaled(x, h, v)
         add_scaled(v, h, a)

@@ -20,7 +20,7 @@ def limit(zeta: float) -> float:
 
 
 @kernel
-def advance(x, v, ledger, t, h, steps, p, with_ledger):
+def advance(x, v, ledger, t, h, steps, p, with_account):
     work = make_work(p, False)
     x0, v0 = np.empty_like(x), np.empty_like(v)
     evals = 0
@@ -30,7 +30,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
         x0[:] = x
         v0[:] = v
         evals += solve_stage(x0, v0, h, after, p, x, v, work, MOST)[0]
-        if with_ledger:
+        if with_account:
             add_power(x, v, after, p, True, h, ledger)
     return evals
 

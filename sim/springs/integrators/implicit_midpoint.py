@@ -28,7 +28,7 @@ def limit(zeta: float) -> float:
 
 
 @kernel
-def advance(x, v, ledger, t, h, steps, p, with_ledger):
+def advance(x, v, ledger, t, h, steps, p, with_account):
     work = make_work(p, True)
     xm, vm = np.empty_like(x), np.empty_like(v)
     evals = 0
@@ -45,7 +45,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
             if not settled and size > 1:
                 size //= 2
                 continue
-            if with_ledger:
+            if with_account:
                 add_power(xm, vm, now + 0.5 * part, p, True, part, ledger)
             for j in range(x.shape[0]):
                 x[j] += part * vm[j]

@@ -22,7 +22,7 @@ def limit(zeta: float) -> float:
 
 
 @kernel(noalias=True)
-def advance(x, v, ledger, t, h, steps, p, with_ledger):
+def advance(x, v, ledger, t, h, steps, p, with_account):
     a = np.empty_like(x)
     f = make_scratch(p)
     decay = make_decay(p, 0.5 * h)
@@ -33,25 +33,25 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
     accelerate(x, v, t, p, False, f, a)
     for s in range(steps):
         now, odd = t + s * h, is_odd(t, h, s)
-        if with_ledger:
+        if with_account:
             add_power(x, v, now, p, False, 0.5 * h, ledger)
             kinetic = kinetic_energy(v, p)
         if p.has_air:
             blow(x, v, 0.5 * h, p, f, spare, middle)
         damp(x, v, now, 0.5 * h, decay, p, odd)
-        if with_ledger:
+        if with_account:
             ledger[0] += kinetic - kinetic_energy(v, p)
         add_scaled(v, 0.5 * h, a)
         add_scaled(x, h, v)
         set_pins(x, v, now + h, p)
         accelerate(x, v, now + h, p, False, f, a)
         add_scaled(v, 0.5 * h, a)
-        if with_ledger:
+        if with_account:
             kinetic = kinetic_energy(v, p)
         damp(x, v, now + h, 0.5 * h, decay, p, not odd)
         if p.has_air:
             blow(x, v, 0.5 * h, p, f, spare, middle)
-        if with_ledger:
+        if with_account:
             ledger[0] += kinetic - kinetic_energy(v, p)
             add_power(x, v, now + h, p, False, 0.5 * h, ledger)
     return steps + 1

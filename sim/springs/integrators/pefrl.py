@@ -40,7 +40,7 @@ def limit(zeta: float) -> float:
 
 
 @kernel(noalias=True)
-def advance(x, v, ledger, t, h, steps, p, with_ledger):
+def advance(x, v, ledger, t, h, steps, p, with_account):
     a = np.empty_like(x)
     f = make_scratch(p)
     for s in range(steps):
@@ -51,7 +51,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
             now += DRIFTS[i] * h
             set_pins(x, v, now, p)
             accelerate(x, v, now, p, False, f, a)
-            if with_ledger:
+            if with_account:
                 add_power(x, v, now, p, False, KICKS[i] * h, ledger)
             add_scaled(v, KICKS[i] * h, a)
         add_scaled(x, DRIFTS[4] * h, v)

@@ -28,7 +28,7 @@ def finish(x, v, a1, a2, a3, a4, h):
 
 
 @kernel(noalias=True)
-def advance(x, v, ledger, t, h, steps, p, with_ledger):
+def advance(x, v, ledger, t, h, steps, p, with_account):
     a1, a2, a3, a4 = np.empty_like(x), np.empty_like(x), np.empty_like(x), np.empty_like(x)
     xs, vs = np.empty_like(x), np.empty_like(x)
     f = make_scratch(p)
@@ -36,25 +36,25 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
         now = t + s * h
         set_pins(x, v, now, p)
         accelerate(x, v, now, p, True, f, a1)
-        if with_ledger:
+        if with_account:
             add_power(x, v, now, p, True, h / 6.0, ledger)
         set_sum(xs, x, 0.5 * h, v)
         set_sum(vs, v, 0.5 * h, a1)
         set_pins(xs, vs, now + 0.5 * h, p)
         accelerate(xs, vs, now + 0.5 * h, p, True, f, a2)
-        if with_ledger:
+        if with_account:
             add_power(xs, vs, now + 0.5 * h, p, True, h / 3.0, ledger)
         set_sum(xs, x, 0.5 * h, vs)
         set_sum(vs, v, 0.5 * h, a2)
         set_pins(xs, vs, now + 0.5 * h, p)
         accelerate(xs, vs, now + 0.5 * h, p, True, f, a3)
-        if with_ledger:
+        if with_account:
             add_power(xs, vs, now + 0.5 * h, p, True, h / 3.0, ledger)
         set_sum(xs, x, h, vs)
         set_sum(vs, v, h, a3)
         set_pins(xs, vs, now + h, p)
         accelerate(xs, vs, now + h, p, True, f, a4)
-        if with_ledger:
+        if with_account:
             add_power(xs, vs, now + h, p, True, h / 6.0, ledger)
         finish(x, v, a1, a2, a3, a4, h)
     set_pins(x, v, t + steps * h, p)

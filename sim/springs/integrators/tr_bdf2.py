@@ -24,7 +24,7 @@ def limit(zeta: float) -> float:
 
 
 @kernel
-def advance(x, v, ledger, t, h, steps, p, with_ledger):
+def advance(x, v, ledger, t, h, steps, p, with_account):
     work = make_work(p, False)
     f = make_scratch(p)
     a = np.empty_like(x)
@@ -35,7 +35,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
         now = t + s * h
         set_pins(x, v, now, p)
         accelerate(x, v, now, p, True, f, a)
-        if with_ledger:
+        if with_account:
             add_power(x, v, now, p, True, W * h, ledger)
         # y1 = y + g (f + f1)
         for j in range(x.shape[0]):
@@ -43,7 +43,7 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
             vs[j] = v[j] + g * a[j]
             v1[j] = v[j]
         evals += 1 + solve_stage(xs, vs, g, now + GAMMA * h, p, x1, v1, work, MOST)[0]
-        if with_ledger:
+        if with_account:
             add_power(x1, v1, now + GAMMA * h, p, True, W * h, ledger)
         # y2 = y1/(gamma (2 - gamma)) - y (1 - gamma)^2/(gamma (2 - gamma)) + g f2
         c1 = 1.0 / (GAMMA * (2.0 - GAMMA))
@@ -53,12 +53,12 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
             vs[j] = c1 * v1[j] + c0 * v[j]
             v[j] = v1[j]
         evals += solve_stage(xs, vs, g, now + h, p, x, v, work, MOST)[0]
-        if with_ledger:
+        if with_account:
             add_power(x, v, now + h, p, True, g, ledger)
     return evals
 
 
 RECORD = Integrator(
     "tr_bdf2", 2, False, 3, limit, advance, "For stiff ropes with some accuracy: L-stable and second order.",
-    implicit=True, l_stable=True, outside=1,
+    implicit=True, l_stable=True, evals_outside_newton=1,
 )  # fmt: skip

@@ -29,7 +29,7 @@ def predict(x, v, h, p):
     for e in range(3):
         g = p.gx if e == 0 else p.gy if e == 1 else p.gz
         for j in range(n):
-            if p.weights[j] > 0.0:
+            if p.inverse_masses[j] > 0.0:
                 v[e * n + j] += h * g
                 x[e * n + j] += h * v[e * n + j]
 
@@ -40,12 +40,12 @@ def set_velocities(x, before, h, p, v):
     n = p.rows * p.cols
     for e in range(3):
         for j in range(n):
-            if p.weights[j] > 0.0:
+            if p.inverse_masses[j] > 0.0:
                 v[e * n + j] = (x[e * n + j] - before[e * n + j]) / h
 
 
 @kernel
-def advance(x, v, ledger, t, h, steps, p, with_ledger):
+def advance(x, v, ledger, t, h, steps, p, with_account):
     before = np.empty_like(x)
     f, spare, middle = make_scratch(p), np.empty_like(x), np.empty_like(x)
     decay = make_decay(p, 0.5 * h)
@@ -53,24 +53,24 @@ def advance(x, v, ledger, t, h, steps, p, with_ledger):
     set_pins(x, v, t, p)
     for s in range(steps):
         now, after, odd = t + s * h, t + (s + 1) * h, is_odd(t, h, s)
-        if with_ledger:
+        if with_account:
             add_power(x, v, now, p, False, h, ledger)
             kinetic = kinetic_energy(v, p)
         # Damping in halves before and after, as the leapfrog has it, keeps a fall's terminal speed to second order.
         damp(x, v, now, 0.5 * h, decay, p, odd)
-        if with_ledger:
+        if with_account:
             ledger[0] += kinetic - kinetic_energy(v, p)
         before[:] = x
         predict(x, v, h, p)
         set_pins(x, v, after, p)
         sweep(x, after, h, p)
         set_velocities(x, before, h, p, v)
-        if with_ledger:
+        if with_account:
             kinetic = kinetic_energy(v, p)
         if p.has_air:
             blow(x, v, h, p, f, spare, middle)
         damp(x, v, after, 0.5 * h, decay, p, not odd)
-        if with_ledger:
+        if with_account:
             ledger[0] += kinetic - kinetic_energy(v, p)
     return steps
 

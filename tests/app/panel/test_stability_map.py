@@ -9,7 +9,7 @@ import pytest
 
 from app.panel.panel import stability_map as live
 from app.scenes.rope.scene import scene as rope
-from sim.springs.analysis.growth import EXPLODES, HOLDS
+from sim.springs.analysis.growth import EXPLODING, STABLE
 from sim.springs.stability import critical_step
 
 
@@ -58,8 +58,8 @@ def test_the_map_turns_at_the_critical_step(units: str):
         net = rope.build(dataclasses.replace(params, **{shown.axes.parameter: float(stiffness)}))
         assert row.critical == pytest.approx(critical_step(net, "leapfrog"), rel=0.05)
         holds = shown.axes.steps < row.critical
-        np.testing.assert_array_equal(row.outcomes == HOLDS, holds)
-    assert shown.rows[-1].outcomes[-1] == EXPLODES
+        np.testing.assert_array_equal(row.outcomes == STABLE, holds)
+    assert shown.rows[-1].outcomes[-1] == EXPLODING
     assert "measuring" not in shown.html.content
 
 

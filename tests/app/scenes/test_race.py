@@ -17,7 +17,7 @@ from app.scenes.rope.scene import Scene
 from app.scenes.rope.scene import scene as rope_scene
 from sim.parameters import check_record, parameters_of
 from sim.springs import INTEGRATORS, simulate
-from sim.springs.analysis.reference_run import LOST, ReferenceRun
+from sim.springs.analysis.reference_run import HORIZON_SEPARATION, ReferenceRun
 from sim.springs.state import steps_for
 
 RACES = [name for name, parameters in PRESETS.items() if parameters.get("ropes", 1) > 1]
@@ -115,12 +115,12 @@ def test_equal_cost_is_equal_force_evaluations_a_second():
 
 def test_chaos_takes_the_undamped_reference_and_the_chart_is_shaded_from_there():
     scene = raced("Undamped until chaos", 1.0)
-    assert scene.readings().lost_at is None
-    while scene.readings().lost_at is None and scene.time < 60.0:
+    assert scene.readings().horizon is None
+    while scene.readings().horizon is None and scene.time < 60.0:
         scene.advance(8)
-    lost = scene.readings().lost_at
+    lost = scene.readings().horizon
     assert 2.0 < lost < 60.0
-    assert scene.race.ghosts[0].separation > LOST * scene.params.length
+    assert scene.race.ghosts[0].separation > HORIZON_SEPARATION * scene.params.length
     assert scene.frame().race.ghosts is None
     run(scene, 0.5)
     chart = scene.curves()["plot_errors"]
@@ -130,12 +130,12 @@ def test_chaos_takes_the_undamped_reference_and_the_chart_is_shaded_from_there()
     assert all(np.isnan(rope.certain) for rope in scene.readings().standings)
     assert "Chaos took the reference" in standings(scene.readings())
     scene.reset()
-    assert scene.readings().lost_at is None
+    assert scene.readings().horizon is None
     assert scene.frame().race.ghosts is not None
 
 
 def test_damping_keeps_the_reference():
-    assert raced("Euler against RK4 against leapfrog", 12.0).readings().lost_at is None
+    assert raced("Euler against RK4 against leapfrog", 12.0).readings().horizon is None
 
 
 def test_a_reference_too_dear_is_left_out_and_says_so():

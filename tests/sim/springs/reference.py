@@ -10,7 +10,7 @@ from sim.springs.state import State, advance, velocities
 
 def exact(net: Net, seconds: float, v0=None):
     """x and v (3, rows, cols) of `net` after `seconds` [s] from x0 at rest, or at v0."""
-    p = net.forces(1e-9)
+    p = net.kernel_view(1e-9)
     size = net.x0.size
     a = np.empty(size)
 
@@ -34,12 +34,12 @@ def exact(net: Net, seconds: float, v0=None):
     return x.reshape(net.x0.shape), v.reshape(net.x0.shape)
 
 
-def integrated(net: Net, name: str, seconds: float, steps: int, v0=None, *, with_ledger: bool = False) -> State:
+def integrated(net: Net, name: str, seconds: float, steps: int, v0=None, *, with_account: bool = False) -> State:
     """`net` after `seconds` [s], in `steps` equal steps; velocities brought to the same time as positions."""
     state = State.at_rest(net)
     if v0 is not None:
         state.v[:] = v0
-    advance(net, state, INTEGRATORS[name], seconds / steps, steps, with_ledger=with_ledger)
+    advance(net, state, INTEGRATORS[name], seconds / steps, steps, with_account=with_account)
     v = velocities(net, state)
     state.v, state.lag = v, 0.0
     return state

@@ -62,7 +62,7 @@ def test_frames_are_as_good_between_steps_as_at_their_ends(name):
 def test_a_bare_rope_s_blocks_change_nothing(points):
     """Against the same step stage by stage, for one block, two, and five of which the last is cut."""
     net = rope(points, length=0.1 * points, stiffness=2e4)
-    p, x = net.forces(1.0), net.x0.ravel() + 1e-3 * np.random.default_rng(0).standard_normal(net.x0.size)
+    p, x = net.kernel_view(1.0), net.x0.ravel() + 1e-3 * np.random.default_rng(0).standard_normal(net.x0.size)
     v, start, found = 0.1 * np.sin(np.arange(x.size)), np.zeros(x.size), []
     set_acceleration(x, v, 0.0, p, start)
     for whole in (False, True):
@@ -85,7 +85,9 @@ def test_few_steps_are_taken_in_vain_where_stability_limits_them(name):
     march = INTEGRATORS[name].march
     assert march is not None
     kept, times = np.zeros((2, x.size)), np.array([0.0, 1.0])
-    evals, steps, _, _ = march(x, v, times, 1e-5, 1e-7, net.forces(1.0), False, kept, kept.copy(), np.zeros((2, 2)))
+    evals, steps, _, _ = march(
+        x, v, times, 1e-5, 1e-7, net.kernel_view(1.0), False, kept, kept.copy(), np.zeros((2, 2))
+    )
     assert evals - 1 <= 1.05 * steps * INTEGRATORS[name].evals
 
 
@@ -96,7 +98,7 @@ def test_dense_output_costs_nothing():
 
 @pytest.mark.parametrize("name", ADAPTIVE)
 def test_the_ledger_closes_within_the_tolerance(name):
-    run = simulate(rope(8), name, rtol=1e-9, atol=1e-12, duration=1.0, frames=11, with_ledger=True)
+    run = simulate(rope(8), name, rtol=1e-9, atol=1e-12, duration=1.0, frames=11, with_account=True)
     balance = run.energy[:, :4].sum(axis=1) + run.energy[:, 4] - run.energy[:, 5]
     assert np.abs(balance - balance[0]).max() < 1e-5
 

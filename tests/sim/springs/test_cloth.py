@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sim.springs import INTEGRATORS, Air, Contact, cloth, rope, simulate
-from sim.springs.cloth import HOLDS, turned_down
+from sim.springs.cloth import PIN_CHOICES, vertical_cloth
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.forces.self_contact import find_pairs
 from sim.springs.net import CLOTH, SKIN
@@ -25,7 +25,7 @@ def forces_of(net, x=None, v=None):
     x = net.x0 if x is None else x
     v = np.zeros_like(x) if v is None else v
     a = np.empty_like(x)
-    set_acceleration(x.reshape(-1), v.reshape(-1), 0.0, net.forces(1.0), a.reshape(-1))
+    set_acceleration(x.reshape(-1), v.reshape(-1), 0.0, net.kernel_view(1.0), a.reshape(-1))
     return a
 
 
@@ -55,7 +55,7 @@ def test_the_default_is_a_square_metre_held_at_two_corners():
     assert np.abs(forces_of(dataclasses.replace(net, gravity=(0.0, 0.0, 0.0)))).max() < 1e-9
 
 
-@pytest.mark.parametrize("hold", HOLDS)
+@pytest.mark.parametrize("hold", PIN_CHOICES)
 def test_what_is_pinned_stays(hold):
     net = cloth(5, 6, pinned=hold)
     run = simulate(net, "rk4", 1e-3, 0.2, 3)
@@ -80,12 +80,12 @@ def test_two_threads_give_the_very_numbers_of_one(rows, cols):
     rng = np.random.default_rng(1)
     x, v = net.x0 + 0.03 * rng.standard_normal(net.x0.shape), rng.standard_normal(net.x0.shape)
     split = dataclasses.replace(net, threads=2)
-    assert split.forces(1.0).bands == 2
+    assert split.kernel_view(1.0).bands == 2
     assert (forces_of(split, x, v) == forces_of(net, x, v)).all()
 
 
 def test_a_cloth_of_few_rows_stays_on_one_thread():
-    assert dataclasses.replace(cloth(15, 100), threads=8).forces(1.0).bands == 1
+    assert dataclasses.replace(cloth(15, 100), threads=8).kernel_view(1.0).bands == 1
 
 
 @pytest.mark.parametrize(("p", "q"), [(1, 1), (1, 2), (3, 2), (5, 7)])
@@ -110,7 +110,7 @@ def test_a_taut_square_of_structural_springs_vibrates_as_the_discrete_membrane(p
 
 
 def test_strips_without_cross_springs_hang_as_chains():
-    net = turned_down(cloth(8, 3, 0.2, 1.0, 1.0, 50.0, 0.0, 0.0, 0.5, 0.3, pinned="edge"))
+    net = vertical_cloth(cloth(8, 3, 0.2, 1.0, 1.0, 50.0, 0.0, 0.0, 0.5, 0.3, pinned="edge"))
     net = dataclasses.replace(
         net, families=tuple(f._replace(stiffness=0.0) if f[:2] == (0, 1) else f for f in net.families)
     )
@@ -215,7 +215,7 @@ def test_a_cloth_drapes_over_a_sphere_and_rests_on_it():
 
 def test_a_sphere_dragged_at_full_speed_pushes_the_cloth_and_does_not_pass():
     """5 m/s, faster than the pursuit of a dragged gizmo moves a metre."""
-    net = turned_down(
+    net = vertical_cloth(
         cloth(24, 24, 1.0, 1.0, 0.3, 800.0, 200.0, 3.0, 0.02, pinned="edge", contact=Contact(1000.0, 0.3))
     )
     net = dataclasses.replace(net, sphere=(0.5, -0.5, -0.6, 0.2), sphere_velocity=(0.0, 5.0, 0.0))
@@ -229,7 +229,7 @@ def test_a_sphere_dragged_at_full_speed_pushes_the_cloth_and_does_not_pass():
 
 def test_the_pairs_found_by_hashing_are_all_there_are():
     net = dataclasses.replace(cloth(14, 13, thickness=0.09), x0=0.3 * np.random.default_rng(2).random((3, 14, 13)))
-    p = net.forces(1.0)
+    p = net.kernel_view(1.0)
     find_pairs(net.x0.reshape(-1), p)
     found = {tuple(pair) for pair in p.pairs[: p.pairs[-1, 0]].tolist()}
     points = net.x0.reshape(3, -1).T

@@ -34,7 +34,7 @@ def stretched(x, v=0.0):
 
 def residual(net, name, seconds, steps):
     """What the ledger does not account for [J]."""
-    state = integrated(net, name, seconds, steps, with_ledger=True)
+    state = integrated(net, name, seconds, steps, with_account=True)
     gained = energy(net, state).total - energy(net, State.at_rest(net)).total
     return abs(gained + state.dissipated - state.work)
 
@@ -58,7 +58,7 @@ def test_the_ledger_closes_through_contact_and_friction(name, law):
     contact = Contact(2000.0, 10.0, 0.3, law)
     net = dataclasses.replace(rope(8, floor=-1.2, sphere=sphere, contact=contact), sphere_velocity=(0.2, 0.0, 0.3))
     errors = [residual(net, name, 1.0, steps) for steps in (2000, 8000, 32_000)]
-    spent = integrated(net, name, 1.0, 2000, with_ledger=True).dissipated
+    spent = integrated(net, name, 1.0, 2000, with_account=True).dissipated
     assert errors[2] < 0.35 * errors[0]
     assert errors[2] < 1e-3 * spent
 
@@ -152,6 +152,6 @@ def test_the_damped_oscillator_is_the_closed_form(name):
 @pytest.mark.parametrize("name", DAMPABLE)
 def test_what_damping_took_never_falls(name, model):
     net = rope(8, damping_model=model)
-    run = simulate(net, name, 1e-4, 1.0, 101, with_ledger=True)
+    run = simulate(net, name, 1e-4, 1.0, 101, with_account=True)
     assert np.diff(run.energy[:, 4]).min() >= 0.0
     assert run.energy[-1, 5] == 0.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim.springs.analysis.extremes import extremes
-from sim.springs.state import SANE, State
+from sim.springs.state import DIVERGENCE_BOUND, State
 
 
 def some(points: int) -> State:
@@ -28,11 +28,11 @@ def test_one_number_that_is_none_is_seen(number: float, what: str, at: int) -> N
     state = some(17)
     getattr(state, what).reshape(-1)[at] = number
     assert np.isnan(extremes(state.x, state.v)).all()
-    assert not state.is_sane
+    assert not state.is_bounded
 
 
 def test_what_is_too_far_out_is_not_sane() -> None:
     state = some(17)
-    assert state.is_sane
-    state.x[2, 0, 5] = -1.01 * SANE
-    assert not state.is_sane
+    assert state.is_bounded
+    state.x[2, 0, 5] = -1.01 * DIVERGENCE_BOUND
+    assert not state.is_bounded

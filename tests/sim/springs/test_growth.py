@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sim.springs import INTEGRATORS, rope
-from sim.springs.analysis.growth import EXPLODES, HOLDS, growth, measured_limit, oscillator, outcome
-from sim.springs.analysis.settling import settled
+from sim.springs.analysis.growth import EXPLODING, STABLE, growth, measured_limit, oscillator, outcome
+from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.stability import critical_step
 from sim.springs.state import State, acceleration, advance
 from sim.springs.statics import hanging_chain
@@ -70,18 +70,18 @@ def test_the_hanging_rope_holds_to_its_critical_step_and_no_further(name, stiffn
     # At 30 N/m it hangs stretched tenfold, overdamped, and most so across its links.
     net = rope(10, stiffness=stiffness)
     state = State.at_rest(net)
-    state.x[:] = settled(net)
+    state.x[:] = find_rest_positions(net)
     h = critical_step(net, name, state)
-    assert outcome(INTEGRATORS[name], net, 0.97 * h, state.x) == HOLDS
-    assert outcome(INTEGRATORS[name], net, 1.03 * h, state.x) != HOLDS
-    assert outcome(INTEGRATORS[name], net, 8.0 * h, state.x) == EXPLODES
+    assert outcome(INTEGRATORS[name], net, 0.97 * h, state.x) == STABLE
+    assert outcome(INTEGRATORS[name], net, 1.03 * h, state.x) != STABLE
+    assert outcome(INTEGRATORS[name], net, 8.0 * h, state.x) == EXPLODING
 
 
 @pytest.mark.parametrize("surroundings", [{"floor": -1.0}, {"sphere": (-0.3, 0.05, -1.2, 0.5)}])
 def test_a_settled_rope_stays_where_it_is(surroundings):
     net = rope(10, **surroundings)
     state = State.at_rest(net)
-    state.x[:] = settled(net)
+    state.x[:] = find_rest_positions(net)
     if "floor" in surroundings:  # on a sphere it may yet slide, very slowly
         assert np.abs(acceleration(net, state, 0.5)).max() < 1e-3
     before = state.x.copy()
@@ -91,7 +91,7 @@ def test_a_settled_rope_stays_where_it_is(surroundings):
 
 def test_a_free_hanging_rope_settles_as_statics_says():
     net = rope(10, stiffness=200.0)
-    np.testing.assert_array_equal(settled(net)[:, 0].T, hanging_chain(net).x)
+    np.testing.assert_array_equal(find_rest_positions(net)[:, 0].T, hanging_chain(net).x)
     # The same by falling: a floor out of reach.
-    fallen = settled(rope(10, stiffness=200.0, floor=-100.0))
+    fallen = find_rest_positions(rope(10, stiffness=200.0, floor=-100.0))
     assert np.abs(fallen[:, 0].T - hanging_chain(net).x).max() < 1e-6

@@ -100,7 +100,7 @@ def test_the_midpoint_method_keeps_the_energy_at_any_stiffness(stiffness):
 @pytest.mark.parametrize("stiffness", [800.0, 1e9])
 def test_the_midpoint_method_takes_what_damping_takes(stiffness):
     net = rope(50, stiffness=stiffness)
-    run = simulate(net, "implicit_midpoint", 1 / 60, 2.0, 121, with_ledger=True)
+    run = simulate(net, "implicit_midpoint", 1 / 60, 2.0, 121, with_account=True)
     total = run.energy[:, :5].sum(axis=1)
     assert run.energy[-1, 4] > 100.0
     assert np.abs(total - total[0]).max() < 1e-8

@@ -30,11 +30,11 @@ STIFFEST = {  # largest stable link stiffness of the lab's rope: points, step, d
 
 def products(net, x, part, t=0.0):
     """The matrix that `set_tangent` multiplies with."""
-    p = net.forces(1.0)
+    p = net.kernel_view(1.0)
     matrix = np.zeros((x.size, x.size))
     for j in range(x.size):
         unit, out = np.zeros(x.size), np.empty(x.size)
-        unit[j] = 1.0 if p.weights[j % p.weights.size] else 0.0
+        unit[j] = 1.0 if p.inverse_masses[j % p.inverse_masses.size] else 0.0
         set_tangent(x.reshape(-1), unit, t, p, part, out)
         matrix[:, j] = out
     return matrix

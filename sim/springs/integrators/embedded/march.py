@@ -11,7 +11,7 @@ from sim.jit import kernel
 from sim.springs.forces.acceleration import accelerate, set_pins
 from sim.springs.integrators.embedded.errors import error_of
 from sim.springs.integrators.embedded.stages import accept, make_stages, take_step
-from sim.springs.state import SANE
+from sim.springs.state import DIVERGENCE_BOUND
 
 SAFETY = 0.9
 NOW, BEFORE = 0.7, 0.4  # exponents of this step's error and the last one's (Gustafsson's PI), over the order
@@ -43,16 +43,16 @@ def first_step(x, v, a, rtol, atol):
 
 
 @kernel(allocates=False)
-def is_sane(x):
+def is_bounded(x):
     sane = True
     for j in range(x.shape[0]):
         # A NaN fails the comparison too.
-        sane &= abs(x[j]) < SANE
+        sane &= abs(x[j]) < DIVERGENCE_BOUND
     return sane
 
 
 @kernel
-def march(method, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
+def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
     """Fill xs, vs (frames, 3 rows cols) and ledgers (frames, 2) at `times`, starting from x, v at the first.
 
     Returns force evaluations, steps taken, frames filled, and the time reached [s]; fewer frames than there are where
@@ -69,7 +69,7 @@ def march(method, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
     a[:] = stages.a
     evals, steps, frame = 1, 0, 1
     xs[0], vs[0] = x, v
-    lands = method.order > 5 or with_ledger
+    lands = method.order > 5 or with_account
     h = first_step(x, v, a, rtol, atol)
     power, before = -1.0 / method.order, 1.0
     grow = GROW
@@ -78,7 +78,7 @@ def march(method, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
         landing = t + 1.01 * h >= goal
         step = goal - t if landing else h
         spent[:] = 0.0
-        take_step(method, x, v, t, step, p, stages, xn, vn, spent, with_ledger)
+        take_step(method, x, v, t, step, p, stages, xn, vn, spent, with_account)
         error = error_of(method, x, v, step, stages, xn, vn, rtol, atol)
         evals += method.stages
         if not error <= 1.0:
@@ -101,7 +101,7 @@ def march(method, x, v, times, rtol, atol, p, with_ledger, xs, vs, ledgers):
         accept(method, x, v, stages, xn, vn)
         t = after
         steps += 1
-        if not is_sane(x):
+        if not is_bounded(x):
             break
         factor = grow
         if error > 0.0:

@@ -177,7 +177,7 @@ def set_differences(f, v, w, k, of, ov, ow, ok, n, load, c):
 def accelerate_span(xs, vs, p, f, first, n, M, inner, count, k, o, N):
     """Accelerations of `count` points of a bare rope into k from o on, a component N further.
 
-    xs, vs (3 M,): n points in a row, of which those from `inner` on are asked for; p.weights from `first` on.
+    xs, vs (3 M,): n points in a row, of which those from `inner` on are asked for; p.inverse_masses from `first` on.
     """
     zero, one = np.uint64(0), np.uint64(1)
     F = M + one
@@ -190,7 +190,7 @@ def accelerate_span(xs, vs, p, f, first, n, M, inner, count, k, o, N):
         f[of], f[of + n] = 0.0, 0.0
         load = p.mass * (p.gx if e == 0 else p.gy if e == 1 else p.gz)
         set_differences(
-            f, vs, p.weights, k, of + inner, b, first + inner, o + np.uint64(e) * N, count, load, p.drag
+            f, vs, p.inverse_masses, k, of + inner, b, first + inner, o + np.uint64(e) * N, count, load, p.drag
         )  # fmt: skip
 
 
@@ -224,12 +224,12 @@ def step_bare_rope(method, x, v, h, p, stages, xn, vn):
 
 
 @kernel(noalias=True, allocates=False)
-def step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_ledger):
+def step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_account):
     """`take_step` of any net, stage by stage."""
     k, xs, vs, a = stages.k, stages.xs, stages.vs, stages.a
     last = method.stages
     zero, size, m = np.uint64(0), np.uint64(x.shape[0]), np.uint64(stages.stride)
-    if with_ledger:
+    if with_account:
         add_power(x, v, t, p, True, weight_of(method, 0) * h, ledger)
     for i in range(1, last + 1):
         now = t + method.c[i] * h
@@ -237,7 +237,7 @@ def step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_ledger):
         set_pins(xs, vs, now, p)
         accelerate_all(xs, vs, now, p, stages.f, a)
         copy(a, zero, size, k, np.uint64(i) * m)
-        if with_ledger and i < last:
+        if with_account and i < last:
             add_power(xs, vs, now, p, True, weight_of(method, i) * h, ledger)
     copy(xs, zero, size, xn, zero)
     copy(vs, zero, size, vn, zero)
@@ -254,16 +254,16 @@ def weight_of(method, i):
 
 
 @kernel(allocates=False)
-def take_step(method, x, v, t, h, p, stages, xn, vn, ledger, with_ledger):
+def take_step(method, x, v, t, h, p, stages, xn, vn, ledger, with_account):
     """The state a step h after x, v at t into xn, vn, and its acceleration into the last row of stages.k.
 
-    The acceleration at x, v is given in its first row. With `with_ledger`, ledger gets what was dissipated and put in
+    The acceleration at x, v is given in its first row. With `with_account`, ledger gets what was dissipated and put in
     [J].
     """
-    if is_bare(p) and not with_ledger:
+    if is_bare(p) and not with_account:
         step_bare_rope(method, x, v, h, p, stages, xn, vn)
     else:
-        step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_ledger)
+        step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_account)
 
 
 @kernel(noalias=True, allocates=False)
@@ -278,7 +278,7 @@ def accept(method, x, v, stages, xn, vn):
 
 
 @kernel
-def take_steps(method, x, v, ledger, t, h, steps, p, with_ledger):
+def take_steps(method, x, v, ledger, t, h, steps, p, with_account):
     """`steps` steps of h [s] from t; returns the force evaluations."""
     stages = make_stages(method, x, p)
     xn, vn = np.empty_like(x), np.empty_like(x)
@@ -286,6 +286,6 @@ def take_steps(method, x, v, ledger, t, h, steps, p, with_ledger):
     accelerate(x, v, t, p, True, stages.f, stages.a)
     stages.k[: x.shape[0]] = stages.a
     for s in range(steps):
-        take_step(method, x, v, t + s * h, h, p, stages, xn, vn, ledger, with_ledger)
+        take_step(method, x, v, t + s * h, h, p, stages, xn, vn, ledger, with_account)
         accept(method, x, v, stages, xn, vn)
     return 1 + method.stages * steps

@@ -62,7 +62,7 @@ def set_matrix_product(points, links, numbers, u, p, f, q):
                 add_row(f, of, count, 1.0, q, o + ia)
                 add_row(f, of, count, -1.0, q, o + ib)
     for e in range(3):
-        hold_pinned(p.weights, q, np.uint64(e) * n, n)
+        hold_pinned(p.inverse_masses, q, np.uint64(e) * n, n)
 
 
 @kernel(noalias=True, allocates=False)

@@ -41,7 +41,7 @@ def add_mean_lengths(x0, x, p, a):
                 c = b + di * p.cols + dj
                 rx, ry, rz, length, _, _, _, mean = lengths(x0, x, n, b, c)
                 s = k * rest * (mean - length) / (mean * length)
-                wb, wc = s * p.weights[b], s * p.weights[c]
+                wb, wc = s * p.inverse_masses[b], s * p.inverse_masses[c]
                 a[b] += wb * rx
                 a[n + b] += wb * ry
                 a[2 * n + b] += wb * rz

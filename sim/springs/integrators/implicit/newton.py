@@ -92,7 +92,7 @@ def set_rope_blocks(p, points, links, numbers, diagonal, beside):
         diagonal[j, 3], diagonal[j, 4], diagonal[j, 5] = xy, yy, yz
         diagonal[j, 6], diagonal[j, 7], diagonal[j, 8] = xz, yz, zz
     for j in range(n - 1):
-        free = p.weights[j] > 0.0 and p.weights[j + 1] > 0.0
+        free = p.inverse_masses[j] > 0.0 and p.inverse_masses[j + 1] > 0.0
         for e in range(3):
             for m in range(3):
                 s = links[(left + e) * n + j] * links[(1 + m) * n + j] + (links[j] if e == m else 0.0)
@@ -100,7 +100,7 @@ def set_rope_blocks(p, points, links, numbers, diagonal, beside):
                 diagonal[j + 1, 3 * e + m] += s
                 beside[j, 3 * e + m] = -s if free else 0.0
     for j in range(n):
-        if p.weights[j] == 0.0:
+        if p.inverse_masses[j] == 0.0:
             for e in range(9):
                 diagonal[j, e] = p.mass if e % 4 == 0 else 0.0
 
@@ -178,7 +178,7 @@ def solve_stage(x0, v0, g, t, p, x, v, work, most):
         for e in range(3):
             for j in range(n):
                 i = e * n + j
-                work.r[i] = p.mass * (v0[i] + g * work.a[i] - v[i]) if p.weights[j] > 0.0 else 0.0
+                work.r[i] = p.mass * (v0[i] + g * work.a[i] - v[i]) if p.inverse_masses[j] > 0.0 else 0.0
         set_point_blocks(x, v, t, g, p, work.points)
         if work.mean:
             set_mean_blocks(x0, x, g, p, work.links)

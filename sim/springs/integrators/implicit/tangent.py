@@ -105,7 +105,7 @@ def set_tangent(x, u, t, p, part, out):
             add_pull(x, u, p, part, out)
     for e in range(3):
         for j in range(n):
-            out[e * n + j] *= p.weights[j]
+            out[e * n + j] *= p.inverse_masses[j]
 
 
 @kernel(noalias=True, inline=True)

@@ -45,7 +45,7 @@ def sweep_links(x, h, p):
         for i in range(p.rows - di):
             if di > 0:
                 a, b = np.uint64(i * p.cols + first), np.uint64((i + di) * p.cols + first + dj)
-                project_links(x, p.weights, a, b, one, np.uint64(count), n, rest, give)
+                project_links(x, p.inverse_masses, a, b, one, np.uint64(count), n, rest, give)
                 continue
             for lane in range(2 * dj):
                 # Lanes 0 to dj - 1 are the even blocks, the others the odd ones.
@@ -53,7 +53,7 @@ def sweep_links(x, h, p):
                 if some > 0:
                     a = np.uint64(i * p.cols + lane)
                     project_links(
-                        x, p.weights, a, a + np.uint64(dj), np.uint64(2 * dj), np.uint64(some), n, rest, give
+                        x, p.inverse_masses, a, a + np.uint64(dj), np.uint64(2 * dj), np.uint64(some), n, rest, give
                     )  # fmt: skip
 
 
@@ -66,7 +66,7 @@ def sweep_surface(x, t, h, p, on_sphere):
     give = 1.0 / (p.contact_k * h * h)
     for j in range(n):
         depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-        w = p.weights[j]
+        w = p.inverse_masses[j]
         if depth > 0.0 and w > 0.0:
             s = w * depth / (w + give)
             x[j] += s * nx
@@ -85,7 +85,7 @@ def sweep_pairs(x, h, p):
         i, j = p.pairs[s, 0], p.pairs[s, 1]
         dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
         r = math.sqrt(dx * dx + dy * dy + dz * dz)
-        wi, wj = p.weights[i], p.weights[j]
+        wi, wj = p.inverse_masses[i], p.inverse_masses[j]
         if r >= p.thickness or r == 0.0 or wi + wj == 0.0:
             continue
         push = (p.thickness - r) / ((wi + wj + give) * r)
@@ -101,7 +101,7 @@ def sweep_pairs(x, h, p):
 def sweep_grab(x, h, p):
     """The grabbed particle towards its target, with at most grab_max."""
     n, j = p.rows * p.cols, p.grabbed
-    w = p.weights[j]
+    w = p.inverse_masses[j]
     if p.grab_k == 0.0 or w == 0.0:
         return
     dx, dy, dz = p.grab_x - x[j], p.grab_y - x[n + j], p.grab_z - x[2 * n + j]

@@ -1,36 +1,30 @@
-"""Files that appear whole: written under another name beside their place, then renamed."""
+"""Checks of the files that a command is to write, made before any work."""
 
-import contextlib
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
+from sim.files import draft_of
 from sim.validation import argument_error
 
 
-@contextlib.contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """A name to write to; when the block ends `path` is that file, and after an exception it is what it was before."""
-    draft = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
-    try:
-        yield draft
-        with draft.open("rb+") as file:
-            os.fsync(file.fileno())
-        os.replace(draft, path)
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise
+def check_out_file(option: str, path: Path, *names: str) -> None:
+    """Raises ValueError, naming the option, where `path` cannot be written.
 
-
-def check_folder(option: str, path: Path) -> None:
-    """Raises ValueError, naming the option, where no file can be made at `path`."""
-    probe = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    names: files that the command also makes in the folder of `path`.
+    """
+    target = Path(os.path.realpath(path))
     try:
-        if not path.parent.is_dir():
+        if not target.parent.is_dir():
             raise argument_error(option, str(path), "a file in a folder that exists")
-        if path.is_dir():
+        if target.is_dir():
             raise argument_error(option, str(path), "a file, not a folder")
-        probe.touch()
-        probe.unlink()
+        if os.path.lexists(target) and not target.is_file():
+            raise argument_error(option, str(path), "a file, not a pipe, a device or a link to itself")
+        for trial in (draft_of(target), *(draft_of(path).with_name(name) for name in names)):
+            if not os.path.lexists(trial):
+                trial.touch()
+                trial.unlink()
     except OSError as error:
         raise argument_error(option, str(path), f"a file that can be written ({error.strerror})") from None
+    except UnicodeError:
+        raise argument_error(option, str(path), "a name that the file system can store") from None

@@ -11,7 +11,7 @@ from types import ModuleType
 
 import app.bench.cases
 from app.experiments import tables as report
-from app.files import replacing
+from sim.files import replacing
 from sim.validation import argument_error
 
 

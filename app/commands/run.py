@@ -8,37 +8,47 @@ from typing import Any
 import numpy as np
 from rich.progress import Progress
 
-from app.files import check_folder, replacing
+from app.files import check_out_file
 from app.messages import DivergenceError
-from app.scenes.contract import SceneKind
-from sim.validation import argument_error
+from app.scenes.contract import Scene, SceneKind
+from sim.files import replacing
+from sim.validation import argument_error, check_number
 
-MOST_BYTES = 4e9  # of a file, before it is packed
+MAX_DURATION = 1e6  # [s] of simulated time
+MAX_RATE = 1e5  # [Hz]
+MAX_BYTES = 4e9  # of a run's arrays, in memory and in the file before it is compressed
 
 
 def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds: float, rate: float, out: Path) -> int:
-    """Run and write; a run that diverges keeps what it had, says so, and returns 1."""
-    if not (math.isfinite(seconds) and 0 < seconds <= 1e6):
-        raise argument_error("--seconds", seconds, "above 0 to 1e+06 s")
-    if not (math.isfinite(rate) and 0 < rate <= 1e5):
-        raise argument_error("--rate", rate, "above 0 to 100000 Hz")
+    """Run a scene for `seconds` [s] of simulated time, and write `rate` frames a second [Hz] to `out`.
+
+    Returns the exit status: 0; 1 for a run that diverged, which keeps the frames before that. Raises ValueError for
+    arguments that are not allowed, before any work, and OSError where the file cannot be written.
+    """
+    check_number("--seconds", seconds, 0.0, MAX_DURATION, "s", above=True)
+    check_number("--rate", rate, 0.0, MAX_RATE, "Hz", above=True)
     if out.suffix != ".npz":
         raise argument_error("--out", str(out), "a name that ends in .npz")
-    check_folder("--out", out)
-    running = scene.make(params)
-    # More frames than steps would only repeat themselves.
-    frames = max(1, min(round(seconds * rate), steps_to(running, seconds)))
-    size = (frames + 1) * sum(array.nbytes for array, _ in running.arrays().values())
-    if size > MOST_BYTES:
-        raise ValueError(
-            f"--seconds, --rate: {frames} frames are {size / 1e9:.3g} GB; allowed: at most {MOST_BYTES / 1e9:g} GB"
-        )
+    check_out_file("--out", out)
+    running: Scene[Any, Any, Any] = scene.make(params)
     if running.note:
-        # A file is no place for a method that was not asked for.
+        # Nobody would notice in a file that another integrator ran than the one that was asked for.
         raise argument_error(
             "integrator", params.integrator, "another, as this net is damped: by links, drag, air or contact"
         )
-    times, columns, units = [], {}, {}
+    # More frames than steps would only repeat some of them.
+    frames = max(1, min(round(seconds * rate), steps_to(running, seconds)))
+    first = running.arrays()
+    size = (frames + 1) * sum(array.nbytes for array, _ in first.values())
+    if size > MAX_BYTES:
+        raise argument_error(
+            "--seconds, --rate", f"{frames} frames of {size / 1e9:.3g} GB", f"at most {MAX_BYTES / 1e9:g} GB"
+        )
+    units = {"t": "s", **{key: unit for key, (_, unit) in first.items()}}
+    # Made at their full size, as a list of frames would have to be copied into arrays at the end.
+    times = np.empty(frames + 1)
+    arrays = {key: np.empty((frames + 1, *array.shape), array.dtype) for key, (array, _) in first.items()}
+    count = 0  # frames kept
     problem = ""
     with Progress(transient=True) as progress:
         task = progress.add_task(f"{name}, {seconds:g} s", total=frames)
@@ -49,27 +59,27 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
                 except DivergenceError as reason:
                     problem = str(reason)
                     break
-            times.append(running.time)
-            for key, (array, unit) in running.arrays().items():
-                columns.setdefault(key, []).append(array)
-                units[key] = unit
+            times[frame] = running.time
+            for key, (array, _) in running.arrays().items():
+                arrays[key][frame] = array
+            count = frame + 1
             progress.update(task, completed=frame)
-    arrays: dict[str, Any] = {"t": np.array(times), **{key: np.array(values) for key, values in columns.items()}}
-    about = {"scene": name, "parameters": vars(params), "units": {"t": "s", **units}, "diverged": problem}
-    write_whole(out, {**arrays, "about": np.array(json.dumps(about))})
-    print(f"{out}: {len(times)} frames to t = {times[-1]:g} s, {', '.join(arrays)}")
+    about = {"scene": name, "parameters": vars(params), "units": units, "diverged": problem}
+    kept = {"t": times[:count], **{key: array[:count] for key, array in arrays.items()}}
+    write_arrays(out, {**kept, "about": np.array(json.dumps(about))})
+    print(f"{out}: {count} frames to t = {times[count - 1]:g} s, {', '.join(kept)}")
     if problem:
         print(f"The run ended early. {problem}")
         return 1
     return 0
 
 
-def steps_to(running: Any, until: float) -> int:
-    """Steps from a scene's time to the first whole step at or after `until` [s], forgiving round-off."""
+def steps_to(running: Scene[Any, Any, Any], until: float) -> int:
+    """Steps from a scene's time to the first whole step at or after `until` [s], round-off allowed for."""
     return max(0, math.ceil((until - running.time) / running.step * (1.0 - 1e-9) - 1e-6))
 
 
-def write_whole(path: Path, arrays: dict[str, Any]) -> None:
-    """Write an .npz so that `path` holds all of it or what it held before."""
+def write_arrays(path: Path, arrays: dict[str, Any]) -> None:
+    """Write an .npz file so that `path` holds all of it or what it held before. Raises OSError."""
     with replacing(path) as draft:
         np.savez_compressed(draft, **arrays)

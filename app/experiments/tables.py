@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from app.files import replacing
 from app.render.colormap import PALETTE
+from sim.files import replacing
 from sim.validation import argument_error
 
 Rows = list[dict[str, Any]]

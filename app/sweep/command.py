@@ -8,9 +8,10 @@ from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from app.files import check_folder, replacing
+from app.files import check_out_file
 from app.sweep.case import DIVERGED, ENDS, FAILED, Outcome
 from app.sweep.spec import Spec, read_spec
+from sim.files import replacing
 from sim.validation import argument_error
 
 NEEDED = ("xarray", "netCDF4", "matplotlib")
@@ -24,7 +25,7 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
     spec = read_spec(spec_path)
     if out.suffix != ".nc":
         raise argument_error("--out", str(out), "a name that ends in .nc")
-    check_folder("--out", out)
+    check_out_file("--out", out, f"{out.name}.cases-journal")
     for package in (*NEEDED, *(("distributed",) if scheduler else ())):
         if importlib.util.find_spec(package) is None:
             raise ValueError(f"sweep: {package} is not installed (pip install 'springtide[sweep]')")

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from app.files import replacing
 from app.sweep.case import ENDS, Outcome, program
 from app.sweep.spec import Spec
+from sim.files import replacing
 from sim.parameters import parameters_of
 
 PACKAGES = ("numpy", "numba", "xarray", "netCDF4")

@@ -5,16 +5,15 @@ pyfftw is imported here and only when the first plan is made. No 1/N^2: the grid
 
 import base64
 import binascii
-import contextlib
 import json
 import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import platformdirs
 
+from sim.files import replacing
 from sim.ocean.buffer_pool import BufferPool
 
 PRECISIONS = {"single": (np.float32, np.complex64), "double": (np.float64, np.complex128)}
@@ -89,16 +88,10 @@ def save_wisdom(path: Path) -> bool:
     import pyfftw
 
     text = json.dumps({"wisdom": [base64.b64encode(w).decode() for w in pyfftw.export_wisdom()]})
-    part = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=path.name, delete=False) as file:
-            part = file.name
-            file.write(text)
-        os.replace(part, path)
+        with replacing(path) as draft:
+            draft.write_text(text)
     except OSError:
-        if part:
-            with contextlib.suppress(OSError):
-                os.unlink(part)
         return False
     return True

@@ -1,8 +1,13 @@
 """The command line: `springtide` and `python -m app`."""
 
 import argparse
+import contextlib
 import dataclasses
+import io
+import signal
 import sys
+import threading
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -13,25 +18,61 @@ MAX_HULL_FACES = 20_000  # of a hull from a file: pressure is summed over all of
 
 def main(argv: list[str] | None = None) -> int:
     """Run one command; returns the exit status: 0, 1 for what went wrong on the way, 2 for a bad argument."""
-    parser = make_parser()
-    arguments = parser.parse_args(argv)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # A file name that the terminal cannot show is printed with replacements.
+        sys.stdout.reconfigure(errors="backslashreplace")
+    arguments = make_parser().parse_args(argv)
     try:
-        return arguments.command(arguments)
-    except (ValueError, OSError) as error:
-        print(f"springtide: {error}", file=sys.stderr)
-        return 2 if isinstance(error, ValueError) else 1
+        with cleaning_up_at_sigterm():
+            return arguments.command(arguments)
+    except ValueError as error:
+        return print_error(str(error), 2)
+    except OSError as error:
+        return print_error(str(error), 1)
+    except MemoryError as error:
+        return print_error(f"not enough memory ({error})", 1)
     except KeyboardInterrupt:
-        return 130
+        return 128 + signal.SIGINT
+
+
+def print_error(text: str, status: int) -> int:
+    """Print an error on one line of printable characters; returns the exit status."""
+    print(f"springtide: {one_line(text)}", file=sys.stderr)
+    return status
+
+
+def one_line(text: str) -> str:
+    """`text` with its control characters written out: names from a file must not steer the terminal."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+@contextlib.contextmanager
+def cleaning_up_at_sigterm() -> Iterator[None]:
+    """Inside, SIGTERM ends the program as an exception does: what is half written is removed, workers are stopped."""
+
+    def end(number: int, _: object) -> NoReturn:
+        signal.signal(number, signal.SIG_IGN)
+        raise SystemExit(128 + number)
+
+    if threading.current_thread() is not threading.main_thread():  # where Python allows no signal handlers
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 class Parser(argparse.ArgumentParser):
-    """Ends at a bad argument with one line, as every refusal does."""
+    """Ends at a bad argument with one line, as every command does."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"springtide: {message}\n")
+        sys.exit(print_error(message, 2))
 
 
 def make_parser() -> argparse.ArgumentParser:
+    """The parser of all commands; each sets `command`, the function that runs it."""
     parser = Parser(
         prog="springtide",
         description="An interactive 3-D lab for spring-mass systems and ocean waves, in a browser tab.",
@@ -40,52 +81,54 @@ def make_parser() -> argparse.ArgumentParser:
     add_serving(parser)
     commands = parser.add_subparsers(metavar="COMMAND")
 
-    run = commands.add_parser("run", help="the same scene without a browser, into a file")
-    run.add_argument("scene", choices=NAMES, metavar="SCENE", help=", ".join(NAMES))
-    run.add_argument("--seconds", type=float, required=True, metavar="S", help="simulated time")
+    run = commands.add_parser("run", help="run a scene without a browser, and write it to a file")
+    run.add_argument("scene", metavar="SCENE", help=", ".join(NAMES))
+    run.add_argument("--seconds", type=float, required=True, metavar="S", help="simulated time [s]")
     run.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
-    run.add_argument("--rate", type=float, default=30.0, metavar="HZ", help="frames kept per simulated second (30)")
+    run.add_argument("--rate", type=float, default=30.0, metavar="HZ", help="frames a simulated second (default: 30)")
     add_parameters(run)
     run.set_defaults(command=run_headless)
 
-    bench = commands.add_parser("bench", help="run time against error, kernels, start-up")
-    bench.add_argument("names", nargs="*", metavar="NAME", help="which benchmarks; all by default")
-    bench.add_argument("--quick", action="store_true", help="within a minute")
-    bench.add_argument("--peers", action="store_true", help="also the peers that are installed")
-    bench.add_argument("--out", type=Path, metavar="DIR", help="write CSV and figures here")
+    bench = commands.add_parser("bench", help="measure run time against error, kernels, frames, start-up")
+    bench.add_argument("names", nargs="*", metavar="NAME", help="the benchmarks to run (default: all)")
+    bench.add_argument("--quick", action="store_true", help="fewer and shorter runs: a minute each")
+    bench.add_argument("--peers", action="store_true", help="compare with the other programs that are installed")
+    bench.add_argument("--out", type=Path, metavar="DIR", help="write tables (CSV) and figures to this folder")
     bench.set_defaults(command=run_bench)
 
-    stability = commands.add_parser("stability", help="stability maps and energy drift, measured beside theory")
-    stability.add_argument("--quick", action="store_true", help="coarse, within a minute")
-    stability.add_argument("--out", type=Path, metavar="DIR", help="write CSV and figures here")
+    stability = commands.add_parser("stability", help="measure stability maps and energy drift beside theory")
+    stability.add_argument("--quick", action="store_true", help="coarse maps: within a minute")
+    stability.add_argument("--out", type=Path, metavar="DIR", help="write tables (CSV) and figures to this folder")
     stability.set_defaults(command=run_stability)
 
-    sweep = commands.add_parser("sweep", help="a scene over ranges of its parameters, into one NetCDF file")
-    sweep.add_argument("spec", type=Path, metavar="SPEC.toml", help="what to sweep; see assets/sweeps")
+    sweep = commands.add_parser("sweep", help="run a scene over ranges of its parameters, into one NetCDF file")
+    sweep.add_argument("spec", type=Path, metavar="SPEC.toml", help="what to sweep; for examples see assets/sweeps")
     sweep.add_argument("--out", type=Path, required=True, metavar="FILE.nc")
-    sweep.add_argument("--scheduler", metavar="ADDRESS", help="run on this Dask cluster, not on this machine's cores")
-    sweep.add_argument("--fresh", action="store_true", help="start over, replacing what is there")
+    sweep.add_argument("--scheduler", metavar="ADDRESS", help="run on a Dask cluster instead of this machine's cores")
+    sweep.add_argument("--fresh", action="store_true", help="start over, and replace earlier results")
     sweep.set_defaults(command=run_sweep)
 
-    warmup = commands.add_parser("warmup", help="compile every kernel and plan every transform, once")
+    warmup = commands.add_parser("warmup", help="compile all kernels and plan all transforms, once")
     warmup.set_defaults(command=run_warmup)
     return parser
 
 
 def add_serving(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--scene", choices=NAMES, default="rope", metavar="SCENE", help=", ".join(NAMES))
+    """The options of `springtide` without a command."""
+    parser.add_argument("--scene", default="rope", metavar="SCENE", help=", ".join(NAMES) + " (default: rope)")
     parser.add_argument("--host", default="127.0.0.1", help="address to serve on; 0.0.0.0 shows the lab to the network")
-    parser.add_argument("--port", type=int, default=8080, help="0 for any free one")
+    parser.add_argument("--port", type=int, default=8080, help="default: 8080; 0 for any free port")
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
-    parser.add_argument("--paused", action="store_true", help="start still")
-    parser.add_argument("--plain-water", action="store_true", help="draw by viser's public interface alone")
+    parser.add_argument("--paused", action="store_true", help="start paused")
+    parser.add_argument("--plain-water", action="store_true", help="draw with viser's public interface only")
     add_parameters(parser)
 
 
 def add_parameters(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--preset", type=Path, metavar="FILE.json", help="parameters of a scene, as JSON")
+    """The options that set a scene's parameters."""
+    parser.add_argument("--preset", metavar="NAME or FILE.json", help="a preset of the scene, or a file of parameters")
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="set parameters of the scene")
-    parser.add_argument("--hull", type=Path, metavar="FILE", help="a closed mesh that floats in the radial sea besides")
+    parser.add_argument("--hull", type=Path, metavar="FILE", help="add a closed mesh to the bodies of the radial sea")
 
 
 def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
@@ -93,27 +136,29 @@ def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
     from app.scenes.preset_files import read_preset
     from sim.parameters import check_record, parse_assignments
 
-    values = read_preset(arguments.preset, scene) if arguments.preset else {}
+    values = {} if arguments.preset is None else read_preset("--preset", arguments.preset, scene)
     params = check_record(scene.params, {**values, **parse_assignments(scene.params, arguments.set)})
     return params if arguments.hull is None else with_hull(params, arguments.hull)
 
 
 def with_hull(params: Any, path: Path) -> Any:
-    """The parameters with one more hull; raises ValueError where the scene floats nothing, or the mesh is no hull."""
+    """The parameters with one more hull; raises ValueError for a scene without bodies, or a mesh that is no hull."""
+    import numpy as np
+
     from sim.floating import Hull
     from sim.validation import argument_error
 
     if not hasattr(params, "hull"):
-        raise argument_error("--hull", str(path), "a hull with --scene radial only")
-    faces = len(Hull.load(path).faces)
+        raise argument_error("--hull", str(path), "a hull with the scene radial_sea only")
+    with np.errstate(all="ignore"):  # of huge coordinates numpy would warn before they are refused
+        faces = len(Hull.load(path).faces)
     if faces > MAX_HULL_FACES:
         raise argument_error("--hull", f"{path} of {faces} triangles", f"at most {MAX_HULL_FACES}")
     return dataclasses.replace(params, hull=str(path))
 
 
 def serve(arguments: argparse.Namespace) -> int:
-    if not 0 <= arguments.port <= 65535:
-        raise ValueError(f"--port: {arguments.port} is not allowed; allowed: 0 to 65535")
+    """`springtide`: the lab in a browser."""
     scene = scene_named(arguments.scene)
     params = read_params(scene, arguments)
     from app.commands.serve import serve_lab
@@ -130,6 +175,7 @@ def serve(arguments: argparse.Namespace) -> int:
 
 
 def run_headless(arguments: argparse.Namespace) -> int:
+    """`springtide run`."""
     scene = scene_named(arguments.scene)
     params = read_params(scene, arguments)
     from app.commands.run import run_to_file
@@ -138,24 +184,28 @@ def run_headless(arguments: argparse.Namespace) -> int:
 
 
 def run_bench(arguments: argparse.Namespace) -> int:
+    """`springtide bench`."""
     from app.bench.command import run
 
     return run(arguments.names, arguments.quick, arguments.peers, arguments.out)
 
 
 def run_stability(arguments: argparse.Namespace) -> int:
+    """`springtide stability`."""
     from app.stability.command import run
 
     return run(arguments.quick, arguments.out)
 
 
 def run_sweep(arguments: argparse.Namespace) -> int:
+    """`springtide sweep`."""
     from app.sweep.command import sweep
 
     return sweep(arguments.spec, arguments.out, arguments.scheduler, fresh=arguments.fresh)
 
 
 def run_warmup(arguments: argparse.Namespace) -> int:
+    """`springtide warmup`."""
     from app.commands.warmup import warm_up
 
     return warm_up()

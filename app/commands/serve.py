@@ -1,6 +1,8 @@
-"""`springtide`: serve the lab until interrupted."""
+"""`springtide`: serve the lab until it is interrupted."""
 
+import os
 import signal
+import socket
 import sys
 import threading
 import webbrowser
@@ -8,29 +10,65 @@ from typing import Any
 
 from app.server.guard import is_loopback
 from app.server.viewer import Viewer
+from sim.validation import argument_error
+
+WAIT_INTERVAL = 0.5  # [s] between two looks for Ctrl-C, which on Windows does not interrupt a wait
+
+
+def check_address(host: str, port: int) -> None:
+    """Raises ValueError for what is no address to serve on."""
+    if not 0 <= port <= 65535:
+        raise argument_error("--port", port, "0 to 65535")
+    allowed = "an address of this machine, such as 127.0.0.1, or 0.0.0.0 for all of them"
+    if not host:  # which would mean all of them
+        raise argument_error("--host", host, allowed)
+    try:
+        socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
+    except (OSError, ValueError, TypeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "not a host name"
+        raise argument_error("--host", host, f"{allowed} ({reason})") from None
 
 
 def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, paused: bool, plain: bool) -> int:
-    """Open the scene, print the address that is bound, and wait. Returns the exit status."""
+    """Open the scene, print the address that is bound, and wait. Returns the exit status.
+
+    Raises ValueError for what is no address.
+    """
+    check_address(host, port)
     try:
         viewer = Viewer(host, port, plain=plain)
     except OSError as error:
         print(f"springtide: cannot serve on {host}:{port}: {error.strerror or error}; try --port 0", file=sys.stderr)
         return 1
-    viewer.open(name, params, paused=paused)
-    shown = "localhost" if is_loopback(host) or host == "0.0.0.0" else f"[{host}]" if ":" in host else host
-    address = f"http://{shown}:{viewer.port}"
-    print(f"Springtide is on {address}  (Ctrl-C ends it)", flush=True)
-    if not is_loopback(host):
-        print(f"Warning: anyone who can reach {host} on port {viewer.port} can drive this lab.", flush=True)
-    if browser:
-        webbrowser.open(address)
     done = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: done.set())
     try:
-        done.wait()
+        viewer.open(name, params, paused=paused)
+        shown = "localhost" if is_loopback(host) or host == "0.0.0.0" else f"[{host}]" if ":" in host else host
+        address = f"http://{shown}:{viewer.port}"
+        say(f"Springtide is on {address}  (Ctrl-C ends it)")
+        if not is_loopback(host):
+            say(f"Warning: anyone who can reach {host} on port {viewer.port} can drive this lab.")
+        if browser:
+            webbrowser.open(address)
+        wait_until(done)
     except KeyboardInterrupt:
         pass
     finally:
         viewer.shut()
     return 0
+
+
+def say(text: str) -> None:
+    """Print a line at once. Where nothing can be printed (a full disk, a closed pipe), nothing more is tried."""
+    try:
+        print(text, flush=True)
+    except OSError:
+        # What could not be written stays in the buffer, and would fail again when Python ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+
+
+def wait_until(done: threading.Event) -> None:
+    """Wait for an event, so that Ctrl-C interrupts it on every system."""
+    while not done.wait(WAIT_INTERVAL):
+        pass

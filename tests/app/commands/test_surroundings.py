@@ -1,0 +1,214 @@
+"""The command line with odd terminals, files, hosts and signals: one line, the right exit status, and nothing left."""
+
+import json
+import os
+import signal
+import stat
+import subprocess
+import sys
+import time
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.__main__ import main
+from app.commands import serve as serve_command
+
+ROOT = Path(__file__).parents[3]
+RUN = ("run", "rope", "--seconds", "0.1", "--out")
+
+
+def program(*arguments: str, **changes: str) -> subprocess.Popen[str]:
+    """`springtide` as a process of its own, with these environment variables."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "app", *arguments], cwd=ROOT, env={**os.environ, **changes},
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def argument_error(capsys: pytest.CaptureFixture, *arguments: str) -> str:
+    """The one line that a command with a bad argument prints."""
+    assert main(list(arguments)) == 2
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert len(lines) == 1, lines
+    return lines[0]
+
+
+# ----- scene names
+
+
+@pytest.mark.parametrize(("former", "name"), [("phillips", "square_sea"), ("radial", "radial_sea")])
+def test_former_scene_names_are_told_the_new_ones(capsys, tmp_path, former, name):
+    out = str(tmp_path / "a.npz")
+    assert name in argument_error(capsys, "run", former, "--seconds", "1", "--out", out)
+    assert name in argument_error(capsys, "--scene", former, "--no-open")
+    (tmp_path / "s.toml").write_text(f'scene = "{former}"\nseconds = 1\n[parameters]\nspeed = [1, 2]\n')
+    assert name in argument_error(capsys, "sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "a.nc"))
+    assert "rope" in argument_error(capsys, "run", "moon", "--seconds", "1", "--out", out)
+
+
+# ----- presets
+
+
+def parameters_in(path: Path) -> dict[str, object]:
+    return json.loads(str(np.load(path)["about"]))["parameters"]
+
+
+def test_a_preset_is_a_name_or_a_file(tmp_path):
+    out, file = tmp_path / "a.npz", tmp_path / "mine.json"
+    file.write_text(json.dumps({"scene": "rope", "parameters": {"points": 7}}))
+    assert main([*RUN, str(out), "--preset", "Pendulum"]) == 0
+    assert parameters_in(out)["points"] == 2
+    assert main([*RUN, str(out), "--preset", "Pendulum", "--set", "points=3"]) == 0
+    assert parameters_in(out)["points"] == 3
+    assert main([*RUN, str(out), "--preset", str(file)]) == 0
+    assert parameters_in(out)["points"] == 7
+
+
+def test_an_unknown_preset_is_answered_with_those_there_are(capsys, tmp_path):
+    line = argument_error(capsys, *RUN, str(tmp_path / "a.npz"), "--preset", "Moon")
+    assert "--preset: 'Moon'" in line
+    assert "Pendulum" in line
+    assert ".json" in line
+    assert "Pendulum" in argument_error(capsys, "--no-open", "--preset", "Moon")
+
+
+def test_control_characters_in_a_preset_do_not_reach_the_terminal(capsys, tmp_path):
+    file = tmp_path / "p.json"
+    file.write_text(json.dumps({"scene": "rope", "parameters": {"a\nb\r\x1b[31m": 1}}))
+    line = argument_error(capsys, *RUN, str(tmp_path / "a.npz"), "--preset", str(file))
+    assert "a\\nb\\r\\x1b[31m: no such parameter" in line
+    assert line.isprintable()
+
+
+# ----- hosts
+
+
+@pytest.mark.parametrize("host", ["", "a\0b", "no host", "\ud800", "ä" * 70])
+def test_a_host_that_is_none_is_refused(capsys, monkeypatch, host):
+    monkeypatch.setattr(serve_command, "Viewer", None)  # nothing is to be started
+    assert "--host" in argument_error(capsys, "--host", host, "--port", "0", "--no-open")
+
+
+# ----- output files
+
+
+def test_a_link_is_followed_and_stays_a_link(tmp_path):
+    (tmp_path / "there").mkdir()
+    target, link = tmp_path / "there" / "b.npz", tmp_path / "a.npz"
+    link.symlink_to(target)
+    for _ in range(2):  # the file is made, and replaced
+        assert main([*RUN, str(link)]) == 0
+        assert link.is_symlink()
+        assert "x" in np.load(target)
+    assert [path.name for path in target.parent.iterdir()] == ["b.npz"]
+
+
+def test_what_is_no_file_is_refused_and_left_alone(capsys, tmp_path):
+    pipe, loop = tmp_path / "pipe.npz", tmp_path / "loop.npz"
+    os.mkfifo(pipe)
+    loop.symlink_to(loop)
+    for path in (pipe, loop):
+        assert "--out" in argument_error(capsys, *RUN, str(path))
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+    assert loop.is_symlink()
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+# ----- terminals
+
+
+def test_an_ascii_terminal_takes_a_name_that_it_cannot_show(tmp_path):
+    out = tmp_path / "mer–水.npz"
+    process = program(*RUN, str(out), PYTHONIOENCODING="ascii", PYTHONUTF8="0")
+    said, errors = process.communicate(timeout=250)
+    assert (process.returncode, errors) == (0, "")
+    assert "mer\\u2013\\u6c34.npz" in said
+    assert out.exists()
+
+
+def test_the_lab_is_served_where_nothing_can_be_printed():
+    command = [sys.executable, "-m", "app", "--port", "0", "--no-open"]
+    with open("/dev/full", "w") as full:
+        process = subprocess.Popen(command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True)
+    try:
+        with pytest.raises(subprocess.TimeoutExpired):
+            process.wait(20)
+        process.send_signal(signal.SIGINT)
+        assert (process.wait(20), process.communicate()[1]) == (0, "")
+    finally:
+        process.kill()
+        process.wait()
+
+
+# ----- signals
+
+
+def test_a_run_that_is_told_to_end_leaves_nothing(tmp_path):
+    # A file of 100 MB, so that the signal comes while it is written.
+    parameters = ("--set", "points=1000", "time_step=1e-3", "stiffness=100")
+    process = program("run", "rope", "--seconds", "2", "--rate", "1000", "--out", str(tmp_path / "o.npz"), *parameters)
+    end = time.monotonic() + 200
+    while not list(tmp_path.glob(".*")) and time.monotonic() < end:
+        time.sleep(0.001)
+    time.sleep(0.2)  # beyond the trial whether the folder can be written
+    while not list(tmp_path.glob(".*")) and time.monotonic() < end:
+        time.sleep(0.01)
+    process.send_signal(signal.SIGTERM)
+    assert process.communicate(timeout=60)[1] == ""
+    assert process.returncode == 128 + signal.SIGTERM
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_waiting_for_the_end_never_blocks_for_long(monkeypatch):
+    # On Windows a wait without a timeout cannot be interrupted by Ctrl-C.
+    timeouts: list[float | None] = []
+
+    class Done:
+        def __init__(self) -> None:
+            self.asked = 0
+
+        def wait(self, timeout: float | None = None) -> bool:
+            timeouts.append(timeout)
+            self.asked += 1
+            return self.asked == 3
+
+    serve_command.wait_until(Done())  # type: ignore[arg-type]
+    assert len(timeouts) == 3
+    assert all(timeout is not None and timeout <= 1.0 for timeout in timeouts)
+
+
+# ----- memory
+
+
+def test_a_run_holds_its_arrays_once(tmp_path):
+    out = tmp_path / "a.npz"
+    arguments = ["run", "rope", "--rate", "1000", "--out", str(out), "--set", "points=1000", "time_step=1e-3"]
+    arguments.append("stiffness=100")
+    assert main([*arguments, "--seconds", "0.01"]) == 0  # imports and kernels
+    tracemalloc.start()
+    try:
+        assert main([*arguments, "--seconds", "0.4"]) == 0
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    arrays = np.load(out)
+    size = sum(arrays[name].nbytes for name in arrays.files)
+    assert size > 15e6
+    assert peak < size + 20e6  # numpy writes an array in pieces of 17 MB
+
+
+# ----- hulls
+
+
+def test_a_mesh_of_huge_coordinates_is_refused_without_warnings(tmp_path):
+    mesh = tmp_path / "huge.obj"
+    for size in ("1e300", "1e15"):
+        corners = "".join(f"v {x} {y} {z}\n" for x, y, z in ((0, 0, 0), (size, 0, 0), (0, size, 0), (0, 0, size)))
+        mesh.write_text(corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        process = program("run", "radial_sea", "--seconds", "1", "--out", str(tmp_path / "a.npz"), "--hull", str(mesh))
+        _, errors = process.communicate(timeout=250)
+        assert process.returncode == 2
+        assert len(errors.strip().splitlines()) == 1, errors

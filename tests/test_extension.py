@@ -1,0 +1,101 @@
+"""What adding one thing costs: each test adds it to a copy of the sources, in one file or one folder.
+
+The examples are those of docs/contributing.md, in its order.
+"""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from tests.examples import add, commands, copy_of_sources, run, run_command, section
+
+OPENED = """
+import time
+from app.server.viewer import Viewer
+
+viewer = Viewer("127.0.0.1", 0)
+viewer.open("pendulum")
+end = time.monotonic() + 30.0
+while viewer.drawn == 0 and time.monotonic() < end:
+    time.sleep(0.05)
+assert viewer.drawn
+assert viewer.loop.latest.frame.bob[2] < 0.0
+assert set(viewer.panel.controls) == {"length", "gravity", "angle", "speed", "grid", "plot_swing"}
+assert not viewer.loop.halted
+viewer.shut()
+"""
+BROWSED = """
+SCENE = "pendulum"
+
+
+def test_the_pendulum_swings_in_the_browser(shown):
+    viewer, tab = shown
+    start = viewer.loop.latest.frame.bob
+    tab.wait(lambda: abs(viewer.loop.latest.frame.bob[0] - start[0]) > 0.1)
+    tab.wait(lambda: len(tab.vertices("/bob")) > 10)
+    assert not tab.errors
+"""
+
+
+def parameters_in(path) -> dict:
+    """The parameters that `springtide run` wrote into a file."""
+    with np.load(path) as file:
+        return json.loads(str(file["about"]))["parameters"]
+
+
+def test_an_integrator_is_one_file(tmp_path):
+    copy = copy_of_sources(tmp_path)
+    blocks = section("Add an integrator")
+    assert len(add(blocks, copy)) == 1
+    test, headless = commands(blocks)
+    said = run_command(copy, test)
+    assert " passed" in said
+    assert " failed" not in said
+    run_command(copy, headless)
+    assert parameters_in(copy / "rk2.npz")["integrator"] == "rk2"
+
+
+def test_a_parameter_is_one_line_in_one_file(tmp_path):
+    copy = copy_of_sources(tmp_path)
+    blocks = section("Add a parameter")
+    assert len(add(blocks, copy)) == 1
+    (headless,) = commands(blocks)
+    run_command(copy, headless)
+    assert parameters_in(copy / "buoyant.npz")["buoyancy"] == 0.9
+    with np.load(copy / "buoyant.npz") as file:
+        fall = file["x"][-1, -1, 2] - file["x"][0, -1, 2]
+    run(copy, "-m", "app", "run", "rope", "--seconds", "0.3", "--out", "heavy.npz")
+    with np.load(copy / "heavy.npz") as file:
+        assert file["x"][-1, -1, 2] - file["x"][0, -1, 2] < fall < 0.0
+
+
+def test_a_scene_is_one_folder(tmp_path):
+    copy = copy_of_sources(tmp_path)
+    blocks = section("Add a scene")
+    scene = {path for path in add(blocks, copy) if path.endswith(".py")}
+    assert {path.rpartition("/")[0] for path in scene} == {"app/scenes/pendulum"}
+    assert "pendulum" in run(copy, "-c", "from app.scenes import NAMES; print(NAMES)")
+    run(copy, "-c", OPENED)
+    headless, sweep = commands(blocks)
+    run_command(copy, headless)
+    with np.load(copy / "pendulum.npz") as file:
+        assert file["t"][-1] == pytest.approx(1.0)
+        assert abs(file["theta"][-1]) < np.pi / 4
+    run_command(copy, sweep)
+    run(
+        copy,
+        "-c",
+        "import xarray as xr; found = xr.open_dataset('moons.nc'); assert dict(found.sizes)['gravity'] == 2, found",
+    )
+
+
+@pytest.mark.browser
+@pytest.mark.skipif(not any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), reason="no Chromium")
+def test_an_added_scene_opens_in_the_browser(tmp_path):
+    pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    copy = copy_of_sources(tmp_path)
+    add(section("Add a scene"), copy)
+    (copy / "tests" / "browser" / "test_pendulum.py").write_text(BROWSED, "utf-8")
+    assert "1 passed" in run(copy, "-m", "pytest", "tests/browser/test_pendulum.py")

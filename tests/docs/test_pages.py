@@ -1,0 +1,121 @@
+"""What the pages name is there: links, files, tests, commands, options; and the pages keep to their form."""
+
+import argparse
+import itertools
+import re
+
+import pytest
+
+from app.__main__ import make_parser
+from app.scenes import NAMES, scene_named
+from sim.parameters import parameters_of
+from sim.springs import INTEGRATORS
+from tests.docs.pages import PAGES, ROOT, TEST, commands, links, named_tests, paths, text_of
+from tests.examples import section
+
+MAX_README_LINES = 150
+README_COMMANDS = (
+    "python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/springtide",
+    "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/python -m pytest",
+)
+OF_ONE_MACHINE = ("/work/", "/tmp/", "/home/", "/root/", "pypi.org", "pythonhosted", "npmjs", "conda.io")
+# Added by the examples of docs/contributing.md, to a copy.
+EXAMPLES = {
+    block.path for heading in re.findall(r"^## (Add .+)$", text_of(ROOT / "docs" / "contributing.md"), re.MULTILINE)
+    for block in section(heading)
+}  # fmt: skip
+EXAMPLE_FOLDERS = {path.rpartition("/")[0] for path in EXAMPLES}
+
+
+def subcommands() -> dict[str, argparse.ArgumentParser]:
+    """The parser of each sub-command; "" is serving."""
+    parser = make_parser()
+    inner = next(a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
+    return {"": parser, **inner.choices}
+
+
+@pytest.mark.parametrize("link", links(), ids=str)
+def test_a_link_leads_somewhere(link):
+    page = ROOT / link.page
+    target = link.what.partition("#")[0]
+    assert (page.parent / target).exists()
+
+
+@pytest.mark.parametrize("path", sorted(set(paths())), ids=str)
+def test_a_file_is_there(path):
+    assert (ROOT / path.what).exists() or path.what in EXAMPLES | EXAMPLE_FOLDERS
+
+
+@pytest.mark.parametrize("named", sorted(set(named_tests())), ids=str)
+def test_a_test_is_there(named):
+    path, name = TEST.fullmatch(named.what).groups()
+    assert re.search(rf"^(?:async )?def {name}\(", (ROOT / path).read_text("utf-8"), re.MULTILINE)
+
+
+@pytest.mark.parametrize("named", sorted(set(commands())), ids=str)
+def test_a_command_has_its_sub_command_and_options(named):
+    parsers = subcommands()
+    words = re.sub(r"[\[\]]", "", named.what.partition("#")[0]).split()[1:]
+    command = words[0] if words and words[0] in parsers else ""
+    if words and not words[0].startswith("-"):
+        assert command, f"no sub-command {words[0]}"
+    known = parsers[command]._option_string_actions
+    for word in words:
+        if word.startswith("--"):
+            assert word in known, word
+    added = {path.split("/")[2] for path in EXAMPLES if path.startswith("app/scenes/")}
+    for option, value in itertools.pairwise(words):
+        if option in ("--scene", "run") and value.islower():
+            assert value in {*NAMES, *added}
+        if option == "--set" and command == "run" and words[1] in NAMES and named.page != "docs/contributing.md":
+            assert value.partition("=")[0] in parameters_of(scene_named(words[1]).params)
+    if command == "bench":
+        cases = {path.stem for path in (ROOT / "app" / "bench" / "cases").glob("*.py")}
+        out = words.index("--out") if "--out" in words else len(words)
+        assert {word for word in words[1:out] if word.islower() and not word.startswith("-")} <= cases
+
+
+def test_the_readme_is_short_and_has_its_two_commands():
+    readme = text_of(ROOT / "README.md")
+    assert len(readme.splitlines()) <= MAX_README_LINES
+    for command in README_COMMANDS:
+        assert f"```sh\n{command}\n```" in readme
+
+
+def test_the_readme_shows_the_five_scenes():
+    readme = text_of(ROOT / "README.md")
+    shown = re.findall(r"^### `(\w+)`$", readme, re.MULTILINE)
+    assert sorted(shown) == sorted(NAMES)
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CITATION.cff"], ids=lambda page: page.name)
+def test_a_page_names_no_machine_and_no_registry(page):
+    for word in OF_ONE_MACHINE:
+        assert word not in text_of(page)
+
+
+def test_the_table_of_integrators_is_what_they_declare():
+    rows = re.findall(r"^\| `(\w+)` \| (\d)[^|]*\| (yes)? *\|", text_of(ROOT / "docs" / "measured.md"), re.MULTILINE)
+    assert {name: (int(order), bool(symplectic)) for name, order, symplectic in rows} == {
+        name: (record.order, record.symplectic) for name, record in INTEGRATORS.items()
+    }
+
+
+def test_every_integrator_has_its_physics():
+    page = text_of(ROOT / "docs" / "physics.md")
+    for name in INTEGRATORS:
+        assert f"| `{name}` |" in page
+
+
+def test_the_citation_is_valid():
+    yaml = pytest.importorskip("yaml")
+    cited = yaml.safe_load(text_of(ROOT / "CITATION.cff"))
+    assert {"cff-version", "message", "title", "authors", "version", "license"} <= cited.keys()
+    assert all("name" in author or "family-names" in author for author in cited["authors"])
+    version = re.search(r'^version = "(.+)"$', text_of(ROOT / "pyproject.toml"), re.MULTILINE)
+    assert str(cited["version"]) == version[1]
+
+
+def test_the_changelog_begins_with_what_is_not_released():
+    headings = re.findall(r"^## (.+)$", text_of(ROOT / "CHANGELOG.md"), re.MULTILINE)
+    assert headings[0] == "[Unreleased]"

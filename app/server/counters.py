@@ -1,8 +1,7 @@
-"""The skip ledger: what was done for a scene since it was opened, and what did not have to be done.
+"""Work counts: what was done for a scene since it was opened, and what did not have to be done.
 
-Whoever works counts, and offers its counts as `work()`: what -> `WorkCount`. Here they are put together for the panel,
-the
-benchmark and the tests. Each count is written by one thread only.
+Each part that works counts for itself and offers its counts as `work()`: what -> `WorkCount`. This module puts them
+together for the panel, the benchmark and the tests. Each count is written by one thread only.
 """
 
 import functools
@@ -13,8 +12,8 @@ from pathlib import Path
 from app.messages import WorkCount, WorkCounts
 
 ROOT = Path(__file__).parent.parent.parent
-OWN = ("sim", "app")
-HEAVY = ("matplotlib", "pyfftw", "trimesh")  # up to half a second each, and no scene needs them all
+OWN_PACKAGES = ("sim", "app")
+HEAVY_PACKAGES = ("matplotlib", "pyfftw", "trimesh")  # up to half a second each, and no scene needs them all
 
 
 def gather(*parts: WorkCounts) -> dict[str, WorkCount]:
@@ -31,16 +30,16 @@ def gather(*parts: WorkCounts) -> dict[str, WorkCount]:
 @functools.cache
 def own_sources() -> int:
     """How many modules `sim` and `app` have."""
-    return sum(1 for package in OWN for _ in (ROOT / package).rglob("*.py"))
+    return sum(1 for package in OWN_PACKAGES for _ in (ROOT / package).rglob("*.py"))
 
 
 def modules() -> dict[str, WorkCount]:
     """Our own modules and the heavy packages of others: imported by this process, or not."""
-    own = sum(1 for name in list(sys.modules) if name.partition(".")[0] in OWN)
-    heavy = sum(name in sys.modules for name in HEAVY)
+    own = sum(1 for name in list(sys.modules) if name.partition(".")[0] in OWN_PACKAGES)
+    heavy = sum(name in sys.modules for name in HEAVY_PACKAGES)
     return {
         "modules imported": WorkCount(own, max(own_sources() - own, 0)),
-        "heavy packages imported": WorkCount(heavy, len(HEAVY) - heavy),
+        "heavy packages imported": WorkCount(heavy, len(HEAVY_PACKAGES) - heavy),
     }
 
 
@@ -61,4 +60,5 @@ class Unwatched:
         self.since = now
 
     def work(self) -> dict[str, WorkCount]:
+        """Busy and idle time [s]."""
         return {"processor time, nobody looking": WorkCount(self.busy, self.idle, "s")}

@@ -208,6 +208,9 @@ class Intake:
 
     def take(self, client: Any, message: Any) -> None:
         """Queue a message, over one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""
+        if not isinstance(message, ALLOWED):
+            self.screen(message)  # refused and counted
+            return
         key = merge_key(message)
         if key is None:
             self.unmerged += 1

@@ -129,10 +129,9 @@ class SimLoop:
         self.wall += wall
         self.busy_since = self.clock()
         params, loads = self.read_params()
-        changed = self.handle_waiting()
-        # A record that is older than the last `Load`, or newer with its `Load` still on the way, is not taken.
-        if loads == self.loaded and params is not self.scene.params:
-            changed |= self.take(params)
+        # Parameters first: a reset starts from them. A record of a `Load` that is still on the way comes with it.
+        changed = loads == self.loaded and params is not self.scene.params and self.take(params)
+        changed |= self.handle_waiting()
         solve = 0.0
         if self.running and self.audience():
             n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame_interval)
@@ -235,9 +234,9 @@ class SimLoop:
                 self.running = False
             case TogglePlay():
                 self.handle(Pause() if self.running else Play())
-            case StepOnce(count):
+            case StepOnce(steps):
                 self.running = False
-                self.step_by_hand(count)
+                self.step_by_hand(steps)
             case Halt(reason):
                 self.halt(reason)
             case Load(params, number):

@@ -24,7 +24,7 @@ HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
 SEND_WINDOW = (
     0.0  # [s] for which viser holds back what it has to send, by default 17 ms: flushing each picture costs more
 )
-MAX_JOIN_TIME = 1.0  # [s] that ending waits for a thread: a long solve does not hold up the end
+MAX_JOIN_TIME = 1.0  # [s] for which leaving a scene waits for each of its threads
 
 
 class Viewer:
@@ -96,7 +96,7 @@ class Viewer:
         self.stop = threading.Event()
         self.threads = [
             threading.Thread(target=self.loop.run, args=(self.stop,), name="simulation", daemon=True),
-            threading.Thread(target=self.show_snapshots, args=(self.stop,), name="viewer", daemon=True),
+            threading.Thread(target=self.show_snapshots, args=(self.loop, self.stop), name="viewer", daemon=True),
         ]
         for thread in self.threads:
             thread.start()
@@ -156,13 +156,14 @@ class Viewer:
         """A browser that is gone lets go of what it drags."""
         self.commands.put(Release(client.client_id))
 
-    def show_snapshots(self, stop: threading.Event) -> None:
+    def show_snapshots(self, loop: SimLoop, stop: threading.Event) -> None:
         """Show each new snapshot once, as soon as it is there, and keep the panel's status up to date."""
         while not stop.is_set():
-            self.loop.fresh.wait(HEARTBEAT)
-            self.loop.fresh.clear()
+            loop.fresh.wait(HEARTBEAT)
+            loop.fresh.clear()
             self.unwatched.note(self.audience())
-            self.show_latest()
+            if not stop.is_set():
+                self.show_latest()
 
     def show_latest(self) -> None:
         """Hand the latest snapshot over; without a new one only the panel."""
@@ -202,12 +203,16 @@ class Viewer:
             modules(),
         )
 
-    def close(self, wait: float | None = None) -> None:
-        """Stop the threads of the open scene and give back what it holds. wait: [s] for each thread; None: no limit."""
+    def stop_threads(self) -> None:
+        """Stop the threads of the open scene; a long solve ends by itself later, on a scene that is no longer shown."""
         self.stop.set()
         for thread in self.threads:
-            thread.join(wait)
+            thread.join(MAX_JOIN_TIME)
         self.threads = []
+
+    def close(self) -> None:
+        """Stop the threads of the open scene and give back what it holds."""
+        self.stop_threads()
         if self.panel is not None:
             self.panel.close()
         if self.view is not None:
@@ -220,7 +225,7 @@ class Viewer:
         self.stop.set()
         if self.changing.acquire(timeout=MAX_JOIN_TIME):
             try:
-                self.close(MAX_JOIN_TIME)
+                self.close()
             finally:
                 self.changing.release()
         self.wanted.put("")

@@ -7,9 +7,9 @@ import pytest
 
 from app.scenes import NAMES
 from tests.stress.hammer import Hammer
-from tests.stress.tally import SERVED, OilBudget
+from tests.stress.tally import SERVED, Tally
 
-TALLY = OilBudget()
+TALLY = Tally()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -29,7 +29,7 @@ def pytest_terminal_summary(terminalreporter: Any) -> None:
 
 
 @pytest.fixture
-def tally() -> OilBudget:
+def tally() -> Tally:
     return TALLY
 
 

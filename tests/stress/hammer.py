@@ -18,9 +18,9 @@ from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.warmup import prepare
 from app.server.viewer import Viewer
 from sim.parameters import Parameter, parameters_of
-from tests.stress.tally import OilBudget
+from tests.stress.tally import Tally
 
-CRASHES = "stopped with", "no number", "could not be drawn"  # how a halt is worded that is no divergence
+CRASHES = "stopped with", "not finite", "could not be drawn"  # how a halt is worded that is no divergence
 
 
 def infinite(value: Any, path: str = "") -> Iterator[str]:
@@ -47,7 +47,7 @@ def infinite(value: Any, path: str = "") -> Iterator[str]:
 class Hammer:
     """One scene and what is done to it."""
 
-    def __init__(self, name: str, tally: OilBudget) -> None:
+    def __init__(self, name: str, tally: Tally) -> None:
         prepare(name)
         self.name, self.tally = name, tally
         self.viewer = Viewer("127.0.0.1", 0)
@@ -56,7 +56,7 @@ class Hammer:
         self.queue = self.server.queue_message
         self.server.queue_message = self.look_through  # type: ignore[method-assign]
         self.viewer.open(name)
-        self.viewer.close()  # its threads: from here on this one does their work
+        self.viewer.stop_threads(): from here on this one does their work
         self.viewer.loop.audience = lambda: 1
         self.viewer.attempt = lambda what, action, *arguments: action(*arguments)  # what goes wrong is to be seen
         self.longest = 0.0  # [s] of processor time in a frame
@@ -72,13 +72,13 @@ class Hammer:
         return self.viewer.loop
 
     @property
-    def parameters_of(self) -> dict[str, Parameter]:
+    def parameters(self) -> dict[str, Parameter]:
         return parameters_of(self.viewer.panel.params)
 
     def set(self, name: str, value: Any) -> None:
         """Turn one parameter, as the panel does."""
         self.tally.counts[self.name]["changes"] += 1
-        self.viewer.panel.controls[name].take(value)
+        self.viewer.panel.set(name, value)
 
     def frame(self, count: int = 1, wall: float = FRAME_INTERVAL) -> None:
         """Frames `wall` [s] apart as the two threads would make them, each checked."""

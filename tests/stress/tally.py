@@ -8,7 +8,7 @@ from collections.abc import Iterator
 SERVED = float(os.environ.get("SPRINGTIDE_STRESS_SOAK", "30"))  # [s] of wall time that each scene is served
 
 
-class OilBudget:
+class Tally:
     """Counts by kind, and the faults that were injected and survived."""
 
     def __init__(self) -> None:

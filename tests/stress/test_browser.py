@@ -13,7 +13,7 @@ from app.server.viewer import Viewer
 from tests.browser.conftest import CHROMIUM, FLAGS, Tab
 from tests.browser.test_rope import pixel
 from tests.stress.clients import until
-from tests.stress.tally import OilBudget
+from tests.stress.tally import Tally
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def process(tmp_path: Path) -> Iterator[tuple[subprocess.Popen, Any]]:
         chromium.wait()
 
 
-def test_a_chromium_killed_while_it_drags(lab: Viewer, process: tuple[subprocess.Popen, Any], tally: OilBudget) -> None:
+def test_a_chromium_killed_while_it_drags(lab: Viewer, process: tuple[subprocess.Popen, Any], tally: Tally) -> None:
     chromium, browser = process
     tab = Tab(browser, lab.port)
     tab.wait(lambda: lab.audience() == 1 and lab.loop.scene.time > 6)

@@ -21,7 +21,7 @@ from app.experiments import tables as report
 from app.scenes import NAMES, scene_named
 from sim.parameters import parameters_of
 from tests.stress.clients import clients_of, until
-from tests.stress.tally import OilBudget
+from tests.stress.tally import Tally
 
 ROOT = Path(__file__).parents[2]
 READ_ONLY = "/proc"  # a folder in which not even root can write
@@ -58,14 +58,14 @@ def full_disk(limit: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
-def test_a_home_that_cannot_be_written_and_no_cache(tmp_path: Path, tally: OilBudget) -> None:
+def test_a_home_that_cannot_be_written_and_no_cache(tmp_path: Path, tally: Tally) -> None:
     with tally.fault("read-only home, no cache"):
         done = springtide(*RUN, str(tmp_path / "a.npz"), HOME=READ_ONLY, XDG_CACHE_HOME=None, SPRINGTIDE_CACHE=None)
         assert done.returncode == 0, done.stderr
         assert np.isfinite(np.load(tmp_path / "a.npz")["x"]).all()
 
 
-def test_a_cache_that_fills_up_and_then_holds_rubbish(tmp_path: Path, tally: OilBudget) -> None:
+def test_a_cache_that_fills_up_and_then_holds_rubbish(tmp_path: Path, tally: Tally) -> None:
     cache = tmp_path / "cache"
     with tally.fault("disk full while kernels are cached"):
         done = springtide(*RUN, str(tmp_path / "a.npz"), limit=20_000, SPRINGTIDE_CACHE=str(cache))
@@ -87,7 +87,7 @@ def test_a_cache_that_fills_up_and_then_holds_rubbish(tmp_path: Path, tally: Oil
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_disk_that_is_full_while_a_run_is_written(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture, tally: OilBudget
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture, tally: Tally
 ) -> None:
     out = tmp_path / "out.npz"
     for old in (None, b"precious"):
@@ -103,7 +103,7 @@ def test_a_disk_that_is_full_while_a_run_is_written(
                 assert [path.read_bytes() for path in tmp_path.iterdir()] == ([] if old is None else [old])
 
 
-def test_a_disk_that_is_full_while_tables_and_figures_are_written(tmp_path: Path, tally: OilBudget) -> None:
+def test_a_disk_that_is_full_while_tables_and_figures_are_written(tmp_path: Path, tally: Tally) -> None:
     figure = pytest.importorskip("matplotlib.figure").Figure()
     figure.subplots().plot(np.random.default_rng(0).standard_normal((2000, 2)))
     rows = [{"n": n, "time [ms]": n / 3} for n in range(2000)]
@@ -116,7 +116,7 @@ def test_a_disk_that_is_full_while_tables_and_figures_are_written(tmp_path: Path
             assert list(tmp_path.iterdir()) == []
 
 
-def test_a_port_in_use(tally: OilBudget) -> None:
+def test_a_port_in_use(tally: Tally) -> None:
     with socket.socket() as taken, tally.fault("port in use"):
         taken.bind(("127.0.0.1", 0))
         taken.listen()
@@ -130,7 +130,7 @@ def test_a_port_in_use(tally: OilBudget) -> None:
 
 
 @pytest.mark.parametrize("end", [signal.SIGTERM, signal.SIGINT])
-def test_a_server_that_is_told_to_end_under_load(end: signal.Signals, tally: OilBudget) -> None:
+def test_a_server_that_is_told_to_end_under_load(end: signal.Signals, tally: Tally) -> None:
     process = subprocess.Popen(
         [sys.executable, "-m", "app", "--port", "0", "--no-open"], cwd=ROOT, stdout=subprocess.PIPE,
         stderr=subprocess.PIPE, text=True,
@@ -165,7 +165,7 @@ def rubbish(rng: random.Random, scene: Any) -> bytes:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_rubbish_for_a_preset(name: str, tmp_path: Path, capsys: pytest.CaptureFixture, tally: OilBudget) -> None:
+def test_rubbish_for_a_preset(name: str, tmp_path: Path, capsys: pytest.CaptureFixture, tally: Tally) -> None:
     rng = random.Random(f"rubbish {name}")
     scene = scene_named(name)
     preset, out = tmp_path / "preset.json", tmp_path / "never.npz"

@@ -10,7 +10,7 @@ import pytest
 from sim.springs import INTEGRATORS, Contact, Net, Run, cloth, rope, simulate
 from sim.springs.stability import critical_step, gauge
 from sim.springs.state import DIVERGENCE_BOUND, State
-from tests.stress.tally import OilBudget
+from tests.stress.tally import Tally
 
 STEPS = 10.0 ** np.arange(-6.0, 0.5)  # [s]
 TWELVE_DECADES = 10.0 ** np.arange(-3.0, 9.5)  # [N/m]
@@ -38,7 +38,7 @@ def run_few(net: Net, integrator: str, step: float, steps: int = FEW) -> Run:
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_steps_from_a_microsecond_to_a_second(integrator: str, tally: OilBudget) -> None:
+def test_steps_from_a_microsecond_to_a_second(integrator: str, tally: Tally) -> None:
     for make in (rope, lambda **more: cloth(6, 6, **more)):
         for step in STEPS:
             with tally.fault("step size"):
@@ -46,7 +46,7 @@ def test_steps_from_a_microsecond_to_a_second(integrator: str, tally: OilBudget)
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_stiffness_over_twelve_decades(integrator: str, tally: OilBudget) -> None:
+def test_stiffness_over_twelve_decades(integrator: str, tally: Tally) -> None:
     for stiffness in TWELVE_DECADES:
         net = rope(stiffness=float(stiffness), **damping_of(integrator, 7.0))
         with tally.fault("stiffness"):
@@ -57,7 +57,7 @@ def test_stiffness_over_twelve_decades(integrator: str, tally: OilBudget) -> Non
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_masses_from_a_milligram_to_a_thousand_tonnes(integrator: str, tally: OilBudget) -> None:
+def test_masses_from_a_milligram_to_a_thousand_tonnes(integrator: str, tally: Tally) -> None:
     for mass in MASSES:
         net = rope(mass=float(mass), floor=-1.0, **damping_of(integrator, 7.0))
         with tally.fault("mass"):
@@ -68,7 +68,7 @@ def test_masses_from_a_milligram_to_a_thousand_tonnes(integrator: str, tally: Oi
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_shapes_that_are_hardly_shapes(integrator: str, tally: OilBudget) -> None:
+def test_shapes_that_are_hardly_shapes(integrator: str, tally: Tally) -> None:
     calm = damping_of(integrator, 7.0)
     with tally.fault("one point"):
         run = run_few(rope(points=1, **calm), integrator, 1 / 60)
@@ -108,6 +108,6 @@ def test_shapes_that_are_hardly_shapes(integrator: str, tally: OilBudget) -> Non
         ({"sphere": (0.0, 0.0, 0.0, -1.0)}, "sphere"),
     ],
 )
-def test_what_is_no_rope_is_refused_by_name(bad: dict, words: str, tally: OilBudget) -> None:
+def test_what_is_no_rope_is_refused_by_name(bad: dict, words: str, tally: Tally) -> None:
     with tally.fault("bad argument"), pytest.raises(ValueError, match=f"{words}.* is not allowed; allowed: "):
         rope(**bad)

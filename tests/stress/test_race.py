@@ -10,7 +10,7 @@ from app.scenes.race.race import RaceReadings
 from app.scenes.rope.parameters import MOST_ROPES, RACE_ONLY, STEP_RULES
 from sim.springs import INTEGRATORS
 from tests.stress.hammer import Hammer, anywhere, ends
-from tests.stress.tally import OilBudget
+from tests.stress.tally import Tally
 
 FRAMES = 3  # at each end
 
@@ -49,7 +49,7 @@ def test_each_parameter_of_a_race_at_both_ends(rule: str, six: Hammer) -> None:
     six.frame()
 
 
-def test_any_methods_and_steps_side_by_side(six: Hammer, tally: OilBudget) -> None:
+def test_any_methods_and_steps_side_by_side(six: Hammer, tally: Tally) -> None:
     rng = random.Random("race")
     six.set("race_steps", "own steps")
     names = ["integrator", "time_step", *(f"{w}_{n}" for w in ("integrator", "step") for n in range(2, MOST_ROPES + 1))]
@@ -63,7 +63,7 @@ def test_any_methods_and_steps_side_by_side(six: Hammer, tally: OilBudget) -> No
             check_standings(six.loop.latest.readings, MOST_ROPES)
 
 
-def test_ropes_come_and_go_while_one_is_pulled(six: Hammer, tally: OilBudget) -> None:
+def test_ropes_come_and_go_while_one_is_pulled(six: Hammer, tally: Tally) -> None:
     points = six.viewer.panel.params.points
     with tally.fault("rope taken away from a hand", MOST_ROPES):
         for ropes in range(MOST_ROPES, 0, -1):

@@ -17,14 +17,14 @@ from sim.parameters import parameters_of
 from tests.stress.clients import clients_of, until
 from tests.stress.hammer import Hammer
 from tests.stress.memory import GROWTH, resident
-from tests.stress.tally import SERVED, OilBudget
+from tests.stress.tally import SERVED, Tally
 
 HOUR = 3600.0  # [s] of simulated time
 # Smaller, or in longer steps, so that an hour of it fits in a minute or two.
 PRESS = {"cloth": {"rows": 8, "cols": 8, "time_step": 1e-3}, "radial": {"time_step": 1 / 20}}
 
 
-def test_an_hour_of_simulated_time(hammer: Hammer, tally: OilBudget) -> None:
+def test_an_hour_of_simulated_time(hammer: Hammer, tally: Tally) -> None:
     for name, value in PRESS.get(hammer.name, {}).items():
         hammer.set(name, value)
     speed = hammer.parameters["speed"].high
@@ -45,7 +45,7 @@ def test_an_hour_of_simulated_time(hammer: Hammer, tally: OilBudget) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_served_while_clients_come_and_go(name: str, tally: OilBudget) -> None:
+def test_served_while_clients_come_and_go(name: str, tally: Tally) -> None:
     prepare(name)
     viewer = Viewer("127.0.0.1", 0)
     viewer.open(name)

@@ -13,7 +13,7 @@ from app.server.loop import FRAME_INTERVAL, SimLoop
 from sim.ocean import Sea
 from sim.ocean.dispersion import omega
 from sim.ocean.spectra import SPECTRA
-from tests.stress.tally import OilBudget
+from tests.stress.tally import Tally
 
 SIZES = (8, 20, 64, 1024)
 LENGTHS = (0.1, 1.0, 100.0, 1e5)  # [m]
@@ -24,7 +24,7 @@ ON_EDGE = (math.cos(math.pi / 8), math.sin(math.pi / 8), 0.0, 0.0)
 
 
 @pytest.mark.parametrize("spectrum", SPECTRA)
-def test_every_wind_over_every_depth(spectrum: str, tally: OilBudget) -> None:
+def test_every_wind_over_every_depth(spectrum: str, tally: Tally) -> None:
     for wind, depth, length in itertools.product(WINDS, DEPTHS, LENGTHS):
         with tally.fault("sea of an odd size, depth or wind"):
             sea = Sea(16, length, spectrum, wind_speed=wind, depth=depth)
@@ -35,7 +35,7 @@ def test_every_wind_over_every_depth(spectrum: str, tally: OilBudget) -> None:
             assert wind > 0.0 or not s.height.any()
 
 
-def test_every_size(tally: OilBudget) -> None:
+def test_every_size(tally: Tally) -> None:
     for size, length, precision in itertools.product(SIZES, LENGTHS, ("single", "double")):
         with tally.fault("sea of an odd size, depth or wind"):
             sea = Sea(size, length, wind_speed=10.0, precision=precision)
@@ -47,7 +47,7 @@ def test_every_size(tally: OilBudget) -> None:
             assert np.isfinite(residual).all()
 
 
-def test_weather_that_jumps_about(tally: OilBudget) -> None:
+def test_weather_that_jumps_about(tally: Tally) -> None:
     rng = np.random.default_rng(6)
     sea = Sea(32, 200.0)
     for turn in range(500):
@@ -73,7 +73,7 @@ def test_weather_that_jumps_about(tally: OilBudget) -> None:
      ({"wind_speed": math.nan}, "wind_speed"), ({"depth": 0.0}, "depth"), ({"gravity": 0.0}, "gravity"),
      ({"spectrum": "none such"}, "spectrum")],
 )  # fmt: skip
-def test_what_is_no_sea_is_refused_by_name(bad: dict, words: str, tally: OilBudget) -> None:
+def test_what_is_no_sea_is_refused_by_name(bad: dict, words: str, tally: Tally) -> None:
     with tally.fault("bad argument"), pytest.raises(ValueError, match=f"{words}: .* is not allowed; allowed: "):
         Sea(**{"size": 16, "length": 100.0, **bad})
 
@@ -97,7 +97,7 @@ def float_for(scene: RadialSeaScene, seconds: float) -> None:
 
 @pytest.mark.parametrize("wind", [0.5, 25.0])
 @pytest.mark.parametrize("spill", ["none", "layer", "mixed"])
-def test_hulls_in_places_where_no_hull_belongs(wind: float, spill: str, tally: OilBudget) -> None:
+def test_hulls_in_places_where_no_hull_belongs(wind: float, spill: str, tally: Tally) -> None:
     scene = RadialSeaScene(Params(bodies=4, wind_speed=wind, spill=spill, size=1.0, wave_count=24, rings=16, spokes=16))
     fleet = scene.crowd.fleet
     home = fleet.position.copy()
@@ -136,7 +136,7 @@ def test_hulls_in_places_where_no_hull_belongs(wind: float, spill: str, tally: O
         float_for(scene, 1.0)
 
 
-def test_hulls_at_every_step_and_density(tally: OilBudget) -> None:
+def test_hulls_at_every_step_and_density(tally: Tally) -> None:
     for step, density, size in itertools.product((1 / 500, 1 / 20), (50.0, 1020.0), (0.3, 4.0)):
         with tally.fault("hull of an odd size or density"):
             params = Params(bodies=6, wind_speed=25.0, size=size, density=density, time_step=step, wave_count=16)

@@ -20,7 +20,7 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
     viewer = Viewer("127.0.0.1", 0)
     try:
         viewer.open(name)
-        viewer.close()
+        viewer.stop_threads()
         loop, scene = viewer.loop, viewer.scene
         steps = max(1, round(FRAME_INTERVAL / scene.step))
         times = []

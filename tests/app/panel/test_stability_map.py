@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.panel.panel import stability_map as live
-from app.scenes.rope.scene import scene as rope
+from app.panel import stability_map as live
+from app.scenes.rope import scene as rope
 from sim.springs.analysis.growth import EXPLODING, STABLE
 from sim.springs.stability import critical_step
 
@@ -39,11 +39,10 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(live, "COLS", 12)
 
 
-def make(params: Any) -> tuple[live.LiveMap, dict[str, float]]:
+def make(params: Any) -> tuple[live.StabilityMapPanel, dict[str, float]]:
     """A map and what its clicks have set."""
     taken: dict[str, float] = {}
-    parameter = "stiffness" if params.units == "lab" else "axial_stiffness"
-    return live.LiveMap(Gui(), rope, lambda: params, lambda: parameter, taken.__setitem__), taken
+    return live.StabilityMapPanel(Gui(), rope.SCENE.stability_map, lambda: params, taken.__setitem__), taken
 
 
 @pytest.mark.usefixtures("small")
@@ -52,6 +51,7 @@ def test_the_map_turns_at_the_critical_step(units: str):
     params = rope.Params(units=units, time_step=1 / 120, floor=False)
     shown, _ = make(params)
     shown.measure(shown.asked)
+    shown.draw()
     assert shown.axes is not None
     assert len(shown.rows) == 5
     for stiffness, row in zip(shown.axes.stiffnesses, shown.rows, strict=True):
@@ -101,6 +101,7 @@ def test_a_map_of_other_parameters_says_so():
 def test_a_method_that_takes_no_damping_says_so():
     shown, _ = make(rope.Params(integrator="pefrl"))
     shown.measure(shown.asked)
+    shown.draw()
     assert "takes no damping" in shown.html.content
 
 
@@ -112,3 +113,26 @@ def test_asking_again_ends_the_measurement_before():
     shown.measure(1)
     assert shown.rows == []
     assert threading.active_count() == before
+
+
+@pytest.mark.usefixtures("small")
+def test_a_map_that_cannot_be_measured_says_why(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture):
+    shown, _ = make(rope.Params())
+
+    def fail(*_: Any) -> None:
+        raise ZeroDivisionError("no such net")
+
+    monkeypatch.setattr(live, "measure_row", fail)
+    shown.measure(shown.asked)
+    shown.draw()
+    assert "could not be measured: ZeroDivisionError: no such net" in shown.html.content
+    capsys.readouterr()
+
+
+@pytest.mark.usefixtures("small")
+def test_leaving_the_scene_stops_the_measurement():
+    shown, _ = make(rope.Params())
+    number = shown.asked
+    shown.close()
+    shown.measure(number)
+    assert shown.rows == []

@@ -2,21 +2,24 @@
 
 import subprocess
 import sys
+import threading
 import time
 from typing import Any
 
 import numpy as np
 import pytest
 
+from app.messages import Snapshot, WorkCount
+from app.panel.work_table import work_rows, work_table
 from app.scenes import NAMES, scene_named
-from app.server.counters import HEAVY, Unwatched, WorkCount, gather, modules, own_sources, rows, table
+from app.server.counters import HEAVY_PACKAGES, Unwatched, gather, modules, own_sources
 from app.server.loop import FRAME_INTERVAL, SimLoop
 
 
 def ticked(name: str, ticks: int, **parameters: Any) -> SimLoop:
     """A loop of a scene after so many frames."""
-    module = scene_named(name)
-    loop = SimLoop(module.make(module.params(**parameters)))
+    kind = scene_named(name)
+    loop = SimLoop(kind.make(kind.params(**parameters)))
     loop.pacer.learn = lambda steps, seconds: None  # a busy machine drops steps
     for _ in range(ticks):
         loop.tick(FRAME_INTERVAL)
@@ -30,21 +33,21 @@ def test_a_thing_is_counted_in_one_place():
 
 
 def test_shares_are_of_all_there_was():
-    assert WorkCount(1, 3).share == 0.75
-    assert WorkCount(0).share == WorkCount(5).share == 0.0
-    (row,) = rows({"sent": WorkCount(10, 30, "B")})
+    assert WorkCount(1, 3).skipped_share == 0.75
+    assert WorkCount(0).skipped_share == WorkCount(5).skipped_share == 0.0
+    (row,) = work_rows({"sent": WorkCount(10, 30, "B")})
     assert row == {"what": "sent [B]", "done": 10, "skipped": 30, "skipped [%]": 75.0}
-    assert "<td>a &lt;b&gt;</td>" in table({"a <b>": WorkCount(1, 2)})
+    assert "<td>a &lt;b&gt;</td>" in work_table({"a <b>": WorkCount(1, 2)})
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_scene_counts_its_work_and_never_less_than_nothing(name: str):
     loop = ticked(name, 20)
-    works = gather(loop.work(), loop.latest.work)
-    assert works["ticks"] == WorkCount(20, 0)
-    assert works["snapshots"].done + works["snapshots"].skipped >= 20
+    counts = gather(loop.work(), loop.latest.work)
+    assert counts["ticks"] == WorkCount(20, 0)
+    assert counts["snapshots"].done + counts["snapshots"].skipped >= 20
     assert len(loop.latest.work) >= 3
-    for what, work in works.items():
+    for what, work in counts.items():
         assert work.done >= 0, what
         assert work.skipped >= 0, what
 
@@ -75,12 +78,12 @@ def test_the_rope_holds_its_points_against_what_is_there_only():
 
 def test_a_flat_sea_needs_one_transform_of_eight():
     small = {"size": "64", "mesh": "32", "length": 64.0}
-    assert ticked("phillips", 9, **small).latest.work["transforms"] == WorkCount(30, 50)
-    assert ticked("phillips", 9, choppiness=0.0, **small).latest.work["transforms"] == WorkCount(10, 70)
+    assert ticked("square_sea", 9, **small).latest.work["transforms"] == WorkCount(30, 50)
+    assert ticked("square_sea", 9, choppiness=0.0, **small).latest.work["transforms"] == WorkCount(10, 70)
 
 
 def test_the_radial_sea_leaves_out_the_waves_that_its_rings_cannot_show():
-    loop = ticked("radial", 5)
+    loop = ticked("radial_sea", 5)
     scene = loop.scene
     work = loop.latest.work["waves summed at vertices"]
     assert work.skipped > 0
@@ -90,47 +93,48 @@ def test_the_radial_sea_leaves_out_the_waves_that_its_rings_cannot_show():
     assert loop.latest.work["steps of bodies"].done == bodies * loop.counts["steps"]
 
 
-def handed_over(lab: Any, picture: Any) -> tuple[WorkCount, WorkCount]:
-    """(arrays, bytes) that showing a picture of the rope adds to the ledger."""
-    before = lab.traffic.work()
-    with lab.traffic.counted():
-        lab.view.show(picture)
-    after = lab.traffic.work()
-    arrays, size = (
-        WorkCount(after[what].done - before[what].done, after[what].skipped - before[what].skipped)
-        for what in ("arrays sent", "sent to each browser")
-    )
+def handed_over(lab: Any, frame: Any) -> tuple[float, float]:
+    """(arrays, bytes) that showing a frame of the rope sends."""
+    before = lab.transport.work()
+    with lab.transport.counted():
+        lab.view.show(frame)
+    after = lab.transport.work()
+    arrays, size = (after[what].done - before[what].done for what in ("arrays sent", "sent to each browser"))
     return arrays, size
 
 
-def test_a_browser_is_sent_what_changed_and_nothing_else(lab: Any):
-    lab.close()  # its threads, not the server
-    lab.view.show(lab.scene.frame())
-    tube, points = lab.view.vertices.nbytes, 12 * lab.scene.params.points
+@pytest.fixture
+def still(lab: Any) -> Any:
+    """A lab without its threads, and its view, which goes on drawing."""
+    lab.stop_threads()
+    return lab
+
+
+def test_a_browser_is_sent_what_changed_and_nothing_else(still: Any):
+    still.view.show(still.scene.frame())
+    tube, points = still.view.vertices.nbytes, 12 * still.scene.params.points
     # The tube and its colours are one array.
-    assert handed_over(lab, lab.scene.frame()) == (WorkCount(0, 2), WorkCount(0, 2 * tube + points))
-    lab.scene.advance(5)
-    assert handed_over(lab, lab.scene.frame()) == (WorkCount(2, 0), WorkCount(2 * tube + points, 0))
-    plain = lab.scene.frame()._replace(show_points=False)
-    assert handed_over(lab, plain) == (WorkCount(0, 1), WorkCount(0, 2 * tube))
+    assert handed_over(still, still.scene.frame()) == (0, 0)
+    still.scene.advance(5)
+    assert handed_over(still, still.scene.frame()) == (2, 2 * tube + points)
+    plain = still.scene.frame()._replace(show_points=False)
+    assert handed_over(still, plain) == (0, 0)
 
 
-def test_a_rope_that_nobody_sees_move_is_not_sent_until_it_has(lab: Any):
-    lab.close()
-    first = lab.scene.frame()
-    lab.view.show(first)
-    tube, points = lab.view.vertices.nbytes, 12 * lab.scene.params.points
-    kept, sent = WorkCount(0, 2 * tube + points), WorkCount(2 * tube + points, 0)
+def test_a_rope_that_nobody_sees_move_is_not_sent_until_it_has(still: Any):
+    first = still.scene.frame()
+    still.view.show(first)
+    tube, points = still.view.vertices.nbytes, 12 * still.scene.params.points
     # A tenth of what shows, again and again: what has not been shown must add up.
     creep = [first._replace(points=first.points + np.float32(k * 2e-5)) for k in range(1, 12)]
-    assert [handed_over(lab, picture)[1] for picture in creep[:9]] == [kept] * 9
-    assert handed_over(lab, creep[10])[1] == sent
-    assert np.array_equal(lab.view.tension, first.tension)
-    # So with colours.
+    assert [handed_over(still, frame)[1] for frame in creep[:9]] == [0] * 9
+    assert handed_over(still, creep[10])[1] == 2 * tube + points
+    assert np.array_equal(still.view.tension, first.tension)
+    # The same holds for colours.
     tint = [creep[10]._replace(tension=first.tension + np.float32(k * 2e-4 * first.full_scale)) for k in range(1, 12)]
-    assert [handed_over(lab, picture)[1] for picture in tint[:9]] == [kept] * 9
-    assert handed_over(lab, tint[10])[1].done == 2 * tube
-    assert handed_over(lab, tint[10]._replace(colour="plain"))[1].done == 2 * tube
+    assert [handed_over(still, frame)[1] for frame in tint[:9]] == [0] * 9
+    assert handed_over(still, tint[10])[1] == 2 * tube
+    assert handed_over(still, tint[10]._replace(colour="plain"))[1] == 2 * tube
 
 
 def test_a_rope_at_rest_is_not_looked_at_again():
@@ -143,30 +147,34 @@ def test_a_rope_at_rest_is_not_looked_at_again():
     assert ticked("rope", steps, gravity=0.0, integrator="tr_bdf2").latest.work["looks at the stability"].done > 0
 
 
-def test_what_other_threads_hand_over_is_not_counted(lab: Any):
-    lab.close()
-    lab.view.show(lab.scene.frame())
-    before = lab.traffic.work()
-    lab.view.tube.set(np.zeros_like(lab.view.vertices))
-    assert lab.traffic.work() == before
+def test_what_is_handed_over_outside_of_counting_is_not_counted(still: Any):
+    still.view.show(still.scene.frame())
+    before = still.transport.work()
+    still.view.tube.set(np.zeros_like(still.view.vertices))
+    assert still.transport.work() == before
+    with still.transport.counted():
+        thread = threading.Thread(target=still.view.tube.set, args=(np.ones_like(still.view.vertices),))
+        thread.start()
+        thread.join()
+    assert still.transport.work() == before
 
 
-def test_closed_charts_are_not_drawn(lab: Any):
-    lab.close()
-    plots = lab.panel.plots
-    charts = len(lab.panel.kind.plots) + len(lab.panel.kind.curves)
+def test_closed_charts_are_not_drawn(still: Any):
+    plots, scene = still.panel.plots, still.scene
+    charts = len(still.panel.kind.plots) + len(still.panel.kind.curves)
     drawn, spared = plots.work()["charts drawn"][:2]
     plots.sent_at = -1e9
-    plots.update(lab.loop.latest, lab.scene.params)
+    plots.update(still.loop.latest, [])
     assert plots.work()["charts drawn"] == WorkCount(drawn, spared + charts)
-    params = type(lab.scene.params)(plot_tip=True)
-    lab.scene.set_params(params)
+    scene.params = type(scene.params)(plot_tip=True)
     for _ in range(3):
-        lab.scene.advance(3)
-    snapshot = lab.loop.snapshot(0.0)
-    for _ in range(2):  # the second time there is nothing new
+        scene.advance(3)
+    snapshot: Snapshot = still.loop.snapshot(0.0)
+    rows = list(still.loop.plot_rows)
+    assert len(rows) >= 2
+    for new in (rows, []):  # the second time there is nothing new
         plots.sent_at = -1e9
-        plots.update(snapshot._replace(samples=() if plots.rows else snapshot.samples), params)
+        plots.update(snapshot, new)
     assert plots.work()["charts drawn"] == WorkCount(drawn + 1, spared + 3 * charts - 1)
 
 
@@ -197,4 +205,4 @@ def test_the_rope_imports_neither_seas_nor_transforms():
         assert f"sim.{other}" not in names
     assert int(heavy) == 0
     assert int(own) < own_sources() / 2
-    assert modules()["heavy packages imported"].done <= len(HEAVY)
+    assert modules()["heavy packages imported"].done <= len(HEAVY_PACKAGES)

@@ -157,7 +157,7 @@ def test_2000_hostile_messages_leave_the_server_running_and_the_state_finite(lab
         lab.loop.tick(1 / 60)
     assert np.isfinite(lab.scene.state.x).all() or lab.loop.halted
     assert np.isfinite(lab.loop.latest.frame.points).all()
-    params = lab.panel.read()
+    params = lab.panel.params
     for name, control in lab.panel.controls.items():
         value = getattr(params, name)
         if control.parameter.choices:

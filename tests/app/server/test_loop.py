@@ -8,15 +8,29 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from app.messages import DivergenceError, Halt, Pause, Play, Reset, StepOnce, TogglePlay, WorkCount, where_not_finite
-from app.server.loop import BUDGET, FRAME_INTERVAL, IDLE, FixedStep, SimLoop
+from app.messages import (
+    DivergenceError,
+    Halt,
+    Load,
+    Pause,
+    Play,
+    Reset,
+    StepOnce,
+    TogglePlay,
+    WorkCount,
+    where_not_finite,
+)
+from app.scenes.contract import FRAME_INTERVAL
+from app.server.loop import IDLE_INTERVAL, SOLVE_SHARE, FixedStep, SimLoop
 from sim.parameters import parameter
 
 
 @dataclasses.dataclass(frozen=True)
 class Params:
-    speed: float = parameter(1.0, 0.01, 8.0)
-    stiffness: float = parameter(1.0, 0.0, 10.0)
+    speed: float = parameter(1.0, 0.01, 8.0, affects="look")
+    stiffness: float = parameter(1.0, 0.0, 10.0, affects="forces")
+    points: int = parameter(2, 2, 10, affects="start")
+    grid: bool = parameter(True, affects="look")
 
 
 class Clock:
@@ -38,12 +52,18 @@ class Scene:
         self.params = Params()
         self.clock, self.cost = clock, cost
         self.time = 0.0
-        self.resets = 0
+        self.resets = self.changes = 0
+        self.starts: list[Params] = []  # parameters at each reset
         self.fails: Exception | None = None
         self.seen: list[float] = []
 
-    def set_params(self, params: Params) -> None:
+    @property
+    def frame_interval(self) -> float:
+        return FRAME_INTERVAL
+
+    def change_forces(self, params: Params) -> None:
         self.params = params
+        self.changes += 1
 
     def advance(self, steps: int) -> None:
         if self.fails:
@@ -55,9 +75,13 @@ class Scene:
     def reset(self) -> None:
         self.time = 0.0
         self.resets += 1
+        self.starts.append(self.params)
         self.fails = None
 
-    def frame_interval(self) -> float:
+    def handle(self, command: object) -> None:
+        """No command means anything to it."""
+
+    def frame(self) -> float:
         return self.time
 
     def readings(self) -> None:
@@ -65,6 +89,9 @@ class Scene:
 
     def take_plot_rows(self) -> tuple:
         return ()
+
+    def curves(self) -> None:
+        return None
 
     def work(self) -> dict[str, WorkCount]:
         return {"advances": WorkCount(len(self.seen))}
@@ -116,12 +143,12 @@ def test_a_frame_never_solves_longer_than_its_budget_allows() -> None:
     pacer.learn(10, 0.01)
     steps, capped = pacer.steps(0.25, 8.0, 1e-5)
     assert capped
-    assert steps <= BUDGET * FRAME_INTERVAL / 0.001
+    assert steps <= SOLVE_SHARE * FRAME_INTERVAL / 0.001
 
 
 def test_a_slider_reaches_the_simulation_in_the_next_frame() -> None:
     values = Params()
-    loop, scene = make(read_params=lambda: values)
+    loop, scene = make(read_params=lambda: (values, 0))
     loop.tick(FRAME_INTERVAL)
     values = Params(stiffness=7.0)
     loop.tick(FRAME_INTERVAL)
@@ -190,9 +217,9 @@ def test_the_real_time_factor_is_measured() -> None:
     assert loop.latest.status.actual_speed == pytest.approx(0.5, abs=0.02)
 
 
-def test_a_step_that_became_a_thousand_times_as_dear_does_not_hold_up_the_frame() -> None:
+def test_a_step_that_became_a_thousand_times_as_expensive_does_not_hold_up_the_frame() -> None:
     values = Params(speed=8.0)
-    loop, scene = make(cost=1e-7, read_params=lambda: values)
+    loop, scene = make(cost=1e-7, read_params=lambda: (values, 0))
     scene.step = 1e-5
     for _ in range(10):
         loop.tick(FRAME_INTERVAL)
@@ -211,7 +238,7 @@ class Numbers(NamedTuple):
 
 
 @pytest.mark.parametrize(
-    ("picture", "where"),
+    ("frame", "where"),
     [
         (Numbers(np.ones(3), 2.0, (np.arange(3), None, "text")), ""),
         (Numbers(np.array([1.0, np.nan])), "points"),
@@ -219,23 +246,23 @@ class Numbers(NamedTuple):
         (Numbers(np.ones(3), 0.0, (1.0, (Numbers(np.full(2, np.inf, np.float32)),))), "points"),
     ],
 )
-def test_what_is_not_finite_in_a_picture_is_found(picture: Numbers, where: str) -> None:
-    assert where_not_finite(picture) == where
+def test_what_is_not_finite_in_a_frame_is_found(frame: Numbers, where: str) -> None:
+    assert where_not_finite(frame) == where
 
 
 @pytest.mark.parametrize("fault", [lambda: float("nan"), lambda: 1 / 0])
-def test_a_picture_that_cannot_be_shown_pauses_the_run_and_the_last_good_one_stays(
+def test_a_frame_that_cannot_be_shown_pauses_the_run_and_the_last_good_one_stays(
     fault: Callable[[], float], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     loop, scene = make()
     loop.tick(FRAME_INTERVAL)
     good = loop.latest.frame
     with monkeypatch.context() as patch:
-        patch.setattr(scene, "picture", fault)
+        patch.setattr(scene, "frame", fault)
         loop.tick(FRAME_INTERVAL)
     assert loop.latest.frame == good
     assert not loop.running
-    assert "number" in loop.latest.status.halted or "division" in loop.latest.status.halted
+    assert "not finite" in loop.latest.status.halted or "division" in loop.latest.status.halted
     loop.commands.put(Reset())
     loop.tick(FRAME_INTERVAL)
     assert loop.running
@@ -252,7 +279,7 @@ def test_a_halt_from_outside_is_said() -> None:
 
 def test_a_scene_of_fewer_pictures_has_as_much_time_to_solve_in() -> None:
     every, other = FixedStep(), FixedStep()
-    every.cost = other.cost = 0.5 * FRAME_INTERVAL * BUDGET  # two steps fill a frame
+    every.cost = other.cost = 0.5 * FRAME_INTERVAL * SOLVE_SHARE  # two steps fill a frame
     assert every.steps(FRAME_INTERVAL, 1.0, FRAME_INTERVAL / 3) == (2, True)
     assert other.steps(2 * FRAME_INTERVAL, 1.0, FRAME_INTERVAL / 3, 2 * FRAME_INTERVAL) == (4, True)
     assert other.steps(2 * FRAME_INTERVAL, 1.0, FRAME_INTERVAL / 2, 2 * FRAME_INTERVAL) == (4, False)
@@ -274,13 +301,13 @@ def test_whoever_shows_is_told_of_each_new_snapshot_and_of_nothing_else() -> Non
     assert loop.fresh.is_set()
 
 
-@pytest.mark.parametrize(("busy", "seconds"), [(False, IDLE), (True, 4 * FRAME_INTERVAL)])
-def test_a_command_ends_a_long_sleep_and_is_obeyed_after_the_parameters(busy: bool, seconds: float) -> None:
+@pytest.mark.parametrize("seconds", [IDLE_INTERVAL, 4 * FRAME_INTERVAL])
+def test_a_command_ends_a_long_sleep_and_is_handled_after_the_parameters(seconds: float) -> None:
     given = Params()
-    loop, scene = make(read_params=lambda: given)
+    loop, scene = make(read_params=lambda: (given, 0))
     stop = threading.Event()
     threading.Timer(0.1, lambda: loop.commands.put(Reset())).start()
-    loop.wait(1000.0 * seconds, stop, busy)
+    loop.wait(1000.0 * seconds, stop)
     assert loop.first == Reset()
     assert scene.resets == 0
     given = Params(stiffness=3.0)
@@ -291,3 +318,85 @@ def test_a_command_ends_a_long_sleep_and_is_obeyed_after_the_parameters(busy: bo
     assert scene.resets == 1
     loop.tick(FRAME_INTERVAL)
     assert scene.resets == 1
+
+
+def test_a_change_of_look_touches_neither_forces_nor_start() -> None:
+    values = Params()
+    loop, scene = make(read_params=lambda: (values, 0))
+    loop.tick(FRAME_INTERVAL)
+    values = Params(grid=False, speed=2.0)
+    loop.tick(FRAME_INTERVAL)
+    assert scene.params == values
+    assert (scene.changes, scene.resets) == (0, 0)
+    values = Params(grid=False, speed=2.0, stiffness=3.0)
+    loop.tick(FRAME_INTERVAL)
+    assert (scene.changes, scene.resets) == (1, 0)
+    values = Params(points=5)
+    loop.tick(FRAME_INTERVAL)
+    assert (scene.changes, scene.starts) == (1, [values])
+
+
+def test_a_preset_is_one_command_and_starts_from_exactly_its_record() -> None:
+    """Whenever the thread that sets it is interrupted: the record without its command, or the command after others."""
+    state = Params(), 0
+    loop, scene = make(read_params=lambda: state)
+    loop.tick(FRAME_INTERVAL)
+    preset = Params(stiffness=5.0, points=7)
+    state = preset, 1  # set, but the command has not been put yet
+    loop.tick(FRAME_INTERVAL)
+    assert scene.params == Params()
+    loop.commands.put(Load(preset, 1))
+    state = Params(stiffness=6.0, points=7), 1  # and already changed by hand
+    loop.tick(FRAME_INTERVAL)
+    assert scene.starts == [preset]
+    loop.tick(FRAME_INTERVAL)
+    assert scene.params.stiffness == 6.0
+    assert scene.resets == 1
+
+
+def test_single_steps_are_counted_and_bounded_by_the_frames_budget() -> None:
+    loop, scene = make(paused=True)
+    for _ in range(5):
+        loop.commands.put(StepOnce())
+    loop.tick(FRAME_INTERVAL)
+    assert loop.counts["steps"] == 5
+    scene.cost = SOLVE_SHARE * FRAME_INTERVAL / 3
+    for _ in range(20_000):
+        loop.commands.put(StepOnce())
+    before = scene.clock.now
+    loop.tick(FRAME_INTERVAL)
+    assert scene.clock.now - before <= FRAME_INTERVAL
+    loop.tick(FRAME_INTERVAL)
+    assert loop.counts["steps"] == 5 + 4  # and none is owed
+
+
+def test_no_plot_row_is_lost_where_nobody_takes_the_snapshots() -> None:
+    loop, scene = make()
+    scene.take_plot_rows = lambda: ((scene.time, 1.0),)
+    loop.plot_rows.clear()
+    for _ in range(30):
+        loop.tick(FRAME_INTERVAL)
+    assert [row[0] for row in loop.plot_rows] == pytest.approx([FRAME_INTERVAL * k for k in range(1, 31)], abs=0.011)
+
+
+def test_a_scene_that_fails_outside_its_guard_halts_the_run_and_the_thread_lives(
+    capsys: pytest.CaptureFixture,
+) -> None:
+    loop, _ = make()
+    stop = threading.Event()
+    read, faults = loop.read_params, [ZeroDivisionError("no such step")]
+
+    def fail_once() -> tuple[Params, int]:
+        if faults:
+            raise faults.pop()
+        return read()
+
+    loop.read_params = fail_once
+    thread = threading.Thread(target=loop.run, args=(stop,))
+    thread.start()
+    stop.wait(0.1)
+    assert thread.is_alive()
+    assert "no such step" in loop.halted
+    stop.set()
+    thread.join(5.0)
+    assert "no such step" in capsys.readouterr().err

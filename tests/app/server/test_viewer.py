@@ -39,8 +39,19 @@ def test_what_is_handed_over_is_not_held_back(lab: Viewer) -> None:
     assert buffer.window_duration_sec == 0.0
 
 
-def test_a_browser_that_goes_lets_go_of_what_it_held(lab: Viewer) -> None:
-    lab.commands.put(Grab(5, (0.0, 0.0, 2.0)))
+class Client:
+    """A browser, as viser's callbacks name it."""
+
+    def __init__(self, client_id: int) -> None:
+        self.client_id = client_id
+
+
+def test_a_browser_that_goes_lets_go_of_what_it_held_and_of_nothing_else(lab: Viewer) -> None:
+    lab.commands.put(Grab(5, (0.0, 0.0, 2.0), client=1))
     wait_for(lambda: lab.scene.held is not None)
-    talk(lab.let_go(None))  # type: ignore[arg-type]
+    talk(lab.on_disconnect(Client(2)))  # type: ignore[arg-type]
+    ticks = lab.loop.counts["ticks"]
+    wait_for(lambda: lab.loop.counts["ticks"] > ticks + 3)
+    assert lab.scene.held is not None
+    talk(lab.on_disconnect(Client(1)))  # type: ignore[arg-type]
     wait_for(lambda: lab.scene.held is None)

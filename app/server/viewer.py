@@ -24,6 +24,7 @@ HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
 SEND_WINDOW = (
     0.0  # [s] for which viser holds back what it has to send, by default 17 ms: flushing each picture costs more
 )
+MIN_SCENE_TIME = 0.3  # [s] for which a scene is shown before another is opened: long enough for its status line
 MAX_JOIN_TIME = 1.0  # [s] for which leaving a scene waits for each of its threads
 
 
@@ -147,6 +148,7 @@ class Viewer:
                     self.open(name)
             except Exception:
                 traceback.print_exc()
+            time.sleep(MIN_SCENE_TIME)
 
     def audience(self) -> int:
         """How many browsers look."""

@@ -56,7 +56,7 @@ class Hammer:
         self.queue = self.server.queue_message
         self.server.queue_message = self.look_through  # type: ignore[method-assign]
         self.viewer.open(name)
-        self.viewer.stop_threads(): from here on this one does their work
+        self.viewer.stop_threads()  # from here on this thread does their work
         self.viewer.loop.audience = lambda: 1
         self.viewer.attempt = lambda what, action, *arguments: action(*arguments)  # what goes wrong is to be seen
         self.longest = 0.0  # [s] of processor time in a frame

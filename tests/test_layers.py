@@ -8,18 +8,20 @@ from pathlib import Path
 
 import pytest
 
+from app.scenes import NAMES
+
 ROOT = Path(__file__).parent.parent
 SOURCES = sorted(path for top in ("sim", "app", "assets", "tests") for path in (ROOT / top).rglob("*.py"))
 # Folders of app/ from left to right: none imports a folder to its left. Those of one entry do not import each other.
 ORDER = (
     ("bench",),
     ("sweep", "stability"),
+    ("experiments",),
     ("commands",),
     ("server",),
     ("panel",),
     ("scenes",),
     ("render",),
-    ("experiments",),
     ("messages", "files"),
 )
 RANK = {folder: rank for rank, folders in enumerate(ORDER) for folder in folders}
@@ -133,21 +135,17 @@ def test_only_the_viewing_folders_and_the_drawings_import_viser():
     assert not offences(paths, "viser")
 
 
-def test_what_a_headless_run_imports_does_not_draw():
-    paths = [p for p in below("app/scenes") if not is_drawing(p) and p.name not in ("warmup.py", "__init__.py")]
-    paths += [ROOT / "app" / "commands" / "run.py", *below("app/sweep")]
-    assert not offences(paths, "app.server", "app.panel", "app.render", "viser")
-
-
-def test_a_headless_run_imports_no_viewer(tmp_path: Path):
+@pytest.mark.parametrize("scene", NAMES)
+def test_a_headless_run_imports_no_viewer(scene: str, tmp_path: Path):
     code = (
-        "import sys; from app.__main__ import main;"
-        f"main(['run', 'rope', '--seconds', '0.1', '--out', {str(tmp_path / 'x.npz')!r}]);"
-        "print(sorted(n for n in sys.modules if n.split('.')[0] == 'viser' or n.startswith(('app.render', 'app.panel'))"
-        " or n == 'app.server' or n.endswith('.view')))"
+        "import sys; from app.__main__ import main; from app.scenes import scene_named;"
+        f"status = main(['run', {scene!r}, '--seconds', '0.02', '--out', {str(tmp_path / 'x.npz')!r}]);"
+        "import app.sweep.case;"
+        "drawing = ('viser', 'app.render', 'app.panel', 'app.server');"
+        "print(status, sorted(n for n in sys.modules if n.startswith(drawing) or n.endswith('view')))"
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == "[]"
+    assert done.stdout.splitlines()[-1] == "0 []"
 
 
 def test_sim_knows_neither_viewer_nor_app_nor_threads():

@@ -1,6 +1,5 @@
 """Maps over step and stiffness of the real, nonlinear rope at rest: does a small disturbance grow, does it explode?"""
 
-import dataclasses
 import math
 from typing import Any, NamedTuple
 
@@ -30,16 +29,11 @@ class RopeMap(NamedTuple):
     theory: NDArray[np.float64]  # (rows,) [s] critical_step
 
 
-def with_stiffness(net: Net, stiffness: float) -> Net:
-    """The rope `net` with links of another stiffness [N/m]."""
-    return dataclasses.replace(net, families=tuple(f._replace(stiffness=stiffness) for f in net.families))
-
-
 def row(
     name: str, net: Net, stiffness: float, steps: NDArray[np.float64], most: int
 ) -> tuple[NDArray[np.int64], float, float]:
     """(outcomes at each step, the step at which disturbances begin to grow [s], critical_step [s])."""
-    record, net = INTEGRATORS[name], with_stiffness(net, stiffness)
+    record, net = INTEGRATORS[name], net.with_stiffness(stiffness)
     rest = find_rest_positions(net)
     state = State.at_rest(net)
     state.x[:] = rest

@@ -7,10 +7,9 @@ from sim.springs.cloth import cloth
 from sim.springs.integrators import Integrator, discover
 from sim.springs.net import Air, Contact, Grab, Net, PinPath
 from sim.springs.rope import lab_units, rope
+from sim.springs.simulate import Run, simulate
 
 INTEGRATORS: dict[str, Integrator] = discover()
-
-from sim.springs.simulate import Run, simulate  # noqa: E402  (it looks integrators up)
 
 __all__ = [
     "INTEGRATORS", "Air", "Contact", "Grab", "Integrator", "Net", "PinPath", "Run", "cloth", "lab_units", "rope",

@@ -10,7 +10,8 @@ from sim.springs.net import CLOTH, DAMPING_MODELS, Air, Contact, Family, Net, Ve
 from sim.validation import argument_error, check_choice, check_number, check_vector
 
 PIN_CHOICES = ("corners", "edge", "all corners", "rim", "free")
-MOST = 1024  # rows or columns
+MAX_ROWS = 1024  # and columns
+PLEATS = 4
 
 
 def held(hold: str, rows: int, cols: int) -> frozenset[tuple[int, int]]:
@@ -57,8 +58,8 @@ def cloth(
     Raises ValueError, naming the argument, its value and what is allowed.
     """
     for name, count in (("rows", rows), ("cols", cols)):
-        if not isinstance(count, int | np.integer) or isinstance(count, bool) or not 2 <= count <= MOST:
-            raise argument_error(name, count, f"a whole number from 2 to {MOST}")
+        if not isinstance(count, int | np.integer) or isinstance(count, bool) or not 2 <= count <= MAX_ROWS:
+            raise argument_error(name, count, f"a whole number from 2 to {MAX_ROWS}")
     check_number("width", width, 0, math.inf, "m", above=True)
     check_number("length", length, 0, math.inf, "m", above=True)
     check_number("density", density, 0, math.inf, "kg/m^2", above=True)
@@ -124,3 +125,21 @@ def vertical_cloth(net: Net) -> Net:
     """The same cloth hanging in the vertical plane below its first row instead of lying level."""
     x, y, z = net.x0
     return dataclasses.replace(net, x0=np.ascontiguousarray(np.stack([x, np.full_like(y, y[0, 0]), z - (y - y[0, 0])])))
+
+
+def pleated_cloth(net: Net, gather: float) -> Net:
+    """A vertical cloth on `gather` (0 to 1) of its width, in PLEATS sine waves that keep its width as arc length."""
+    x, y, z = net.x0
+    width = float(x[0, -1] - x[0, 0])
+    s = np.linspace(0.0, gather * width, 2001)
+    phase = 2.0 * math.pi * PLEATS * s / s[-1]
+    # Bisect for the amplitude at which the wave is as long as the cloth is wide.
+    low, high, amplitude, arc_length = 0.0, width, 0.0, s
+    for _ in range(50):
+        amplitude = 0.5 * (low + high)
+        arc_length = np.concatenate([[0.0], np.hypot(np.diff(s), np.diff(amplitude * np.sin(phase))).cumsum()])
+        low, high = (amplitude, high) if arc_length[-1] < width else (low, amplitude)
+    # Particles lie at equal arc lengths along the wave.
+    along = np.interp(np.linspace(0.0, arc_length[-1], x.shape[1]), arc_length, s)
+    out = amplitude * np.sin(2.0 * math.pi * PLEATS * along / s[-1])
+    return dataclasses.replace(net, x0=np.ascontiguousarray(np.stack([x[0, 0] + along + 0.0 * y, y + out, z])))

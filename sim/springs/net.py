@@ -188,6 +188,16 @@ class Net:
             w[i, j] = 0.0
         return w.ravel()
 
+    def with_stiffness(self, stiffness: float) -> "Net":
+        """The same net with all links scaled together, so that the stiffest have `stiffness` [N/m].
+
+        Where no link has any stiffness, all get this one.
+        """
+        stiffest = max((f.stiffness for f in self.families), default=0.0)
+        ratios = (f.stiffness / stiffest if stiffest > 0.0 else 1.0 for f in self.families)
+        families = (f._replace(stiffness=stiffness * r) for f, r in zip(self.families, ratios, strict=True))
+        return dataclasses.replace(self, families=tuple(families))
+
     def kernel_view(self, h: float) -> NetArrays:
         """The kernels' view of this net for steps of h [s]. Its arrays are shared, but for those the kernels fill."""
         view = self._unit_step_view._replace(stop_rate=1.0 / h)

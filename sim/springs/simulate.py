@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs.analysis.energy import energies
-from sim.springs.integrators import Integrator
+from sim.springs.analysis.extremes import DIVERGENCE_BOUND
+from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
-from sim.springs.state import DIVERGENCE_BOUND, State, advance, check_damping, energy, steps_for, velocities
-from sim.validation import argument_error, check_choice, check_number
+from sim.springs.state import State, advance, check_damping, energy, steps_for, velocities
+from sim.validation import argument_error, check_number
 
 CALM = 1e-3 * DIVERGENCE_BOUND  # [m]: a net within this has not yet been out of the sane bound
 STEP = 1 / 1200  # [s]
@@ -134,13 +135,6 @@ def marched(
             progress(frame + 1, len(t))
     diverged_at = None if filled == len(t) else float(stopped_at)
     return Run(t, per_point(net, xs.reshape(shape)), per_point(net, vs.reshape(shape)), ledger, evals, diverged_at)
-
-
-def integrator_named(name: str) -> Integrator:
-    """The registered integrator; raises ValueError with the names there are."""
-    from sim.springs import INTEGRATORS
-
-    return INTEGRATORS[check_choice("integrator", name, INTEGRATORS)]
 
 
 def first_insane_time(net: Net, state: State, integrator: Integrator, h: float, steps: int) -> float:

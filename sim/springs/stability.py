@@ -10,17 +10,15 @@ couple the modes: the step is then right to some per cent, except explicit Euler
 all modes and is a guide only.
 """
 
-import dataclasses
 import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.springs.integrators import Integrator
+from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos
 from sim.springs.net import Net, NetArrays
-from sim.springs.simulate import integrator_named
 from sim.springs.state import State
 from sim.validation import check_number
 
@@ -195,12 +193,11 @@ def critical_stiffness(
     check_number("h", h, 0, math.inf, "s", above=True)
     stiffest = max((f.stiffness for f in net.families), default=0.0)
     if stiffest == 0.0:
-        net = dataclasses.replace(net, families=tuple(f._replace(stiffness=1.0) for f in net.families))
-        stiffest, modes = 1.0, None
+        net, stiffest, modes = net.with_stiffness(1.0), 1.0, None
     scale = 1.0
     for _ in range(3):
         if modes is None:
-            modes = modes_at(scaled(net, scale), state)
+            modes = modes_at(net.with_stiffness(scale * stiffest), state)
         found = largest_scale(modes, record, h)
         scale *= found
         # Beside a contact the vectors change with the links' stiffness: once more from the new ones.
@@ -208,12 +205,6 @@ def critical_stiffness(
             break
         modes = None
     return scale * stiffest
-
-
-def scaled(net: Net, scale: float) -> Net:
-    """Every link `scale` times as stiff."""
-    families = tuple(f._replace(stiffness=scale * f.stiffness) for f in net.families)
-    return dataclasses.replace(net, families=families)
 
 
 def largest_scale(modes: list[Mode], integrator: Integrator, h: float) -> float:

@@ -8,13 +8,11 @@ from numpy.typing import NDArray
 
 from sim.jit import set_threads
 from sim.springs.analysis.energy import Energy, energies
-from sim.springs.analysis.extremes import extremes
+from sim.springs.analysis.extremes import DIVERGENCE_BOUND, extremes
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.integrators import Integrator
 from sim.springs.net import Net
 from sim.validation import argument_error
-
-DIVERGENCE_BOUND = 1e9  # [m]: a net that has left this bound has diverged, long before its numbers overflow
 
 
 @dataclasses.dataclass
@@ -42,7 +40,7 @@ class State:
     @property
     def is_bounded(self) -> bool:
         """False once anything is not finite or is out of any sane bound."""
-        return extremes(self.x, self.v).out < DIVERGENCE_BOUND
+        return extremes(self.x, self.v).max_coordinate < DIVERGENCE_BOUND
 
 
 def acceleration(net: Net, state: State, lag: float) -> NDArray[np.float64]:

@@ -2,8 +2,7 @@
 
 import math
 
-from app.messages import Vector
-from sim.springs import PinPath
+from sim.springs.net import PinPath, Vector
 
 RATE = 25.0  # [1/s]: what follows has done nine tenths of a jump after 0.16 s
 

@@ -11,15 +11,17 @@ from numpy.typing import NDArray
 from app.messages import DivergenceError, Grab, Place, Release, SceneCommand, Vector, WorkCounts
 from app.scenes.charts import PlotAxes
 from app.scenes.cloth.parameters import PRESETS, Params, hidden
-from app.scenes.cloth.start import build, resample, sphere_home
+from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, SceneKind
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.work_counts import SpringWorkCounts
 from sim.springs import INTEGRATORS, Air, Net, cloth, simulate
 from sim.springs import Grab as Pull
 from sim.springs.analysis.extremes import extremes
+from sim.springs.analysis.strain import structural_strain
 from sim.springs.integrator_fallback import integrator_or_fallback
 from sim.springs.net import PinPath
+from sim.springs.resampling import resample
 from sim.springs.stability import Gauge, gauge, gershgorin
 from sim.springs.state import State, advance, energy, velocities
 from sim.springs.tracking import CriticallyDampedTracker
@@ -181,7 +183,7 @@ class Scene:
 
         self.cores.advance(steps, take, large=self.params.rows * self.params.cols >= LARGE)
         self.counts.take(net, self.state.force_evals - good.force_evals, steps, with_account=self.params.plot_energy)
-        if not extremes(self.state.x, self.state.v).out < BOUND:  # nor is a NaN
+        if not extremes(self.state.x, self.state.v).max_coordinate < BOUND:  # nor is a NaN
             self.state = good
             raise DivergenceError(self.diagnosis())
         if self.integrator.implicit:
@@ -284,7 +286,8 @@ class Scene:
 
     def sample(self) -> None:
         e = energy(self.net, self.state)
-        row = (e.kinetic, e.elastic, e.gravity, e.contact, self.state.dissipated, 100.0 * float(self.strain().max()))
+        largest_strain = 100.0 * float(structural_strain(self.net, self.state.x).max())
+        row = (e.kinetic, e.elastic, e.gravity, e.contact, self.state.dissipated, largest_strain)
         self.samples.append((self.state.t, *row))
         self.sampled_at = self.state.t
 
@@ -295,19 +298,6 @@ class Scene:
     def readings(self) -> ClothReadings:
         return self.stability._replace(corrections=self.corrections, threads=self.cores.threads)
 
-    def strain(self) -> NDArray[np.float64]:
-        """(rows, cols) largest |strain| of the structural springs at each particle."""
-        found = np.zeros(self.net.shape)
-        for axis in (1, 0):
-            r = np.diff(self.state.x, axis=axis + 1)
-            rest = self.net.families[0 if axis == 1 else 1].rest
-            off = np.abs(np.sqrt(np.einsum("eij,eij->ij", r, r)) / rest - 1.0)
-            near = (slice(None), slice(None, -1)) if axis == 1 else (slice(None, -1), slice(None))
-            far = (slice(None), slice(1, None)) if axis == 1 else (slice(1, None), slice(None))
-            found[near] = np.maximum(found[near], off)
-            found[far] = np.maximum(found[far], off)
-        return found
-
     def frame(self) -> ClothFrame:
         params = self.params
         pull = None
@@ -317,7 +307,7 @@ class Scene:
             pull = PullShown(index, hand.position, min(1.0, reach * self.grip()[0] / params.pull))
         return ClothFrame(
             points=np.ascontiguousarray(np.moveaxis(self.state.x, 0, -1), dtype=np.float32),
-            strain=self.strain().astype(np.float32),
+            strain=structural_strain(self.net, self.state.x).astype(np.float32),
             full_strain=0.01 * params.full_strain,
             pins=None if params.pinned == "free" else (self.handles[0].target, self.handles[1].target),
             pole=params.start == "flag" and params.pinned in ("corners", "edge"),

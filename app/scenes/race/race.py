@@ -85,8 +85,7 @@ def step_of(params: Params, number: int, net: Net) -> float:
 
 def stiffened(net: Net, ratio: float) -> Net:
     """The net with links `ratio` times as stiff, at most STIFFEST."""
-    links = tuple(f._replace(stiffness=min(STIFFEST, ratio * f.stiffness)) for f in net.families)
-    return dataclasses.replace(net, families=links)
+    return net.with_stiffness(min(STIFFEST, ratio * net.families[0].stiffness))
 
 
 def tick_of(steps: list[float]) -> float:

@@ -21,6 +21,7 @@ from sim.springs import Grab as Pull
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.tension import rope_tension
 from sim.springs.integrator_fallback import integrator_or_fallback
+from sim.springs.resampling import resample
 from sim.springs.stability import Gauge, critical_stiffness, gauge, top_modes
 from sim.springs.state import State, advance, energy, velocities
 from sim.springs.tracking import CriticallyDampedTracker
@@ -79,12 +80,6 @@ class RopeReadings(NamedTuple):
     largest_stiffness: float  # in that parameter's unit
     note: str  # why another method runs than the one chosen, or ""
     paid: Paid | None  # of implicit methods
-
-
-def resample(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-    """(3, 1, n) along the rope, at `count` points instead."""
-    old, new = np.linspace(0.0, 1.0, values.shape[2]), np.linspace(0.0, 1.0, count)
-    return np.ascontiguousarray([[np.interp(new, old, row[0])] for row in values])
 
 
 UNDAMPED = rope(4, damping=0.0, drag=0.0)
@@ -181,8 +176,8 @@ class Scene:
             return
         self.net = build(params, self.root.position, self.sphere.position)
         if params.points != old.points:
-            self.state.x = resample(self.state.x, params.points)
-            self.state.v = resample(self.state.v, params.points)
+            self.state.x = resample(self.state.x, 1, params.points)
+            self.state.v = resample(self.state.v, 1, params.points)
             self.held = None
         self.start_ledger()
         if self.race:

@@ -1,4 +1,4 @@
-"""How far and how fast the particles of a net are: what a scene asks after every frame."""
+"""How far and how fast the particles of a net are: the check that a motion has not diverged."""
 
 from typing import NamedTuple
 
@@ -7,27 +7,31 @@ from numpy.typing import NDArray
 
 from sim.jit import kernel
 
+DIVERGENCE_BOUND = 1e9  # [m]: a net that has left this bound has diverged, long before its numbers overflow
+
 
 class Extremes(NamedTuple):
-    """NaN, all three, where a position or a velocity is not finite: every comparison with it then fails."""
+    """Largest values of a state. All three are NaN where a number is not finite: every comparison then fails."""
 
-    out: float  # [m] largest |x|, |y| or |z|
+    max_coordinate: float  # [m] largest |x|, |y| or |z|
     reach: float  # [m] largest distance from the first particle along an axis
     speed: float  # [m/s] largest |vx|, |vy| or |vz|
 
 
 @kernel(allocates=False)
-def largest(x, v, n):
-    """The fields of `Extremes` of flat positions and velocities (3 n,)."""
-    out, reach, speed, nothing = 0.0, 0.0, 0.0, 0.0
+def find_extremes(x, v, n):
+    """The fields of `Extremes`, of flat positions and velocities (3 n,)."""
+    max_coordinate, reach, speed, nan_or_zero = 0.0, 0.0, 0.0, 0.0
     for e in range(3):
         first = x[e * n]
         for j in range(e * n, (e + 1) * n):
-            out, reach, speed = max(out, abs(x[j])), max(reach, abs(x[j] - first)), max(speed, abs(v[j]))
-            nothing += 0.0 * x[j] + 0.0 * v[j]  # NaN from the first number on that is not finite
-    return out + nothing, reach + nothing, speed + nothing
+            max_coordinate = max(max_coordinate, abs(x[j]))
+            reach, speed = max(reach, abs(x[j] - first)), max(speed, abs(v[j]))
+            # `max` ignores a NaN. This sum stays 0, and becomes NaN at the first number that is not finite.
+            nan_or_zero += 0.0 * x[j] + 0.0 * v[j]
+    return max_coordinate + nan_or_zero, reach + nan_or_zero, speed + nan_or_zero
 
 
 def extremes(x: NDArray[np.float64], v: NDArray[np.float64]) -> Extremes:
-    """Of positions [m] and velocities [m/s], both (3, rows, cols)."""
-    return Extremes(*largest(x.reshape(-1), v.reshape(-1), x.size // 3))
+    """Extremes of positions [m] and velocities [m/s], both (3, rows, cols)."""
+    return Extremes(*find_extremes(x.reshape(-1), v.reshape(-1), x.size // 3))

@@ -11,10 +11,13 @@ To add one, write a module in this folder with
 3. `RECORD = Integrator(...)`, which declares what the tests then check.
 """
 
+import functools
 import importlib
 import pkgutil
 from collections.abc import Callable
 from typing import Any, NamedTuple
+
+from sim.validation import check_choice
 
 
 class Integrator(NamedTuple):
@@ -42,11 +45,18 @@ class Integrator(NamedTuple):
         return self.march is not None
 
 
+@functools.cache
 def discover() -> dict[str, Integrator]:
-    """Every RECORD in this folder, the simplest methods first."""
+    """Every RECORD in this folder by name, the simplest methods first: the one dict that `sim.springs` publishes."""
     records: list[Any] = [
         importlib.import_module(f"{__name__}.{module.name}").RECORD
         for module in pkgutil.iter_modules(__path__)
         if not module.ispkg
     ]
     return {r.name: r for r in sorted(records, key=lambda r: (r.order, r.evals, r.symplectic, r.name))}
+
+
+def integrator_named(name: str) -> Integrator:
+    """The record of that name. Raises ValueError with the names there are."""
+    records = discover()
+    return records[check_choice("integrator", name, records)]

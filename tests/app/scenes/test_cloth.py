@@ -9,7 +9,6 @@ from app.messages import DivergenceError, Grab, Place, Release
 from app.panel.panel import status_line
 from app.scenes.cloth.parameters import PRESETS, Params, hidden
 from app.scenes.cloth.scene import TOP_SPEED, Scene
-from app.scenes.cloth.start import resample
 from app.scenes.cloth.view import faces, marks, readout
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
@@ -119,8 +118,6 @@ def test_a_new_grid_keeps_the_shape():
     scene.set_params(dataclasses.replace(SMALL, rows=19, cols=28))
     assert scene.state.x[:, ::2, ::3] == pytest.approx(old, abs=1e-12)
     run(scene, 0.2)
-    plane = np.random.default_rng(0).random((3, 6, 5))
-    assert (resample(plane, 6, 5) == plane).all()
 
 
 def test_an_explosion_keeps_the_last_good_state_and_names_a_step_that_holds():

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from sim.springs import INTEGRATORS, Air, Contact, cloth, rope, simulate
-from sim.springs.cloth import PIN_CHOICES, vertical_cloth
+from sim.springs.analysis.strain import structural_strain
+from sim.springs.cloth import PIN_CHOICES, pleated_cloth, vertical_cloth
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.forces.self_contact import find_pairs
 from sim.springs.net import CLOTH, SKIN
@@ -53,6 +54,14 @@ def test_the_default_is_a_square_metre_held_at_two_corners():
     assert net.mass * 32 * 32 == pytest.approx(1.0)
     assert [family[:2] for family in net.families] == CLOTH
     assert np.abs(forces_of(dataclasses.replace(net, gravity=(0.0, 0.0, 0.0)))).max() < 1e-9
+
+
+@pytest.mark.parametrize("gather", [0.5, 0.9])
+def test_pleats_narrow_a_cloth_without_stretching_it(gather):
+    net = pleated_cloth(vertical_cloth(cloth(5, 200, pinned="edge")), gather)
+    assert np.ptp(net.x0[0]) == pytest.approx(gather, rel=1e-12)
+    # The sine wave between two particles is a little longer than their distance.
+    assert structural_strain(net, net.x0).max() < 0.01
 
 
 @pytest.mark.parametrize("hold", PIN_CHOICES)

@@ -16,7 +16,7 @@ def some(points: int) -> State:
 def test_they_are_what_numpy_finds(points: int) -> None:
     state = some(points)
     found = extremes(state.x, state.v)
-    assert found.out == np.abs(state.x).max()
+    assert found.max_coordinate == np.abs(state.x).max()
     assert found.reach == np.abs(state.x - state.x[:, :, :1]).max()
     assert found.speed == np.abs(state.v).max()
 

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.springs import Contact, lab_units, rope
+from sim.springs import Contact, cloth, lab_units, rope
 from sim.springs.statics import hanging_chain
 
 NOT_NUMBERS = [math.nan, math.inf, -math.inf, True, "1", None, [1.0], 10**400, 1j]
@@ -72,6 +72,15 @@ def test_a_rope_of_two_ends_is_straight_between_them():
 
 def test_one_point_is_a_rope():
     assert rope(1).x0.tolist() == [[[0.0]], [[0.0]], [[0.0]]]
+
+
+def test_with_stiffness_scales_all_families_so_that_the_stiffest_has_the_value():
+    net = cloth(4, 4, stiffness=800.0, shear=400.0, bend=100.0)
+    assert [f.stiffness for f in net.with_stiffness(80.0).families] == [80.0, 80.0, 40.0, 40.0, 10.0, 10.0]
+    assert [f[:3] for f in net.with_stiffness(80.0).families] == [f[:3] for f in net.families]
+    assert rope().with_stiffness(0.1).families[0].stiffness == 0.1
+    slack = cloth(4, 4, stiffness=0.0, shear=0.0, bend=0.0)
+    assert [f.stiffness for f in slack.with_stiffness(5.0).families] == [5.0] * 6
 
 
 def test_numpy_numbers_are_numbers():

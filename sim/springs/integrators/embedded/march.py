@@ -8,10 +8,10 @@ and accelerations at both ends, of the order of the method; order 8, or a ledger
 import numpy as np
 
 from sim.jit import kernel
+from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.forces.acceleration import accelerate, set_pins
 from sim.springs.integrators.embedded.errors import error_of
 from sim.springs.integrators.embedded.stages import accept, make_stages, take_step
-from sim.springs.state import DIVERGENCE_BOUND
 
 SAFETY = 0.9
 NOW, BEFORE = 0.7, 0.4  # exponents of this step's error and the last one's (Gustafsson's PI), over the order

@@ -1,0 +1,25 @@
+"""How far the links of a cloth are stretched or pressed."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.springs.net import Net
+
+
+def structural_strain(net: Net, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(rows, cols) largest |length / rest length - 1| of the links to the nearest neighbours of each particle.
+
+    net: a cloth, whose first two families are the links along a row and along a column. x: (3, rows, cols) [m].
+    """
+    strain = np.zeros(net.shape)
+    along_row, along_column = net.families[:2]
+    every, first, last = slice(None), slice(None, -1), slice(1, None)
+    for axis, family, start, end in (
+        (2, along_row, (every, first), (every, last)),
+        (1, along_column, (first, every), (last, every)),
+    ):
+        r = np.diff(x, axis=axis)
+        of_link = np.abs(np.sqrt(np.einsum("eij,eij->ij", r, r)) / family.rest - 1.0)
+        strain[start] = np.maximum(strain[start], of_link)
+        strain[end] = np.maximum(strain[end], of_link)
+    return strain

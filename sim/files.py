@@ -2,14 +2,14 @@
 
 import contextlib
 import os
-import threading
+import secrets
 from collections.abc import Iterator
 from pathlib import Path
 
 
 def draft_of(path: Path) -> Path:
     """The name that a file is first written to: no other thread or process of this machine uses it."""
-    return path.with_name(f".{path.stem}.{threading.get_native_id()}{path.suffix}")
+    return path.with_name(f".{path.stem}.{os.getpid()}-{secrets.token_hex(4)}{path.suffix}")
 
 
 @contextlib.contextmanager

@@ -1,12 +1,15 @@
 """What the viewer's threads live through."""
 
 import dataclasses
+import threading
 import time
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from app.messages import Grab, StepOnce
+from app.scenes import scene_named
 from app.server.viewer import Viewer
 from tests.app.server.test_guard import talk
 
@@ -55,3 +58,93 @@ def test_a_browser_that_goes_lets_go_of_what_it_held_and_of_nothing_else(lab: Vi
     assert lab.scene.held is not None
     talk(lab.on_disconnect(Client(1)))  # type: ignore[arg-type]
     wait_for(lambda: lab.scene.held is None)
+
+
+def panel_text(viewer: Viewer) -> str:
+    """All HTML in the panel."""
+    messages = viewer.server._websock_server.get_message_buffer().message_from_id.values()
+    return " ".join(str(getattr(getattr(message, "props", None), "content", "")) for message in messages)
+
+
+@pytest.mark.parametrize("where", ["scene", "view", "first frame"])
+def test_a_scene_that_cannot_be_opened_leaves_a_page_that_says_why_and_offers_the_others(
+    lab: Viewer, monkeypatch: pytest.MonkeyPatch, where: str
+) -> None:
+    def fail(*_: Any) -> Any:
+        raise MemoryError("no room for a cloth")
+
+    kind = scene_named("cloth")
+    if where == "scene":
+        monkeypatch.setattr("app.server.viewer.scene_named", lambda name: replace(kind, make=fail))
+    elif where == "view":
+        monkeypatch.setattr("app.server.viewer.view_named", lambda name: fail)
+    else:
+        monkeypatch.setattr(type(kind.make(kind.params())), "frame", fail)
+    with pytest.raises(MemoryError):
+        lab.open("cloth")
+    assert lab.threads == []
+    assert "cloth could not be opened" in panel_text(lab)
+    assert "no room for a cloth" in panel_text(lab)
+    monkeypatch.undo()
+    lab.choose("rope")
+    wait_for(lambda: lab.panel is not None and lab.panel.kind.name == "rope" and lab.shown > 0)
+
+
+def test_a_scene_comes_back_with_the_parameters_it_was_first_opened_with(lab: Viewer) -> None:
+    params = scene_named("cloth").params(stiffness=321.0)
+    lab.open("cloth", params)
+    lab.open("rope")
+    lab.open("cloth")
+    assert lab.panel.params is params
+
+
+def test_of_several_scenes_asked_for_only_the_last_is_opened(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened: list[str] = []
+    make = lab.make
+    monkeypatch.setattr(lab, "make", lambda name, *rest: (opened.append(name), make(name, *rest)))
+    with lab.changing:  # whatever is asked for while a scene is being opened
+        for name in ("cloth", "square_sea", "rope") * 100 + ("cloth",):
+            lab.wanted.put(name)
+        time.sleep(0.05)
+    wait_for(lambda: lab.panel is not None and lab.panel.kind.name == "cloth" and lab.wanted.empty())
+    assert len(opened) <= 2
+
+
+def test_ending_does_not_wait_for_a_long_solve(monkeypatch: pytest.MonkeyPatch) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("rope")
+    viewer.loop.audience = lambda: 1
+    solving = threading.Event()
+    monkeypatch.setattr(viewer.scene, "advance", lambda steps: (solving.set(), time.sleep(4.0)))
+    assert solving.wait(10.0)
+    start = time.monotonic()
+    viewer.shut()
+    assert time.monotonic() - start < 3.0
+
+
+def test_a_long_solve_is_said_in_the_status(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lab.scene, "advance", lambda steps: time.sleep(2.0))
+    lab.loop.audience = lambda: 1
+    wait_for(lambda: "this step has taken" in lab.panel.status.content)
+
+
+def test_a_thousand_presets_under_load_each_start_on_exactly_their_own_record(lab: Viewer) -> None:
+    """Presets and sliders at once, as fast as they can be put, while the simulation runs."""
+    lab.loop.audience = lambda: 1
+    starts: list[Any] = []
+    reset = lab.scene.reset
+    lab.scene.reset = lambda: (starts.append(lab.scene.params), reset())
+    presets = list(lab.panel.kind.presets)
+    records = []
+    for number in range(1000):
+        lab.panel.load(presets[number % len(presets)])
+        records.append(lab.panel.params)
+        lab.panel.on_change("gravity", 1.0 + number % 7)  # a hand on a slider right after
+        if number % 10 == 0:
+            time.sleep(0.005)
+    allowed = {id(record) for record in records}
+    wait_for(lambda: lab.loop.loaded == 1000)
+    wait_for(lambda: lab.scene.params == lab.panel.params)
+    assert len(starts) > 20
+    assert all(id(params) in allowed for params in starts)
+    assert starts[-1] is records[-1]

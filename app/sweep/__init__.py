@@ -1,6 +1,6 @@
 """`springtide sweep`: many runs of a scene over its parameters, on all cores or a Dask cluster, into one NetCDF file.
 
-    scene = "rope"                                # rope, phillips, radial, cloth
+    scene = "rope"                                # rope, race, cloth, square_sea, radial_sea
     seconds = 10.0                                # simulated time of each run
     frames = 1                                    # times measured: 1 is the end alone, n are equally spaced from 0
     preset = "Stiff rope"                         # optional: one of the scene's presets, as a start

@@ -1,50 +1,54 @@
-"""`springtide sweep`: check everything, run what is not finished yet, write the results whole."""
+"""`springtide sweep`: check everything, run the cases that are not finished yet, write the results whole."""
 
 import contextlib
 import importlib.util
-from collections.abc import Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
+from app.experiments.pool import progress_bar
 from app.files import check_out_file
 from app.sweep.case import DIVERGED, ENDS, FAILED, Outcome
 from app.sweep.spec import Spec, read_spec
 from sim.files import replacing
 from sim.validation import argument_error
 
-NEEDED = ("xarray", "netCDF4", "matplotlib")
+REQUIRED_PACKAGES = ("xarray", "netCDF4")
+
+Outcomes = Generator[tuple[int, Outcome], None, None]  # the number and the outcome of each case, as it is finished
+Run = Callable[[dict[int, Any]], Outcomes]  # takes jobs by number
 
 
 def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bool = False) -> int:
-    """Run the sweep that a spec describes into `out`; returns 0, or 1 where cases failed.
+    """Run the sweep that a spec describes and write `out`; returns 0, or 1 where cases failed.
 
-    Raises ValueError for what is not allowed, before any work; OSError for what goes wrong on the way.
+    Raises ValueError for what is not allowed, before any work and before any file is made or removed; OSError for what
+    goes wrong later.
     """
     spec = read_spec(spec_path)
     if out.suffix != ".nc":
         raise argument_error("--out", str(out), "a name that ends in .nc")
     check_out_file("--out", out, f"{out.name}.cases-journal")
-    for package in (*NEEDED, *(("distributed",) if scheduler else ())):
+    for package in (*REQUIRED_PACKAGES, *(("distributed",) if scheduler is not None else ())):
         if importlib.util.find_spec(package) is None:
             raise ValueError(f"sweep: {package} is not installed (pip install 'springtide[sweep]')")
     from app.sweep.results import identity, identity_in, to_dataset, write
-    from app.sweep.store import Store, refuse_other, remove
+    from app.sweep.store import Store, check_same_sweep, remove
 
-    kept = out.with_name(f"{out.name}.cases")
-    if fresh:
-        remove(kept)
-    elif out.exists() and not kept.exists():
+    stored = out.with_name(f"{out.name}.cases")
+    if not fresh and out.exists() and not stored.exists():
         before = identity_in(out)
         if before is None:
             raise argument_error("--out", str(out), "a new name, or --fresh to replace what is there")
-        refuse_other(out, before, identity(spec))
+        check_same_sweep(out, before, identity(spec))
         print(f"{out}: all {len(spec.cases)} cases are there; --fresh runs them again")
         return 0
-    store = Store(kept, identity(spec))
-    with contextlib.closing(store):
-        outcomes = run_missing(spec, store, scheduler)
+    with contextlib.ExitStack() as stack:
+        run = stack.enter_context(runner(spec, scheduler))
+        if fresh:
+            remove(stored)
+        store = stack.enter_context(contextlib.closing(Store(stored, identity(spec))))
+        outcomes = run_missing(spec, store, run)
         dataset = to_dataset(spec, outcomes)
         write(dataset, out)
         figures = write_figures(dataset, out)
@@ -53,9 +57,27 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
     return 1 if any(outcome.end == FAILED for outcome in outcomes.values()) else 0
 
 
-def run_missing(spec: Spec, store: Any, scheduler: str | None) -> dict[int, Outcome]:
-    """Run and keep what is not kept yet; returns every case's outcome."""
-    outcomes = store.cases()
+@contextlib.contextmanager
+def runner(spec: Spec, scheduler: str | None) -> Iterator[Run]:
+    """The function that runs jobs: on the cluster with this scheduler, or on all cores of this machine."""
+    from app.sweep import workers
+
+    if scheduler is not None:
+        with workers.connected(scheduler) as client:
+            yield lambda jobs: workers.on_cluster(client, jobs)
+        return
+    from app.scenes.warmup import prepare
+
+    def run(jobs: dict[int, Any]) -> Outcomes:
+        prepare(spec.scene, drawn=False)  # compiled here once, and not in every worker
+        return workers.on_cores(jobs)
+
+    yield run
+
+
+def run_missing(spec: Spec, store: Any, run: Run) -> dict[int, Outcome]:
+    """Run and store the cases that are not stored yet; returns every case's outcome."""
+    outcomes: dict[int, Outcome] = store.outcomes
     total = len(spec.cases)
     jobs = {
         number: (spec.scene, {**spec.fixed, **values}, spec.times)
@@ -64,40 +86,25 @@ def run_missing(spec: Spec, store: Any, scheduler: str | None) -> dict[int, Outc
     }
     if outcomes:
         print(f"{len(outcomes)} of {total} cases are kept from before")
+    if not jobs:
+        return outcomes
     try:
-        with progress_bar(spec.scene, total, len(outcomes)) as advance:
-            if not jobs:
-                return outcomes
-            with contextlib.closing(runner(spec, jobs, scheduler)) as results:
-                for number, outcome in results:
-                    store.add(number, outcome)
-                    outcomes[number] = outcome
-                    advance(outcome)
+        with counting_bar(spec.scene, total, len(outcomes)) as advance, contextlib.closing(run(jobs)) as results:
+            for number, outcome in results:
+                store.add(number, outcome)
+                outcomes[number] = outcome
+                advance(outcome)
     except KeyboardInterrupt:
         print(f"stopped: {len(outcomes)} of {total} cases are kept in {store.path}; the same command goes on")
         raise
     return outcomes
 
 
-def runner(spec: Spec, jobs: dict[int, Any], scheduler: str | None) -> Any:
-    """The generator of outcomes."""
-    from app.sweep.workers import on_cluster, on_cores
-
-    if scheduler is not None:
-        return on_cluster(scheduler, jobs)
-    from app.scenes.warmup import prepare
-
-    # Once here rather than once in each worker.
-    prepare(spec.scene, drawn=False)
-    return on_cores(jobs)
-
-
 @contextlib.contextmanager
-def progress_bar(name: str, total: int, done: int) -> Iterator[Any]:
-    """A bar of cases; yields what is to be called with each outcome."""
-    columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+def counting_bar(name: str, total: int, done: int) -> Iterator[Callable[[Outcome], None]]:
+    """A progress bar of cases; yields the function to call with each outcome."""
     counts: dict[str, int] = dict.fromkeys(ENDS, 0)
-    with Progress(*columns, transient=True) as progress:
+    with progress_bar() as progress:
         task = progress.add_task(name, total=total, completed=done)
 
         def advance(outcome: Outcome) -> None:
@@ -109,10 +116,14 @@ def progress_bar(name: str, total: int, done: int) -> Iterator[Any]:
 
 
 def write_figures(dataset: Any, out: Path) -> list[Path]:
-    """The figure beside the results, as PNG and as SVG."""
+    """Write the figure beside the results, as PNG and as SVG; returns their paths, none without matplotlib."""
     from app.sweep.figure import draw
 
-    figure = draw(dataset)
+    try:
+        figure = draw(dataset)
+    except ModuleNotFoundError as missing:
+        print(f"no figure: {missing.name} is not installed (pip install 'springtide[plot]')")
+        return []
     paths = [out.with_suffix(suffix) for suffix in (".png", ".svg")]
     for path in paths:
         with replacing(path) as draft:
@@ -121,10 +132,11 @@ def write_figures(dataset: Any, out: Path) -> list[Path]:
 
 
 def report(out: Path, figures: list[Path], dataset: Any, outcomes: dict[int, Outcome]) -> None:
+    """Print what was written, and why the first failed case failed."""
     ends = [outcome.end for outcome in outcomes.values()]
     counted = ", ".join(f"{ends.count(end)} {end}" for end in ENDS if end in ends)
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
-    print(f"{out}: {len(ends)} cases ({counted}) over {sizes}; {', '.join(path.name for path in figures)}")
+    print(f"{out}: {len(ends)} cases ({counted}) over {sizes}" + "".join(f", {path.name}" for path in figures))
     first = next((outcome.message for outcome in outcomes.values() if outcome.end == FAILED), "")
     if first:
         print(f"The first that failed: {first}")

@@ -12,7 +12,7 @@ import numpy as np
 
 from sim.parameters import Parameter
 
-MOST_CASES = 100_000
+MAX_CASES = 100_000
 
 
 class Listed(NamedTuple):

@@ -22,7 +22,7 @@ def to_dataset(spec: Spec, outcomes: dict[int, Outcome]) -> Any:
     """An `xarray.Dataset` of all cases: dimensions are the swept parameters of a grid, or `case`, and time if any."""
     import xarray as xr
 
-    known = parameters_of(spec.module.params)
+    known = parameters_of(spec.kind.params)
     ordered = [outcomes[index] for index in range(len(spec.cases))]
     shape = tuple(len(values) for values in spec.swept.values()) if spec.design == "grid" else (len(ordered),)
     dims = tuple(spec.swept) if spec.design == "grid" else ("case",)
@@ -68,9 +68,7 @@ def to_dataset(spec: Spec, outcomes: dict[int, Outcome]) -> Any:
 
 def about(spec: Spec) -> dict[str, Any]:
     """The attributes of the file: what would make it again."""
-    fixed = {
-        name: getattr(spec.params(0), name) for name in parameters_of(spec.module.params) if name not in spec.swept
-    }
+    fixed = {name: getattr(spec.params(0), name) for name in parameters_of(spec.kind.params) if name not in spec.swept}
     versions = ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in PACKAGES)])
     return {
         "title": f"Springtide sweep of the scene {spec.scene} over {', '.join(spec.swept)}",

@@ -1,7 +1,10 @@
-"""`Spec`: what a sweep is to do, read from TOML and checked whole before any work."""
+"""`Spec`: what a sweep is to do, read from TOML and checked completely before any work.
+
+The checks are written here and not declared as types for msgspec or pydantic: what is allowed depends on the scene that
+the spec names, and an error is to name the value and the range with its unit, which those libraries' errors do not.
+"""
 
 import dataclasses
-import math
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -10,20 +13,22 @@ import numpy as np
 
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import SceneKind
-from app.sweep.design import MOST_CASES, Axis, Listed, Range, grid, grid_values, hypercube, size
-from sim.parameters import Parameter, check_record, check_value, parameters_of
-from sim.validation import argument_error
+from app.scenes.preset_files import read_preset
+from app.sweep.design import MAX_CASES, Axis, Listed, Range, grid, grid_values, hypercube, size
+from sim.parameters import Parameter, check_record, check_value, parameters_of, unknown_parameter
+from sim.validation import argument_error, check_choice, check_number, is_whole_number
 
+DESIGNS = ("grid", "random")
 KEYS = ("scene", "seconds", "frames", "preset", "design", "cases", "seed", "set", "parameters")
 RANGE = "{ from = LOW, to = HIGH, count = N, log = true } or a list of values, such as [1, 2]"
-MOST_SECONDS = 1e5  # [s]
-MOST_FRAMES = 10_000
-MOST_NUMBERS = 10_000_000  # cases times frames
+MAX_DURATION = 1e5  # [s] of simulated time
+MAX_FRAMES = 10_000
+MAX_FRAMES_IN_ALL = 10_000_000  # cases times frames
 
 
 @dataclasses.dataclass(frozen=True)
 class Spec:
-    """A sweep that can be run."""
+    """A sweep, checked."""
 
     scene: str
     seconds: float  # [s]
@@ -41,15 +46,16 @@ class Spec:
         return (self.seconds,) if self.frames == 1 else tuple(np.linspace(0.0, self.seconds, self.frames).tolist())
 
     @property
-    def module(self) -> SceneKind[Any, Any, Any]:
+    def kind(self) -> SceneKind[Any, Any, Any]:
+        """The scene that is swept."""
         return scene_named(self.scene)
 
     def params(self, index: int) -> Any:
         """The scene's parameters in case `index`."""
-        return check_record(self.module.params, {**self.fixed, **self.cases[index]})
+        return check_record(self.kind.params, {**self.fixed, **self.cases[index]})
 
     def identity(self) -> dict[str, Any]:
-        """All that decides the results, as JSON would have it."""
+        """All that decides the results, as it is written in JSON."""
         names = ("scene", "seconds", "frames", "design", "seed", "fixed")
         return {name: getattr(self, name) for name in names} | {
             "parameters": {k: list(v) for k, v in self.swept.items()}
@@ -65,11 +71,11 @@ def read_spec(path: Path) -> Spec:
         raise argument_error("SPEC", str(path), f"a file that can be read ({error.strerror})") from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"SPEC: {path} is not TOML ({error})") from None
-    return make_spec(content, text)
+    return make_spec(content, text, path.parent)
 
 
-def make_spec(content: dict[str, Any], text: str = "") -> Spec:
-    """Check what was read. Raises ValueError."""
+def make_spec(content: dict[str, Any], text: str = "", folder: Path | None = None) -> Spec:
+    """Check what was read from a file in `folder`. Raises ValueError."""
     for key in content:
         if key not in KEYS:
             raise ValueError(f"{key}: no such key of a spec; the keys are {', '.join(KEYS)}")
@@ -77,23 +83,19 @@ def make_spec(content: dict[str, Any], text: str = "") -> Spec:
         if key not in content:
             raise ValueError(f"{key}: missing; a spec has scene, seconds and [parameters]")
     name = content["scene"]
-    if not isinstance(name, str) or name not in NAMES:
-        raise argument_error("scene", name, "one of " + ", ".join(NAMES))
-    scene = scene_named(name)
+    scene = scene_named(name if isinstance(name, str) else check_choice("scene", name, NAMES))
     known = parameters_of(scene.params)
-    seconds = number(content, "seconds", math.nan, 0.0, MOST_SECONDS, "s", above=True)
-    frames = whole(content, "frames", 1, 1, MOST_FRAMES)
-    design = content.get("design", "grid")
-    if design not in ("grid", "random"):
-        raise argument_error("design", design, "grid or random")
+    seconds = check_number("seconds", content["seconds"], 0.0, MAX_DURATION, "s", above=True)
+    frames = whole(content, "frames", 1, 1, MAX_FRAMES)
+    design = check_choice("design", content.get("design", "grid"), DESIGNS)
     swept = table(content, "parameters")
     if not swept:
         raise ValueError("parameters: empty; name at least one parameter to sweep")
-    fixed = fixed_parameters(scene, content)
+    fixed = fixed_parameters(scene, content, folder)
     axes: dict[str, Axis] = {}
     for parameter_name, given in swept.items():
         if parameter_name not in known:
-            raise ValueError(f"{parameter_name}: no such parameter; the parameters are {', '.join(known)}")
+            raise unknown_parameter(parameter_name, known)
         if parameter_name in table(content, "set"):
             raise ValueError(f"{parameter_name}: both in [set] and in [parameters]; name it once")
         axes[parameter_name] = read_axis(parameter_name, known[parameter_name], given, design)
@@ -102,43 +104,44 @@ def make_spec(content: dict[str, Any], text: str = "") -> Spec:
         if "cases" not in content:
             raise ValueError("cases: missing; a random design says how many")
         seed = whole(content, "seed", 0, 0, 2**32 - 1)
-        cases = hypercube(axes, known, whole(content, "cases", 0, 1, MOST_CASES), seed)
+        cases = hypercube(axes, known, whole(content, "cases", 0, 1, MAX_CASES), seed)
         values = {k: tuple(case[k] for case in cases) for k in axes}
     else:
         for key in ("cases", "seed"):
             if key in content:
                 raise ValueError(f"{key}: belongs to a random design; this one is a grid")
-        if size(axes) > MOST_CASES:
-            raise argument_error("parameters", f"{size(axes)} cases", f"at most {MOST_CASES}")
+        if size(axes) > MAX_CASES:
+            raise argument_error("parameters", f"{size(axes)} cases", f"at most {MAX_CASES}")
         values = {k: grid_axis(k, known[k], axis) for k, axis in axes.items()}
         cases = grid(values)
-    if len(cases) * frames > MOST_NUMBERS:
-        raise argument_error("frames", f"{frames} times {len(cases)} cases", f"at most {MOST_NUMBERS} in all")
+    if len(cases) * frames > MAX_FRAMES_IN_ALL:
+        raise argument_error("frames", f"{frames} times {len(cases)} cases", f"at most {MAX_FRAMES_IN_ALL} in all")
     for parameter_name in fixed.keys() & axes.keys():
         del fixed[parameter_name]
-    spec = Spec(name, seconds, frames, design, seed, fixed, values, cases, text)
-    refuse_idle(spec, scene)
+    spec = Spec(scene.name, seconds, frames, design, seed, fixed, values, cases, text)
+    check_swept_parameters_matter(spec, scene)
     return spec
 
 
-def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any]) -> dict[str, Any]:
-    """Preset and [set]; the plots are on, as they decide what is measured."""
+def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any], folder: Path | None) -> dict[str, Any]:
+    """Values of the preset and of [set]. The plots are on, because they decide what is measured."""
     preset = content.get("preset")
-    if preset is not None and not (isinstance(preset, str) and preset in scene.presets):
-        raise argument_error("preset", preset, "one of " + ", ".join(scene.presets))
-    given = {**dict.fromkeys(scene.plots, True), **(scene.presets[preset] if preset else {}), **table(content, "set")}
+    if preset is not None and not isinstance(preset, str):
+        raise argument_error("preset", preset, "one of " + ", ".join(scene.presets) + "; or a file FILE.json")
+    from_preset = {} if preset is None else read_preset("preset", preset, scene, folder)
+    given = {**dict.fromkeys(scene.plots, True), **from_preset, **table(content, "set")}
     params = check_record(scene.params, given)
     return {name: getattr(params, name) for name in given}
 
 
 def read_axis(name: str, parameter: Parameter, given: Any, design: str) -> Axis:
-    """A parameter's list or range. Raises ValueError."""
+    """The list or range of a swept parameter. Raises ValueError."""
     if isinstance(given, list):
         if not given:
             raise argument_error(name, given, RANGE)
         values = tuple(check_value(name, parameter, value) for value in given)
         if len(set(values)) < len(values):
-            raise ValueError(f"{name}: a value is there twice in {given!r}")
+            raise ValueError(f"{name}: {given!r} holds a value twice")
         return Listed(values)
     if not isinstance(given, dict) or not {"from", "to"} <= given.keys():
         raise argument_error(name, given, RANGE)
@@ -161,29 +164,30 @@ def read_axis(name: str, parameter: Parameter, given: Any, design: str) -> Axis:
         return Range(low, high, 0, log)
     if "count" not in given:
         raise ValueError(f"{name}.count: missing; a grid says how many values")
-    return Range(low, high, whole(given, "count", 0, 2, MOST_CASES, name), log)
+    return Range(low, high, whole(given, "count", 0, 2, MAX_CASES, name), log)
 
 
 def grid_axis(name: str, parameter: Parameter, axis: Axis) -> tuple[Any, ...]:
-    """The values along an axis of a grid. Raises ValueError where whole numbers come twice."""
+    """The values along an axis of a grid. Raises ValueError where rounding to whole numbers makes two of them equal."""
     values = grid_values(axis, parameter)
     if len(set(values)) < len(values):
         raise argument_error(f"{name}.count", len(values), f"at most {len(set(values))}: these are whole numbers")
     return values
 
 
-def refuse_idle(spec: Spec, scene: SceneKind[Any, Any, Any]) -> None:
-    """Raises ValueError for a swept parameter that means nothing in any of the cases."""
-    idle = set(spec.swept)
+def check_swept_parameters_matter(spec: Spec, scene: SceneKind[Any, Any, Any]) -> None:
+    """Raises ValueError for a swept parameter that has no effect in any of the cases."""
+    without_effect = set(spec.swept)
     for index in range(len(spec.cases)):
-        idle &= scene.hidden(spec.params(index))
-        if not idle:
+        without_effect &= scene.hidden(spec.params(index))
+        if not without_effect:
             return
-    name = min(idle)
-    raise ValueError(f"{name}: means nothing with the other parameters as they are; set those that it belongs to")
+    name = min(without_effect)
+    raise ValueError(f"{name}: has no effect with the other parameters as they are; set those that it belongs to")
 
 
 def table(content: dict[str, Any], key: str) -> dict[str, Any]:
+    """The TOML table at `key`, empty where there is none. Raises ValueError where it is something else."""
     found = content.get(key, {})
     if not isinstance(found, dict):
         raise argument_error(key, found, f"a table, [{key}]")
@@ -191,17 +195,8 @@ def table(content: dict[str, Any], key: str) -> dict[str, Any]:
 
 
 def whole(content: dict[str, Any], key: str, default: int, low: int, high: int, of: str = "") -> int:
+    """The whole number at `key`, in [low, high]. of: the parameter that it belongs to. Raises ValueError."""
     value = content.get(key, default)
-    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+    if not is_whole_number(value) or not low <= value <= high:
         raise argument_error(f"{of}.{key}" if of else key, value, f"a whole number from {low} to {high}")
     return value
-
-
-def number(
-    content: dict[str, Any], key: str, default: float, low: float, high: float, unit: str, *, above: bool = False
-) -> float:
-    value = content.get(key, default)
-    good = isinstance(value, int | float) and not isinstance(value, bool) and low <= value <= high
-    if not good or (above and value == low):
-        raise argument_error(key, value, f"{'above ' if above else ''}{low:g} to {high:g} {unit}")
-    return float(value)

@@ -12,7 +12,7 @@ import xarray as xr
 from app.__main__ import main
 from app.sweep import case, workers
 from app.sweep.case import FINISHED, run_case
-from app.sweep.workers import on_cluster
+from app.sweep.workers import connected, on_cluster
 from tests.app.sweep.cases import rope_jobs
 
 ROOT = Path(__file__).parents[3]
@@ -58,11 +58,12 @@ def test_a_worker_is_killed_in_mid_run_and_nothing_is_lost(dask, tmp_path, capsy
     address, two, _ = dask
     jobs = rope_jobs(8)
     outcomes = {}
-    for number, outcome in on_cluster(address, jobs):
-        outcomes[number] = outcome
-        if len(outcomes) == 1:
-            two[0].kill()
-            two[0].wait(30)
+    with connected(address) as client:
+        for number, outcome in on_cluster(client, jobs):
+            outcomes[number] = outcome
+            if len(outcomes) == 1:
+                two[0].kill()
+                two[0].wait(30)
     assert sorted(outcomes) == sorted(jobs)
     assert {outcome.end for outcome in outcomes.values()} == {FINISHED}
     for number in (0, 7):
@@ -82,7 +83,7 @@ def test_a_worker_is_killed_in_mid_run_and_nothing_is_lost(dask, tmp_path, capsy
         assert "anything" in capsys.readouterr().err
     two[1].kill()
     two[1].wait(30)
-    monkeypatch.setattr(workers, "PATIENCE", 2.0)
+    monkeypatch.setattr(workers, "MAX_ANSWER_TIME", 2.0)
     assert main([*command, "--fresh"]) == 2
     assert "at least one worker" in capsys.readouterr().err
 
@@ -90,30 +91,34 @@ def test_a_worker_is_killed_in_mid_run_and_nothing_is_lost(dask, tmp_path, capsy
 def test_outcomes_that_die_with_their_worker_are_computed_again(dask):
     address, two, _ = dask
     jobs = rope_jobs(8, seconds=1.0)
-    results = on_cluster(address, jobs)
-    outcomes = dict([next(results)])
-    # All the others are computed, but still on the workers, when one of these goes.
-    wait_for_scheduler(address, lambda dask_scheduler: all(t.state == "memory" for t in dask_scheduler.tasks.values()))
-    two[0].kill()
-    wait_for_scheduler(address, lambda dask_scheduler: len(dask_scheduler.workers) == 1)
-    outcomes.update(results)
+    with connected(address) as client:
+        results = on_cluster(client, jobs)
+        outcomes = dict([next(results)])
+        # All the others are computed, but still on the workers, when one of these goes.
+        wait_for_scheduler(
+            address, lambda dask_scheduler: all(t.state == "memory" for t in dask_scheduler.tasks.values())
+        )
+        two[0].kill()
+        wait_for_scheduler(address, lambda dask_scheduler: len(dask_scheduler.workers) == 1)
+        outcomes.update(results)
     assert sorted(outcomes) == sorted(jobs)
     assert {outcome.end for outcome in outcomes.values()} == {FINISHED}
 
 
 def test_a_scheduler_that_goes_away_ends_the_run_with_what_there_is(dask):
     address, _, scheduler = dask
-    outcomes = on_cluster(address, rope_jobs(30))
-    next(outcomes)
-    scheduler.kill()
-    start = time.monotonic()
-    with pytest.raises(OSError, match="has gone"):
-        list(outcomes)
+    with connected(address) as client:
+        outcomes = on_cluster(client, rope_jobs(30))
+        next(outcomes)
+        scheduler.kill()
+        start = time.monotonic()
+        with pytest.raises(OSError, match="has gone"):
+            list(outcomes)
     assert time.monotonic() - start < 120
 
 
 def test_an_address_where_nothing_answers_is_refused(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(workers, "PATIENCE", 2.0)
+    monkeypatch.setattr(workers, "MAX_ANSWER_TIME", 2.0)
     (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2, 3]\n')
     for address in ("tcp://127.0.0.1:9", "nonsense", "", "127.0.0.1:99999"):
         command = ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out.nc"), "--scheduler", address]
@@ -121,3 +126,12 @@ def test_an_address_where_nothing_answers_is_refused(tmp_path, capsys, monkeypat
         lines = capsys.readouterr().err.strip().splitlines()
         assert len(lines) == 1
         assert "--scheduler" in lines[0]
+        assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+
+
+def test_a_refused_scheduler_does_not_cost_what_is_finished(tmp_path, capsys):
+    (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2, 3]\n')
+    (tmp_path / "out.nc.cases").write_text("finished cases")
+    command = ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out.nc"), "--fresh", "--scheduler", "x"]
+    assert main(command) == 2
+    assert (tmp_path / "out.nc.cases").read_text() == "finished cases"

@@ -11,26 +11,26 @@ from app.sweep.spec import make_spec, read_spec
 ASSETS = Path(__file__).parents[3] / "assets" / "sweeps"
 HEAD = 'scene = "rope"\nseconds = 1.0\n'
 RANDOM = HEAD + 'design = "random"\ncases = 4\n'
-KNOBS = "[parameters]\nmass = [1, 2]\n"
+PARAMETERS = "[parameters]\nmass = [1, 2]\n"
 
 
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("seconds = 1\n" + KNOBS, ["scene", "missing"]),
-        ('scene = "moon"\nseconds = 1\n' + KNOBS, ["scene", "moon", "rope"]),
-        ('scene = ["rope"]\nseconds = 1\n' + KNOBS, ["scene", "rope"]),
-        ('scene = "rope"\nseconds = nan\n' + KNOBS, ["seconds", "nan", "above 0"]),
-        ('scene = "rope"\nseconds = 0\n' + KNOBS, ["seconds", "0", "above 0"]),
-        ('scene = "rope"\nseconds = inf\n' + KNOBS, ["seconds", "inf"]),
-        ('scene = "rope"\nseconds = "1"\n' + KNOBS, ["seconds", "'1'"]),
-        ('scene = "rope"\nseconds = 1' + "0" * 400 + "\n" + KNOBS, ["seconds", "100000 s"]),
-        (HEAD + "frames = 0\n" + KNOBS, ["frames", "0", "whole number"]),
-        (HEAD + "frames = true\n" + KNOBS, ["frames", "True"]),
-        (HEAD + 'design = "sobol"\n' + KNOBS, ["design", "sobol", "grid or random"]),
-        (HEAD + 'preset = "Moon"\n' + KNOBS, ["preset", "Moon", "Pendulum"]),
-        (HEAD + "preset = [1]\n" + KNOBS, ["preset", "[1]"]),
-        (HEAD + "colour = 1\n" + KNOBS, ["colour", "no such key"]),
+        ("seconds = 1\n" + PARAMETERS, ["scene", "missing"]),
+        ('scene = "moon"\nseconds = 1\n' + PARAMETERS, ["scene", "moon", "rope"]),
+        ('scene = ["rope"]\nseconds = 1\n' + PARAMETERS, ["scene", "rope"]),
+        ('scene = "rope"\nseconds = nan\n' + PARAMETERS, ["seconds", "nan", "above 0"]),
+        ('scene = "rope"\nseconds = 0\n' + PARAMETERS, ["seconds", "0", "above 0"]),
+        ('scene = "rope"\nseconds = inf\n' + PARAMETERS, ["seconds", "inf"]),
+        ('scene = "rope"\nseconds = "1"\n' + PARAMETERS, ["seconds", "'1'"]),
+        ('scene = "rope"\nseconds = 1' + "0" * 400 + "\n" + PARAMETERS, ["seconds", "100000 s"]),
+        (HEAD + "frames = 0\n" + PARAMETERS, ["frames", "0", "whole number"]),
+        (HEAD + "frames = true\n" + PARAMETERS, ["frames", "True"]),
+        (HEAD + 'design = "sobol"\n' + PARAMETERS, ["design", "sobol", "grid, random"]),
+        (HEAD + 'preset = "Moon"\n' + PARAMETERS, ["preset", "Moon", "Pendulum"]),
+        (HEAD + "preset = [1]\n" + PARAMETERS, ["preset", "[1]"]),
+        (HEAD + "colour = 1\n" + PARAMETERS, ["colour", "no such key"]),
         (HEAD + "parameters = 3\n", ["parameters", "[parameters]"]),
         (HEAD + "[parameters]\n", ["parameters", "empty"]),
         (HEAD + "[parameters]\nwobble = [1]\n", ["wobble", "no such parameter"]),
@@ -57,10 +57,10 @@ KNOBS = "[parameters]\nmass = [1, 2]\n"
         (HEAD + "[parameters]\npoints = { from = 2, to = 4, count = 9 }\n", ["points.count", "9", "at most 3"]),
         (HEAD + "[parameters]\nmass = [1]\n[set]\nmass = 1\n", ["mass", "once"]),
         (HEAD + "[parameters]\nmass = [1]\n[set]\ndrag = nan\n", ["drag", "nan"]),
-        (HEAD + "cases = 4\n" + KNOBS, ["cases", "random"]),
-        (HEAD + 'design = "random"\n' + KNOBS, ["cases", "missing"]),
-        (HEAD + 'design = "random"\ncases = 0\n' + KNOBS, ["cases", "0"]),
-        (RANDOM + "seed = -1\n" + KNOBS, ["seed", "-1"]),
+        (HEAD + "cases = 4\n" + PARAMETERS, ["cases", "random"]),
+        (HEAD + 'design = "random"\n' + PARAMETERS, ["cases", "missing"]),
+        (HEAD + 'design = "random"\ncases = 0\n' + PARAMETERS, ["cases", "0"]),
+        (RANDOM + "seed = -1\n" + PARAMETERS, ["seed", "-1"]),
         (RANDOM + "[parameters]\nmass = { from = 1, to = 2, count = 2 }\n", ["mass.count", "grid"]),
         (
             HEAD
@@ -68,7 +68,7 @@ KNOBS = "[parameters]\nmass = [1, 2]\n"
             ["1000000 cases", "100000"],
         ),
         (HEAD + "frames = 10000\n[parameters]\nmass = { from = 1, to = 2, count = 2000 }\n", ["frames", "2000 cases"]),
-        (HEAD + "[parameters]\naxial_stiffness = [100, 200]\n", ["axial_stiffness", "means nothing"]),
+        (HEAD + "[parameters]\naxial_stiffness = [100, 200]\n", ["axial_stiffness", "no effect"]),
     ],
 )
 def test_a_bad_spec_is_refused_in_words_before_any_work(text, words, tmp_path, capsys):
@@ -90,7 +90,7 @@ def test_a_spec_that_cannot_be_read_or_is_no_toml_is_refused(tmp_path, capsys):
 
 
 def test_an_out_that_cannot_be_is_refused(tmp_path, capsys):
-    (tmp_path / "s.toml").write_text(HEAD + KNOBS)
+    (tmp_path / "s.toml").write_text(HEAD + PARAMETERS)
     (tmp_path / "folder.nc").mkdir()
     for out in ("out.txt", "no/out.nc", "folder.nc", "x" * 300 + ".nc"):
         assert main(["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / out)]) == 2
@@ -106,9 +106,15 @@ def test_presets_set_and_swept_parameters_go_over_each_other_in_that_order():
     assert params.plot_energy
 
 
+def test_a_preset_of_a_file_lies_beside_the_spec(tmp_path):
+    (tmp_path / "p.json").write_text('{"scene": "rope", "parameters": {"points": 7}}')
+    (tmp_path / "s.toml").write_text(HEAD + 'preset = "p.json"\n' + PARAMETERS)
+    assert read_spec(tmp_path / "s.toml").params(0).points == 7
+
+
 def test_times_are_the_end_alone_or_equally_spaced_from_0():
-    assert make_spec(tomllib.loads(HEAD + KNOBS)).times == (1.0,)
-    assert make_spec(tomllib.loads(HEAD + "frames = 3\n" + KNOBS)).times == (0.0, 0.5, 1.0)
+    assert make_spec(tomllib.loads(HEAD + PARAMETERS)).times == (1.0,)
+    assert make_spec(tomllib.loads(HEAD + "frames = 3\n" + PARAMETERS)).times == (0.0, 0.5, 1.0)
 
 
 @pytest.mark.parametrize("path", sorted(ASSETS.glob("*.toml")), ids=lambda path: path.stem)

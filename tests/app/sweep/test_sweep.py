@@ -1,5 +1,6 @@
-"""`springtide sweep` as a user types it: what is in the file, and what survives Ctrl-C, kills and refusals."""
+"""`springtide sweep` as a user types it: what is in the file, and what survives Ctrl-C, kills and errors."""
 
+import contextlib
 import functools
 import json
 import os
@@ -180,9 +181,57 @@ def test_a_case_that_kills_its_process_fails_and_all_others_are_finished(monkeyp
     monkeypatch.setattr(workers, "run_case", counted)
     outcomes = dict(on_cores({i: ("", {"number": i}, ()) for i in range(12)}))
     assert sorted(outcomes) == list(range(12))
+    assert "killed" in outcomes[FATAL].message
     assert [i for i in outcomes if outcomes[i].end == FAILED] == [FATAL]
     assert all(outcomes[i].measures == {"number": [i]} for i in outcomes if i != FATAL)
     assert {outcome.end for outcome in outcomes.values()} == {FAILED, FINISHED}
+
+
+@pytest.mark.parametrize("command", ["sweep", "stability"])
+def test_ctrl_c_while_workers_start_is_quiet(command, tmp_path):
+    (tmp_path / "s.toml").write_text(LONG)
+    arguments = {"sweep": ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out.nc")]}
+    given = arguments.get(command, [command, "--quick"])
+    for delay in (0.0, 0.1, 0.2, 0.4):  # [s] after the first worker is there: all along its imports
+        with subprocess.Popen(
+            [sys.executable, "-m", "app", *given], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            start_new_session=True, preexec_fn=functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
+        ) as process:  # fmt: skip
+            parent = psutil.Process(process.pid)
+            deadline = time.monotonic() + 100
+            while not workers_of(parent) and time.monotonic() < deadline:
+                time.sleep(0.002)
+            time.sleep(delay)
+            family = parent.children(recursive=True)
+            os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+            _, errors = process.communicate(timeout=60)
+        assert (process.returncode, errors) == (130, "")
+        _, alive = psutil.wait_procs(family, timeout=20)
+        assert alive == []
+
+
+def workers_of(parent: psutil.Process) -> list[psutil.Process]:
+    """The processes that were spawned to work."""
+    with contextlib.suppress(psutil.Error):
+        return [child for child in parent.children() if "spawn_main" in " ".join(child.cmdline())]
+    return []
+
+
+def test_a_sweep_without_matplotlib_has_no_figure_and_says_so(here, tmp_path, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    assert sweep('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2]\n', tmp_path) == 0
+    assert "no figure: matplotlib" in capsys.readouterr().out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["out.nc", "s.toml"]
+
+
+def test_an_out_whose_store_would_have_too_long_a_name_is_refused(tmp_path, capsys):
+    (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2]\n')
+    for length in range(230, 256):
+        name = "x" * (length - 3) + ".nc"
+        if main(["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / name)]) != 0:
+            assert "--out" in capsys.readouterr().err
+            assert [path.name for path in tmp_path.iterdir() if path.name.endswith((".cases", "-journal"))] == []
+            assert not (tmp_path / name).exists()
 
 
 def test_a_full_disk_ends_it_with_a_line_and_nothing_is_written_half(tmp_path):

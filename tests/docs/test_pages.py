@@ -88,6 +88,18 @@ def test_the_readme_shows_the_five_scenes():
     assert sorted(shown) == sorted(NAMES)
 
 
+def test_the_readme_s_python_gives_the_numbers_it_says():
+    (block,) = re.findall(r"^```python\n(.*?)^```$", text_of(ROOT / "README.md"), re.MULTILINE | re.DOTALL)
+    names: dict = {}
+    exec(compile(block, "README.md", "exec"), names)
+    assert names["run"].x.shape[1:] == (10, 3)
+    said = re.findall(r"^(\w+\(.+\))  # ([\d.]+) \w+$", block, re.MULTILINE)
+    assert len(said) == 2
+    for call, number in said:
+        digits = len(number.partition(".")[2])
+        assert f"{eval(call, names):.{digits}f}" == number
+
+
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "CITATION.cff"], ids=lambda page: page.name)
 def test_a_page_names_no_machine_and_no_registry(page):
     for word in OF_ONE_MACHINE:

@@ -1,0 +1,59 @@
+"""What the package declares: every import is a declared dependency, and what uses inner names has an upper bound."""
+
+import ast
+import re
+import sys
+import tomllib
+from importlib.metadata import packages_distributions
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+OWN = {"app", "assets", "sim"}
+# Peers that are no extras of ours: pypbd and bpy are installed by hand, warp's distribution is warp-lang.
+BY_HAND = {"bpy", "pypbd"}
+DISTRIBUTIONS = {"warp": "warp-lang", "netCDF4": "netcdf4"}
+
+
+def names_of(requirements: list[str]) -> set[str]:
+    """The distributions that requirements name."""
+    return {re.split(r"[<>=!~;\[ ]", requirement)[0].lower() for requirement in requirements}
+
+
+def imported(tree: ast.Module, *, at_top: bool) -> set[str]:
+    """The packages that a module imports when it is loaded, or in all."""
+    found = set()
+    for node in tree.body if at_top else ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found |= {alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            found.add(node.module.partition(".")[0])
+    return found
+
+
+def undeclared(declared: set[str], *, at_top: bool) -> dict[str, set[str]]:
+    """File -> its imports of distributions that are not among the declared."""
+    distributions = packages_distributions()
+    wrong = {}
+    for path in (*ROOT.glob("app/**/*.py"), *ROOT.glob("sim/**/*.py")):
+        others = imported(ast.parse(path.read_text("utf-8")), at_top=at_top) - OWN - BY_HAND - sys.stdlib_module_names
+        named = {
+            DISTRIBUTIONS.get(name, distributions.get(name, [name])[0]).lower().replace("_", "-") for name in others
+        }
+        if named - declared:
+            wrong[str(path.relative_to(ROOT))] = named - declared
+    return wrong
+
+
+def test_what_a_module_imports_when_it_is_loaded_is_a_dependency():
+    assert undeclared(names_of(PROJECT["dependencies"]), at_top=True) == {}
+
+
+def test_what_is_imported_anywhere_is_a_dependency_or_an_extra():
+    extras = {name for requirements in PROJECT["optional-dependencies"].values() for name in names_of(requirements)}
+    assert undeclared(names_of(PROJECT["dependencies"]) | extras, at_top=False) == {}
+
+
+def test_what_is_used_by_its_inner_names_has_an_upper_bound():
+    bounded = {name for name in ("numba", "viser") for r in PROJECT["dependencies"] if r.startswith(name) and "<" in r}
+    assert bounded == {"numba", "viser"}

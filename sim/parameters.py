@@ -87,6 +87,19 @@ def parameter(
     return dataclasses.field(default=default, metadata={"parameter": declared})
 
 
+def redeclare(base: type, name: str, **changes: Any) -> Any:
+    """The field of a parameter of `base` once more, for a class derived from it, with parts of its declaration changed.
+
+    changes: fields of `Parameter`, as in `time_step: float = redeclare(Base, "time_step", affects="start")`.
+    Raises ValueError where `base` has no such parameter.
+    """
+    known = parameters_of(base)
+    if name not in known:
+        raise unknown_parameter(name, known)
+    declared = known[name]._replace(**changes)
+    return dataclasses.field(default=declared.default, metadata={"parameter": declared})
+
+
 def parameters_of(record: Any) -> dict[str, Parameter]:
     """The parameters of a dataclass (or of an instance) by name, in order of declaration."""
     return {f.name: f.metadata["parameter"] for f in dataclasses.fields(record) if "parameter" in f.metadata}

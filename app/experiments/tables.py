@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from app.render.colormap import PALETTE
+from app.scenes.charts import PALETTE
 from sim.files import replacing
 from sim.validation import argument_error
 

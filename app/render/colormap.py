@@ -5,9 +5,6 @@ from numpy.typing import NDArray
 
 from sim.jit import kernel
 
-# Okabe and Ito's palette, told apart with any colour vision; black and yellow last.
-PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
-
 # What becomes of a disturbance, as `sim.springs.analysis.growth` numbers it; light, middle, dark also in grey.
 OUTCOME_COLOURS = {"holds": "#CFE6F5", "rattles": "#E69F00", "explodes": "#8C2D04"}
 

@@ -12,12 +12,12 @@ HELD_COLOUR = (255, 90, 60)
 
 
 def drag(post: Callable[[Command], None], event: Any, index: int | None) -> None:
-    """Post what viser's drag event asks for: thing `index` pulled to where the mouse is, or let go."""
+    """Post what viser's drag event asks for: its browser pulls thing `index` to where the mouse is, or lets go."""
     target = finite_vector(event.end_position)
     if event.phase == "end" or target is None or index is None:
-        post(Release())
+        post(Release(event.client_id))
     else:
-        post(Grab(int(index), target))
+        post(Grab(int(index), target, event.client_id))
 
 
 def nearest(points: np.ndarray, event: Any) -> int:

@@ -5,6 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+# Colours that can be told apart with any colour vision (Okabe and Ito, 2008); black and yellow last.
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+
 
 class PlotAxes(NamedTuple):
     """A chart over time, of columns of the plot rows."""

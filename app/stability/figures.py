@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from app.experiments.tables import MARKERS
-from app.render.colormap import OUTCOME_COLOURS, PALETTE
+from app.render.colormap import OUTCOME_COLOURS
+from app.scenes.charts import PALETTE
 from app.stability.drift import Drift
 from app.stability.linear import LinearMap, extra_damping
 from app.stability.rope import RopeMap

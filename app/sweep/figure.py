@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from app.experiments.tables import MARKERS
-from app.render.colormap import PALETTE
+from app.scenes.charts import PALETTE
 
 ROWS, COLUMNS, CURVES = 2, 4, 8  # at most
 MAP_FROM = 5  # values of each of two parameters from which a map is drawn

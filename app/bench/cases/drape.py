@@ -5,7 +5,7 @@ import time
 from typing import Any
 
 from app.scenes.cloth.parameters import PRESETS, Params
-from app.scenes.cloth.scene import Scene
+from app.scenes.cloth.scene import ClothScene
 from sim.parameters import check_record
 
 FRAME_INTERVAL = 1 / 60  # [s]
@@ -13,8 +13,8 @@ FRAME_INTERVAL = 1 / 60  # [s]
 
 def row(preset: str, frames: int) -> dict[str, Any]:
     """Frames of 1/60 s on one thread, in processor time, so that what else runs on the machine does not count."""
-    scene = Scene(check_record(Params, PRESETS[preset]))
-    scene.cores.count = 1
+    scene = ClothScene(check_record(Params, PRESETS[preset]))
+    scene.tuner.count = 1
     steps = round(FRAME_INTERVAL / scene.step)
     times = []
     for _ in range(frames):

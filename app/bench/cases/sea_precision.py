@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from app.experiments.tables import MARKERS
-from app.render.colormap import PALETTE
+from app.scenes.charts import PALETTE
 from sim.ocean import Sea
 from sim.ocean.query import sample
 from sim.ocean.wave_sum import add_waves

@@ -1,1 +1,1 @@
-"""The cloth."""
+"""A cloth of springs."""

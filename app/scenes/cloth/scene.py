@@ -1,4 +1,4 @@
-"""The cloth: curtain, flag, drape, trampoline; pins and a sphere on gizmos, every particle to be grabbed."""
+"""The cloth: curtain, flag, drape, trampoline. Arrows move its pins and a sphere; every particle can be dragged."""
 
 import dataclasses
 import math
@@ -8,15 +8,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, Grab, Place, Release, SceneCommand, Vector, WorkCounts
+from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts
 from app.scenes.charts import PlotAxes
-from app.scenes.cloth.parameters import PRESETS, Params, hidden
+from app.scenes.cloth.parameters import MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, SceneKind
+from app.scenes.plot_rows import PlotRows
+from app.scenes.springs.divergence import divergence_text
+from app.scenes.springs.drag import Drag, PullFrame
 from app.scenes.springs.thread_tuner import ThreadTuner
+from app.scenes.springs.warmup import compile_integrators
 from app.scenes.springs.work_counts import SpringWorkCounts
-from sim.springs import INTEGRATORS, Air, Net, cloth, simulate
+from sim.springs import Air, Net, cloth
 from sim.springs import Grab as Pull
+from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.strain import structural_strain
 from sim.springs.integrator_fallback import integrator_or_fallback
@@ -26,57 +31,50 @@ from sim.springs.stability import Gauge, gauge, gershgorin
 from sim.springs.state import State, advance, energy, velocities
 from sim.springs.tracking import CriticallyDampedTracker
 
-TITLE = "Cloth"
-LOOK_EVERY = 0.5  # [s] of simulated time between two looks at the stability of the state
-LOOKED_THROUGH = 1100  # particles up to which that is quick; of larger cloths Gershgorin's bound is shown
-SAMPLE_EVERY = 1 / 30  # [s]
-TOP_SPEED = 3.0  # [m/s] of the sphere along an axis, however fast it is dragged: what the cloth can keep clear of
-LARGE = 2000  # particles from which two threads may be quicker
-BOUND = 60.0  # [m] from the origin, beyond which the run has diverged
-HELP = "<b>Drag the cloth</b> anywhere to pull it. <b>Drag the arrows</b> to move its pins and the sphere."
-SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "largest strain")
+ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
+MAX_ASSESSED_PARTICLES = 1100  # above this an assessment takes too long, and Gershgorin's bound is shown
+MAX_SPHERE_SPEED = 3.0  # [m/s] along an axis, however fast it is dragged: faster, it would pass through the cloth
+MIN_PARTICLES_FOR_TWO_THREADS = 2000
+MAX_DISTANCE = 60.0  # [m] from the origin; farther out the run has diverged
+PULL_LENGTH = 0.1  # [m] at which a pull has its largest force, if the step allows
+MAX_PULL_STIFFNESS_STEP = 0.1  # stiffness of a pull over mass / step^2, so that the pull is stable at any step
+BOB_RATE = 4.0  # [rad/s] of the sphere's motion up and down
+ENERGY_SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated")
+SERIES = (*ENERGY_SERIES, "largest strain")
 PLOTS = {
-    "plot_energy": PlotAxes("Energy", "J", ("kinetic", "elastic", "gravity", "contact", "dissipated")),
+    "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES),
     "plot_strain": PlotAxes("Largest strain", "%", ("largest strain",)),
 }
 
 
-class PullShown(NamedTuple):
-    """The drawn pull: from a particle to its target [m], and the part of the largest force it takes."""
-
-    particle: int
-    target: Vector
-    load: float
-
-
 class ClothFrame(NamedTuple):
-    """What the viewer draws of a cloth."""
+    """What the view draws of a cloth."""
 
-    points: NDArray[np.float32]  # (rows, cols, 3) [m]
-    strain: NDArray[np.float32]  # (rows, cols), of the structural springs at a particle
-    full_strain: float
-    pins: tuple[Vector, Vector] | None  # where the two handles are going [m]
+    points: NDArray[np.float32]  # (rows, cols, 3) [m], C-contiguous
+    strain: NDArray[np.float32]  # (rows, cols), largest of the structural springs at a particle
+    full_strain: float  # strain at the end of the colour scale
+    pins: tuple[Vector, Vector] | None  # [m] where the two ends of the first row are going to
     pole: bool
-    sphere: tuple[float, float, float, float] | None
-    sphere_home: Vector
+    sphere: tuple[float, float, float, float] | None  # x, y, z, radius [m]
+    sphere_home: Vector  # [m] where the sphere's arrows are
     floor: bool
     grid: bool
     colour: str
-    pull: PullShown | None
+    pull: PullFrame | None
 
 
 class ClothReadings(NamedTuple):
-    """How near to its limit the integrator works."""
+    """The stability of the time step, and the cost of a step."""
 
     stability: Gauge
-    exact: bool  # of the state as it is; else a bound for any
-    corrections: float  # of Newton's method a step, of implicit methods
+    exact: bool  # the gauge is that of the state; otherwise a bound for all states
+    corrections: float  # Newton corrections a step, of implicit methods
     note: str  # why another method runs than the one chosen, or ""
-    threads: int  # that the forces are worked out on
+    threads: int  # that compute the forces
 
 
-def gusty(params: Params, t: float) -> Vector:
-    """The wind at time t [m/s]: three slow waves along, across and up."""
+def gusty_wind(params: Params, t: float) -> Vector:
+    """The wind at time t [m/s]: three slow waves along it, across it and upwards."""
     along = params.wind * (1.0 + params.gust * (0.3 * math.sin(1.7 * t) + 0.2 * math.sin(4.3 * t + 1.0)))
     across = params.wind * params.gust * 0.35 * math.sin(2.3 * t + 0.5)
     c, s = math.cos(params.wind_direction), math.sin(params.wind_direction)
@@ -84,54 +82,65 @@ def gusty(params: Params, t: float) -> Vector:
 
 
 def warm_up() -> Iterator[str]:
-    """Compile everything the scene may call, piece by piece; yields what comes next."""
+    """Compile everything that the scene may call, piece by piece; yields what comes next."""
     net = cloth(4, 4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2), thickness=0.1)
-    for name, record in INTEGRATORS.items():
-        yield name
-        quiet = cloth(4, 4, damping=0.0)
-        simulate(quiet if record.undamped_only else net, name, 1e-4, 2e-4, 2, with_account=True)
+    yield from compile_integrators(net, cloth(4, 4, damping=0.0))
     yield "stability"
-    Scene(Params(rows=4, cols=4))
+    ClothScene(Params(rows=4, cols=4))
 
 
-class Scene:
+class ClothScene:
     """The cloth on the simulation thread."""
+
+    frame_interval = FRAME_INTERVAL
 
     def __init__(self, params: Params) -> None:
         self.params = params
-        self.samples: list[tuple[float, ...]] = []
+        self.plot_rows = PlotRows(len(SERIES))
         self.counts = SpringWorkCounts()
-        self.cores = ThreadTuner()
+        self.tuner = ThreadTuner()
+        self.drag = Drag()
         self.reset()
 
     @property
     def step(self) -> float:
+        """Time step [s]."""
         return self.params.time_step
-
-    frame_interval = FRAME_INTERVAL
 
     @property
     def time(self) -> float:
+        """Simulated time [s]."""
         return self.state.t
 
     @property
     def note(self) -> str:
-        """Why something else runs than the parameters ask for, or ""."""
+        """Why another method runs than the one chosen, or ""."""
         return self.fallback_note
+
+    @property
+    def particles(self) -> int:
+        """Number of particles."""
+        return self.params.rows * self.params.cols
+
+    @property
+    def with_account(self) -> bool:
+        """Whether the energy account is kept: always, except for large cloths with the plot of energies closed."""
+        return self.params.plot_energy or self.particles <= MAX_ACCOUNTED_PARTICLES
 
     def reset(self) -> None:
         """The cloth, its pins and the sphere where the parameters start them."""
-        self.sphere = CriticallyDampedTracker(sphere_home(self.params), TOP_SPEED)
+        self.sphere = CriticallyDampedTracker(sphere_home(self.params), MAX_SPHERE_SPEED)
         self.net = build(self.params, self.sphere.position)
         self.state = State.at_rest(self.net)
-        self.held: tuple[int, CriticallyDampedTracker] | None = None
-        self.hold()
+        self.account = EnergyAccount(self.net, self.state)
+        self.account_kept = self.with_account
+        self.drag.clear()
+        self.hold_pins()
         self.corrections = 0.0
-        self.samples.append((float("nan"),) * (len(SERIES) + 1))  # a gap in the plots
-        self.sampled_at = -np.inf
-        self.look()
+        self.plot_rows.restart()
+        self.assess_stability()
 
-    def hold(self) -> None:
+    def hold_pins(self) -> None:
         """Hold the pinned particles where they are, with a handle at each end of the first row."""
         x = self.state.x
         self.ends = [x[:, 0, 0].copy(), x[:, 0, -1].copy()]
@@ -139,22 +148,24 @@ class Scene:
         self.anchors = {pin: x[:, pin[0], pin[1]].copy() for pin in self.net.pinned}
 
     def change_forces(self, params: Params) -> None:
-        """Take new parameters; the motion goes on, resampled where the grid changes, unless it is another start."""
+        """Take new parameters. The motion goes on, interpolated where the grid changes."""
         old, self.params = self.params, params
-        self.cores.forget()
-        self.net = build(params, self.sphere.position)
+        stored = self.account.stored(self.net, self.state)
+        self.tuner.restart()
+        self.net = build(params, self.sphere_at(self.state.t))
         if (params.rows, params.cols) != (old.rows, old.cols):
             self.state.x = resample(self.state.x, params.rows, params.cols)
             self.state.v = resample(self.state.v, params.rows, params.cols)
-            self.held = None
+            self.drag.clear()
         if (params.rows, params.cols, params.pinned) != (old.rows, old.cols, old.pinned):
-            self.hold()
+            self.hold_pins()
             for i, j in self.net.pinned:
                 self.state.v[:, i, j] = 0.0
-        self.state.dissipated = self.state.work = 0.0
-        self.look()
+        self.account.book_change(stored, self.net, self.state)
+        self.assess_stability()
 
     def handle(self, command: SceneCommand) -> None:
+        """Move pins or sphere, pull a particle, or let go of it."""
         match command:
             case Place("pin a", position):
                 self.handles[0].target = position
@@ -162,74 +173,80 @@ class Scene:
                 self.handles[1].target = position
             case Place("sphere", position):
                 self.sphere.target = position
-            case Grab(index, target) if 0 <= index < self.params.rows * self.params.cols:
-                if self.held is None or self.held[0] != index:
-                    x = self.state.x.reshape(3, -1)[:, index]
-                    self.held = index, CriticallyDampedTracker((float(x[0]), float(x[1]), float(x[2])))
-                self.held[1].target = target
-            case Release():
-                self.held = None
+            case Grab(index, target, client) if 0 <= index < self.particles:
+                x, y, z = (float(c) for c in self.state.x.reshape(3, -1)[:, index])
+                self.drag.move(client, index, (x, y, z), target)
+            case Release(client):
+                self.drag.release(client)
+            case _:
+                pass
 
     def advance(self, steps: int) -> None:
-        """Take steps with pins, sphere and pull on their ways; raises DivergenceError, keeping the last good state."""
+        """Take steps. Raises DivergenceError where the cloth leaves its bounds, and keeps the last good state."""
         duration = steps * self.step
+        with_account = self.with_account
+        if with_account and not self.account_kept:
+            self.account = EnergyAccount(self.net, self.state)
+        self.account_kept = with_account
         good = self.state.copy()
-        net = self.net_under_way(self.state.t, duration)
+        net = self.net_during(self.state.t, duration)
 
         def take(threads: int, count: int) -> None:
             shared = dataclasses.replace(net, threads=threads)
-            advance(shared, self.state, self.integrator, self.step, count, with_account=self.params.plot_energy)
+            advance(shared, self.state, self.integrator, self.step, count, with_account=with_account)
             self.counts.add("steps on two threads", count, threads == 2)
 
-        self.cores.advance(steps, take, large=self.params.rows * self.params.cols >= LARGE)
-        self.counts.take(net, self.state.force_evals - good.force_evals, steps, with_account=self.params.plot_energy)
-        if not extremes(self.state.x, self.state.v).max_coordinate < BOUND:  # nor is a NaN
+        self.tuner.advance(steps, take, large=self.particles >= MIN_PARTICLES_FOR_TWO_THREADS)
+        self.counts.update(net, self.state.force_evals - good.force_evals, steps, with_account=with_account)
+        if not extremes(self.state.x, self.state.v).max_coordinate < MAX_DISTANCE:  # true of a NaN as well
             self.state = good
             raise DivergenceError(self.diagnosis())
         if self.integrator.implicit:
             self.corrections = (self.state.force_evals - good.force_evals) / steps
         self.net = net
-        due = self.params.rows * self.params.cols <= LOOKED_THROUGH and self.state.t - self.looked_at >= LOOK_EVERY
-        self.counts.add("looks at the stability", 1, due)
-        if due:
-            self.look()
-        if (self.params.plot_energy or self.params.plot_strain) and self.state.t - self.sampled_at >= SAMPLE_EVERY:
-            self.sample()
+        is_due = self.particles <= MAX_ASSESSED_PARTICLES and self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL
+        self.counts.add("stability checks", 1, is_due)
+        if is_due:
+            self.assess_stability()
+        if (self.params.plot_energy or self.params.plot_strain) and self.plot_rows.is_due(self.state.t):
+            self.add_plot_row()
 
-    def net_under_way(self, t: float, duration: float) -> Net:
-        """The net with the motions of pins, sphere and pull, and the wind, over the next `duration` [s]."""
+    def net_during(self, t: float, duration: float) -> Net:
+        """The net with the motions of pins, sphere and pull, and the wind, over the next `duration` [s] from time t."""
         before = self.sphere_at(t)
         self.sphere.advance(t, duration)
         after = self.sphere_at(t + duration)
         pull = None
-        if self.held is not None:
-            index, hand = self.held
+        if self.drag.hold is not None:
+            _, index, hand = self.drag.hold
             hand.advance(t, duration)
             row, col = divmod(index, self.params.cols)
-            stiffness, damping = self.grip()
+            stiffness, damping = self.pull_spring()
             pull = Pull(row, col, hand.position, stiffness, damping, self.params.pull)
         return dataclasses.replace(
             self.net,
-            pin_paths=self.paths(t, duration),
+            pin_paths=self.pin_paths(t, duration),
             sphere=(*before, self.params.sphere_radius) if self.params.sphere else None,
             sphere_velocity=tuple((b - a) / duration for a, b in zip(before, after, strict=True)),
             epoch=t,
             grab=pull,
-            air=Air(gusty(self.params, t), self.params.air) if self.params.air > 0.0 else None,
+            air=Air(gusty_wind(self.params, t), self.params.air) if self.params.air > 0.0 else None,
         )
 
-    def grip(self) -> tuple[float, float]:
-        """Stiffness [N/m] and damping [N s/m] of a pull: all its force within 0.1 m, if the step allows."""
-        stiffest = 0.1 * self.net.mass / self.step**2
-        stiffness = min(10.0 * self.params.pull, stiffest)
+    def pull_spring(self) -> tuple[float, float]:
+        """Stiffness [N/m] and damping [N s/m] of a pull."""
+        stiffest = MAX_PULL_STIFFNESS_STEP * self.net.mass / self.step**2
+        stiffness = min(self.params.pull / PULL_LENGTH, stiffest)
         return stiffness, 0.5 * math.sqrt(stiffness * self.net.mass)
 
     def sphere_at(self, t: float) -> Vector:
+        """Centre of the sphere at time t [m]."""
         x, y, z = self.sphere.position
-        return x, y, z + self.params.bob * math.sin(4.0 * t)
+        return x, y, z + self.params.bob * math.sin(BOB_RATE * t)
 
-    def paths(self, t: float, duration: float) -> tuple[tuple[tuple[int, int], PinPath], ...]:
-        """Each pinned particle moves with the handles: by its place along the first row, less far down."""
+    def pin_paths(self, t: float, duration: float) -> tuple[tuple[tuple[int, int], PinPath], ...]:
+        """The motion of each pinned particle: that of the two handles, by its place along the first row, and less the
+        farther down it is."""
         starts = [handle.position for handle in self.handles]
         moves = [handle.advance(t, duration) for handle in self.handles]
         if moves == [None, None]:
@@ -248,11 +265,11 @@ class Scene:
             found.append(((i, j), PinPath(t, tuple(tuple(row) for row in c.tolist()))))  # type: ignore[arg-type]
         return tuple(found)
 
-    def look(self) -> None:
-        """Judge the stability: of the state as it is where that is quick, else by a bound for all states."""
+    def assess_stability(self) -> None:
+        """Compare the step with its limit: at the state as it is where that is quick, else by a bound for all."""
         self.integrator, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net)
         record = self.integrator
-        exact = self.params.rows * self.params.cols <= LOOKED_THROUGH
+        exact = self.particles <= MAX_ASSESSED_PARTICLES
         if exact:
             stability = gauge(self.net, record, self.step, self.state)
         else:
@@ -260,51 +277,44 @@ class Scene:
             zeta = 0.5 * rate / omega if omega > 0.0 else 0.0
             limit = record.limit(zeta)
             stability = Gauge(omega, zeta, self.step * omega, limit, limit / omega if omega > 0.0 else math.inf)
-        self.stability = ClothReadings(stability, exact, self.corrections, self.fallback_note, self.cores.threads)
-        self.looked_at = self.state.t
+        self.stability = ClothReadings(stability, exact, self.corrections, self.fallback_note, self.tuner.threads)
+        self.assessed_at = self.state.t
 
     def diagnosis(self) -> str:
-        """Why the run diverged and what would hold."""
-        g = self.stability.stability
-        name, h = self.integrator.name, self.step
-        start = f"The cloth left its bounds at t = {self.state.t:.2f} s: h ω = {g.h_omega:.3g} "
-        if g.h_omega > g.limit:
-            holds = f"A step below {g.critical_step:.3g} s would hold" if g.critical_step > 0 else "No step holds"
-            return f"{start}is over {name}'s limit {g.limit:.3g}. {holds}; so would implicit_euler at any."
-        return (
-            f"{start}is within the limit {g.limit:.3g} of {name}, so an impact or a pull was too sudden for the step. "
-            f"Try h = {h / 4:.3g} s."
-        )
+        """Why the run diverged, and what would hold."""
+        alternative = "so would implicit_euler at any step"
+        return divergence_text("cloth", self.state.t, self.integrator, self.step, self.stability.stability, alternative)
 
     def work(self) -> WorkCounts:
-        """Counts of what was computed and what was left out."""
+        """What was computed and what was left out."""
         return self.counts()
 
     def curves(self) -> None:
-        """No chart but over time."""
+        """This scene has charts over time only."""
         return
 
-    def sample(self) -> None:
-        e = energy(self.net, self.state)
-        largest_strain = 100.0 * float(structural_strain(self.net, self.state.x).max())
-        row = (e.kinetic, e.elastic, e.gravity, e.contact, self.state.dissipated, largest_strain)
-        self.samples.append((self.state.t, *row))
-        self.sampled_at = self.state.t
+    def add_plot_row(self) -> None:
+        """Add the energies and the largest strain at the scene's time."""
+        e, state = energy(self.net, self.state), self.state
+        strain = 100.0 * float(structural_strain(self.net, self.state.x).max())
+        self.plot_rows.add(state.t, e.kinetic, e.elastic, e.gravity, e.contact, state.dissipated, strain)
 
-    def take_plot_rows(self) -> tuple[tuple[float, ...], ...]:
-        taken, self.samples = tuple(self.samples), []
-        return taken
+    def take_plot_rows(self) -> tuple[PlotRow, ...]:
+        """The plot rows since the last call."""
+        return self.plot_rows.take()
 
     def readings(self) -> ClothReadings:
-        return self.stability._replace(corrections=self.corrections, threads=self.cores.threads)
+        """Stability as last assessed, and the cost of the last steps."""
+        return self.stability._replace(corrections=self.corrections, threads=self.tuner.threads)
 
     def frame(self) -> ClothFrame:
+        """What to draw."""
         params = self.params
         pull = None
-        if self.held is not None:
-            index, hand = self.held
-            reach = float(np.linalg.norm(np.asarray(hand.position) - self.state.x.reshape(3, -1)[:, index]))
-            pull = PullShown(index, hand.position, min(1.0, reach * self.grip()[0] / params.pull))
+        if self.drag.hold is not None:
+            _, index, hand = self.drag.hold
+            distance = float(np.linalg.norm(np.asarray(hand.position) - self.state.x.reshape(3, -1)[:, index]))
+            pull = PullFrame(index, hand.position, min(1.0, distance * self.pull_spring()[0] / params.pull))
         return ClothFrame(
             points=np.ascontiguousarray(np.moveaxis(self.state.x, 0, -1), dtype=np.float32),
             strain=structural_strain(self.net, self.state.x).astype(np.float32),
@@ -331,10 +341,10 @@ class Scene:
 SCENE = SceneKind(
     name="cloth",
     title="Cloth",
-    help=HELP,
+    help="<b>Drag the cloth</b> anywhere to pull it. <b>Drag the arrows</b> to move its pins and the sphere.",
     params=Params,
     presets=PRESETS,
-    make=Scene,
+    make=ClothScene,
     hidden=hidden,
     warm_up=warm_up,
     series=SERIES,

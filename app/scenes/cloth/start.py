@@ -1,4 +1,4 @@
-"""How a cloth starts: hanging in pleats, level, or off a pole."""
+"""How a cloth starts: hanging in pleats, level, or from a pole."""
 
 import dataclasses
 
@@ -9,7 +9,7 @@ from app.scenes.cloth.parameters import Params
 from sim.springs import Air, Contact, Net, cloth
 from sim.springs.cloth import pleated_cloth, vertical_cloth
 
-SKIN = 0.012  # [m] that the cloth keeps from sphere and floor, so that it is drawn outside them
+CONTACT_DISTANCE = 0.012  # [m] between the cloth and sphere or floor, so that it is drawn outside them
 
 
 def corner(params: Params) -> Vector:
@@ -22,15 +22,15 @@ def corner(params: Params) -> Vector:
 
 
 def sphere_home(params: Params) -> Vector:
-    """Where the sphere starts: under a level cloth, before a hanging one."""
+    """Where the sphere starts [m]: under a level cloth, in front of a hanging one."""
     if params.start == "level":
-        below = 0.15 if params.bob > 0.0 else SKIN + 0.15
+        below = 0.15 if params.bob > 0.0 else CONTACT_DISTANCE + 0.15
         return 0.0, 0.0, max(1.5 - params.sphere_radius - below, params.sphere_radius)
     return 0.0, -params.sphere_radius - 0.5, 1.2
 
 
 def build(params: Params, sphere: Vector) -> Net:
-    """The net that the parameters describe, as it starts."""
+    """The net that the parameters describe, at its start. sphere: centre [m]."""
     net = cloth(
         params.rows,
         params.cols,
@@ -47,14 +47,14 @@ def build(params: Params, sphere: Vector) -> Net:
         floor=0.0 if params.floor else None,
         sphere=(*sphere, params.sphere_radius) if params.sphere else None,
         contact=Contact(params.contact_stiffness, params.contact_damping, params.friction),
-        radius=SKIN,
+        radius=CONTACT_DISTANCE,
         air=Air(density=params.air) if params.air > 0.0 else None,
         thickness=params.thickness,
     )
     if params.start == "hanging":
         return pleated_cloth(vertical_cloth(net), params.gather)
     if params.start == "flag":
-        # Rows along the wind, columns down the pole, and a breath out of plane, as nothing flies quite straight.
+        # Rows along the wind, columns down the pole, and a small wave out of plane: no real flag starts exactly flat.
         x, y, z = net.x0
         along, down = y - y[0, 0], x - x[0, 0]
         wave = 0.01 * np.sin(7.0 * along) * along

@@ -1,4 +1,4 @@
-"""The cloth as a mesh coloured by strain, to be grabbed anywhere; pins and sphere on gizmos."""
+"""The cloth as a mesh coloured by strain, which can be dragged anywhere; pins and sphere with arrows."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -14,22 +14,33 @@ from app.render.gizmo import Gizmo
 from app.render.ground import Ground
 from app.render.meshes import ball
 from app.scenes.cloth.scene import ClothFrame
-from app.scenes.springs.report import colour_scale, stability_bar
+from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 
 CLOTH_COLOUR = (176, 58, 72)
-GROUND, HAZE, ZENITH = (222, 227, 233), (232, 237, 243), (126, 168, 214)  # sRGB of the floor, and of the sky's ends
-GRIP = 0.018  # [m] radius of the balls that pins are drawn as
+FLOOR_COLOUR = (222, 227, 233)
+HORIZON_COLOUR, ZENITH_COLOUR = (232, 237, 243), (126, 168, 214)  # of the sky
+SKY_ROWS = 512
+ZENITH_SHARE = 0.45  # of the image's height over which the sky goes from one colour to the other
+SPHERE_COLOUR = (92, 140, 190)
+PIN_COLOUR = (60, 66, 80)
+PIN_RADIUS = 0.018  # [m] of the balls that mark the pins
+PIN_ARROW_LENGTH, SPHERE_ARROW_LENGTH = 0.22, 0.55  # [m]
+POLE_COLOUR = (96, 88, 80)
+POLE_WIDTH = 0.03  # [m]
+POLE_OVERHANG = 0.06  # of the flag's height, above the flag
+MIN_POLE_DROP = 0.1  # [m] smallest height of the flag from which the foot of the pole is computed
 
 
 def sky() -> np.ndarray:
-    """(512, 4, 3) sRGB: from the zenith down to the haze on the horizon, and the haze below it."""
-    up = np.clip(1.0 - np.linspace(0.0, 1.0, 512) / 0.45, 0.0, 1.0)[:, None]
-    column = np.array(HAZE) * (1.0 - up) + np.array(ZENITH) * up
+    """(SKY_ROWS, 4, 3) sRGB: from the zenith down to the horizon, and one colour below it."""
+    up = np.clip(1.0 - np.linspace(0.0, 1.0, SKY_ROWS) / ZENITH_SHARE, 0.0, 1.0)[:, None]
+    column = np.array(HORIZON_COLOUR) * (1.0 - up) + np.array(ZENITH_COLOUR) * up
     return np.repeat(column.round().astype(np.uint8)[:, None], 4, axis=1)
 
 
 def faces(rows: int, cols: int) -> np.ndarray:
-    """Two triangles a cell, split along alternating diagonals, so that folds have no favourite direction."""
+    """(2 (rows - 1) (cols - 1), 3): two triangles a cell, split along alternating diagonals, so that no direction of
+    folds is preferred."""
     i, j = (index.ravel() for index in np.meshgrid(np.arange(rows - 1), np.arange(cols - 1), indexing="ij"))
     a = i * cols + j
     b, c, d = a + 1, a + cols, a + cols + 1
@@ -50,34 +61,34 @@ class View:
         self.post = post
         self.mesh: ColouredMesh | None = None
         self.shape = (0, 0)
-        self.nearest = 0
+        self.nearest = 0  # particle that a drag pulls
         scene = server.scene
         scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
         scene.set_background_image(sky())
-        self.ground = Ground(server, GROUND, (190, 198, 208), (160, 170, 184))
-        self.ball = scene.add_mesh_simple("/sphere/ball", *ball(48), color=(92, 140, 190), visible=False)
+        self.ground = Ground(server, FLOOR_COLOUR, (190, 198, 208), (160, 170, 184))
+        self.ball = scene.add_mesh_simple("/sphere/ball", *ball(48), color=SPHERE_COLOUR, visible=False)
         arrows = {"disable_sliders": True, "visible": False}
-        self.pins = [Gizmo(server, post, name, 0.22, **arrows) for name in ("pin a", "pin b")]
-        self.sphere = Gizmo(server, post, "sphere", 0.55, **arrows)
-        self.grips = [
-            scene.add_mesh_simple(f"/grip_{name}", *ball(12), scale=GRIP, color=(60, 66, 80)) for name in ("a", "b")
+        self.pins = [Gizmo(server, post, name, PIN_ARROW_LENGTH, **arrows) for name in ("pin a", "pin b")]
+        self.sphere = Gizmo(server, post, "sphere", SPHERE_ARROW_LENGTH, **arrows)
+        self.pin_balls = [
+            scene.add_mesh_simple(f"/pin_{name}", *ball(12), scale=PIN_RADIUS, color=PIN_COLOUR) for name in ("a", "b")
         ]
         self.pole = scene.add_line_segments(
-            "/pole", np.zeros((1, 2, 3), np.float32), colors=(96, 88, 80), thickness=0.03, visible=False
+            "/pole", np.zeros((1, 2, 3), np.float32), colors=POLE_COLOUR, thickness=POLE_WIDTH, visible=False
         )
         self.pull = PullLine(server)
 
-    def build(self, picture: ClothFrame) -> None:
+    def build(self, frame: ClothFrame) -> None:
         """Make the mesh for another grid."""
-        rows, cols = self.shape = picture.points.shape[0], picture.points.shape[1]
+        rows, cols = self.shape = frame.points.shape[0], frame.points.shape[1]
         if self.mesh is not None:
             self.mesh.remove()
         self.mesh = ColouredMesh(
             self.server,
             "/cloth",
-            picture.points.reshape(-1, 3),
+            frame.points.reshape(-1, 3),
             faces(rows, cols),
-            self.colours(picture),
+            self.colours(frame),
             color=CLOTH_COLOUR,
             side="double",
         )
@@ -89,68 +100,65 @@ class View:
             self.nearest = nearest(self.points, event)
         drag(self.post, event, self.nearest)
 
-    def colours(self, picture: ClothFrame) -> np.ndarray:
+    def colours(self, frame: ClothFrame) -> np.ndarray:
         """(particles, 3) sRGB in 0..1: strain, or plain."""
-        if picture.colour == "plain":
-            return np.tile(np.array(CLOTH_COLOUR, np.float32) / 255, (picture.strain.size, 1))
-        return scale_colours(picture.strain.ravel().astype(np.float64), 0.0, picture.full_strain)
+        if frame.colour == "plain":
+            return np.tile(np.array(CLOTH_COLOUR, np.float32) / 255, (frame.strain.size, 1))
+        return scale_colours(frame.strain.ravel().astype(np.float64), 0.0, frame.full_strain)
 
-    def show(self, picture: ClothFrame) -> None:
+    def show(self, frame: ClothFrame) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
-        self.points = picture.points.reshape(-1, 3)
-        if picture.points.shape[:2] != self.shape:
-            self.build(picture)
+        self.points = frame.points.reshape(-1, 3)
+        if frame.points.shape[:2] != self.shape:
+            self.build(frame)
         assert self.mesh is not None
-        self.mesh.set(self.points, self.colours(picture))
-        if picture.pull is None:
+        self.mesh.set(self.points, self.colours(frame))
+        if frame.pull is None:
             self.pull.show(None)
         else:
-            self.pull.show((self.points[picture.pull.particle], picture.pull.target), picture.pull.load)
-        self.ground.show(picture.floor, picture.grid)
-        for index, (gizmo, grip) in enumerate(zip(self.pins, self.grips, strict=True)):
-            grip.visible = picture.pins is not None
-            gizmo.show(None if picture.pins is None else picture.pins[index])
-            if picture.pins is not None:
-                grip.position = tuple(picture.points[0, -index])
-        self.pole.visible = picture.pole
-        if picture.pole:
-            top, low = picture.points[0, 0], picture.points[0, -1]
-            foot = low + (low - top) * (low[2] / max(float(top[2] - low[2]), 0.1))
-            self.pole.points = np.array([[top + 0.06 * (top - low), foot]], np.float32)
-        self.ball.visible = picture.sphere is not None
-        self.sphere.show(None if picture.sphere is None else picture.sphere_home)
-        if picture.sphere is not None:
-            self.ball.position = picture.sphere[:3]
-            self.ball.scale = picture.sphere[3]
+            self.pull.show((self.points[frame.pull.particle], frame.pull.target), frame.pull.load)
+        self.ground.show(frame.floor, frame.grid)
+        for index, (gizmo, pin_ball) in enumerate(zip(self.pins, self.pin_balls, strict=True)):
+            pin_ball.visible = frame.pins is not None
+            gizmo.show(None if frame.pins is None else frame.pins[index])
+            if frame.pins is not None:
+                pin_ball.position = tuple(frame.points[0, -index])
+        self.pole.visible = frame.pole
+        if frame.pole:
+            top, low = frame.points[0, 0], frame.points[0, -1]
+            foot = low + (low - top) * (low[2] / max(float(top[2] - low[2]), MIN_POLE_DROP))
+            self.pole.points = np.array([[top + POLE_OVERHANG * (top - low), foot]], np.float32)
+        self.ball.visible = frame.sphere is not None
+        self.sphere.show(None if frame.sphere is None else frame.sphere_home)
+        if frame.sphere is not None:
+            self.ball.position = frame.sphere[:3]
+            self.ball.scale = frame.sphere[3]
 
     def readout(self, snapshot: Snapshot) -> str:
-        """The stability gauge, what an implicit step took, and the colour scale, as HTML."""
-        gauge, picture = snapshot.readings, snapshot.frame
-        taken, scale = "", ""
+        """The stability bar, the cost of an implicit step and the colour scale, as HTML."""
+        gauge, frame = snapshot.readings, snapshot.frame
+        cost, scale = "", ""
         if gauge.corrections:
-            taken = f"<div>{gauge.corrections:.1f} Newton corrections a step</div>"
+            cost = f"<div>{gauge.corrections:.1f} Newton corrections a step</div>"
         if gauge.threads > 1:
-            taken += f"<div>forces on {gauge.threads} threads, which is quicker just now</div>"
-        if picture.colour == "strain":
-            scale = colour_scale("0", "strain", f"{100 * picture.full_strain:.3g} %")
-        return stability_bar(gauge.stability, exact=gauge.exact) + taken + scale
+            cost += f"<div>forces on {gauge.threads} threads, which is faster at the moment</div>"
+        if frame.colour == "strain":
+            scale = colour_scale("0", "strain", f"{100 * frame.full_strain:.3g} %")
+        return stability_bar(gauge.stability, exact=gauge.exact) + cost + scale
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
-        """What is written under a parameter: the largest step that holds with the others as they are."""
-        step = snapshot.readings.stability.critical_step
-        text = (
-            "any step holds" if step == float("inf") else f"holds up to {step:.3g} s" if step > 0 else "no step holds"
-        )
-        return {"integrator": snapshot.readings.note, "time_step": text}
+        """Parameter -> the line under its control: the largest step that is stable with the others as they are."""
+        readings = snapshot.readings
+        return {"integrator": readings.note, "time_step": step_mark(readings.stability.critical_step)}
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """No folders."""
         return {}
 
     def close(self) -> None:
-        """Nothing to give back: removing the nodes removes all."""
+        """Removing the nodes of the scene removes everything."""
 
 
 def warm_up() -> Iterator[str]:
-    """Nothing here is compiled."""
+    """The drawing compiles nothing."""
     yield from ()

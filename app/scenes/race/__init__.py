@@ -1,1 +1,1 @@
-"""Ropes side by side."""
+"""Ropes side by side, each with its own method of integration."""

@@ -1,36 +1,41 @@
-"""A race: up to six ropes that differ in method, step or stiffness only, on one clock, against a reference.
+"""The ropes of a race, which differ in method, step or stiffness only, on one clock, against a reference run.
 
-All ropes and the reference meet at the end of each tick, a multiple of the longest step; steps that do not divide it
-are shortened equally. A rope that diverges is held where it last was good, and says why; one
-that refuses (an undamped method on a damped net) never starts. The others race on.
+All ropes and the reference meet at the end of each tick, a multiple of the longest step; steps that do not divide the
+tick are shortened equally. A rope that diverges stops at its last good state and says why. A rope with a method that
+accepts no damping never starts on a damped net. The others go on.
 """
 
 import dataclasses
 import math
 import time
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.scenes.rope.parameters import MOST_ROPES, Params
+from app.messages import Vector
+from app.scenes.race.parameters import Params, method_of
 from sim.springs import INTEGRATORS, Integrator, Net
+from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.reference_run import TRUST_FACTOR, ReferenceRun
 from sim.springs.stability import Gauge, gauge
-from sim.springs.state import State, advance, energy, steps_for
+from sim.springs.state import State, advance, steps_for
 
-LONGEST = 0.1  # [s] that a step of equal cost may take
-TRIAL = 24  # steps, fewer of long ropes, that the cost of an implicit method is judged by
-TIMED = 10_000  # evaluations of a point that timing a step takes each time, at most
-REPEATS = 3  # times, of which the least counts
-LONGEST_TICK = 1 / 30  # [s], or the longest step: how far a multiple of it is looked for that suits the others
-SHORTENED = 0.02  # part of itself that a step may lose to make the tick a multiple of it
-STIFFEST = 1e9  # [N/m], as of the parameter
+MAX_EQUAL_COST_STEP = 0.1  # [s] longest step that the rule "same cost" gives
+MIN_COST_TRIAL_STEPS, MAX_COST_TRIAL_STEPS = 4, 24  # steps in which the evaluations of an implicit method are counted
+COST_TRIAL_POINT_STEPS = 2400  # points times steps of that trial
+TIMING_POINT_EVALS = 10_000  # evaluations times points of one timing of a step, at most
+TIMING_REPEATS = 3  # timings of which the shortest counts
+MIN_TIMING_STEPS, MAX_TIMING_STEPS = 3, 200
+MAX_TICK = 1 / 30  # [s] search limit for a common multiple of the steps, where the longest step is shorter
+MAX_SHORTENING = 0.02  # of itself that a step may lose where it does not divide the tick
+MAX_STIFFNESS = 1e9  # [N/m], the same as of the parameter
 
 
-class Standing(NamedTuple):
-    """How a rope of the race fares."""
+class Result(NamedTuple):
+    """The result of one rope so far."""
 
     number: int
     integrator: str
@@ -38,133 +43,149 @@ class Standing(NamedTuple):
     stiffness: float  # [N/m]
     gauge: Gauge
     evals: float  # force evaluations a step, lately
-    corrections: float  # Newton's, a step, lately; 0 of explicit methods
-    cost: float  # [s] a step takes
-    error: float  # [m] largest distance of a point from the reference; NaN where there is none
-    certain: float  # [m] below which the reference says nothing of that error; NaN where there is none
-    taken: float  # [J] that the method took, or gave if negative, beyond what damping takes
-    out: str  # why it is out of the race, or ""
+    corrections: float  # Newton corrections a step, lately; 0 for explicit methods
+    step_time: float  # [s] of processor time that a step takes
+    error: float  # [m] largest distance of a point from the reference run; NaN where there is none
+    error_floor: float  # [m] smallest error that the reference run can tell; NaN where there is none
+    numerical_dissipation: float  # [J] that the method took, negative where it fed the motion
+    failure: str  # why it has stopped, or ""
 
 
 class RaceReadings(NamedTuple):
-    """The standings, and of the reference: when chaos took it [s], and why there is none."""
+    """The results, and the state of the reference run."""
 
-    standings: tuple[Standing, ...]
-    horizon: float | None
-    no_ghost: str
-
-
-def method_of(params: Params, number: int) -> str:
-    """The method of rope `number`, from 1."""
-    return params.integrator if number == 1 else getattr(params, f"integrator_{number}")
+    results: tuple[Result, ...]
+    reference_horizon: float | None  # [s] when chaos made the reference run meaningless
+    no_reference: str  # why there is none, or ""
 
 
 def evals_of(net: Net, record: Integrator, h: float) -> float:
-    """Force evaluations a step of h [s] takes: as declared, or of implicit methods in a trial from the start."""
+    """Force evaluations of a step of h [s]: as declared; for implicit methods counted in a trial from the start."""
     if not record.implicit:
         return float(record.evals)
     state = State.at_rest(net)
-    advance(net, state, record, h, max(4, min(TRIAL, 2400 // net.shape[1])))
+    steps = max(MIN_COST_TRIAL_STEPS, min(MAX_COST_TRIAL_STEPS, COST_TRIAL_POINT_STEPS // net.shape[1]))
+    advance(net, state, record, h, steps)
     return max(float(record.evals), state.force_evals / state.steps)
 
 
 def step_of(params: Params, number: int, net: Net) -> float:
-    """The step [s] that rope `number` is given by the rule of the race."""
+    """The step [s] that the rule of the race gives to rope `number`."""
     if number == 1 or params.race_steps == "same step":
         return params.time_step
     if params.race_steps == "own steps":
         return getattr(params, f"step_{number}")
     record = INTEGRATORS[method_of(params, number)]
-    budget = params.time_step / evals_of(net, INTEGRATORS[params.integrator], params.time_step)  # [s] an evaluation
+    time_per_eval = params.time_step / evals_of(net, INTEGRATORS[params.integrator], params.time_step)  # [s]
     h = params.time_step
-    # What Newton's method takes depends on the step in turn.
+    # The evaluations of an implicit method depend on the step in turn.
     for _ in range(2 if record.implicit else 1):
-        h = min(LONGEST, budget * evals_of(net, record, h))
+        h = min(MAX_EQUAL_COST_STEP, time_per_eval * evals_of(net, record, h))
     return h
 
 
 def stiffened(net: Net, ratio: float) -> Net:
-    """The net with links `ratio` times as stiff, at most STIFFEST."""
-    return net.with_stiffness(min(STIFFEST, ratio * net.families[0].stiffness))
+    """The net with links `ratio` times as stiff, at most MAX_STIFFNESS."""
+    return net.with_stiffness(min(MAX_STIFFNESS, ratio * net.families[0].stiffness))
 
 
 def tick_of(steps: list[float]) -> float:
-    """The time [s] between meetings of all: the least multiple of the longest step that shortens no step by much."""
+    """The time [s] between meetings of all ropes: the least multiple of the longest step that shortens no step much."""
     longest = max(steps)
-    multiples = range(1, max(1, int(LONGEST_TICK / longest * (1 + 1e-9))) + 1)
+    multiples = range(1, max(1, int(MAX_TICK / longest * (1 + 1e-9))) + 1)
 
     def loss(multiple: int) -> float:
         tick = multiple * longest
         return max(1.0 - tick / (steps_for(tick, step) * step) for step in steps)
 
-    return longest * next((m for m in multiples if loss(m) <= SHORTENED), min(multiples, key=loss))
+    return longest * next((m for m in multiples if loss(m) <= MAX_SHORTENING), min(multiples, key=loss))
 
 
-class Lane:
+class Entrant:
     """One rope of the race."""
 
-    def __init__(self, number: int, net: Net, record: Integrator, step: float, tick: float) -> None:
-        """step: [s] as given; the one taken divides `tick` [s]."""
-        self.number, self.record = number, record
-        self.substeps = steps_for(tick, step)
-        self.step = tick / self.substeps
+    def __init__(
+        self,
+        number: int,
+        net: Net,
+        record: Integrator,
+        step: float,
+        tick: float,
+        clock: Callable[[], float] = time.perf_counter,
+    ) -> None:
+        """step: [s] as the rule gives it; the one taken divides `tick` [s]. clock: [s], to time a step."""
+        self.number, self.record, self.clock = number, record, clock
+        self.substeps = steps_for(tick, step)  # a tick
+        self.step = tick / self.substeps  # [s]
         self.state = State.at_rest(net)
-        self.out = ""
-        self.cost = 0.0
-        self.counted = (0, 0)  # evaluations and steps when last looked at
-        self.evals, self.corrections = float(record.evals), 0.0
-        self.gauge = gauge(net, record, self.step, self.state)
-        self.take(net)
-        if record.undamped_only and net.is_damped:
-            self.out = "takes no damping: set damping and drag to 0, the floor off"
-        self.look()
-
-    def take(self, net: Net) -> None:
-        """The net as the parameters have it now: a new account of energy, new bounds."""
         self.net = net
-        self.state.dissipated = self.state.work = 0.0
-        self.initial = energy(net, self.state).total
-        sag = net.mass * abs(net.gravity[2]) / max(net.families[0].stiffness, 1e-9)
-        n = net.shape[1] - 1
-        length = n * net.families[0].rest
-        # A swinging rope pulls at a point with some thrice its weight; further out it is no picture of a rope.
+        self.account = EnergyAccount(net, self.state)
+        self.failure = ""
+        self.step_time = 0.0  # [s]
+        self.counted = 0, 0  # force evaluations and steps at the last assessment
+        self.evals, self.corrections = float(record.evals), 0.0  # a step
+        self.gauge = gauge(net, record, self.step, self.state)
+        self.set_bounds()
+        if record.undamped_only and net.is_damped:
+            self.failure = "takes no damping: set damping and drag to 0, the floor off"
+        self.assess_stability()
+
+    def set_bounds(self) -> None:
+        """How far a rope of these parameters may get."""
+        link = self.net.families[0]
+        sag = self.net.mass * abs(self.net.gravity[2]) / max(link.stiffness, 1e-9)
+        n = self.net.shape[1] - 1
+        # A swinging rope pulls a point with about three times its weight. Beyond this bound it is no rope any more.
         reach = extremes(self.state.x, self.state.v).reach
-        self.bound = 0.5 + 1.2 * max(length + 2.0 * sag * n * (n + 1), reach)
+        self.max_reach = 0.5 + 1.2 * max(n * link.rest + 2.0 * sag * n * (n + 1), reach)  # [m] from the root
+
+    def change_net(self, net: Net) -> None:
+        """Go on with another net."""
+        stored = self.account.stored(self.net, self.state)
+        self.net = net
+        self.account.book_change(stored, net, self.state)
+        self.set_bounds()
+        self.assess_stability()
 
     @property
     def stiffness(self) -> float:
         """[N/m] of its links."""
         return self.net.families[0].stiffness
 
+    @property
+    def name(self) -> str:
+        """Name of its method."""
+        return self.record.name
+
     def advance(self, net: Net, ticks: int) -> None:
-        """Take the steps of so many ticks; net: as it moves meanwhile."""
-        if self.out:
+        """Take the steps of `ticks` ticks. net: with the motions of root and pull."""
+        if self.failure:
             return
         good = self.state.copy()
         advance(net, self.state, self.record, self.step, ticks * self.substeps, with_account=True)
-        if not extremes(self.state.x, self.state.v).reach < self.bound:  # nor is a NaN
-            when = self.state.t
+        if not extremes(self.state.x, self.state.v).reach < self.max_reach:  # true of a NaN as well
+            diverged_at = self.state.t
             self.state = good
-            self.out = self.verdict(when)
+            self.failure = self.failure_at(diverged_at)
 
-    def verdict(self, when: float) -> str:
-        """Why it is out, at time `when` [s]."""
+    def failure_at(self, t: float) -> str:
+        """Why it diverged at time t [s]."""
         g = self.gauge
         if g.h_omega > g.limit:
-            return f"diverged at {when:.2f} s: h ω = {g.h_omega:.3g} is over {g.limit:.3g}"
-        return f"diverged at {when:.2f} s: too sudden for the step, though h ω = {g.h_omega:.3g} of {g.limit:.3g}"
+            return f"diverged at {t:.2f} s: h ω = {g.h_omega:.3g} is over {g.limit:.3g}"
+        return f"diverged at {t:.2f} s: too sudden for the step, though h ω = {g.h_omega:.3g} of {g.limit:.3g}"
 
-    def pin(self, position: tuple[float, float, float]) -> None:
-        """Put the root to rest at a place [m]."""
+    def move_root(self, position: Vector) -> None:
+        """Put the root to rest at a position [m]."""
         self.state.x[:, 0, 0] = position
         self.state.v[:, 0, 0] = 0.0
 
-    def look(self) -> None:
-        """Judge stability and cost of the state as it is."""
-        if self.out:
+    def assess_stability(self) -> None:
+        """Compare the step with its limit at the state as it is, and measure what it costs."""
+        if self.failure:
             return
         self.gauge = gauge(self.net, self.record, self.step, self.state)
-        self.cost = self.timed()
+        self.step_time = self.timed_step()
         evals, steps = self.state.force_evals, self.state.steps
         if steps > self.counted[1]:
             if self.record.implicit:
@@ -172,125 +193,132 @@ class Lane:
                 self.corrections = max(0.0, self.evals - self.record.evals_outside_newton)
             self.counted = evals, steps
 
-    def timed(self) -> float:
-        """Time [s] of a step from here: the least of a few calls of steps each, without what calling costs."""
-        each = self.evals * self.state.x.size / 3
-        many = int(np.clip(TIMED / each, 3, 200))
-        least = [math.inf, math.inf]
-        for _ in range(REPEATS if many > 3 else 1):
+    def timed_step(self) -> float:
+        """Time [s] of a step from here: the shortest of a few runs of many steps, minus the cost of one call."""
+        point_evals = self.evals * self.state.x.size / 3
+        many = int(np.clip(TIMING_POINT_EVALS / point_evals, MIN_TIMING_STEPS, MAX_TIMING_STEPS))
+        shortest = [math.inf, math.inf]
+        for _ in range(TIMING_REPEATS if many > MIN_TIMING_STEPS else 1):
             for i, steps in enumerate((1, many)):
                 copy = self.state.copy()
-                start = time.perf_counter()
+                start = self.clock()
                 advance(self.net, copy, self.record, self.step, steps)
-                least[i] = min(least[i], time.perf_counter() - start)
-        now = max(0.0, least[1] - least[0]) / (many - 1)
-        # Down at once, up slowly: what disturbs a timing lengthens it.
-        return now if not 0.0 < self.cost < now else 0.9 * self.cost + 0.1 * now
+                shortest[i] = min(shortest[i], self.clock() - start)
+        now = max(0.0, shortest[1] - shortest[0]) / (many - 1)
+        # Down at once, up slowly: what disturbs a timing makes it longer.
+        return now if not 0.0 < self.step_time < now else 0.9 * self.step_time + 0.1 * now
 
-    def total(self) -> float:
+    def stored_energy(self) -> float:
         """Stored energy [J]."""
-        return energy(self.net, self.state).total
+        return self.account.stored(self.net, self.state)
 
-    def taken(self) -> float:
-        """Energy [J] that is neither stored nor damped nor paid out: what the method itself took."""
-        return self.initial + self.state.work - self.state.dissipated - self.total()
+    def numerical_dissipation(self) -> float:
+        """Energy [J] that the method took since the start, negative where it fed the motion."""
+        return self.account.numerical_dissipation(self.net, self.state)
 
 
 class Race:
-    """All lanes, the reference of each, and the clock."""
+    """All entrants, the reference run of each, and the clock."""
 
-    def __init__(self, net: Net, params: Params) -> None:
-        """net: of rope 1, at rest at time 0."""
+    def __init__(self, net: Net, params: Params, clock: Callable[[], float] = time.perf_counter) -> None:
+        """net: of rope 1, at rest at time 0. clock: [s], to time steps."""
         self.ratio = params.stiffness_ratio
         numbers = range(1, params.ropes + 1)
         nets = [stiffened(net, self.ratio ** (number - 1)) for number in numbers]
         steps = [step_of(params, number, own) for number, own in zip(numbers, nets, strict=True)]
         self.tick = tick_of(steps)  # [s]
-        self.t = 0.0
-        self.lanes = [
-            Lane(number, own, INTEGRATORS[method_of(params, number)], step, self.tick)
+        self.t = 0.0  # [s]
+        self.entrants = [
+            Entrant(number, own, INTEGRATORS[method_of(params, number)], step, self.tick, clock)
             for number, own, step in zip(numbers, nets, steps, strict=True)
         ]
-        # Ropes of one stiffness share a reference.
+        # Ropes of the same stiffness share a reference run.
         count = params.ropes if self.ratio != 1.0 else 1
-        self.ghosts = [ReferenceRun(nets[i], params.length, count) for i in range(count)]
+        self.references = [ReferenceRun(nets[i], params.length, count) for i in range(count)]
 
-    @staticmethod
-    def line_up(params: Params) -> tuple:
-        """What a race is made of: a change of any of these starts it anew."""
-        names = [f"{what}_{number}" for what in ("integrator", "step") for number in range(2, MOST_ROPES + 1)]
-        first = ("ropes", "points", "length", "units", "integrator", "time_step", "race_steps", "stiffness_ratio")
-        return tuple(getattr(params, name) for name in (*first, *names))
+    def reference_of(self, entrant: Entrant) -> ReferenceRun:
+        """The reference run of one rope."""
+        return self.references[min(entrant.number, len(self.references)) - 1]
 
-    def ghost_of(self, lane: Lane) -> ReferenceRun:
-        return self.ghosts[min(lane.number, len(self.ghosts)) - 1]
-
-    def take(self, net: Net) -> None:
-        """New parameters of the same ropes; the motion goes on."""
-        for lane in self.lanes:
-            lane.take(stiffened(net, self.ratio ** (lane.number - 1)))
-            lane.look()
-        for ghost, lane in zip(self.ghosts, self.lanes, strict=False):
-            ghost.update(lane.net)
+    def change_net(self, net: Net) -> None:
+        """Go on with other forces. net: of rope 1."""
+        for entrant in self.entrants:
+            entrant.change_net(stiffened(net, self.ratio ** (entrant.number - 1)))
+        for reference, entrant in zip(self.references, self.entrants, strict=False):
+            reference.update(entrant.net)
 
     def advance(self, moving: Net, ticks: int) -> tuple[int, int]:
-        """Advance all by so many ticks; moving: rope 1's net as root and pull move meanwhile.
+        """Advance all by `ticks` ticks. moving: the net of rope 1 with the motions of root and pull.
 
-        Returns how many force evaluations and steps that took, the references' apart.
+        Returns the numbers of force evaluations and steps of the ropes, without those of the reference runs.
         """
         duration = ticks * self.tick
         before = self.counts()
-        for lane in self.lanes:
-            lane.advance(dataclasses.replace(moving, families=lane.net.families), ticks)
-        for ghost, lane in zip(self.ghosts, self.lanes, strict=False):
-            ghost.advance(dataclasses.replace(moving, families=lane.net.families), self.t, duration)
+        for entrant in self.entrants:
+            entrant.advance(dataclasses.replace(moving, families=entrant.net.families), ticks)
+        for reference, entrant in zip(self.references, self.entrants, strict=False):
+            reference.advance(dataclasses.replace(moving, families=entrant.net.families), self.t, duration)
         self.t += duration
         after = self.counts()
         return after[0] - before[0], after[1] - before[1]
 
     def counts(self) -> tuple[int, int]:
-        """Force evaluations and steps of all lanes."""
-        return sum(lane.state.force_evals for lane in self.lanes), sum(lane.state.steps for lane in self.lanes)
+        """Force evaluations and steps of all ropes since the start."""
+        return sum(e.state.force_evals for e in self.entrants), sum(e.state.steps for e in self.entrants)
 
-    def pin(self, position: tuple[float, float, float]) -> None:
-        """All roots to rest at a place [m]."""
-        for lane in self.lanes:
-            if not lane.out:
-                lane.pin(position)
-        for ghost in self.ghosts:
-            ghost.pin(position)
+    def move_root(self, position: Vector) -> None:
+        """Put the roots of all that have not failed to rest at a position [m]."""
+        for entrant in self.entrants:
+            if not entrant.failure:
+                entrant.move_root(position)
+        for reference in self.references:
+            reference.pin(position)
 
-    def look(self) -> None:
-        for lane in self.lanes:
-            lane.look()
+    def assess_stability(self) -> None:
+        """Compare each step with its limit, and measure what it costs."""
+        for entrant in self.entrants:
+            entrant.assess_stability()
 
-    def error(self, lane: Lane) -> float:
-        """Largest distance [m] of a point from the reference; NaN where rope or reference is out."""
-        return math.nan if lane.out else self.ghost_of(lane).distance(lane.state.x)
+    def error(self, entrant: Entrant) -> float:
+        """Largest distance [m] of a point from the reference run; NaN after a failure or without a reference."""
+        return math.nan if entrant.failure else self.reference_of(entrant).distance(entrant.state.x)
 
-    def certain(self, lane: Lane) -> float:
-        """What an error must exceed [m] to be the method's own; NaN where there is no reference."""
-        ghost = self.ghost_of(lane)
-        return TRUST_FACTOR * ghost.separation if ghost.is_available and ghost.horizon is None else math.nan
+    def error_floor(self, entrant: Entrant) -> float:
+        """Smallest error [m] that the reference run can tell; NaN where there is no reference."""
+        reference = self.reference_of(entrant)
+        return TRUST_FACTOR * reference.separation if reference.is_available and reference.horizon is None else math.nan
 
-    def standings(self) -> RaceReadings:
-        found = tuple(
-            Standing(
-                lane.number, lane.record.name, lane.step, lane.stiffness, lane.gauge, lane.evals,
-                lane.corrections, lane.cost, self.error(lane), self.certain(lane), lane.taken(), lane.out,
+    def readings(self) -> RaceReadings:
+        """The results at this time."""
+        results = tuple(
+            Result(
+                number=e.number,
+                integrator=e.name,
+                step=e.step,
+                stiffness=e.stiffness,
+                gauge=e.gauge,
+                evals=e.evals,
+                corrections=e.corrections,
+                step_time=e.step_time,
+                error=self.error(e),
+                error_floor=self.error_floor(e),
+                numerical_dissipation=e.numerical_dissipation(),
+                failure=e.failure,
             )
-            for lane in self.lanes
-        )  # fmt: skip
-        lost = [ghost.horizon for ghost in self.ghosts if ghost.horizon is not None]
-        return RaceReadings(found, min(lost, default=None), next((g.failure for g in self.ghosts if g.failure), ""))
+            for e in self.entrants
+        )
+        lost = [reference.horizon for reference in self.references if reference.horizon is not None]
+        return RaceReadings(
+            results, min(lost, default=None), next((r.failure for r in self.references if r.failure), "")
+        )
 
     def points(self) -> NDArray[np.float64]:
-        """(ropes, points, 3) [m], all from the one root."""
-        return np.stack([lane.state.x[:, 0].T for lane in self.lanes])
+        """(ropes, points, 3) [m], all from the same root."""
+        return np.ascontiguousarray([entrant.state.x[:, 0].T for entrant in self.entrants])
 
-    def ghost_points(self) -> NDArray[np.float64] | None:
-        """The same of the references, or None where one is missing."""
-        ghosts = [self.ghost_of(lane) for lane in self.lanes]
-        if any(not ghost.is_available or ghost.horizon is not None for ghost in ghosts):
+    def reference_points(self) -> NDArray[np.float64] | None:
+        """(ropes, points, 3) [m] of the reference runs, or None where one is missing."""
+        references = [self.reference_of(entrant) for entrant in self.entrants]
+        if any(not reference.is_available or reference.horizon is not None for reference in references):
             return None
-        return np.stack([ghost.x.T for ghost in ghosts])
+        return np.ascontiguousarray([reference.x.T for reference in references])

@@ -1,130 +1,184 @@
-"""A race as drawn: a tube a rope in its own colour, the references as translucent ones, a flag on each."""
+"""The race as drawn: a tube for each rope in its own colour, the reference runs translucent, a label on each root."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import viser
 
-from app.render.colormap import PALETTE, rgb
+from app.messages import Command, Snapshot
+from app.render.colormap import rgb
+from app.render.dragging import drag
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
-from app.scenes.race.report import RaceFrame
-from app.scenes.rope.parameters import THICKNESS
+from app.scenes.charts import PALETTE
+from app.scenes.race.report import results_table
+from app.scenes.race.scene import RaceFrame
+from app.scenes.springs.rope_parameters import ROPE_RADIUS
+from app.scenes.springs.view import RopeSurroundings
 
-RINGS = 90  # about as many rings as a rope is drawn with
-SIDES = 8
-RADIUS = 0.75 * THICKNESS
-CORE = 0.9 * RADIUS  # [m] of the reference, which is hidden in a rope that is where it should be
-GHOST_COLOUR = (70, 76, 88)
-SHADE = 0.6  # of a colour's numbers, so that lit from all sides it looks as it does in the charts
-FADED = 0.35  # opacity of a rope that is out
-POLE = 0.16  # [m] from a root to its label, and between the heights of labels, lest they overlap
+RING_COUNT = 90  # rings of a drawn tube, about
+SIDES = 8  # of a drawn tube
+TUBE_RADIUS = 0.75 * ROPE_RADIUS  # [m]
+REFERENCE_RADIUS = 0.9 * TUBE_RADIUS  # [m], so that a rope without error hides its reference run
+REFERENCE_COLOUR = (70, 76, 88)
+REFERENCE_OPACITY = 0.4
+COLOUR_SCALE = 0.6  # of a colour's numbers, so that a rope lit from all sides has the colour it has in the charts
+FAILED_OPACITY = 0.35  # of a rope that has stopped
+LABEL_HEIGHT = 0.16  # [m] from a root to its label, and between the heights of two labels, so that they do not overlap
 
 
-def shaded(rope: int) -> tuple[int, int, int]:
+def material_colour(index: int) -> tuple[int, int, int]:
     """The colour of a rope's material."""
-    red, green, blue = (round(SHADE * part) for part in rgb(PALETTE[rope]))
+    red, green, blue = (round(COLOUR_SCALE * part) for part in rgb(PALETTE[index]))
     return red, green, blue
 
 
-class RaceDrawing:
-    """The handles of one race, made for its ropes and points, then assigned to."""
+def tube_vertices(points: np.ndarray, samples: int, radius: float) -> np.ndarray:
+    """Vertices (rings SIDES + 2, 3) of a tube of `radius` [m] along points (n, 3) [m], with `samples` rings a link."""
+    rings = (len(points) - 1) * samples + 1
+    line, vertices = np.zeros((rings, 3)), np.zeros((rings * SIDES + 2, 3), np.float32)
+    smooth_line(points, samples, line)
+    sweep(line, radius, SIDES, vertices)
+    return vertices
 
-    def __init__(self, server: viser.ViserServer, race: RaceFrame, drag: Callable[[Any], Any]) -> None:
-        """drag: what a drag of a bead calls with viser's event, whose instance counts along rope after rope."""
-        self.server = server
-        self.ropes, n, _ = race.ropes.shape
-        self.shape = race.ropes.shape
-        self.between = max(1, RINGS // (n - 1))
-        rings = (n - 1) * self.between + 1
-        self.line = np.zeros((rings, 3))
-        self.each = rings * SIDES + 2
-        faces = tube_faces(rings, SIDES)
+
+class RopesDrawing:
+    """The handles of all ropes, made for their number and their points, then assigned to."""
+
+    def __init__(self, server: viser.ViserServer, frame: RaceFrame, on_drag: Callable[[Any], Any]) -> None:
+        """on_drag: called with viser's event for a bead; its instance is numbered through, rope after rope."""
+        count, n, _ = self.shape = frame.ropes.shape
+        self.samples = max(1, RING_COUNT // (n - 1))
+        faces = tube_faces((n - 1) * self.samples + 1, SIDES)
         scene = server.scene
+        tubes = self.tube_meshes(frame.ropes, TUBE_RADIUS)
         self.tubes = [
-            scene.add_mesh_simple(
-                f"/race/rope_{i + 1}", self.tube(race.ropes[i], RADIUS), faces, color=shaded(i), side="double"
-            )
-            for i in range(self.ropes)
+            scene.add_mesh_simple(f"/race/rope_{i + 1}", tube, faces, color=material_colour(i), side="double")
+            for i, tube in enumerate(tubes)
         ]
-        self.cores = np.zeros((self.ropes * self.each, 3), np.float32)
-        self.ghosts = scene.add_mesh_simple(
-            "/race/ghosts",
-            self.cores,
-            np.concatenate([faces + i * self.each for i in range(self.ropes)]).astype(np.uint32),
-            color=GHOST_COLOUR,
-            opacity=0.4,
+        each = len(tubes[0])
+        self.references = scene.add_mesh_simple(
+            "/race/references",
+            np.zeros((count * each, 3), np.float32),
+            np.concatenate([faces + i * each for i in range(count)]).astype(np.uint32),
+            color=REFERENCE_COLOUR,
+            opacity=REFERENCE_OPACITY,
             cast_shadow=False,
             visible=False,
         )
-        points = race.ropes.reshape(-1, 3)
-        # Colours of instances are taken as linear ones.
-        colours = np.repeat([255.0 * (np.array(shaded(i)) / 255.0) ** 2.2 for i in range(self.ropes)], n, axis=0)
+        points = frame.ropes.reshape(-1, 3)
+        # viser takes the colours of instances as linear ones.
+        colours = np.repeat([255.0 * (np.array(material_colour(i)) / 255.0) ** 2.2 for i in range(count)], n, axis=0)
+        bead_radius = min(1.5 * ROPE_RADIUS, 0.3 / n + 0.8 * ROPE_RADIUS)
         self.beads = scene.add_batched_meshes_simple(
             "/race/points",
             *ball(6),
             batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (len(points), 1)),
             batched_positions=points,
-            batched_scales=np.full(len(points), min(1.5 * THICKNESS, 0.3 / n + 0.8 * THICKNESS), np.float32),
+            batched_scales=np.full(len(points), bead_radius, np.float32),
             batched_colors=colours.astype(np.uint8),
             lod="off",
         )
-        self.beads.on_drag("left")(drag)
+        self.beads.on_drag("left")(on_drag)
         self.poles = scene.add_line_segments(
             "/race/poles",
-            self.flags(race),
-            colors=np.repeat([[rgb(colour)] for colour in PALETTE[: self.ropes]], 2, axis=1).astype(np.uint8),
+            self.label_poles(frame),
+            colors=np.repeat([[rgb(colour)] for colour in PALETTE[:count]], 2, axis=1).astype(np.uint8),
             thickness=2.0,
             thickness_units="screen",
         )
         self.labels = [
             scene.add_label(f"/race/label_{i + 1}", text, font_screen_scale=0.8, anchor="bottom-left")
-            for i, text in enumerate(race.labels)
+            for i, text in enumerate(frame.labels)
         ]
-        self.roots: np.ndarray | None = None
-        self.out = (False,) * self.ropes
+        self.shown_roots: np.ndarray | None = None
+        self.shown_failed = (False,) * count
 
-    def tube(self, points: np.ndarray, radius: float) -> np.ndarray:
-        """(vertices, 3) of a tube along points (n, 3) [m]."""
-        vertices = np.zeros((self.each, 3), np.float32)
-        smooth_line(np.ascontiguousarray(points), self.between, self.line)
-        sweep(self.line, radius, SIDES, vertices)
-        return vertices
+    def tube_meshes(self, ropes: np.ndarray, radius: float) -> list[np.ndarray]:
+        """The vertices of each rope of (ropes, points, 3) [m]."""
+        return [tube_vertices(points, self.samples, radius) for points in ropes]
 
-    def flags(self, race: RaceFrame) -> np.ndarray:
+    def label_poles(self, frame: RaceFrame) -> np.ndarray:
         """(ropes, 2, 3): from each root up to its label [m], the farther the higher."""
-        poles = np.repeat(race.ropes[:, :1], 2, axis=1)
-        poles[:, 1, 2] += POLE * (1.0 + np.arange(self.ropes))
+        poles = np.repeat(frame.ropes[:, :1], 2, axis=1)
+        poles[:, 1, 2] += LABEL_HEIGHT * (1.0 + np.arange(len(frame.ropes)))
         return poles
 
-    def show(self, race: RaceFrame, show_points: bool) -> None:
+    def show(self, frame: RaceFrame) -> None:
         """Assign a new frame; call inside `server.atomic()`."""
         for i, tube in enumerate(self.tubes):
-            if race.out[i] and self.out[i]:
-                continue  # it is held where it was
-            tube.vertices = self.tube(race.ropes[i], RADIUS)
-            if race.out[i] != self.out[i]:
-                tube.opacity = FADED if race.out[i] else None
-        self.out = race.out
-        self.ghosts.visible = race.ghosts is not None
-        if race.ghosts is not None:
-            for i in range(self.ropes):
-                self.cores[i * self.each : (i + 1) * self.each] = self.tube(race.ghosts[i], CORE)
-            self.ghosts.vertices = self.cores
-        self.beads.visible = show_points
-        if show_points:
-            self.beads.batched_positions = race.ropes.reshape(-1, 3)
-        flags = self.flags(race)
-        if self.roots is None or not np.array_equal(self.roots, flags[:, 0]):
-            self.roots = flags[:, 0]
-            self.poles.points = flags
-            for label, flag in zip(self.labels, flags, strict=True):
-                label.position = tuple(flag[1])
-        for label, text in zip(self.labels, race.labels, strict=True):
+            if frame.failed[i] and self.shown_failed[i]:
+                continue  # it has stopped where it is drawn
+            tube.vertices = tube_vertices(frame.ropes[i], self.samples, TUBE_RADIUS)
+            if frame.failed[i] != self.shown_failed[i]:
+                tube.opacity = FAILED_OPACITY if frame.failed[i] else None
+        self.shown_failed = frame.failed
+        self.references.visible = frame.references is not None
+        if frame.references is not None:
+            self.references.vertices = np.concatenate(self.tube_meshes(frame.references, REFERENCE_RADIUS))
+        self.beads.visible = frame.show_points
+        if frame.show_points:
+            self.beads.batched_positions = frame.ropes.reshape(-1, 3)
+        poles = self.label_poles(frame)
+        if self.shown_roots is None or not np.array_equal(self.shown_roots, poles[:, 0]):
+            self.shown_roots = poles[:, 0]
+            self.poles.points = poles
+            for label, pole in zip(self.labels, poles, strict=True):
+                label.position = tuple(pole[1])
+        for label, text in zip(self.labels, frame.labels, strict=True):
             if label.text != text:
                 label.text = text
 
     def remove(self) -> None:
-        """Take it all out of the scene."""
-        for handle in (*self.tubes, *self.labels, self.ghosts, self.beads, self.poles):
+        """Take everything out of the scene."""
+        for handle in (*self.tubes, *self.labels, self.references, self.beads, self.poles):
             handle.remove()
+
+
+class View:
+    """Draws `RaceFrame`s."""
+
+    CAMERA = ((3.4, -2.7, 2.9), (0.45, 0.35, 1.75))  # position, target [m]
+    FIELD_OF_VIEW = 1.3  # [rad]
+
+    def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
+        self.server = server
+        self.post = post
+        self.surroundings = RopeSurroundings(server, post)
+        self.ropes: RopesDrawing | None = None
+
+    async def on_bead(self, event: Any) -> None:
+        """Pull the bead that is dragged."""
+        drag(self.post, event, event.instance_index)
+
+    def show(self, frame: RaceFrame) -> None:
+        """Assign a new frame to the handles; call inside `server.atomic()`."""
+        if self.ropes is not None and self.ropes.shape != frame.ropes.shape:
+            self.ropes.remove()
+            self.ropes = None
+        if self.ropes is None:
+            self.ropes = RopesDrawing(self.server, frame, self.on_bead)
+        self.ropes.show(frame)
+        self.surroundings.show(frame.floor, frame.grid, frame.root, frame.pull, frame.ropes.reshape(-1, 3))
+
+    def readout(self, snapshot: Snapshot) -> str:
+        """The table of results, as HTML."""
+        return results_table(snapshot.readings)
+
+    def marks(self, snapshot: Snapshot) -> dict[str, str]:
+        """Parameter -> the line under its control: the largest step of rope 1 that is stable."""
+        step = snapshot.readings.results[0].gauge.critical_step
+        return {"time_step": "" if step == float("inf") else f"rope 1 is stable up to {step:.3g} s"}
+
+    def notes(self, snapshot: Snapshot) -> dict[str, str]:
+        """No folders."""
+        return {}
+
+    def close(self) -> None:
+        """Removing the nodes of the scene removes everything."""
+
+
+def warm_up() -> Iterator[str]:
+    """Compile what the drawing calls; yields what comes next."""
+    yield "drawing"
+    tube_vertices(np.zeros((2, 3), np.float32), 2, TUBE_RADIUS)

@@ -1,1 +1,1 @@
-"""The rope of springs."""
+"""One rope of springs."""

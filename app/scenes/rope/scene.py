@@ -1,308 +1,220 @@
-"""The rope of springs: the lab's part 2, with root and points to be dragged; alone, or in a race."""
+"""The rope of springs, part 2 of the lab: its root and its points can be dragged."""
 
-import dataclasses
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, Grab, Place, Release, SceneCommand, Vector, WorkCounts
-from app.scenes.charts import Chart, PlotAxes
+from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts
+from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, SceneKind, StabilityMap
-from app.scenes.race.race import Race, RaceReadings
-from app.scenes.race.race_charts import CURVES, RaceCharts
-from app.scenes.race.report import RaceFrame, place_of, race_arrays, race_picture
+from app.scenes.plot_rows import PlotRows
 from app.scenes.rope.measures import measures
-from app.scenes.rope.parameters import PRESETS, ROOT, SPHERE, Params, build, hidden, stiffness_parameter
+from app.scenes.rope.parameters import PRESETS, Params, build, hidden
+from app.scenes.springs.divergence import divergence_text
+from app.scenes.springs.drag import PullFrame
+from app.scenes.springs.rope_handles import RopeHandles, vector_of
+from app.scenes.springs.rope_parameters import stiffness_parameter
+from app.scenes.springs.warmup import compile_integrators
 from app.scenes.springs.work_counts import SpringWorkCounts
-from sim.springs import INTEGRATORS, Net, rope, simulate
-from sim.springs import Grab as Pull
+from sim.springs import rope
+from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.tension import rope_tension
 from sim.springs.integrator_fallback import integrator_or_fallback
 from sim.springs.resampling import resample
 from sim.springs.stability import Gauge, critical_stiffness, gauge, top_modes
 from sim.springs.state import State, advance, energy, velocities
-from sim.springs.tracking import CriticallyDampedTracker
 
-TITLE = "Rope"
-GAUGE_EVERY = 0.5  # [s] of simulated time between two looks at the stability of the state
-UNMOVED = 1e-3  # of a link: a rope that has moved by less since the last look is as stable as it was
-SWIFT = 0.6  # [m/s] as seen: 10 mm, about two pixels, between pictures at their highest rate
-SLOW = 0.075  # [m/s] as seen: 5 mm between pictures at a quarter of it
-SAMPLE_EVERY = 1 / 30  # [s] between two plot rows
-HELP = "<b>Drag a bead</b> to pull the rope. <b>Drag the arrows</b> to move its root."
-SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "error", "tip height")
+ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
+MIN_MOVE_TO_ASSESS = 1e-3  # of a link: a rope that has moved by less since the last assessment is as stable as it was
+FULL_RATE_SPEED = 0.6  # [m/s] on screen: 10 mm, about two pixels, between frames at the highest rate
+QUARTER_RATE_SPEED = 0.075  # [m/s] on screen: 5 mm between frames at a quarter of it
+ENERGY_SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "error")
+SERIES = (*ENERGY_SERIES, "tip height")
 PLOTS = {
-    "plot_energy": PlotAxes("Energy", "J", ("kinetic", "elastic", "gravity", "contact", "dissipated", "error")),
+    "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES),
     "plot_tip": PlotAxes("Height of the tip", "m", ("tip height",)),
 }
 
 
-class PullShown(NamedTuple):
-    """The drawn pull: from a point to its target [m], and the part of the largest force it takes."""
-
-    particle: int
-    target: Vector
-    load: float
-
-
 class RopeFrame(NamedTuple):
-    """What the viewer draws of a rope."""
+    """What the view draws of a rope."""
 
-    points: NDArray[np.float32]  # (n, 3) [m]
+    points: NDArray[np.float32]  # (n, 3) [m], C-contiguous
     tension: NDArray[np.float32]  # (n - 1,) [N]
-    full_scale: float  # [N] tension of the colour scale's end
-    root: Vector
-    sphere: tuple[float, float, float, float] | None
+    full_scale: float  # [N] tension at the end of the colour scale
+    root: Vector  # [m] where the root is going to
+    sphere: tuple[float, float, float, float] | None  # x, y, z, radius [m]
     floor: bool
     grid: bool
     colour: str
     show_points: bool
-    pull: PullShown | None
-    race: RaceFrame | None
+    pull: PullFrame | None
 
 
-class Paid(NamedTuple):
-    """What an implicit method asks for holding at any step, since the parameters last changed."""
+class NumericalCost(NamedTuple):
+    """What an implicit method costs, since it was chosen."""
 
-    corrections: float  # Newton's, a step, lately
-    taken: float  # [J] by the method itself: numerical damping, negative where it feeds
-    dissipated: float  # [J] by the rope's own damping
+    corrections: float  # Newton corrections a step, lately
+    numerical_dissipation: float  # [J] that the method took, negative where it fed the motion
+    damping_dissipation: float  # [J] that the rope's own damping took
 
 
 class RopeReadings(NamedTuple):
-    """How near to its limit the integrator works, and the largest values that would hold."""
+    """The stability of the time step, and the largest values that would be stable."""
 
     stability: Gauge
-    parameter: str  # the stiffness parameter in force
+    parameter: str  # name of the stiffness parameter in use
     largest_stiffness: float  # in that parameter's unit
     note: str  # why another method runs than the one chosen, or ""
-    paid: Paid | None  # of implicit methods
-
-
-UNDAMPED = rope(4, damping=0.0, drag=0.0)
+    cost: NumericalCost | None  # None for explicit methods
 
 
 def warm_up() -> Iterator[str]:
-    """Compile everything the scene may call, piece by piece; yields what comes next."""
+    """Compile everything that the scene may call, piece by piece; yields what comes next."""
     net = rope(4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2))
-    for name, record in INTEGRATORS.items():
-        yield name
-        simulate(UNDAMPED if record.undamped_only else net, name, 1e-3, 2e-3, 2, with_account=True)
+    yield from compile_integrators(net, rope(4, damping=0.0, drag=0.0))
     yield "stability"
-    Scene(Params())
-    yield "race"
-    Scene(Params(ropes=2)).advance(2)
+    scene = RopeScene(Params())
+    scene.advance(2)
+    scene.frame()
 
 
-class Scene:
+class RopeScene:
     """The rope on the simulation thread."""
 
     def __init__(self, params: Params) -> None:
         self.params = params
-        self.root = CriticallyDampedTracker(ROOT)
-        self.sphere = CriticallyDampedTracker(SPHERE)
-        self.held: tuple[int, CriticallyDampedTracker] | None = None
-        self.lost = False  # has left its bounds since the last reset
-        self.samples: list[tuple[float, ...]] = []
+        self.handles = RopeHandles()
+        self.diverged = False  # since the last reset
+        self.plot_rows = PlotRows(len(SERIES))
         self.counts = SpringWorkCounts()
         self.reset()
 
     @property
     def step(self) -> float:
-        return self.race.tick if self.race else self.params.time_step
-
-    @property
-    def frame_interval(self) -> float:
-        """Time [s] between pictures: half as many, or a quarter, where nothing moves so fast that it would show."""
-        seen = self.fastest * self.params.speed
-        if seen > SWIFT or self.race or self.held or not self.root.at_rest or not self.sphere.at_rest:
-            return FRAME_INTERVAL
-        return 2.0 * FRAME_INTERVAL if seen > SLOW or self.plotted else 4.0 * FRAME_INTERVAL
-
-    @property
-    def plotted(self) -> bool:
-        """Whether a plot is open, which a picture each `SAMPLE_EVERY` feeds."""
-        return self.params.plot_energy or self.params.plot_tip
+        """Time step [s]."""
+        return self.params.time_step
 
     @property
     def time(self) -> float:
-        return self.race.t if self.race else self.state.t
+        """Simulated time [s]."""
+        return self.state.t
+
+    @property
+    def frame_interval(self) -> float:
+        """Time [s] between frames: two or four times the shortest where nothing moves fast enough to be seen."""
+        speed_on_screen = self.max_speed * self.params.speed
+        if speed_on_screen > FULL_RATE_SPEED or not self.handles.at_rest:
+            return FRAME_INTERVAL
+        is_plotted = self.params.plot_energy or self.params.plot_tip  # which takes a row each `ROW_INTERVAL`
+        return 2.0 * FRAME_INTERVAL if speed_on_screen > QUARTER_RATE_SPEED or is_plotted else 4.0 * FRAME_INTERVAL
 
     @property
     def note(self) -> str:
-        """Why something else runs than the parameters ask for, or ""."""
+        """Why another method runs than the one chosen, or ""."""
         return self.fallback_note
 
     def reset(self) -> None:
-        """The rope at rest, level from where its root is going; from home where it was lost, in the floor perhaps."""
-        if self.lost:
-            self.root.target, self.sphere.target, self.lost = ROOT, SPHERE, False
-        self.root.place_at(self.root.target)
-        self.sphere.place_at(self.sphere.target)
-        self.held = None
-        self.net = build(self.params, self.root.position, self.sphere.position)
-        self.state = State.at_rest(self.net)
-        self.race: Race | None = None
-        if self.params.ropes > 1:
-            self.race = Race(self.net, self.params)
-            self.charts = RaceCharts(self.race)
-        self.start_ledger()
-        self.samples.append((float("nan"),) * (len(SERIES) + 1))  # a gap in the plots
-        self.look()
+        """The rope at rest, level from its root.
 
-    def start_ledger(self) -> None:
-        self.state.dissipated = self.state.work = 0.0
-        self.initial = energy(self.net, self.state)
-        # Thrice the hanging length and some room: a picture of what happened, where 1e9 m would show nothing.
-        weight = self.net.mass * abs(self.net.gravity[2]) / self.net.families[0].stiffness
+        After a divergence root and sphere go back to where a new scene has them: the floor may be where they were.
+        """
+        self.handles.restart(home=self.diverged)
+        self.diverged = False
+        self.net = build(self.params, self.handles.root.position, self.handles.sphere.position)
+        self.state = State.at_rest(self.net)
+        self.account = EnergyAccount(self.net, self.state)
+        self.counted = 0, 0  # force evaluations and steps at the last assessment
+        self.corrections = 0.0
+        self.plot_rows.restart()
+        self.set_bounds()
+        self.assess_stability()
+
+    def set_bounds(self) -> None:
+        """How far a rope of these parameters may get; how fast it is going to be is not known."""
+        # Three times the length of the hanging rope, and some room. At a bound of 1e9 m nothing could be seen.
+        sag = self.net.mass * abs(self.net.gravity[2]) / self.net.families[0].stiffness
         n = self.params.points - 1
         reach = extremes(self.state.x, self.state.v).reach
-        self.bound = 4.0 + 3.0 * (self.params.length + 0.5 * weight * n * (n + 1)) + reach
-        self.sampled_at = -np.inf
-        self.fastest = np.inf  # [m/s] that a point moves at, along an axis: not known yet
-        self.counted = self.state.force_evals, self.state.steps
-        self.corrections = 0.0
+        self.max_reach = 4.0 + 3.0 * (self.params.length + 0.5 * sag * n * (n + 1)) + reach  # [m] from the root
+        self.max_speed = np.inf  # [m/s] along an axis, of the fastest point
 
     def change_forces(self, params: Params) -> None:
-        """Take new parameters; the motion goes on, resampled where the points change.
-
-        A race on other terms starts anew."""
+        """Take new parameters. The motion goes on, interpolated where the number of points changes."""
         old, self.params = self.params, params
-        if Race.line_up(params) != Race.line_up(old) and max(params.ropes, old.ropes) > 1:
-            self.reset()
-            return
-        self.net = build(params, self.root.position, self.sphere.position)
+        stored = self.account.stored(self.net, self.state)
+        self.net = build(params, self.handles.root.position, self.handles.sphere.position)
         if params.points != old.points:
             self.state.x = resample(self.state.x, 1, params.points)
             self.state.v = resample(self.state.v, 1, params.points)
-            self.held = None
-        self.start_ledger()
-        if self.race:
-            self.race.take(self.net)
-        self.look()
+            self.handles.drag.clear()
+        self.account.book_change(stored, self.net, self.state)
+        if (params.integrator, params.time_step) != (old.integrator, old.time_step):
+            self.account.start_method(self.net, self.state)
+        self.set_bounds()
+        self.assess_stability()
 
     def handle(self, command: SceneCommand) -> None:
+        """Move root or sphere, pull a point, or let go of it."""
         match command:
             case Place("root", position):
-                self.root.target = position
+                self.handles.root.target = position
             case Place("sphere", position):
-                self.sphere.target = position
-            case Grab(index, target) if 0 <= index < self.params.points * self.params.ropes:
-                self.grab(index, target)
-            case Release():
-                self.held = None
-
-    def grab(self, index: int, target: Vector) -> None:
-        """Pull a point, numbered along rope after rope, towards where it is drawn; in a race every rope's alike."""
-        lane, particle = divmod(index, self.params.points)
-        x, y, z = target
-        target = x, y - place_of(lane, self.params), z
-        if particle == 0:
-            self.root.target = target
-            return
-        if self.held is None or self.held[0] != index:
-            state = self.race.lanes[lane].state if self.race else self.state
-            at = state.x[:, 0, particle]
-            self.held = index, CriticallyDampedTracker((float(at[0]), float(at[1]), float(at[2])))
-        self.held[1].target = target
+                self.handles.sphere.target = position
+            case Grab(0, target, client) if self.handles.drag.may_move(client):
+                self.handles.root.target = target
+            case Grab(index, target, client) if 0 < index < self.params.points:
+                self.handles.drag.move(client, index, vector_of(self.state.x[:, 0, index]), target)
+            case Release(client):
+                self.handles.drag.release(client)
+            case _:
+                pass
 
     def advance(self, steps: int) -> None:
-        """Take steps with root, sphere and pull on their ways; raises DivergenceError, keeping the last good state."""
-        if self.race:
-            self.advance_race(self.race, steps)
-            return
-        duration = steps * self.step
+        """Take steps. Raises DivergenceError where the rope leaves its bounds, and keeps the last good state."""
         good = self.state.copy()
-        net = self.net_under_way(self.state.t, duration)
-        advance(net, self.state, self.integrator, self.step, steps, with_account=self.with_account)
-        self.counts.take(net, self.state.force_evals - good.force_evals, steps, with_account=self.with_account)
+        net = self.handles.net_during(self.net, self.state.t, steps * self.step, self.step, self.params.pull)
+        advance(net, self.state, self.integrator, self.step, steps, with_account=True)
+        self.counts.update(net, self.state.force_evals - good.force_evals, steps, with_account=True)
         found = extremes(self.state.x, self.state.v)
-        if not found.reach < self.bound:  # nor is a NaN
+        if not found.reach < self.max_reach:  # true of a NaN as well
             self.state = good
-            self.lost = True
+            self.diverged = True
             raise DivergenceError(self.diagnosis())
-        self.fastest = found.speed
-        if net.pin_paths and self.root.at_rest:  # it has just come to rest
-            self.state.x[:, 0, 0] = self.root.position
+        self.max_speed = found.speed
+        if net.pin_paths and self.handles.root.at_rest:  # it has just come to rest
+            self.state.x[:, 0, 0] = self.handles.root.position
             self.state.v[:, 0, 0] = 0.0
         self.net = net
-        due = self.state.t - self.looked_at >= GAUGE_EVERY and self.has_moved
-        self.counts.add("looks at the stability", 1, due)
-        if due:
-            self.look()
-        if self.plotted and self.state.t - self.sampled_at >= SAMPLE_EVERY:
-            self.sample()
+        is_due = self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL and self.has_news()
+        self.counts.add("stability checks", 1, is_due)
+        if is_due:
+            self.assess_stability()
+        if (self.params.plot_energy or self.params.plot_tip) and self.plot_rows.is_due(self.state.t):
+            self.add_plot_row()
 
-    @property
-    def has_moved(self) -> bool:
-        """Whether there is anything new to be said of the stability, or of what an implicit method takes."""
-        moved = float(np.abs(self.state.x - self.looked_x).max())
-        return self.integrator.implicit or moved > UNMOVED * self.net.families[0].rest
+    def has_news(self) -> bool:
+        """Whether the stability, or the cost of an implicit method, may have changed since the last assessment."""
+        moved = float(np.abs(self.state.x - self.assessed_x).max())
+        return self.integrator.implicit or moved > MIN_MOVE_TO_ASSESS * self.net.families[0].rest
 
-    @property
-    def with_account(self) -> bool:
-        """Whether to keep account of what damping takes: for the plot, and to see what an implicit method takes."""
-        return self.params.plot_energy or self.integrator.implicit
-
-    def advance_race(self, race: Race, ticks: int) -> None:
-        """Take ticks of a race, whatever becomes of its ropes."""
-        self.net = self.net_under_way(race.t, ticks * race.tick)
-        evals, steps = race.advance(self.net, ticks)
-        self.counts.take(self.net, evals, steps, with_account=True)
-        if self.root.at_rest:
-            race.pin(self.root.position)
-        if race.t - self.looked_at >= GAUGE_EVERY:
-            self.look()
-        self.charts.sample()
-
-    def net_under_way(self, t: float, duration: float) -> Net:
-        """The net with the motions of root, sphere and pull over the next `duration` [s]."""
-        still = self.root.at_rest and self.sphere.at_rest and self.held is None
-        if still and not (self.net.pin_paths or self.net.grab or any(self.net.sphere_velocity)):
-            return self.net  # as it was in the last frame, when nothing moved either: most of the time
-        path = self.root.advance(t, duration)
-        before = self.sphere.position
-        self.sphere.advance(t, duration)
-        velocity = tuple((b - a) / duration for a, b in zip(before, self.sphere.position, strict=True))
-        pull = None
-        if self.held is not None:
-            index, hand = self.held
-            hand.advance(t, duration)
-            # Critically damped on the point's own mass, slow enough for the step.
-            rate = min(30.0, 0.5 / self.step)
-            index %= self.params.points
-            pull = Pull(0, index, hand.position, self.net.mass * rate**2, 2.0 * self.net.mass * rate, self.params.pull)
-        return dataclasses.replace(
-            self.net,
-            pin_paths=() if path is None else (((0, 0), path),),
-            sphere=(*before, self.params.sphere_radius) if self.net.sphere else None,
-            sphere_velocity=velocity,
-            epoch=t,
-            grab=pull,
-        )
-
-    def look(self) -> None:
-        """Judge the stability of the state as it is, and what an implicit method took."""
-        if self.race:
-            self.race.look()
-            self.fallback_note = ""
-            self.looked_at = self.race.t
-            return
+    def assess_stability(self) -> None:
+        """Compare the step with the limits at the state as it is, and sum up the cost of an implicit method."""
         self.integrator, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net)
         modes = top_modes(self.net, self.state.x, self.state.t)
         stability = gauge(self.net, self.integrator, self.step, self.state, modes)
         largest = critical_stiffness(self.net, self.integrator, self.step, self.state, modes)
-        parameter = "stiffness"
-        if self.params.units == "material":
-            parameter, largest = "axial_stiffness", largest * self.net.families[0].rest
-        self.stability = RopeReadings(stability, parameter, largest, self.fallback_note, self.paid())
-        self.looked_at, self.looked_x = self.state.t, self.state.x.copy()
+        parameter = stiffness_parameter(self.params)
+        if parameter == "axial_stiffness":
+            largest *= self.net.families[0].rest
+        self.stability = RopeReadings(stability, parameter, largest, self.fallback_note, self.numerical_cost())
+        self.assessed_at, self.assessed_x = self.state.t, self.state.x.copy()
 
-    def paid(self) -> Paid | None:
-        """What an implicit method asks for; None of others."""
+    def numerical_cost(self) -> NumericalCost | None:
+        """The cost of an implicit method; None for explicit ones."""
         if not self.integrator.implicit:
             return None
         steps = self.state.steps - self.counted[1]
@@ -310,87 +222,64 @@ class Scene:
             evals = (self.state.force_evals - self.counted[0]) / steps
             self.corrections = max(0.0, evals - self.integrator.evals_outside_newton)
             self.counted = self.state.force_evals, self.state.steps
-        return Paid(self.corrections, -self.imbalance(), self.state.dissipated)
-
-    def imbalance(self) -> float:
-        """Energy [J] that came from nowhere: numerical error."""
-        return energy(self.net, self.state).total + self.state.dissipated - self.state.work - self.initial.total
+        account = self.account
+        taken = account.numerical_dissipation(self.net, self.state)
+        return NumericalCost(self.corrections, taken, account.damping_dissipation(self.state))
 
     def diagnosis(self) -> str:
-        """Why the run diverged and what would hold."""
+        """Why the run diverged, and what would hold."""
         g = self.stability.stability
-        name, h = self.integrator.name, self.step
-        start = f"The rope left its bounds at t = {self.state.t:.2f} s: "
-        if g.h_omega > g.limit:
-            remedy = (
-                f"A step below {g.critical_step:.3g} s would hold" if g.critical_step > 0 else "No step holds undamped"
-            )
-            return (
-                f"{start}h ω = {g.h_omega:.3g} is over {name}'s limit {g.limit:.3g} at damping ratio {g.zeta:.3g}. "
-                f"{remedy}; so would leapfrog below {2.0 / g.omega:.3g} s."
-            )
-        return (
-            f"{start}h ω = {g.h_omega:.3g} is within the limit {g.limit:.3g} of {name}, so an impact or a pull was too "
-            f"sudden for the step. Try h = {h / 4:.3g} s."
-        )
+        alternative = f"so would leapfrog below {2.0 / g.omega:.3g} s" if g.omega > 0.0 else "so would leapfrog"
+        return divergence_text("rope", self.state.t, self.integrator, self.step, g, alternative)
+
+    def add_plot_row(self) -> None:
+        """Add the energy account and the tip's height at the scene's time."""
+        e, state, account = energy(self.net, self.state), self.state, self.account
+        gained = e.gravity - account.initial.gravity
+        error = account.error(self.net, state)
+        tip = float(state.x[2, 0, -1])
+        self.plot_rows.add(state.t, e.kinetic, e.elastic, gained, e.contact, state.dissipated, error, tip)
+
+    def take_plot_rows(self) -> tuple[PlotRow, ...]:
+        """The plot rows since the last call."""
+        return self.plot_rows.take()
 
     def work(self) -> WorkCounts:
-        """Counts of what was computed and what was left out."""
+        """What was computed and what was left out."""
         return self.counts()
 
-    def sample(self) -> None:
-        e = energy(self.net, self.state)
-        error = self.imbalance()
-        tip = float(self.state.x[2, 0, -1])
-        row = (e.kinetic, e.elastic, e.gravity - self.initial.gravity, e.contact, self.state.dissipated, error, tip)
-        self.samples.append((self.state.t, *row))
-        self.sampled_at = self.state.t
+    def readings(self) -> RopeReadings:
+        """Stability and cost, as last assessed."""
+        return self.stability
 
-    def take_plot_rows(self) -> tuple[tuple[float, ...], ...]:
-        taken, self.samples = tuple(self.samples), []
-        return taken
-
-    def readings(self) -> "RopeReadings | RaceReadings":
-        return self.race.standings() if self.race else self.stability
-
-    def curves(self) -> dict[str, Chart] | None:
-        """The race's charts, of `CURVES`."""
-        return self.charts.charts() if self.race else None
+    def curves(self) -> None:
+        """This scene has charts over time only."""
+        return
 
     def tension(self) -> NDArray[np.float64]:
-        """(n - 1,) spring force along each link [N], negative where pressed."""
+        """(n - 1,) spring force along each link [N], negative under compression."""
         return rope_tension(self.net, self.state.x)
 
     def frame(self) -> RopeFrame:
-        weight = self.net.mass * abs(self.net.gravity[2]) * (self.params.points - 1)
-        pull = None
-        if self.held is not None:
-            index, hand = self.held
-            lane, particle = divmod(index, self.params.points)
-            state = self.race.lanes[lane].state if self.race else self.state
-            reach = np.linalg.norm(np.asarray(hand.position) - state.x[:, 0, particle])
-            rate = min(30.0, 0.5 / self.step)
-            x, y, z = hand.position
-            target = x, y + place_of(lane, self.params), z
-            pull = PullShown(index, target, min(1.0, float(reach) * self.net.mass * rate**2 / self.params.pull))
+        """What to draw."""
+        params, handles = self.params, self.handles
+        weight = self.net.mass * abs(self.net.gravity[2]) * (params.points - 1)
+        held = self.state.x[:, 0, handles.drag.hold.particle if handles.drag.hold else 0]
         return RopeFrame(
-            points=self.state.x[:, 0].T.astype(np.float32),
+            points=np.ascontiguousarray(self.state.x[:, 0].T, dtype=np.float32),
             tension=self.tension().astype(np.float32),
             full_scale=max(1.25 * weight, 1e-3),
-            root=self.root.target,
-            sphere=(*self.sphere.position, self.params.sphere_radius) if self.net.sphere else None,
-            floor=self.params.floor,
-            grid=self.params.grid,
-            colour=self.params.colour,
-            show_points=self.params.show_points,
-            pull=pull,
-            race=race_picture(self.race, self.params) if self.race else None,
+            root=handles.root.target,
+            sphere=(*handles.sphere.position, params.sphere_radius) if self.net.sphere else None,
+            floor=params.floor,
+            grid=params.grid,
+            colour=params.colour,
+            show_points=params.show_points,
+            pull=handles.pull_frame(held, 0.0, self.net.mass, self.step, params.pull),
         )
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
         """The state for a file: name -> (array, unit)."""
-        if self.race:
-            return race_arrays(self.race)
         return {
             "x": (self.state.x[:, 0].T.copy(), "m"),
             "v": (velocities(self.net, self.state)[:, 0].T.copy(), "m/s"),
@@ -401,15 +290,14 @@ class Scene:
 SCENE = SceneKind(
     name="rope",
     title="Rope",
-    help=HELP,
+    help="<b>Drag a bead</b> to pull the rope. <b>Drag the arrows</b> to move its root.",
     params=Params,
     presets=PRESETS,
-    make=Scene,
+    make=RopeScene,
     hidden=hidden,
     warm_up=warm_up,
     series=SERIES,
     plots=PLOTS,
-    curves=CURVES,
     measures=measures,
     stability_map=StabilityMap(stiffness_parameter, build),
 )

@@ -1,4 +1,4 @@
-"""The rope as a tube coloured by tension, its points as beads to be grabbed, root and sphere on gizmos."""
+"""The rope as a tube coloured by tension, its points as beads to be dragged, root and sphere with arrows."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -9,22 +9,24 @@ import viser
 from app.messages import Command, Snapshot
 from app.render.colormap import SCALE, paint_tube
 from app.render.coloured_mesh import ColouredMesh
-from app.render.dragging import HELD_COLOUR, PullLine, drag, nearest
+from app.render.dragging import HELD_COLOUR, drag, nearest
 from app.render.gizmo import Gizmo
-from app.render.ground import Ground
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
-from app.scenes.race.race import RaceReadings
-from app.scenes.race.report import standings
-from app.scenes.race.view import RaceDrawing
-from app.scenes.rope.parameters import ROOT, SPHERE, THICKNESS
-from app.scenes.rope.scene import Paid, RopeFrame
-from app.scenes.springs.report import colour_scale, stability_bar
+from app.scenes.rope.scene import NumericalCost, RopeFrame
+from app.scenes.springs.html import colour_scale, stability_bar, step_mark
+from app.scenes.springs.rope_parameters import ROPE_RADIUS, SPHERE
+from app.scenes.springs.view import RopeSurroundings
 
 ROPE_COLOUR = (196, 154, 92)
 BEAD_COLOUR = (58, 68, 86)
-RINGS = 120  # about as many rings as a rope is drawn with
-UNSEEN = 2e-4  # [m] that a point may be from where it is drawn: far below a pixel
-SHADE = 2e-3  # of the colour scale that a link may be from how it is painted: no more than a step of a screen's 256
+HOOK_COLOUR = (60, 66, 80)
+SPHERE_COLOUR = (92, 140, 190)
+SPHERE_ARROW_LENGTH = 1.1  # [m]
+RING_COUNT = 120  # rings of the drawn tube, about
+MAX_BEAD_RADIUS = 1.9 * ROPE_RADIUS  # [m]
+MIN_BEAD_RADIUS = 0.5 * ROPE_RADIUS  # [m]
+POSITION_TOLERANCE = 2e-4  # [m] that a point may be from where it is drawn: far below a pixel
+COLOUR_TOLERANCE = 2e-3  # of the colour scale that a link may be from its drawn colour: less than 1/256 of it
 
 
 class View:
@@ -32,34 +34,30 @@ class View:
 
     CAMERA = ((-0.4, -4.3, 2.35), (-0.3, 0.0, 1.75))  # position, target [m]
     FIELD_OF_VIEW = 1.3  # [rad]
-    RACE_CAMERA = ((3.4, -2.7, 2.9), (0.45, 0.35, 1.75))
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server = server
         self.post = post
         self.tube: ColouredMesh | None = None
         self.beads: viser.BatchedMeshHandle | None = None
-        self.count = 0
-        self.race: RaceDrawing | None = None
-        self.nearest = 0
-        self.ball_at: Any = None  # the sphere as it is shown
+        self.count = 0  # points that tube and beads are made for
+        self.nearest = 0  # point that a drag of the tube pulls
+        self.shown_sphere: tuple[float, float, float, float] | None = None
         scene = server.scene
-        scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
-        self.ground = Ground(server, (226, 230, 236), (196, 202, 212), (150, 160, 176))
-        self.ball = scene.add_mesh_simple("/sphere/ball", *ball(32), color=(92, 140, 190), visible=False)
-        self.root = Gizmo(server, post, "root", 0.34, position=ROOT)
-        self.sphere = Gizmo(server, post, "sphere", 1.1, position=SPHERE, visible=False)
-        self.hook = scene.add_mesh_simple("/hook", *ball(8), scale=1.9 * THICKNESS, color=(60, 66, 80))
-        self.pull = PullLine(server)
+        self.surroundings = RopeSurroundings(server, post)
+        self.ball = scene.add_mesh_simple("/sphere/ball", *ball(32), color=SPHERE_COLOUR, visible=False)
+        self.sphere = Gizmo(server, post, "sphere", SPHERE_ARROW_LENGTH, position=SPHERE, visible=False)
+        self.hook = scene.add_mesh_simple("/hook", *ball(8), scale=MAX_BEAD_RADIUS, color=HOOK_COLOUR)
 
-    def build(self, picture: RopeFrame) -> None:
+    def build(self, frame: RopeFrame) -> None:
         """Make tube and beads for a new number of points."""
-        n = len(picture.points)
-        self.between = max(1, RINGS // (n - 1))
-        rings = (n - 1) * self.between + 1
+        n = len(frame.points)
+        self.samples = max(1, RING_COUNT // (n - 1))  # rings a link
+        rings = (n - 1) * self.samples + 1
         self.line = np.zeros((rings, 3))
         self.vertices, self.rgb = np.zeros((2, rings * SIDES + 2, 3), np.float32)
-        self.form(picture, True)
+        self.shape_tube(frame)
+        self.paint_tube(frame)
         if self.tube is not None:
             self.tube.remove()
         if self.beads is not None:
@@ -77,158 +75,116 @@ class View:
             "/points",
             *ball(8 if n <= 200 else 4),
             batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)),
-            batched_positions=picture.points,
-            batched_scales=np.full(n, self.bead_radius(picture), np.float32),
+            batched_positions=frame.points,
+            batched_scales=np.full(n, bead_radius(frame.points), np.float32),
             batched_colors=np.tile(np.array(BEAD_COLOUR, np.uint8), (n, 1)),
             lod="off",
         )
         self.beads.on_drag("left")(self.on_bead)
         self.tube.mesh.on_drag("left")(self.on_tube)
-        self.held = -1
-        self.hook_at: Any = None
+        self.shown_pull = -1  # point that is drawn as held
+        self.shown_hook: Any = None
         self.count = n
 
-    def bead_radius(self, picture: RopeFrame) -> float:
-        n = len(picture.points)
-        spacing = float(np.abs(np.diff(picture.points, axis=0)).sum()) / max(n - 1, 1)
-        return float(np.clip(0.4 * spacing, 0.5 * THICKNESS, 1.9 * THICKNESS))
-
     async def on_bead(self, event: Any) -> None:
+        """Pull the bead that is dragged."""
         drag(self.post, event, event.instance_index)
 
     async def on_tube(self, event: Any) -> None:
-        """The same between beads, where they are close or hidden: the point nearest to where the drag began."""
+        """Pull the point nearest to where the drag began: beads may be close to each other, or hidden."""
         if event.phase == "start":
             self.nearest = nearest(self.points, event)
         drag(self.post, event, self.nearest)
 
-    def form(self, picture: RopeFrame, repaint: bool) -> None:
-        """The tube, and its colours, which then stand for this picture and all that look the same."""
-        self.points = picture.points
-        smooth_line(picture.points, self.between, self.line)
-        sweep(self.line, THICKNESS, SIDES, self.vertices)
-        if not repaint:
-            return
-        self.tension = picture.tension
-        self.painted = picture.colour, picture.full_scale
-        if picture.colour == "plain":
+    def shape_tube(self, frame: RopeFrame) -> None:
+        """Compute the tube's vertices, which then stand for this frame and for all that look the same."""
+        self.points = frame.points
+        smooth_line(frame.points, self.samples, self.line)
+        sweep(self.line, ROPE_RADIUS, SIDES, self.vertices)
+
+    def paint_tube(self, frame: RopeFrame) -> None:
+        """Compute the tube's colours, which then stand for this frame and for all that look the same."""
+        self.tension = frame.tension
+        self.painted = frame.colour, frame.full_scale
+        if frame.colour == "plain":
             self.rgb[:] = np.array(ROPE_COLOUR, np.float32) / 255
         else:
-            paint_tube(picture.tension, self.between, picture.full_scale, SCALE, SIDES, self.rgb)
+            paint_tube(frame.tension, self.samples, frame.full_scale, SCALE, SIDES, self.rgb)
 
-    def colours_differ(self, picture: RopeFrame) -> bool:
-        """Whether anybody could tell a picture's colours from those that are shown."""
-        if self.painted != (picture.colour, picture.full_scale):
+    def colours_differ(self, frame: RopeFrame) -> bool:
+        """Whether a frame's colours can be told from those that are shown."""
+        if self.painted != (frame.colour, frame.full_scale):
             return True
-        return float(np.abs(picture.tension - self.tension).max()) >= SHADE * picture.full_scale
+        return float(np.abs(frame.tension - self.tension).max()) >= COLOUR_TOLERANCE * frame.full_scale
 
-    def show(self, picture: RopeFrame) -> None:
+    def show(self, frame: RopeFrame) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
-        if picture.race is None:
-            self.show_rope(picture)
-        else:
-            self.show_race(picture)
-        if picture.pull is None:
-            self.pull.show(None)
-        else:
-            points = picture.points if picture.race is None else picture.race.ropes.reshape(-1, 3)
-            self.pull.show((points[picture.pull.particle], picture.pull.target), picture.pull.load)
-        self.ground.show(picture.floor, picture.grid)
-        self.root.show(picture.root)
-        self.sphere.show(None if picture.sphere is None else picture.sphere[:3])
-        if picture.sphere != self.ball_at:
-            self.ball_at = picture.sphere
-            self.ball.visible = picture.sphere is not None
-            if picture.sphere is not None:
-                self.ball.position = picture.sphere[:3]
-                self.ball.scale = picture.sphere[3]
-
-    def show_race(self, picture: RopeFrame) -> None:
-        """The ropes of a race, in place of the one."""
-        race = picture.race
-        assert race is not None
-        if self.race is None:
-            self.look_from(self.RACE_CAMERA)
-        if self.race is not None and self.race.shape != race.ropes.shape:
-            self.race.remove()
-            self.race = None
-        if self.race is None:
-            self.race = RaceDrawing(self.server, race, self.on_bead)
-        self.race.show(race, picture.show_points)
-        self.hook.visible = False
-        if self.tube is not None and self.beads is not None:
-            self.tube.remove()
-            self.beads.remove()
-            self.tube = self.beads = None
-            self.count = 0
-
-    def look_from(self, camera: tuple[tuple[float, float, float], tuple[float, float, float]]) -> None:
-        """Move every camera to where a race, or one rope, is best seen."""
-        for client in (self.server.initial_camera, *(c.camera for c in self.server.get_clients().values())):
-            client.position, client.look_at = camera
-
-    def show_rope(self, picture: RopeFrame) -> None:
-        """The one rope."""
-        if self.race is not None:
-            self.race.remove()
-            self.race = None
-            self.look_from(self.CAMERA)
-        if len(picture.points) != self.count:
-            self.build(picture)
+        if len(frame.points) != self.count:
+            self.build(frame)
         assert self.tube is not None
         assert self.beads is not None
-        repaint = self.colours_differ(picture)
-        if repaint or float(np.abs(picture.points - self.points).max()) >= UNSEEN:
-            self.form(picture, repaint)
+        repaint = self.colours_differ(frame)
+        if repaint or float(np.abs(frame.points - self.points).max()) >= POSITION_TOLERANCE:
+            self.shape_tube(frame)
+        if repaint:
+            self.paint_tube(frame)
         self.tube.set(self.vertices, self.rgb if repaint else None)
-        self.beads.visible = picture.show_points
-        if picture.show_points:
+        self.beads.visible = frame.show_points
+        if frame.show_points:
             self.beads.batched_positions = self.points
-        held = -1 if picture.pull is None else picture.pull.particle
-        if held != self.held:
+        held = -1 if frame.pull is None else frame.pull.particle
+        if held != self.shown_pull:
             colours = np.tile(np.array(BEAD_COLOUR, np.uint8), (self.count, 1))
             if held >= 0:
                 colours[held] = HELD_COLOUR
             self.beads.batched_colors = colours
-            self.held = held
-        self.hook.visible = True
-        at = tuple(self.points[0].tolist())
-        if at != self.hook_at:
-            self.hook_at = at
-            self.hook.position = at
+            self.shown_pull = held
+        root = tuple(self.points[0].tolist())
+        if root != self.shown_hook:
+            self.shown_hook = root
+            self.hook.position = root
+        self.surroundings.show(frame.floor, frame.grid, frame.root, frame.pull, frame.points)
+        self.show_sphere(frame)
+
+    def show_sphere(self, frame: RopeFrame) -> None:
+        """Assign the sphere and its arrows."""
+        self.sphere.show(None if frame.sphere is None else frame.sphere[:3])
+        if frame.sphere != self.shown_sphere:
+            self.shown_sphere = frame.sphere
+            self.ball.visible = frame.sphere is not None
+            if frame.sphere is not None:
+                self.ball.position = frame.sphere[:3]
+                self.ball.scale = frame.sphere[3]
 
     def readout(self, snapshot: Snapshot) -> str:
-        """The stability gauge and the colour scale, or a race's standings, as HTML."""
-        if isinstance(snapshot.readings, RaceReadings):
-            return standings(snapshot.readings)
-        picture, scale = snapshot.frame, ""
-        if picture.colour == "tension":
-            scale = colour_scale("slack", "tension", f"{picture.full_scale:.3g} N")
-        return stability_bar(snapshot.readings.stability) + price(snapshot.readings.paid) + scale
+        """The stability bar, the cost of an implicit method and the colour scale, as HTML."""
+        frame, scale = snapshot.frame, ""
+        if frame.colour == "tension":
+            scale = colour_scale("slack", "tension", f"{frame.full_scale:.3g} N")
+        return stability_bar(snapshot.readings.stability) + cost_text(snapshot.readings.cost) + scale
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
-        """What is written under a parameter: the largest value that holds with the others as they are."""
+        """Parameter -> the line under its control: the largest value that is stable with the others as they are."""
         g = snapshot.readings
-        if isinstance(g, RaceReadings):
-            first = g.standings[0].gauge.critical_step
-            limit = "" if first == float("inf") else f"rope 1 holds up to {first:.3g} s"
-            return {"integrator": "", "time_step": limit, "stiffness": "", "axial_stiffness": ""}
         step, stiffness = g.stability.critical_step, g.largest_stiffness
         unit = "N/m" if g.parameter == "stiffness" else "N"
+        text = f"stable up to {stiffness:.3g} {unit}" if stiffness > 0 else "no stiffness is stable at this step"
         if step == float("inf"):
-            return {"integrator": g.note, "time_step": "any step holds", g.parameter: "any stiffness holds"}
-        return {
-            "integrator": g.note,
-            "time_step": f"holds up to {step:.3g} s" if step > 0 else "no step holds with this method",
-            g.parameter: f"holds up to {stiffness:.3g} {unit}" if stiffness > 0 else "no stiffness holds at this step",
-        }
+            text = "every stiffness is stable"
+        return {"integrator": g.note, "time_step": step_mark(step), g.parameter: text}
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """No folders."""
         return {}
 
     def close(self) -> None:
-        """Nothing to give back: removing the nodes removes all."""
+        """Removing the nodes of the scene removes everything."""
+
+
+def bead_radius(points: np.ndarray) -> float:
+    """Radius [m] of the beads at points (n, 3) [m]: smaller where they are close to each other."""
+    spacing = float(np.abs(np.diff(points, axis=0)).sum()) / max(len(points) - 1, 1)
+    return float(np.clip(0.4 * spacing, MIN_BEAD_RADIUS, MAX_BEAD_RADIUS))
 
 
 def warm_up() -> Iterator[str]:
@@ -236,16 +192,17 @@ def warm_up() -> Iterator[str]:
     yield "drawing"
     line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
     smooth_line(np.zeros((2, 3), np.float32), 2, line)
-    sweep(line, THICKNESS, SIDES, vertices)
+    sweep(line, ROPE_RADIUS, SIDES, vertices)
     paint_tube(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)
 
 
-def price(paid: Paid | None) -> str:
-    """What an implicit method asks for its stability, as HTML; nothing of others."""
-    if paid is None:
+def cost_text(cost: NumericalCost | None) -> str:
+    """The cost of an implicit method, as HTML; empty for explicit ones."""
+    if cost is None:
         return ""
-    share = f", the rope's own damping {paid.dissipated:.3g} J" if paid.dissipated > 0.0 else ""
+    energy = cost.numerical_dissipation
+    damping = f", the rope's own damping {cost.damping_dissipation:.3g} J" if cost.damping_dissipation > 0.0 else ""
     return (
-        f'<div style="margin-bottom:6px">paid: <b>{paid.corrections:.1f}</b> Newton corrections a step; the method '
-        f"{'took' if paid.taken >= 0 else 'gave'} <b>{abs(paid.taken):.3g} J</b>{share}</div>"
+        f'<div style="margin-bottom:6px"><b>{cost.corrections:.1f}</b> Newton corrections a step; the method '
+        f"{'took' if energy >= 0 else 'added'} <b>{abs(energy):.3g} J</b>{damping}</div>"
     )

@@ -1,1 +1,1 @@
-"""What the spring scenes share."""
+"""What the scenes of springs (rope, race, cloth) share. This folder holds no scene."""

@@ -1,11 +1,11 @@
-"""Counts for the ledger what a scene of springs computes and what it leaves out."""
+"""Work counts of a scene of springs: what it computed and what it left out."""
 
 import collections
 
 from app.messages import WorkCount
 from sim.springs import Net
 
-SURFACES = 2  # that a net may meet: floor and sphere
+SURFACE_COUNT = 2  # surfaces that a net may touch: floor and sphere
 
 
 class SpringWorkCounts:
@@ -15,20 +15,23 @@ class SpringWorkCounts:
         self.done: collections.Counter[str] = collections.Counter()
         self.skipped: collections.Counter[str] = collections.Counter()
 
-    def take(self, net: Net, force_evals: int, steps: int, *, with_account: bool) -> None:
-        """A frame of `steps` steps: every force evaluation holds each point against each surface there is."""
+    def update(self, net: Net, force_evals: int, steps: int, *, with_account: bool) -> None:
+        """Count a frame of `steps` steps. Every force evaluation tests each point against each surface present.
+
+        with_account: whether the energy account was kept.
+        """
         points = net.shape[0] * net.shape[1]
-        there = (net.floor is not None) + (net.sphere is not None)
+        surfaces = (net.floor is not None) + (net.sphere is not None)
         self.done["force evaluations"] += force_evals
-        self.done["points held against floor or sphere"] += force_evals * points * there
-        self.skipped["points held against floor or sphere"] += force_evals * points * (SURFACES - there)
+        self.done["points held against floor or sphere"] += force_evals * points * surfaces
+        self.skipped["points held against floor or sphere"] += force_evals * points * (SURFACE_COUNT - surfaces)
         self.add("steps with their energy balance", steps, with_account)
 
-    def add(self, what: str, number: int, done: bool) -> None:
-        """Count `number` pieces of work as done, or as not needed."""
-        (self.done if done else self.skipped)[what] += number
+    def add(self, name: str, number: int, done: bool) -> None:
+        """Count `number` pieces of work as done, or as skipped."""
+        (self.done if done else self.skipped)[name] += number
 
     def __call__(self) -> dict[str, WorkCount]:
-        """What the scene's `work()` answers."""
+        """The counts since the scene was made."""
         names = sorted({*self.done, *self.skipped})
         return {name: WorkCount(self.done[name], self.skipped[name]) for name in names}

@@ -10,7 +10,7 @@ from sim.springs.state import State, energy
 
 
 class EnergyAccount:
-    """The account of one run from `state` on, which must be advanced `with_ledger`; sets its two sums to 0."""
+    """The account of one run from `state` on, which must be advanced `with_account`; sets its two sums to 0."""
 
     def __init__(self, net: Net, state: State) -> None:
         state.dissipated = state.work = 0.0

@@ -1,8 +1,8 @@
-"""Which number of threads is taken, with a clock that says what each costs."""
+"""The number of threads that is chosen, with a clock that counts what each costs."""
 
 import pytest
 
-from app.scenes.springs.thread_tuner import PIECE, TRIAL, TRY_EVERY, ThreadTuner
+from app.scenes.springs.thread_tuner import MAX_PART_STEPS, TRIAL_INTERVAL, TRIAL_STEPS, ThreadTuner
 
 
 class Machine:
@@ -17,42 +17,42 @@ class Machine:
         self.now += self.costs[threads] * steps
         self.taken[threads] += steps
 
-    def run(self, cores: ThreadTuner, frames: int, steps: int = 80, *, large: bool = True) -> None:
+    def run(self, tuner: ThreadTuner, frames: int, steps: int = 80, *, large: bool = True) -> None:
         for _ in range(frames):
             before = sum(self.taken.values())
-            cores.advance(steps, self.take, large=large)
+            tuner.advance(steps, self.take, large=large)
             assert sum(self.taken.values()) == before + steps
             self.now += 1 / 60
 
 
-def test_two_threads_are_taken_where_they_are_quicker():
+def test_two_threads_are_used_where_they_are_faster():
     machine = Machine(50e-6, 27e-6)
-    cores = ThreadTuner(clock=lambda: machine.now, count=2)
-    machine.run(cores, 600)
-    assert cores.threads == 2
+    tuner = ThreadTuner(clock=lambda: machine.now, count=2)
+    machine.run(tuner, 600)
+    assert tuner.threads == 2
     assert machine.taken[2] > 20 * machine.taken[1]
 
 
 @pytest.mark.parametrize("two", [49e-6, 60e-6, 6e-3])
-def test_elsewhere_they_are_only_tried_now_and_then(two: float):
+def test_where_they_are_slower_they_are_only_tried_from_time_to_time(two: float):
     machine = Machine(50e-6, two)
-    cores = ThreadTuner(clock=lambda: machine.now, count=2)
-    machine.run(cores, 600)
-    assert cores.threads == 1
-    assert 0 < machine.taken[2] <= TRIAL * (2 + machine.now / TRY_EVERY)
+    tuner = ThreadTuner(clock=lambda: machine.now, count=2)
+    machine.run(tuner, 600)
+    assert tuner.threads == 1
+    assert 0 < machine.taken[2] <= TRIAL_STEPS * (2 + machine.now / TRIAL_INTERVAL)
 
 
-def test_a_machine_that_gets_busy_costs_one_piece():
+def test_a_machine_that_becomes_busy_costs_one_part():
     machine = Machine(50e-6, 27e-6)
-    cores = ThreadTuner(clock=lambda: machine.now, count=2)
-    machine.run(cores, 60)
+    tuner = ThreadTuner(clock=lambda: machine.now, count=2)
+    machine.run(tuner, 60)
     before, machine.costs[2] = machine.taken[2], 6e-3
-    machine.run(cores, 5)
-    assert cores.threads == 1
-    assert machine.taken[2] - before <= PIECE
+    machine.run(tuner, 5)
+    assert tuner.threads == 1
+    assert machine.taken[2] - before <= MAX_PART_STEPS
 
 
-def test_small_nets_and_single_cores_never_try():
+def test_small_nets_and_single_tuner_never_try():
     machine = Machine(50e-6, 27e-6)
     machine.run(ThreadTuner(clock=lambda: machine.now, count=2), 300, large=False)
     machine.run(ThreadTuner(clock=lambda: machine.now, count=1), 300)

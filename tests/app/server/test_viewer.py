@@ -51,13 +51,13 @@ class Client:
 
 def test_a_browser_that_goes_lets_go_of_what_it_held_and_of_nothing_else(lab: Viewer) -> None:
     lab.commands.put(Grab(5, (0.0, 0.0, 2.0), client=1))
-    wait_for(lambda: lab.scene.held is not None)
+    wait_for(lambda: lab.scene.handles.drag.hold is not None)
     talk(lab.on_disconnect(Client(2)))  # type: ignore[arg-type]
     ticks = lab.loop.counts["ticks"]
     wait_for(lambda: lab.loop.counts["ticks"] > ticks + 3)
-    assert lab.scene.held is not None
+    assert lab.scene.handles.drag.hold is not None
     talk(lab.on_disconnect(Client(1)))  # type: ignore[arg-type]
-    wait_for(lambda: lab.scene.held is None)
+    wait_for(lambda: lab.scene.handles.drag.hold is None)
 
 
 def panel_text(viewer: Viewer) -> str:

@@ -16,6 +16,7 @@ from sim.springs.statics import hanging_chain
 
 SMALL = {
     "rope": {"plot_energy": True, "plot_tip": True},
+    "race": {},
     "cloth": {"rows": 6, "cols": 6, "plot_energy": True, "plot_strain": True},
     "square_sea": {"size": "64", "mesh": "32"},
     "radial_sea": {"wave_count": 16, "particles": 100},
@@ -84,7 +85,7 @@ def test_what_a_scene_raises_is_the_outcome(monkeypatch):
     def burst(self, steps):
         raise MemoryError("no room for it")
 
-    monkeypatch.setattr(app.scenes.rope.scene.Scene, "advance", burst)
+    monkeypatch.setattr(app.scenes.rope.scene.RopeScene, "advance", burst)
     outcome = run_case("rope", {}, (0.0, 1.0))
     assert outcome.end == FAILED
     assert outcome.message == "MemoryError: no room for it"

@@ -1,0 +1,130 @@
+"""The parameters of a race of ropes, its presets and the net of rope 1."""
+
+import dataclasses
+from typing import Any
+
+from app.messages import Vector
+from app.scenes.springs.rope_parameters import ROOT, RopeParams, build_rope, hidden_of_rope
+from sim.parameters import parameter, redeclare
+from sim.springs import INTEGRATORS, Net
+
+MAX_ROPES = 6
+NUMBERS = range(2, MAX_ROPES + 1)  # of the ropes that have an integrator and a step parameter of their own
+STEP_RULES = ("same step", "same cost", "own steps")
+
+
+def method_of_rope(number: int, default: str) -> Any:
+    """The parameter of one rope's method."""
+    return parameter(default, choices=tuple(INTEGRATORS), doc=f"Method of rope {number}", group="Race", affects="start")
+
+
+def step_of_rope(number: int) -> Any:
+    """The parameter of one rope's time step."""
+    return parameter(1 / 60, 1e-5, 0.1, "s", f"Step of rope {number}", log_from=1e-5, group="Race", affects="start")
+
+
+@dataclasses.dataclass(frozen=True)
+class RaceRules:
+    """Which ropes take part, and how they are shown."""
+
+    ropes: int = parameter(
+        3, 1, MAX_ROPES, "", "Number of ropes, each with its own method and step", group="Race", affects="start"
+    )
+    race_steps: str = parameter(
+        "same cost",
+        choices=STEP_RULES,
+        doc="same cost: as many force evaluations a second as rope 1; own steps: as set for each rope",
+        group="Race",
+        affects="start",
+    )
+    stiffness_ratio: float = parameter(
+        1.0, 1.0, 10.0, "", "Stiffness of each rope over that of the one before", group="Race", affects="start"
+    )
+    show_reference: bool = parameter(
+        True, doc="Draw the reference run beside each rope: dopri5, tolerance 1e-10", group="Race", affects="look"
+    )
+    spacing: float = parameter(0.5, 0.0, 2.0, "m", "Distance between the drawn ropes", group="Race", affects="look")
+    integrator_2: str = method_of_rope(2, "rk4")
+    step_2: float = step_of_rope(2)
+    integrator_3: str = method_of_rope(3, "leapfrog")
+    step_3: float = step_of_rope(3)
+    integrator_4: str = method_of_rope(4, "implicit_euler")
+    step_4: float = step_of_rope(4)
+    integrator_5: str = method_of_rope(5, "tr_bdf2")
+    step_5: float = step_of_rope(5)
+    integrator_6: str = method_of_rope(6, "implicit_midpoint")
+    step_6: float = step_of_rope(6)
+
+
+@dataclasses.dataclass(frozen=True)
+class Params(RopeParams, RaceRules):
+    """The race's parameters. What the methods are compared on starts it again; other forces do not."""
+
+    integrator: str = redeclare(
+        RopeParams, "integrator", default="explicit_euler", doc="Method of rope 1", affects="start"
+    )
+    time_step: float = redeclare(RopeParams, "time_step", default=1 / 240, doc="Step of rope 1", affects="start")
+    units: str = redeclare(RopeParams, "units", affects="start")
+    points: int = redeclare(RopeParams, "points", affects="start")
+    length: float = redeclare(RopeParams, "length", affects="start")
+
+    plot_errors: bool = parameter(
+        True, doc="Distance of each rope from the reference run over time", group="Plots", affects="look"
+    )
+    plot_energies: bool = parameter(True, doc="Energy of each rope over time", group="Plots", affects="look")
+
+
+def line_up(*integrators: str, **others: Any) -> dict[str, Any]:
+    """A preset: the methods of the ropes in order, and the other parameters that are not the defaults."""
+    first, *rest = integrators
+    named = {f"integrator_{number}": name for number, name in enumerate(rest, 2)}
+    return {"ropes": len(integrators), "integrator": first, **named, "race_steps": "same step", **others}
+
+
+# 160 to 15,625 N/m, across Euler's limit at 1/60 s (437) and RK4's (8600). A softer or longer rope meets the floor.
+RISING = {"points": 5, "stiffness": 160.0, "stiffness_ratio": 2.5, "time_step": 1 / 60}
+
+PRESETS: dict[str, dict[str, Any]] = {
+    "Euler against RK4 against leapfrog": {},
+    "Euler at rising stiffness": line_up(*["explicit_euler"] * 6, **RISING),
+    "RK4 at the same values": line_up(*["rk4"] * 6, **RISING),
+    "Leapfrog read literally": line_up(
+        "leapfrog", "leapfrog", "leapfrog_lagged", "leapfrog_lagged", race_steps="own steps", time_step=1 / 60,
+        step_2=1 / 120, step_3=1 / 60, step_4=1 / 120,
+    ),
+    "Undamped until chaos": line_up(
+        "symplectic_euler", "leapfrog", "implicit_midpoint", "pefrl", "rk4", race_steps="same cost",
+        time_step=1 / 960, damping=0.0, drag=0.0, floor=False,
+    ),
+    "Implicit methods on a very stiff rope": line_up(
+        "implicit_euler", "tr_bdf2", "implicit_midpoint", stiffness=1e9, time_step=1 / 60,
+    ),
+}  # fmt: skip
+
+
+def method_of(params: Params, number: int) -> str:
+    """Name of the method of rope `number`, from 1."""
+    return params.integrator if number == 1 else getattr(params, f"integrator_{number}")
+
+
+def offset_of(params: Params, index: int) -> float:
+    """Where rope `index`, from 0, is drawn along y [m]. All ropes move in the same place; only the drawing differs."""
+    return (index - 0.5 * (params.ropes - 1)) * params.spacing
+
+
+def hidden(params: Params) -> set[str]:
+    """The parameters that mean nothing with the others as they are."""
+    names = hidden_of_rope(params, sphere=False)
+    if params.ropes == 1:
+        names |= {"race_steps", "stiffness_ratio", "spacing"}
+    for number in NUMBERS:
+        if number > params.ropes:
+            names.add(f"integrator_{number}")
+        if number > params.ropes or params.race_steps != "own steps":
+            names.add(f"step_{number}")
+    return names
+
+
+def build(params: Params, root: Vector = ROOT) -> Net:
+    """The net of rope 1, with its root at `root` [m]."""
+    return build_rope(params, root)

@@ -1,0 +1,192 @@
+"""The race: up to six ropes side by side, each with its own method, step or stiffness, against a reference run."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts
+from app.scenes.charts import Chart
+from app.scenes.contract import FRAME_INTERVAL, SceneKind, StabilityMap
+from app.scenes.race.charts import CURVES, RaceCharts
+from app.scenes.race.entrants import Race, RaceReadings
+from app.scenes.race.measures import measures
+from app.scenes.race.parameters import PRESETS, Params, build, hidden, offset_of
+from app.scenes.race.report import label_of
+from app.scenes.springs.drag import PullFrame
+from app.scenes.springs.rope_handles import RopeHandles, vector_of
+from app.scenes.springs.rope_parameters import stiffness_parameter
+from app.scenes.springs.warmup import compile_integrators
+from app.scenes.springs.work_counts import SpringWorkCounts
+from sim.springs import rope
+
+ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
+
+
+class RaceFrame(NamedTuple):
+    """What the view draws of a race."""
+
+    ropes: NDArray[np.float32]  # (ropes, points, 3) [m], C-contiguous, side by side
+    references: NDArray[np.float32] | None  # the same of the reference runs, or None where there are none to show
+    labels: tuple[str, ...]
+    failed: tuple[bool, ...]
+    root: Vector  # [m] where the roots are going to
+    floor: bool
+    grid: bool
+    show_points: bool
+    pull: PullFrame | None
+
+
+def warm_up() -> Iterator[str]:
+    """Compile everything that the scene may call, piece by piece; yields what comes next."""
+    yield from compile_integrators(rope(4, floor=-1.0), rope(4, damping=0.0, drag=0.0))
+    yield "race"
+    scene = RaceScene(Params(ropes=2))
+    scene.advance(2)
+    scene.frame()
+
+
+class RaceScene:
+    """The race on the simulation thread."""
+
+    frame_interval = FRAME_INTERVAL
+    note = ""  # a rope with a method that cannot run stops and says so; no other method runs instead
+
+    def __init__(self, params: Params) -> None:
+        self.params = params
+        self.handles = RopeHandles()
+        self.counts = SpringWorkCounts()
+        self.reset()
+
+    @property
+    def step(self) -> float:
+        """Time between two meetings of all ropes [s]; `advance` counts in it."""
+        return self.race.tick
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self.race.t
+
+    def reset(self) -> None:
+        """All ropes at rest, level from their roots."""
+        self.handles.restart()
+        self.net = build(self.params, self.handles.root.position)  # of rope 1
+        self.race = Race(self.net, self.params)
+        self.charts = RaceCharts(self.race)
+        self.assessed_at = 0.0  # [s]
+
+    def change_forces(self, params: Params) -> None:
+        """Take new parameters; the motion goes on."""
+        self.params = params
+        self.net = build(params, self.handles.root.position)
+        self.race.change_net(self.net)
+        self.assessed_at = self.race.t
+
+    def handle(self, command: SceneCommand) -> None:
+        """Move the roots, pull a point, or let go of it. Points are numbered through, rope after rope."""
+        match command:
+            case Place("root", position):
+                self.handles.root.target = position
+            case Grab(index, target, client) if 0 <= index < self.params.points * self.params.ropes:
+                self.grab(index, target, client)
+            case Release(client):
+                self.handles.drag.release(client)
+            case _:
+                pass
+
+    def grab(self, index: int, target: Vector, client: int) -> None:
+        """Pull the same point of all ropes towards `target` [m], which is where rope `index // points` is drawn."""
+        number, point = divmod(index, self.params.points)
+        x, y, z = target
+        target = x, y - offset_of(self.params, number), z
+        if point > 0:
+            position = vector_of(self.race.entrants[number].state.x[:, 0, point])
+            self.handles.drag.move(client, index, position, target)
+        elif self.handles.drag.may_move(client):
+            self.handles.root.target = target
+
+    def advance(self, steps: int) -> None:
+        """Take `steps` ticks of the race, whatever happens to its ropes."""
+        race = self.race
+        self.net = self.handles.net_during(self.net, race.t, steps * race.tick, race.tick, self.params.pull)
+        evals, taken = race.advance(self.net, steps)
+        self.counts.update(self.net, evals, taken, with_account=True)
+        if self.handles.root.at_rest:
+            race.move_root(self.handles.root.position)
+        is_due = race.t - self.assessed_at >= ASSESSMENT_INTERVAL
+        self.counts.add("stability checks", 1, is_due)
+        if is_due:
+            race.assess_stability()
+            self.assessed_at = race.t
+        self.charts.update()
+
+    def frame(self) -> RaceFrame:
+        """What to draw."""
+        params, race, handles = self.params, self.race, self.handles
+        offsets = np.array([(0.0, offset_of(params, i), 0.0) for i in range(len(race.entrants))])[:, None]
+        references = race.reference_points() if params.show_reference else None
+        stiffness_differs = race.ratio != 1.0
+        number, point = divmod(handles.drag.hold.particle if handles.drag.hold else 0, params.points)
+        held = race.entrants[number].state.x[:, 0, point]
+        offset = offset_of(params, number)
+        return RaceFrame(
+            ropes=(race.points() + offsets).astype(np.float32),
+            references=None if references is None else (references + offsets).astype(np.float32),
+            labels=tuple(label_of(entrant, entrant.failure, stiffness_differs) for entrant in race.entrants),
+            failed=tuple(bool(entrant.failure) for entrant in race.entrants),
+            root=handles.root.target,
+            floor=params.floor,
+            grid=params.grid,
+            show_points=params.show_points,
+            pull=handles.pull_frame(held, offset, self.net.mass, self.step, params.pull),
+        )
+
+    def readings(self) -> RaceReadings:
+        """The results so far."""
+        return self.race.readings()
+
+    def curves(self) -> dict[str, Chart]:
+        """The charts of `CURVES`."""
+        return self.charts.charts()
+
+    def take_plot_rows(self) -> tuple[PlotRow, ...]:
+        """This scene has no plot rows: its charts thin out as the race goes on."""
+        return ()
+
+    def work(self) -> WorkCounts:
+        """What was computed and what was left out."""
+        return self.counts()
+
+    def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
+        """The state for a file: name -> (array, unit)."""
+        race = self.race
+        references = np.stack([reference.x.T for reference in race.references])
+        separations = np.array([reference.separation for reference in race.references])
+        taken = np.array([entrant.numerical_dissipation() for entrant in race.entrants])
+        return {
+            "x": (race.points(), "m"),
+            "reference": (references, "m: one, or one for each rope where their stiffnesses differ"),
+            "separation": (separations, "m, of each reference run from a second one that started 0.1 nm away"),
+            "error": (np.array([race.error(e) for e in race.entrants]), "m, NaN where a rope or the reference failed"),
+            "energy": (np.array([entrant.stored_energy() for entrant in race.entrants]), "J, stored"),
+            "numerical_dissipation": (taken, "J, that the method took"),
+        }
+
+
+SCENE = SceneKind(
+    name="race",
+    title="Race of ropes",
+    help="<b>Drag a bead</b> to pull all ropes alike. <b>Drag the arrows</b> to move their roots.",
+    params=Params,
+    presets=PRESETS,
+    make=RaceScene,
+    hidden=hidden,
+    warm_up=warm_up,
+    series=(),
+    plots={},
+    curves=CURVES,
+    measures=measures,
+    stability_map=StabilityMap(stiffness_parameter, build),
+)

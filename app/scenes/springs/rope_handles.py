@@ -1,0 +1,87 @@
+"""What a user moves of a rope: its root, the sphere, and one dragged point."""
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import Vector
+from app.scenes.springs.drag import Drag, PullFrame
+from app.scenes.springs.rope_parameters import ROOT, SPHERE
+from sim.springs import Grab, Net
+from sim.springs.tracking import CriticallyDampedTracker
+
+MAX_PULL_RATE = 30.0  # [1/s] natural frequency of the pull on a free point
+MAX_PULL_RATE_STEP = 0.5  # the same times the time step, so that the pull is stable at any step
+
+
+def pull_rate(step: float) -> float:
+    """Natural frequency [1/s] of the pull on a free point, at time step `step` [s]; it is critically damped."""
+    return min(MAX_PULL_RATE, MAX_PULL_RATE_STEP / step)
+
+
+class RopeHandles:
+    """Smooth paths of root, sphere and dragged point, as a browser sends places that jump."""
+
+    def __init__(self) -> None:
+        self.root = CriticallyDampedTracker(ROOT)
+        self.sphere = CriticallyDampedTracker(SPHERE)
+        self.drag = Drag()
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether nothing is moved."""
+        return self.root.at_rest and self.sphere.at_rest and self.drag.hold is None
+
+    def restart(self, *, home: bool = False) -> None:
+        """Root and sphere at rest where they were going to, or where a new scene has them; nothing held."""
+        self.root.place_at(ROOT if home else self.root.target)
+        self.sphere.place_at(SPHERE if home else self.sphere.target)
+        self.drag.clear()
+
+    def net_during(self, net: Net, t: float, duration: float, step: float, max_force: float) -> Net:
+        """`net` with the motions of root, sphere and pull over the next `duration` [s] from time t [s].
+
+        step: [s]. max_force: [N] of the pull. The same object where nothing moves, as in most frames.
+        """
+        if self.at_rest and not (net.pin_paths or net.grab or any(net.sphere_velocity)):
+            return net
+        path = self.root.advance(t, duration)
+        before = self.sphere.position
+        self.sphere.advance(t, duration)
+        velocity = tuple((b - a) / duration for a, b in zip(before, self.sphere.position, strict=True))
+        pull = None
+        if self.drag.hold is not None:
+            _, index, hand = self.drag.hold
+            hand.advance(t, duration)
+            rate = pull_rate(step)
+            point = index % net.shape[1]  # the points of several ropes are numbered through
+            pull = Grab(0, point, hand.position, net.mass * rate**2, 2.0 * net.mass * rate, max_force)
+        return dataclasses.replace(
+            net,
+            pin_paths=() if path is None else (((0, 0), path),),
+            sphere=(*before, net.sphere[3]) if net.sphere else None,
+            sphere_velocity=velocity,
+            epoch=t,
+            grab=pull,
+        )
+
+    def pull_frame(
+        self, position: NDArray[np.float64], offset: float, mass: float, step: float, max_force: float
+    ) -> PullFrame | None:
+        """The pull as drawn, None where nothing is held.
+
+        position: (3,) of the held point [m]; offset: of its rope as drawn, along y [m]; mass: of the point [kg].
+        """
+        if self.drag.hold is None:
+            return None
+        _, index, hand = self.drag.hold
+        x, y, z = hand.position
+        distance = float(np.linalg.norm(np.asarray(hand.position) - position))
+        load = min(1.0, distance * mass * pull_rate(step) ** 2 / max_force)
+        return PullFrame(index, (x, y + offset, z), load)
+
+
+def vector_of(x: NDArray[np.float64]) -> Vector:
+    """(3,) [m] as a tuple."""
+    return float(x[0]), float(x[1]), float(x[2])

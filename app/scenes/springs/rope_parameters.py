@@ -1,0 +1,117 @@
+"""The parameters that the scenes of ropes share, and the net that they describe."""
+
+import dataclasses
+
+from app.messages import Vector
+from sim.parameters import parameter
+from sim.springs import INTEGRATORS, Contact, Net, lab_units, rope
+from sim.springs.net import CONTACT_LAWS, DAMPING_MODELS
+
+ROOT: Vector = (0.0, 0.0, 3.0)  # [m]
+SPHERE: Vector = (-0.45, 0.12, 1.6)  # [m], a little behind the rope, so that the rope slides off in view
+ROPE_RADIUS = 0.035  # [m] of the drawn rope, and of its points for contact
+
+
+@dataclasses.dataclass(frozen=True)
+class RopeParams:
+    """Clock, material and surroundings of a rope; the defaults are the lab's code defaults with a better integrator."""
+
+    integrator: str = parameter("leapfrog", choices=tuple(INTEGRATORS), doc="Method of integration", group="Time")
+    time_step: float = parameter(1 / 60, 1e-5, 0.1, "s", "Step h of the integrator", log_from=1e-5, group="Time")
+    speed: float = parameter(
+        1.0, 0.01, 8.0, "", "Simulated time over real time", log_from=0.01, group="Time", affects="look"
+    )
+
+    units: str = parameter(
+        "lab",
+        choices=("lab", "material"),
+        doc="lab: values per point and link, so the rope changes with its number of points; material: per metre",
+        group="Rope",
+    )
+    points: int = parameter(10, 2, 1000, "", "Number of points, with the root", log_from=2, group="Rope")
+    length: float = parameter(2.0, 0.1, 10.0, "m", "Length at rest", group="Rope")
+    stiffness: float = parameter(800.0, 1.0, 1e9, "N/m", "Stiffness k of a link", log_from=1.0, group="Rope")
+    damping: float = parameter(7.0, 0.0, 1e5, "N s/m", "Damping b of a link", log_from=1e-3, group="Rope")
+    mass: float = parameter(1.0, 1e-3, 1e3, "kg", "Mass of a point", log_from=1e-3, group="Rope")
+    drag: float = parameter(1.0, 0.0, 1e3, "N s/m", "Air drag c on a point", log_from=1e-3, group="Rope")
+    axial_stiffness: float = parameter(178.0, 1.0, 1e9, "N", "Stiffness EA", log_from=1.0, group="Rope")
+    axial_viscosity: float = parameter(
+        1.56, 0.0, 1e5, "N s", "Damping of one metre of rope", log_from=1e-3, group="Rope"
+    )
+    mass_per_length: float = parameter(4.5, 1e-3, 1e3, "kg/m", "Mass per metre of rope", log_from=1e-3, group="Rope")
+    drag_per_length: float = parameter(
+        4.5, 0.0, 1e3, "N s/m^2", "Air drag per metre of rope", log_from=1e-3, group="Rope"
+    )
+    damping_model: str = parameter(
+        "isotropic",
+        choices=DAMPING_MODELS,
+        doc="isotropic: b acts on the whole relative velocity, as in the lab; axial: along the link only",
+        group="Rope",
+    )
+
+    gravity: float = parameter(10.0, 0.0, 100.0, "m/s^2", "Gravity, downwards", group="Surroundings")
+    floor: bool = parameter(True, doc="Floor at height 0", group="Surroundings")
+    friction: float = parameter(0.3, 0.0, 2.0, "", "Coulomb friction coefficient", group="Surroundings")
+    contact_stiffness: float = parameter(
+        800.0, 1.0, 1e7, "N/m", "Contact stiffness", log_from=1.0, group="Surroundings"
+    )
+    contact_damping: float = parameter(5.0, 0.0, 1e4, "N s/m", "Contact damping", log_from=1e-2, group="Surroundings")
+    contact_law: str = parameter(
+        "clipped",
+        choices=CONTACT_LAWS,
+        doc="clipped: contact never pulls, and has friction; lab: the lab's own law, which sticks and is viscous",
+        group="Surroundings",
+    )
+    pull: float = parameter(300.0, 1.0, 1e5, "N", "Largest force of a drag", log_from=1.0, group="Surroundings")
+
+    show_points: bool = parameter(True, doc="Draw the points, which can be dragged", group="Look", affects="look")
+    grid: bool = parameter(True, doc="Lines on the floor", group="Look", affects="look")
+
+
+LAB_ONLY = {"stiffness", "damping", "mass", "drag"}
+MATERIAL_ONLY = {"axial_stiffness", "axial_viscosity", "mass_per_length", "drag_per_length"}
+
+
+def hidden_of_rope(params: RopeParams, *, sphere: bool) -> set[str]:
+    """The shared parameters that mean nothing with the others as they are. sphere: whether there is one."""
+    names = set(MATERIAL_ONLY if params.units == "lab" else LAB_ONLY)
+    if not (params.floor or sphere):
+        names |= {"friction", "contact_stiffness", "contact_damping", "contact_law"}
+    if params.contact_law == "lab":
+        names.add("friction")
+    return names
+
+
+def stiffness_parameter(params: RopeParams) -> str:
+    """Name of the stiffness parameter in use, for the map of step and stiffness."""
+    return "stiffness" if params.units == "lab" else "axial_stiffness"
+
+
+def build_rope(params: RopeParams, root: Vector = ROOT, sphere: tuple[float, float, float, float] | None = None) -> Net:
+    """The net that the parameters describe, with its root at `root` [m]. sphere: (x, y, z, radius) [m], or None."""
+    lab = lab_units(
+        params.points,
+        params.length,
+        params.axial_stiffness,
+        params.mass_per_length,
+        params.axial_viscosity,
+        params.drag_per_length,
+    )
+    if params.units == "lab":
+        lab = {name: getattr(params, name) for name in LAB_ONLY}
+    contact = Contact(params.contact_stiffness, params.contact_damping, params.friction, params.contact_law)
+    return rope(
+        params.points,
+        params.length,
+        mass=lab["mass"],
+        stiffness=lab["stiffness"],
+        damping=lab["damping"],
+        drag=lab["drag"],
+        gravity=params.gravity,
+        root=root,
+        floor=0.0 if params.floor else None,
+        sphere=sphere,
+        damping_model=params.damping_model,
+        contact=contact,
+        radius=ROPE_RADIUS,
+    )

@@ -1,12 +1,11 @@
-"""The parameters of a race of ropes, its presets and the net of rope 1."""
+"""The parameters of a race of ropes, and its presets."""
 
 import dataclasses
 from typing import Any
 
-from app.messages import Vector
-from app.scenes.springs.rope_parameters import ROOT, RopeParams, build_rope, hidden_of_rope
+from app.scenes.springs.rope_parameters import RopeParams, hidden_of_rope
 from sim.parameters import parameter, redeclare
-from sim.springs import INTEGRATORS, Net
+from sim.springs import INTEGRATORS
 
 MAX_ROPES = 6
 NUMBERS = range(2, MAX_ROPES + 1)  # of the ropes that have an integrator and a step parameter of their own
@@ -123,8 +122,3 @@ def hidden(params: Params) -> set[str]:
         if number > params.ropes or params.race_steps != "own steps":
             names.add(f"step_{number}")
     return names
-
-
-def build(params: Params, root: Vector = ROOT) -> Net:
-    """The net of rope 1, with its root at `root` [m]."""
-    return build_rope(params, root)

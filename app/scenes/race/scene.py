@@ -12,11 +12,11 @@ from app.scenes.contract import FRAME_INTERVAL, SceneKind, StabilityMap
 from app.scenes.race.charts import CURVES, RaceCharts
 from app.scenes.race.entrants import Race, RaceReadings
 from app.scenes.race.measures import measures
-from app.scenes.race.parameters import PRESETS, Params, build, hidden, offset_of
+from app.scenes.race.parameters import PRESETS, Params, hidden, offset_of
 from app.scenes.race.report import label_of
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles, vector_of
-from app.scenes.springs.rope_parameters import stiffness_parameter
+from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
 from app.scenes.springs.warmup import compile_integrators
 from app.scenes.springs.work_counts import SpringWorkCounts
 from sim.springs import rope
@@ -72,7 +72,7 @@ class RaceScene:
     def reset(self) -> None:
         """All ropes at rest, level from their roots."""
         self.handles.restart()
-        self.net = build(self.params, self.handles.root.position)  # of rope 1
+        self.net = build_rope(self.params, self.handles.root.position)  # of rope 1
         self.race = Race(self.net, self.params)
         self.charts = RaceCharts(self.race)
         self.assessed_at = 0.0  # [s]
@@ -80,7 +80,7 @@ class RaceScene:
     def change_forces(self, params: Params) -> None:
         """Take new parameters; the motion goes on."""
         self.params = params
-        self.net = build(params, self.handles.root.position)
+        self.net = build_rope(params, self.handles.root.position)
         self.race.change_net(self.net)
         self.assessed_at = self.race.t
 
@@ -188,5 +188,5 @@ SCENE = SceneKind(
     plots={},
     curves=CURVES,
     measures=measures,
-    stability_map=StabilityMap(stiffness_parameter, build),
+    stability_map=StabilityMap(stiffness_parameter, build_rope),
 )

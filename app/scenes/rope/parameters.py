@@ -1,12 +1,10 @@
-"""The rope's parameters, its presets and the net they describe."""
+"""The rope's parameters and presets."""
 
 import dataclasses
 from typing import Any
 
-from app.messages import Vector
-from app.scenes.springs.rope_parameters import ROOT, SPHERE, RopeParams, build_rope, hidden_of_rope
+from app.scenes.springs.rope_parameters import RopeParams, hidden_of_rope
 from sim.parameters import parameter
-from sim.springs import Net
 
 
 @dataclasses.dataclass(frozen=True)
@@ -45,8 +43,3 @@ def hidden(params: Params) -> set[str]:
     if not params.sphere:
         names.add("sphere_radius")
     return names
-
-
-def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
-    """The net that the parameters describe, with root and sphere centre there [m]."""
-    return build_rope(params, root, (*sphere, params.sphere_radius) if params.sphere else None)

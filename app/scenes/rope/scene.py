@@ -11,14 +11,14 @@ from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, SceneKind, StabilityMap
 from app.scenes.plot_rows import PlotRows
 from app.scenes.rope.measures import measures
-from app.scenes.rope.parameters import PRESETS, Params, build, hidden
+from app.scenes.rope.parameters import PRESETS, Params, hidden
 from app.scenes.springs.divergence import divergence_text
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles, vector_of
-from app.scenes.springs.rope_parameters import stiffness_parameter
+from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
 from app.scenes.springs.warmup import compile_integrators
 from app.scenes.springs.work_counts import SpringWorkCounts
-from sim.springs import rope
+from sim.springs import Net, rope
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.tension import rope_tension
@@ -70,6 +70,11 @@ class RopeReadings(NamedTuple):
     largest_stiffness: float  # in that parameter's unit
     note: str  # why another method runs than the one chosen, or ""
     cost: NumericalCost | None  # None for explicit methods
+
+
+def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
+    """The net that the parameters describe, with root and sphere centre there [m]."""
+    return build_rope(params, root, (*sphere, params.sphere_radius) if params.sphere else None)
 
 
 def warm_up() -> Iterator[str]:

@@ -12,9 +12,10 @@ from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.race.charts import MAX_ROWS, RaceCharts, round_up
 from app.scenes.race.entrants import tick_of
 from app.scenes.race.measures import measures
-from app.scenes.race.parameters import PRESETS, Params, build, hidden
+from app.scenes.race.parameters import PRESETS, Params, hidden
 from app.scenes.race.report import results_table
 from app.scenes.race.scene import SCENE, RaceScene
+from app.scenes.springs.rope_parameters import build_rope
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
 from sim.springs import simulate
@@ -91,7 +92,7 @@ def test_a_rope_races_as_it_would_alone():
 def test_the_reference_run_is_as_accurate_as_its_separation_says(damping):
     """Against an eighth-order method at a tolerance a thousand times finer."""
     params = Params(damping=damping, drag=damping / 7.0, floor=False)
-    net = build(params)
+    net = build_rope(params)
     reference = ReferenceRun(net, params.length)
     truth = simulate(net, "dop853", duration=4.0, frames=241, rtol=1e-13, atol=1e-15)
     for frame in range(1, 241):
@@ -101,7 +102,7 @@ def test_the_reference_run_is_as_accurate_as_its_separation_says(damping):
 
 def test_the_error_shown_is_the_distance_from_the_truth():
     scene = raced("Euler against RK4 against leapfrog", 2.0)
-    truth = simulate(build(scene.params), "dop853", duration=2.0, frames=2, rtol=1e-12, atol=1e-14).x[-1]
+    truth = simulate(build_rope(scene.params), "dop853", duration=2.0, frames=2, rtol=1e-12, atol=1e-14).x[-1]
     for entrant, rope in zip(scene.race.entrants, scene.readings().results, strict=True):
         error = np.linalg.norm(entrant.state.x[:, 0].T - truth, axis=1).max()
         assert rope.error == pytest.approx(error, abs=rope.error_floor)

@@ -1,13 +1,13 @@
-"""The race presets in a real browser: ropes, flags and charts."""
+"""The race scene in a real browser: ropes, labels and charts."""
 
-from app.scenes.rope.parameters import PRESETS, ROOT, Params
+from app.scenes.race.parameters import PRESETS, Params
+from app.scenes.springs.rope_parameters import ROOT
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests.browser.conftest import Tab
 from tests.browser.test_rope import pixel
 
-SCENE = "rope"
-RACES = [name for name, parameters in PRESETS.items() if parameters.get("ropes", 1) > 1]
+SCENE = "race"
 CHARTS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({chart}) => ({
     title: chart.root.querySelector('.u-title')?.textContent, labels: chart.series.map(s => s.label),
     rows: chart.data[0].length, log: chart.scales.y.distr === 3}))"""
@@ -15,18 +15,19 @@ CHARTS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ch
 
 def test_every_race_is_drawn_with_its_charts_and_no_console_errors(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
-    for preset in RACES:
+    for preset in PRESETS:
         lab.panel.load(preset)
-        ropes = PRESETS[preset]["ropes"]
-        tab.wait(lambda ropes=ropes: lab.scene.race is not None and len(lab.scene.race.lanes) == ropes)
+        params = check_record(Params, PRESETS[preset])
+        ropes = params.ropes
+        tab.wait(lambda params=params: lab.loop.latest.params == params)
 
         def drawn(ropes=ropes) -> bool:
             counts = [len(tab.vertices(f"/race/rope_{number + 1}")) for number in range(ropes + 1)]
-            return all(counts[:ropes]) and counts[ropes] == 0 and len(tab.vertices("/race/ghosts")) == sum(counts)
+            return all(counts[:ropes]) and counts[ropes] == 0 and len(tab.vertices("/race/references")) == sum(counts)
 
         tab.wait(drawn)
         # They start level at the root's height; a slow page may miss the swing, not that it was.
-        tab.wait(lambda: tab.vertices("/race/ghosts")[:, 2].min() < ROOT[2] - 1.0)
+        tab.wait(lambda: tab.vertices("/race/references")[:, 2].min() < ROOT[2] - 1.0)
 
         def charts(ropes=ropes) -> list:
             found = {chart["title"]: chart for chart in tab.page.evaluate(CHARTS)}
@@ -36,7 +37,7 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(shown: tuple[
 
         errors, energies = tab.wait(charts)
         assert errors["log"]
-        assert errors["labels"][1] == "reference unsure"
+        assert errors["labels"][1] == "below what the reference can tell"
         named = [label for label in energies["labels"][1:] if label != "reference"]
         assert named == errors["labels"][2:]
         assert [label.split()[0] for label in named] == [str(number + 1) for number in range(ropes)]
@@ -44,25 +45,25 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(shown: tuple[
     assert tab.errors == []
 
 
-def test_a_bead_of_a_race_is_dragged_and_the_single_rope_comes_back(shown: tuple[Viewer, Tab]) -> None:
+def test_a_bead_is_dragged_and_another_preset_starts_at_once(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     without_charts = {"plot_errors": False, "plot_energies": False, "speed": 4.0}
     tab.follow(lab, SCENE, check_record(Params, {**PRESETS["Leapfrog read literally"], **without_charts}))
-    tab.wait(lambda: lab.scene.race is not None and lab.scene.time > 5)
+    tab.wait(lambda: lab.scene.time > 5)
     lab.panel.set("speed", 1.0)
     tab.wait(lambda: len(tab.vertices("/race/rope_4")) > 0)
 
     def dragged() -> bool:
-        start = pixel(lab, lab.scene.frame().race.ropes[0, 7])
+        start = pixel(lab, lab.scene.frame().ropes[0, 7])
         tab.drag(start, (start[0] - 60, start[1] - 40))
         tab.page.wait_for_timeout(500)
-        held = lab.scene.held is not None
+        held = lab.scene.handles.drag.hold is not None
         tab.release()
         return held
 
     tab.wait(dragged)  # again where a slow page had not yet noticed what the mouse was over
-    tab.wait(lambda: lab.scene.held is None, 30)
+    tab.wait(lambda: lab.scene.handles.drag.hold is None, 30)
     tab.page.keyboard.press("1")
-    tab.wait(lambda: len(tab.vertices("/rope")) > 0 and len(tab.vertices("/race/rope_1")) == 0)
-    assert lab.scene.race is None
+    tab.wait(lambda: len(tab.vertices("/race/rope_3")) > 0 and len(tab.vertices("/race/rope_4")) == 0)
+    assert len(lab.scene.race.entrants) == 3
     assert tab.errors == []

@@ -7,7 +7,7 @@ import pytest
 
 from app.messages import Pause, Play
 from app.panel.panel import stability_map as live
-from app.scenes.rope.scene import ROOT
+from app.scenes.springs.rope_parameters import ROOT
 from app.server.viewer import Viewer
 from tests.browser.conftest import DPR, Tab
 
@@ -63,10 +63,10 @@ def test_dragging_the_gizmo_moves_the_root(shown: tuple[Viewer, Tab]) -> None:
         tab.drag(pixel(lab, arrow), pixel(lab, arrow + (0.0, 0.0, 0.5)))
         tab.release()
         tab.page.wait_for_timeout(500)
-        return lab.scene.root.position[2] > ROOT[2] + 0.2
+        return lab.scene.handles.root.position[2] > ROOT[2] + 0.2
 
     tab.wait(drag_up)  # again where a slow page had not yet noticed what the mouse was over
-    assert lab.scene.state.x[2, 0, 0] == pytest.approx(lab.scene.root.position[2], abs=0.2)
+    assert lab.scene.state.x[2, 0, 0] == pytest.approx(lab.scene.handles.root.position[2], abs=0.2)
     assert tab.errors == []
 
 
@@ -83,13 +83,13 @@ def test_dragging_a_bead_pulls_it_and_lets_go(shown: tuple[Viewer, Tab]) -> None
     tab.page.mouse.move(*start)
     lab.loop.commands.put(Play())
     tab.drag(start, (start[0] + 70, start[1] - 40))
-    tab.wait(lambda: lab.scene.held is not None)
-    held, _ = lab.scene.held
+    tab.wait(lambda: lab.scene.handles.drag.hold is not None)
+    held = lab.scene.handles.drag.hold.particle
     assert abs(held - particle) <= 1
     tab.wait(lambda: np.linalg.norm(lab.scene.state.x[:, 0, held] - bead) > 0.15)
     assert lab.loop.latest.frame.pull is not None
     tab.release()
-    tab.wait(lambda: lab.scene.held is None)
+    tab.wait(lambda: lab.scene.handles.drag.hold is None)
     assert tab.errors == []
 
 

@@ -1,7 +1,7 @@
 """A mesh whose vertices move and change colour every frame, which stock viser does not have.
 
-The colours travel in one array with the vertices, behind them, where no face names them, and reach the material through
-`app/patch.py`. A browser that the patch does not reach draws the mesh in its plain colour.
+The colours travel in one array with the vertices, behind them, where no face refers to them; `js/injection.js` gives
+them to the shader (see `app/render/injection.py`). A browser without that shader draws the mesh in one colour.
 """
 
 from typing import Any
@@ -9,18 +9,18 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.render.injection import hidden, patch
+from app.render.injection import add_data_mesh, injector_of
 from sim.validation import argument_error
 
-SUFFIX = "paint"  # the recipe's name in patch.js
+SUFFIX = "vertex_colors"  # of the hidden mesh that makes the script replace the shader
 
 
 class ColouredMesh:
     """A streaming mesh with a colour at each vertex.
 
-    vertices: (n, 3) [m]. faces: (m, 3). colors: (n, 3), sRGB in 0..1. color: the plain colour, for browsers that the
-    patch does not reach. plain: never patch. Further arguments go to viser's `add_mesh_simple`.
-    Raises ValueError for colours of another length than the vertices.
+    vertices: (n, 3) [m]. faces: (m, 3). colors: (n, 3), sRGB in 0..1. color: the only colour in browsers
+    without the shader. plain: never send the shader. Further arguments go to viser's `add_mesh_simple`.
+    Raises ValueError where there is not one colour a vertex.
     """
 
     def __init__(
@@ -37,35 +37,37 @@ class ColouredMesh:
     ) -> None:
         self.name = name
         self._count = len(vertices)
-        self._patch = None if plain else patch(server)
-        self._numbers = np.empty((self._count if self._patch is None else 2 * self._count, 3), np.float32)
+        self._injector = None if plain else injector_of(server)
+        rows = self._count if self._injector is None else 2 * self._count
+        self._vertices_and_colors = np.empty((rows, 3), np.float32)
         self._fill(vertices, colors)
         faces = np.asarray(faces, np.uint32)
-        self.mesh = server.scene.add_mesh_simple(name, self._numbers, faces, color=color, **mesh)
-        if self._patch is not None:
-            hidden(server, f"{name}/{SUFFIX}", np.zeros((1, 3)))
-            self._patch.expect(name)
+        self.mesh = server.scene.add_mesh_simple(name, self._vertices_and_colors, faces, color=color, **mesh)
+        if self._injector is not None:
+            add_data_mesh(server, f"{name}/{SUFFIX}", np.zeros((1, 3)))
+            self._injector.watch(name)
 
     def set(self, vertices: np.ndarray | None = None, colors: np.ndarray | None = None) -> None:
-        """Move the vertices [m], repaint them, or both."""
+        """Set the vertices (n, 3) [m], their colours (n, 3), or both."""
         self._fill(vertices, colors)
-        self.mesh.vertices = self._numbers
+        self.mesh.vertices = self._vertices_and_colors
 
     @property
-    def alive(self) -> bool | None:
-        """True if every browser paints, False if one does not, None while not yet known."""
-        return self._patch.alive(self.name) if self._patch is not None else False
+    def has_shader(self) -> bool | None:
+        """True if every browser draws the colours, False if one does not, None while not yet known."""
+        return self._injector.is_active(self.name) if self._injector is not None else False
 
     def remove(self) -> None:
-        """Take the mesh and its colours out of the scene."""
-        if self._patch is not None:
-            self._patch.forget(self.name)
+        """Remove the mesh and its colours from the scene."""
+        if self._injector is not None:
+            self._injector.unwatch(self.name)
         self.mesh.remove()
 
     def _fill(self, vertices: np.ndarray | None, colors: np.ndarray | None) -> None:
+        """Write what is given into the array that travels."""
         if colors is not None and np.shape(colors) != (self._count, 3):
             raise argument_error("colors", np.shape(colors), f"shape ({self._count}, 3)")
         if vertices is not None:
-            self._numbers[: self._count] = vertices
-        if colors is not None and self._patch is not None:
-            self._numbers[self._count :] = colors
+            self._vertices_and_colors[: self._count] = vertices
+        if colors is not None and self._injector is not None:
+            self._vertices_and_colors[self._count :] = colors

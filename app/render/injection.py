@@ -1,21 +1,25 @@
-"""The material patch: a short script, sent once per server, that dresses stock viser's meshes in the browser.
+"""Shaders that stock viser does not have: a short script, sent once per server, replaces them in the browser.
 
 viser 1.1 draws an ordinary mesh in one colour with one rough material. Three of its private names open the way to
-more; they are used in this file and in `patch.js` alone, and `tests/browser/test_water.py` fails when they change:
+more; for shaders they are used in this file and in `js/` alone, and `tests/browser/test_water.py` fails when they
+change:
 
-- `server._websock_server.queue_message`: the public API has no call that sends a script. What is queued here is
-  replayed to late joiners and kept in recordings.
-- `viser._messages.RunJavascriptMessage`: the message itself. viser never culls it from its buffer, therefore one per
+- `server._websock_server.queue_message`: the public API has no call that sends a script. What is queued here is sent
+  again to each browser that connects later, and is kept in recordings.
+- `viser._messages.RunJavascriptMessage`: the message itself. viser keeps each one for good, therefore there is one per
   server and never one per frame.
 - `window.__viserMutable` in the page: `nodeRefFromName`, `scene`, `requestRender`.
 
-Everything that changes travels as vertices, of hidden meshes or behind a mesh's own, which viser culls and replaces
-like any others. A hidden mesh named "<node>/<suffix>" is what makes the script dress "<node>".
+Everything that changes travels as vertices, either of hidden meshes (`add_data_mesh`) or behind the vertices of the
+drawn mesh, because viser keeps only the newest vertices of a mesh. A hidden mesh named "<node>/<suffix>" makes the
+script replace the shader of "<node>"; each file in `js/` names its suffix.
 
-Whether it worked is asked of each browser: the script writes which nodes it has drawn into the page's local storage,
-where `ClientHandle.local_storage` (public) reads it.
+Each browser is asked whether that worked: the script writes the names of the nodes that it has drawn into the page's
+local storage, where `ClientHandle.local_storage` (public) reads them.
 """
 
+import json
+import math
 import secrets
 import threading
 import time
@@ -26,125 +30,167 @@ import numpy as np
 import viser
 from viser import _messages
 
-KEY = "springtide-patch"  # the local storage key the script answers under
-ASK_EVERY = 0.5  # [s] between two questions to a browser that has not answered
-GRACE = 20.0  # [s] until a browser without an answer counts as plain; the first frame compiles shaders
-SCRIPTS = ("injection.js", "water_shader.js", "water.js", "rain.js")
-LONGEST_ANSWER = 10_000  # [characters] what a browser sends is bounded before it is read
+from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS
 
-_patches: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
-_plain: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()
+STORAGE_KEY = "springtide-shaders"  # of the page's local storage, under which the script answers
+ASK_INTERVAL = 0.5  # [s] between two questions to a browser that has not answered for every node
+QUESTION_TIMEOUT = 5.0  # [s] after which a question is given up, and asked again later
+MAX_QUESTIONS = 16  # open at the same time, a thread each: browsers that are stuck do not delay the others
+MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
+MAX_ANSWER_LENGTH = 10_000  # [characters] of which an answer is read
+SCRIPTS = ("injection.js", "water_shader.js", "water.js", "rain.js")
+
+_injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
+_disabled: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()
 
 
 class ShaderInjector:
-    """The patch of one server: what it dresses, and which browsers have answered. Made by `patch(server)`."""
+    """The shaders of one server: the nodes that should have one, and which browsers draw them so.
+
+    Made by `injector_of(server)`. The viewer's thread watches nodes; threads of this class ask the browsers.
+    """
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = weakref.ref(server)
-        self._token = secrets.token_hex(8)
-        self._names: dict[str, float] = {}  # node -> when it was first expected [s]
-        self._since: dict[int, float] = {}  # client id -> time it was first asked [s]
-        self._drawn: dict[int, frozenset[str]] = {}  # client id -> the nodes it says it draws dressed
-        self._work = threading.Event()
+        self._token = secrets.token_hex(8)  # tells answers to this server from those that an earlier one left behind
+        self._lock = threading.Lock()  # for what follows
+        self._watched: dict[str, float] = {}  # node -> since when it is watched [s]
+        self._asked: dict[int, float] = {}  # client id -> when it was first asked [s]
+        self._last_asked: dict[int, float] = {}  # client id -> when it was last asked [s]
+        self._drawn: dict[int, frozenset[str]] = {}  # client id -> the watched nodes that it draws with their shader
+        self._open: set[int] = set()  # client ids of the questions that wait for an answer
+        self._unanswered = threading.Event()
         server._websock_server.queue_message(_messages.RunJavascriptMessage(source=self.script()))
-        server.on_client_connect(lambda client: self._work.set())
-        threading.Thread(target=self._ask, name="water patch answers", daemon=True).start()
+        server.on_client_connect(lambda client: self._unanswered.set())
+        threading.Thread(target=self._ask_clients, name="shader questions", daemon=True).start()
 
     def script(self) -> str:
-        """The script as it is sent: one function scope, the token first, the hook last."""
-        parts = [(resources.files("app.render") / "js" / name).read_text("utf-8") for name in SCRIPTS]
-        return f'(() => {{ "use strict"; const TOKEN = "{self._token}";\n' + "\n".join(parts) + "\ninstall(); })();"
+        """The script as it is sent: one function scope, the constants shared with Python first, the hook last."""
+        constants = {
+            "TOKEN": self._token,
+            "STORAGE_KEY": STORAGE_KEY,
+            "WATER_UNIFORMS": WATER_UNIFORMS,
+            "RAIN_UNIFORMS": RAIN_UNIFORMS,
+        }
+        shared = [f"const {name} = {json.dumps(value)};" for name, value in constants.items()]
+        files = [(resources.files("app.render") / "js" / name).read_text("utf-8") for name in SCRIPTS]
+        return "\n".join(['(() => { "use strict";', *shared, *files, "install(); })();"])
 
-    def expect(self, name: str) -> None:
-        """Ask every browser for an answer about this node, whatever it said of an earlier one of that name."""
-        self.forget(name)
-        self._names[name] = time.monotonic()
-        self._work.set()
+    def watch(self, name: str) -> None:
+        """Ask every browser about this node, whatever it said of an earlier node of that name."""
+        self.unwatch(name)
+        with self._lock:
+            self._watched[name] = time.monotonic()
+        self._unanswered.set()
 
-    def forget_all(self) -> None:
-        """Stop asking: every node is gone. Each question makes a browser draw anew."""
-        for name in list(self._names):
-            self.forget(name)
-
-    def forget(self, name: str) -> None:
+    def unwatch(self, name: str) -> None:
         """Stop asking about a removed node."""
-        self._names.pop(name, None)
-        self._drawn = {client: drawn - {name} for client, drawn in self._drawn.items()}
+        with self._lock:
+            self._watched.pop(name, None)
+            self._drawn = {client: drawn - {name} for client, drawn in self._drawn.items()}
 
-    def alive(self, name: str) -> bool | None:
-        """True if every connected browser draws the node dressed, False if one does not, None while not yet known."""
+    def unwatch_all(self) -> None:
+        """Stop asking: every node is removed. Each question makes a browser draw a frame."""
+        with self._lock:
+            self._watched.clear()
+            self._drawn = dict.fromkeys(self._drawn, frozenset())
+
+    def is_active(self, name: str) -> bool | None:
+        """True if every connected browser draws the node with its shader, False if one does not, None while unknown."""
         server = self._server()
         clients = list(server.get_clients()) if server is not None else []
         if not clients:
             return None
-        if all(name in self._drawn.get(client, frozenset()) for client in clients):
-            return True
-        now = time.monotonic()
-        expected = self._names.get(name, now)
-        slow = [client for client in clients if name not in self._drawn.get(client, frozenset())]
-        return False if any(now - max(expected, self._since.get(client, now)) > GRACE for client in slow) else None
+        with self._lock:
+            without = [client for client in clients if name not in self._drawn.get(client, frozenset())]
+            if not without:
+                return True
+            now = time.monotonic()
+            since = self._watched.get(name, now)
+            waited = max(now - max(since, self._asked.get(client, now)) for client in without)
+        return False if waited > MAX_ANSWER_TIME else None
 
-    def _ask(self) -> None:
-        """Ask each connected browser until it has answered for every name. The one thread of this module."""
+    def _ask_clients(self) -> None:
+        """Ask each connected browser until it draws every watched node, or has left."""
         while True:
-            self._work.wait(timeout=60.0)  # a server that is gone wakes nobody
-            self._work.clear()
+            self._unanswered.wait(timeout=60.0)  # ends in time where the server is gone and nothing sets the event
+            self._unanswered.clear()
             server = self._server()
             if server is None:
                 return
-            clients = server.get_clients()
-            waiting = False
-            for number, client in clients.items():
-                # With others slow to answer this one may have left since.
-                if number not in server.get_clients() or set(self._names) <= self._drawn.get(number, frozenset()):
-                    continue
-                self._since.setdefault(number, time.monotonic())
-                waiting = True
-                try:
-                    answer = client.local_storage.get_item(KEY, timeout=5.0)
-                except (RuntimeError, TimeoutError):
-                    continue  # gone, or too busy to answer: asked again
-                self._drawn[number] = self._read(answer)
-            for number in set(self._drawn) | set(self._since):
-                if number not in clients:
-                    self._drawn.pop(number, None)
-                    self._since.pop(number, None)
-            if waiting:
-                self._work.set()
-            del server, clients
-            time.sleep(ASK_EVERY)
+            if self._start_questions(server.get_clients()):
+                self._unanswered.set()
+            del server
+            time.sleep(ASK_INTERVAL)
 
-    def _read(self, answer: str | None) -> frozenset[str]:
-        """The known names in an answer that carries this server's token."""
-        token, *names = (answer or "")[:LONGEST_ANSWER].split("\n")
-        return frozenset(names) & frozenset(self._names) if token == self._token else frozenset()
+    def _start_questions(self, clients: dict[int, viser.ClientHandle]) -> bool:
+        """Ask the browsers that have not answered for every node; False where there are none."""
+        now = time.monotonic()
+        with self._lock:
+            for gone in (set(self._drawn) | set(self._asked)) - set(clients):
+                self._drawn.pop(gone, None)
+                self._asked.pop(gone, None)
+                self._last_asked.pop(gone, None)
+            unanswered = [client for client in clients if not self._watched.keys() <= self._drawn.get(client, set())]
+            for client in unanswered:
+                self._asked.setdefault(client, now)
+            ready = [client for client in unanswered if client not in self._open]
+            ready.sort(key=lambda client: self._last_asked.get(client, 0.0))  # who has waited longest comes first
+            ready = ready[: max(MAX_QUESTIONS - len(self._open), 0)]
+            self._last_asked.update(dict.fromkeys(ready, now))
+            self._open.update(ready)
+        for client in ready:
+            arguments = client, clients[client], now
+            threading.Thread(target=self._ask, args=arguments, name="shader question", daemon=True).start()
+        return bool(unanswered)
+
+    def _ask(self, client: int, handle: viser.ClientHandle, now: float) -> None:
+        """Ask one browser once; now [s]: the time of asking."""
+        try:
+            answer = handle.local_storage.get_item(STORAGE_KEY, timeout=QUESTION_TIMEOUT)
+        except (RuntimeError, TimeoutError):  # it has left, or it is too busy and will be asked again
+            answer = None
+        with self._lock:
+            self._open.discard(client)
+            if answer is not None and client in self._asked:
+                self._drawn[client] = self._read(answer, now)
+
+    def _read(self, answer: str, asked: float) -> frozenset[str]:
+        """The watched nodes in an answer that carries the token of this server.
+
+        A node that is watched since after `asked` [s] is left out: the answer may mean an earlier node of that name.
+        """
+        token, *names = answer[:MAX_ANSWER_LENGTH].split("\n")
+        if token != self._token:
+            return frozenset()
+        return frozenset(name for name in names if self._watched.get(name, math.inf) <= asked)
 
 
-def decline(server: viser.ViserServer) -> None:
-    """Draw everything on this server by the public API alone; to be said before anything is drawn."""
-    _plain.add(server)
+def disable_shaders(server: viser.ViserServer) -> None:
+    """Draw everything on this server by viser's public API alone; to be called before anything is drawn."""
+    _disabled.add(server)
 
 
-def patch(server: viser.ViserServer) -> ShaderInjector | None:
-    """The patch of a server, sent on the first call; None where it was declined."""
-    if server in _plain:
+def injector_of(server: viser.ViserServer) -> ShaderInjector | None:
+    """The shader injector of a server, made on the first call; None where shaders are disabled."""
+    if server in _disabled:
         return None
-    if server not in _patches:
-        _patches[server] = ShaderInjector(server)
-    return _patches[server]
+    if server not in _injectors:
+        _injectors[server] = ShaderInjector(server)
+    return _injectors[server]
 
 
-def reset(server: viser.ViserServer) -> None:
-    """Remove every node from a server's scene, and what is expected of them."""
+def reset_scene(server: viser.ViserServer) -> None:
+    """Remove every node from the scene of a server, and stop asking about them."""
     server.scene.reset()
-    if server in _patches:
-        _patches[server].forget_all()
+    if server in _injectors:
+        _injectors[server].unwatch_all()
 
 
-def hidden(server: viser.ViserServer, name: str, values: np.ndarray) -> viser.MeshHandle:
+def add_data_mesh(server: viser.ViserServer, name: str, values: np.ndarray) -> viser.MeshHandle:
     """A hidden mesh whose vertices carry numbers to the script. values: (n, 3), n >= 1.
 
-    Its one degenerate face keeps the browser from computing normals for what is not drawn.
+    Its only face is degenerate, so that the browser computes no normals for it.
     """
     face = np.zeros((1, 3), np.uint32)
     return server.scene.add_mesh_simple(

@@ -12,7 +12,8 @@ import viser
 
 from app.messages import Command, Halt, Release, WorkCount
 from app.panel.panel import Panel, add_scene_chooser, note
-from app.render.injection import decline, reset
+from app.render.cameras import place_cameras
+from app.render.injection import disable_shaders, reset_scene
 from app.scenes import NAMES, scene_named, view_named
 from app.scenes.warmup import compile_scene, is_compiled
 from app.server.counters import Unwatched, gather, modules
@@ -35,7 +36,7 @@ class Viewer:
         """plain: draw by viser's public API alone. Raises OSError where the port cannot be bound."""
         self.server, self.screen = open_server(host, port)
         if plain:
-            decline(self.server)
+            disable_shaders(self.server)
         self.server._websock_server.get_message_buffer().window_duration_sec = SEND_WINDOW
         self.transport = TransportCounters(self.server)
         self.port = self.server.get_port()
@@ -88,8 +89,7 @@ class Viewer:
         commands = self.commands = queue.SimpleQueue()
         self.view = view(self.server, commands.put)
         position, target = self.view.CAMERA
-        for camera in (self.server.initial_camera, *(c.camera for c in self.server.get_clients().values())):
-            camera.position, camera.look_at, camera.fov = position, target, self.view.FIELD_OF_VIEW
+        place_cameras(self.server, position, target, self.view.FIELD_OF_VIEW)
         self.panel = Panel(
             self.server, kind, self.view, params, commands.put, work=self.work, scenes=NAMES, open_scene=self.wanted.put
         )
@@ -119,7 +119,7 @@ class Viewer:
     def clear(self) -> None:
         """An empty panel and an empty scene."""
         self.server.gui.reset()
-        reset(self.server)
+        reset_scene(self.server)
         self.shown = self.drawn = 0
         self.transport.begin()
         self.unwatched = Unwatched()

@@ -48,7 +48,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def asked_often() -> Iterator[None]:
     """Many tests wait for a browser to say that it draws water."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.render.injection.ASK_EVERY", 0.05)
+        patch.setattr("app.render.injection.ASK_INTERVAL", 0.05)
         yield
 
 
@@ -99,15 +99,15 @@ class Tab:
         self.errors = [error for error in self.errors if LATE not in error]
 
     def vertices(self, node: str) -> np.ndarray:
-        """The vertices (n, 3) that the page holds of a mesh, empty where it has none; of a painted one those drawn."""
+        """The drawn vertices (n, 3) that the page holds of a mesh; empty where it has none."""
         # As text: a list of 50,000 numbers takes seconds to come through.
         numbers = self.page.evaluate(
             """name => { const ref = window.__viserMutable?.nodeRefFromName?.[name]; let found = null;
                if (ref) ref.traverse(o => { if (o.isMesh && !found) found = o; });
                if (!found) return "";
                const numbers = new Float32Array(found.geometry.attributes.position.array);
-               const painted = window.__viserMutable.nodeRefFromName[name + "/paint"];
-               const drawn = numbers.length / (painted ? 2 : 1);
+               const coloured = window.__viserMutable.nodeRefFromName[name + "/vertex_colors"];
+               const drawn = numbers.length / (coloured ? 2 : 1);
                const bytes = new Uint8Array(numbers.buffer, 0, 4 * drawn);
                let text = "";
                for (let at = 0; at < bytes.length; at += 4096)

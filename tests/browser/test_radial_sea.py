@@ -15,7 +15,7 @@ SCENE = "radial_sea"
 
 def drawn(lab: Viewer) -> bool:
     """The sea is there, as water, and moves."""
-    return lab.view.water is not None and lab.view.water.alive is True and lab.scene.time > 0.3
+    return lab.view.water is not None and lab.view.water.has_shader is True and lab.scene.time > 0.3
 
 
 def load(lab: Viewer, **changes: Any) -> None:
@@ -31,7 +31,7 @@ def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
     tab.wait(lambda: lab.view.flames is not None and lab.view.flames.handle.visible)
     tab.wait(lambda: lab.view.look.slick is not None and lab.view.look.slick.radius > 3.0)
     # The look's last six rows are the slick's four and the window's two.
-    tab.wait(lambda: tab.vertices("/sea/water_look")[-6, 2] > 3.0)
+    tab.wait(lambda: tab.vertices("/sea/water_material")[-6, 2] > 3.0)
     assert tab.errors == []
 
 
@@ -54,7 +54,7 @@ def test_a_window_shows_the_interface_and_the_camera_goes_along(shown: tuple[Vie
     lab.loop.commands.put(Reset())
     tab.wait(lambda: drawn(lab))
     tab.wait(lambda: len(tab.vertices("/section")) > 0)
-    tab.wait(lambda: lab.view.walls.mesh.alive is True)
+    tab.wait(lambda: lab.view.walls.mesh.has_shader is True)
     n = (len(tab.vertices("/section")) - 1) // 4
 
     def thickness() -> float:
@@ -106,9 +106,9 @@ def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(shown: tuple[Vie
 
     def brightness() -> float:
         """Of the colours, deep and scattered, that the page holds of the water."""
-        return float(tab.vertices("/sea/water_look")[:2].sum())
+        return float(tab.vertices("/sea/water_material")[:2].sum())
 
-    tab.wait(lambda: len(tab.vertices("/sea/water_look")) > 0)
+    tab.wait(lambda: len(tab.vertices("/sea/water_material")) > 0)
     clear = brightness()
     load(lab, spill="layer", thickness=0.3, speed=4.0)
     tab.wait(lambda: brightness() < 0.3 * clear)

@@ -150,7 +150,7 @@ def test_without_the_script_the_rope_is_drawn_in_its_plain_colour(open_tab) -> N
         viewer.open("rope")
         tab = open_tab(viewer.port)
         tab.wait(lambda: len(tab.vertices("/rope")) > 0)
-        assert len(tab.vertices("/rope/paint")) == 0
+        assert len(tab.vertices("/rope/vertex_colors")) == 0
         assert tab.errors == []
     finally:
         viewer.shut()

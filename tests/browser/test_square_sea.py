@@ -21,7 +21,7 @@ def set_parameters(viewer: Viewer, **values: Any) -> None:
 
 def dressed(lab: Viewer) -> bool:
     water = lab.view.water
-    return water is not None and water.alive is True
+    return water is not None and water.has_shader is True
 
 
 def heights(tab: Any) -> np.ndarray:

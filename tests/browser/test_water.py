@@ -1,6 +1,6 @@
 """In a real Chromium: the patch reaches stock viser, and the pixels show it.
 
-These tests fail when one of viser's inner names that `app/patch.py` leans on changes.
+These tests fail when one of viser's inner names that `app/render/injection.py` leans on changes.
 """
 
 import dataclasses
@@ -14,8 +14,10 @@ import viser
 from PIL import Image
 
 from app.render.coloured_mesh import ColouredMesh
-from app.render.injection import patch
-from app.render.water import Look, Water, sky
+from app.render.injection import injector_of
+from app.render.material import Material
+from app.render.skies import set_sky
+from app.render.water import Water
 from tests.browser.conftest import new_page
 
 SIZE = 32
@@ -82,13 +84,13 @@ def surface(phase: float = 0.0, foam: float = 0.0) -> tuple[np.ndarray, np.ndarr
 
 
 def make_water(server: viser.ViserServer, dome: bool = False, **arguments) -> Water:
-    look = dataclasses.replace(sky(server, "park"), dome=dome)
-    water = Water(server, "/sea", SIZE, SIZE, LENGTH, look=look, **arguments)
+    material = dataclasses.replace(set_sky(server, "park"), draw_sky=dome)
+    water = Water(server, "/sea", SIZE, SIZE, LENGTH, material=material, **arguments)
     water.set_surface(*surface())
     return water
 
 
-RED = Look(deep=(0.6, 0.1, 0.1), scatter=(0.6, 0.1, 0.1), specular=0.0, dome=False)
+RED = Material(deep_color=(0.6, 0.1, 0.1), scatter_color=(0.6, 0.1, 0.1), reflection_factor=0.0, draw_sky=False)
 
 
 def redness(picture: np.ndarray) -> float:
@@ -109,7 +111,7 @@ def materials(page) -> dict[str, str]:
 def test_the_patch_answers_and_its_programs_link(chromium, server):
     water = make_water(server, tiles=3, dome=True)
     page, errors = visit(chromium, server)
-    assert wait(page, lambda: water.alive is True)
+    assert wait(page, lambda: water.has_shader is True)
     assert materials(page) == {"/sea": "springtide-water/sea"}
     assert errors == []
     page.close()
@@ -119,7 +121,7 @@ def test_foam_another_look_and_another_size_reach_the_pixels(chromium, server):
     """On one page, as its programs are slow to compile."""
     water = make_water(server)
     page, errors = visit(chromium, server)
-    assert wait(page, lambda: water.alive is True)
+    assert wait(page, lambda: water.has_shader is True)
     calm = settled(page)
     assert redness(calm) < 0
 
@@ -135,17 +137,17 @@ def test_foam_another_look_and_another_size_reach_the_pixels(chromium, server):
     server.flush()
     assert wait(page, lambda: bright(pixels(page)) < bright(calm) + 10)
 
-    blue = water._look
-    water.set_look(RED)  # without a new script
+    blue = water._material
+    water.set_material(RED)  # without a new script
     server.flush()
     assert wait(page, lambda: redness(pixels(page)) > 20)
-    water.set_look(blue)
+    water.set_material(blue)
     server.flush()
     assert wait(page, lambda: redness(pixels(page)) < 0)
 
     with server.atomic():  # viser may keep the material for the new geometry, and with it the uniforms
         water.remove()
-        water = Water(server, "/sea", SIZE // 2, SIZE // 2, LENGTH, look=RED)
+        water = Water(server, "/sea", SIZE // 2, SIZE // 2, LENGTH, material=RED)
         water.set_surface(*(field[::2, ::2] for field in surface()))
     server.flush()
     assert wait(page, lambda: redness(pixels(page)) > 20)
@@ -156,9 +158,9 @@ def test_foam_another_look_and_another_size_reach_the_pixels(chromium, server):
 def test_a_late_joiner_and_a_reload_are_dressed_too(chromium, server):
     water = make_water(server)
     first, _ = visit(chromium, server, shaded=False)
-    assert wait(first, lambda: water.alive is True)
+    assert wait(first, lambda: water.has_shader is True)
     second, errors = visit(chromium, server, shaded=False)
-    assert wait(second, lambda: len(server.get_clients()) == 2 and water.alive is True)
+    assert wait(second, lambda: len(server.get_clients()) == 2 and water.has_shader is True)
     second.reload()
     assert wait(second, lambda: materials(second) != {})
     assert errors == []
@@ -169,7 +171,7 @@ def test_a_late_joiner_and_a_reload_are_dressed_too(chromium, server):
 def test_a_material_that_viser_makes_anew_is_dressed_again(chromium, server):
     water = make_water(server)
     page, errors = visit(chromium, server, shaded=False)
-    assert wait(page, lambda: water.alive is True)
+    assert wait(page, lambda: water.has_shader is True)
     page.evaluate("window.was = window.__viserMutable.nodeRefFromName['/sea'].children[0].material.uuid")
     water.mesh.side = "double"
     server.flush()
@@ -181,7 +183,7 @@ def test_a_material_that_viser_makes_anew_is_dressed_again(chromium, server):
 
 
 def test_sizes_change_live_and_nothing_is_left_behind(chromium, server):
-    look = sky(server, "park")
+    material = set_sky(server, "park")
     page, errors = visit(chromium, server, shaded=False)
     assert wait(page, lambda: page.evaluate("window.__viserMutable?.scene?.environment != null"))
 
@@ -190,12 +192,12 @@ def test_sizes_change_live_and_nothing_is_left_behind(chromium, server):
 
     empty: dict[str, int] = {}
     for size in (64, 16, 64, 16):
-        water = Water(server, "/sea", size, size, LENGTH, tiles=3, look=look)
+        water = Water(server, "/sea", size, size, LENGTH, tiles=3, material=material)
         x = np.arange(size) * LENGTH / size
         x, y = np.meshgrid(x, x, indexing="ij")
         water.set_surface(np.stack([x, y, 0 * x], -1), np.zeros((size, size, 2)), np.zeros((size, size)))
         server.flush()
-        assert wait(page, lambda water=water: water.alive is True)
+        assert wait(page, lambda water=water: water.has_shader is True)
         full = held()
         water.remove()
         server.flush()
@@ -216,11 +218,11 @@ def test_a_mesh_of_any_shape_is_water_too(chromium, server):
     faces = np.concatenate(
         [np.stack([near + j, far + j, far + turn], 1), np.stack([near + j, far + turn, near + turn], 1)]
     )
-    water = Water(server, "/disc", rings, spokes, 60.0, faces=faces, look=sky(server, "park"))
+    water = Water(server, "/disc", rings, spokes, 60.0, faces=faces, material=set_sky(server, "park"))
     vertices = np.stack([r * np.cos(a), r * np.sin(a), 0 * r], -1)
     water.set_surface(vertices, np.zeros((rings, spokes, 2)), np.ones((rings, spokes)))
     page, errors = visit(chromium, server, shaded=False)
-    assert wait(page, lambda: water.alive is True)
+    assert wait(page, lambda: water.has_shader is True)
     assert materials(page) == {"/disc": "springtide-water/disc"}
     assert errors == []
     page.close()
@@ -232,7 +234,7 @@ def test_colours_reach_the_vertices_of_a_streaming_mesh(chromium, server):
     red = np.tile([0.5, 0.0, 0.0], (4, 1))
     painted = ColouredMesh(server, "/quad", corners, faces, red, color=(0, 0, 255))
     page, errors = visit(chromium, server)
-    assert wait(page, lambda: painted.alive is True)
+    assert wait(page, lambda: painted.has_shader is True)
 
     def excess(this: int, other: int) -> float:
         middle = pixels(page)[90:110, 150:170].mean((0, 1))
@@ -248,13 +250,13 @@ def test_colours_reach_the_vertices_of_a_streaming_mesh(chromium, server):
 
 
 def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, monkeypatch):
-    monkeypatch.setattr("app.render.injection.GRACE", 1.0)
+    monkeypatch.setattr("app.render.injection.MAX_ANSWER_TIME", 1.0)
     monkeypatch.setattr(
         "app.render.injection.ShaderInjector.script", lambda self: "/* a viser whose inner names have changed */"
     )
     water = make_water(server)
     page, errors = visit(chromium, server)
-    assert wait(page, lambda: water.alive is False)
+    assert wait(page, lambda: water.has_shader is False)
     before = settled(page)[130:190, 60:260].mean()
     water.set_surface(*surface(foam=1.0))
     server.flush()
@@ -268,7 +270,7 @@ def test_plain_water_sends_no_script(chromium, server):
     page, errors = visit(chromium, server, shaded=False)
     assert wait(page, lambda: len(server.get_clients()) == 1)
     page.wait_for_timeout(2000)
-    assert water.alive is False
+    assert water.has_shader is False
     assert materials(page) == {}
     assert errors == []
     page.close()
@@ -288,7 +290,7 @@ def test_the_exported_page_is_dressed_without_a_server(chromium, server, tmp_pat
 
 
 def test_the_script_is_sent_once_however_many_nodes_ask(server):
-    first = patch(server)
+    first = injector_of(server)
     make_water(server)
     make_water(server)
     scripts = [
@@ -296,5 +298,5 @@ def test_the_script_is_sent_once_however_many_nodes_ask(server):
         for message in server._websock_server._broadcast_buffer.message_from_id.values()
         if type(message).__name__ == "RunJavascriptMessage"
     ]
-    assert patch(server) is first
+    assert injector_of(server) is first
     assert len(scripts) == 1

@@ -1,15 +1,19 @@
-// The material patch: dresses stock viser's meshes from the inside, once per frame, for every node that asks.
+// Replaces the shaders of stock viser's meshes, once per frame, for every node that asks for it.
 //
-// A mesh asks by having a hidden child mesh whose name ends in a recipe's suffix: "/rope" is painted when there is a
-// "/rope/paint". So new scenes, late joiners and recordings need no further script: everything that changes travels as
-// ordinary vertices, which viser culls.
+// A node asks by a hidden child mesh with the suffix of a shader: "/rope" has a colour at each vertex if there is a
+// "/rope/vertex_colors". Everything that changes travels as vertices, so that new scenes, browsers that connect later
+// and recordings need no further script.
 //
 // Of viser this file uses window.__viserMutable: nodeRefFromName (the group of a node), scene (its onBeforeRender runs
-// before every frame, so that a material that viser has just made anew is never drawn undressed) and requestRender.
+// before every frame, so that a new material of viser's never shows without its shader) and requestRender.
 // Of three it uses Material.onBeforeCompile and the renderer's property map, to see whether a program linked.
+//
+// app/render/injection.py puts these constants before this file: TOKEN, STORAGE_KEY, WATER_UNIFORMS, RAIN_UNIFORMS.
 
-const recipes = []; // { suffix, frame(context) -> the material it dressed or null, sweep() what is left of removed nodes }
-const failed = new Set(); // materials whose program did not link: left as viser made them
+// Each shader: { suffix, update(context), removeUnused() }. `update` is called for each node with that suffix. It
+// returns the material that has the shader, or null. `removeUnused` (optional) disposes of what removed nodes left.
+const shaders = [];
+const refused = new WeakSet(); // materials whose program did not link: they keep viser's own shader
 
 // The mesh of a node is the first child of its group; shadow meshes and child nodes come after it.
 function meshOf(name) {
@@ -17,9 +21,10 @@ function meshOf(name) {
   return (group && group.children && group.children.find((child) => child.isMesh)) || null;
 }
 
-// viser makes a new material when wireframe, opacity, flat shading or side change: dress whichever is there.
-function dress(material, key, edit) {
-  if (failed.has(material)) return false;
+// Give a material another shader; false where its program did not link. viser makes a new material when wireframe,
+// opacity, flat shading or side change, so this is done in every frame. key: of the shader; edit(shader): changes it.
+function replaceShader(material, key, edit) {
+  if (refused.has(material)) return false;
   if (material.userData.springtide !== key) {
     material.userData.springtide = key;
     material.onBeforeCompile = edit;
@@ -29,8 +34,9 @@ function dress(material, key, edit) {
   return true;
 }
 
-// A driver that refuses the program must not leave a hole in the picture: undress and say nothing of being alive.
-function linked(renderer, material) {
+// Whether the program of a material linked. If a driver refuses it, the material gets viser's shader back, so that the
+// mesh is still drawn, and the server is not told that the shader is active.
+function isLinked(renderer, material) {
   const program = renderer.properties.get(material).currentProgram;
   if (!program) return false; // not drawn yet
   const gl = renderer.getContext();
@@ -38,80 +44,81 @@ function linked(renderer, material) {
     program.__springtide = gl.getProgramParameter(program.program, gl.LINK_STATUS);
   }
   if (program.__springtide) return true;
-  failed.add(material);
+  refused.add(material);
   material.onBeforeCompile = () => {};
   material.customProgramCacheKey = () => "";
   material.needsUpdate = true;
   return false;
 }
 
-function splice(shader, stage, chunk, text) {
+// Insert text after the include of one of three's shader chunks.
+function insertAfter(shader, stage, chunk, text) {
   shader[stage] = shader[stage].replace(`#include <${chunk}>`, `#include <${chunk}>\n${text}`);
 }
 
-// Per-vertex colours on any mesh with a child "<name>/paint": the latter half of its vertices, which no face names, is the
-// sRGB in 0..1 of the former.
-recipes.push({
-  suffix: "/paint",
-  frame({ mesh }) {
+// A colour at each vertex, for any mesh with a child "<name>/vertex_colors": the second half of its vertices, to which
+// no face refers, holds the sRGB colours in 0..1 of the first half.
+shaders.push({
+  suffix: "/vertex_colors",
+  update({ mesh }) {
     const attributes = mesh.geometry.attributes;
     if (!attributes.position) return null;
     const numbers = attributes.position.array;
     const half = numbers.length / 2;
-    if (!attributes.paint || attributes.paint.array.length !== half) {
-      mesh.geometry.setAttribute("paint", new attributes.position.constructor(numbers.subarray(half), 3));
-    } else if (attributes.paint.of !== numbers) {
-      attributes.paint.array = numbers.subarray(half);
-      attributes.paint.needsUpdate = true;
+    if (!attributes.vertexColor || attributes.vertexColor.array.length !== half) {
+      mesh.geometry.setAttribute("vertexColor", new attributes.position.constructor(numbers.subarray(half), 3));
+    } else if (attributes.vertexColor.source !== numbers) {
+      attributes.vertexColor.array = numbers.subarray(half);
+      attributes.vertexColor.needsUpdate = true;
     }
-    attributes.paint.of = numbers;
+    attributes.vertexColor.source = numbers;
     const edit = (shader) => {
-      splice(shader, "vertexShader", "common", "attribute vec3 paint; varying vec3 vPaint;");
-      splice(shader, "vertexShader", "begin_vertex", "vPaint = pow(max(paint, 0.0), vec3(2.2));");
-      splice(shader, "fragmentShader", "common", "varying vec3 vPaint;");
-      splice(shader, "fragmentShader", "color_fragment", "diffuseColor.rgb = vPaint;");
+      insertAfter(shader, "vertexShader", "common", "attribute vec3 vertexColor; varying vec3 vVertexColor;");
+      insertAfter(shader, "vertexShader", "begin_vertex", "vVertexColor = pow(max(vertexColor, 0.0), vec3(2.2));");
+      insertAfter(shader, "fragmentShader", "common", "varying vec3 vVertexColor;");
+      insertAfter(shader, "fragmentShader", "color_fragment", "diffuseColor.rgb = vVertexColor;");
     };
-    return dress(mesh.material, "springtide-paint", edit) ? mesh.material : null;
+    return replaceShader(mesh.material, "springtide-vertex-colors", edit) ? mesh.material : null;
   },
 });
 
-let told = "";
+let lastAnswer = "";
 
-// The answer to the server: token and names of what is drawn dressed, where viser's Python can read it
-// (ClientHandle.local_storage; the prefix is the one its client puts before such keys). Written when it changes.
-function tell(alive) {
-  const answer = [TOKEN, ...alive.sort()].join("\n");
-  if (answer === told) return;
-  told = answer;
+// The answer to the server: the token and the names of the nodes that are drawn with their shader. The server reads it
+// through viser's ClientHandle.local_storage, whose client puts the prefix "viser-user:" before each key.
+function answerServer(activeNodes) {
+  const answer = [TOKEN, ...activeNodes.sort()].join("\n");
+  if (answer === lastAnswer) return;
+  lastAnswer = answer;
   try {
-    localStorage.setItem("viser-user:springtide-patch", answer);
+    localStorage.setItem(`viser-user:${STORAGE_KEY}`, answer);
   } catch {
-    // A browser without storage draws as well as any other; the server then believes it plain.
+    // A browser without storage draws as any other; the server then believes that it has no shaders.
   }
 }
 
 function beforeRender(renderer, scene, camera) {
-  // viser fades the picture in over the first five frames after its sky is there: many seconds where frames are slow.
+  // viser fades the canvas in over the first five frames after its sky is there: many seconds where frames are slow.
   if (scene.environment) renderer.domElement.style.opacity = "1";
-  window.__springtide = { memory: () => ({ ...renderer.info.memory }) }; // what a leak would show in
+  window.__springtide = { memory: () => ({ ...renderer.info.memory }) }; // tests read it to find leaks
   const nodes = window.__viserMutable.nodeRefFromName;
-  const alive = [];
+  const active = [];
   for (const name of Object.keys(nodes)) {
-    for (const recipe of recipes) {
-      if (!name.endsWith(recipe.suffix) || !nodes[name]) continue;
-      const base = name.slice(0, -recipe.suffix.length);
+    for (const shader of shaders) {
+      if (!name.endsWith(shader.suffix) || !nodes[name]) continue;
+      const base = name.slice(0, -shader.suffix.length);
       const mesh = meshOf(base);
-      const channel = meshOf(name);
-      if (!mesh || !channel) continue;
-      const material = recipe.frame({ base, mesh, channel, renderer, scene, camera });
-      if (material && linked(renderer, material)) alive.push(base);
+      const data = meshOf(name);
+      if (!mesh || !data) continue;
+      const material = shader.update({ base, mesh, data, renderer, scene, camera });
+      if (material && isLinked(renderer, material)) active.push(base);
     }
   }
-  for (const recipe of recipes) if (recipe.sweep) recipe.sweep();
-  tell(alive);
+  for (const shader of shaders) if (shader.removeUnused) shader.removeUnused();
+  answerServer(active);
 }
 
-// The script may arrive before the canvas is there.
+// The script may arrive before viser has made its canvas.
 function install() {
   const viewer = window.__viserMutable;
   if (!viewer || !viewer.scene || !viewer.nodeRefFromName) return void setTimeout(install, 50);

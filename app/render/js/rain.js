@@ -1,12 +1,11 @@
-// How rain looks: the recipe that patch.js applies to "<name>" where there is a "<name>/rain_look".
+// The shader of rain, for "<name>" where there is a "<name>/rain_material".
 //
-// The mesh has four vertices a drop: the tail of its streak, then three about its head. "<name>/rain_look" is two
-// vertices: opacity, exposure, the distance [m] within which streaks fade, as a lens does with what is too near; half
-// the width of a head [m], and the least angle [rad] it is drawn at, paler as it is wider.
+// The mesh has four vertices for each drop: the tail of its streak, then three around its head. The vertices of
+// "<name>/rain_material" are the uniforms, in the order of RAIN_UNIFORMS (app/render/material.py).
 
 const RAIN_VERTEX = `
   uniform mat4 toSea;
-  uniform vec3 streak; // half width [m], least half width [rad]
+  uniform vec3 streak; // half the width of a head [m]; smallest half width [rad], below which it is drawn paler instead
   varying vec3 vSea;
   varying float vBody;
   #include <common>
@@ -24,7 +23,7 @@ const RAIN_VERTEX = `
 const RAIN_FRAGMENT = `
   #define STANDARD
   uniform mat4 toSea;
-  uniform vec3 rain; // opacity, exposure, distance within which streaks fade [m]
+  uniform vec3 rain; // opacity, exposure, distance [m] within which streaks fade, as they do before a lens
   ${WATER_GLSL.noise}
   ${WATER_GLSL.sky}
   varying vec3 vSea;
@@ -32,30 +31,27 @@ const RAIN_FRAGMENT = `
   void main() {
     vec3 from = vSea - (toSea * vec4(cameraPosition, 1.0)).xyz;
     float far = length(from);
-    // A drop shows the sky upside down, and passes most of what comes from behind it.
+    // A drop shows the sky upside down, and lets most of the light behind it pass.
     vec3 light = 0.6 * ambientLight() + 0.5 * horizon(from / far);
-    light += sunColor * place.y * 0.3 * pow(max(dot(from / far, sunDirection), 0.0), 12.0);
+    light += sunLight * lens.z * 0.3 * pow(max(dot(from / far, sunDirection), 0.0), 12.0);
     float alpha = rain.x * vBody * smoothstep(rain.z, 4.0 * rain.z, far);
     gl_FragColor = vec4(light * rain.y, alpha);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
   }`;
 
-recipes.push({
-  suffix: "/rain_look",
-  frame({ base, mesh, channel }) {
+shaders.push({
+  suffix: "/rain_material",
+  update({ base, mesh, data }) {
     const [sea] = seas.values(); // its sky lights the drops
     if (!sea) return null;
-    const look = channel.geometry.attributes.position.array;
-    const vector = () => ({ value: mesh.position.clone() });
-    const uniforms = (mesh.userData.rain ??= { rain: vector(), streak: vector() });
-    uniforms.rain.value.fromArray(look, 0);
-    uniforms.streak.value.fromArray(look, 3);
+    const uniforms = (mesh.userData.rain ??= makeUniforms(mesh, RAIN_UNIFORMS));
+    readUniforms(uniforms, RAIN_UNIFORMS, data);
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms, uniforms);
       shader.vertexShader = RAIN_VERTEX;
       shader.fragmentShader = RAIN_FRAGMENT;
     };
-    return dress(mesh.material, `springtide-rain${base}`, edit) ? mesh.material : null;
+    return replaceShader(mesh.material, `springtide-rain${base}`, edit) ? mesh.material : null;
   },
 });

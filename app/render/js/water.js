@@ -1,38 +1,45 @@
-// How water looks: the recipe that patch.js applies to "<name>" where there is a "<name>/water_look".
+// The shader of water, for "<name>" where there is a "<name>/water_material".
 //
-// "<name>/water_aux" carries (slope x, slope y, foam) per vertex, "<name>/water_look" the uniforms, three to a vertex,
-// in the order of water.py. Frames: "sea" is the frame of the node (z up); three's world is turned against it.
+// "<name>/water_slopes" carries (slope x, slope y, foam) at each vertex. The vertices of "<name>/water_material" are the
+// uniforms, in the order of WATER_UNIFORMS (app/render/material.py). "Sea" in a name means the frame of the node, z up;
+// three's world is rotated against it.
 
-const WATER_UNIFORMS = [
-  "deep", "scatter", "foamColor", "sunDirection", "sunColor", "optics",
-  "air", "ripple", "skyline", "fold", "tint", "weather", "place", "state", "grid", "extent", "wireColor",
-  "slick", "slickDeep", "slickScatter", "slickOptics", "pit", "pitWay",
-];
-const seas = new Map(); // base name -> what this file has made for it
-const looks = new Map(); // base name -> its uniforms: one set for good, as viser keeps a material for a new geometry
+const seas = new Map(); // name of the node -> what this file has made for it
+// Name of the node -> its uniforms. They are kept for good, because viser may keep a material for a new geometry.
+const uniformsByName = new Map();
+
+// Uniforms of three numbers each. three's classes are not in scope, therefore vectors are copied from the mesh.
+function makeUniforms(mesh, names) {
+  return Object.fromEntries(names.map((name) => [name, { value: mesh.position.clone() }]));
+}
+
+// Read uniforms from the vertices of a hidden mesh.
+function readUniforms(uniforms, names, data) {
+  const numbers = data.geometry.attributes.position.array;
+  names.forEach((name, k) => uniforms[name].value.fromArray(numbers, 3 * k));
+}
 
 function uniformsOf(base, mesh) {
-  if (!looks.has(base)) {
-    const uniforms = { toSea: { value: mesh.matrixWorld.clone() }, fromSea: { value: mesh.matrixWorld.clone() } };
-    for (const name of WATER_UNIFORMS) uniforms[name] = { value: mesh.position.clone() };
-    looks.set(base, uniforms);
+  if (!uniformsByName.has(base)) {
+    const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
+    for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
+    uniformsByName.set(base, uniforms);
   }
-  return looks.get(base);
+  return uniformsByName.get(base);
 }
 
 function makeSea(mesh, uniforms) {
   return { mesh, geometry: mesh.geometry, uniforms, tiles: [], levels: [], shape: "", dome: null, wire: null };
 }
 
-function readLook(sea, look) {
-  const array = look.geometry.attributes.position.array;
-  WATER_UNIFORMS.forEach((name, k) => sea.uniforms[name].value.fromArray(array, 3 * k));
+function readMaterial(sea, data) {
+  readUniforms(sea.uniforms, WATER_UNIFORMS, data);
   sea.uniforms.fromSea.value.copy(sea.mesh.matrixWorld);
   sea.uniforms.toSea.value.copy(sea.mesh.matrixWorld).invert();
 }
 
-// Triangles of a grid at every stride-th vertex, with its rim at every vertex: neighbours of any two strides meet
-// without a crack. Vertex (i, j) is number i * columns + j.
+// Triangles of a grid at every stride-th vertex, but at every vertex of its rim, so that tiles of different strides meet
+// without a gap. Vertex (i, j) has the number i * columns + j.
 function levelIndex(rows, columns, stride) {
   const index = [];
   for (let i = 0; i < rows - 1; i += stride) {
@@ -47,7 +54,7 @@ function levelIndex(rows, columns, stride) {
       side(low, j, 0, 1, low === rows - 1);
       side(low, right, -1, 0, right === columns - 1);
       side(i, right, 0, -1, i === 0);
-      // A fan from the corner that lies furthest inside has no flat triangle.
+      // A fan from the corner that is farthest from the rim has no degenerate triangle.
       const corner = (i === 0 ? low : i) * columns + (j === 0 ? right : j);
       const at = rim.indexOf(corner);
       for (let k = 1; k < rim.length - 1; k++) {
@@ -58,7 +65,7 @@ function levelIndex(rows, columns, stride) {
   return index;
 }
 
-// Coarser geometries over the same vertex buffers: nothing is sent and nothing uploaded but their index.
+// Coarser geometries on the same vertex buffers: only their index is uploaded.
 function makeLevels(sea, rows, columns) {
   const Geometry = sea.geometry.constructor;
   const Attribute = sea.geometry.index.constructor;
@@ -77,7 +84,7 @@ function makeTiles(sea, count, length) {
       if (i === 0 && j === 0) continue;
       const tile = sea.mesh.clone(false);
       tile.position.set(i * length, j * length, 0);
-      tile.raycast = () => {}; // clicks are answered by the mesh itself and by the scene
+      tile.raycast = () => {}; // clicks are handled by the mesh itself and by the scene
       sea.mesh.parent.add(tile);
       sea.tiles.push(tile);
     }
@@ -108,10 +115,10 @@ function makeWire(sea) {
   return wire;
 }
 
-function unmakeSea(sea) {
+function disposeSea(sea) {
   for (const made of [...sea.tiles, sea.dome, sea.wire]) if (made) made.removeFromParent();
   for (const level of sea.levels) {
-    level.geometry.attributes = {}; // shared: they belong to viser's geometry
+    level.geometry.attributes = {}; // they belong to viser's geometry
     level.geometry.dispose();
   }
   if (sea.dome) sea.dome.geometry.dispose(), sea.dome.material.dispose();
@@ -134,39 +141,39 @@ function chooseLevels(sea, camera) {
   }
 }
 
-// Give a mesh the "vertices" of a hidden mesh as one more vertex attribute. Same object, so no copy and no upload of
-// its own: viser swaps the array behind it at each update. False while the two differ in length.
-function share(mesh, attribute, channel) {
-  const source = channel.geometry.attributes.position;
+// Give a mesh the vertices of a hidden mesh as one more vertex attribute. It is the same object, so that nothing is
+// copied: viser exchanges the array in it at each update. False while the two differ in length.
+function shareAttribute(mesh, attribute, data) {
+  const source = data.geometry.attributes.position;
   if (!source || source.count !== mesh.geometry.attributes.position.count) return false;
   if (mesh.geometry.attributes[attribute] !== source) mesh.geometry.setAttribute(attribute, source);
   return true;
 }
 
-recipes.push({
-  suffix: "/water_look",
-  sweep() {
+shaders.push({
+  suffix: "/water_material",
+  removeUnused() {
     for (const [base, sea] of seas) {
       if (meshOf(base)) continue;
-      unmakeSea(sea);
+      disposeSea(sea);
       seas.delete(base);
     }
   },
-  frame({ base, mesh, channel, renderer, camera }) {
-    const aux = meshOf(`${base}/water_aux`);
-    if (!aux || !share(mesh, "aux", aux)) return null;
+  update({ base, mesh, data, renderer, camera }) {
+    const slopes = meshOf(`${base}/water_slopes`);
+    if (!slopes || !shareAttribute(mesh, "slopeAndFoam", slopes)) return null;
     let sea = seas.get(base);
     if (!sea || sea.mesh !== mesh || sea.geometry !== mesh.geometry) {
-      if (sea) unmakeSea(sea);
+      if (sea) disposeSea(sea);
       seas.set(base, (sea = makeSea(mesh, uniformsOf(base, mesh))));
-      mesh.geometry.computeVertexNormals = () => {}; // they come with aux: viser need not derive them each frame
+      mesh.geometry.computeVertexNormals = () => {}; // the slopes replace them: viser need not compute them each frame
     }
-    readLook(sea, channel);
+    readMaterial(sea, data);
     const [rows, columns, length] = sea.uniforms.grid.value.toArray();
-    const [count, domed, wired] = sea.uniforms.extent.value.toArray();
+    const [count, drawSky, wireframe] = sea.uniforms.extent.value.toArray();
     const shape = [rows, columns, length, count].join();
     if (sea.shape !== shape) {
-      unmakeSea(sea);
+      disposeSea(sea);
       sea.shape = shape;
       if (rows > 0 && count > 1) {
         makeLevels(sea, rows, columns);
@@ -178,14 +185,14 @@ recipes.push({
       shader.vertexShader = WATER_GLSL.vertex;
       shader.fragmentShader = WATER_FRAGMENT;
     };
-    if (!dress(mesh.material, `springtide-water${base}`, edit)) {
-      unmakeSea(sea);
+    if (!replaceShader(mesh.material, `springtide-water${base}`, edit)) {
+      disposeSea(sea);
       delete mesh.geometry.computeVertexNormals;
       return null;
     }
     for (const { geometry } of sea.levels) {
       geometry.boundingSphere = mesh.geometry.boundingSphere;
-      for (const name of ["position", "aux"]) {
+      for (const name of ["position", "slopeAndFoam"]) {
         if (geometry.attributes[name] !== mesh.geometry.attributes[name]) {
           geometry.setAttribute(name, mesh.geometry.attributes[name]);
         }
@@ -197,34 +204,33 @@ recipes.push({
     }
     chooseLevels(sea, camera);
 
-    if (domed && !sea.dome) sea.dome = makeDome(sea);
+    if (drawSky && !sea.dome) sea.dome = makeDome(sea);
     if (sea.dome) {
-      sea.dome.visible = domed > 0;
-      dress(sea.dome.material, "springtide-dome", (shader) => {
-        // viser asks three for a reversed depth buffer; a browser without clip control does not get one.
+      sea.dome.visible = drawSky > 0;
+      replaceShader(sea.dome.material, "springtide-dome", (shader) => {
+        // viser asks three for a reversed depth buffer; a browser without clip control has none.
         const farDepth = { value: renderer.state.buffers.depth.getReversed() ? 0 : 1 };
         Object.assign(shader.uniforms, sea.uniforms, { farDepth });
         shader.vertexShader = DOME_VERTEX;
         shader.fragmentShader = DOME_FRAGMENT;
       });
     }
-    if (wired && !sea.wire) sea.wire = makeWire(sea);
+    if (wireframe && !sea.wire) sea.wire = makeWire(sea);
     if (sea.wire) {
-      sea.wire.visible = wired > 0;
+      sea.wire.visible = wireframe > 0;
       sea.wire.updateMatrixWorld();
-      dress(sea.wire.material, "springtide-wire", (shader) => {
+      replaceShader(sea.wire.material, "springtide-wire", (shader) => {
         Object.assign(shader.uniforms, { wireColor: sea.uniforms.wireColor });
-        // A little nearer to the eye than the water it lies on.
-        splice(shader, "vertexShader", "project_vertex", "gl_Position = projectionMatrix * (mvPosition * vec4(vec3(0.998), 1.0));");
-        splice(shader, "fragmentShader", "common", "uniform vec3 wireColor;");
+        // A little nearer to the camera than the water, so that the water does not hide it.
+        insertAfter(shader, "vertexShader", "project_vertex", "gl_Position = projectionMatrix * (mvPosition * vec4(vec3(0.998), 1.0));");
+        insertAfter(shader, "fragmentShader", "common", "uniform vec3 wireColor;");
         shader.fragmentShader = shader.fragmentShader.replace("#include <opaque_fragment>", "gl_FragColor = vec4(wireColor, 1.0);");
       });
     }
-    // The plain stand-ins that other browsers may need are not for this one.
+    // The server may add meshes for browsers without this shader (Water._draw_plain); here they are hidden.
     for (const part of ["foam", "wire", "sea", "slick"]) {
-      const name = `${base}/plain_${part}`;
-      const standIn = meshOf(name);
-      if (standIn) standIn.visible = false;
+      const plain = meshOf(`${base}/plain_${part}`);
+      if (plain) plain.visible = false;
     }
     return mesh.material;
   },

@@ -1,21 +1,24 @@
-// The shading of water and sky in GLSL: functions by name, and the two programs made of them. Used by water.js.
+// Water and sky in GLSL: groups of functions, and the fragment shaders made of them. Used by water.js and rain.js.
+//
+// The uniforms are named in `WATER_UNIFORMS` (app/render/material.py), which also says how each is filled. Directions
+// and positions are those of the sea's node, z up; "world" is three's own frame.
 
 const WATER_GLSL = {
   vertex: `
-    attribute vec3 aux;
+    attribute vec3 slopeAndFoam;
     uniform mat4 toSea;
-    uniform vec3 grid; // rows, columns (0: no grid), side of a tile or radius of the mesh [m]
+    uniform vec3 grid; // rows and columns of vertices (0: no grid), side of a tile or radius of the mesh [m]
     varying vec3 vSea;
     varying vec2 vRest;
-    varying vec3 vAux;
+    varying vec3 vSlopeAndFoam;
     #include <common>
     void main() {
       #include <begin_vertex>
       #include <project_vertex>
       vec4 sea = toSea * modelMatrix * vec4(position, 1.0);
       vSea = sea.xyz;
-      vAux = aux;
-      // Where the water of this vertex rests: foam noise that is keyed to it travels with the water.
+      vSlopeAndFoam = slopeAndFoam;
+      // The position of this vertex in still water. Foam noise is a function of it, so that foam moves with the water.
       vRest = sea.xy;
       if (grid.x > 0.0) {
         int columns = int(grid.y);
@@ -25,98 +28,98 @@ const WATER_GLSL = {
       }
     }`,
 
-  // The sky as seen and as mirrored, in one function, so that sea and sky meet without a line.
+  // One function for the sky that is seen and the sky that is mirrored, so that sea and sky meet without a line.
   sky: `
     #include <cube_uv_reflection_fragment>
     #include <envmap_common_pars_fragment>
     uniform mat4 fromSea;
-    uniform vec3 skyline; // land in the photograph towards the sun and away from it [rad], stretch of the low sky
-    uniform vec3 fold; // share of the photograph's azimuths in use, blur of the haze, brightest radiance kept
-    uniform vec3 sunDirection;
-    uniform vec3 sunColor;
-    uniform vec3 tint; // a filter before the photograph
-    uniform vec3 weather; // cloud cover, size of clouds, direction of the wind [rad]
-    uniform vec3 place; // gravity [m/s2], share of the sun's disc and glitter that shows, darkness of thick cloud
-    uniform vec3 state; // time [s], significant height [m], mean square slope of the mesh
+    uniform vec3 skyline; // height of the land in the photograph towards the sun and away from it [rad], stretch at the horizon
+    uniform vec3 skyFold; // share of the photograph's azimuths in use, blur of the haze, radiance reduced to its half
+    uniform vec3 sunDirection; // towards the sun, of length 1
+    uniform vec3 sunLight; // irradiance
+    uniform vec3 skyTint; // colour filter on the photograph
+    uniform vec3 clouds; // cover, size of a cloud, share of its light that thick cloud takes away
+    uniform vec3 wind; // direction [rad] towards which ripples, foam and clouds move; gravity [m/s2]; size of a patch of foam [m]
+    uniform vec3 lens; // haze distance [m], exposure, share of the sun's disc and glitter that is visible
+    uniform vec3 seaState; // time [s], significant height [m], mean square slope of the mesh
 
-    // The photographs were taken on land. Their elevations are remapped so that the land lies below our horizon, and
-    // where tall things stand around, only the azimuths on either side of the sun are used, spread over the circle.
+    // The photographs were taken on land. Their elevations are remapped so that the land lies below the drawn horizon.
+    // Where trees or houses stand around, only the azimuths near the sun are used, and spread over the circle.
     float sunBearing() { return atan(sunDirection.y, sunDirection.x + 1e-6); }
 
-    vec3 unland(vec3 d, float side) {
+    vec3 photographDirection(vec3 d, float side) {
       float bearing = atan(d.y, d.x) - sunBearing();
       bearing = mod(bearing + 3.14159265, 6.2831853) - 3.14159265;
       float land = mix(skyline.x, skyline.y, 0.5 - 0.5 * cos(bearing));
       float e = asin(clamp(d.z, 0.0, 1.0)) / 1.5707963;
       float g = skyline.z, l = land / 1.5707963;
       e = 1.5707963 * (l + e * (g + (1.0 - l - g) * e));
-      float a = bearing * fold.x * side + sunBearing();
+      float a = bearing * skyFold.x * side + sunBearing();
       return vec3(cos(e) * cos(a), cos(e) * sin(a), sin(e));
     }
 
-    vec3 lookup(vec3 d, float blur) {
+    vec3 photograph(vec3 d, float blur) {
       #if defined(USE_ENVMAP) && defined(ENVMAP_TYPE_CUBE_UV)
         vec3 c = textureCubeUV(envMap, envMapRotation * (mat3(fromSea) * d), blur).rgb;
-        // Bright places keep their hue; the sun's own disc is drawn where it belongs, not through a blurred photograph.
+        // Bright places keep their hue. The sun's disc is drawn separately, as the photograph is blurred.
         float light = dot(c, vec3(0.3, 0.5, 0.2));
-        c = max(mix(vec3(light), c, 1.15), 0.0) * pow(tint, vec3(0.7 + 2.0 * clamp(d.z, 0.0, 0.6)));
-        return c / (1.0 + light / fold.z) * envMapIntensity;
+        c = max(mix(vec3(light), c, 1.15), 0.0) * pow(skyTint, vec3(0.7 + 2.0 * clamp(d.z, 0.0, 0.6)));
+        return c / (1.0 + light / skyFold.z) * envMapIntensity;
       #else
         return mix(vec3(0.75, 0.8, 0.85), vec3(0.2, 0.4, 0.7), sqrt(max(d.z, 0.0)));
       #endif
     }
 
-    float billow(vec2 p, int octaves) {
-      vec2 drift = vec2(ruffle(p * 0.6 + 4.0).x, ruffle(p * 0.6 - 9.0).x);
+    float cloudNoise(vec2 p, int octaves) {
+      vec2 drift = vec2(gradientNoise(p * 0.6 + 4.0).x, gradientNoise(p * 0.6 - 9.0).x);
       p += 0.7 * drift;
       float n = 0.0, size = 1.0;
       for (int k = 0; k < octaves; k++) {
-        n += size * ruffle(p).x;
+        n += size * gradientNoise(p).x;
         p = mat2(1.6, 1.2, -1.2, 1.6) * p + 3.7;
         size *= 0.52;
       }
       return n;
     }
 
-    // A layer of cloud before the photograph, so that no two seas have the same sky. The last number is how much of
-    // the sky it hides.
-    vec4 clouded(vec3 c, vec3 d, float blur, vec3 ambient) {
-      if (weather.x <= 0.0 || d.z < 0.004) return vec4(c, 0.0);
-      vec2 w = vec2(cos(weather.z), sin(weather.z));
+    // A layer of cloud in front of the photograph. The last number of the result is the share of the sky it hides.
+    vec4 addClouds(vec3 c, vec3 d, float blur, vec3 ambient) {
+      if (clouds.x <= 0.0 || d.z < 0.004) return vec4(c, 0.0);
+      vec2 w = vec2(cos(wind.x), sin(wind.x));
       vec2 p = d.xy / (d.z + 0.11);
-      p = vec2(dot(p, w) * 0.55 - 0.004 * state.x, dot(p, vec2(-w.y, w.x))) / weather.y;
+      p = vec2(dot(p, w) * 0.55 - 0.004 * seaState.x, dot(p, vec2(-w.y, w.x))) / clouds.y;
       int octaves = blur < 0.1 ? 6 : 3;
-      float n = billow(p, octaves) + 1.3 * (weather.x - 0.5);
+      float n = cloudNoise(p, octaves) + 1.3 * (clouds.x - 0.5);
       float cover = smoothstep(-0.12 - blur, 0.55 + blur, n);
       vec2 s = normalize(sunDirection.xy + 1e-4);
       if (cover <= 0.003) return vec4(c, 0.0);
-      float lit = 0.6; // mirrored clouds are not modelled in relief
+      float lit = 0.6; // mirrored clouds have no relief
       if (blur < 0.1) {
-        float sunward = billow(p + 0.22 * vec2(dot(s, w), dot(s, vec2(-w.y, w.x))), 3);
-        lit = clamp(0.55 + 1.4 * (n - 1.3 * (weather.x - 0.5) - sunward), 0.15, 1.2);
+        float sunward = cloudNoise(p + 0.22 * vec2(dot(s, w), dot(s, vec2(-w.y, w.x))), 3);
+        lit = clamp(0.55 + 1.4 * (n - 1.3 * (clouds.x - 0.5) - sunward), 0.15, 1.2);
       }
       float near = max(dot(d, sunDirection), 0.0);
-      vec3 glow = sunColor * (0.05 + 0.10 * lit + 0.5 * pow(near, 24.0) * (1.2 - cover) + 0.12 * pow(near, 3.0) * lit);
-      // The thicker, the darker from below: torn edges stay bright, bellies go grey.
-      float thick = 1.0 - place.z * smoothstep(-0.5, 0.45, n - 1.3 * (weather.x - 0.5));
+      vec3 glow = sunLight * (0.05 + 0.10 * lit + 0.5 * pow(near, 24.0) * (1.2 - cover) + 0.12 * pow(near, 3.0) * lit);
+      // Thick cloud is darker from below than thin cloud.
+      float thick = 1.0 - clouds.z * smoothstep(-0.5, 0.45, n - 1.3 * (clouds.x - 0.5));
       vec3 cloud = (ambient * (0.55 + 0.45 * lit) + glow) * thick;
       return vec4(mix(c, cloud, cover * 0.92 * smoothstep(0.0, 0.09, d.z)), cover);
     }
 
     vec3 sky(vec3 d, float blur) {
-      vec3 c = lookup(unland(d, 1.0), blur);
-      // Behind one's back the two ends of the spread photograph meet: there each is blended with its mirror image.
-      if (fold.x < 1.0) {
+      vec3 c = photograph(photographDirection(d, 1.0), blur);
+      // Opposite to the sun the two ends of the spread photograph meet. There each is blended with its mirror image.
+      if (skyFold.x < 1.0) {
         vec2 s = normalize(sunDirection.xy + 1e-6), l = d.xy / max(length(d.xy), 1e-4);
         float back = smoothstep(0.3, 1.0, -dot(s, l));
-        if (back > 0.0) c = mix(c, lookup(unland(d, -1.0), blur), 0.5 * back);
+        if (back > 0.0) c = mix(c, photograph(photographDirection(d, -1.0), blur), 0.5 * back);
       }
       return c;
     }
 
-    vec3 ambientLight() { return lookup(vec3(0.0, 0.0, 1.0), 1.0); }
+    vec3 ambientLight() { return photograph(vec3(0.0, 0.0, 1.0), 1.0); }
 
-    vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), fold.y); }`,
+    vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), skyFold.y); }`,
 
   noise: `
     #include <common>
@@ -125,8 +128,8 @@ const WATER_GLSL = {
       uint n = (q.x ^ q.y) * 1597334673u;
       return vec2(n & 0xffffu, n >> 16) / 65535.0;
     }
-    // Gradient noise and its two derivatives.
-    vec3 ruffle(vec2 p) {
+    // Gradient noise and its two derivatives at p.
+    vec3 gradientNoise(vec2 p) {
       vec2 i = floor(p), f = p - i;
       vec2 u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0);
       vec2 du = 30.0 * f * f * (f * (f - 2.0) + 1.0);
@@ -141,27 +144,26 @@ const WATER_GLSL = {
 
   surface: `
     uniform vec3 grid;
-    uniform vec3 deep;
-    uniform vec3 scatter;
+    uniform vec3 deepColor;
+    uniform vec3 scatterColor;
     uniform vec3 foamColor;
-    uniform vec3 optics; // refractive index, roughness, specular scale
-    uniform vec3 air; // haze distance [m], exposure, foam scale [m]
-    uniform vec3 ripple; // rms slope, longest and shortest wave [m]
-    uniform vec3 extent; // tiles along a side, dome, wire
+    uniform vec3 optics; // refractive index, roughness (rms slope), factor on reflections
+    uniform vec3 ripple; // rms slope, longest and shortest ripple [m]
+    uniform vec3 extent; // tiles along a side, whether the sky is drawn, whether the wireframe is
 
     float schlick(float f0, float c) { float m = clamp(1.0 - c, 0.0, 1.0); float m2 = m * m; return f0 + (1.0 - f0) * m2 * m2 * m; }
 
-    // Slopes of ripples too short for the mesh, with as much variance in each octave, as wind waves have in their
-    // equilibrium range. An octave fades where it would be finer than a pixel; its variance is then in z instead.
-    // Phase speeds are those of deep water.
+    // Slopes of ripples that are too short for the mesh: (slope x, slope y, variance not shown, gust). Each octave has
+    // the same variance, as in the equilibrium range of wind waves. An octave that is finer than a pixel is not shown;
+    // its variance is returned instead. Phase speeds are those of deep water.
     vec4 ripples(vec2 x, float footprint) {
       vec2 slope = vec2(0.0);
-      float lost = 0.0, wave = ripple.y, angle = weather.z;
+      float lost = 0.0, wave = ripple.y, angle = wind.x;
       float octaves = clamp(1.0 + floor(log(ripple.y / ripple.z) / 0.755), 1.0, 9.0);
       float each = ripple.x * ripple.x / octaves;
-      // Gusts: patches of rougher and smoother water, and nothing in it repeats from tile to tile.
-      float gust = 0.65 + 0.5 * ruffle(x / (ripple.y * 24.0) + state.x * 0.02).x
-                        + 0.5 * ruffle(x / (ripple.y * 7.0) - state.x * 0.03).x;
+      // Gusts make patches of rougher and smoother water; they do not repeat from tile to tile.
+      float gust = 0.65 + 0.5 * gradientNoise(x / (ripple.y * 24.0) + seaState.x * 0.02).x
+                        + 0.5 * gradientNoise(x / (ripple.y * 7.0) - seaState.x * 0.03).x;
       gust = max(gust, 0.15) * 1.3;
       for (int k = 0; k < 9; k++) {
         if (float(k) >= octaves) break;
@@ -169,10 +171,10 @@ const WATER_GLSL = {
         lost += each * (1.0 - seen * seen);
         if (seen > 0.0) {
           vec2 d = vec2(cos(angle), sin(angle));
-          float speed = sqrt(place.x * wave / 6.2832);
-          // Crests are longer than they are wide.
-          vec2 along = vec2(dot(x, d) - speed * state.x, 0.6 * dot(x, vec2(-d.y, d.x)));
-          vec3 n = ruffle(along / wave);
+          float speed = sqrt(wind.y * wave / 6.2832);
+          // Crests are longer across the wind than along it.
+          vec2 along = vec2(dot(x, d) - speed * seaState.x, 0.6 * dot(x, vec2(-d.y, d.x)));
+          vec3 n = gradientNoise(along / wave);
           slope += seen * sqrt(each) * 1.6 * (n.y * d + 0.6 * n.z * vec2(-d.y, d.x));
         }
         wave *= 0.47;
@@ -181,8 +183,8 @@ const WATER_GLSL = {
       return vec4(slope * gust, lost * gust * gust, gust);
     }
 
-    // Distance from the walls between the cells around random points: 0 on a wall, up to about 0.5 inside.
-    float cells(vec2 p) {
+    // Distance from the walls between cells around random points: 0 on a wall, up to about 0.5 inside a cell.
+    float cellWalls(vec2 p) {
       vec2 i = floor(p), f = p - i;
       float first = 8.0, second = 8.0;
       for (int a = -1; a <= 1; a++) for (int b = -1; b <= 1; b++) {
@@ -195,98 +197,100 @@ const WATER_GLSL = {
       return sqrt(second) - sqrt(first);
     }
 
-    // Foam from the coverage the solver asks for: (cover, thickness). A web of bubble lines that widen with the
-    // coverage and close into a mat, streaked along the wind.
-    vec2 froth(vec2 x, float asked, float footprint) {
+    // Foam where the simulation has a share of it: (cover, thickness). It is a web of lines of bubbles; with
+    // more foam they widen and close into a mat, with streaks along the wind.
+    vec2 foamCover(vec2 x, float asked, float footprint) {
       if (asked <= 0.004) return vec2(0.0);
-      vec2 d = vec2(cos(weather.z), sin(weather.z));
-      vec2 p = vec2(dot(x, d) * 0.7, dot(x, vec2(-d.y, d.x))) / air.z;
-      vec2 drift = vec2(ruffle(p * 0.43 + 3.1).x, ruffle(p * 0.43 - 7.7).x);
+      vec2 d = vec2(cos(wind.x), sin(wind.x));
+      vec2 p = vec2(dot(x, d) * 0.7, dot(x, vec2(-d.y, d.x))) / wind.z;
+      vec2 drift = vec2(gradientNoise(p * 0.43 + 3.1).x, gradientNoise(p * 0.43 - 7.7).x);
       p += drift * 1.1;
-      float big = ruffle(p * 0.5 + 11.0).x;
+      float big = gradientNoise(p * 0.5 + 11.0).x;
       float c = clamp(asked * (1.0 + 0.9 * big), 0.0, 1.0);
-      // Cells: the distance to the nearest bubble wall, coarse ones holding fine ones.
-      float near = 1.0 - smoothstep(0.1, 0.5, footprint / air.z);
+      // Distance to the nearest wall of a bubble: large cells, with small ones inside.
+      float near = 1.0 - smoothstep(0.1, 0.5, footprint / wind.z);
       float crumb = 0.35;
-      vec2 q = p + 0.30 * vec2(ruffle(p * 2.3).x, ruffle(p * 2.3 + 9.0).x);
-      float wall = cells(q * 1.4);
+      vec2 q = p + 0.30 * vec2(gradientNoise(p * 2.3).x, gradientNoise(p * 2.3 + 9.0).x);
+      float wall = cellWalls(q * 1.4);
       if (near > 0.0) {
-        crumb = mix(0.35, cells(q * 4.7), near);
+        crumb = mix(0.35, cellWalls(q * 4.7), near);
       }
       float grain = 0.5;
-      if (footprint < 0.06 * air.z) grain = 0.5 + 0.8 * ruffle(p * 31.0).x;
-      float edge = 0.10 + 0.25 * clamp(footprint / air.z, 0.0, 1.0);
+      if (footprint < 0.06 * wind.z) grain = 0.5 + 0.8 * gradientNoise(p * 31.0).x;
+      float edge = 0.10 + 0.25 * clamp(footprint / wind.z, 0.0, 1.0);
       float width = 0.75 * c * c + 0.22 * c;
       float web = 1.0 - smoothstep(width - edge, width + edge, min(wall, 0.16 + 0.8 * crumb) + 0.06);
       float mat = smoothstep(0.35, 0.95, c + 0.35 * (0.4 - crumb) + 0.25 * (grain - 0.5) + 0.3 * big);
-      float torn = smoothstep(-0.25, 0.25, ruffle(p * 1.9 + 21.0).x + 1.2 * c - 0.35);
+      float torn = smoothstep(-0.25, 0.25, gradientNoise(p * 1.9 + 21.0).x + 1.2 * c - 0.35);
       float cover = max(web * torn * smoothstep(0.02, 0.5, c) * (1.0 - 0.5 * crumb), mat);
       return vec2(clamp(cover, 0.0, 1.0), clamp(0.35 + 0.65 * mat - 0.5 * crumb + 0.3 * (grain - 0.5), 0.0, 1.0));
     }
 
-    // A round slick of another fluid on the water, its edge torn into tongues and patches: how much of the sea is it.
-    uniform vec3 slick; // middle x, y, radius [m] (0: none)
-    uniform vec3 slickDeep;
-    uniform vec3 slickScatter;
+    // A round slick of another fluid on the water, with an irregular edge.
+    uniform vec3 slick; // centre x, y, radius [m] (0: no slick)
+    uniform vec3 slickDeepColor;
+    uniform vec3 slickScatterColor;
     uniform vec3 slickOptics; // refractive index, roughness, factor on the slope of ripples
 
+    // Share of the slick's fluid at a point, 0 to 1.
     float slickCover(vec2 x) {
       if (slick.z <= 0.0) return 0.0;
       vec2 d = x - slick.xy;
       float off = slick.z - length(d), size = 0.22 * slick.z + 1.0;
       if (abs(off) > 1.5 * size) return off > 0.0 ? 1.0 : 0.0;
-      float torn = ruffle(d / size).x + 0.5 * ruffle(d / size * 2.7 + 5.0).x + 0.25 * ruffle(d / size * 7.1 - 3.0).x;
+      float torn = gradientNoise(d / size).x + 0.5 * gradientNoise(d / size * 2.7 + 5.0).x + 0.25 * gradientNoise(d / size * 7.1 - 3.0).x;
       return smoothstep(-0.05, 0.05, off / size + 0.8 * torn);
     }
-    vec3 deepUnder(float oil) { return mix(deep, slickDeep, oil); }
-    vec3 scatterUnder(float oil) { return mix(scatter, slickScatter, oil); }
+    vec3 deepUnder(float oil) { return mix(deepColor, slickDeepColor, oil); }
+    vec3 scatterUnder(float oil) { return mix(scatterColor, slickScatterColor, oil); }
     vec3 opticsUnder(float oil) { return mix(optics, vec3(slickOptics.xy, optics.z), oil); }
 
-    // at: the point [m]; rest: where its water rests; aux: slopes and foam; flat: 1 where no mesh is left.
-    vec3 shadeSea(vec3 at, vec2 rest, vec3 aux, float flatness) {
+    // The light from a point of the sea. at: the point [m]; rest: its position in still water; flatness: 1 where there is
+    // no mesh any more.
+    vec3 shadeSea(vec3 at, vec2 rest, vec3 slopeAndFoam, float flatness) {
       float oil = slickCover(at.xy);
       vec3 deep = deepUnder(oil), scatter = scatterUnder(oil), optics = opticsUnder(oil);
-      aux.z *= 1.0 - oil;
+      slopeAndFoam.z *= 1.0 - oil;
       vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
       vec3 toEye = eye - at;
       float far = length(toEye);
       vec3 V = toEye / far;
-      float lost = 1.0 - exp(-pow(far / air.x, 1.5));
+      float lost = 1.0 - exp(-pow(far / lens.x, 1.5));
       vec3 haze = horizon(-V);
-      if (lost > 0.995) return haze * air.y;
+      if (lost > 0.995) return haze * lens.y;
       vec2 fx = dFdx(at.xy), fy = dFdy(at.xy);
       float footprint = pow(max(dot(fx, fx) * dot(fy, fy), 1e-12), 0.25);
 
-      // Waves finer than the pixel stop tilting it and make it rough instead.
+      // Waves finer than a pixel no longer tilt it; they make it rough instead.
       float cell = grid.z / max(grid.x, 64.0);
       float blur = max(flatness, smoothstep(cell * 1.5, cell * 12.0, footprint));
       vec4 fine = ripples(at.xy, footprint);
       float calm = mix(1.0, slickOptics.z, oil);
       fine.xyz *= vec3(calm, calm, calm * calm);
-      vec2 slope = aux.xy * (1.0 - blur) + fine.xy;
-      float rough = blur * state.z;
-      // Beyond the mesh, noise of the same slope goes on as swell for as long as a pixel can show it.
+      vec2 slope = slopeAndFoam.xy * (1.0 - blur) + fine.xy;
+      float rough = blur * seaState.z;
+      // Beyond the mesh, noise of the same slope continues the swell while a pixel can show it.
       if (flatness > 0.0) {
         float wave = max(grid.z, 16.0) * 0.35;
         for (int k = 0; k < 3; k++) {
           float seen = flatness * (1.0 - smoothstep(0.1, 0.5, footprint / wave));
           if (seen > 0.0) {
-            vec2 d = vec2(cos(weather.z + 0.5 * float(k - 1)), sin(weather.z + 0.5 * float(k - 1)));
-            float along = dot(at.xy, d) - sqrt(0.159 * place.x * wave) * state.x;
-            vec2 n = ruffle(vec2(along, 0.4 * dot(at.xy, vec2(-d.y, d.x))) / wave).yz;
-            slope += seen * sqrt(state.z) * (n.x * d + 0.4 * n.y * vec2(-d.y, d.x));
-            rough -= seen * 0.3 * state.z;
+            vec2 d = vec2(cos(wind.x + 0.5 * float(k - 1)), sin(wind.x + 0.5 * float(k - 1)));
+            float along = dot(at.xy, d) - sqrt(0.159 * wind.y * wave) * seaState.x;
+            vec2 n = gradientNoise(vec2(along, 0.4 * dot(at.xy, vec2(-d.y, d.x))) / wave).yz;
+            slope += seen * sqrt(seaState.z) * (n.x * d + 0.4 * n.y * vec2(-d.y, d.x));
+            rough -= seen * 0.3 * seaState.z;
           }
           wave *= 0.45;
         }
         rough = max(rough, 0.0);
       }
-      vec2 bubbles = froth(rest, clamp(aux.z, 0.0, 1.0), footprint);
+      vec2 bubbles = foamCover(rest, clamp(slopeAndFoam.z, 0.0, 1.0), footprint);
       float foam = bubbles.x;
       float variance = optics.y * optics.y + 0.5 * (rough + fine.z);
       float sigma = sqrt(variance);
 
-      // At grazing angles the facets that one sees are those tilted towards the eye.
+      // At grazing angles one sees mostly the facets that are tilted towards the eye.
       vec2 level = V.xy / max(length(V.xy), 1e-4);
       float graze = 1.0 - V.z;
       vec3 N = normalize(vec3(-slope + level * sigma * 0.9 * graze * graze, 1.0));
@@ -301,7 +305,7 @@ const WATER_GLSL = {
       R = normalize(R);
       float dim = clamp(sqrt(sigma) * 0.7, 0.0, 0.8);
       vec3 ambient = ambientLight();
-      vec3 mirrored = clouded(sky(R, dim), R, max(dim, 0.1), ambient).rgb;
+      vec3 mirrored = addClouds(sky(R, dim), R, max(dim, 0.1), ambient).rgb;
 
       // Sun glitter: the share of facets that send the sun to the eye, Gaussian in slope (Cox & Munk 1954).
       vec3 H = normalize(V + sunDirection);
@@ -309,25 +313,25 @@ const WATER_GLSL = {
       float spread = variance + 0.0004;
       float facets = exp(-0.5 * dot(tilt, tilt) / spread) / (6.2832 * spread);
       float glitter = schlick(f0, dot(V, H)) * facets / (4.0 * pow(max(H.z, 0.1), 4.0) * max(facing, 0.12));
-      glitter *= 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * place.y;
+      glitter *= 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z;
 
-      // Light that comes back out of the water: the deep, and crests with the sun behind them.
+      // Light that comes out of the water: from the deep, and through crests with the sun behind them.
       float sunUp = max(dot(N, sunDirection), 0.0);
-      vec3 lit = ambient + sunColor * sunUp * 0.3183;
-      float crest = clamp(at.z / max(state.y, 0.01) + 0.15, 0.0, 1.2);
+      vec3 lit = ambient + sunLight * sunUp * 0.3183;
+      float crest = clamp(at.z / max(seaState.y, 0.01) + 0.15, 0.0, 1.2);
       float through = pow(clamp(dot(-V, normalize(sunDirection - 0.35 * N)) * 0.5 + 0.5, 0.0, 1.0), 3.0);
       vec3 body = deep * lit;
       body += scatter * (ambient * (0.10 + 0.35 * crest * crest) * facing
-                        + sunColor * 0.3183 * crest * through * (0.15 + 0.5 * (1.0 - facing)));
+                        + sunLight * 0.3183 * crest * through * (0.15 + 0.5 * (1.0 - facing)));
       // Water full of air under and around foam is bright.
-      body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, aux.z);
+      body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, slopeAndFoam.z);
 
-      vec3 color = mix(body, mirrored, F) + sunColor * glitter * (1.0 - foam);
-      // Foam scatters light many times: it takes it from all sides.
-      vec3 white = foamColor * (ambient * 1.15 + sunColor * 0.3183 * (0.35 + 0.65 * sunUp)) * (0.72 + 0.38 * bubbles.y);
+      vec3 color = mix(body, mirrored, F) + sunLight * glitter * (1.0 - foam);
+      // Foam scatters light many times, so it is lit from all sides.
+      vec3 white = foamColor * (ambient * 1.15 + sunLight * 0.3183 * (0.35 + 0.65 * sunUp)) * (0.72 + 0.38 * bubbles.y);
       color = mix(color, white, foam * (0.6 + 0.4 * bubbles.y));
 
-      return mix(color, haze, lost) * air.y;
+      return mix(color, haze, lost) * lens.y;
     }`,
 };
 
@@ -339,25 +343,25 @@ const WATER_FRAGMENT = `
   ${WATER_GLSL.surface}
   varying vec3 vSea;
   varying vec2 vRest;
-  varying vec3 vAux;
-  uniform vec3 pit; // middle x, y of a wall of the hole in the sea, half its length [m] (0: none)
-  uniform vec3 pitWay; // unit vector from that wall to the one across, and how far that is [m]
+  varying vec3 vSlopeAndFoam;
+  uniform vec3 cutout; // middle x, y of a side of the rectangle without surface, half its length [m] (0: no cutout)
+  uniform vec3 cutoutDirection; // unit vector from that side to the opposite one, and their distance [m]
   void main() {
-    vec2 from = vSea.xy - pit.xy;
-    float across = dot(from, pitWay.xy), along = dot(from, vec2(-pitWay.y, pitWay.x));
-    if (across > 0.0 && across < pitWay.z && abs(along) < pit.z) discard;
-    // Towards the rim of the last tile the waves go flat, as the sea beyond is.
+    vec2 from = vSea.xy - cutout.xy;
+    float across = dot(from, cutoutDirection.xy), along = dot(from, vec2(-cutoutDirection.y, cutoutDirection.x));
+    if (across > 0.0 && across < cutoutDirection.z && abs(along) < cutout.z) discard;
+    // Waves become flat towards the rim of the last tile, as the sea beyond it is flat.
     float flatness = 0.0;
     if (extent.y > 0.0) {
       vec2 outward = abs(vSea.xy - 0.5 * grid.z) / (0.5 * grid.z * extent.x);
       flatness = smoothstep(0.8, 1.0, grid.x > 0.0 ? max(outward.x, outward.y) : length(vSea.xy) / grid.z);
     }
-    gl_FragColor = vec4(shadeSea(vSea, vRest, vAux * vec3(1.0, 1.0, 1.0 - flatness), flatness), 1.0);
+    gl_FragColor = vec4(shadeSea(vSea, vRest, vSlopeAndFoam * vec3(1.0, 1.0, 1.0 - flatness), flatness), 1.0);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
   }`;
 
-// A triangle that covers the view at the far plane, drawn after everything opaque: only what is left is shaded.
+// A triangle that covers the view at the far plane, drawn after everything opaque, so that only free pixels are shaded.
 const DOME_VERTEX = `
   uniform mat4 toSea;
   uniform float farDepth;
@@ -374,10 +378,10 @@ const DOME_FRAGMENT = `
   ${WATER_GLSL.sky}
   ${WATER_GLSL.surface}
   varying vec3 vRay;
-  // The disc, twice as wide as the true one, and the glow of the air around it.
-  float disc(float off) { return 30.0 * (1.0 - smoothstep(0.006, 0.014, off)) + 2.4 * exp(-off * 60.0); }
-  float glow(float off) { return 0.30 * exp(-off * 16.0) + 0.07 * exp(-off * 4.0); }
-  // The photographs' colour comes in blocks of some degrees: take the light sharp and the hue soft.
+  // The sun's disc, twice as wide as the true one, and the glow of the air around it.
+  float sunDisc(float off) { return 30.0 * (1.0 - smoothstep(0.006, 0.014, off)) + 2.4 * exp(-off * 60.0); }
+  float sunGlow(float off) { return 0.30 * exp(-off * 16.0) + 0.07 * exp(-off * 4.0); }
+  // The colours of the photographs come in blocks of some degrees: take the brightness sharp and the hue blurred.
   vec3 clearSky(vec3 d) {
     vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
     vec3 w = vec3(0.3, 0.5, 0.2);
@@ -390,15 +394,15 @@ const DOME_FRAGMENT = `
     vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
     float down = max(-d.z, 1e-5);
     vec3 at = vec3(eye.xy + d.xy * min(max(eye.z, 0.0) / down, 1e5), 0.0);
-    // Below the horizon lies the sea that no mesh reaches.
+    // Below the horizon is the sea beyond the mesh.
     vec3 c;
     if (d.z < 0.0) {
       c = shadeSea(at, at.xy, vec3(0.0), 1.0);
     } else {
       float off = length(d - sunDirection);
-      vec4 clouds = clouded(clearSky(d) + sunColor * glow(off), d, 0.0, ambientLight());
-      float through = 1.0 - clouds.a;
-      c = (clouds.rgb + sunColor * disc(off) * place.y * through * through) * air.y;
+      vec4 layer = addClouds(clearSky(d) + sunLight * sunGlow(off), d, 0.0, ambientLight());
+      float through = 1.0 - layer.a;
+      c = (layer.rgb + sunLight * sunDisc(off) * lens.z * through * through) * lens.y;
     }
     gl_FragColor = vec4(c, 1.0);
     #include <tonemapping_fragment>

@@ -4,7 +4,7 @@ import numpy as np
 import viser
 
 from app.render.coloured_mesh import ColouredMesh
-from app.render.water import RGB, Look
+from app.render.material import RGB, Material
 from app.scenes.radial_sea.cutaway import FAR, Section
 from app.scenes.radial_sea.materials import blend, rgb_of
 from sim.ocean.fluid_column import FluidColumn
@@ -53,7 +53,7 @@ class Walls:
         middle = np.append(section.points[:-1].mean(axis=0), section.floor)
         return np.concatenate([*rows, middle[None]]).astype(np.float32)
 
-    def show(self, section: Section | None, light: Look, column: FluidColumn) -> None:
+    def show(self, section: Section | None, light: Material, column: FluidColumn) -> None:
         """The walls as they are now, or nothing; call inside `server.atomic()`."""
         visible = section is not None
         if self.mesh.mesh.visible != visible:
@@ -68,7 +68,7 @@ class Walls:
             at = np.column_stack([section.points[:FAR] + BEFORE * np.array(section.way), height[:FAR]])
             line.points = np.stack([at[:-1], at[1:]], axis=1).astype(np.float32)
 
-    def paint(self, light: Look, column: FluidColumn) -> np.ndarray | None:
+    def paint(self, light: Material, column: FluidColumn) -> np.ndarray | None:
         """Colours where they changed, else None."""
         key = (column.kind, column.oil.name, column.fraction)
         if key == self.painted:

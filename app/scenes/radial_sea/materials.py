@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from app.render.water import RGB, Cutout, Look, SlickRegion
+from app.render.material import RGB, Cutout, Material, SlickRegion
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.well_blowout import Slick
@@ -35,18 +35,18 @@ def ripple_slope(p: Params, column: FluidColumn, age: float) -> float:
     return min(clean, 0.24) * max(kept, 0.12)
 
 
-def look_of(light: Look, picture: RadialFrame) -> Look:
-    """The look under a light (`app.render.water.sky`), with a slick on clean water and a window into it."""
+def material_of(light: Material, picture: RadialFrame) -> Material:
+    """The material under a sky (`app.render.skies.set_sky`), with a slick on clean water and a cutaway in it."""
     p, column, section = picture.params, picture.column, picture.section
     common = {
         "ripple_slope": round(ripple_slope(p, column, picture.age), 3),
         "ripple_length": 1.6 if column.kind == "water" else 2.4,
         "ripple_direction": math.radians(p.wind_direction),
         "wireframe": p.grid,
-        "specular": LAB_SPECULAR if p.optics == "lab" and p.spill != "none" else 1.0,
+        "reflection_factor": LAB_SPECULAR if p.optics == "lab" and p.spill != "none" else 1.0,
         "refractive_index": column.surface.refractive_index,
         "clouds": min(0.15 + 0.045 * p.wind_speed, 0.9),
-        "pit": None if section is None else Cutout(section.middle, section.half, section.way, section.length),
+        "cutout": None if section is None else Cutout(section.middle, section.half, section.way, section.length),
     }
     if column.kind == "water":
         patch = None if picture.slick is None else slick_patch(light, p, column, picture.slick)
@@ -54,30 +54,31 @@ def look_of(light: Look, picture: RadialFrame) -> Look:
     return dataclasses.replace(light, **common, **oil_colours(light, column))
 
 
-def oil_colours(light: Look, column: FluidColumn) -> dict[str, Any]:
+def oil_colours(light: Material, column: FluidColumn) -> dict[str, Any]:
     """Body colours. Oil sends nearly no light back from below; a mixture is brown and turbid."""
     oil = rgb_of(column.oil.colour)
     if column.kind == "mixed":
         share = min(1.0, 0.35 + column.fraction)
-        deep = blend(light.deep, blend(oil, MOUSSE, 0.45), share)
+        deep = blend(light.deep_color, blend(oil, MOUSSE, 0.45), share)
         return {
-            "deep": deep,
-            "scatter": blend(light.scatter, MOUSSE, share),
-            "foam": (0.80, 0.72, 0.60),
+            "deep_color": deep,
+            "scatter_color": blend(light.scatter_color, MOUSSE, share),
+            "foam_color": (0.80, 0.72, 0.60),
             "roughness": 0.06,
         }
     # A thin layer lets some of the water's colour through: light is halved every few millimetres of crude.
     seen = 1.0 - math.exp(-column.thickness / 0.004)
-    deep, scatter = blend(light.deep, oil, seen), blend(light.scatter, 1.3 * oil, seen)
-    return {"deep": deep, "scatter": scatter, "foam": blend(light.foam, (0.45, 0.36, 0.26), seen), "roughness": 0.02}
+    deep, scatter = blend(light.deep_color, oil, seen), blend(light.scatter_color, 1.3 * oil, seen)
+    foam = blend(light.foam_color, (0.45, 0.36, 0.26), seen)
+    return {"deep_color": deep, "scatter_color": scatter, "foam_color": foam, "roughness": 0.02}
 
 
-def slick_patch(light: Look, p: Params, column: FluidColumn, slick: Slick) -> SlickRegion:
+def slick_patch(light: Material, p: Params, column: FluidColumn, slick: Slick) -> SlickRegion:
     """A slick of this oil, drawn as if it were thick: what thin oil shows of the water is left out."""
     layer = dataclasses.replace(column, thickness=max(slick.thickness, 0.05), fraction=0.0)
     colours = oil_colours(light, layer)
     calm = ripple_slope(p, layer, p.exposure) / ripple_slope(p, column, 0.0)
     return SlickRegion(
-        slick.centre, round(slick.radius, 1), colours["deep"], colours["scatter"], column.oil.refractive_index,
-        colours["roughness"], round(calm, 2),
+        slick.centre, round(slick.radius, 1), colours["deep_color"], colours["scatter_color"],
+        column.oil.refractive_index, colours["roughness"], round(calm, 2),
     )  # fmt: skip

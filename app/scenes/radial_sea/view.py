@@ -9,16 +9,19 @@ import numpy as np
 import viser
 
 from app.messages import Command, Place, Snapshot, finite_vector
+from app.render.cameras import place_cameras
 from app.render.dragging import PullLine, drag
 from app.render.follow_camera import FollowCamera
+from app.render.material import Material
 from app.render.meshes import ball
-from app.render.water import Look, Water, sky
+from app.render.skies import set_sky
+from app.render.water import Water
 from app.scenes.radial_sea.bodies import OWN
 from app.scenes.radial_sea.cutaway import WAY
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.fire_view import Flames
 from app.scenes.radial_sea.frame import RadialFrame
-from app.scenes.radial_sea.materials import look_of
+from app.scenes.radial_sea.materials import material_of
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
 from app.scenes.radial_sea.scene import RADIUS
 from app.scenes.radial_sea.well_blowout import FIRE, RIG
@@ -56,7 +59,7 @@ class View:
         self.water: Water | None = None
         self.grid: Any = None
         self.lit = ""
-        self.light = self.look = Look()
+        self.light = self.material = Material()
         self.last: RadialFrame | None = None
         self.groups: dict[str, tuple[Any, np.ndarray]] = {}
         self.handles: viser.BatchedMeshHandle | None = None
@@ -78,7 +81,7 @@ class View:
         p = picture.params
         if self.lit != p.sky:
             self.lit = p.sky
-            self.light = sky(self.server, p.sky, SUN)
+            self.light = set_sky(self.server, p.sky, SUN)
             self.shine()
         self.show_sea(picture)
         if self.walls is None and picture.section is not None:
@@ -112,15 +115,15 @@ class View:
             )
 
     def show_sea(self, picture: RadialFrame) -> None:
-        look = look_of(self.light, picture)
+        material = material_of(self.light, picture)
         if self.water is None or picture.grid is not self.grid:
             if self.water is not None:
                 self.water.remove()
             self.grid = picture.grid
-            self.water = Water(self.server, "/sea", 1, len(self.grid), RADIUS, faces=self.grid.faces, look=look)
-        elif look != self.look:
-            self.water.set_look(look)
-        self.look = look
+            self.water = Water(self.server, "/sea", 1, len(self.grid), RADIUS, faces=self.grid.faces, material=material)
+        elif material != self.material:
+            self.water.set_material(material)
+        self.material = material
         s = picture.surface
         if self.last is None or s is not self.last.surface:
             self.water.set_surface(s.vertices[None], s.slope[None], picture.foam[None], picture.time)
@@ -200,8 +203,7 @@ class View:
                 view = tuple(here + offset)
             else:
                 view = VIEWS.get(p.follow, self.CAMERA)
-            for camera in (self.server.initial_camera, *cameras.values()):
-                camera.position, camera.look_at = view
+            place_cameras(self.server, view[0], view[1])
         elif here is not None:
             self.chase.go(here, cameras)
         now = time.monotonic()

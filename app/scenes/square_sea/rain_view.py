@@ -1,85 +1,95 @@
-"""Rain as it is drawn: a needle for each drop and a crown of needles for each splash, in buffers of fixed size.
+"""Rain as it is drawn: a streak for each drop and a crown of streaks for each splash, in buffers of fixed size.
 
-Needles are a mesh because viser makes lines anew at each update; a mesh of fixed faces is moved in place. `rain.js`
-lets them fade where they are near, keeps them a pixel wide where they are far, and takes their light from the sky.
+Streaks are a mesh, because viser makes lines anew at each update but moves a mesh of fixed faces in place. The shader
+in `app/render/js/rain.js` fades streaks near the camera, keeps distant ones a pixel wide, and lights them by the sky.
 """
 
 import numpy as np
 import viser
 
-from app.render.injection import hidden, patch
+from app.render.injection import add_data_mesh, injector_of
+from app.render.material import RAIN_UNIFORMS
 from app.scenes.square_sea.rainfall import MAX_SPLASHES, SPLASH_DURATION, RainFrame
 
-EXPOSURE = 1 / 40  # [s] over which a falling drop leaves its streak
-THIN = 0.004  # [m] half the width of a streak
-CROWN = 6  # drops thrown up by a splash
-HEIGHT, SPREAD = 0.16, 0.09  # [m]: how high and how wide a crown goes
-BURIED = -1e3  # [m] where needles wait that are not shown
-OPACITY = 0.6
-NEAR = 1.0  # [m] within which no streak is drawn where the browser is patched
-PIXEL = 0.0007  # [rad] half of about one
-ANGLES = np.array([0.0, 2.0944, 4.1888])
-ROUND = THIN * np.stack([np.cos(ANGLES), np.sin(ANGLES), 0.0 * ANGLES], -1).astype(np.float32)
+EXPOSURE_TIME = 1 / 40  # [s] over which a moving drop draws its streak
+STREAK_HALF_WIDTH = 0.004  # [m]
+MIN_STREAK_ANGLE = 0.0007  # [rad] half the width below which the shader draws a streak paler instead: half a pixel
+STREAK_COLOUR = (214, 224, 234)
+STREAK_OPACITY = 0.6
+FADE_DISTANCE = 1.0  # [m] from the camera within which the shader draws no streak
+CROWN_DROPS = 6  # thrown up by a splash
+CROWN_HEIGHT, CROWN_RADIUS = 0.16, 0.09  # [m]
+HIDDEN_HEIGHT = -1e3  # [m] where unused streaks are kept
+CORNER_ANGLES = 2.0 * np.pi / 3.0 * np.arange(3)
+HEAD_CORNERS = STREAK_HALF_WIDTH * np.stack(  # (3, 3) [m] around the head of a streak
+    [np.cos(CORNER_ANGLES), np.sin(CORNER_ANGLES), 0.0 * CORNER_ANGLES], -1
+).astype(np.float32)
 
 
-class Needles:
-    """n needles in one mesh, each from a tail to three points about its head."""
+class StreakMesh:
+    """n streaks in one mesh, each from a tail to three points around its head."""
 
     def __init__(self, server: viser.ViserServer, name: str, n: int, exposure: float) -> None:
-        """exposure: of the water's look."""
+        """exposure: of the water's material."""
         faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1]])
-        self.vertices = np.full((n, 4, 3), BURIED, np.float32)
+        self.vertices = np.full((n, 4, 3), HIDDEN_HEIGHT, np.float32)
         self.mesh = server.scene.add_mesh_simple(
             name,
             self.vertices.reshape(-1, 3),
             (4 * np.arange(n)[:, None, None] + faces).reshape(-1, 3).astype(np.uint32),
-            color=(214, 224, 234),
-            opacity=OPACITY,
+            color=STREAK_COLOUR,
+            opacity=STREAK_OPACITY,
             side="double",
             flat_shading=False,
             cast_shadow=False,
             receive_shadow=False,
         )
-        if patch(server) is not None:
-            look = np.array([[OPACITY, exposure, NEAR], [THIN, PIXEL, 0.0]])
-            self.look = hidden(server, f"{name}/rain_look", look)
+        if injector_of(server) is not None:
+            uniforms = {
+                "rain": (STREAK_OPACITY, exposure, FADE_DISTANCE),
+                "streak": (STREAK_HALF_WIDTH, MIN_STREAK_ANGLE, 0.0),
+            }
+            values = np.array([uniforms[uniform] for uniform in RAIN_UNIFORMS])
+            add_data_mesh(server, f"{name}/rain_material", values)
 
     def show(self, tails: np.ndarray, heads: np.ndarray) -> None:
         """tails, heads: (n, 3) [m]."""
         self.vertices[:, 0] = tails
-        self.vertices[:, 1:] = heads[:, None] + ROUND
+        self.vertices[:, 1:] = heads[:, None] + HEAD_CORNERS
         self.mesh.vertices = self.vertices.reshape(-1, 3)
 
 
 class RainMesh:
     """Drops and splashes in the scene. Made for one number of drops."""
 
-    def __init__(self, server: viser.ViserServer, picture: RainFrame, exposure: float) -> None:
-        """exposure: of the water's look."""
-        self.count = len(picture.drops)
-        self.drops = Needles(server, "/rain/drops", self.count, exposure)
-        self.crowns = Needles(server, "/rain/splashes", MAX_SPLASHES * CROWN, exposure)
-        angle = 2.0 * np.pi * (np.arange(CROWN) / CROWN + 0.1)
-        lean = np.where(np.arange(CROWN) % 2 == 0, 1.0, 0.55)
-        up = np.where(np.arange(CROWN) % 2 == 0, 1.0, 1.4)
-        self.ways = np.stack([SPREAD * np.cos(angle) * lean, SPREAD * np.sin(angle) * lean, HEIGHT * up], -1)
+    def __init__(self, server: viser.ViserServer, frame: RainFrame, exposure: float) -> None:
+        """exposure: of the water's material."""
+        self.count = len(frame.drops)
+        self.drops = StreakMesh(server, "/rain/drops", self.count, exposure)
+        self.crowns = StreakMesh(server, "/rain/splashes", MAX_SPLASHES * CROWN_DROPS, exposure)
+        number = np.arange(CROWN_DROPS)
+        angle = 2.0 * np.pi * (number / CROWN_DROPS + 0.1)
+        # Every second drop of a crown flies steeper, so that the crown does not look regular.
+        radius = CROWN_RADIUS * np.where(number % 2 == 0, 1.0, 0.55)
+        height = CROWN_HEIGHT * np.where(number % 2 == 0, 1.0, 1.4)
+        self.reach = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], -1)  # (CROWN_DROPS, 3) [m]
 
-    def show(self, picture: RainFrame) -> None:
+    def show(self, frame: RainFrame) -> None:
         """Move everything; call inside `server.atomic()`."""
-        self.drops.show(picture.drops - EXPOSURE * picture.velocity, picture.drops)
-        age = picture.splashes[:, 3]
-        before = np.maximum(age - EXPOSURE, 0.0)
-        self.crowns.show(self.crown(picture, before), self.crown(picture, age))
+        self.drops.show(frame.drops - EXPOSURE_TIME * frame.velocity, frame.drops)
+        age = frame.splashes[:, 3]
+        earlier = np.maximum(age - EXPOSURE_TIME, 0.0)
+        self.crowns.show(self.crown_drops(frame, earlier), self.crown_drops(frame, age))
 
-    def crown(self, picture: RainFrame, age: np.ndarray) -> np.ndarray:
-        """(MAX_SPLASHES CROWN, 3) [m]: thrown up and out on parabolas, `age` (MAX_SPLASHES) [s] ago."""
+    def crown_drops(self, frame: RainFrame, age: np.ndarray) -> np.ndarray:
+        """Positions (MAX_SPLASHES CROWN_DROPS, 3) [m] on parabolas, at `age` (MAX_SPLASHES,) [s] of the splashes."""
         part = (age / SPLASH_DURATION)[:, None]  # 0 to 1
-        ways = np.stack([part, part, 4.0 * part * (1.0 - part)], -1) * self.ways
-        points = picture.splashes[:, None, :3] + ways
-        points[picture.splashes[:, 3] < 0.0] = BURIED
+        offsets = np.stack([part, part, 4.0 * part * (1.0 - part)], -1) * self.reach
+        points = frame.splashes[:, None, :3] + offsets
+        points[frame.splashes[:, 3] < 0.0] = HIDDEN_HEIGHT
         return points.reshape(-1, 3).astype(np.float32)
 
     def remove(self) -> None:
-        """Take drops and splashes out of the scene."""
+        """Remove drops and splashes from the scene."""
         self.drops.mesh.remove()
         self.crowns.mesh.remove()

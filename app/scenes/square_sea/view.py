@@ -1,4 +1,4 @@
-"""The square sea as water, with its rain, its probe and its grid."""
+"""The drawing of the square sea: water, rain, wave gauge and grid."""
 
 import dataclasses
 import math
@@ -9,150 +9,156 @@ import numpy as np
 import viser
 
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
-from app.render.water import Look, Water, sky
+from app.render.cameras import all_cameras, place_cameras
+from app.render.material import Material
+from app.render.skies import CAMERA_RANGE, set_sky
+from app.render.water import Water
 from app.scenes.square_sea import report
-from app.scenes.square_sea.parameters import SURFACE_TENSION, gravity
+from app.scenes.square_sea.parameters import SURFACE_TENSION, Params, gravity
 from app.scenes.square_sea.rain_view import RainMesh
-from app.scenes.square_sea.scene import Params, SeaFrame
+from app.scenes.square_sea.scene import SeaFrame
 
-LENGTH = Params().length  # [m] tile of the first view
-VIEWS = {  # [m]: height of the eye, how far ahead it looks, and how high there
+DEFAULTS = Params()
+VIEWS = {  # [m]: height of the camera; how far ahead its target is, and the target's height
     "swimmer": (1.7, 6.0, 0.5),
     "deck": (2.6, 11.5, 2.2),
     "bridge": (4.5, 30.0, 3.6),
     "mast": (8.0, 40.0, 6.0),
     "gull": (40.0, 70.0, 0.0),
 }
-BEHIND = 20.0  # [m] the eye is at most behind the middle of the tile, where the rain is
-TILES = 5
-FAR = 20_000.0  # [m] where the view ends
-OVERCAST = (0.80, 0.92, 1.02)  # filter before the sky under a closed cover of clouds
-BUOY = (240, 96, 32)
-FARTHEST = 1e5  # [m] from which a click is taken
-RIPPLE_CELLS = 2.5  # longest ripple of the shader, in cells of the mesh: where the mesh leaves off
-SHORTEST = 3.0  # shortest ripple, in capillary lengths 2 pi sqrt(tension/(density gravity))
-FOAM_CELLS = 0.9  # size of a patch of bubbles, in cells of the mesh: so it hides the mesh's own facets
+CAMERA_SETBACK = 0.14  # of the tile's side: how far the camera stands behind the middle of the tile,
+MAX_CAMERA_SETBACK = 20.0  # [m] but no farther than this, so that it is near the rain
+TILES = 5  # copies of the tile along a side
+WATER_DENSITY = 1000.0  # [kg/m3]
+OVERCAST_TINT = (0.80, 0.92, 1.02)  # colour filter on the sky where clouds cover all of it
+OVERCAST_FROM = 0.6  # cloud cover from which the sun fades; it is gone where the cover is 1
+MAX_CLICK_DISTANCE = 1e5  # [m] of the camera from the origin; a click from farther away is ignored
+MAX_RIPPLE_CELLS = 2.5  # longest ripple of the shader, in cells of the mesh: there its waves end
+MIN_RIPPLE_LENGTHS = 3.0  # shortest ripple, in capillary lengths 2 pi sqrt(tension/(density gravity))
+FOAM_CELLS = 0.9  # size of a patch of foam, in cells of the mesh, so that it hides the facets of the mesh
+MAX_RIPPLE_SLOPE = 0.25  # rms, beyond which the shader's ripples look like noise
+GAUGE_COLOUR, SPAR_COLOUR = (240, 96, 32), (245, 245, 240)
 
 
 def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
-    """Eye and target [m] of a view over a tile of `length` [m]: as high in metres over every sea."""
-    height, ahead, there = VIEWS[view]
-    x = 0.5 * length - min(0.14 * length, BEHIND)
-    return (x, 0.5 * length, height), (x + ahead, 0.5 * length, there)
+    """Position and target [m] of a view over a tile of side `length` [m]; its height does not depend on the tile."""
+    height, ahead, target_height = VIEWS[view]
+    x = 0.5 * length - min(CAMERA_SETBACK * length, MAX_CAMERA_SETBACK)
+    return (x, 0.5 * length, height), (x + ahead, 0.5 * length, target_height)
 
 
 class View:
     """Draws `SeaFrame`s."""
 
-    CAMERA = camera_of(Params().view, LENGTH)
+    CAMERA = camera_of(DEFAULTS.view, DEFAULTS.length)
     FIELD_OF_VIEW = 0.65  # [rad]
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
         self.water: Water | None = None
         self.rain: RainMesh | None = None
-        self.buoy: viser.FrameHandle | None = None
-        self.shape: tuple[int, float] = (0, LENGTH)
-        self.view = Params().view
-        self.lit: tuple[Any, ...] = ()
-        self.look = Look()
+        self.gauge: viser.FrameHandle | None = None
+        self.mesh_shape: tuple[int, float] = (0, DEFAULTS.length)  # vertices along a side, length [m]
+        self.view = DEFAULTS.view
+        self.sky: tuple[str, float] | None = None  # name of the sky and direction of the sun as shown
+        self.sky_material = self.material = Material()
         self.last: SeaFrame | None = None
-        server.scene.remove_click_callback("all")  # of the scene that was open before
         server.scene.on_click()(self.on_click)
 
     def on_click(self, event: Any) -> None:
-        origin, direction = finite_vector(event.ray_origin, FARTHEST), finite_vector(event.ray_direction)
+        """Tell the scene what the mouse points at."""
+        origin, direction = finite_vector(event.ray_origin, MAX_CLICK_DISTANCE), finite_vector(event.ray_direction)
         if origin is not None and direction is not None:
             self.post(Point(origin, direction))
 
-    def show(self, picture: SeaFrame) -> None:
+    def show(self, frame: SeaFrame) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
-        p = picture.params
-        if self.lit != (p.sky, p.sun):
-            self.lit = p.sky, p.sun
-            self.light = sky(self.server, p.sky, math.radians(p.sun))
-        look = self.dress(picture)
-        shape = len(picture.vertices), p.length
-        if self.water is None or shape != self.shape:
+        p = frame.params
+        if self.sky != (p.sky, p.sun):
+            self.sky = p.sky, p.sun
+            self.sky_material = set_sky(self.server, p.sky, math.radians(p.sun))
+        material = self.material_of(frame)
+        mesh_shape = len(frame.vertices), p.length
+        if self.water is None or mesh_shape != self.mesh_shape:
             if self.water is not None:
                 self.water.remove()
-            self.water = Water(self.server, "/sea", shape[0], shape[0], p.length, tiles=TILES, look=look)
-            self.follow(self.shape[1], p.length)
-            self.shape = shape
-        elif look != self.look:
-            self.water.set_look(look)
-        self.look = look
+            n, length = mesh_shape
+            self.water = Water(self.server, "/sea", n, n, length, tiles=TILES, material=material)
+            self.move_cameras(self.mesh_shape[1], length)
+            self.mesh_shape = mesh_shape
+        elif material != self.material:
+            self.water.set_material(material)
+        self.material = material
         if p.view != self.view:
             self.view = p.view
-            for camera in self.cameras():
-                camera.position, camera.look_at = camera_of(p.view, p.length)
-        if self.last is None or picture.vertices is not self.last.vertices:
-            self.water.set_surface(picture.vertices, picture.slopes, picture.foam, picture.time)
-            self.show_rain(picture)
-            self.show_gauge(picture)
-        self.last = picture
+            place_cameras(self.server, *camera_of(p.view, p.length))
+        if self.last is None or frame.vertices is not self.last.vertices:
+            self.water.set_surface(frame.vertices, frame.slopes, frame.foam, frame.time)
+            self.show_rain(frame)
+            self.show_gauge(frame)
+        self.last = frame
 
-    def dress(self, picture: SeaFrame) -> Look:
-        """The look under this sky: ripples carry what of Cox and Munk's slope the mesh does not."""
-        p: Params = picture.params
-        missing = max(min(0.003, 0.0015 * p.wind_speed) + 0.00512 * p.wind_speed - picture.slope_resolved, 0.001)
-        cell, g = p.length / len(picture.vertices), gravity(p)
-        capillary = 2.0 * math.pi * math.sqrt(SURFACE_TENSION / (1000.0 * g))
-        # Under a closed cover there is no sun, and its colour is gone from the sky.
-        overcast = min(max((p.clouds - 0.6) / 0.4, 0.0), 1.0)
-        grey = np.array(OVERCAST) * overcast + np.array(self.light.tint) * (1.0 - overcast)
+    def material_of(self, frame: SeaFrame) -> Material:
+        """The material under this sky. Its ripples have the part of Cox and Munk's slope that the mesh lacks."""
+        p = frame.params
+        missing = max(min(0.003, 0.0015 * p.wind_speed) + 0.00512 * p.wind_speed - frame.slope_resolved, 0.001)
+        cell, g = p.length / len(frame.vertices), gravity(p)
+        capillary = 2.0 * math.pi * math.sqrt(SURFACE_TENSION / (WATER_DENSITY * g))
+        overcast = min(max((p.clouds - OVERCAST_FROM) / (1.0 - OVERCAST_FROM), 0.0), 1.0)
+        red, green, blue = (
+            float(grey * overcast + clear * (1.0 - overcast))
+            for grey, clear in zip(OVERCAST_TINT, self.sky_material.sky_tint, strict=True)
+        )
         return dataclasses.replace(
-            self.light,
+            self.sky_material,
             clouds=p.clouds,
-            tint=tuple(float(c) for c in grey),
-            sun_strength=self.light.sun_strength * (1.0 - 0.93 * overcast),
-            disc=(1.0 - overcast) ** 2,
-            gloom=0.25 + 0.45 * overcast,
-            exposure=self.light.exposure * p.daylight,
-            haze=p.visibility,
-            ripple_slope=round(min(math.sqrt(missing), 0.25), 2),
-            ripple_length=RIPPLE_CELLS * cell,
-            ripple_shortest=SHORTEST * capillary,
+            sky_tint=(red, green, blue),
+            sun_strength=self.sky_material.sun_strength * (1.0 - 0.93 * overcast),
+            sun_disc=(1.0 - overcast) ** 2,
+            cloud_darkness=0.25 + 0.45 * overcast,
+            exposure=self.sky_material.exposure * p.daylight,
+            haze_distance=p.visibility,
+            ripple_slope=round(min(math.sqrt(missing), MAX_RIPPLE_SLOPE), 2),
+            ripple_length=MAX_RIPPLE_CELLS * cell,
+            ripple_shortest=MIN_RIPPLE_LENGTHS * capillary,
             ripple_direction=math.radians(p.wind_direction),
             gravity=g,
             foam_scale=max(FOAM_CELLS * cell, 0.4),
             wireframe=p.grid,
         )
 
-    def show_rain(self, picture: SeaFrame) -> None:
-        rain = picture.rain
+    def show_rain(self, frame: SeaFrame) -> None:
+        """Draw the rain; its meshes are made for one number of drops."""
+        rain = frame.rain
         if self.rain is not None and (rain is None or len(rain.drops) != self.rain.count):
             self.rain.remove()
             self.rain = None
         if rain is not None:
             if self.rain is None:
-                self.rain = RainMesh(self.server, rain, self.look.exposure)
+                self.rain = RainMesh(self.server, rain, self.material.exposure)
             self.rain.show(rain)
 
-    def show_gauge(self, picture: SeaFrame) -> None:
-        if picture.gauge is None:
-            if self.buoy is not None:
-                self.buoy.visible = False
+    def show_gauge(self, frame: SeaFrame) -> None:
+        """Draw the wave gauge where it is shown."""
+        if frame.gauge is None:
+            if self.gauge is not None:
+                self.gauge.visible = False
             return
-        if self.buoy is None:
-            self.buoy = add_buoy(self.server)
-        self.buoy.visible = True
-        self.buoy.position = picture.gauge
+        if self.gauge is None:
+            self.gauge = add_gauge(self.server)
+        self.gauge.visible = True
+        self.gauge.position = frame.gauge
 
-    def cameras(self) -> list[Any]:
-        """The camera of each browser, and the one that new browsers begin with."""
-        return [self.server.initial_camera, *(client.camera for client in self.server.get_clients().values())]
-
-    def follow(self, old: float, new: float) -> None:
-        """Take every camera from above the middle of a tile of side `old` [m] to that of one of side `new`."""
-        for camera in self.cameras():
-            camera.far = FAR
+    def move_cameras(self, old: float, new: float) -> None:
+        """Move every camera from over a tile of side `old` [m] to as far from the middle of one of side `new` [m]."""
+        for camera in all_cameras(self.server):
+            camera.far = CAMERA_RANGE
             if old != new:
-                eye, target = np.asarray(camera.position), np.asarray(camera.look_at)
-                place = 0.5 * new + np.clip(eye[:2] - 0.5 * old, -new, new)
-                to = np.array([*place, eye[2]])
-                # Setting the position moves the target along.
-                camera.position, camera.look_at = to, to + target - eye
+                position, target = np.asarray(camera.position), np.asarray(camera.look_at)
+                place = 0.5 * new + np.clip(position[:2] - 0.5 * old, -new, new)
+                there = np.array([*place, position[2]])
+                # viser moves the target along with the position, so that both are set.
+                camera.position, camera.look_at = there, there + target - position
 
     def readout(self, snapshot: Snapshot) -> str:
         """Statistics, foam, rain and wave gauge, as HTML."""
@@ -167,19 +173,20 @@ class View:
         return dict(report.notes(snapshot))
 
     def close(self) -> None:
-        """Nothing to give back: removing the nodes removes all."""
+        """Remove the click callback, which viser keeps when it removes the nodes of a scene."""
+        self.server.scene.remove_click_callback(self.on_click)
 
 
-def add_buoy(server: viser.ViserServer) -> viser.FrameHandle:
-    """A spar with a ball, 3 m high."""
+def add_gauge(server: viser.ViserServer) -> viser.FrameHandle:
+    """The wave gauge: a buoy with a spar and a ball, 3 m high."""
     scene = server.scene
     frame = scene.add_frame("/gauge", show_axes=False)
-    scene.add_cylinder("/gauge/spar", radius=0.09, height=4.2, color=(245, 245, 240), position=(0, 0, 0.9))
-    scene.add_cylinder("/gauge/float", radius=0.45, height=0.6, color=BUOY, position=(0, 0, 0.2))
-    scene.add_icosphere("/gauge/ball", radius=0.3, color=BUOY, position=(0, 0, 3.0))
+    scene.add_cylinder("/gauge/spar", radius=0.09, height=4.2, color=SPAR_COLOUR, position=(0, 0, 0.9))
+    scene.add_cylinder("/gauge/float", radius=0.45, height=0.6, color=GAUGE_COLOUR, position=(0, 0, 0.2))
+    scene.add_icosphere("/gauge/ball", radius=0.3, color=GAUGE_COLOUR, position=(0, 0, 3.0))
     return frame
 
 
 def warm_up() -> Iterator[str]:
-    """Nothing here is compiled."""
+    """The drawing compiles nothing."""
     yield from ()

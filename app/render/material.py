@@ -1,0 +1,138 @@
+"""How water looks, as data: its colours, optics, ripples and sky, and how these numbers travel to the shader."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+RGB = tuple[float, float, float]
+HAZE_DISTANCE = 3000.0  # [m]
+
+# Uniforms of the water shader, three numbers each, in the order in which they travel. The script takes the names from
+# here; `js/water_shader.js` declares each of them with its meaning.
+WATER_UNIFORMS = (
+    "deepColor", "scatterColor", "foamColor", "sunDirection", "sunLight", "optics", "lens", "ripple", "skyline",
+    "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "extent", "wireColor", "slick", "slickDeepColor",
+    "slickScatterColor", "slickOptics", "cutout", "cutoutDirection",
+)  # fmt: skip
+# The same for the shader of the rain, `js/rain.js`.
+RAIN_UNIFORMS = ("rain", "streak")
+
+
+@dataclass(frozen=True)
+class SlickRegion:
+    """A round slick of another fluid on the water. Colours as in `Material`."""
+
+    centre: tuple[float, float]  # (x, y) [m]
+    radius: float  # [m]
+    deep_color: RGB
+    scatter_color: RGB
+    refractive_index: float
+    roughness: float  # rms slope
+    ripple_factor: float  # on the slope of the ripples, 0 to 1
+
+
+@dataclass(frozen=True)
+class Cutout:
+    """A rectangle in which no surface is drawn, so that one looks into the sea. Its walls are drawn by others."""
+
+    centre: tuple[float, float]  # (x, y) [m] of the middle of one side
+    half_width: float  # [m] half the length of that side
+    direction: tuple[float, float]  # unit vector from that side to the opposite one
+    length: float  # [m] from that side to the opposite one
+
+
+@dataclass(frozen=True)
+class Material:
+    """How a fluid looks, and how it is lit. Colours are sRGB in 0..1, angles in radians, z up."""
+
+    deep_color: RGB = (0.0, 0.20, 0.31)  # of the light that comes back from deep water
+    scatter_color: RGB = (0.10, 0.52, 0.50)  # of the light that crests, and water full of bubbles, scatter
+    foam_color: RGB = (0.93, 0.95, 0.96)
+    refractive_index: float = 1.333  # sets the Fresnel reflectance
+    roughness: float = 0.03  # rms slope of what neither the mesh nor the ripples show
+    reflection_factor: float = 1.0  # on every reflection; 1 is physics, the oil of the course lab is below
+
+    ripple_slope: float = 0.2  # rms slope of the ripples, which are too short for the mesh
+    ripple_length: float = 1.6  # [m] of the longest ripple
+    ripple_shortest: float = 0.05  # [m] of the shortest ripple
+    ripple_direction: float = 0.0  # [rad] towards which ripples, foam and clouds move
+    gravity: float = 9.81  # [m/s2]; sets the speed of the ripples
+    foam_scale: float = 2.0  # [m] size of a patch of bubbles
+
+    sun_direction: tuple[float, float, float] = (0.6, 0.3, 0.5)  # towards the sun, of any length
+    sun_color: RGB = (1.0, 0.9, 0.75)
+    sun_strength: float = 6.0  # irradiance, in units of the sky photograph's radiance
+    sun_disc: float = 1.0  # share of the sun's disc and glitter that is visible, 0 to 1
+    clouds: float = 0.4  # cloud cover, 0 to 1
+    cloud_size: float = 2.2  # horizontal size of a cloud, in heights of the cloud layer
+    cloud_darkness: float = 0.3  # share of its light that thick cloud takes away, 0 to 1
+
+    haze_distance: float = HAZE_DISTANCE  # [m] at which a share 1 - 1/e of the sea is lost in the sky
+    exposure: float = 1.0  # factor on all light
+    # Of the sky photograph, which was taken on land: the height [rad] of the land towards the sun and away from it,
+    # and the slope at the horizon of the photograph's elevation over the drawn elevation.
+    skyline: tuple[float, float, float] = (0.06, 0.2, 0.6)
+    # Share of the photograph's azimuths that is used, blur of the haze's colour (0 to 1), and the radiance that is
+    # reduced to its half, so that no place of the photograph is too bright.
+    sky_fold: tuple[float, float, float] = (1.0, 0.3, 12.0)
+    sky_tint: RGB = (1.0, 1.0, 1.0)  # colour filter on the photograph, linear, any value from 0
+    draw_sky: bool = True  # draw the sky, and the sea beyond the mesh
+
+    wireframe: bool = False  # draw the grid of the mesh
+    wire_color: RGB = (0.95, 0.55, 0.1)
+    slick: SlickRegion | None = None
+    cutout: Cutout | None = None
+
+
+def linear(color: RGB) -> np.ndarray:
+    """Linear light (3,) of an sRGB colour in 0..1 (IEC 61966-2-1, to within 1 %)."""
+    return np.clip(np.asarray(color, float), 0, 1) ** 2.2
+
+
+def as_bytes(color: RGB) -> tuple[int, int, int]:
+    """An sRGB colour in 0..1 as 0..255."""
+    red, green, blue = (round(255 * min(max(c, 0.0), 1.0)) for c in color)
+    return red, green, blue
+
+
+def uniform_table(
+    material: Material,
+    sea_state: tuple[float, float, float],
+    grid: tuple[int, int, float],
+    tiles: int,
+) -> np.ndarray:
+    """The uniforms of the water shader, (len(WATER_UNIFORMS), 3) float32, in their order.
+
+    sea_state: time [s], significant height [m], mean square slope. grid: rows and columns of vertices (0 for a mesh
+    that is no grid), and the side of a tile or the radius of the mesh [m]. tiles: along a side.
+    """
+    m, slick, cutout = material, material.slick, material.cutout
+    sun = np.asarray(m.sun_direction, float)
+    nothing = (0.0, 0.0, 0.0)
+    values: dict[str, Sequence[float] | np.ndarray] = {
+        "deepColor": linear(m.deep_color),
+        "scatterColor": linear(m.scatter_color),
+        "foamColor": linear(m.foam_color),
+        "sunDirection": sun / max(float(np.linalg.norm(sun)), 1e-9),
+        "sunLight": linear(m.sun_color) * m.sun_strength,
+        "optics": (m.refractive_index, m.roughness, m.reflection_factor),
+        "lens": (m.haze_distance, m.exposure, m.sun_disc),
+        "ripple": (m.ripple_slope, m.ripple_length, m.ripple_shortest),
+        "skyline": m.skyline,
+        "skyFold": m.sky_fold,
+        "skyTint": m.sky_tint,
+        "clouds": (m.clouds, m.cloud_size, m.cloud_darkness),
+        "wind": (m.ripple_direction, m.gravity, m.foam_scale),
+        "seaState": sea_state,
+        "grid": grid,
+        "extent": (tiles, float(m.draw_sky), float(m.wireframe)),
+        "wireColor": linear(m.wire_color),
+        "slick": nothing if slick is None else (*slick.centre, slick.radius),
+        "slickDeepColor": nothing if slick is None else linear(slick.deep_color),
+        "slickScatterColor": nothing if slick is None else linear(slick.scatter_color),
+        "slickOptics": nothing if slick is None else (slick.refractive_index, slick.roughness, slick.ripple_factor),
+        "cutout": nothing if cutout is None else (*cutout.centre, cutout.half_width),
+        "cutoutDirection": nothing if cutout is None else (*cutout.direction, cutout.length),
+    }
+    return np.array([values[name] for name in WATER_UNIFORMS], np.float32)

@@ -1,0 +1,133 @@
+"""The skies: viser's environment maps, and what is known of each, so that sun, land and haze fit the water."""
+
+import math
+from dataclasses import dataclass
+
+import viser
+
+from app.render.material import HAZE_DISTANCE, RGB, Material
+
+CAMERA_RANGE = 20_000.0  # [m] at which the camera's view ends; viser's own 1000 m would cut the horizon off
+
+
+@dataclass(frozen=True)
+class Photograph:
+    """An environment map of viser: where its sun is, how high its land is, and how it is exposed."""
+
+    sun_column: float  # of the sun, 0..1 from the left edge of the panorama
+    sun_height: float  # [deg]
+    sun_color: RGB  # sRGB
+    sun_strength: float  # as in `Material`
+    land_near: float  # [deg] height of the land below the sun
+    land_far: float  # [deg] height of the land opposite to the sun
+    stretch: float  # slope at the horizon of the photograph's elevation over the drawn elevation
+    fold: float  # share of the photograph's azimuths that is used
+    exposure: float = 1.0
+    limit: float = 5.0  # radiance that is reduced to its half
+    tint: RGB = (1.0, 1.0, 1.0)  # colour filter, linear
+    horizon: tuple[int, int, int] = (205, 215, 222)  # sRGB in 0..255: what things fade to in the distance
+
+
+# Fitted by eye to the photographs.
+SKIES = {
+    "park": Photograph(
+        sun_column=0.600,
+        sun_height=10.5,
+        sun_color=(1.0, 0.93, 0.80),
+        sun_strength=5.0,
+        land_near=3.5,
+        land_far=10.0,
+        stretch=0.6,
+        fold=0.65,
+        exposure=0.64,
+        limit=1.2,
+        tint=(0.72, 0.91, 1.28),
+    ),
+    "sunset": Photograph(
+        sun_column=0.600,
+        sun_height=3.3,
+        sun_color=(1.0, 0.62, 0.30),
+        sun_strength=4.0,
+        land_near=1.5,
+        land_far=5.0,
+        stretch=0.42,
+        fold=0.36,
+        exposure=0.36,
+        limit=9.0,
+        tint=(1.0, 0.9, 0.84),
+        horizon=(232, 196, 150),
+    ),
+    "dawn": Photograph(
+        sun_column=0.635,
+        sun_height=9.5,
+        sun_color=(1.0, 0.66, 0.46),
+        sun_strength=2.5,
+        land_near=7.0,
+        land_far=8.0,
+        stretch=0.6,
+        fold=0.5,
+        exposure=0.45,
+        limit=2.0,
+        tint=(1.0, 0.86, 0.9),
+        horizon=(232, 190, 196),
+    ),
+    "night": Photograph(
+        sun_column=0.36,
+        sun_height=25.0,
+        sun_color=(0.75, 0.85, 1.0),
+        sun_strength=0.5,
+        land_near=12.0,
+        land_far=18.0,
+        stretch=0.7,
+        fold=0.8,
+        exposure=0.6,
+        limit=5.0,
+        tint=(0.35, 0.6, 1.0),
+        horizon=(34, 44, 52),
+    ),
+}
+
+
+def set_sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Material:
+    """Set environment map, lights, haze and camera range; returns a material lit by that sky.
+
+    name: a key of `SKIES`. azimuth: [rad] of the sun, from x towards y.
+    """
+    photo = SKIES[name]
+    turn = azimuth - (1.5 * math.pi - 2 * math.pi * (photo.sun_column - 0.5))
+    wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
+    server.scene.configure_environment_map(
+        name,  # type: ignore[arg-type]
+        background=True,
+        background_blurriness=0.3,
+        background_wxyz=wxyz,
+        environment_wxyz=wxyz,
+    )
+    server.scene.configure_default_lights(enabled=True, cast_shadow=False)
+    # This haze is for everything but the water, which has its own.
+    server.scene.configure_fog(0.1 * HAZE_DISTANCE, 1.6 * HAZE_DISTANCE, color=photo.horizon)
+    server.initial_camera.far = CAMERA_RANGE
+    elevation = drawn_elevation(photo)
+    level = math.cos(elevation)
+    return Material(
+        sun_direction=(level * math.cos(azimuth), level * math.sin(azimuth), math.sin(elevation)),
+        sun_color=photo.sun_color,
+        sun_strength=photo.sun_strength,
+        skyline=(math.radians(photo.land_near), math.radians(photo.land_far), photo.stretch),
+        sky_fold=(photo.fold, 0.5, photo.limit),
+        exposure=photo.exposure,
+        sky_tint=photo.tint,
+    )
+
+
+def drawn_elevation(photo: Photograph) -> float:
+    """The elevation [rad] at which the shader draws the photograph's sun.
+
+    The shader shows at elevation e [deg] what the photograph has at land + e (g + (90 - land - 90 g) e/90^2), with
+    the slope g = `stretch`, so that the land lies below the drawn horizon. This is the e of the sun.
+    """
+    above_land = photo.sun_height - photo.land_near
+    g = photo.stretch
+    q = (90 - photo.land_near - 90 * g) / 8100
+    e = (-g + math.sqrt(g * g + 4 * q * above_land)) / (2 * q) if abs(q) > 1e-9 else above_land / g
+    return math.radians(e)

@@ -65,7 +65,7 @@ class View:
         self.handles: viser.BatchedMeshHandle | None = None
         self.kinds: tuple[str, ...] = ()
         self.size = 0.0
-        self.follow, self.chase = "free", FollowCamera()
+        self.follow, self.follow_camera = "free", FollowCamera()
         self.eye_at = 0.0
         scene = server.scene
         self.rig = scene.add_glb("/rig", model("rig"), position=(*RIG, 0.0), cast_shadow=False, receive_shadow=False)
@@ -199,13 +199,13 @@ class View:
             self.follow = p.follow
             if here is not None:
                 offset = np.array(WINDOW_VIEW if p.follow == "window" else BODY_VIEW) * p.size / 1.5
-                self.chase.start(here, offset)
+                self.follow_camera.start(here, offset)
                 view = tuple(here + offset)
             else:
                 view = VIEWS.get(p.follow, self.CAMERA)
             place_cameras(self.server, view[0], view[1])
         elif here is not None:
-            self.chase.go(here, cameras)
+            self.follow_camera.follow(here, cameras)
         now = time.monotonic()
         if p.centre == "camera" and cameras and now - self.eye_at > EYE_EVERY:
             self.eye_at = now

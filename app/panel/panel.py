@@ -5,7 +5,6 @@ cannot lose each other.
 """
 
 import dataclasses
-import html
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, cast
@@ -17,6 +16,7 @@ from app.messages import BaseParams, Load, PlotRow, Reset, StepOnce, TogglePlay,
 from app.panel.control import Control
 from app.panel.plots import Plots
 from app.panel.work_table import work_table
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, join, note
 from app.render.viser_types import ViserEvent
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
 from sim.parameters import Value, check_record, parameters_of
@@ -62,9 +62,12 @@ class Panel:
         self.plots = Plots(server, kind)
         self.add_chooser(scenes, open_scene)
         gui.add_html(
-            '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">'
-            f"{kind.help}<br><b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · "
-            "<b>G</b> grid · <b>1-9</b> presets</div>"
+            fill(
+                '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">{}<br>'
+                "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · <b>G</b> grid · "
+                "<b>1-9</b> presets</div>",
+                Html(kind.help),
+            )
         )
         self.preset = gui.add_dropdown("Preset", tuple(kind.presets), hint="Sets every parameter and starts over")
         self.preset.on_update(self.on_preset)
@@ -189,7 +192,7 @@ class Panel:
             self.status_at = now
             self.status.content = status_line(snapshot, send_time, busy)
             readout = self.view.readout(snapshot)
-            self.readout.content = f'<div style="padding:2px 12px 6px;font-size:12px">{readout}</div>'
+            self.readout.content = note(Html(readout))
         if now - self.marks_at >= MARKS_INTERVAL:
             self.marks_at = now
             for name, text in self.view.marks(snapshot).items():
@@ -207,7 +210,7 @@ class Panel:
             if heading not in self.notes:
                 with self.gui.add_folder(heading, expand_by_default=False):
                     self.notes[heading] = self.gui.add_html("")
-            self.notes[heading].content = note(text)
+            self.notes[heading].content = note(Html(text))
 
     def notify(self, text: str) -> None:
         """Tell every browser."""
@@ -232,23 +235,23 @@ def add_scene_chooser(
             open_scene(event.target.value)
 
 
-def note(text: str) -> str:
-    """Text in small print, as HTML."""
-    return f'<div style="padding:2px 12px 8px;font-size:12px">{text}</div>'
-
-
-def status_line(snapshot: AnySnapshot, send_time: float, busy: float = 0.0) -> str:
+def status_line(snapshot: AnySnapshot, send_time: float, busy: float = 0.0) -> Html:
     """Running or not, the clock, real-time factors, rates; and why it halted."""
     s = snapshot.status
-    state = "Running" if s.running else "Paused"
-    colour = "#2b8a3e" if s.running else "#e67700"
-    capped = ' <b style="color:#c92a2a">[CAPPED]</b>' if s.capped else ""
+    state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
+    capped = join((" ", coloured("[CAPPED]", ERROR_COLOUR))) if s.capped else ""
     box = "margin-top:6px;padding:6px 8px;border-left:3px solid #c92a2a;background:rgba(201,42,42,.1)"
-    halted = f'<div style="{box}">{html.escape(s.halted)}</div>' if s.halted else ""
-    slow = f"<br>this step has taken {busy:.1f} s so far" if busy >= BUSY_SHOWN_FROM else ""
-    return (
-        '<div style="padding:0 12px 4px;font-size:12px">'
-        f'<b style="color:{colour}">{state}</b> t = {s.time:.2f} s<br>'
-        f"real time ×{s.actual_speed:.2f} of ×{s.speed:g}{capped} · {s.frame_rate:.0f} frames/s · "
-        f"solve {s.solve_time * 1e3:.2f} ms · send {send_time * 1e3:.2f} ms{slow}{halted}</div>"
+    halted = fill('<div style="{}">{}</div>', box, s.halted) if s.halted else ""
+    slow = fill("<br>this step has taken {:.1f} s so far", busy) if busy >= BUSY_SHOWN_FROM else ""
+    return fill(
+        '<div style="padding:0 12px 4px;font-size:12px">{state} t = {s.time:.2f} s<br>'
+        "real time ×{s.actual_speed:.2f} of ×{s.speed:g}{capped} · {s.frame_rate:.0f} frames/s · "
+        "solve {solve:.2f} ms · send {send:.2f} ms{slow}{halted}</div>",
+        s=s,
+        state=state,
+        capped=capped,
+        solve=1e3 * s.solve_time,
+        send=1e3 * send_time,
+        slow=slow,
+        halted=halted,
     )

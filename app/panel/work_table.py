@@ -1,9 +1,9 @@
 """The work counts of the open scene as a table."""
 
-import html
 from typing import NamedTuple
 
 from app.messages import WorkCounts
+from app.render.html import Html, bold, fixed, number, table
 
 
 class WorkRow(NamedTuple):
@@ -23,18 +23,9 @@ def work_rows(counts: WorkCounts) -> list[WorkRow]:
     ]
 
 
-def short(value: float) -> str:
-    """A count whole, anything else to three digits."""
-    return f"{value:,.0f}" if value == int(value) else f"{value:.3g}"
-
-
-def work_table(counts: WorkCounts) -> str:
+def work_table(counts: WorkCounts) -> Html:
     """The work counts as an HTML table."""
-    cell = '<td style="text-align:right;padding-left:8px">'
-    lines = [
-        f"<tr><td>{html.escape(row.what)}</td>{cell}{short(row.done)}</td>{cell}{short(row.skipped)}</td>"
-        f"{cell}{row.skipped_percent:.0f}</td></tr>"
-        for row in work_rows(counts)
-    ]
-    head = f"<tr><td></td>{cell}<b>done</b></td>{cell}<b>not needed</b></td>{cell}<b>%</b></td></tr>"
-    return f'<table style="width:100%;font-variant-numeric:tabular-nums">{head}{"".join(lines)}</table>'
+    return table(
+        ("", bold("done"), bold("not needed"), bold("%")),
+        ((row.what, number(row.done), number(row.skipped), fixed(row.skipped_percent, 0)) for row in work_rows(counts)),
+    )

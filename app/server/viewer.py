@@ -2,7 +2,6 @@
 
 # pyright: reportPrivateUsage=false
 
-import html
 import queue
 import threading
 import time
@@ -12,8 +11,9 @@ from collections.abc import Callable
 import viser
 
 from app.messages import BaseParams, Command, Halt, Release, WorkCount
-from app.panel.panel import Panel, add_scene_chooser, note
+from app.panel.panel import Panel, add_scene_chooser
 from app.render.cameras import place_cameras
+from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_scene
 from app.render.viser_types import ViserConnection
 from app.scenes import NAMES, scene_named, view_named
@@ -112,8 +112,7 @@ class Viewer:
         progress = self.server.gui.add_html("")
 
         def show(part: str) -> None:
-            text = f"<b>{html.escape(title)}</b>: compiling {html.escape(part)}. This is done once."
-            progress.content = note(text)
+            progress.content = note(fill("<b>{}</b>: compiling {}. This is done once.", title, part))
 
         show("kernels")
         compile_scene(name, show=show)
@@ -131,8 +130,8 @@ class Viewer:
         self.close()
         self.clear()
         add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.choose)
-        reason = html.escape(f"{type(error).__name__}: {error}")
-        self.server.gui.add_html(note(f"<b>{html.escape(name)} could not be opened.</b><br>{reason}"))
+        reason = f"{type(error).__name__}: {error}"
+        self.server.gui.add_html(note(fill("<b>{} could not be opened.</b><br>{}", name, reason)))
 
     def choose(self, name: str) -> None:
         """A scene was chosen on the page that says why another could not be opened."""

@@ -1,1 +1,3 @@
-"""Run time against error, frame costs, start-up, peers: one module a subject, each a list of rows."""
+"""`springtide bench`: cases/ holds the benchmarks, tasks/ what Springtide and its peers are both given, peers/ the
+other programs, native/ the loops in C.
+"""

@@ -1,7 +1,7 @@
-"""`springtide bench`: every module of this package that has `rows(quick)` is a benchmark, found by being here.
+"""`springtide bench`: every module in cases/ is a benchmark, found by being there.
 
-A module may also have `findings(rows)`, a second table that the first one says; `peer_rows(quick)`, run when peers are
-asked for; and `figures(rows)`, figures by file name.
+A benchmark has `rows(quick)`, its table. It may have `findings(rows)`, a second table drawn from the first;
+`peer_rows(quick)`, run when peers are asked for; and `figures(rows)`, figures by file name.
 """
 
 import importlib
@@ -10,47 +10,45 @@ from pathlib import Path
 from types import ModuleType
 
 import app.bench.cases
-from app.experiments import tables as report
+from app.experiments import tables
 from sim.files import replacing
-from sim.validation import argument_error
+from sim.validation import check_choice
 
 
 def benchmarks() -> dict[str, ModuleType]:
     """Name -> module, in alphabetical order."""
     names = [info.name for info in pkgutil.iter_modules(app.bench.cases.__path__)]
-    modules = {name: importlib.import_module(f"app.bench.cases.{name}") for name in names}
-    return {name: module for name, module in modules.items() if hasattr(module, "rows")}
+    return {name: importlib.import_module(f"app.bench.cases.{name}") for name in names}
 
 
 def run(names: list[str], quick: bool = False, peers: bool = False, out: Path | None = None) -> int:
-    """Run the benchmarks named, or all; print their tables and, with `out`, keep tables and figures there.
+    """Run the named benchmarks, or all; print their tables and, with `out`, write tables and figures there.
 
     Returns the exit status, 0. Raises ValueError for an unknown name or an `out` that is not a folder.
     """
     known = benchmarks()
     for name in names:
-        if name not in known:
-            raise argument_error("bench", name, "one of " + ", ".join(known))
-    report.make_folder(out)
-    print(report.machine())
+        check_choice("bench", name, known)
+    tables.make_folder(out)
+    print(tables.machine())
     for name in names or known:
         module = known[name]
-        tables = {name: module.rows(quick)}
+        found = {name: module.rows(quick)}
         if hasattr(module, "findings"):
-            tables[f"{name}_findings"] = module.findings(tables[name])
+            found[f"{name}_findings"] = module.findings(found[name])
         if peers and hasattr(module, "peer_rows"):
-            tables[f"{name}_peers"] = module.peer_rows(quick)
-        for title, rows in tables.items():
-            report.show(title, rows)
+            found[f"{name}_peers"] = module.peer_rows(quick)
+        for title, rows in found.items():
+            tables.show(title, rows)
             if out is not None:
-                report.save_table(rows, out / f"{title}.csv")
+                tables.save_table(rows, out / f"{title}.csv")
         if out is not None and hasattr(module, "figures"):
             try:
-                report.save_figures(module.figures(tables[name]), out)
+                tables.save_figures(module.figures(found[name]), out)
             except ModuleNotFoundError as missing:
                 print(f"no figures of {name}: {missing.name} is not installed (pip install 'springtide[plot]')")
     if out is not None:
         with replacing(out / "machine.txt") as draft:
-            draft.write_text(report.machine() + "\n", encoding="utf-8")
+            draft.write_text(tables.machine() + "\n", encoding="utf-8")
         print(f"kept in {out}")
     return 0

@@ -1,6 +1,6 @@
-"""A browser's ears without its eyes: connects to a lab on this machine and reads all it is sent, until it is ended.
+"""A client that reads all messages of a lab on this machine and draws nothing, until it is ended.
 
-`python -m app.bench.listener PORT`, as a process of its own: what it costs is not the server's.
+`python -m app.bench.listener PORT`, in a process of its own, so that its time is not counted for the server.
 """
 
 import asyncio
@@ -19,7 +19,7 @@ CAMERA = {
 
 
 async def listen(port: int) -> None:
-    """Look from one place, as a page that has loaded does, and take every message."""
+    """Send one camera position, as a loaded page does, and read every message."""
     protocol = websockets.Subprotocol(f"viser-v{version('viser')}")
     async with connect(f"ws://127.0.0.1:{port}", subprotocols=[protocol], max_size=None) as client:
         await client.send(msgspec.msgpack.encode(CAMERA))

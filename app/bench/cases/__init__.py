@@ -1,1 +1,1 @@
-"""The benchmarks: one module each, found by being here."""
+"""The benchmarks. Every module in this folder is one; `app/bench/command.py` says what it must offer."""

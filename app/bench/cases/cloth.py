@@ -1,13 +1,13 @@
-"""Run time and force evaluations against error on the benchmark cloth, every integrator a ladder of steps.
+"""Run time and force evaluations against error on the benchmark cloth, with a ladder of steps for every integrator.
 
-Explicit methods take a ladder of fractions of their critical step, those that have none a ladder of steps. The
-reference is dop853, as good as another method, dopri5, agrees with it. A rung that would take too long, that diverges,
-or whose error the reference cannot tell is left out, and its row says so. `--peers` runs
-`app.bench.peers.cloth_rivals`.
+Explicit methods take steps at fractions of their critical step; methods without one take a ladder of step counts. Some
+rungs are left out, and their row says why: they would take too long, they diverge, or the reference is not good enough
+to tell their error. With `--peers`, each peer is compared with our quickest run at its error or less, on one thread.
 
-The whole takes some five minutes; `--quick`, 32 x 32 particles and rungs of up to a quarter of a second, ten seconds.
+All sizes take some five minutes; `--quick` (32 x 32 particles, rungs of up to a quarter of a second) ten seconds.
 """
 
+import functools
 import statistics
 import time
 from collections import Counter
@@ -16,56 +16,56 @@ from typing import Any
 import numpy as np
 from rich.progress import track
 
-from app.bench.peers.cloth_rivals import peer_rows
-from app.bench.tasks.cloth_task import (  # fmt: skip
-    END,
-    FLOOR,
-    Reference,
-    error_of,
-    expected,
+from app.bench.own_runs import RESOLUTION, OwnRuns, Reference, largest_distances
+from app.bench.peers.cloth import PEERS
+from app.bench.peers.cloth_engines import ENGINES, OTHER_TASKS
+from app.bench.tasks.cloth import (
+    DURATION,
+    benchmark_cloth,
+    expected_time,
+    ladders,
     reference,
     run,
-    seconds,
-    steps_of,
-    task_cloth,
+    step_counts,
 )
+from app.bench.timing import in_turns, processor_time
 from app.experiments.tables import front
 from sim.springs import INTEGRATORS, Net
-
-__all__ = ["figures", "findings", "peer_rows", "rows"]
+from sim.springs.stability import critical_step
 
 METHODS = tuple(name for name, record in INTEGRATORS.items() if not record.undamped_only)
 MEASURED = ("force evaluations", "time [ms]", "least [ms]", "x real time", "error [m]", "reference good to [m]")
-LOST = 0.5  # [m]: another motion altogether
+MAX_ERROR = 0.5  # [m] a larger one means another motion altogether
+PEER_STEP = 0.8  # over leapfrog's critical step: the step of peers that have none of their own
 
 
-def ladder(net: Net, name: str, truth: Reference, most: float, enough: float) -> list[dict[str, Any]]:
-    """Rungs from coarse to fine, each timed again until `enough` [s] or five times; none that takes over `most` [s]."""
+def ladder(net: Net, name: str, truth: Reference, max_time: float, timing: float) -> list[dict[str, Any]]:
+    """Rungs from coarse to fine, each timed for `timing` [s] or five times; none that takes over `max_time` [s]."""
     n, found = net.shape[0], []
     run(net, name, 1)  # loads the kernel
-    for steps in steps_of(net, name):
+    for steps in step_counts(net, name):
         row: dict[str, Any] = {"task": f"C({n})", "method": name, "steps": steps, **dict.fromkeys(MEASURED)}
         found.append(row)
-        about = expected(net, name, steps)
-        if about > most:
-            row["left out"] = f"over {most:g} s"
+        expected = expected_time(net, name, steps)
+        if expected > max_time:
+            row["left out"] = f"over {max_time:g} s"
             if not INTEGRATORS[name].implicit:
-                break  # finer ones take longer; of a solver that iterates, not always
+                break  # finer rungs take longer, except with a solver that iterates
             continue
         with np.errstate(all="ignore"):
             start = time.thread_time()
             state = run(net, name, steps)
             times = [time.thread_time() - start]
-            error = error_of(state.x, truth)
-        if not error < LOST:
+            (error,) = largest_distances((state.x,), truth)
+        if not error < MAX_ERROR:
             row["left out"] = "diverged"
             continue
-        if error < FLOOR * truth.uncertainty:
+        if error < RESOLUTION * truth.uncertainty:
             row["left out"] = "finer than the reference can tell"
             break
-        while len(times) < 5 and sum(times) < enough:
-            times.append(seconds(lambda steps=steps: run(net, name, steps)))
-        measured = (state.force_evals, 1e3 * statistics.median(times), 1e3 * min(times), END / min(times), error)
+        while len(times) < 5 and sum(times) < timing:
+            times.append(processor_time(functools.partial(run, net, name, steps)))
+        measured = (state.force_evals, 1e3 * statistics.median(times), 1e3 * min(times), DURATION / min(times), error)
         row |= dict(zip(MEASURED, (*measured, truth.uncertainty), strict=True))
     return found
 
@@ -75,7 +75,7 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
     table, truths = [], {}
     tasks = [(n, name) for n in ((32,) if quick else (32, 64, 128)) for name in METHODS]
     for n, name in track(tasks, "cloth", transient=True):
-        net = task_cloth(n)
+        net = benchmark_cloth(n)
         if n not in truths:
             truths[n] = reference(net)
         table += ladder(net, name, truths[n], *((0.25, 0.1) if quick else (5.0, 1.0)))
@@ -83,10 +83,12 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
 
 
 def by_task(table: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    """The rows of each task."""
     return {task: [row for row in table if row["task"] == task] for task in dict.fromkeys(row["task"] for row in table)}
 
 
 def is_point(row: dict[str, Any]) -> bool:
+    """Whether a rung was measured."""
     return "left out" not in row
 
 
@@ -111,7 +113,7 @@ def findings(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
-    """WorkCount-precision diagrams by file name, one for each size."""
+    """Work-precision diagrams by file name, one for each size."""
     from app.experiments.tables import work_precision
 
     return {
@@ -121,3 +123,47 @@ def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
         )
         for task, own in by_task(table).items()
     }
+
+
+def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
+    """Every installed peer and our quickest run at its error or less, timed in turns; quick: the smallest size.
+
+    Times are wall times of the whole 0.25 s, the least of repeats. A peer that damps along the links only is compared
+    with the reference of that damping model. Programs that cannot be given the task are listed with the reason.
+    """
+    table: list[dict[str, Any]] = []
+    sizes = (32,) if quick else (32, 64, 128)
+    own_runs: dict[tuple[int, str], tuple[Net, OwnRuns]] = {}
+    for n, peer in track([(n, peer) for n in sizes for peer in PEERS + ENGINES], "cloth peers", transient=True):
+        row: dict[str, Any] = {"task": f"C({n})", "peer": peer.name, "damping": peer.damping}
+        table.append(row)
+        if reason := peer.reason_left_out(n):
+            row["note"] = reason
+            continue
+        if (n, peer.damping) not in own_runs:
+            net = benchmark_cloth(n, peer.damping)
+            own_runs[n, peer.damping] = net, OwnRuns(ladders(net), reference(net))
+        net, ours = own_runs[n, peer.damping]
+        step = peer.step or PEER_STEP * critical_step(net, "leapfrog")
+        theirs = peer.make(net, step)
+        theirs(2.0 * step)  # compiles
+        errors = largest_distances((theirs(DURATION),), ours.reference)
+        row |= {"step [us]": 1e6 * step, "error [m]": errors[0]}
+        if not errors[0] < 1.0:
+            row["note"] = "diverged"
+            continue
+        best = ours.quickest(errors)
+        calls = [functools.partial(theirs, DURATION), *([] if best is None else [best.run])]
+        peer_times, *our_times = in_turns(calls, 5 if quick else 9, max_time=10.0)
+        row["peer [ms]"] = 1e3 * min(peer_times)
+        if best is None:
+            row["note"] = "no rung of ours is as exact"
+            continue
+        row |= {
+            "ours": best.method,
+            "with": best.setting,
+            "ours [ms]": 1e3 * min(our_times[0]),
+            "our error [m]": ours.result(best).errors[0],
+            "times as long as ours": min(peer_times) / min(our_times[0]),
+        }
+    return table + [{"task": "another", "peer": name, "note": why} for name, why in OTHER_TASKS.items()]

@@ -1,7 +1,7 @@
 """The cloth's force kernel: one thread against the same loop in C, and two threads against one.
 
-A number of one thread is its processor time, so that what else runs on the machine does not count; of two threads it is
-wall time, the least of many, as their worth hangs on both being there at once.
+The time of one thread is its processor time, which other programs on the machine do not lengthen. The time of two
+threads is wall time, the least of many repeats, because it depends on both cores being free.
 """
 
 import ctypes
@@ -13,20 +13,21 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.cases.cloth import task_cloth
-from app.bench.cases.kernels import build
+from app.bench.native.build import build
+from app.bench.tasks.cloth import benchmark_cloth
 from sim.jit import MAX_THREADS, kernel, set_threads
 from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size
 
 
 @kernel
 def repeat(x, v, p, f, a, count):
-    """The forces again and again, so that a call is long against its start."""
+    """Compute the forces `count` times, so that a call is long compared with its start. x v a: (3 n^2,)."""
     for _ in range(count):
         accelerate_cloth(x, v, p, 1.0, p.drag, f, a)
 
 
 def timed(call: Callable[[], None], clock: Callable[[], float]) -> float:
+    """The time of a call [s] on this clock."""
     start = clock()
     call()
     return clock() - start
@@ -34,7 +35,7 @@ def timed(call: Callable[[], None], clock: Callable[[], float]) -> float:
 
 def row(n: int, library: ctypes.CDLL | None, repeats: int) -> dict[str, Any]:
     """One size: ours and C in turn, then one and two threads in turn."""
-    net = task_cloth(n)
+    net = benchmark_cloth(n)
     x = net.x0 + 0.1 / n * np.random.default_rng(0).standard_normal(net.x0.shape)
     v = np.zeros_like(x)
     count = max(1, 100_000 // (n * n))
@@ -87,5 +88,5 @@ def row(n: int, library: ctypes.CDLL | None, repeats: int) -> dict[str, Any]:
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
     """32, 64 and 128 particles square."""
-    library = build()
+    library = build("kernels")
     return [row(n, library, 60 if quick else 300) for n in (32, 64, 128)]

@@ -1,10 +1,11 @@
-"""The direct solve of an implicit rope step: its cost a point, which should not depend on the points.
+"""The direct solve of an implicit rope step: its cost per point, which should not depend on the number of points.
 
 At every size the same number of points is solved, each matrix and right-hand side in memory of its own, in one compiled
-loop, as an implicit step calls the solver. Times are processor times. Up to some thousand points what the way down
-wrote is still in the processor's second cache on the way back; beyond, it comes from the third, which costs more, the
-more so where other programs use it too. Blocks would not mend it: the way back starts from the last point, so that
-nothing can be finished while it is near, and working out a block anew costs more than reading it.
+loop, as an implicit step calls the solver. Times are processor times. Up to some thousand points, what the elimination
+wrote is still in the level-2 cache during the back substitution. For more points it comes from the level-3 cache, which
+is slower, and slower again while other programs use it. Working in blocks would not help: the back substitution starts
+at the last point, so nothing is finished while it is in the cache, and computing a block again costs more than reading
+it.
 """
 
 import statistics
@@ -17,28 +18,28 @@ from sim.jit import kernel
 from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridiagonal
 
 COUNTS = (100, 1_000, 10_000, 100_000)
-WORK = 200_000  # points solved in a timed call
+POINTS_PER_CALL = 200_000  # solved in a timed call
 
 
 @kernel
-def solve_each(diagonals, besides, us):
-    """Many systems, one after another."""
+def solve_each(diagonals, couplings, us):
+    """Solve many systems, one after another. diagonals, couplings: (systems, points, 9); us: (systems, points, 3)."""
     for i in range(diagonals.shape[0]):
-        solve_block_tridiagonal(diagonals[i], besides[i], us[i])
+        solve_block_tridiagonal(diagonals[i], couplings[i], us[i])
 
 
 def seconds(n: int, rng: np.random.Generator) -> float:
-    """Processor time of a point [s]."""
-    own = np.tile([4.0, 0.1, 0.2, 0.1, 4.0, 0.1, 0.2, 0.1, 4.0], (WORK // n, n, 1))
-    beside = -0.3 * rng.random((WORK // n, n, 9))
-    r = rng.standard_normal((WORK // n, n, 3))
+    """Processor time per point [s]."""
+    diagonals = np.tile([4.0, 0.1, 0.2, 0.1, 4.0, 0.1, 0.2, 0.1, 4.0], (POINTS_PER_CALL // n, n, 1))
+    couplings = -0.3 * rng.random((POINTS_PER_CALL // n, n, 9))
+    r = rng.standard_normal((POINTS_PER_CALL // n, n, 3))
     start = time.thread_time()
-    solve_each(own, beside, r)
-    return (time.thread_time() - start) / WORK
+    solve_each(diagonals, couplings, r)
+    return (time.thread_time() - start) / POINTS_PER_CALL
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """ns a point of one solve, at each number of points, taken in turns."""
+    """Nanoseconds per point of one solve, at each number of points, in turns."""
     rng = np.random.default_rng(0)
     seconds(COUNTS[0], rng)  # compiles
     times: dict[int, list[float]] = {n: [] for n in COUNTS}

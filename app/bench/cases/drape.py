@@ -1,4 +1,4 @@
-"""The presets of the cloth scene as the scene runs them, picture and all: what real time takes of one core."""
+"""The presets of the cloth scene, with their frames: the share of one core that real time takes."""
 
 import statistics
 import time
@@ -12,7 +12,7 @@ FRAME_INTERVAL = 1 / 60  # [s]
 
 
 def row(preset: str, frames: int) -> dict[str, Any]:
-    """Frames of 1/60 s on one thread, in processor time, so that what else runs on the machine does not count."""
+    """Frames of 1/60 s on one thread, in processor time, which other programs on the machine do not lengthen."""
     scene = ClothScene(check_record(Params, PRESETS[preset]))
     scene.tuner.count = 1
     steps = round(FRAME_INTERVAL / scene.step)
@@ -22,7 +22,7 @@ def row(preset: str, frames: int) -> dict[str, Any]:
         scene.advance(steps)
         scene.frame()
         times.append(time.thread_time() - start)
-    # From when the cloth is on the sphere, and on itself, which costs most.
+    # The last two thirds: the cloth lies on the sphere and on itself, which costs most.
     later = times[frames // 3 :]
     median = statistics.median(later)
     return {

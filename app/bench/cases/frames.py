@@ -1,4 +1,4 @@
-"""Where a frame's time goes, scene by scene: solving, the snapshot, handing it to viser; and what is sent."""
+"""The time of a frame of each scene: solving, making the snapshot, handing it to viser; and the bytes that are sent."""
 
 import statistics
 import time
@@ -7,13 +7,13 @@ from typing import Any
 from app.messages import WorkCount
 from app.scenes import NAMES
 
-FRAME_INTERVAL = 1 / 30  # [s] of simulated time, whatever pace a scene keeps
+FRAME_INTERVAL = 1 / 30  # [s] of simulated time in a frame, for every scene
 
 
 def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]], dict[str, WorkCount]]:
-    """(solve, snapshot, hand over) [s] of processor time of each frame of a scene, and its ledger afterwards.
+    """(solve, snapshot, hand over) [s] of processor time of each frame of a scene, and its work counts at the end.
 
-    Without threads, and without a browser: viser takes what it is handed all the same.
+    Without threads and without a browser: viser takes the messages all the same.
     """
     from app.server.viewer import Viewer
 
@@ -39,7 +39,7 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Medians [ms], their sum as a share of a core at 30 Hz, and bytes a frame to each browser."""
+    """Medians [ms], their sum as a share of one core at 30 Hz, and the data of a frame to each browser [kB]."""
     table = []
     for name in NAMES:
         times, works = run_scene(name, 40 if quick else 300)

@@ -1,7 +1,7 @@
-"""Every integrator: what it declares of itself, and what a step of it costs on the lab's rope.
+"""Every integrator: what it declares, and what a step costs on the lab's rope.
 
-Ropes of 10 and 100 points that have swung for 0.3 s, the lab's parameters, steps of 1/480 s; methods for undamped ropes
-on the same without damping. The least of repeats in turns.
+Ropes of 10 and 100 points that have swung for 0.3 s, with the lab's parameters and steps of 1/480 s; methods for
+undamped ropes run without damping. Times are the least of repeats in turns.
 """
 
 import dataclasses
@@ -15,8 +15,8 @@ from sim.springs.state import State, advance
 
 POINTS = (10, 100)
 STEP = 1 / 480  # [s]
-BEGIN = 144  # steps before the timing
-WORK = 40_000  # evaluations of a point in a timed run
+WARMUP_STEPS = 144  # before the timing
+EVALUATIONS_PER_RUN = 40_000  # of the force on one point, in a timed run
 
 
 class Timed:
@@ -30,12 +30,13 @@ class Timed:
         self.net: Net = net
         self.record = record
         self.state = State.at_rest(net)
-        advance(net, self.state, record, STEP, BEGIN)
-        self.steps = max(10, WORK // (points * record.evals * (10 if record.implicit else 1)))
+        advance(net, self.state, record, STEP, WARMUP_STEPS)
+        self.steps = max(10, EVALUATIONS_PER_RUN // (points * record.evals * (10 if record.implicit else 1)))
         self.least = float("inf")  # [s] a step
         self.evals = 0.0  # a step
 
     def run(self) -> None:
+        """Time some steps, and keep the least time."""
         state = self.state.copy()
         before = state.force_evals
         start = time.perf_counter()

@@ -1,4 +1,4 @@
-"""What particles cost: fire and an oil jet, by number, as the share of one core at 30 Hz."""
+"""The cost of particles: fire and an oil jet, as a share of one core at 30 Hz."""
 
 import statistics
 import time
@@ -10,7 +10,8 @@ import numpy as np
 from sim.particles.fire import Fire
 from sim.particles.jet import Jet
 
-COUNT, RATE = 20_000, 30.0
+COUNT = 20_000  # particles
+RATE = 30.0  # [Hz] frames
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:

@@ -1,12 +1,12 @@
-"""The radial sea: its sum of waves against the same loop in C, what the rings save, and radial against square."""
+"""The radial sea: its sum of waves against the same loop in C, what the rings skip, and radial against square."""
 
 import ctypes
 from typing import Any
 
 import numpy as np
 
-from app.bench.cases.kernels import build
-from app.bench.timing import interleaved
+from app.bench.native.build import build
+from app.bench.timing import median_times
 from sim.ocean import Sea
 from sim.ocean.gerstner import draw_waves
 from sim.ocean.radial import RadialSea
@@ -24,17 +24,17 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
 
 
 def bare_row(repeats: int) -> dict[str, Any]:
-    """64 waves on 16,384 vertices with nothing skipped, median of interleaved repeats on one thread."""
+    """64 waves on 16,384 vertices with nothing skipped, median of repeats in turns, on one thread."""
     n, block = RINGS * SPOKES, SPOKES
     random = np.random.default_rng(0)
     x, y = random.uniform(-50.0, 50.0, (2, n)).astype(np.float32)
     wave = random.uniform(-0.1, 0.1, (WAVES, 11)).astype(np.float32)
     start = (np.arange(RINGS + 1) * block).astype(np.uint64)
     active, weight = np.full(RINGS, WAVES, np.uint64), np.ones(RINGS * WAVES, np.float32)
-    ours, floor = np.zeros((8, n), np.float32), np.zeros((8, n), np.float32)
+    ours, theirs = np.zeros((8, n), np.float32), np.zeros((8, n), np.float32)
     sums = [ours[i] for i in range(8)]
     library = build("radial")
-    pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (x, y, wave, floor)]
+    pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (x, y, wave, theirs)]
 
     def numba() -> None:
         add_waves(x, y, start, active, weight, np.uint64(WAVES), wave.reshape(-1), *sums)
@@ -43,19 +43,19 @@ def bare_row(repeats: int) -> dict[str, Any]:
         if library is not None:
             library.add_waves(n, block, WAVES, *pointers)
 
-    mine, theirs = interleaved((numba, c), repeats)
+    our_time, c_time = median_times((numba, c), repeats)
     scale = 1e9 / (n * WAVES)
-    found = {"name": "sum of 64 waves, 16384 vertices", "ns a pair": mine * scale, "ms": mine * 1e3}
+    found = {"name": "sum of 64 waves, 16384 vertices", "ns a pair": our_time * scale, "ms": our_time * 1e3}
     if library is not None:
-        found |= {"C ns a pair": theirs * scale, "ratio": mine / theirs}
+        found |= {"C ns a pair": c_time * scale, "ratio": our_time / c_time}
     return found
 
 
 def frame_row(repeats: int) -> dict[str, Any]:
-    """A whole frame of the sea on a radial grid: what the rings skip, and what a pair then costs."""
+    """A whole frame of the sea on a radial grid: the share of pairs drawn, and the cost of each of them."""
     sea, grid = default_sea(), RadialGrid(RINGS, SPOKES)
     times = iter(range(1, 10**9))
-    (seconds,) = interleaved((lambda: sea.on(grid, next(times) / 30.0),), repeats)
+    (seconds,) = median_times((lambda: sea.on(grid, next(times) / 30.0),), repeats)
     pairs = len(grid) * WAVES
     share = sea.evaluated / (sea.evaluated + sea.skipped)
     return {
@@ -77,7 +77,7 @@ def against_square(repeats: int) -> list[dict[str, Any]]:
         for field in ("height", "displacement", "slope"):
             getattr(surface, field)
 
-    radial, fft = interleaved((lambda: sea.on(grid, next(times) / 30.0), tile), repeats)
+    radial, fft = median_times((lambda: sea.on(grid, next(times) / 30.0), tile), repeats)
     reach, near = 2e-3 * float(grid.radii[-1]), 2 * float(grid.spacing[0])
     side, cells = square.length, square.length / square.size
     return [
@@ -87,4 +87,5 @@ def against_square(repeats: int) -> list[dict[str, Any]]:
 
 
 def default_sea() -> RadialSea:
+    """64 waves of the JONSWAP spectrum at 8 m/s."""
     return RadialSea(draw_waves(SPECTRA["jonswap"], Conditions(wind_speed=8.0), WAVES))

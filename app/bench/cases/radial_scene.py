@@ -1,4 +1,4 @@
-"""The radial scene: many bodies on its waves, a frame of each preset, and all of it served to one client."""
+"""The radial sea scene: many bodies on its waves, a frame of each preset, and each preset served to one client."""
 
 import math
 import os
@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from app.bench.cases.radial import default_sea
+from app.bench.timing import processor_time
 from app.scenes.radial_sea.bodies import place_of
 from app.scenes.radial_sea.parameters import PRESETS, Params
 from app.scenes.radial_sea.scene import RadialSeaScene
@@ -26,15 +27,10 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
     return [bodies_row(repeats), *scene_rows(repeats), *served_rows(presets, 3.0 if quick else 15.0)]
 
 
-def processor_time(work: Callable[[], Any], repeats: int) -> float:
-    """Median processor time of this thread [s], which a busy machine does not stretch as it does the clock."""
+def median_processor_time(work: Callable[[], Any], repeats: int) -> float:
+    """Median processor time of a call [s], after one call that is not timed."""
     work()
-    taken = []
-    for _ in range(repeats):
-        start = time.thread_time()
-        work()
-        taken.append(time.thread_time() - start)
-    return statistics.median(taken)
+    return statistics.median(processor_time(work) for _ in range(repeats))
 
 
 def bodies_row(repeats: int) -> dict[str, Any]:
@@ -50,13 +46,13 @@ def bodies_row(repeats: int) -> dict[str, Any]:
                            acceleration=at.acceleration)  # fmt: skip
         step(fleet, water, 1 / 60)
 
-    seconds = processor_time(frame, repeats)
+    seconds = median_processor_time(frame, repeats)
     name = f"{BODIES} bodies of {len(hull.faces)} triangles, 1/60 s"
     return {"name": name, "ms": seconds * 1e3, "share of a core": seconds * 60.0}
 
 
 def scene_rows(repeats: int) -> list[dict[str, Any]]:
-    """The scene itself, by preset, without the sending: two steps and a picture every 1/30 s."""
+    """The scene without the server, by preset: two steps and a frame every 1/30 s."""
     found = []
     for preset, changes in PRESETS.items():
         scene = RadialSeaScene(check_record(Params, changes))
@@ -66,7 +62,7 @@ def scene_rows(repeats: int) -> list[dict[str, Any]]:
             scene.frame()
             scene.readings()
 
-        seconds = processor_time(frame, repeats)
+        seconds = median_processor_time(frame, repeats)
         found.append(
             {"name": f"scene: {preset}", "ms": seconds * 1e3, "share of a core": seconds / scene.frame_interval}
         )
@@ -74,7 +70,7 @@ def scene_rows(repeats: int) -> list[dict[str, Any]]:
 
 
 def served_rows(presets: list[str], seconds: float) -> list[dict[str, Any]]:
-    """This process's time while it serves each preset to one client that takes all it is sent, in another process."""
+    """Processor time of this process while it serves each preset to one client, which runs in another process."""
     from app.server.viewer import Viewer
 
     viewer = Viewer("127.0.0.1", 0)
@@ -86,7 +82,7 @@ def served_rows(presets: list[str], seconds: float) -> list[dict[str, Any]]:
             viewer.panel.load(preset)
             time.sleep(3.0)
             if client.poll() is not None or not viewer.audience():
-                raise RuntimeError("the client that was to listen does not")
+                raise RuntimeError("the listening client has ended")
             start, before, shown = time.monotonic(), os.times(), viewer.shown
             time.sleep(seconds)
             after, taken = os.times(), time.monotonic() - start

@@ -1,4 +1,4 @@
-"""How much of one core a rope takes in real time: frames of 1/60 s, each of the steps that fill it."""
+"""The share of one core that a rope takes in real time: frames of 1/60 s, each with the steps that fill it."""
 
 import statistics
 import time
@@ -13,7 +13,7 @@ STEP = 1 / 1200  # [s]
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Of the solver alone, Python around the kernel included: the median frame over 1/60 s, in per cent.
+    """The solver alone, with the Python around the kernel: the median frame over 1/60 s, in per cent.
 
     Quick: ropes of 10 and 200 points.
     """

@@ -1,11 +1,14 @@
-"""Run time and force evaluations against error on five ropes, every integrator a ladder of steps or tolerances.
+"""Run time and force evaluations against error on five ropes, with a ladder of steps or tolerances for every
+integrator.
 
 An error is the largest distance of any point from the reference at the end. The reference is dop853 at a tolerance of
-1e-12, and is taken to be as good as a second method, dopri5, agrees with it; errors within ten times of that are left
-out. A run is one call for the whole motion, kernels compiled, the least of repeats; what diverges is no point of a
-curve. `--peers` runs the rope task of `app.bench.tasks.rope_task`.
+1e-12; its uncertainty is the distance to a second method, dopri5. Errors within ten times of that are left out. A run
+is one call for the whole motion, with compiled kernels; its time is the least of repeats. Runs that diverge are left
+out. With `--peers`, each peer is given the rope task (`app/bench/tasks/rope.py`) and compared with our quickest run.
 """
 
+import dataclasses
+import functools
 import math
 import statistics
 import time
@@ -15,26 +18,35 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.progress import track
 
-from app.bench.tasks.rope_task import peer_rows
+from app.bench.own_runs import RESOLUTION, OwnRuns, largest_distances
+from app.bench.peers.rope import PEERS
+from app.bench.tasks.rope import benchmark_rope, ladders, reference
+from app.bench.timing import in_turns
 from app.experiments.tables import front
 from sim.springs import INTEGRATORS, Net, rope
+from sim.springs.stability import critical_step
 from sim.springs.state import State, advance
 
-__all__ = ["figures", "findings", "peer_rows", "rows"]
-
-LONGEST = 1 / 15  # [s], the first step of every ladder
+LONGEST_STEP = 1 / 15  # [s] of every ladder
 TOLERANCES = tuple(10.0 ** (-0.5 * i) for i in range(4, 23))  # rtol; atol is a hundredth of it
-TIGHT = 1e-12  # rtol of the references
-LEVEL = 2e-3  # [m], where leapfrog is held against the lab's Euler
+REFERENCE_TOLERANCE = 1e-12  # rtol
+MAX_ERROR = 0.5  # [m] a larger one means that the run diverged, or another motion altogether
+COMPARED_ERROR = 2e-3  # [m] at which leapfrog is compared with the lab's Euler
+PEER_STEP = 0.8  # over leapfrog's critical step
+MAX_PEER_TIME = 4.0  # [s] for the repeats of a peer
 
 
 class Problem(NamedTuple):
+    """A rope, and how long it moves."""
+
     name: str
     net: Net
-    seconds: float
+    duration: float  # [s]
 
 
 class Truth(NamedTuple):
+    """The reference solution of a problem at the end, and its uncertainty."""
+
     x: NDArray[np.float64]  # (3, 1, points) [m]
     uncertainty: float  # [m]
 
@@ -48,49 +60,51 @@ PROBLEMS = (
 )
 
 
-def marched(problem: Problem, name: str, rtol: float) -> tuple[NDArray[np.float64], int]:
-    """Positions at the end [m] and force evaluations, steps chosen for a tolerance."""
+def run_adaptive(problem: Problem, name: str, rtol: float) -> tuple[NDArray[np.float64], int]:
+    """Positions at the end (3, 1, points) [m] and force evaluations, in steps chosen for a tolerance; NaN: diverged."""
     net, march = problem.net, INTEGRATORS[name].march
     assert march is not None
     xs, vs = np.zeros((2, 2, net.x0.size))
-    start, times, p = net.x0.reshape(-1).copy(), np.array([0.0, problem.seconds]), net.kernel_view(1e-3)
+    start, times, p = net.x0.reshape(-1).copy(), np.array([0.0, problem.duration]), net.kernel_view(1e-3)
     evals, _, filled, _ = march(
         start, np.zeros(net.x0.size), times, rtol, 0.01 * rtol, p, False, xs, vs, np.zeros((2, 2))
     )
     return xs[1].reshape(net.x0.shape) if filled == 2 else np.full(net.x0.shape, np.nan), evals
 
 
-def stepped(problem: Problem, name: str, steps: int) -> tuple[NDArray[np.float64], int]:
+def run_steps(problem: Problem, name: str, steps: int) -> tuple[NDArray[np.float64], int]:
     """The same in equal steps."""
     state = State.at_rest(problem.net)
-    advance(problem.net, state, INTEGRATORS[name], problem.seconds / steps, steps)
+    advance(problem.net, state, INTEGRATORS[name], problem.duration / steps, steps)
     return state.x, state.force_evals
 
 
 def truth_of(problem: Problem) -> Truth:
-    one, other = (marched(problem, name, TIGHT)[0] for name in ("dop853", "dopri5"))
+    """The reference solution."""
+    one, other = (run_adaptive(problem, name, REFERENCE_TOLERANCE)[0] for name in ("dop853", "dopri5"))
     return Truth(one, float(np.linalg.norm(one - other, axis=0).max()))
 
 
 def methods_for(net: Net) -> list[str]:
+    """The integrators that can run this net."""
     return [name for name, record in INTEGRATORS.items() if not (record.undamped_only and net.is_damped)]
 
 
-def ladder(problem: Problem, name: str, truth: Truth, most: int, repeats: int) -> list[dict[str, Any]]:
-    """Rungs from coarse to fine, until `most` force evaluations or the reference's own error."""
+def ladder(problem: Problem, name: str, truth: Truth, max_evaluations: int, repeats: int) -> list[dict[str, Any]]:
+    """Rungs from coarse to fine, up to `max_evaluations` of the force, or to the uncertainty of the reference."""
     found = []
     adaptive = INTEGRATORS[name].adaptive
-    coarsest = math.ceil(problem.seconds / LONGEST)
+    coarsest = math.ceil(problem.duration / LONGEST_STEP)
     for i in range(len(TOLERANCES)):
         setting = TOLERANCES[i] if adaptive else coarsest * 2**i
-        run = marched if adaptive else stepped
+        run = run_adaptive if adaptive else run_steps
         with np.errstate(all="ignore"):
             x, evals = run(problem, name, setting)  # type: ignore[arg-type]
             error = float(np.linalg.norm(x - truth.x, axis=0).max())
-        if evals > most or error < 10.0 * truth.uncertainty:
+        if evals > max_evaluations or error < RESOLUTION * truth.uncertainty:
             break
-        if not error < 0.5:
-            continue  # diverged, or another motion altogether
+        if not error < MAX_ERROR:
+            continue
         times = []
         while len(times) < repeats and sum(times) < 0.05 * repeats:
             start = time.perf_counter()
@@ -100,7 +114,7 @@ def ladder(problem: Problem, name: str, truth: Truth, most: int, repeats: int) -
             {
                 "problem": problem.name,
                 "method": name,
-                "step [s]": None if adaptive else problem.seconds / setting,
+                "step [s]": None if adaptive else problem.duration / setting,
                 "rtol": setting if adaptive else None,
                 "force evaluations": evals,
                 "time [ms]": 1e3 * statistics.median(times),
@@ -113,7 +127,7 @@ def ladder(problem: Problem, name: str, truth: Truth, most: int, repeats: int) -
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Every method's ladder on every problem; quick: shorter ladders, fewer repeats."""
+    """The ladder of every method on every problem; quick: shorter ladders, fewer repeats."""
     table = []
     truths = {problem.name: truth_of(problem) for problem in PROBLEMS}
     pairs = [(problem, name) for problem in PROBLEMS for name in methods_for(problem.net)]
@@ -123,7 +137,7 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
 
 
 def evaluations_at(table: list[dict[str, Any]], method: str, error: float) -> float:
-    """Force evaluations a method needs for an error [m], between rungs by their logarithms; NaN beyond them."""
+    """Force evaluations that a method needs for an error [m], interpolated in logarithms; NaN outside its ladder."""
     own = sorted((row["error [m]"], row["force evaluations"]) for row in table if row["method"] == method)
     if not own or not own[0][0] <= error <= own[-1][0]:
         return math.nan
@@ -132,7 +146,7 @@ def evaluations_at(table: list[dict[str, Any]], method: str, error: float) -> fl
 
 
 def findings(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """What the ladders say: the reference's own error, the front, and leapfrog against the lab's Euler."""
+    """What the ladders show: the uncertainty of the reference, the front, and leapfrog against the lab's Euler."""
     found = []
     for problem in PROBLEMS:
         own = [row for row in table if row["problem"] == problem.name]
@@ -144,14 +158,14 @@ def findings(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
                     "on the front of time against error": ", ".join(front(own)),
                 }
             )
-            leapfrog, euler = (evaluations_at(own, name, LEVEL) for name in ("leapfrog", "symplectic_euler"))
+            leapfrog, euler = (evaluations_at(own, name, COMPARED_ERROR) for name in ("leapfrog", "symplectic_euler"))
             if math.isfinite(euler / leapfrog):
-                found[-1][f"Euler's force evaluations over leapfrog's at {LEVEL:g} m"] = euler / leapfrog
+                found[-1][f"Euler's force evaluations over leapfrog's at {COMPARED_ERROR:g} m"] = euler / leapfrog
     return found
 
 
 def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
-    """A work-precision diagram of each problem by file name."""
+    """A work-precision diagram of each problem, by file name."""
     from app.experiments.tables import work_precision
 
     drawn = {}
@@ -159,5 +173,46 @@ def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
         own = [row for row in table if row["problem"] == problem.name]
         if own:
             name = problem.name.split(",")[0].replace(" ", "_")
-            drawn[f"rope_{name}"] = work_precision(own, f"Rope of 10 points, {problem.name}, {problem.seconds:g} s")
+            drawn[f"rope_{name}"] = work_precision(own, f"Rope of 10 points, {problem.name}, {problem.duration:g} s")
     return drawn
+
+
+def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
+    """Every installed peer and our quickest run at its error or less, timed in turns; quick: two sizes.
+
+    Times are medians of repeats, for the whole second. A peer that damps along the links only is compared with the
+    reference of that damping model.
+    """
+    table: list[dict[str, Any]] = []
+    tasks = [(links, peer) for links in ((16, 128) if quick else (16, 128, 1024)) for peer in PEERS]
+    own_runs: dict[tuple[int, str], tuple[Net, OwnRuns]] = {}
+    for links, peer in track(tasks, "rope peers", transient=True):
+        row: dict[str, Any] = {"task": f"R({links})", "peer": peer.name, "damping": peer.damping}
+        table.append(row)
+        if reason := peer.reason_left_out(links):
+            row["note"] = reason
+            continue
+        if (links, peer.damping) not in own_runs:
+            net = dataclasses.replace(benchmark_rope(links), damping_model=peer.damping)
+            own_runs[links, peer.damping] = net, OwnRuns(ladders(net), reference(net))
+        net, ours = own_runs[links, peer.damping]
+        theirs = peer.make(net, PEER_STEP * critical_step(net, "leapfrog"))
+        limits = largest_distances((theirs(0.5), theirs(1.0)), ours.reference)
+        row |= {"error at 0.5 s [m]": limits[0], "error at 1 s [m]": limits[1]}
+        best = ours.quickest(limits)
+        whole = functools.partial(theirs, 1.0)
+        once = in_turns([whole], 1)[0][0]
+        repeats = max(1, min(5 if quick else 15, int(MAX_PEER_TIME / once)))
+        peer_times, *our_times = in_turns([whole, *([] if best is None else [best.run])], repeats)
+        row["peer [ms]"] = 1e3 * statistics.median(peer_times)
+        if best is None:
+            row["note"] = f"no step of ours is as exact; the reference is good to {ours.reference.uncertainty:.1e} m"
+            continue
+        row |= {
+            "ours": best.method,
+            "with": best.setting,
+            "ours [ms]": 1e3 * statistics.median(our_times[0]),
+            "our error at 1 s [m]": ours.result(best).errors[1],
+            "times as long as ours": statistics.median(peer_times) / statistics.median(our_times[0]),
+        }
+    return table

@@ -1,13 +1,13 @@
-"""What a frame of the square sea costs beside the bare transforms it needs, interleaved in one run."""
+"""A frame of the square sea against the bare transforms that it needs, in turns."""
 
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from app.bench.installed import is_installed
-from app.bench.peers.sea_peers import PEERS, student
-from app.bench.timing import interleaved
+from app.bench.peers.record import is_installed
+from app.bench.peers.sea import PEERS, student
+from app.bench.timing import median_times
 from sim.ocean import Sea
 from sim.ocean.transforms import Transforms
 
@@ -27,7 +27,7 @@ def rows(quick: bool) -> list[dict[str, Any]]:
 
 
 def peer_rows(quick: bool) -> list[dict[str, Any]]:
-    """Height and displacement at a new time, by us and by each peer that is installed, in turn.
+    """Height and displacement at a new time, by us and by each peer that is installed, in turns.
 
     ms: median. times as long: as our single precision. error: the largest difference from a double-precision frame over
     the standard deviation of the heights; empty for a peer that draws another sea.
@@ -36,12 +36,12 @@ def peer_rows(quick: bool) -> list[dict[str, Any]]:
     for size in (256,) if quick else (256, 512):
         sea = Sea(size=size, length=500.0, spectrum="phillips")
         truth = student(Sea(size=size, length=500.0, spectrum="phillips", precision="double"))
-        there = [peer for peer in PEERS if is_installed(peer.package)]
+        installed = [peer for peer in PEERS if is_installed(peer.package)]
         frames: dict[str, Callable[[float], Any]] = {"ours": lambda t, sea=sea: ours_at(sea, t)}
-        frames |= {peer.name: peer.make(sea) for peer in there}
+        frames |= {peer.name: peer.make(sea) for peer in installed}
         exact = truth(5.0)
         errors = {name: error(frame(5.0), exact) for name, frame in frames.items()}
-        times = interleaved(tuple(map(running, frames.values())), 12 if quick else 60)
+        times = median_times(tuple(map(running, frames.values())), 12 if quick else 60)
         for name, seconds in zip(frames, times, strict=True):
             found.append(
                 {
@@ -52,17 +52,18 @@ def peer_rows(quick: bool) -> list[dict[str, Any]]:
                     "error": errors[name],
                 }
             )
-        found += [{"peer": f"{p.name} (not installed)", "size": size} for p in PEERS if p not in there]
+        found += [{"peer": f"{p.name} (not installed)", "size": size} for p in PEERS if p not in installed]
     return found
 
 
 def running(frame: Callable[[float], Any]) -> Callable[[], Any]:
-    """Call by call, the frame at ever new times."""
+    """A call that computes the frame at a new time each time."""
     times = iter(range(1, 10**9))
     return lambda: frame(next(times) / 60.0)
 
 
 def ours_at(sea: Sea, t: float) -> tuple[np.ndarray, ...]:
+    """Height and both displacements, (N, N) [m] each."""
     surface = sea.surface(t)
     displacement = surface.displacement
     return surface.height, displacement[..., 0], displacement[..., 1]
@@ -103,8 +104,8 @@ def row(name: str, size: int, fields: tuple[str, ...], repeats: int) -> dict[str
     frame()
     count = sea.transforms.count - before
     bare = bare_transforms(sea, count)
-    ours, floor = interleaved((frame, bare), repeats)
-    return {"name": name, "size": size, "ms": ours * 1e3, "ratio_to_fft": ours / floor, "transforms": count}
+    ours, transforms = median_times((frame, bare), repeats)
+    return {"name": name, "size": size, "ms": ours * 1e3, "ratio_to_fft": ours / transforms, "transforms": count}
 
 
 def bare_transforms(sea: Sea, count: int) -> Callable[[], None]:

@@ -1,9 +1,9 @@
-"""Error against time of the square sea: over its size, in both precisions, against a plain sum of waves; and of a
-height query, by three ways to ask.
+"""Error against time of the square sea, over its size, in both precisions, against a plain sum of waves; and of a
+height query in three ways.
 
-The reference is the same sea (amplitudes are tied to wavenumbers) at a size beyond the ladder, in double precision.
-Errors are rms over the rms height, so that they compare between seas. The second sea is smoothed by the lab's low-pass:
-there the transforms meet rounding, where the wind sea's error is the waves that a grid leaves out.
+The reference is the same sea (its amplitudes belong to wavenumbers) at twice the largest size, in double precision.
+Errors are rms over the rms height, so that seas can be compared. The error of the wind sea is the waves that a grid
+leaves out. The second sea is smoothed by the lab's low-pass, so that its error is the rounding of the transforms.
 """
 
 import time
@@ -18,11 +18,12 @@ from sim.ocean import Sea
 from sim.ocean.query import sample
 from sim.ocean.wave_sum import add_waves
 
-LENGTH, T = 500.0, 5.0  # [m], [s]
-SIDE = 64  # points a side that every method is asked for
+LENGTH = 500.0  # [m] of the tile
+T = 5.0  # [s]
+COMPARED_SIDE = 64  # points a side at which the methods are compared
 SEAS = {"wind sea": 0.0, "sea without waves below 25 m": 4.0}  # low-pass l [m]
-ALL_FIELDS = ("height", "displacement", "slope", "strain")  # eight numbers a point, as the sum of waves gives
-POINTS = 256
+ALL_FIELDS = ("height", "displacement", "slope", "strain")  # eight numbers a point, as many as the sum of waves gives
+QUERY_POINTS = 256
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
@@ -32,7 +33,7 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
     found = []
     for name, low_pass in SEAS.items():
         finest = sea_of(2 * sizes[-1], "double", low_pass)
-        truth = np.array(finest.surface(T).height[:: finest.size // SIDE, :: finest.size // SIDE])
+        truth = np.array(finest.surface(T).height[:: finest.size // COMPARED_SIDE, :: finest.size // COMPARED_SIDE])
         cases = [(f"transforms, {p}", n, *by_transforms(n, p, low_pass)) for p in ("single", "double") for n in sizes]
         counts = (16, 64, 256, 1024) if quick else (16, 64, 256, 1024, 4096, 16384)
         cases += [("sum of the highest waves", n, by_sum(finest, n), nothing) for n in counts]
@@ -44,17 +45,18 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
 
 
 def sea_of(size: int, precision: str, low_pass: float) -> Sea:
+    """The sea at one size [points a side] and precision. low_pass: [m]."""
     return Sea(size=size, length=LENGTH, low_pass=low_pass, precision=precision)
 
 
 def nothing() -> None:
-    """To be done before a run that needs nothing done."""
+    """The preparation of a run that needs none."""
 
 
 def scored(
     run: Callable[[], np.ndarray], truth: np.ndarray, repeats: int, before: Callable[[], Any] = nothing
 ) -> dict[str, float]:
-    """The least time [ms], what is done before each run left out, and the rms error over the rms height."""
+    """The least time of a run [ms], without its preparation `before`, and the rms error over the rms height."""
     error = float(np.sqrt(((run() - truth) ** 2).mean() / (truth**2).mean()))
     least = np.inf
     for _ in range(repeats):
@@ -66,20 +68,22 @@ def scored(
 
 
 def by_transforms(size: int, precision: str, low_pass: float) -> tuple[Callable[[], np.ndarray], Callable[[], Any]]:
-    """All fields on the whole grid, the heights at SIDE x SIDE of its points; and what makes T a new time again."""
+    """(run, preparation). The run computes all fields on the whole grid and returns heights at the compared points; the
+    preparation asks for another time, so that T is a new time again.
+    """
     sea = sea_of(size, precision, low_pass)
 
     def run() -> np.ndarray:
         surface = sea.surface(T)
         for field in ALL_FIELDS:
             getattr(surface, field)
-        return surface.height[:: size // SIDE, :: size // SIDE]
+        return surface.height[:: size // COMPARED_SIDE, :: size // COMPARED_SIDE]
 
     return run, lambda: sea.surface(0.0).height
 
 
 def by_sum(sea: Sea, count: int) -> Callable[[], np.ndarray]:
-    """The `count` highest waves of the sea, added at SIDE x SIDE points in single precision."""
+    """The `count` highest waves of the sea, added at COMPARED_SIDE x COMPARED_SIDE points in single precision."""
     h0 = sea.amplitudes_at(0.0)
     order = np.argsort(-np.abs(h0), axis=None)[:count]
     i, j = np.unravel_index(order, h0.shape)
@@ -91,7 +95,7 @@ def by_sum(sea: Sea, count: int) -> Callable[[], np.ndarray]:
         kx / (2.0 * np.pi), ky / (2.0 * np.pi), turns - np.rint(turns), a, -ex * a, -ey * a, -kx * a, -ky * a,
         -ex * kx * a, -ey * ky * a, -ex * ky * a,
     ]).astype(np.float32).reshape(-1)  # fmt: skip
-    x = np.arange(SIDE) * LENGTH / SIDE
+    x = np.arange(COMPARED_SIDE) * LENGTH / COMPARED_SIDE
     X, Y = (grid.astype(np.float32).ravel() for grid in np.meshgrid(x, x, indexing="ij"))
     start, active = np.array([0, X.size], np.uint64), np.array([count], np.uint64)
     weight, sums = np.ones(count, np.float32), np.zeros((8, X.size), np.float32)
@@ -99,20 +103,20 @@ def by_sum(sea: Sea, count: int) -> Callable[[], np.ndarray]:
     def run() -> np.ndarray:
         sums[...] = 0.0
         add_waves(X, Y, start, active, weight, np.uint64(count), wave, *(sums[m] for m in range(8)))
-        return sums[0].reshape(SIDE, SIDE)
+        return sums[0].reshape(COMPARED_SIDE, COMPARED_SIDE)
 
     return run
 
 
 def query_rows(sizes: tuple[int, ...], repeats: int) -> list[dict[str, Any]]:
-    """The height above POINTS places of a sea whose short waves are damped, the fields being there already."""
-    points = np.random.default_rng(0).uniform(0.0, LENGTH, (POINTS, 2))
+    """The height above some points of a sea without short waves, with the fields computed already."""
+    points = np.random.default_rng(0).uniform(0.0, LENGTH, (QUERY_POINTS, 2))
     low_pass = SEAS["sea without waves below 25 m"]
     truth = sea_of(sizes[-1], "double", low_pass).height_at(points, T, exact=True)[0]
     found = []
     for size in (32, *sizes):
         sea = sea_of(size, "single", low_pass)
-        surface, cell, above = sea.surface(T), LENGTH / size, np.empty(POINTS)
+        surface, cell, above = sea.surface(T), LENGTH / size, np.empty(QUERY_POINTS)
 
         def straight(surface=surface, cell=cell, above=above) -> np.ndarray:
             sample(points, surface.height, cell, above)
@@ -127,7 +131,7 @@ def query_rows(sizes: tuple[int, ...], repeats: int) -> list[dict[str, Any]]:
         for method, way in ways.items():
             residual = {} if way is straight else {"residual [m]": residual_of(sea, points, "summed" in method)}
             found.append(
-                {"task": f"height above {POINTS} points", "method": method, "size": size}
+                {"task": f"height above {QUERY_POINTS} points", "method": method, "size": size}
                 | scored(way, truth, 1 if "summed" in method else repeats)
                 | residual
             )
@@ -135,11 +139,12 @@ def query_rows(sizes: tuple[int, ...], repeats: int) -> list[dict[str, Any]]:
 
 
 def residual_of(sea: Sea, points: np.ndarray, exact: bool) -> float:
+    """The largest residual [m] of a height query."""
     return float(sea.height_at(points, T, exact=exact)[1].max())
 
 
 def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
-    """Error over time, a panel a task and a curve a method; each point says its size."""
+    """Error over time: a panel for each task, a curve for each method; each point is labelled with its size."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(14.0, 4.6), layout="constrained")

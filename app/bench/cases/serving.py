@@ -1,4 +1,4 @@
-"""The lab as served: until it answers, until a browser draws, and the processor time of each state of a scene."""
+"""The lab as it is served: time to its first answer and first drawing, and processor time in each state of a scene."""
 
 import importlib.util
 import os
@@ -35,7 +35,7 @@ def answer_time() -> float:
 
 
 def processor_share(seconds: float) -> float:
-    """Per cent of one core that this process takes over a while."""
+    """Per cent of one core that this process takes during `seconds` [s]."""
     before = os.times()
     time.sleep(seconds)
     after = os.times()
@@ -62,7 +62,7 @@ def scene_rows(name: str, browser: Any, seconds: float) -> list[dict[str, Any]]:
         viewer.loop.commands.put(Pause())
         page.wait_for_timeout(1000)
         found.append({"what": f"{name}: {STATES[1]}", "per cent of a core": processor_share(seconds)})
-        # From the start each time: a rope that hangs still takes less.
+        # Each state begins with a reset, because a rope that hangs still takes less time.
         for state in STATES[2:]:
             if state == STATES[3]:
                 viewer.panel.toggle_plots()
@@ -77,9 +77,9 @@ def scene_rows(name: str, browser: Any, seconds: float) -> list[dict[str, Any]]:
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Needs playwright and Chromium for the rows with a browser; that browser renders in software.
+    """Rows with a browser need playwright and Chromium, which renders in software.
 
-    Quick: no browser, the rope alone, one answer.
+    Quick: no browser, the rope only, one start.
     """
     answers = [answer_time() for _ in range(1 if quick else 7)]
     table: list[dict[str, Any]] = [{"what": "the command to the page's answer", "s": statistics.median(answers)}]

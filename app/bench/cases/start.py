@@ -1,4 +1,4 @@
-"""How long a fresh interpreter takes until a rope moves, with compiled kernels in the cache and without."""
+"""Time from a new interpreter to a moving rope, with compiled kernels in the cache and without."""
 
 import os
 import statistics
@@ -20,7 +20,7 @@ TIMED = "import time; start = time.perf_counter(); {}; print(time.perf_counter()
 
 
 def measured(code: str, cache: str | None = None) -> float:
-    """Seconds that `code` takes in a fresh interpreter; cache: a folder to keep kernels in instead of the user's."""
+    """Time of `code` in a new interpreter [s]. cache: a folder for kernels instead of the user's."""
     environment = dict(os.environ) if cache is None else {**os.environ, "SPRINGTIDE_CACHE": cache}
     done = subprocess.run(
         [sys.executable, "-c", TIMED.format(code)], env=environment, capture_output=True, text=True, check=True
@@ -29,7 +29,7 @@ def measured(code: str, cache: str | None = None) -> float:
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Seconds with a warm cache, the median of repeats after one that fills it, and with an empty one.
+    """Times with a warm cache (the median of repeats, after one that fills it) and with an empty cache.
 
     Quick: one run with the cache as it is.
     """

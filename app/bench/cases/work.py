@@ -1,4 +1,4 @@
-"""The work counts of each scene as it opens: what a few seconds of it did, and what they did not have to do."""
+"""The work counts of each scene after some seconds with its default parameters: what was done and what was skipped."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from app.scenes import NAMES
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Rows of scene, what, done, skipped, skipped [%]; modules count for the process, whatever scenes it has opened."""
+    """Rows of scene, what, done, skipped, skipped [%]. Modules are counted for the process and not for the scene."""
     table = []
     for name in NAMES:
         _, counts = run_scene(name, 20 if quick else 150)

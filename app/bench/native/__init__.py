@@ -1,1 +1,1 @@
-"""The same loops in C, as a floor."""
+"""The loops of our kernels in C, to compare with."""

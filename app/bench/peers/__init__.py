@@ -1,1 +1,1 @@
-"""Other programs given the same tasks."""
+"""Peers: other programs that are given the same tasks. A module for each task and kind of program."""

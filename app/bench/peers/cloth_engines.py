@@ -1,6 +1,7 @@
-"""The cloth as physics engines are given it: the same particles, springs and pins, each engine's own method.
+"""The cloth in physics engines: the same particles, springs and pins, and each engine's own method.
 
-An engine's springs damp along themselves only, or not at all; so little is damped here that the error hardly tells.
+Most engines damp along the springs only, or not at all. The damping of this task is so small that it hardly changes the
+error.
 """
 
 import math
@@ -10,12 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.peers.cloth_peers import Peer, Run
+from app.bench.peers.cloth import MAX_ROWS
+from app.bench.peers.record import Peer, Run
 from sim.springs import Net
 
 
 def particles(net: Net) -> Iterator[tuple[tuple[float, float, float], float]]:
-    """Each particle's place [m] and mass [kg], 0 where it is pinned, row by row."""
+    """Position [m] and mass [kg] of each particle, row by row; the mass of a pinned one is 0."""
     for place, weight in zip(net.x0.reshape(3, -1).T, net.inverse_masses(), strict=True):
         yield (float(place[0]), float(place[1]), float(place[2])), net.mass if weight else 0.0
 
@@ -41,7 +43,7 @@ def newton_springs(solver: str, **options: Any) -> Callable[[Net, float], Run]:
         for place, mass in particles(net):
             builder.add_particle(place, (0.0, 0.0, 0.0), mass, radius=0.0)
         for i, j, _, k, b in springs(net):
-            builder.add_spring(i, j, k, b, 0.0)  # at rest as it starts, as ours
+            builder.add_spring(i, j, k, b, 0.0)  # rest length: the distance at the start, as ours
         builder.color()
         model = builder.finalize(device="cpu")
         model.particle_grid = None  # particles do not touch each other
@@ -65,15 +67,15 @@ def newton_springs(solver: str, **options: Any) -> Callable[[Net, float], Run]:
 def pypbd_springs(net: Net, h: float) -> Run:
     """PositionBasedDynamics: extended position-based distance constraints, each step in five parts; undamped.
 
-    On one thread: its two wait for each other after every colour of links, twice as slow at best, and hundreds of
-    times where a core is lent to another program.
+    On one thread. Two threads wait for each other after every colour of links: that is twice as slow at best, and
+    hundreds of times slower while another program uses a core.
     """
-    os.environ["OMP_NUM_THREADS"] = "1"  # read as it is loaded
+    os.environ["OMP_NUM_THREADS"] = "1"  # pypbd reads it when it is loaded
     import pypbd  # type: ignore[import-not-found]
 
     simulation = pypbd.Simulation.getCurrent()
     simulation.initDefault()
-    turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # it pulls along -y, by 9.81 m/s^2
+    turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # gravity is 9.81 m/s^2 along -y there
 
     def run(seconds):
         model = pypbd.SimulationModel()
@@ -130,13 +132,29 @@ def mujoco_tendons(net: Net, h: float) -> Run:
     return run
 
 
+ENGINE_STEP = 1 / 600  # [s] of engines whose step is not limited by stability
+
 ENGINES = (
-    Peer("newton SemiImplicit", "newton", newton_springs("SolverSemiImplicit"), damping="axial"),
-    Peer("newton VBD, 10 iterations", "newton", newton_springs("SolverVBD", iterations=10), 1 / 600, "axial"),
-    Peer("newton XPBD, 10 iterations", "newton", newton_springs("SolverXPBD", iterations=10), 1 / 600, "axial"),
-    Peer("pypbd XPBD, one thread", "pypbd", pypbd_springs, 1 / 600),
-    Peer("mujoco Euler, tendons", "mujoco", mujoco_tendons, damping="axial", largest=64),
+    Peer("newton SemiImplicit", "newton", newton_springs("SolverSemiImplicit"), "axial", MAX_ROWS),
+    Peer(
+        "newton VBD, 10 iterations",
+        "newton",
+        newton_springs("SolverVBD", iterations=10),
+        "axial",
+        MAX_ROWS,
+        ENGINE_STEP,
+    ),
+    Peer(
+        "newton XPBD, 10 iterations",
+        "newton",
+        newton_springs("SolverXPBD", iterations=10),
+        "axial",
+        MAX_ROWS,
+        ENGINE_STEP,
+    ),
+    Peer("pypbd XPBD, one thread", "pypbd", pypbd_springs, "isotropic", MAX_ROWS, ENGINE_STEP),
+    Peer("mujoco Euler, tendons", "mujoco", mujoco_tendons, "axial", 64),
 )
 
-# What cannot be given this task, and why.
+# Programs that cannot be given this task, and why.
 OTHER_TASKS = {"mujoco 2-D flex": "its sheets are elastic triangles or edges of fixed length, not springs"}

@@ -4,33 +4,35 @@ import numpy as np
 import pytest
 
 from app.bench.cases import cloth
-from app.bench.installed import is_installed
-from app.bench.peers import cloth_engines, cloth_peers, cloth_rivals
-from app.bench.tasks import cloth_task
+from app.bench.own_runs import OwnRuns, largest_distances
+from app.bench.peers import cloth as cloth_peers
+from app.bench.peers import cloth_engines
+from app.bench.peers.record import is_installed
+from app.bench.tasks import cloth as cloth_task
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.stability import critical_step
 from tests.sim.springs.reference import exact
 
 
 def test_the_reference_is_as_good_as_it_says():
-    net = cloth_task.task_cloth(8)
+    net = cloth_task.benchmark_cloth(8)
     truth = cloth_task.reference(net)
     assert truth.uncertainty < 1e-10
-    assert np.abs(truth.x - exact(net, cloth_task.END)[0]).max() < 1e-10
+    assert np.abs(truth.positions[0] - exact(net, cloth_task.DURATION)[0]).max() < 1e-10
 
 
 def test_a_rung_that_would_take_too_long_is_left_out_and_said_so():
-    net = cloth_task.task_cloth(8)
+    net = cloth_task.benchmark_cloth(8)
     truth = cloth_task.reference(net)
     explicit = cloth.ladder(net, "rk4", truth, 0.0, 0.0)
     assert [row["left out"] for row in explicit] == ["over 0 s"]
     assert explicit[0]["error [m]"] is None
     # A solver that iterates may well take less for more steps: each of its rungs is asked.
-    assert len(cloth.ladder(net, "implicit_midpoint", truth, 0.0, 0.0)) == len(cloth_task.LONG)
+    assert len(cloth.ladder(net, "implicit_midpoint", truth, 0.0, 0.0)) == len(cloth_task.STEP_COUNTS)
 
 
 def test_errors_the_reference_cannot_tell_are_left_out():
-    net = cloth_task.task_cloth(8)
+    net = cloth_task.benchmark_cloth(8)
     truth = cloth_task.reference(net)._replace(uncertainty=1e-7)
     rows = cloth.ladder(net, "rk4", truth, math.inf, 0.0)
     points = [row for row in rows if cloth.is_point(row)]
@@ -40,7 +42,7 @@ def test_errors_the_reference_cannot_tell_are_left_out():
 
 
 def test_a_ladder_counts_one_run_s_evaluations_and_falls_at_its_order():
-    net = cloth_task.task_cloth(8)
+    net = cloth_task.benchmark_cloth(8)
     rows = cloth.ladder(net, "leapfrog", cloth_task.reference(net), math.inf, 0.0)
     assert [row["force evaluations"] for row in rows] == [row["steps"] + 1 for row in rows]
     first, last = rows[2], rows[-1]
@@ -63,25 +65,25 @@ def test_findings_say_what_leads_and_what_was_left_out():
 
 
 def test_our_own_run_at_a_peer_s_error_is_within_it():
-    net = cloth_task.task_cloth(8)
-    tried = cloth_rivals.Tried(net, cloth_task.reference(net))
+    net = cloth_task.benchmark_cloth(8)
+    ours = OwnRuns(cloth_task.ladders(net), cloth_task.reference(net))
     for limit in (1e-2, 1e-6, 1e-9):
-        found = tried.cheapest(limit)
+        found = ours.quickest((limit,))
         assert found is not None
-        assert cloth_task.error_of(cloth_task.run(net, found.name, found.steps).x, tried.truth) <= limit
-    assert tried.cheapest(0.0) is None
+        assert largest_distances(found.run(), ours.reference)[0] <= limit
+    assert ours.quickest((0.0,)) is None
 
 
 def test_the_numpy_peer_takes_the_steps_of_our_symplectic_euler():
-    net = cloth_task.task_cloth(8)
+    net = cloth_task.benchmark_cloth(8)
     steps = 200
-    theirs = cloth_peers.numpy_slices(net, cloth_task.END / steps)(cloth_task.END)
+    theirs = cloth_peers.numpy_slices(net, cloth_task.DURATION / steps)(cloth_task.DURATION)
     assert np.abs(theirs - cloth_task.run(net, "symplectic_euler", steps).x).max() < 1e-12
 
 
 @pytest.mark.parametrize("damping", ["isotropic", "axial"])
 def test_engines_are_given_our_springs(damping):
-    net = cloth_task.task_cloth(6, damping)
+    net = cloth_task.benchmark_cloth(6, damping)
     rng = np.random.default_rng(1)
     x, v = net.x0 + 0.05 * rng.standard_normal(net.x0.shape), rng.standard_normal(net.x0.shape)
     ours = np.empty_like(x)
@@ -104,7 +106,7 @@ def test_engines_are_given_our_springs(damping):
 def test_engines_that_are_installed_solve_the_same_cloth(peer):
     if not is_installed(peer.package):
         pytest.skip(f"{peer.package} is not installed")
-    net = cloth_task.task_cloth(8, peer.damping)
-    h = peer.step or cloth_rivals.PEER_STEP * critical_step(net, "leapfrog")
-    error = cloth_task.error_of(peer.make(net, h)(cloth_task.END), cloth_task.reference(net))
-    assert error < 0.02
+    net = cloth_task.benchmark_cloth(8, peer.damping)
+    h = peer.step or cloth.PEER_STEP * critical_step(net, "leapfrog")
+    theirs = peer.make(net, h)(cloth_task.DURATION)
+    assert largest_distances((theirs,), cloth_task.reference(net))[0] < 0.02

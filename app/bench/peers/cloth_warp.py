@@ -1,4 +1,4 @@
-"""The cloth's step for warp, which reads a kernel's types from its annotations and its source from a file."""
+"""The step of the cloth in warp, which reads the types of a kernel from annotations and its source from a file."""
 
 from typing import Any
 

@@ -1,22 +1,17 @@
-"""The square sea as a user of something else would write it: height and two displacements at a new time.
+"""The square sea as a user of another program would write it: height and two displacements at a new time.
 
-A peer's `make(sea)` gives frame(t) -> (3, N, N), or None where it draws another sea and can only be timed.
+A peer's `make(sea)` gives frame(t) -> (3, N, N) [m], or None where it draws another sea and can only be timed.
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from app.bench.peers.record import Peer
 from sim.ocean import Sea
 
 Frame = Callable[[float], Any]
-
-
-class Peer(NamedTuple):
-    name: str
-    package: str
-    make: Callable[[Sea], Frame]
 
 
 def wave_numbers(sea: Sea) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -34,7 +29,7 @@ def mirrored(h0: np.ndarray) -> np.ndarray:
 
 
 def student(sea: Sea) -> Frame:
-    """Complex double arrays and full inverse transforms, the textbook's formulas as they stand."""
+    """Complex double arrays and full inverse transforms: the formulas of the textbook, as a student writes them."""
     h0 = sea.amplitudes_at(0.0)
     other = mirrored(h0)
     x, y, omega = wave_numbers(sea)

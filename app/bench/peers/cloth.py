@@ -1,32 +1,22 @@
-"""The cloth as a user of something else would write it.
+"""The cloth as a user of another program would write it.
 
-A peer's `make(net, h)` gives run(seconds) -> x (3, rows, cols). All take symplectic Euler steps h [s] but where a peer
-has its own method and step. What has to be compiled is compiled by the first run, which is not timed.
+All take symplectic Euler steps h [s], except a peer that has its own method and step.
 """
 
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.bench.peers.record import Peer, Run
 from sim.springs import Net
 
-Run = Callable[[float], NDArray[np.float64]]
-
-
-class Peer(NamedTuple):
-    name: str
-    package: str
-    make: Callable[[Net, float], Run]
-    step: float = 0.0  # [s] of its own, 0: the step given
-    damping: str = "isotropic"  # or "axial": the model it can express
-    largest: int = 128  # n, beyond which a run takes minutes
+MAX_ROWS = 128  # a run with more takes minutes
 
 
 def ends(di: int, dj: int) -> tuple[Any, Any]:
-    """Slices of the first and the second ends of a family's links."""
+    """Slices of a (3, rows, cols) array: the first and the second ends of a family's links."""
     rows = slice(None, -di or None), slice(di, None)
     cols = (slice(None, -dj or None), slice(dj, None)) if dj >= 0 else (slice(-dj, None), slice(None, dj))
     return (slice(None), rows[0], cols[0]), (slice(None), rows[1], cols[1])
@@ -93,7 +83,7 @@ def jax_slices(net: Net, h: float) -> Run:
 
 
 def neighbours(net: Net) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """Each particle's links as a gathering kernel wants them: offsets (12, 2), and (12, 3) of rest, k, b."""
+    """The links of each particle for a kernel that gathers: offsets (12, 2), and (12, 3) of rest length, k, b."""
     both = [(di, dj, rest, k, b) for di, dj, rest, k, b in net.families]
     both += [(-di, -dj, rest, k, b) for di, dj, rest, k, b in net.families]
     return np.array([q[:2] for q in both], np.int32), np.array([q[2:] for q in both])
@@ -148,7 +138,7 @@ def warp_gather(net: Net, h: float) -> Run:
     """Each particle gathers its links and steps itself, from one buffer into another: one launch a step."""
     import warp as wp  # type: ignore[import-not-found]
 
-    from app.bench.peers.warp_cloth import make_step
+    from app.bench.peers.cloth_warp import make_step
 
     rows, cols = net.shape
     offsets, links = neighbours(net)
@@ -174,8 +164,8 @@ def warp_gather(net: Net, h: float) -> Run:
 
 
 PEERS = (
-    Peer("numpy slices", "numpy", numpy_slices),
-    Peer("jax slices, one loop", "jax", jax_slices),
-    Peer("taichi gather, two threads", "taichi", taichi_gather),
-    Peer("warp gather, one launch a step", "warp", warp_gather),
+    Peer("numpy slices", "numpy", numpy_slices, max_size=MAX_ROWS),
+    Peer("jax slices, one loop", "jax", jax_slices, max_size=MAX_ROWS),
+    Peer("taichi gather, two threads", "taichi", taichi_gather, max_size=MAX_ROWS),
+    Peer("warp gather, one launch a step", "warp", warp_gather, max_size=MAX_ROWS),
 )

@@ -1,30 +1,18 @@
-"""The rope as a user of something else would write it. A peer's `make(net, h)` gives run(seconds) -> x (3, 1, points).
-
-Fixed-step peers take the step h [s]. What has to be compiled is compiled by the first run, which is not timed.
-"""
+"""The rope as a user of another program would write it; with a fixed step, if it has one, of h [s]."""
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.bench.peers.record import Peer, Run
 from sim.springs import Net
-
-Run = Callable[[float], NDArray[np.float64]]
-
-
-class Peer(NamedTuple):
-    name: str
-    package: str
-    model: str  # its damping: "isotropic" or "axial"
-    make: Callable[[Net, float], Run]
-    most_links: int = 1024  # beyond that a run takes minutes, or the package gives up
 
 
 def numbers(net: Net) -> tuple[float, float, float, float, float, float]:
-    """k, rest, b, c, m, g of a rope."""
+    """k [N/m], rest length [m], b [N s/m], drag c [N s/m], m [kg] and g [m/s^2] of a rope."""
     family = net.families[0]
     return family.stiffness, family.rest, family.damping, net.drag, net.mass, -net.gravity[2]
 
@@ -175,7 +163,7 @@ def diffrax_method(name: str, rtol: float = 1e-6) -> Callable[[Net, float], Run]
 
 
 def taichi_leapfrog(net: Net, h: float) -> Run:
-    """All steps in one serial kernel, which is this library's quickest way with so few points."""
+    """All steps in one serial kernel: the quickest way of this library with so few points."""
     import taichi as ti  # type: ignore[import-not-found]
 
     ti.init(arch=ti.cpu, default_fp=ti.f64, cpu_max_num_threads=1, log_level=ti.ERROR)
@@ -214,7 +202,7 @@ def taichi_leapfrog(net: Net, h: float) -> Run:
 
 
 def pymunk_springs(net: Net, h: float) -> Run:
-    """Two dimensions only, which this rope never leaves; its springs damp along themselves."""
+    """Two dimensions, in which this rope stays; the springs damp along themselves."""
     import pymunk  # type: ignore[import-not-found]
 
     k, rest, b, c, m, g = numbers(net)
@@ -281,15 +269,15 @@ def mujoco_tendons(integrator: str) -> Callable[[Net, float], Run]:
 
 
 PEERS = (
-    Peer("numpy leapfrog", "numpy", "isotropic", numpy_leapfrog),
-    Peer("numpy RK4", "numpy", "isotropic", numpy_rk4),
-    Peer("scipy RK45 rtol=1e-6", "scipy", "isotropic", scipy_method("RK45")),
-    Peer("scipy DOP853 rtol=1e-6", "scipy", "isotropic", scipy_method("DOP853")),
-    Peer("jax fori_loop leapfrog", "jax", "isotropic", jax_leapfrog),
-    Peer("diffrax Tsit5 rtol=1e-6", "diffrax", "isotropic", diffrax_method("Tsit5")),
-    Peer("diffrax Dopri8 rtol=1e-6", "diffrax", "isotropic", diffrax_method("Dopri8")),
-    Peer("taichi leapfrog, one kernel", "taichi", "isotropic", taichi_leapfrog),
-    Peer("pymunk DampedSpring", "pymunk", "axial", pymunk_springs),
-    Peer("mujoco Euler, tendons", "mujoco", "axial", mujoco_tendons("Euler"), 128),
-    Peer("mujoco RK4, tendons", "mujoco", "axial", mujoco_tendons("RK4"), 128),
+    Peer("numpy leapfrog", "numpy", numpy_leapfrog),
+    Peer("numpy RK4", "numpy", numpy_rk4),
+    Peer("scipy RK45 rtol=1e-6", "scipy", scipy_method("RK45")),
+    Peer("scipy DOP853 rtol=1e-6", "scipy", scipy_method("DOP853")),
+    Peer("jax fori_loop leapfrog", "jax", jax_leapfrog),
+    Peer("diffrax Tsit5 rtol=1e-6", "diffrax", diffrax_method("Tsit5")),
+    Peer("diffrax Dopri8 rtol=1e-6", "diffrax", diffrax_method("Dopri8")),
+    Peer("taichi leapfrog, one kernel", "taichi", taichi_leapfrog),
+    Peer("pymunk DampedSpring", "pymunk", pymunk_springs, "axial"),
+    Peer("mujoco Euler, tendons", "mujoco", mujoco_tendons("Euler"), "axial", 128),
+    Peer("mujoco RK4, tendons", "mujoco", mujoco_tendons("RK4"), "axial", 128),
 )

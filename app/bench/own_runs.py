@@ -1,0 +1,87 @@
+"""Our own runs of a task: what each errs and takes, and the quickest at a given error."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.bench.timing import processor_time
+
+Positions = tuple[NDArray[np.float64], ...]  # (3, rows, points) [m] at each of the task's times
+
+RESOLUTION = 10.0  # an error below so many times the reference's own uncertainty says nothing
+CANDIDATES = 4  # runs that are timed again before the quickest is chosen
+MAX_RETIMED = 0.1  # [s] runs that take longer are not timed again: chance matters less
+
+
+class Reference(NamedTuple):
+    """The solution of a task, and its uncertainty [m]."""
+
+    positions: Positions
+    uncertainty: float
+
+
+class OwnRun(NamedTuple):
+    """One way to run a task. setting: "860 steps" or "rtol 1e-06"."""
+
+    method: str
+    setting: str
+    run: Callable[[], Positions]
+    expected_time: Callable[[], float] = float  # [s] about; 0 where it is not known
+
+
+class Result(NamedTuple):
+    """time [s] of the processor; errors [m] at each of the task's times, NaN where the run was not made."""
+
+    time: float
+    errors: tuple[float, ...]
+
+
+def largest_distances(positions: Positions, reference: Reference) -> tuple[float, ...]:
+    """Largest distance [m] of any particle from the reference, at each time; not finite where the run diverged."""
+    return tuple(
+        float(np.linalg.norm(own - true, axis=0).max())
+        for own, true in zip(positions, reference.positions, strict=True)
+    )
+
+
+class OwnRuns:
+    """All runs of one task, as ladders of one method each, from coarse to fine. Results are kept."""
+
+    def __init__(self, ladders: Sequence[Sequence[OwnRun]], reference: Reference) -> None:
+        self.ladders, self.reference = ladders, reference
+        self.results: dict[tuple[str, str], Result] = {}
+
+    def result(self, run: OwnRun, max_time: float = math.inf) -> Result:
+        """Time and errors; the errors are NaN for a run that is expected to take longer than `max_time` [s]."""
+        key = run.method, run.setting
+        if key not in self.results:
+            expected = run.expected_time()
+            if expected > max_time:
+                return Result(expected, (math.nan,) * len(self.reference.positions))
+            found: list[Positions] = []
+            time = processor_time(lambda: found.append(run.run()))
+            self.results[key] = Result(time, largest_distances(found[0], self.reference))
+        return self.results[key]
+
+    def quickest(self, limits: tuple[float, ...]) -> OwnRun | None:
+        """Our quickest run with errors of at most `limits` [m]; None where no run on the ladders is so exact."""
+        found: list[tuple[float, OwnRun]] = []
+        for ladder in self.ladders:
+            for run in ladder:
+                max_time = 2.0 * min((time for time, _ in found), default=math.inf)
+                time, errors = self.result(run, max_time)
+                if time > max_time or max(errors) < RESOLUTION * self.reference.uncertainty:
+                    break
+                if all(error <= limit for error, limit in zip(errors, limits, strict=True)):
+                    found.append((time, run))
+                    break
+        if not found:
+            return None
+        best = sorted(found, key=lambda entry: entry[0])[:CANDIDATES]
+        again = [
+            (min(processor_time(run.run) for _ in range(3)) if time < MAX_RETIMED else time, run) for time, run in best
+        ]
+        return min(again, key=lambda entry: entry[0])[1]

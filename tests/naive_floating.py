@@ -5,9 +5,8 @@ import math
 
 import numpy as np
 
-from sim.floating import Hull, Laws, pressure_force
-from sim.floating.added_mass import added_mass
-from sim.floating.hydrostatics import rotation_matrix
+from sim.floating import Hull, MotionCoefficients, pressure_force
+from sim.floating.rotation import rotation_matrix
 
 
 def sliced(vertices: np.ndarray, faces: np.ndarray, depth: np.ndarray) -> tuple[float, np.ndarray, float]:
@@ -84,7 +83,7 @@ def lumpy(rng: np.random.Generator, vertices: np.ndarray) -> np.ndarray:
     return vertices * rng.uniform(0.6, 1.4, size=(len(vertices), 1))
 
 
-def naive_step(hull: Hull, density: float, state, upper, lower, flow, lift, laws: Laws, h: float):
+def naive_step(hull: Hull, density: float, state, upper, lower, flow, lift, law: MotionCoefficients, h: float):
     """One leapfrog step of one body from motion.py's equations, in matrices and world axes.
 
     state: position, rotation, velocity, spin, and the wet skin of the last step or None; upper and lower: (density,
@@ -96,7 +95,7 @@ def naive_step(hull: Hull, density: float, state, upper, lower, flow, lift, laws
     position, rotation, spin = naive_drift(hull, position, rotation, velocity, spin, h / 2)
     turn = rotation_matrix(rotation)
     place = hull.vertices @ turn.T + position
-    g = laws.gravity + lift
+    g = law.gravity + lift
     force, moment, wet = np.zeros(3), np.zeros(3), np.zeros(3)
     step = 0.0
     areas = [np.cross(b - a, c - a) / 2 for a, b, c in hull.vertices[hull.faces]]
@@ -108,17 +107,17 @@ def naive_step(hull: Hull, density: float, state, upper, lower, flow, lift, laws
             wet += (rho - step) * np.abs(area) * wet_share((heights - place[:, 2])[face])
         step = rho
     skin = np.abs(areas).sum(axis=0)
-    along, about = added_mass(hull)
+    along, about = hull.added_mass()
     share = wet / skin
-    mass = hull.volume * density + laws.added_mass * along * share
+    mass = hull.volume * density + law.added_mass * along * share
     fluid = np.array([*(-g * upper[2]), lift])
     carried = turn @ np.diag(mass - hull.volume * density) @ turn.T
-    total = force + hull.volume * density * np.array([0, 0, -laws.gravity]) + carried @ fluid
+    total = force + hull.volume * density * np.array([0, 0, -law.gravity]) + carried @ fluid
     if before is not None:
-        kept = hull.volume * density + laws.added_mass * along * np.minimum(before, wet) / skin
+        kept = hull.volume * density + law.added_mass * along * np.minimum(before, wet) / skin
         velocity = flow + turn @ np.diag(kept / mass) @ turn.T @ (velocity - flow)
     velocity = velocity + h * turn @ np.diag(1 / mass) @ turn.T @ total
-    inertia = density * hull.inertia + laws.added_mass * np.diag(about * (np.roll(share, 1) + np.roll(share, 2)) / 2)
+    inertia = density * hull.inertia + law.added_mass * np.diag(about * (np.roll(share, 1) + np.roll(share, 2)) / 2)
     spin = spin + h * turn @ np.linalg.inv(inertia) @ turn.T @ moment
 
     size = np.linalg.norm(areas, axis=1)
@@ -127,10 +126,10 @@ def naive_step(hull: Hull, density: float, state, upper, lower, flow, lift, laws
     v, w = turn.T @ (velocity - flow), turn.T @ spin
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        v[i] = dragged(v[i], wet[i] / 2 / mass[i], wet[i] / 2 / mass[i], laws, h)
+        v[i] = dragged(v[i], wet[i] / 2 / mass[i], wet[i] / 2 / mass[i], law, h)
         wide = (wet[j] * arm[k] ** 2 + wet[k] * arm[j] ** 2) / 2 / inertia[i, i]
         wider = (wet[j] * arm[k] ** 3 + wet[k] * arm[j] ** 3) / 2 / inertia[i, i]
-        w[i] = dragged(w[i], wide, wider, laws, h)
+        w[i] = dragged(w[i], wide, wider, law, h)
     velocity, spin = flow + turn @ v, turn @ w
     position, rotation, spin = naive_drift(hull, position, rotation, velocity, spin, h / 2)
     return position, rotation, velocity, spin, wet
@@ -159,11 +158,11 @@ def wet_share(depth: np.ndarray) -> float:
     return 1 - low**2 / ((low - high) * (low - middle))
 
 
-def dragged(v: float, linear: float, quadratic: float, laws: Laws, h: float, parts: int = 2000) -> float:
+def dragged(v: float, linear: float, quadratic: float, law: MotionCoefficients, h: float, parts: int = 2000) -> float:
     """v after h of dv/dt = -b linear v - C/2 quadratic |v| v, by the midpoint rule."""
     for _ in range(parts):
-        half = v - h / parts / 2 * (laws.linear_drag * linear + laws.quadratic_drag / 2 * quadratic * abs(v)) * v
-        v -= h / parts * (laws.linear_drag * linear + laws.quadratic_drag / 2 * quadratic * abs(half)) * half
+        half = v - h / parts / 2 * (law.linear_drag * linear + law.quadratic_drag / 2 * quadratic * abs(v)) * v
+        v -= h / parts * (law.linear_drag * linear + law.quadratic_drag / 2 * quadratic * abs(half)) * half
     return v
 
 

@@ -1,4 +1,4 @@
-"""Dragging with the mouse: what it tells the simulation, and the line from what is held to the mouse."""
+"""The pull of the mouse: what a drag tells the simulation, and the line from what is held to where it is drawn."""
 
 from collections.abc import Callable
 from typing import Any
@@ -26,11 +26,11 @@ def nearest(points: np.ndarray, event: Any) -> int:
 
 
 class PullLine:
-    """A line that is drawn while something is held."""
+    """One segment, whose ends move while something is held."""
 
-    def __init__(self, server: viser.ViserServer) -> None:
+    def __init__(self, server: viser.ViserServer, name: str = "/pull") -> None:
         self.line = server.scene.add_line_segments(
-            "/pull",
+            name,
             np.zeros((1, 2, 3), np.float32),
             colors=HELD_COLOUR,
             thickness=4.0,
@@ -39,7 +39,7 @@ class PullLine:
         )
 
     def show(self, ends: Any, load: float = 0.4) -> None:
-        """ends: (2, 3) [m], None while nothing is held. load: share of the largest force of the mouse, 0 to 1."""
+        """ends: (2, 3) [m], or None while nothing is held; load: part of the most that the hand pulls with."""
         self.line.visible = ends is not None
         if ends is not None:
             self.line.points = np.array([ends], np.float32)

@@ -4,16 +4,12 @@ import importlib
 import pkgutil
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sim.validation import argument_error
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from viser import ViserServer
-
-    from app.scenes.contract import AnyKind, AnyView, PostCommand
+    from app.scenes.contract import SceneKind, View
 
 NAMES = tuple(
     module.name
@@ -32,7 +28,7 @@ def check_name(name: str) -> str:
     return name
 
 
-def scene_named(name: str) -> "AnyKind":
+def scene_named(name: str) -> "SceneKind[Any, Any, Any]":
     """The scene of a folder. Raises ValueError for a name that is none."""
     return importlib.import_module(f"{__name__}.{check_name(name)}.scene").SCENE
 
@@ -42,6 +38,6 @@ def view_module(name: str) -> ModuleType:
     return importlib.import_module(f"{__name__}.{check_name(name)}.view")
 
 
-def view_named(name: str) -> "Callable[[ViserServer, PostCommand], AnyView]":
-    """The class that draws a scene; imports viser."""
+def view_named(name: str) -> "type[View[Any]]":
+    """The drawing of a scene; imports viser."""
     return view_module(name).View

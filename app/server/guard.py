@@ -6,8 +6,6 @@ from a browser passes `screen`: a short list of message types, only finite bound
 their control offers. The names with a leading underscore are viser's own and the reason for the pin in pyproject.toml.
 """
 
-# pyright: reportPrivateUsage=false
-
 import asyncio
 import collections
 import contextlib
@@ -18,25 +16,21 @@ import logging
 import math
 import socket
 import time
-from collections.abc import Awaitable, Callable, Generator, Sequence
+from collections.abc import Awaitable, Callable, Iterator
 from http import HTTPStatus
-from typing import TypeAlias, TypeGuard, cast
+from typing import Any
 from urllib.parse import urlsplit
 
 import viser
 import websockets.asyncio.server
 from viser import _messages as vm
 
-from app.render.viser_types import GuiHandle, ViserConnection, ViserMessage
-
 MAX_NUMBER = 1e6  # any number in a message beyond this is refused
 MAX_LENGTH = 1000  # of a text, or of a list
 INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
 MAX_WAITING = 64  # messages of one browser that wait for their turn
 
-ClientId: TypeAlias = int
-MergeKey: TypeAlias = tuple[object, ...]
-Handler = Callable[[ClientId, ViserMessage], Awaitable[None]]
+Handler = Callable[[Any, Any], Awaitable[None]]
 
 # What a browser of ours sends. No uploads, no forms, no share tunnel.
 ALLOWED = (
@@ -86,17 +80,17 @@ def is_loopback(host: str) -> bool:
 
 
 @contextlib.contextmanager
-def checked_origins(bound: str) -> Generator[None]:
+def checked_origins(bound: str) -> Iterator[None]:
     """While open, a websocket server that starts refuses upgrades from other pages with 403."""
     serve = websockets.asyncio.server.serve
 
-    def guarded_serve(*args: object, process_request: ViserConnection = None, **options: object) -> object:
-        def check(connection: ViserConnection, request: ViserConnection) -> object:
+    def guarded_serve(*args: Any, process_request: Any = None, **options: Any) -> Any:
+        def check(connection: Any, request: Any) -> Any:
             if not is_own_origin(request.headers.get("Origin"), request.headers.get("Host"), bound):
                 return connection.respond(HTTPStatus.FORBIDDEN, "This page may not connect here.\n")
             return process_request(connection, request)
 
-        return serve(*args, process_request=check, **options)  # type: ignore[arg-type]
+        return serve(*args, process_request=check, **options)
 
     websockets.asyncio.server.serve = guarded_serve  # type: ignore[assignment]
     try:
@@ -105,7 +99,7 @@ def checked_origins(bound: str) -> Generator[None]:
         websockets.asyncio.server.serve = serve  # type: ignore[assignment]
 
 
-def is_bounded(value: object) -> bool:
+def is_bounded(value: Any) -> bool:
     """Whether every number in a message is finite and of a sane size, and no text is long."""
     if isinstance(value, bool) or value is None:
         return True
@@ -116,54 +110,37 @@ def is_bounded(value: object) -> bool:
     if isinstance(value, bytes | bytearray | memoryview):
         return True
     if isinstance(value, dict):
-        entries = cast(dict[object, object], value)
-        return all(is_bounded(k) and is_bounded(v) for k, v in entries.items())
-    return is_sequence(value) and len(value) <= MAX_LENGTH and all(is_bounded(v) for v in value)
+        return all(is_bounded(k) and is_bounded(v) for k, v in value.items())
+    if isinstance(value, list | tuple):
+        return len(value) <= MAX_LENGTH and all(is_bounded(v) for v in value)
+    return False
 
 
-def is_sequence(value: object) -> TypeGuard[Sequence[object]]:
-    """Whether this is a list or a tuple."""
-    return isinstance(value, list | tuple)
-
-
-def is_number(value: object) -> TypeGuard[float]:
-    """Whether this is a finite number, and no bool."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
-# What kind of value each GUI element takes.
-FLAGS = (viser.GuiCheckboxHandle, viser.GuiButtonHandle)
-NUMBERS = (viser.GuiSliderHandle, viser.GuiNumberHandle)
-CHOICES = (viser.GuiDropdownHandle, viser.GuiButtonGroupHandle)
-
-
-def allowed_value(handle: GuiHandle, value: object) -> object:
+def allowed_value(handle: Any, value: Any) -> Any:
     """`value` within what a GUI control offers, clamped where it has a range; None where it is no such value."""
-    kind = cast("type[object]", type(handle))
-    if issubclass(kind, FLAGS):
+    if isinstance(handle, viser.GuiCheckboxHandle | viser.GuiButtonHandle):
         return value if isinstance(value, bool) else None
-    if issubclass(kind, NUMBERS):
-        if not is_number(value):
+    if isinstance(handle, viser.GuiSliderHandle | viser.GuiNumberHandle):
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
             return None
         low = -MAX_NUMBER if handle.min is None else handle.min
         high = MAX_NUMBER if handle.max is None else handle.max
         bounded = min(max(value, low), high)
         return round(bounded) if isinstance(handle.value, int) else float(bounded)
-    if issubclass(kind, viser.GuiMultiSliderHandle):
-        if not is_sequence(value) or len(value) != len(handle.value) or not is_bounded(value):
+    if isinstance(handle, viser.GuiMultiSliderHandle):
+        if not isinstance(value, list | tuple) or len(value) != len(handle.value) or not is_bounded(value):
             return None
-        numbers = [number for number in value if is_number(number)]
-        if len(numbers) < len(value):
+        if not all(isinstance(v, int | float) and not isinstance(v, bool) for v in value):
             return None
-        return tuple(float(min(max(number, handle.min), handle.max)) for number in numbers)
-    if issubclass(kind, CHOICES):
-        return value if isinstance(value, str) and value in handle.options else None
+        return tuple(float(min(max(v, handle.min), handle.max)) for v in value)
+    if isinstance(handle, viser.GuiDropdownHandle | viser.GuiButtonGroupHandle):
+        return value if value in handle.options else None
     return None
 
 
-def same(good: object, sent: object) -> bool:
+def same(good: Any, sent: Any) -> bool:
     """Whether a browser already shows the value that was made of what it sent."""
-    return (is_sequence(good) and is_sequence(sent) and list(good) == list(sent)) or good == sent
+    return list(good) == list(sent) if isinstance(good, tuple) else good == sent
 
 
 class Screen:
@@ -173,7 +150,7 @@ class Screen:
         self.server = server
         self.refused: collections.Counter[str] = collections.Counter()
 
-    def __call__(self, message: ViserMessage) -> ViserMessage:
+    def __call__(self, message: Any) -> Any:
         """The message, with a value bounded where it only had to be bounded, or None where it is refused.
 
         Counts what is refused, and tells every browser of a value that was bounded.
@@ -200,7 +177,7 @@ class Screen:
         return vm.GuiUpdateMessage(message.uuid, {"value": good})
 
 
-def merge_key(message: ViserMessage) -> MergeKey | None:
+def merge_key(message: Any) -> tuple[Any, ...] | None:
     """Messages with the same key supersede each other: the last counts. None of what is never merged."""
     match message:
         case vm.GuiUpdateMessage() | vm.CommandTriggerMessage() | vm.GuiButtonHoldMessage():
@@ -222,14 +199,14 @@ class Intake:
     of messages that supersede each other only the last is handled: a browser that floods is slowed, others are not.
     """
 
-    def __init__(self, screen: Callable[[ViserMessage], ViserMessage], handlers: "list[Handler]") -> None:
+    def __init__(self, screen: Callable[[Any], Any], handlers: "list[Handler]") -> None:
         self.screen, self.handlers = screen, handlers
-        self.waiting: dict[MergeKey, ViserMessage] = {}
+        self.waiting: dict[tuple[Any, ...], Any] = {}
         self.unmerged = 0  # counts messages that are never merged, for keys of their own
         self.turn: asyncio.Task[None] | None = None
         self.turned_at = -math.inf  # [s] when a message was last handled
 
-    def take(self, client: ClientId, message: ViserMessage) -> None:
+    def take(self, client: Any, message: Any) -> None:
         """Queue a message, over one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""
         if not isinstance(message, ALLOWED):
             self.screen(message)  # refused and counted
@@ -245,7 +222,7 @@ class Intake:
         if self.turn is None:
             self.turn = asyncio.get_running_loop().create_task(self.handle_waiting(client))
 
-    async def handle_waiting(self, client: ClientId) -> None:
+    async def handle_waiting(self, client: Any) -> None:
         """Handle what waits, in turns."""
         try:
             while self.waiting:
@@ -265,22 +242,22 @@ class Intake:
 
 def put_intakes(server: viser.ViserServer, screen: Screen) -> None:
     """Pass every message of every browser through an intake of its own before viser's handlers see it."""
-    connection: ViserConnection = server._websock_server
-    handle: Handler = connection._handle_incoming_message
-    intakes: dict[ClientId, Intake] = {}
+    connection = server._websock_server
+    handle = connection._handle_incoming_message
+    intakes: dict[Any, Intake] = {}
 
-    async def take(client_id: ClientId, message: ViserMessage) -> None:
+    async def take(client_id: Any, message: Any) -> None:
         if client_id in intakes:
             intakes[client_id].take(client_id, message)
 
-    async def ignore(client_id: ClientId, message: ViserMessage) -> None:
+    async def ignore(client_id: Any, message: Any) -> None:
         """The same message as the server is given: one intake serves both."""
 
-    def join(client: ViserConnection) -> None:
+    def join(client: Any) -> None:
         intakes[client.client_id] = Intake(screen, [handle, client._handle_incoming_message])
         client._handle_incoming_message = ignore
 
-    def leave(client: ViserConnection) -> None:
+    def leave(client: Any) -> None:
         intakes.pop(client.client_id, None)
 
     connection._handle_incoming_message = take
@@ -312,7 +289,7 @@ def open_server(host: str, port: int) -> tuple[viser.ViserServer, Screen]:
         server.stop()
         raise OSError(f"port {port} was taken while starting")
     screen = Screen(server)
-    connection: ViserConnection = server._websock_server
+    connection = server._websock_server
     for request in (vm.ShareUrlRequest, vm.ShareUrlDisconnect):
         connection.unregister_handler(request)
     put_intakes(server, screen)

@@ -1,9 +1,10 @@
-"""Added mass of a hull: how much fluid its accelerations carry along, in units of the fluid's density.
+"""Added mass: how much fluid the accelerations of a hull carry along, in units of the fluid's density.
 
-The values are those of the whole hull in unbounded fluid. A body at the surface gets each of them in the proportion
-its own surface is wet, seen along that axis (`motion.py`): half of it for a sphere afloat at its equator, for a
-disc or a plate wet from below, the fraction submerged for the sides of an upright cylinder. That is the limit of
-high frequency of the linear theory, where the water surface is a mirror of opposite sign.
+The values are those of a whole hull in unbounded fluid; each shape (shapes/) says which formula it uses. A body at
+the surface gets each of them in the proportion that its own surface is wet, seen along that axis (`motion.py`): half
+of it for a sphere afloat at its equator, for a disc or a plate wet from below, the fraction submerged for the sides of
+an upright cylinder. That is the limit of high frequency of the linear theory, where the water surface is a mirror of
+opposite sign.
 
 | hull | along an axis | about an axis |
 |---|---|---|
@@ -12,36 +13,29 @@ high frequency of the linear theory, where the water surface is a mirror of oppo
 | box | each face as a rectangular plate (DNV-RP-C205, 2010, table D-2) | ellipsoid of its half edges |
 | mesh | ellipsoid of the same volume and proportions of inertia (Lamb Art. 114) | the same (Art. 115) |
 
-Limits: no coupling between axes, no memory of waves made (only a constant linear damping), and for the floating
-hemisphere of long period the true value is 0.831 of the displaced mass instead of 0.5 (Hulme 1982, JFM 121:443);
-`Laws.added_mass` scales them all.
+Limits: the axes are not coupled; the waves that a body made do not act back on it (only a constant linear damping
+does); and a floating hemisphere of long period truly carries 0.831 of the displaced mass instead of 0.5 (Hulme 1982,
+JFM 121:443). `MotionCoefficients.added_mass` scales all of them.
 """
 
 import math
 
 import numpy as np
 
-from sim.floating.hull import Hull
-
-# plate of edges b >= a, moving along its normal: mass C pi/4 a^2 b
+# A plate of edges b >= a that moves along its normal carries C pi/4 a^2 b; C by b/a (DNV-RP-C205, table D-2).
 PLATE_ASPECT = (1.0, 1.25, 1.5, 1.59, 2.0, 2.5, 3.0, 3.17, 4.0, 5.0, 6.25, 8.0, 10.0)
 PLATE_COEFFICIENT = (0.579, 0.642, 0.690, 0.704, 0.757, 0.801, 0.830, 0.840, 0.872, 0.897, 0.917, 0.934, 0.947)
 
 
-def added_mass(hull: Hull) -> tuple[np.ndarray, np.ndarray]:
-    """Added mass (3,) [m3] along and (3,) [m5] about the body's axes, of the whole hull, at unit density."""
-    x, y, z = edges = hull.extents[:, 1] - hull.extents[:, 0]
-    if hull.kind == "sphere":
-        return np.full(3, hull.volume / 2), np.zeros(3)
-    if hull.kind == "cylinder":
-        side = math.pi * (x / 2) ** 2 * z
-        return np.array([side, side, 8 / 3 * (x / 2) ** 3]), ellipsoid(edges / 2)[1]
-    if hull.kind == "box":
-        return np.array([plate(y, z), plate(x, z), plate(x, y)]), ellipsoid(edges / 2)[1]
+def of_equal_ellipsoid(volume: float, inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Added mass (3,) [m3] along and (3,) [m5] about the axes of an ellipsoid.
+
+    It has the volume [m3] of a body, and the proportions of the body's inertia (3, 3) [m5] at unit density.
+    """
     # An ellipsoid has int x_i^2 = V a_i^2 / 5; only the proportions of the axes are taken from that, the size from V.
-    second = np.trace(hull.inertia) / 2 - np.diag(hull.inertia)
+    second = np.trace(inertia) / 2 - np.diag(inertia)
     axes = np.sqrt(np.maximum(second, 1e-6 * second.max()))
-    return ellipsoid(axes * (hull.volume / (4 / 3 * math.pi * axes.prod())) ** (1 / 3))
+    return ellipsoid(axes * (volume / (4 / 3 * math.pi * axes.prod())) ** (1 / 3))
 
 
 def plate(a: float, b: float) -> float:
@@ -71,7 +65,7 @@ def ellipsoid(axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         b, c = squares[j], squares[k]
-        if abs(b - c) > 1e-6 * (b + c):  # round about i: no fluid is moved
+        if abs(b - c) > 1e-6 * (b + c):  # else the ellipsoid is round about axis i, and moves no fluid
             change = alpha[k] - alpha[j]
             about[i] = volume / 5 * (b - c) ** 2 * change / (2 * (b - c) - (b + c) * change)
     return along, about

@@ -10,13 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating.added_mass import added_mass
+from sim.floating.closed_mesh import area_vectors
 from sim.floating.hull import Hull
-from sim.floating.hydrostatics import rotation_matrix
-from sim.floating.polyhedron import area_vectors
+from sim.floating.rotation import rotation_matrix
+from sim.floating.shapes.record import COLLISION_FORMS
 from sim.validation import argument_error
-
-KINDS = ("mesh", "box", "cylinder", "sphere")  # by number in Shapes.kind: how a hull meets another
 
 
 class Body(NamedTuple):
@@ -30,42 +28,43 @@ class Body(NamedTuple):
     spin: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [rad/s] in world axes
 
 
-class Shapes(NamedTuple):
-    """Packed hulls, q of them. Vertices and faces of hull i are columns start[i] to start[i + 1]."""
+class PackedHulls(NamedTuple):
+    """q hulls, one after another. Vertices and faces of hull i are columns start[i] to start[i + 1]."""
 
     vertex_start: np.ndarray  # (q + 1,) int
     face_start: np.ndarray  # (q + 1,) int
     x: np.ndarray  # (3, vertices) [m]
     faces: np.ndarray  # (3, faces) int, columns of x
     area: np.ndarray  # (3, faces) [m2] outward
-    kind: np.ndarray  # (q,) int, index in KINDS
+    collision: np.ndarray  # (q,) int, index in COLLISION_FORMS
+    is_round: np.ndarray  # (q,) bool: a sphere
     half: np.ndarray  # (q, 3) [m] half extents of the true shape
     radius: np.ndarray  # (q,) [m] of the sphere about the centre of mass that holds the mesh
-    inertia: np.ndarray  # (q, 3, 3) [m5]
-    skin: np.ndarray  # (q, 3) [m2]: int |n_i| dA over the whole hull
-    arm: np.ndarray  # (q, 3) [m]: root mean square of x_i over the surface
-    along: np.ndarray  # (q, 3) [m3]: added mass per skin density, see added_mass.py
-    about: np.ndarray  # (q, 3) [m5]: added inertia
-    twist: np.ndarray  # (q, 3) [m4]: bound of the moment about axis i per turn about it, over weight density
+    inertia: np.ndarray  # (q, 3, 3) [m5] at unit density
+    wetted_area: np.ndarray  # (q, 3) [m2] across each axis, int |n_i| dA, of the hull wholly under water
+    radius_of_gyration: np.ndarray  # (q, 3) [m] of the surface: root mean square of x_i over it
+    added_mass: np.ndarray  # (q, 3) [m3] along each axis at unit density, see added_mass.py
+    added_inertia: np.ndarray  # (q, 3) [m5] about each axis at unit density
+    restoring_bound: np.ndarray  # (q, 3) [m4] bound of the moment about an axis per angle, over weight density
 
 
 class Fleet(NamedTuple):
-    """n bodies. The first six arrays are the state that `step` changes; pulls come from outside; the rest is fixed."""
+    """n bodies. `step` changes the first six arrays, `pull` the next three; the rest is fixed."""
 
     position: np.ndarray  # (n, 3) [m]
     rotation: np.ndarray  # (n, 4) quaternion (w, x, y, z)
     velocity: np.ndarray  # (n, 3) [m/s]
     spin: np.ndarray  # (n, 3) [rad/s] in world axes
-    wet: np.ndarray  # (n, 3) [kg/m] wet skin across each body axis times density, at the last step; -1 before the first
+    wetted: np.ndarray  # (n, 3) [kg/m] wetted area across each body axis times density at the last step; -1 before it
     buoyancy: np.ndarray  # (n,) [N] upward force of the fluids at the last step
     pull_point: np.ndarray  # (n, 3) [m] where each is pulled, in body axes
     pull_target: np.ndarray  # (n, 3) [m] where to, in world axes
-    pull_limit: np.ndarray  # (n,) [N] greatest pull; 0 is none
-    hull: np.ndarray  # (n,) int, column of shapes
+    pull_limit: np.ndarray  # (n,) [N] greatest pull; 0 for none
+    hull: np.ndarray  # (n,) int, index in hulls
     density: np.ndarray  # (n,) [kg/m3]
     mass: np.ndarray  # (n,) [kg]
     vertex_start: np.ndarray  # (n + 1,) int: where each body's vertices begin in arrays of all vertices
-    shapes: Shapes
+    hulls: PackedHulls
 
 
 def make_fleet(bodies: Sequence[Body]) -> Fleet:
@@ -89,7 +88,7 @@ def make_fleet(bodies: Sequence[Body]) -> Fleet:
         rotation=rotation / np.linalg.norm(rotation, axis=1, keepdims=True),
         velocity=np.array([body.velocity for body in bodies], dtype=float).reshape(n, 3),
         spin=np.array([body.spin for body in bodies], dtype=float).reshape(n, 3),
-        wet=np.full((n, 3), -1.0),
+        wetted=np.full((n, 3), -1.0),
         buoyancy=np.zeros(n),
         pull_point=np.zeros((n, 3)),
         pull_target=np.zeros((n, 3)),
@@ -98,33 +97,34 @@ def make_fleet(bodies: Sequence[Body]) -> Fleet:
         density=np.array([body.density for body in bodies], dtype=float),
         mass=np.array([body.density * body.hull.volume for body in bodies], dtype=float),
         vertex_start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        shapes=pack(hulls),
+        hulls=pack(hulls),
     )
 
 
-def pack(hulls: Sequence[Hull]) -> Shapes:
+def pack(hulls: Sequence[Hull]) -> PackedHulls:
     """The hulls, one after another, with what a step needs to know of each."""
     q = len(hulls)
     vertex_start = np.concatenate([[0], np.cumsum([len(hull.vertices) for hull in hulls])]).astype(np.int64)
     face_start = np.concatenate([[0], np.cumsum([len(hull.faces) for hull in hulls])]).astype(np.int64)
-    masses = [added_mass(hull) for hull in hulls]
+    added = [hull.added_mass() for hull in hulls]
     areas = [area_vectors(hull.vertices, hull.faces) for hull in hulls]
     surfaces = [surface_moments(hull, area) for hull, area in zip(hulls, areas, strict=True)]
-    return Shapes(
+    return PackedHulls(
         vertex_start=vertex_start,
         face_start=face_start,
         x=columns([hull.vertices for hull in hulls], float),
         faces=columns([hull.faces + start for hull, start in zip(hulls, vertex_start, strict=False)], np.int64),
         area=columns(areas, float),
-        kind=np.array([KINDS.index(hull.kind) for hull in hulls], dtype=np.int64),
+        collision=np.array([COLLISION_FORMS.index(hull.shape.collision) for hull in hulls], dtype=np.int64),
+        is_round=np.array([hull.shape.is_round for hull in hulls], dtype=bool),
         half=np.array([np.abs(hull.extents).max(axis=1) for hull in hulls]).reshape(q, 3),
         radius=np.array([np.linalg.norm(hull.vertices, axis=1).max() for hull in hulls], dtype=float),
         inertia=np.array([hull.inertia for hull in hulls]).reshape(q, 3, 3),
-        skin=np.array([np.abs(area).sum(axis=0) for area in areas]).reshape(q, 3),
-        arm=np.array([arm for arm, _ in surfaces]).reshape(q, 3),
-        along=np.array([along for along, _ in masses]).reshape(q, 3),
-        about=np.array([about for _, about in masses]).reshape(q, 3),
-        twist=np.array([twist for _, twist in surfaces]).reshape(q, 3),
+        wetted_area=np.array([np.abs(area).sum(axis=0) for area in areas]).reshape(q, 3),
+        radius_of_gyration=np.array([radius for radius, _ in surfaces]).reshape(q, 3),
+        added_mass=np.array([mass for mass, _ in added]).reshape(q, 3),
+        added_inertia=np.array([inertia for _, inertia in added]).reshape(q, 3),
+        restoring_bound=np.array([bound for _, bound in surfaces]).reshape(q, 3),
     )
 
 
@@ -134,26 +134,26 @@ def columns(arrays: Sequence[np.ndarray], dtype: type) -> np.ndarray:
 
 
 def surface_moments(hull: Hull, area: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Root mean square of x_i over the surface, (3,) [m]; and the bound of the twist, (3,) [m4].
+    """Radius of gyration of the surface (3,) [m], and bound of the restoring moment (3,) [m4]; area (m, 3) [m2].
 
-    Turning by a small angle about axis i changes the depth of a point by at most its distance r_i from the axis
-    times the angle, so the moment changes by at most int |(x cross n)_i| r_i dA times the weight density; a hull
-    afloat wets about half of that. Both by the rule of the mid-edge points, exact to second order.
+    A rotation by a small angle about axis i changes the depth of a point by at most its distance r_i from the axis
+    times the angle, so the moment changes by at most int |(x cross n)_i| r_i dA times the weight density; a floating
+    hull wets about half of that. Both by the rule of the mid-edge points, exact to second order.
     """
     corners = hull.vertices[hull.faces]
-    edges = (corners + np.roll(corners, -1, axis=1)) / 2
+    middles = (corners + np.roll(corners, -1, axis=1)) / 2
     size = np.linalg.norm(area, axis=1)
-    arm = np.sqrt(np.einsum("f,fei->i", size, edges**2) / 3 / size.sum())
-    squares = (edges**2).sum(axis=2, keepdims=True) - edges**2
-    twist = np.abs(np.cross(edges, area[:, None, :])) * np.sqrt(squares)
-    return arm, twist.sum(axis=(0, 1)) / 3 / 2
+    radius = np.sqrt(np.einsum("f,fei->i", size, middles**2) / 3 / size.sum())
+    squares = (middles**2).sum(axis=2, keepdims=True) - middles**2
+    bound = np.abs(np.cross(middles, area[:, None, :])) * np.sqrt(squares)
+    return radius, bound.sum(axis=(0, 1)) / 3 / 2
 
 
 def vertices(fleet: Fleet) -> np.ndarray:
     """Vertices of all bodies where they are now, one body after another, (vertices, 3) [m]."""
     places = []
     for i, q in enumerate(fleet.hull):
-        x = fleet.shapes.x[:, fleet.shapes.vertex_start[q] : fleet.shapes.vertex_start[q + 1]]
+        x = fleet.hulls.x[:, fleet.hulls.vertex_start[q] : fleet.hulls.vertex_start[q + 1]]
         places.append((rotation_matrix(fleet.rotation[i]) @ x).T + fleet.position[i])
     return np.concatenate([np.zeros((0, 3)), *places])
 
@@ -162,10 +162,10 @@ def lowest(fleet: Fleet) -> np.ndarray:
     """Height of the lowest point of each body, (n,) [m]; of the true shape for spheres, else of the mesh."""
     result = np.empty(len(fleet.mass))
     for i, q in enumerate(fleet.hull):
-        if fleet.shapes.kind[q] == KINDS.index("sphere"):
-            result[i] = fleet.position[i, 2] - fleet.shapes.half[q, 2]
+        if fleet.hulls.is_round[q]:
+            result[i] = fleet.position[i, 2] - fleet.hulls.half[q, 2]
         else:
-            x = fleet.shapes.x[:, fleet.shapes.vertex_start[q] : fleet.shapes.vertex_start[q + 1]]
+            x = fleet.hulls.x[:, fleet.hulls.vertex_start[q] : fleet.hulls.vertex_start[q + 1]]
             result[i] = fleet.position[i, 2] + (rotation_matrix(fleet.rotation[i])[2] @ x).min()
     return result
 

@@ -6,7 +6,7 @@ interfaces, since each one adds the pressure (rho_i - rho_{i-1}) g (depth below 
   rho V = sum_i (rho_i - rho_{i-1}) V(h - D_i),   rho_0 = 0
 
 with V(h) the hull's volume up to h above its lowest point: monotone in h, solved by bisection to the last bit.
-Box, sphere and cylinder use closed forms of their true shape, meshes the exact integrals over their triangles.
+A shape with closed forms (shapes/) uses them, a mesh the exact integrals over its triangles.
 """
 
 import math
@@ -14,11 +14,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.floating.added_mass import added_mass
+from sim.floating.closed_mesh import area_vectors
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import Submerged, add_pressure, submerged
-from sim.floating.polyhedron import area_vectors
-from sim.validation import argument_error
+from sim.validation import argument_error, check_positive
 
 Layers = Sequence[tuple[float, float]]
 OIL_ON_WATER: Layers = ((850.0, 0.2), (1025.0, math.inf))
@@ -28,11 +27,11 @@ def equilibrium_draft(hull: Hull, density: float, layers: Layers = OIL_ON_WATER,
     """Depth [m] of the lowest point of the upright hull below the top surface, at rest in the layers.
 
     layers: (density [kg/m3], thickness [m]) from the top, the last of thickness inf. The result is inf for a hull
-    denser than the last layer (it sinks for ever), and the least of the depths where many are in equilibrium.
-    Gravity does not matter and is only checked. Raises ValueError for a bad density, layers or gravity.
+    denser than the last layer, which sinks without end, and the smallest depth where several are in equilibrium.
+    Gravity does not change the result and is only checked. Raises ValueError for a bad density, layers or gravity.
     """
-    check_number("density", density, "kg/m3")
-    check_number("gravity", gravity, "m/s2")
+    check_positive("density", density, "kg/m3")
+    check_positive("gravity", gravity, "m/s2")
     steps = density_steps(layers)
     if density > layers[-1][0]:
         return math.inf
@@ -58,8 +57,8 @@ def heave_period(
     """Period [s] of small heave of the upright hull about its equilibrium: 2 pi sqrt((m + A33)/C33).
 
     C33 = g sum (rho_i - rho_{i-1}) A_i over the waterplanes at surface and interfaces, which are taken to stay level
-    (Newman 1977, section 6.16). added scales the added mass. inf where nothing restores: sunk or wholly submerged
-    in one fluid. Raises ValueError as `equilibrium_draft`.
+    (Newman 1977, section 6.16). added scales the added mass. inf where no force restores: the hull sinks, or is
+    wholly submerged in one fluid. Raises ValueError as `equilibrium_draft`.
     """
     draft = equilibrium_draft(hull, density, layers, gravity)
     if math.isinf(draft):
@@ -76,8 +75,8 @@ def roll_period(
     """Period [s] of small roll (axis 0, about x) or pitch (axis 1, about y) of the upright hull.
 
     2 pi sqrt((I + A44)/(rho g V GM)) with rho g V GM = g sum (rho_i - rho_{i-1}) (I_i + V_i (z_B - z_G)) over the
-    interfaces (Newman 1977, section 6.16). inf where the upright pose is not stable, or sunk. added scales the added
-    inertia. Raises ValueError as `equilibrium_draft`, and for another axis.
+    interfaces (Newman 1977, section 6.16). inf where the upright pose is not stable, or the hull sinks.
+    added scales the added inertia. Raises ValueError as `equilibrium_draft`, and for another axis.
     """
     if axis not in (0, 1):
         raise argument_error("axis", axis, "0 (roll) or 1 (pitch)")
@@ -96,26 +95,14 @@ def roll_period(
 def upright(hull: Hull, height: float) -> Submerged:
     """What of the true shape, upright, lies up to `height` [m] above its lowest point, about its centre of mass."""
     bottom, top = hull.extents[2]
-    h = min(max(height, 0.0), top - bottom)
-    if hull.kind == "mesh":
-        # all or nothing where the surface would lie in a flat top or bottom
-        within = 0 < height < top - bottom
-        return submerged(hull, surface=bottom + height if within else (bottom - 1, top + 1)[height > 0])
-    x, y = hull.extents[0, 1] * 2, hull.extents[1, 1] * 2
-    if hull.kind == "box":
-        volume, depth, area, second = x * y * h, h / 2, x * y, (x**3 * y / 12, x * y**3 / 12)
-    elif hull.kind == "cylinder":
-        area = math.pi * x * x / 4
-        volume, depth, second = area * h, h / 2, (area * x * x / 16,) * 2
-    else:
-        r = x / 2  # cap of height h: V = pi h^2 (3r - h)/3, its centroid 3 (2r - h)^2/(4 (3r - h)) from the centre
-        area = math.pi * h * (2 * r - h)
-        volume, second = math.pi * h * h * (3 * r - h) / 3, (area * area / (4 * math.pi),) * 2
-        depth = r - 3 * (2 * r - h) ** 2 / (4 * (3 * r - h))
-    if not 0 < height < top - bottom:
-        area, second = 0.0, (0.0, 0.0)
-    centre = np.array([0.0, 0.0, bottom + depth]) if volume > 0 else np.full(3, np.nan)
-    return Submerged(volume, centre, area, np.array([*second, 0.0]))
+    inside = 0 < height < top - bottom
+    if hull.shape.immersed is None:
+        # Where the surface would coincide with a flat top or bottom it is moved off, so that all or nothing is wet.
+        return submerged(hull, surface=bottom + height if inside else (bottom - 1, top + 1)[height > 0])
+    part = hull.shape.immersed(hull, min(max(height, 0.0), top - bottom))
+    area, second = (part.area, part.second) if inside else (0.0, (0.0, 0.0))
+    centre = np.array([0.0, 0.0, bottom + part.centroid]) if part.volume > 0 else np.full(3, np.nan)
+    return Submerged(part.volume, centre, area, np.array([*second, 0.0]))
 
 
 def wet_added_mass(hull: Hull, draft: float, layers: Layers) -> tuple[np.ndarray, np.ndarray]:
@@ -126,12 +113,12 @@ def wet_added_mass(hull: Hull, draft: float, layers: Layers) -> tuple[np.ndarray
     for change, top in density_steps(layers):
         add_pressure(x, faces, area, 0, len(hull.faces), hull.extents[2, 0] + draft - top - x[2], change, wet)
     share = wet[6:9] / np.abs(area).sum(axis=1)
-    along, about = added_mass(hull)
+    along, about = hull.added_mass()
     return along * share, about * (np.roll(share, -1) + np.roll(share, -2)) / 2
 
 
 def period(inertia: float, stiffness: float) -> float:
-    """2 pi sqrt(inertia/stiffness) [s]; inf where nothing restores."""
+    """2 pi sqrt(inertia/stiffness) [s]; inf where no force restores."""
     return 2 * math.pi * math.sqrt(inertia / stiffness) if stiffness > 0 else math.inf
 
 
@@ -153,10 +140,3 @@ def density_steps(layers: Layers) -> list[tuple[float, float]]:
     if not good:
         raise argument_error("layers", layers, wanted)
     return steps
-
-
-def check_number(name: str, value: float, unit: str) -> None:
-    """Raises ValueError for what is not a positive, finite number."""
-    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    if not number or not 0 < value < math.inf:
-        raise argument_error(name, value, f"above 0 {unit}, finite")

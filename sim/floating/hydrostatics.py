@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating.hull import Hull
-from sim.floating.polyhedron import area_vectors
+from sim.floating.closed_mesh import ClosedMesh, area_vectors
+from sim.floating.rotation import rotation_matrix
 from sim.jit import kernel
 from sim.validation import argument_error
 
@@ -151,17 +151,7 @@ class Submerged(NamedTuple):
     second: np.ndarray  # (3,) [m4] int x^2, int y^2, int x y over the waterplane, about the hull's centre of mass
 
 
-def rotation_matrix(rotation: np.ndarray) -> np.ndarray:
-    """Matrix (3, 3) from body to world axes of a quaternion (w, x, y, z), normalised first."""
-    w, x, y, z = np.asarray(rotation, dtype=float) / np.linalg.norm(rotation)
-    return np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ])  # fmt: skip
-
-
-def check_pose(hull: Hull, position, rotation, surface) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def check_pose(hull: ClosedMesh, position, rotation, surface) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Position (3,), rotation matrix and surface height per vertex as arrays. Raises ValueError for bad ones."""
     position, rotation = np.asarray(position, dtype=float), np.asarray(rotation, dtype=float)
     if position.shape != (3,) or not np.isfinite(position).all():
@@ -176,7 +166,7 @@ def check_pose(hull: Hull, position, rotation, surface) -> tuple[np.ndarray, np.
     return position, rotation_matrix(rotation), np.broadcast_to(heights, len(hull.vertices))
 
 
-def submerged(hull: Hull, position=(0.0, 0.0, 0.0), rotation=(1.0, 0.0, 0.0, 0.0), surface=0.0) -> Submerged:
+def submerged(hull: ClosedMesh, position=(0.0, 0.0, 0.0), rotation=(1.0, 0.0, 0.0, 0.0), surface=0.0) -> Submerged:
     """What of the hull lies below `surface`, a height or heights above each vertex (n,) [m].
 
     position (3,) [m] of the centre of mass, rotation a quaternion (w, x, y, z). Raises ValueError for bad arguments.
@@ -192,7 +182,7 @@ def submerged(hull: Hull, position=(0.0, 0.0, 0.0), rotation=(1.0, 0.0, 0.0, 0.0
 
 
 def pressure_force(
-    hull: Hull, position=(0.0, 0.0, 0.0), rotation=(1.0, 0.0, 0.0, 0.0), surface=0.0, density=1025.0, gravity=9.81
+    hull: ClosedMesh, position=(0.0, 0.0, 0.0), rotation=(1.0, 0.0, 0.0, 0.0), surface=0.0, density=1025.0, gravity=9.81
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force (3,) [N] and moment (3,) [N m] about the centre of mass of a fluid of `density` [kg/m3] below `surface`.
 

@@ -29,8 +29,8 @@ def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
     tab = open_tab(lab.port, width=420, height=260, shaded=True)
     tab.wait(lambda: drawn(lab))
     tab.wait(lambda: lab.view.flames is not None and lab.view.flames.handle.visible)
-    tab.wait(lambda: lab.view.look.slick is not None and lab.view.look.slick.radius > 3.0)
-    # The look's last six rows are the slick's four and the window's two.
+    tab.wait(lambda: lab.view.material.slick is not None and lab.view.material.slick.radius > 3.0)
+    # The material's last six rows are the slick's four and the cutaway's two.
     tab.wait(lambda: tab.vertices("/sea/water_material")[-6, 2] > 3.0)
     assert tab.errors == []
 
@@ -50,15 +50,15 @@ def test_every_preset_is_drawn_as_water_without_console_errors(shown: tuple[View
 
 def test_a_window_shows_the_interface_and_the_camera_goes_along(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
-    load(lab, spill="layer", thickness=0.4, section=True, follow="window", rings=32, spokes=32, bodies=1)
+    load(lab, spill="layer", thickness=0.4, cutaway=True, follow="cutaway", rings=32, spokes=32, bodies=1)
     lab.loop.commands.put(Reset())
     tab.wait(lambda: drawn(lab))
-    tab.wait(lambda: len(tab.vertices("/section")) > 0)
+    tab.wait(lambda: len(tab.vertices("/cutaway")) > 0)
     tab.wait(lambda: lab.view.walls.mesh.has_shader is True)
-    n = (len(tab.vertices("/section")) - 1) // 4
+    n = (len(tab.vertices("/cutaway")) - 1) // 4
 
     def thickness() -> float:
-        walls = tab.vertices("/section")
+        walls = tab.vertices("/cutaway")
         return float((walls[:n, 2] - walls[n : 2 * n, 2]).mean())
 
     tab.wait(lambda: abs(thickness() - 0.4) < 0.05)
@@ -66,14 +66,14 @@ def test_a_window_shows_the_interface_and_the_camera_goes_along(shown: tuple[Vie
     def beside() -> float:
         """How far the page's camera is from where it belongs beside the buoy [m]."""
         (client,) = lab.server.get_clients().values()
-        wanted = lab.scene.crowd.fleet.position[0, :2] + lab.view.follow_camera.start_offset[0, :2]
+        wanted = lab.scene.bodies.fleet.position[0, :2] + lab.view.follow_camera.offset[0, :2]
         return float(np.abs(np.asarray(client.camera.position)[:2] - wanted).max())
 
     lab.loop.commands.put(Pause())
     tab.wait(lambda: not lab.loop.running)
-    lab.scene.crowd.fleet.velocity[0] = (3.0, 2.0, 0.0)
+    lab.scene.bodies.fleet.velocity[0] = (3.0, 2.0, 0.0)
     lab.loop.commands.put(Play())
-    tab.wait(lambda: np.hypot(*(lab.scene.crowd.fleet.position[0, :2] - lab.scene.crowd.home[0])) > 1.0)
+    tab.wait(lambda: np.hypot(*(lab.scene.bodies.fleet.position[0, :2] - lab.scene.bodies.home[0])) > 1.0)
     tab.wait(lambda: beside() < 0.5)
     assert tab.errors == []
 
@@ -85,16 +85,16 @@ def test_a_buoy_dragged_under_bobs_back(shown: tuple[Viewer, Tab]) -> None:
     tab.wait(lambda: drawn(lab))
     lab.loop.commands.put(Pause())
     tab.page.wait_for_timeout(500)
-    rest = lab.scene.crowd.fleet.position[0].copy()
+    rest = lab.scene.bodies.fleet.position[0].copy()
     start = pixel(lab, rest)
     tab.page.mouse.move(*start)
     lab.loop.commands.put(Play())
     tab.drag(start, (start[0], start[1] + 110), pause=100)
-    tab.wait(lambda: bool(lab.scene.crowd.held))
-    tab.wait(lambda: lab.scene.crowd.fleet.position[0, 2] < rest[2] - 0.15)
+    tab.wait(lambda: bool(lab.scene.bodies.holders))
+    tab.wait(lambda: lab.scene.bodies.fleet.position[0, 2] < rest[2] - 0.15)
     tab.release()
-    tab.wait(lambda: not lab.scene.crowd.held)
-    tab.wait(lambda: abs(lab.scene.crowd.fleet.position[0, 2] - rest[2]) < 0.02)
+    tab.wait(lambda: not lab.scene.bodies.holders)
+    tab.wait(lambda: abs(lab.scene.bodies.fleet.position[0, 2] - rest[2]) < 0.02)
     assert tab.errors == []
 
 
@@ -112,9 +112,9 @@ def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(shown: tuple[Vie
     clear = brightness()
     load(lab, spill="layer", thickness=0.3, speed=4.0)
     tab.wait(lambda: brightness() < 0.3 * clear)
-    theory = lab.scene.readings().readings[0].theory
-    tab.wait(lambda: np.abs(lab.scene.crowd.draft - theory.draft).max() < 2e-3)
-    assert (lab.scene.crowd.draft > theory.in_water + 0.03).all()
+    theory = lab.scene.readings().bodies[0].prediction
+    tab.wait(lambda: np.abs(lab.scene.bodies.draft - theory.draft).max() < 2e-3)
+    assert (lab.scene.bodies.draft > theory.draft_in_water + 0.03).all()
     tab.wait(lambda: tab.page.get_by_text(f"{theory.draft:.3f}").count() > 0)
     assert tab.errors == []
 

@@ -89,7 +89,7 @@ def test_frequencies_over_forty_decades() -> None:
 def float_for(scene: RadialSeaScene, seconds: float) -> None:
     """The bodies stay numbers, turned by proper turns, for so long."""
     scene.advance(round(seconds / scene.step))
-    fleet = scene.crowd.fleet
+    fleet = scene.bodies.fleet
     for state in (fleet.position, fleet.rotation, fleet.velocity, fleet.spin):
         assert np.isfinite(state).all()
     assert np.abs(np.linalg.norm(fleet.rotation, axis=1) - 1.0).max() < 1e-6
@@ -99,7 +99,7 @@ def float_for(scene: RadialSeaScene, seconds: float) -> None:
 @pytest.mark.parametrize("spill", ["none", "layer", "mixed"])
 def test_hulls_in_places_where_no_hull_belongs(wind: float, spill: str, tally: Tally) -> None:
     scene = RadialSeaScene(Params(bodies=4, wind_speed=wind, spill=spill, size=1.0, wave_count=24, rings=16, spokes=16))
-    fleet = scene.crowd.fleet
+    fleet = scene.bodies.fleet
     home = fleet.position.copy()
 
     def start(**state: object) -> None:

@@ -1,175 +1,206 @@
-"""The floating bodies of a scene: two buoys, a box, then more, with what theory says of each and what is measured."""
+"""The floating bodies of the radial sea: what floats where, what is predicted of each, and what is measured."""
 
-import dataclasses
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating import Body, Fleet, Hull, Laws, equilibrium_draft, heave_period, make_fleet, make_water, pull, step
+from sim.floating import (
+    SHAPES,
+    Body,
+    Fleet,
+    HeaveMeter,
+    Hull,
+    HydrostaticPrediction,
+    MotionCoefficients,
+    Shape,
+    make_fleet,
+    make_water,
+    predict,
+    pull,
+    step,
+)
+from sim.floating.rotation import body_z_axes
+from sim.floating.shapes import Appearance
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import SurfaceAt
 
-KINDS = ("buoy_red", "buoy_yellow", "crate", "ball")
-OWN = "hull"  # the kind of the one that came from a file
-OWN_PLACE = (-0.2, 2.4)  # [m] at size 1, for one of 2 m; a greater one lies beyond
-PLACES = ((-2.4, 1.0), (-3.0, 4.6), (0.4, -0.8))  # [m] at size 1 of the first three
-RING = 4.2  # [m] at size 1: from one turn of the spiral of the others to the next
-DEEPEST = -60.0  # [m] where what sinks comes to rest
-SLACK = 1.5  # [m] at size 1 of a mooring line
-MEAN_OVER = 8.0  # [s] over which drafts are averaged
-PERIODS = 4  # over how many a heave period is measured
+GRAVITY = 9.81  # [m/s2]
+FIRST_PLACES = ((-2.4, 1.0), (-3.0, 4.6), (0.4, -0.8))  # [m] at size 1 of the first three bodies
+FILE_PLACE = (-0.2, 2.4)  # [m] at size 1 of a hull from a file that is 2 m wide; a wider one floats farther out
+FILE_DIRECTION = (0.35, 0.94)  # in which a wider one is moved
+SPIRAL_SPACING = 4.2  # [m] at size 1 between the turns of the spiral of the other bodies
+MAX_DEPTH = 60.0  # [m] at which a sinking body comes to rest
+MOORING_SLACK = 1.5  # [m] at size 1 that a body drifts before its mooring line pulls
+MOORING_STIFFNESS = 0.06  # weights of the body per metre of pull-out at size 1: slower than the waves
+MAX_MOORING_PULL = 0.6  # weights of the body
+MAX_READINGS = 6  # bodies of the scene's own in the table
 
 
-def hull_of(kind: str, size: float) -> Hull:
-    """The hull of a body [m]; drum, box and ball lie stably whatever their density."""
-    if kind == "crate":
-        return Hull.box(1.2 * size, 1.2 * size, 0.7 * size)
-    if kind == "ball":
-        return Hull.sphere(0.5 * size, 5)
-    return Hull.cylinder(0.6 * size, 0.7 * size)
+class BodyKind(NamedTuple):
+    """One kind of body: a shape, and one way in which it is drawn."""
+
+    shape: Shape
+    appearance: Appearance
+
+    @property
+    def name(self) -> str:
+        """Name of the kind, unique among the kinds."""
+        return self.appearance.name
+
+    @property
+    def title(self) -> str:
+        """What tables call it."""
+        return self.appearance.title
 
 
-def kind_of(index: int) -> str:
-    """Which body is number `index`."""
-    return KINDS[index] if index < 3 else KINDS[(index * 7 + 3) % 4]
+def kinds_of(shape: Shape) -> list[BodyKind]:
+    """The kinds of body of one shape: one for each appearance."""
+    return [BodyKind(shape, appearance) for appearance in shape.appearances]
+
+
+BODY_KINDS = tuple(kind for shape in SHAPES.values() for kind in kinds_of(shape))
+
+
+def kind_of(index: int) -> BodyKind:
+    """The kind of body number `index`: the first three in order, then all of them in turn from the last one on."""
+    first = len(FIRST_PLACES)
+    return BODY_KINDS[(index if index < first else first - index) % len(BODY_KINDS)]
 
 
 def place_of(index: int, size: float) -> tuple[float, float]:
-    """Where body `index` lies [m]: the first three by name, the others on a spiral about them."""
-    if index < len(PLACES):
-        x, y = PLACES[index]
+    """Where body `index` floats [m]: the first three at fixed places, the others on a spiral about them."""
+    if index < len(FIRST_PLACES):
+        x, y = FIRST_PLACES[index]
         return x * size, y * size
-    n = index - len(PLACES) + 3
-    radius = RING * size * math.sqrt(n / 2.2)
+    n = index - len(FIRST_PLACES) + 3
+    radius = SPIRAL_SPACING * size * math.sqrt(n / 2.2)
     angle = n * math.pi * (3.0 - math.sqrt(5.0))
     return radius * math.cos(angle), radius * math.sin(angle)
 
 
-class Theory(NamedTuple):
-    """What Archimedes says of a kind of body."""
-
-    draft: float  # [m] at rest; inf: it sinks
-    in_water: float  # [m] in clean water
-    height: float  # [m] of the hull
-    period: float  # [s] of heave, added mass and all
+def place_of_file_hull(hull: Hull, size: float) -> tuple[float, float]:
+    """Where a hull from a file floats [m], beside bodies of this size."""
+    farther = max(float(np.abs(hull.extents[:2]).max()) - 1.0, 0.0)
+    (x, y), (dx, dy) = FILE_PLACE, FILE_DIRECTION
+    return x * size + dx * farther, y * size + dy * farther
 
 
 class BodyReading(NamedTuple):
-    """One body now."""
+    """One body now, as measured and as predicted."""
 
     kind: str
+    title: str
     draft: float  # [m] of the keel below the plane of the water there
     mean_draft: float  # [m] over the last seconds
-    period: float  # [s] of heave, measured; nan until known
-    theory: Theory
-
-
-@dataclasses.dataclass
-class HeaveMeter:
-    """Drafts averaged, and upward crossings of the average timed, for n bodies."""
-
-    n: int
-
-    def __post_init__(self) -> None:
-        self.mean, self.age = np.zeros(self.n), 0.0
-        self.low = np.zeros(self.n, bool)  # has been clearly below the mean since the last crossing
-        self.spread = np.zeros(self.n)  # [m] running mean deviation
-        self.crossed: list[list[float]] = [[] for _ in range(self.n)]
-
-    def take(self, t: float, draft: np.ndarray, duration: float) -> None:
-        self.age += duration
-        share = min(duration / min(MEAN_OVER, max(self.age, duration)), 1.0)
-        self.mean += share * (draft - self.mean)
-        off = draft - self.mean
-        self.spread += share * (np.abs(off) - self.spread)
-        trip = np.maximum(0.3 * self.spread, 2e-4)
-        for i in np.flatnonzero(self.low & (off > trip)):
-            self.crossed[i] = [*self.crossed[i][-PERIODS:], t]
-            self.low[i] = False
-        self.low |= off < -trip
-
-    def period(self, i: int, t: float) -> float:
-        """Measured period [s] of body i, nan until two crossings, or when the last is long ago."""
-        times = self.crossed[i]
-        if len(times) < 2:
-            return math.nan
-        period = (times[-1] - times[0]) / (len(times) - 1)
-        return period if t - times[-1] < 4.0 * period else math.nan
+    period: float  # [s] of heave, measured; NaN until it is known
+    prediction: HydrostaticPrediction
 
 
 class FloatingBodies:
-    """The bodies on the simulation thread."""
+    """The bodies of a scene; used on the simulation thread."""
 
-    def __init__(self, count: int, size: float, density: float, column: FluidColumn, own: Hull | None = None) -> None:
-        """own: a hull that floats besides, as large as it is."""
-        self.size, self.density = size, density
-        self.kinds = [kind_of(i) for i in range(count)]
-        hulls = {kind: hull_of(kind, size) for kind in KINDS}
+    def __init__(
+        self, count: int, size: float, density: float, column: FluidColumn, file_shape: Shape | None = None
+    ) -> None:
+        """count bodies of `density` [kg/m3], and one of `file_shape` in its own size."""
+        self.count_asked, self.size, self.density = count, size, density
+        body_kinds = [kind_of(i) for i in range(count)]
         places = [place_of(i, size) for i in range(count)]
-        if own is not None:
-            hulls[OWN] = own
-            self.kinds.append(OWN)
-            beyond = max(float(np.abs(own.extents[:2]).max()) - 1.0, 0.0)
-            places.append((OWN_PLACE[0] * size + 0.35 * beyond, OWN_PLACE[1] * size + 0.94 * beyond))
-        self.count = len(self.kinds)
-        self.hulls = hulls
-        self.theory = theory_of(hulls, density, column)
+        self.hulls = {kind.name: Hull.of_shape(kind.shape, size) for kind in BODY_KINDS}
+        if file_shape is not None:
+            (kind,) = kinds_of(file_shape)
+            self.hulls[kind.name] = Hull.of_shape(file_shape)
+            body_kinds.append(kind)
+            places.append(place_of_file_hull(self.hulls[kind.name], size))
+        self.body_kinds = tuple(body_kinds)
+        self.count = len(body_kinds)
+        self.predictions = self.predict(column)
         bodies = []
-        for kind, (x, y) in zip(self.kinds, places, strict=True):
-            t = self.theory[kind]
-            hull = hulls[kind]
-            sunk = t.draft if math.isfinite(t.draft) else 0.5 * t.height
-            bodies.append(Body(hull, density, (x, y, -hull.extents[2, 0] - sunk)))
+        for kind, (x, y) in zip(body_kinds, places, strict=True):
+            prediction, hull = self.predictions[kind.name], self.hulls[kind.name]
+            initial_draft = prediction.draft if math.isfinite(prediction.draft) else 0.5 * prediction.height
+            bodies.append(Body(hull, density, (x, y, -hull.extents[2, 0] - initial_draft)))
         self.fleet: Fleet = make_fleet(bodies)
-        self.home = self.fleet.position[:, :2].copy()
-        self.keel = np.array([hulls[kind].extents[2, 0] for kind in self.kinds])  # [m], negative
-        self.round = np.array([kind == "ball" for kind in self.kinds], bool)
-        self.widths = np.array([np.ptp(hulls[kind].extents[0]) for kind in self.kinds])
-        self.meter = HeaveMeter(self.count)
-        self.held: dict[int, np.ndarray] = {}
-        self.draft = np.zeros(self.count)
-        self.impulse = np.zeros(self.count)  # [N s] pressed on the water since last taken
-        self.touched = self.stepped = 0
+        self.home = self.fleet.position[:, :2].copy()  # (n, 2) [m] where each is moored
+        hulls = [self.hulls[kind.name] for kind in body_kinds]
+        self.keel = np.array([hull.extents[2, 0] for hull in hulls])  # (n,) [m] height over the centre, negative
+        self.is_round = np.array([kind.shape.is_round for kind in body_kinds], bool)
+        self.widths = np.array([np.ptp(hull.extents[0]) for hull in hulls])  # (n,) [m]
+        self.heave_meter = HeaveMeter(self.count)
+        self.holders: dict[int, int] = {}  # body -> the browser that drags it
+        self.targets: dict[int, tuple[float, float, float]] = {}  # body -> where it is pulled [m]
+        self.draft = np.zeros(self.count)  # [m]
+        self.impulse = np.zeros(self.count)  # [N s] on the water since the scene last took it
+        self.touches = 0  # pairs of bodies that touched, summed over steps
 
-    def restate(self, density: float, column: FluidColumn) -> None:
-        """Other density or fluids: theory anew, masses changed under way, nothing moved."""
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Name of the kind of each body."""
+        return tuple(kind.name for kind in self.body_kinds)
+
+    def predict(self, column: FluidColumn) -> dict[str, HydrostaticPrediction]:
+        """What hydrostatics predicts of each kind of body in these fluids."""
+        return {
+            name: predict(hull, self.density, column.layers, column.water.density) for name, hull in self.hulls.items()
+        }
+
+    def set_fluids(self, density: float, column: FluidColumn) -> None:
+        """Take another density of the bodies [kg/m3], or other fluids; nothing is moved."""
         self.density = density
-        self.theory = theory_of(self.hulls, density, column)
+        self.predictions = self.predict(column)
         self.fleet.mass[:] *= density / self.fleet.density
         self.fleet.density[:] = density
-        self.meter = HeaveMeter(self.count)
+        self.heave_meter = HeaveMeter(self.count)
 
-    def hold(self, index: int, target: tuple[float, float, float], limit: float) -> None:
-        """Pull body `index` towards a target [m] with at most `limit` weights of its own."""
-        if 0 <= index < self.count:
-            self.held[index] = np.array(target)
-            pull(self.fleet, index, (0.0, 0.0, 0.0), target, limit * 9.81 * float(self.fleet.mass[index]))
+    def hold(self, index: int, target: tuple[float, float, float], limit: float, client: int = 0) -> None:
+        """Pull body `index` towards a target [m] for a browser, with at most `limit` weights of the body.
 
-    def release(self) -> None:
-        """Let go of all; what is thrown flies on."""
-        for index in self.held:
+        A body that another browser holds stays with that one. A browser holds one body at a time.
+        """
+        if not 0 <= index < self.count or self.holders.get(index, client) != client:
+            return
+        if self.holders.get(index) != client:
+            self.release(client)
+        self.holders[index], self.targets[index] = client, target
+        pull(self.fleet, index, (0.0, 0.0, 0.0), target, limit * GRAVITY * float(self.fleet.mass[index]))
+
+    def release(self, client: int = 0) -> None:
+        """Let go of what a browser holds; the body keeps its velocity."""
+        for index in [index for index, holder in self.holders.items() if holder == client]:
             self.fleet.pull_limit[index] = 0.0
-        self.held.clear()
+            del self.holders[index], self.targets[index]
 
     def moor(self) -> None:
-        """Pull back, weakly and level, what has gone beyond its slack."""
+        """Pull each body that is out of its mooring's slack back, weakly and level; the held ones are left alone."""
         offset = self.home - self.fleet.position[:, :2]
-        beyond = np.maximum(np.hypot(offset[:, 0], offset[:, 1]) - SLACK * self.size, 0.0)
-        for i in np.flatnonzero(beyond > 0.0):
-            if i not in self.held:
+        stretch = np.maximum(np.hypot(offset[:, 0], offset[:, 1]) - MOORING_SLACK * self.size, 0.0)
+        for i in np.flatnonzero(stretch > 0.0):
+            if i not in self.holders:
                 x, y = self.home[i]
-                weight = 9.81 * float(self.fleet.mass[i])
+                weight = GRAVITY * float(self.fleet.mass[i])
                 target = (float(x), float(y), float(self.fleet.position[i, 2]))
-                pull(
-                    self.fleet, int(i), (0.0, 0.0, 0.0), target, min(0.06 * float(beyond[i]) / self.size, 0.6) * weight
-                )
-        for i in np.flatnonzero(beyond == 0.0):
-            if i not in self.held:
+                limit = min(MOORING_STIFFNESS * float(stretch[i]) / self.size, MAX_MOORING_PULL) * weight
+                pull(self.fleet, int(i), (0.0, 0.0, 0.0), target, limit)
+        for i in np.flatnonzero(stretch == 0.0):
+            if i not in self.holders:
                 self.fleet.pull_limit[i] = 0.0
 
-    def step(self, column: FluidColumn, at: SurfaceAt, t: float, h: float, layer: np.ndarray, laws: Laws) -> None:
-        """One step of h [s] from t on the sea `at` the bodies; layer (n,) [m]: thickness of oil at each.
+    def unmoor(self) -> None:
+        """End the pull of all mooring lines; held bodies stay held."""
+        free = np.ones(self.count, bool)
+        free[list(self.holders)] = False
+        self.fleet.pull_limit[free] = 0.0
+
+    def step(
+        self,
+        column: FluidColumn,
+        at: SurfaceAt,
+        h: float,
+        layer: np.ndarray,
+        coefficients: MotionCoefficients,
+    ) -> None:
+        """One step of h [s] on the sea `at` the bodies; layer (n,) [m]: thickness of oil at each.
 
         Raises FloatingPointError where a body's state is no longer finite.
         """
@@ -177,60 +208,55 @@ class FloatingBodies:
             return
         oil = column.kind != "mixed" and bool((layer > 0.0).any())
         layers = ((column.oil.density, 1.0), (column.water.density, math.inf)) if oil else column.layers
-        more = {}
+        interface = {}
         if oil:
-            # The interface of the fluid column; where a slick adds oil, the interface lies that much deeper.
-            more = {
+            # The interface of the fluid column; where a slick is on top of it, it is deeper by the slick.
+            interface = {
                 "interface": at.interface - layer,
                 "interface_slope": at.interface_slope,
                 "interface_rise": at.interface_rise,
             }
         water = make_water(
-            self.fleet, layers, at.height, slope=at.slope, velocity=at.velocity, acceleration=at.acceleration, **more
+            self.fleet,
+            layers,
+            at.height,
+            slope=at.slope,
+            velocity=at.velocity,
+            acceleration=at.acceleration,
+            **interface,
         )
-        self.touched += step(self.fleet, water, h, laws)
-        self.stepped += self.count
-        # What presses on the water beyond riding along with it makes waves.
-        carried = self.fleet.mass * np.maximum(laws.gravity + at.acceleration, 0.0)
+        self.touches += step(self.fleet, water, h, coefficients)
+        # A body that presses on the water with more or less than the weight it carries makes waves.
+        carried = self.fleet.mass * np.maximum(coefficients.gravity + at.acceleration, 0.0)
         self.impulse += np.where(self.fleet.buoyancy > 0.0, self.fleet.buoyancy - carried, 0.0) * h
-        sunk = self.fleet.position[:, 2] < DEEPEST
-        self.fleet.position[sunk, 2] = DEEPEST
-        self.fleet.velocity[sunk] = 0.0
+        at_rest = self.fleet.position[:, 2] < -MAX_DEPTH
+        self.fleet.position[at_rest, 2] = -MAX_DEPTH
+        self.fleet.velocity[at_rest] = 0.0
 
     def measure(self, t: float, at: SurfaceAt, duration: float) -> None:
-        """Take drafts: how deep each keel lies below the plane of the water, which a body on a wave leans with."""
+        """Measure drafts at time t [s]: how deep each keel lies below the plane of the water.
+
+        A body on a wave leans with the water, so that depth is along the normal of that plane.
+        """
         normal = np.column_stack([-at.slope, np.ones(self.count)])
         normal /= np.sqrt((normal * normal).sum(axis=1, keepdims=True))
-        up = np.where(self.round[:, None], normal, upward(self.fleet.rotation))
-        below = self.keel[:, None] * up  # from a body's centre to its keel
-        below[:, 2] += self.fleet.position[:, 2] - at.height
-        self.draft[:] = -(normal * below).sum(axis=1)
-        self.meter.take(t, self.draft, duration)
+        up = np.where(self.is_round[:, None], normal, body_z_axes(self.fleet.rotation))
+        keel = self.keel[:, None] * up  # from a body's centre
+        keel[:, 2] += self.fleet.position[:, 2] - at.height
+        self.draft[:] = -(normal * keel).sum(axis=1)
+        self.heave_meter.update(t, self.draft, duration)
 
-    def readings(self, t: float, most: int = 6) -> tuple[BodyReading, ...]:
-        """The first few bodies now, and the one from a file."""
-        shown = [i for i, kind in enumerate(self.kinds) if i < most or kind == OWN]
+    def readings(self, t: float, count: int = MAX_READINGS) -> tuple[BodyReading, ...]:
+        """The first `count` bodies at time t [s], and the one from a file."""
         return tuple(
             BodyReading(
-                kind, float(self.draft[i]), float(self.meter.mean[i]), self.meter.period(i, t), self.theory[kind]
+                kind.name,
+                kind.title,
+                float(self.draft[i]),
+                float(self.heave_meter.mean[i]),
+                self.heave_meter.period(i, t),
+                self.predictions[kind.name],
             )
-            for i, kind in ((i, self.kinds[i]) for i in shown)
+            for i, kind in enumerate(self.body_kinds)
+            if i < count or i >= self.count_asked
         )
-
-
-def upward(rotation: np.ndarray) -> np.ndarray:
-    """The bodies' own z axes (n, 3) in the world, of unit quaternions (n, 4): the matrices' last columns."""
-    w, x, y, z = rotation.T
-    return np.stack([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)], axis=1)
-
-
-def theory_of(hulls: dict[str, Hull], density: float, column: FluidColumn) -> dict[str, Theory]:
-    """Archimedes for each kind of body."""
-    clean = ((column.water.density, math.inf),)
-    found = {}
-    for kind, hull in hulls.items():
-        height = float(hull.extents[2, 1] - hull.extents[2, 0])
-        draft = equilibrium_draft(hull, density, column.layers)
-        in_water = equilibrium_draft(hull, density, clean)
-        found[kind] = Theory(draft, in_water, height, heave_period(hull, density, column.layers))
-    return found

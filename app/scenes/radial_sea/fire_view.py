@@ -1,4 +1,4 @@
-"""Fire, smoke and gushing oil as soft blobs: viser's Gaussian splats, of which one buffer a frame is sent.
+"""Fire, smoke and the jet's oil as soft blobs: viser's Gaussian splats, of which one buffer a frame is sent.
 
 A splat is eight words: centre (3 x float32), one of the renderer's own, covariance (6 x float16), colour (4 x uint8).
 """
@@ -6,25 +6,35 @@ A splat is eight words: centre (3 x float32), one of the renderer's own, covaria
 import numpy as np
 import viser
 
-FLAMES, PARCELS = 2000, 900  # splats of fire and smoke, and of oil
-HEAT = (0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0)  # of a parcel, and the colour it has
-RGB = ((52, 48, 46), (38, 34, 32), (60, 32, 20), (214, 62, 10), (255, 132, 22), (255, 196, 70), (255, 246, 190))
-OIL = (34, 22, 12)
+MAX_FIRE_SPLATS, MAX_OIL_SPLATS = 2000, 900
+HEAT = (0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0)  # of a parcel, at which it has the colour below
+HEAT_COLOURS = (
+    (52, 48, 46),
+    (38, 34, 32),
+    (60, 32, 20),
+    (214, 62, 10),
+    (255, 132, 22),
+    (255, 196, 70),
+    (255, 246, 190),
+)
+OIL_COLOUR = (34, 22, 12)
+OIL_WIDTH, OIL_HEIGHT = 0.34, 0.55  # [m] standard deviations of a splat of oil
+OIL_OPACITY = 0.9
 
 
 class Flames:
-    """One node of splats; those not in use are clear."""
+    """One node of splats; those not in use are transparent."""
 
     def __init__(self, server: viser.ViserServer, name: str) -> None:
-        n = FLAMES + PARCELS
-        still = np.tile(0.01 * np.eye(3, dtype=np.float32), (n, 1, 1))
+        n = MAX_FIRE_SPLATS + MAX_OIL_SPLATS
+        covariances = np.tile(0.01 * np.eye(3, dtype=np.float32), (n, 1, 1))
         self.handle = server.scene.add_gaussian_splats(
-            name, np.zeros((n, 3)), still, np.zeros((n, 3)), np.zeros((n, 1)), visible=False
+            name, np.zeros((n, 3)), covariances, np.zeros((n, 3)), np.zeros((n, 1)), visible=False
         )
         self.buffer = np.array(self.handle.buffer)
 
     def show(self, fire: tuple[np.ndarray, np.ndarray] | None, jet: np.ndarray | None) -> None:
-        """fire: positions (3, n) [m], and heat and age over life (2, n); jet: positions (m, 3) [m]."""
+        """Draw a fire, positions (3, n) [m] with heat and age over life (2, n), and a jet, positions (m, 3) [m]."""
         visible = fire is not None or jet is not None
         if self.handle.visible != visible:
             self.handle.visible = visible
@@ -32,24 +42,25 @@ class Flames:
             return
         self.buffer[:, 7] = 0
         if fire is not None:
-            every = max(1, -(-fire[0].shape[1] // FLAMES))
+            every = max(1, -(-fire[0].shape[1] // MAX_FIRE_SPLATS))
             x, (heat, age) = fire[0][:, ::every].T, fire[1][:, ::every]
-            rgb = np.stack([np.interp(heat, HEAT, [c[i] for c in RGB]) for i in range(3)], axis=1)
-            # Flames are dense and small, smoke widens as it thins.
+            rgb = np.stack([np.interp(heat, HEAT, [c[i] for c in HEAT_COLOURS]) for i in range(3)], axis=1)
+            # Flames are dense and small; smoke grows wider and thinner with age.
             young = np.clip(age / 0.04, 0.0, 1.0)
             opacity = young * np.interp(heat, (0.0, 0.08, 0.2, 1.0), (0.17, 0.3, 0.7, 0.95))
             opacity *= (1.0 - np.clip(age, 0.0, 1.0)) ** 1.3
             width = 0.8 + 0.9 * (1.0 - heat) + 8.5 * np.clip(age, 0.0, 1.0)
-            tall = width * np.interp(heat, (0.0, 0.3, 1.0), (1.0, 1.3, 1.8))
-            self.put(0, x, width, tall, rgb, np.where(age < 0.0, 0.0, opacity))
+            height = width * np.interp(heat, (0.0, 0.3, 1.0), (1.0, 1.3, 1.8))
+            self.put(0, x, width, height, rgb, np.where(age < 0.0, 0.0, opacity))
         if jet is not None and len(jet):
-            chosen = jet[:: max(1, -(-len(jet) // PARCELS))]
+            chosen = jet[:: max(1, -(-len(jet) // MAX_OIL_SPLATS))]
             n = len(chosen)
-            self.put(FLAMES, chosen, np.full(n, 0.34), np.full(n, 0.55), np.tile(OIL, (n, 1)), np.full(n, 0.9))
+            colours, opacity = np.tile(OIL_COLOUR, (n, 1)), np.full(n, OIL_OPACITY)
+            self.put(MAX_FIRE_SPLATS, chosen, np.full(n, OIL_WIDTH), np.full(n, OIL_HEIGHT), colours, opacity)
         self.handle.buffer = self.buffer.copy()
 
     def put(
-        self, start: int, x: np.ndarray, width: np.ndarray, tall: np.ndarray, rgb: np.ndarray, opacity: np.ndarray
+        self, start: int, x: np.ndarray, width: np.ndarray, height: np.ndarray, rgb: np.ndarray, opacity: np.ndarray
     ) -> None:
         """Set splats from `start` on: centres (n, 3), standard deviations across and upwards (n,) [m]."""
         n = len(x)
@@ -57,7 +68,7 @@ class Flames:
         rows[:, :3] = np.ascontiguousarray(x, np.float32).view(np.uint32)
         cov = np.zeros((n, 6), np.float16)
         cov[:, 0] = cov[:, 3] = width**2
-        cov[:, 5] = tall**2
+        cov[:, 5] = height**2
         rows[:, 4:7] = cov.view(np.uint32)
         rgba = np.empty((n, 4), np.uint8)
         rgba[:, :3] = np.clip(rgb, 0, 255)

@@ -1,5 +1,6 @@
-"""What the radial scene hands to the viewer: its picture and its numbers, immutable."""
+"""What the radial sea hands to its view and to the panel: frames and readings, immutable."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -7,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.radial_sea.bodies import BodyReading
-from app.scenes.radial_sea.cutaway import Section
+from app.scenes.radial_sea.cutaway import Cutaway
 from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.well_blowout import OilBudget, Slick
 from sim.floating import Hull
@@ -17,48 +18,48 @@ from sim.ocean.radial_grid import RadialGrid
 
 
 class RadialFrame(NamedTuple):
-    """What the viewer draws."""
+    """What the view draws."""
 
     params: Params
     time: float  # [s]
     grid: RadialGrid
     surface: RadialSurface
-    foam: NDArray[np.float32]  # (n,)
-    slick: Slick | None  # drawn on clean water only: on a layer it would not show
-    section: Section | None
-    kinds: tuple[str, ...]  # of the bodies
-    own: Hull | None  # the hull of the one from a file
+    foam: NDArray[np.float32]  # (n,) 0 to 1
+    slick: Slick | None  # only on clean water: on a layer of oil it would not be seen
+    cutaway: Cutaway | None
+    kinds: tuple[str, ...]  # of each body
+    hulls: Mapping[str, Hull]  # kind -> its hull
     positions: NDArray[np.float32]  # (bodies, 3) [m]
     rotations: NDArray[np.float32]  # (bodies, 4) quaternions (w, x, y, z)
-    pull: tuple[Vector, Vector] | None  # from a held body to where it is pulled [m]
+    pulls: tuple[tuple[Vector, Vector], ...]  # from each held body to where it is pulled [m]
     fire: tuple[NDArray[np.float32], NDArray[np.float32]] | None  # (3, n) [m], (2, n) heat and age over life
     jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
     column: FluidColumn
-    age: float  # [s] that the waves have run under the oil
+    age: float  # [s] for which the waves have run under the oil
 
 
-class Compared(NamedTuple):
-    """One way to make the surface, for the same vertices."""
+class SurfaceReading(NamedTuple):
+    """One way to compute the surface at the vertices of the grid."""
 
     cost: float  # [s] a frame
     waves: int
-    smallest: float  # [m] shortest wave at the viewer
+    shortest: float  # [m] shortest wave at the viewer
     extent: float  # [m] across, before it repeats
     height: float  # Hs [m] of its waves
     slope: float  # mean square slope of its waves
-    error: float  # of Hs, against the spectrum's, as a share
+    error: float  # of Hs, as a share of that of the sum of waves
 
 
 class RadialReadings(NamedTuple):
     """Numbers for the panel."""
 
-    readings: tuple[BodyReading, ...]
+    bodies: tuple[BodyReading, ...]
     column: FluidColumn
     height: float  # Hs [m] of the waves as they are
-    height_clean: float  # without the oil
+    clean_height: float  # [m] without the oil
     slope: float  # mean square slope as it is
-    slope_clean: float
-    peak_period: float  # [s] of the wave in the middle of the energy
-    tally: OilBudget
-    compared: dict[str, Compared]
-    age: float  # [s] that the waves have run under the oil
+    clean_slope: float  # without the oil
+    middle_period: float  # [s] of the wave in the middle of the energy
+    oil_budget: OilBudget
+    surfaces: dict[str, SurfaceReading]  # radial and square sea side by side; empty unless asked for
+    age: float  # [s] for which the waves have run under the oil

@@ -1,4 +1,4 @@
-"""How a fluid of the radial sea looks: colour, index and smoothness of water, oil, and both mixed."""
+"""How the fluids of the radial sea look: colour, index and smoothness of water, of oil, and of both mixed."""
 
 import dataclasses
 import math
@@ -12,9 +12,19 @@ from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.well_blowout import Slick
 from sim.ocean.fluid_column import FluidColumn
 
-LAB_SPECULAR = 0.4  # share of the reflection that the lab's mode keeps of oil
-RIPPLE = 0.9  # [m] wave that stands for the ripples of the material
-MOUSSE: RGB = (0.40, 0.26, 0.14)  # what an emulsion scatters
+LAB_SPECULAR = 0.4  # share of oil's reflection that is drawn with optics "lab"
+RIPPLE_LENGTH = 0.9  # [m] of the wave that stands for all ripples of the material, in how they decay under oil
+CALM_SLOPE, MAX_SLOPE = 0.02, 0.24  # rms slope of the ripples without wind, and the greatest
+MIN_RIPPLE_SHARE = 0.12  # of the ripples' slope that oil leaves at least, so that the sea does not turn into a mirror
+MIXTURE_SCATTER: RGB = (0.40, 0.26, 0.14)  # what an emulsion scatters
+MIXTURE_FOAM: RGB = (0.80, 0.72, 0.60)
+MIXTURE_ROUGHNESS = 0.06
+MIXTURE_BASE_SHARE = 0.35  # share of oil's colours in a mixture with hardly any oil; it grows with the fraction
+OIL_FOAM: RGB = (0.45, 0.36, 0.26)
+OIL_ROUGHNESS = 0.02
+OIL_SCATTER = 1.3  # factor on the oil's colour in what it scatters
+OPAQUE_THICKNESS = 0.004  # [m] of crude over which light falls to 1/e
+MIN_SLICK_THICKNESS = 0.05  # [m] that a slick is drawn with
 
 
 def rgb_of(colour: str) -> np.ndarray:
@@ -23,34 +33,42 @@ def rgb_of(colour: str) -> np.ndarray:
 
 
 def blend(a: RGB | np.ndarray, b: RGB | np.ndarray, share: float) -> RGB:
+    """The colour `share` of the way from a to b."""
     x, y, z = ((1.0 - share) * np.asarray(a) + share * np.asarray(b)).tolist()
     return x, y, z
 
 
 def ripple_slope(p: Params, column: FluidColumn, age: float) -> float:
-    """Root mean square slope of the material's ripples: Cox and Munk's, less what `age` [s] of the fluid took."""
-    clean = math.sqrt(0.003 + 0.00512 * p.wind_speed) if p.waves else 0.02
-    k = np.array([2.0 * math.pi / RIPPLE])
-    kept = math.exp(-float(column.roots(k)[1][0]) * age)
-    return min(clean, 0.24) * max(kept, 0.12)
+    """Root mean square slope of the material's ripples: Cox and Munk's (1954), decayed for `age` [s] in the fluid."""
+    clean = math.sqrt(0.003 + 0.00512 * p.wind_speed) if p.waves else CALM_SLOPE
+    k = np.array([2.0 * math.pi / RIPPLE_LENGTH])
+    remaining = math.exp(-float(column.roots(k)[1][0]) * age)
+    return min(clean, MAX_SLOPE) * max(remaining, MIN_RIPPLE_SHARE)
 
 
-def material_of(light: Material, picture: RadialFrame) -> Material:
-    """The material under a sky (`app.render.skies.set_sky`), with a slick on clean water and a cutaway in it."""
-    p, column, section = picture.params, picture.column, picture.section
+def mixture_share(column: FluidColumn) -> float:
+    """Share of oil's colours in those of a mixture."""
+    return min(1.0, MIXTURE_BASE_SHARE + column.fraction)
+
+
+def material_of(light: Material, frame: RadialFrame) -> Material:
+    """The material of a frame under a sky (`app.render.skies.set_sky`), with its slick and its cutaway."""
+    p, column, cutaway = frame.params, frame.column, frame.cutaway
     common = {
-        "ripple_slope": round(ripple_slope(p, column, picture.age), 3),
+        "ripple_slope": round(ripple_slope(p, column, frame.age), 3),
         "ripple_length": 1.6 if column.kind == "water" else 2.4,
         "ripple_direction": math.radians(p.wind_direction),
         "wireframe": p.grid,
         "reflection_factor": LAB_SPECULAR if p.optics == "lab" and p.spill != "none" else 1.0,
         "refractive_index": column.surface.refractive_index,
         "clouds": min(0.15 + 0.045 * p.wind_speed, 0.9),
-        "cutout": None if section is None else Cutout(section.middle, section.half, section.way, section.length),
+        "cutout": None
+        if cutaway is None
+        else Cutout(cutaway.middle, cutaway.half_width, cutaway.direction, cutaway.length),
     }
     if column.kind == "water":
-        patch = None if picture.slick is None else slick_patch(light, p, column, picture.slick)
-        return dataclasses.replace(light, **common, slick=patch)
+        region = None if frame.slick is None else slick_region(light, p, column, frame.slick)
+        return dataclasses.replace(light, **common, slick=region)
     return dataclasses.replace(light, **common, **oil_colours(light, column))
 
 
@@ -58,27 +76,37 @@ def oil_colours(light: Material, column: FluidColumn) -> dict[str, Any]:
     """Body colours. Oil sends nearly no light back from below; a mixture is brown and turbid."""
     oil = rgb_of(column.oil.colour)
     if column.kind == "mixed":
-        share = min(1.0, 0.35 + column.fraction)
-        deep = blend(light.deep_color, blend(oil, MOUSSE, 0.45), share)
+        share = mixture_share(column)
+        deep = blend(light.deep_color, blend(oil, MIXTURE_SCATTER, 0.45), share)
+        scatter = blend(light.scatter_color, MIXTURE_SCATTER, share)
         return {
             "deep_color": deep,
-            "scatter_color": blend(light.scatter_color, MOUSSE, share),
-            "foam_color": (0.80, 0.72, 0.60),
-            "roughness": 0.06,
+            "scatter_color": scatter,
+            "foam_color": MIXTURE_FOAM,
+            "roughness": MIXTURE_ROUGHNESS,
         }
-    # A thin layer lets some of the water's colour through: light is halved every few millimetres of crude.
-    seen = 1.0 - math.exp(-column.thickness / 0.004)
-    deep, scatter = blend(light.deep_color, oil, seen), blend(light.scatter_color, 1.3 * oil, seen)
-    foam = blend(light.foam_color, (0.45, 0.36, 0.26), seen)
-    return {"deep_color": deep, "scatter_color": scatter, "foam_color": foam, "roughness": 0.02}
+    # A thin layer lets some of the water's colour through.
+    opacity = 1.0 - math.exp(-column.thickness / OPAQUE_THICKNESS)
+    deep, scatter = blend(light.deep_color, oil, opacity), blend(light.scatter_color, OIL_SCATTER * oil, opacity)
+    return {
+        "deep_color": deep,
+        "scatter_color": scatter,
+        "foam_color": blend(light.foam_color, OIL_FOAM, opacity),
+        "roughness": OIL_ROUGHNESS,
+    }
 
 
-def slick_patch(light: Material, p: Params, column: FluidColumn, slick: Slick) -> SlickRegion:
-    """A slick of this oil, drawn as if it were thick: what thin oil shows of the water is left out."""
-    layer = dataclasses.replace(column, thickness=max(slick.thickness, 0.05), fraction=0.0)
+def slick_region(light: Material, p: Params, column: FluidColumn, slick: Slick) -> SlickRegion:
+    """A slick of this oil, drawn as if it were opaque: the colour of water through thin oil is not modelled."""
+    layer = dataclasses.replace(column, thickness=max(slick.thickness, MIN_SLICK_THICKNESS), fraction=0.0)
     colours = oil_colours(light, layer)
     calm = ripple_slope(p, layer, p.exposure) / ripple_slope(p, column, 0.0)
     return SlickRegion(
-        slick.centre, round(slick.radius, 1), colours["deep_color"], colours["scatter_color"],
-        column.oil.refractive_index, colours["roughness"], round(calm, 2),
-    )  # fmt: skip
+        slick.centre,
+        round(slick.radius, 1),
+        colours["deep_color"],
+        colours["scatter_color"],
+        column.oil.refractive_index,
+        colours["roughness"],
+        round(calm, 2),
+    )

@@ -1,44 +1,39 @@
-"""Numbers of the radial sea: each of the first three bodies beside Archimedes, and what oil leaves of the waves."""
+"""What a sweep records of the radial sea: bodies beside predictions, and what oil leaves of the waves."""
 
 import math
 from typing import TYPE_CHECKING
 
 from app.scenes.contract import Measure
 from app.scenes.measures import slug
-from app.scenes.radial_sea.bodies import KINDS
-from app.scenes.radial_sea.report import NAMES
+from app.scenes.radial_sea.bodies import BODY_KINDS
 
 if TYPE_CHECKING:
     from app.scenes.radial_sea.scene import RadialSeaScene
 
 
 def measures(scene: "RadialSeaScene") -> dict[str, Measure]:
-    """Of bodies and waves as they are; nan for a body that is not there, inf for the draft of what sinks."""
-    gauge = scene.readings()
+    """Numbers of bodies and waves as they are: NaN for a kind that is not there, inf for the draft of one that sinks.
+
+    Of each kind it is the first body.
+    """
+    readings = scene.readings()
     found: dict[str, Measure] = {}
-    for kind in KINDS[:3]:
-        reading = next((r for r in gauge.readings if r.kind == kind), None)
-        numbers = (math.nan,) * 5
-        if reading is not None:
-            t = reading.theory
-            numbers = reading.mean_draft, t.draft, reading.draft, reading.period, t.period
-        body = NAMES[kind]
-        for (name, unit, meaning), value in zip(
-            (
-                ("mean_draft", "m", "mean draft over 8 s"),
-                ("draft_at_rest", "m", "draft at rest by Archimedes"),
-                ("draft", "m", "draft"),
-                ("heave_period", "s", "heave period as measured"),
-                ("heave_period_theory", "s", "heave period by theory"),
-            ),
-            numbers,
-            strict=True,
+    for kind in BODY_KINDS:
+        body = next((r for r in readings.bodies if r.kind == kind.name), None)
+        prediction = body.prediction if body is not None else None
+        for name, unit, meaning, value in (
+            ("mean_draft", "m", "mean draft over 8 s", body and body.mean_draft),
+            ("draft_at_rest", "m", "draft at rest by Archimedes", prediction and prediction.draft),
+            ("draft", "m", "draft", body and body.draft),
+            ("heave_period", "s", "heave period as measured", body and body.period),
+            ("heave_period_theory", "s", "heave period by theory", prediction and prediction.period),
         ):
-            found[f"{slug(body)}_{name}"] = Measure(value, unit, f"{body}: {meaning}")
+            number = math.nan if value is None else value
+            found[f"{slug(kind.title)}_{name}"] = Measure(number, unit, f"{kind.title}: {meaning}")
     return found | {
-        "significant_height": Measure(gauge.height, "m", "Significant height of the waves"),
-        "clean_height": Measure(gauge.height_clean, "m", "Significant height of the waves without the oil"),
-        "mean_square_slope": Measure(gauge.slope, "1", "Mean square slope of the waves"),
-        "clean_slope": Measure(gauge.slope_clean, "1", "Mean square slope of the waves without the oil"),
-        "middle_period": Measure(gauge.peak_period, "s", "Period of the wave in the middle of the energy"),
+        "significant_height": Measure(readings.height, "m", "Significant height of the waves"),
+        "clean_height": Measure(readings.clean_height, "m", "Significant height of the waves without the oil"),
+        "mean_square_slope": Measure(readings.slope, "1", "Mean square slope of the waves"),
+        "clean_slope": Measure(readings.clean_slope, "1", "Mean square slope of the waves without the oil"),
+        "middle_period": Measure(readings.middle_period, "s", "Period of the wave in the middle of the energy"),
     }

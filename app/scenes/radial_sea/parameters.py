@@ -12,44 +12,51 @@ from sim.parameters import parameter
 
 OILS = tuple(name for name in fluids() if "water" not in name)
 SPILLS = ("none", "layer", "mixed")
-FOLLOWED = ("free", "first buoy", "second buoy", "box", "window", "from above", "rig")
+CAMERA_TARGETS = ("free", "first buoy", "second buoy", "box", "cutaway", "from above", "rig")
 SKIES = ("park", "sunset", "dawn", "night")
 
 
 @dataclasses.dataclass(frozen=True)
 class Params:
-    """The parameters; the defaults are clear water in a fresh breeze."""
+    """The parameters; the defaults are clean water in a fresh breeze."""
 
     waves: bool = parameter(True, doc="Waves; without them the sea is level", group="Sea")
     wind_speed: float = parameter(7.0, 0.5, 25.0, "m/s", "Wind U10 (U19.5 for pierson_moskowitz)", group="Sea")
     wind_direction: float = parameter(
         25.0, -180.0, 180.0, "deg", "Where the wind goes to, from +x towards +y", group="Sea"
     )
-    spectrum: str = parameter("jonswap", choices=tuple(SPECTRA), doc="Spectrum the waves are drawn from", group="Sea")
+    spectrum: str = parameter(
+        "jonswap", choices=tuple(SPECTRA), doc="Spectrum that the waves are drawn from", group="Sea"
+    )
     wave_count: int = parameter(96, 8, 512, "", "Waves in the sum, of equal energy", log_from=8, group="Sea")
     choppiness: float = parameter(1.0, 0.0, 1.5, "", "Factor on the horizontal motion; 1 is Gerstner's", group="Sea")
 
     spill: str = parameter(
-        "none", choices=SPILLS, doc="layer: oil floats on the water; mixed: the lab's 'entirely mixed'", group="Oil"
+        "none",
+        choices=SPILLS,
+        doc="layer: oil floats on the water; mixed: oil and water are one fluid, the lab's 'entirely mixed'",
+        group="Oil",
     )
     oil: str = parameter("Alaska North Slope 2002", choices=OILS, doc="Oil, from NOAA's records", group="Oil")
     thickness: float = parameter(0.2, 0.0, 2.0, "m", "Thickness d of the layer", group="Oil")
     fraction: float = parameter(0.5, 0.01, 0.99, "", "Share of oil in the mixture, by volume", group="Oil")
     mixture_law: str = parameter("taylor", choices=tuple(MIXTURE_LAWS), doc="Viscosity of the mixture", group="Oil")
-    film: bool = parameter(False, doc="An inextensible film besides: oil on troubled waters", group="Oil")
-    exposure: float = parameter(
-        60.0, 0.0, 3600.0, "s", "How long the waves have run under the oil at the start", log_from=1.0, group="Oil"
+    film: bool = parameter(
+        False, doc="A film that cannot be stretched on top, as of fish oil: it damps short waves", group="Oil"
     )
-    ageing: bool = parameter(True, doc="That time runs on, and the waves go on decaying", group="Oil")
+    exposure: float = parameter(
+        60.0, 0.0, 3600.0, "s", "For how long the waves have run under the oil at the start", log_from=1.0, group="Oil"
+    )
+    ageing: bool = parameter(True, doc="The waves keep decaying under the oil", group="Oil")
     optics: str = parameter(
         "physical",
         choices=("physical", "lab"),
-        doc="physical: Fresnel reflection of the fluid's own index; lab: specular reflection scaled down",
+        doc="physical: Fresnel reflection by the fluid's own refractive index; lab: reflections of oil scaled down",
         group="Oil",
         affects="look",
     )
 
-    bodies: int = parameter(3, 0, 200, "", "Floating bodies: two buoys, a box, then more of each", group="Bodies")
+    bodies: int = parameter(3, 0, 200, "", "Floating bodies: two buoys, a box, then all kinds in turn", group="Bodies")
     density: float = parameter(450.0, 50.0, 1020.0, "kg/m^3", "Density of the bodies", group="Bodies")
     size: float = parameter(1.5, 0.3, 4.0, "", "Size of the bodies; at 1 the box is 1.2 m wide", group="Bodies")
     ripples: bool = parameter(True, doc="Bodies make waves of their own", group="Bodies")
@@ -61,43 +68,61 @@ class Params:
     rig: bool = parameter(True, doc="The oil rig", group="Rig")
     fire: bool = parameter(False, doc="The rig burns", group="Rig")
     fire_power: float = parameter(400.0, 10.0, 2000.0, "MW", "Power of the fire", log_from=10.0, group="Rig")
-    jet: bool = parameter(False, doc="Oil gushes from the rig and feeds a spill", group="Rig")
+    jet: bool = parameter(False, doc="A jet of oil shoots from the rig and feeds a slick", group="Rig")
     jet_flow: float = parameter(2.0, 0.05, 20.0, "m^3/s", "Flow of the jet", log_from=0.05, group="Rig")
-    particles: int = parameter(4000, 100, 20000, "", "Parcels of fire, and of oil", log_from=100, group="Rig")
+    particles: int = parameter(4000, 100, 20000, "", "Parcels of fire; half as many of oil", log_from=100, group="Rig")
 
     surface: str = parameter(
         "sum",
         choices=("sum", "fft"),
-        doc="Sum of single waves, or the square FFT sea on the same grid",
+        doc="sum: single waves added up; fft: the square sea, drawn on the same grid",
         group="Surface",
     )
-    centre: str = parameter("fixed", choices=("fixed", "camera"), doc="Where the rings are dense", group="Surface")
-    rings: int = parameter(128, 16, 256, "", "Rings of the grid", group="Surface")
-    spokes: int = parameter(128, 16, 256, "", "Points on a ring", group="Surface")
+    centre: str = parameter(
+        "fixed",
+        choices=("fixed", "camera"),
+        doc="Where the grid is dense: at the bodies, or below the camera",
+        group="Surface",
+        affects="look",
+    )
+    rings: int = parameter(128, 16, 256, "", "Rings of the grid", group="Surface", affects="look")
+    spokes: int = parameter(128, 16, 256, "", "Points on a ring", group="Surface", affects="look")
     ring_law: str = parameter(
-        "geometric", choices=LAWS, doc="How ring spacing grows; power: as in the lab", group="Surface"
+        "geometric",
+        choices=LAWS,
+        doc="How the spacing of the rings grows; power: as in the lab",
+        group="Surface",
+        affects="look",
+    )
+    compare: bool = parameter(
+        False,
+        doc="Time the other surface every 2 s, for the table in the folder 'Radial or square'",
+        group="Surface",
+        affects="look",
     )
 
     time_step: float = parameter(1 / 60, 1 / 500, 1 / 20, "s", "Step of the bodies", group="Time")
-    speed: float = parameter(1.0, 0.05, 4.0, "", "Simulated per real time", log_from=0.05, group="Time", affects="look")
+    speed: float = parameter(
+        1.0, 0.05, 4.0, "", "Simulated time per real time", log_from=0.05, group="Time", affects="look"
+    )
 
     follow: str = parameter(
-        "free", choices=FOLLOWED, doc="What the camera looks at and goes along with", group="Look", affects="look"
+        "free", choices=CAMERA_TARGETS, doc="What the camera looks at and moves with", group="Look", affects="look"
     )
     sky: str = parameter("park", choices=SKIES, doc="Sky and light", group="Look", affects="look")
-    section: bool = parameter(
+    cutaway: bool = parameter(
         False,
-        doc="A window into the sea before the first buoy: the oil, the interface, the hull in both",
+        doc="Cut the sea open beside the first buoy, to see the oil, the interface, and the hull in both",
         group="Look",
         affects="look",
     )
     grid: bool = parameter(False, doc="Lines of the mesh", group="Look", affects="look")
     plot_draft: bool = parameter(False, doc="Drafts of the first three bodies over time", group="Plots", affects="look")
     plot_surface: bool = parameter(
-        False, doc="Height of the surface and of the first buoy", group="Plots", affects="look"
+        False, doc="Height of the sea at the first buoy, and of the buoy, over time", group="Plots", affects="look"
     )
 
-    hull: str = ""  # a mesh file that floats besides; named on the command line only, never by a browser
+    hull: str = ""  # a mesh file that floats too; it is named on the command line only, never by a browser
 
 
 PRESETS: dict[str, dict[str, Any]] = {
@@ -106,8 +131,8 @@ PRESETS: dict[str, dict[str, Any]] = {
         "spill": "layer",
         "thickness": 0.2,
         "exposure": 60.0,
-        "section": True,
-        "follow": "window",
+        "cutaway": True,
+        "follow": "cutaway",
         "wind_speed": 5.0,
     },
     "Heavy fuel oil": {
@@ -135,7 +160,9 @@ def hidden(params: Params) -> set[str]:
         if not (params.rig and params.jet):
             names.add("oil")
     if not params.waves:
-        names |= {"wind_speed", "wind_direction", "spectrum", "wave_count", "choppiness", "exposure", "ageing", "film"}
+        names |= {"spectrum", "wave_count", "choppiness", "exposure", "ageing", "film"}
+        if not (params.rig and params.fire):  # the wind still blows the smoke
+            names |= {"wind_speed", "wind_direction"}
     if params.bodies == 0:
         names |= {"density", "size", "ripples", "mooring", "pull"}
     if not params.rig:
@@ -147,7 +174,7 @@ def hidden(params: Params) -> set[str]:
     if not (params.rig and (params.fire or params.jet)):
         names.add("particles")
     if params.surface == "fft":
-        names |= {"wave_count"}
+        names.add("wave_count")
     return names
 
 
@@ -163,12 +190,12 @@ def column_of(params: Params) -> FluidColumn:
 
 
 def conditions_of(params: Params) -> Conditions:
-    """What the spectrum is asked with."""
+    """The conditions under which the spectrum is evaluated."""
     return Conditions(
         wind_speed=params.wind_speed if params.waves else 0.0, wind_direction=math.radians(params.wind_direction)
     )
 
 
 def exposure_of(params: Params) -> float:
-    """How long the waves have run under oil [s]."""
+    """For how long the waves have run under oil at the start [s]."""
     return params.exposure if params.spill != "none" else 0.0

@@ -1,214 +1,246 @@
-"""The radial sea in words and numbers: drafts, the lab's claims beside physics, radial beside square."""
+"""The panel's texts of the radial sea: drafts, the lab's claims beside physics, radial beside square surface."""
 
-import html
 import math
 
 import numpy as np
 
 from app.messages import Snapshot
+from app.render.html import Html, bold, faint, fill, fixed, join, number, table
+from app.scenes.radial_sea.frame import RadialReadings
 from app.scenes.radial_sea.materials import LAB_SPECULAR
 from app.scenes.radial_sea.parameters import conditions_of
+from app.scenes.radial_sea.well_blowout import OilBudget
 from sim.ocean.dispersion import viscous_root
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import diffuse_reflectance, normal_reflectance
 from sim.ocean.gerstner import peak_wavenumber
 from sim.ocean.spectra import SPECTRA
 
-NAMES = {"buoy_red": "Red buoy", "buoy_yellow": "Yellow buoy", "crate": "Box", "ball": "Ball", "hull": "Yours"}
-SAMPLE_WAVE = 10.0  # [m] the wave that stands for all where one must
-TABLE = "border-collapse:collapse;font-size:10.5px"
-CELL = 'style="padding:1px 3px 1px 0;text-align:right"'
-HEAD = 'style="padding:1px 3px 1px 0;text-align:right;font-weight:400;opacity:.7"'
+SAMPLE_WAVE = 10.0  # [m] length of the wave in statements about the speed of waves
+SHORT_WAVE = 1.0  # [m] length of the wave in statements about viscosity
+SURFACES = (("sum", "radial sum"), ("fft", "square FFT"))
 
 
-def metres(value: float) -> str:
+def heading(name: str, unit: str = "") -> Html:
+    """The head of a column: the name over the unit."""
+    return fill("{}<br>{}", name, unit)
+
+
+def draft_text(value: float) -> str:
+    """A draft [m], or that the body sinks."""
     return "sinks" if math.isinf(value) else f"{value:.3f}"
 
 
-def seconds(value: float) -> str:
-    return "-" if not math.isfinite(value) else f"{value:.2f}"
-
-
-def row(cells: list[str], style: str = CELL, tag: str = "td") -> str:
-    first = cells[0]
-    return (
-        f'<tr><{tag} style="padding:1px 6px 1px 0;text-align:left;white-space:nowrap">{first}</{tag}>'
-        + "".join(f"<{tag} {style}>{cell}</{tag}>" for cell in cells[1:])
-        + "</tr>"
-    )
-
-
 def readout_of(snapshot: Snapshot) -> str:
-    """Draft now, its mean, Archimedes' draft, what oil adds to it, and heave periods, a row a body."""
-    g = snapshot.readings
-    if not g.readings:
+    """Under the status line: a row for each body, then the waves and the oil of the jet."""
+    readings: RadialReadings = snapshot.readings
+    if not readings.bodies:
         return "No bodies."
-    rows = [row(["", "draft", "mean", "at rest", "oil adds", "heave", "theory"], HEAD, "th")]
-    for r in g.readings:
-        t = r.theory
-        extra = "sinks" if math.isinf(t.draft) else f"{t.draft - t.in_water:+.3f}"
-        rows.append(
-            row([
-                NAMES[r.kind], f"{r.draft:.3f}", f"{r.mean_draft:.3f}", f"<b>{metres(t.draft)}</b>", extra,
-                seconds(r.period), seconds(t.period),
-            ])
-        )  # fmt: skip
-    lines = [
-        f'<table style="{TABLE};font-variant-numeric:tabular-nums">{"".join(rows)}</table>',
-        '<div style="opacity:.7;font-size:11px">m and s; at rest: Archimedes in these fluids; mean over 8 s</div>',
-        archimedes(g.column),
-        f"<div>Waves: Hs {g.height:.2f} m, {g.height_clean:.2f} m without; slope {math.sqrt(g.slope):.3f} rms</div>",
-    ]
-    if g.tally.ejected > 0.0:
-        t = g.tally
-        lines.append(
-            f"<div>Gushed {t.ejected:.1f} m³: {t.in_flight:.1f} in the air, {t.fed:.1f} on the sea ({t.hits} hits), a "
-            f"slick of {t.radius:.1f} m radius and {1e3 * t.thickness:.0f} mm</div>"
-        )
-    return "".join(lines)
+    head = (
+        "", heading("draft", "m"), heading("mean", "m"), heading("at rest", "m"), heading("oil adds", "m"),
+        heading("heave", "s"), heading("theory", "s"),
+    )  # fmt: skip
+    rows = []
+    for body in readings.bodies:
+        p = body.prediction
+        added = "sinks" if math.isinf(p.draft) else f"{p.draft - p.draft_in_water:+.3f}"
+        rows.append((
+            body.title, f"{body.draft:.3f}", f"{body.mean_draft:.3f}", bold(draft_text(p.draft)), added,
+            fixed(body.period, 2), fixed(p.period, 2),
+        ))  # fmt: skip
+    parts = [
+        table(head, rows),
+        faint(
+            "mean: over 8 s; at rest: by Archimedes' principle in these fluids; oil adds: to the draft in clean water; "
+            "heave: measured period; theory: predicted period."
+        ),
+        archimedes(readings.column),
+        fill(
+            "<div>Waves: Hs {:.2f} m, without oil {:.2f} m; root mean square slope {:.3f}.</div>",
+            readings.height, readings.clean_height, math.sqrt(readings.slope),
+        ),
+    ]  # fmt: skip
+    if readings.oil_budget.ejected > 0.0:
+        parts.append(oil_budget_text(readings.oil_budget))
+    return join(parts)
 
 
-def archimedes(column: FluidColumn) -> str:
-    """The extra sinkage that the fluids give, in symbols and in numbers."""
+def oil_budget_text(budget: OilBudget) -> Html:
+    """Where the oil of the jet is."""
+    return fill(
+        "<div>Oil from the jet: {:.1f} m³, of which {:.1f} m³ in the air and {:.1f} m³ on the sea ({} parcels), in a "
+        "slick with a radius of {:.1f} m and a thickness of {:.0f} mm.</div>",
+        budget.ejected, budget.in_flight, budget.fed, budget.hits, budget.radius, 1e3 * budget.thickness,
+    )  # fmt: skip
+
+
+def archimedes(column: FluidColumn) -> Html:
+    """How the fluids change the draft, in symbols and in numbers."""
     oil, water = column.oil.density, column.water.density
     if column.kind == "layer":
-        extra = column.thickness * (1.0 - oil / water)
-        return (
-            f"<div>d (1 − ρ₁/ρ₂) = {column.thickness:g} × (1 − {oil:g}/{water:g}) = <b>{extra:.4f} m</b> "
-            "deeper, if the body reaches through the oil</div>"
-        )
+        return fill(
+            "<div>A body that reaches through the oil floats deeper by d (1 − ρ₁/ρ₂) = {:g} × (1 − {:g}/{:g}) = "
+            "<b>{:.4f} m</b>.</div>",
+            column.thickness, oil, water, column.thickness * (1.0 - oil / water),
+        )  # fmt: skip
     if column.kind == "mixed":
         mixed = column.surface.density
-        return (
-            f"<div>draft × {water / mixed:.4f} where sides are straight: "
-            f"ρ = {mixed:.1f} instead of {water:g} kg/m³</div>"
-        )
-    return f"<div>ρ V = {water:g} V<sub>wet</sub>: the weight of the water displaced (Archimedes)</div>"
-
-
-def lab_says(snapshot: Snapshot) -> str:
-    """The lab's questions of section 1.1, with what physics says and the numbers of just now."""
-    g, p = snapshot.readings, snapshot.frame.params
-    column: FluidColumn = g.column
-    surface, water = column.surface, column.water
-    k = np.array([2.0 * math.pi / SAMPLE_WAVE])
-    speed, clean = float(column.roots(k)[0][0] / k[0]), float(FluidColumn(water=water).omega(k)[0] / k[0])
-    lost = 1.0 - (g.height / g.height_clean if g.height_clean > 0 else 1.0)
-    calmer = 1.0 - (g.slope / g.slope_clean if g.slope_clean > 0 else 1.0)
-    short = np.array([2.0 * math.pi])
-    decay = float(column.roots(short)[1][0])
-    r_oil, r_water = normal_reflectance(surface.refractive_index), normal_reflectance(water.refractive_index)
-    d_oil, d_water = diffuse_reflectance(surface.refractive_index), diffuse_reflectance(water.refractive_index)
-    shift = 1.0 - float(viscous_root(2.0 * math.pi, surface.kinematic_viscosity)[0] / math.sqrt(9.81 * 2.0 * math.pi))
-    buoy = g.readings[0].theory if g.readings else None
-    sink = "" if buoy is None or math.isinf(buoy.draft) else f" Here: {buoy.draft - buoy.in_water:+.4f} m."
-    shown = f"as the lab asks, reflections × {LAB_SPECULAR:g}" if p.optics == "lab" else "physics"
-    claims = [
-        (
-            "1. Which fluid is on top?",
-            f"The lighter: {column.oil.density:g} < {water.density:g} kg/m³. p = ρ g z; "
-            "a swap would lift the centre of mass.",
-        ),
-        (
-            "2, 4. The bodies sink deeper into oil.",
-            f"By d (1 − ρ₁/ρ₂), if they reach through it; by their draft in oil less that in water if not.{sink}",
-        ),
-        (
-            "5. The mixture's viscosity.",
-            f"{surface.viscosity * 1e3:.3g} mPa s ({p.mixture_law if column.kind == 'mixed' else surface.name}); water "
-            f"{water.viscosity * 1e3:.3g}. Oil and water do not dissolve: Taylor's emulsion is what happens, "
-            "Arrhenius' law the reading of 'entirely mixed'.",
-        ),
-        (
-            "6a. Viscosity changes the speed of waves.",
-            f"Hardly: a {SAMPLE_WAVE:g} m wave runs at {speed:.3f} m/s here and {clean:.3f} m/s on clean water, for "
-            f"ω² = g k knows no density; viscosity slows a 1 m wave by {shift:.2%}.",
-        ),
-        (
-            "6b. Viscosity lowers the waves.",
-            f"The short ones: Hs is {lost:.1%} lower after {g.age:.0f} s, the mean "
-            f"square slope {calmer:.0%}. A 1 m wave dies as e<sup>−t/{1.0 / decay:,.0f} s</sup>.",
-        ),
-        (
-            "7. Oil reflects less.",
-            f"More, at every angle: straight down {r_oil:.2%} against {r_water:.2%}, under a whole sky {d_oil:.2%} "
-            f"against {d_water:.2%} (n = {surface.refractive_index:.3f}). It looks dark for no light comes up from "
-            f"below, and smooth. Shown: {shown}.",
-        ),
-    ]
-    return "".join(f'<div style="margin-bottom:6px"><b>{question}</b><br>{answer}</div>' for question, answer in claims)
-
-
-def fluids_html(snapshot: Snapshot) -> str:
-    """The fluids in use."""
-    column: FluidColumn = snapshot.readings.column
-    rows = [row(["", "ρ kg/m³", "μ mPa s", "ν m²/s", "n"], HEAD, "th")]
-    chosen = [column.water, column.oil, *([column.surface] if column.kind == "mixed" else [])]
-    for f in chosen:
-        name = "mixture" if f is not column.water and f is not column.oil else html.escape(f.name)
-        rows.append(
-            row([
-                name, f"{f.density:.1f}", f"{f.viscosity * 1e3:.3g}", f"{f.kinematic_viscosity:.2e}",
-                f"{f.refractive_index:.3f}",
-            ])
+        return fill(
+            "<div>The mixture has ρ = {:.1f} kg/m³, water {:g} kg/m³: a body with straight sides floats {:.4f} times "
+            "as deep.</div>",
+            mixed, water, water / mixed,
         )  # fmt: skip
-    return f'<table style="{TABLE}">{"".join(rows)}</table>15 °C; NOAA\'s oil records.'
-
-
-def compared_html(snapshot: Snapshot) -> str:
-    """The lab's question 1.2-6 by measurement."""
-    g = snapshot.readings
-    rows = [row(["", "ms", "waves", "shortest", "extent", "Hs", "off", "mss"], HEAD, "th")]
-    for name, label in (("sum", "radial sum"), ("fft", "square FFT")):
-        c = g.compared.get(name)
-        if c is not None:
-            rows.append(
-                row([
-                    label, f"{c.cost * 1e3:.2f}", f"{c.waves}", f"{c.smallest:.2g} m", f"{c.extent:,.0f} m",
-                    f"{c.height:.2f} m", f"{c.error:+.1%}", f"{c.slope:.4f}",
-                ])
-            )  # fmt: skip
-    verdict = (
-        "Same vertices, timed just now. The rings reach the horizon and never repeat, dense where one looks, but each "
-        "wave costs a pass; the transform gives every wave of its tile at once, repeats, and is as fine far off "
-        "as near by. Off: of Hs, against the spectrum's."
+    return fill(
+        "<div>Archimedes' principle: ρ V = {:g} V<sub>wet</sub>. The displaced water weighs as much as the body.</div>",
+        water,
     )
-    return f'<table style="{TABLE}">{"".join(rows)}</table>{verdict}'
 
 
 def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
     return {
-        "Lab says, physics says": lab_says(snapshot),
+        "Lab says, physics says": claims_html(snapshot),
         "Fluids": fluids_html(snapshot),
-        "Radial or square": compared_html(snapshot),
+        "Radial or square": surfaces_html(snapshot),
     }
+
+
+def claims_html(snapshot: Snapshot) -> Html:
+    """The statements of the lab's section 1.1, each with what physics says and the present numbers."""
+    readings: RadialReadings = snapshot.readings
+    p, column = snapshot.frame.params, readings.column
+    surface, water = column.surface, column.water
+    k = np.array([2.0 * math.pi / SAMPLE_WAVE])
+    speed, clean_speed = float(column.roots(k)[0][0] / k[0]), float(FluidColumn(water=water).omega(k)[0] / k[0])
+    height_loss = 1.0 - (readings.height / readings.clean_height if readings.clean_height > 0 else 1.0)
+    slope_loss = 1.0 - (readings.slope / readings.clean_slope if readings.clean_slope > 0 else 1.0)
+    short = 2.0 * math.pi / SHORT_WAVE
+    decay = float(column.roots(np.array([short]))[1][0])
+    slowing = 1.0 - float(viscous_root(short, surface.kinematic_viscosity)[0] / math.sqrt(9.81 * short))
+    normal_oil, normal_water = normal_reflectance(surface.refractive_index), normal_reflectance(water.refractive_index)
+    sky_oil, sky_water = diffuse_reflectance(surface.refractive_index), diffuse_reflectance(water.refractive_index)
+    prediction = readings.bodies[0].prediction if readings.bodies else None
+    here = ""
+    if prediction is not None and not math.isinf(prediction.draft):
+        here = f" The {readings.bodies[0].title.lower()} here: {prediction.draft - prediction.draft_in_water:+.4f} m."
+    shown = f"as the lab asks, reflections times {LAB_SPECULAR:g}" if p.optics == "lab" else "as physics says"
+    claims: tuple[tuple[str, Html], ...] = (
+        (
+            "1. Which fluid is on top?",
+            fill(
+                "The lighter one: {:g} kg/m³ is less than {:g} kg/m³. Oil below water would rise, because that lowers "
+                "the centre of mass.",
+                column.oil.density, water.density,
+            ),
+        ),
+        (
+            "2, 4. The bodies float deeper in oil.",
+            fill(
+                "Yes: by d (1 − ρ₁/ρ₂) if they reach through the oil; if not, by their draft in oil less their draft "
+                "in water.{}",
+                here,
+            ),
+        ),
+        (
+            "5. The viscosity of the mixture.",
+            fill(
+                "{:.3g} mPa s ({}); that of water is {:.3g} mPa s. Oil and water do not dissolve in each other: "
+                "Taylor's law is that of the emulsion which forms, Arrhenius' law that of a true solution, the lab's "
+                "'entirely mixed'.",
+                surface.viscosity * 1e3, p.mixture_law if column.kind == "mixed" else surface.name,
+                water.viscosity * 1e3,
+            ),
+        ),
+        (
+            "6a. Viscosity changes the speed of waves.",
+            fill(
+                "Hardly: a wave of {:g} m runs at {:.3f} m/s here and at {:.3f} m/s on clean water, since ω² = g k "
+                "does not depend on the density. Viscosity slows a wave of {:g} m by {:.2%}.",
+                SAMPLE_WAVE, speed, clean_speed, SHORT_WAVE, slowing,
+            ),
+        ),
+        (
+            "6b. Viscosity lowers the waves.",
+            fill(
+                "The short ones: after {:.0f} s Hs is {:.1%} lower and the mean square slope {:.0%} lower. A wave of "
+                "{:g} m decays as e<sup>−t/{:,.0f} s</sup>.",
+                readings.age, height_loss, slope_loss, SHORT_WAVE, 1.0 / decay,
+            ),
+        ),
+        (
+            "7. Oil reflects less.",
+            fill(
+                "It reflects more, at every angle: {:.2%} straight down (water {:.2%}), {:.2%} of the light of a "
+                "whole sky (water {:.2%}), with n = {:.3f}. It looks darker because no light comes up from below, and "
+                "smoother because it damps the ripples. Drawn {}.",
+                normal_oil, normal_water, sky_oil, sky_water, surface.refractive_index, shown,
+            ),
+        ),
+    )  # fmt: skip
+    return join(fill('<div style="margin-bottom:6px"><b>{}</b><br>{}</div>', *claim) for claim in claims)
+
+
+def fluids_html(snapshot: Snapshot) -> Html:
+    """The fluids in use."""
+    column: FluidColumn = snapshot.readings.column
+    head = ("", heading("ρ", "kg/m³"), heading("μ", "mPa s"), heading("ν", "m²/s"), heading("n"))
+    fluids = [column.water, column.oil, *([column.surface] if column.kind == "mixed" else [])]
+    rows = [
+        (f.name, f"{f.density:.1f}", f"{f.viscosity * 1e3:.3g}", f"{f.kinematic_viscosity:.2e}",
+         f"{f.refractive_index:.3f}") for f in fluids
+    ]  # fmt: skip
+    return join((
+        table(head, rows),
+        "ρ: density, μ: dynamic viscosity, ν: kinematic viscosity, n: refractive index, at 15 °C, from NOAA's records "
+        "of oils.",
+    ))  # fmt: skip
+
+
+def surfaces_html(snapshot: Snapshot) -> Html:
+    """The lab's question 1.2-6, answered by measurement where that is asked for."""
+    readings: RadialReadings = snapshot.readings
+    if not readings.surfaces:
+        return fill("Turn on <b>compare</b> in the folder Surface to time both surfaces on the same vertices.")
+    head = (
+        "", heading("cost", "ms"), heading("waves"), heading("shortest", "m"), heading("extent", "m"),
+        heading("Hs", "m"), heading("error", "of Hs"), heading("slope²", "mean"),
+    )  # fmt: skip
+    rows = []
+    for name, title in SURFACES:
+        s = readings.surfaces.get(name)
+        if s is not None:
+            rows.append((
+                title, f"{s.cost * 1e3:.2f}", s.waves, f"{s.shortest:.2g}", number(s.extent), f"{s.height:.2f}",
+                f"{s.error:+.1%}", f"{s.slope:.4f}",
+            ))  # fmt: skip
+    return join((
+        table(head, rows),
+        "Both on the same vertices, timed just now. The radial grid reaches the horizon and never repeats; it is "
+        "dense near the viewer; each of its waves costs a pass over the vertices. The transform computes every wave "
+        "of its tile at once, repeats after the extent, and is as fine far away as near by.",
+    ))  # fmt: skip
 
 
 def marks_of(snapshot: Snapshot) -> dict[str, str]:
-    """What is written under a parameter."""
-    g = snapshot.readings
-    column: FluidColumn = g.column
-    grid = snapshot.frame.grid
+    """Parameter -> the line under its control."""
+    readings: RadialReadings = snapshot.readings
+    column, grid = readings.column, snapshot.frame.grid
     oil = column.oil
-    out = {
-        "wind_speed": f"Hs {g.height_clean:.2f} m, middle period {g.peak_period:.1f} s",
+    marks = {
+        "wind_speed": f"Hs {readings.clean_height:.2f} m, period in the middle of the energy "
+        f"{readings.middle_period:.1f} s",
         "oil": f"{oil.density:g} kg/m³, {oil.viscosity * 1e3:g} mPa s, n = {oil.refractive_index:.3f}",
-        "rings": f"{len(grid)} points, {grid.spacing[0]:.2g} m apart at the middle, {grid.spacing[-2]:.0f} m at 5 km",
+        "rings": f"{len(grid)} points, {grid.spacing[0]:.2g} m apart in the middle, {grid.spacing[-2]:.0f} m outside",
     }
-    if g.readings:
-        t = g.readings[0].theory
-        out["density"] = f"buoys at rest {metres(t.draft)} m deep of {t.height:.2f} m"
+    if readings.bodies:
+        prediction = readings.bodies[0].prediction
+        rest = "sinks" if math.isinf(prediction.draft) else f"draft at rest {prediction.draft:.3f} m"
+        marks["density"] = f"{readings.bodies[0].title}, {prediction.height:.2f} m high: {rest}"
     if column.kind == "mixed":
-        out["mixture_law"] = f"{column.surface.viscosity * 1e3:.3g} mPa s, {column.surface.density:.0f} kg/m³"
+        marks["mixture_law"] = f"{column.surface.viscosity * 1e3:.3g} mPa s, {column.surface.density:.0f} kg/m³"
     if column.kind != "water":
-        k = np.array([peak_wavenumber_of(snapshot)])
-        kept = math.exp(-float(column.roots(k)[1][0]) * g.age)
-        out["exposure"] = f"{g.age:.0f} s by now: the peak wave keeps {kept:.2%}"
-    return out
-
-
-def peak_wavenumber_of(snapshot: Snapshot) -> float:
-    """Wavenumber [rad/m] of the spectrum's peak."""
-    p = snapshot.frame.params
-    return peak_wavenumber(SPECTRA[p.spectrum], conditions_of(p))
+        p = snapshot.frame.params
+        k = np.array([peak_wavenumber(SPECTRA[p.spectrum], conditions_of(p))])
+        remaining = math.exp(-float(column.roots(k)[1][0]) * readings.age)
+        marks["exposure"] = f"{readings.age:.0f} s so far: the peak wave keeps {remaining:.2%} of its height"
+    return marks

@@ -1,4 +1,4 @@
-"""The radial sea as water, its bodies as models, the rig with its fire, and a window into the sea."""
+"""The radial sea as water, its bodies as models, the rig with its fire, and the cutaway."""
 
 import importlib.resources
 import time
@@ -16,35 +16,43 @@ from app.render.material import Material
 from app.render.meshes import ball
 from app.render.skies import set_sky
 from app.render.water import Water
-from app.scenes.radial_sea.bodies import OWN
-from app.scenes.radial_sea.cutaway import WAY
+from app.scenes.radial_sea.bodies import BODY_KINDS
+from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.fire_view import Flames
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.materials import material_of
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
-from app.scenes.radial_sea.scene import RADIUS
+from app.scenes.radial_sea.scene import GRID_RADIUS
 from app.scenes.radial_sea.well_blowout import FIRE, RIG
+from sim.floating.shapes import Appearance
+from sim.ocean.radial import RadialSurface
+from sim.ocean.radial_grid import RadialGrid
 
-SUN = 1.25  # [rad] bearing of the sun, beyond the buoys as the camera starts
-SUNLIGHT = 2.2  # intensity of the lamp that stands for a sun of strength 5
-HANDLE = 0.75  # [m] radius of what is dragged, at size 1
-OWN_COLOUR = (64, 132, 186)  # of a hull from a file
-EYE_EVERY = 0.2  # [s] between looks at where the camera is
-VIEWS = {  # camera and target [m] when one of them is followed
+SUN_BEARING = 1.25  # [rad] from +x: beyond the buoys, as seen from the first view
+SUN_LAMP_INTENSITY = 2.2  # of the lamp that stands for a sun of SUN_LAMP_STRENGTH
+SUN_LAMP_STRENGTH = 5.0
+FILL_LAMP = (-0.6, -0.7, 0.5), 0.45  # direction towards the lamp that lights the shadows, and its share of the sun's
+GLOW_INTENSITY = 900.0  # of the lamp in the fire
+HANDLE_RADIUS = 0.75  # [m] at size 1 of the invisible ball about a body, which is dragged
+CAMERA_INTERVAL = 0.2  # [s] between two messages to the scene about where the camera is
+VIEWS = {  # position and target [m] of the camera when one of them is chosen to be followed
     "rig": ((RIG[0] - 62.0, RIG[1] - 84.0, 40.0), (RIG[0] + 10.0, RIG[1] - 4.0, 16.0)),
     "from above": ((-9.5, -11.0, 8.5), (6.0, 3.6, -1.0)),
 }
-BODY_VIEW = (-5.2, -6.2, 2.4), (0.0, 0.0, 0.0)  # [m] of camera and target from a followed body at size 1.5
-WINDOW_VIEW = (
-    (4.8 * WAY[0] - 1.0 * WAY[1], 4.8 * WAY[1] + 1.0 * WAY[0], 0.9),
-    (-1.0 * WAY[1], 1.0 * WAY[0], 0.1),
+BODY_VIEW = (-5.2, -6.2, 2.4), (0.0, 0.0, 0.0)  # [m] of camera and target from a followed body at VIEW_SIZE
+CUTAWAY_VIEW = (
+    (4.8 * DIRECTION[0] - 1.0 * DIRECTION[1], 4.8 * DIRECTION[1] + 1.0 * DIRECTION[0], 0.9),
+    (-1.0 * DIRECTION[1], 1.0 * DIRECTION[0], 0.1),
 )
-FOLLOWED = {"first buoy": 0, "second buoy": 1, "box": 2, "window": 0}
+VIEW_SIZE = 1.5  # of the bodies that these two views are made for
+FOLLOWED_BODY = {"first buoy": 0, "second buoy": 1, "box": 2, "cutaway": 0}  # number of the body that is followed
+APPEARANCES = {kind.name: kind.appearance for kind in BODY_KINDS}
+NO_SHADOWS: dict[str, Any] = {"cast_shadow": False, "receive_shadow": False}
 
 
 def model(name: str) -> bytes:
-    """A GLB of the assets."""
+    """The GLB file of this name in the assets."""
     return importlib.resources.files("assets").joinpath(f"{name}.glb").read_bytes()
 
 
@@ -57,16 +65,16 @@ class View:
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
         self.water: Water | None = None
-        self.grid: Any = None
-        self.lit = ""
+        self.grid: RadialGrid | None = None
+        self.sky = ""
         self.light = self.material = Material()
-        self.last: RadialFrame | None = None
-        self.groups: dict[str, tuple[Any, np.ndarray]] = {}
-        self.handles: viser.BatchedMeshHandle | None = None
+        self.surface: RadialSurface | None = None  # as drawn
         self.kinds: tuple[str, ...] = ()
         self.size = 0.0
-        self.follow, self.follow_camera = "free", FollowCamera()
-        self.eye_at = 0.0
+        self.bodies: dict[str, tuple[Any, np.ndarray]] = {}  # kind -> handle, numbers of its bodies
+        self.handles: viser.BatchedMeshHandle | None = None
+        self.followed, self.follow_camera = "free", FollowCamera()
+        self.camera_told_at = 0.0
         scene = server.scene
         self.rig = scene.add_glb("/rig", model("rig"), position=(*RIG, 0.0), cast_shadow=False, receive_shadow=False)
         self.glow = scene.add_light_point(
@@ -74,159 +82,183 @@ class View:
         )
         self.flames: Flames | None = None
         self.walls: Walls | None = None
-        self.pull = PullLine(server)
+        self.pull_lines: list[PullLine] = []
 
-    def show(self, picture: RadialFrame) -> None:
+    def show(self, frame: RadialFrame) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
-        p = picture.params
-        if self.lit != p.sky:
-            self.lit = p.sky
-            self.light = set_sky(self.server, p.sky, SUN)
-            self.shine()
-        self.show_sea(picture)
-        if self.walls is None and picture.section is not None:
-            self.walls = Walls(self.server, "/section", picture.section)
+        p = frame.params
+        if self.sky != p.sky:
+            self.sky = p.sky
+            self.light = set_sky(self.server, p.sky, SUN_BEARING)
+            self.place_lamps()
+        self.show_sea(frame)
+        if self.walls is None and frame.cutaway is not None:
+            self.walls = Walls(self.server, "/cutaway", frame.cutaway)
         if self.walls is not None:
-            self.walls.show(picture.section, self.light, picture.column)
-        self.show_bodies(picture)
+            self.walls.show(frame.cutaway, self.light, frame.column)
+        self.show_bodies(frame)
+        self.show_pulls(frame)
         if self.rig.visible != p.rig:
             self.rig.visible = p.rig
-        if self.flames is None and (picture.fire is not None or picture.jet is not None):
-            self.flames = Flames(self.server, "/flames")
-        if self.flames is not None:
-            self.flames.show(picture.fire, picture.jet)
-        burning = picture.fire is not None
-        if self.glow.visible != burning:
-            self.glow.visible = burning
-        if burning:
-            self.glow.intensity = 900.0 * (1.0 + 0.25 * float(np.sin(23.0 * picture.time) * np.sin(8.3 * picture.time)))
-        self.move_camera(picture)
-        self.last = picture
+        self.show_fire(frame)
+        self.move_camera(frame)
 
-    def shine(self) -> None:
+    def place_lamps(self) -> None:
         """Light bodies and rig by the sun of this sky; viser's own lamps stand elsewhere."""
         self.server.scene.configure_default_lights(enabled=False, cast_shadow=False)
         x, y, z = self.light.sun_direction
         red, green, blue = (int(255 * c) for c in self.light.sun_color)
-        strength = SUNLIGHT * self.light.sun_strength / 5.0
-        for name, place, share in (("sun", (x, y, z + 0.35), 1.0), ("fill", (-0.6, -0.7, 0.5), 0.45)):
+        intensity = SUN_LAMP_INTENSITY * self.light.sun_strength / SUN_LAMP_STRENGTH
+        for name, place, share in (("sun", (x, y, z + 0.35), 1.0), ("fill", *FILL_LAMP)):
             self.server.scene.add_light_directional(
-                f"/{name}", color=(red, green, blue), intensity=share * strength, position=place, cast_shadow=False
+                f"/{name}", color=(red, green, blue), intensity=share * intensity, position=place, cast_shadow=False
             )
 
-    def show_sea(self, picture: RadialFrame) -> None:
-        material = material_of(self.light, picture)
-        if self.water is None or picture.grid is not self.grid:
+    def show_sea(self, frame: RadialFrame) -> None:
+        """Draw the water; a grid of another size is another mesh."""
+        material = material_of(self.light, frame)
+        if self.water is None or frame.grid is not self.grid:
             if self.water is not None:
                 self.water.remove()
-            self.grid = picture.grid
-            self.water = Water(self.server, "/sea", 1, len(self.grid), RADIUS, faces=self.grid.faces, material=material)
+            self.grid = frame.grid
+            self.water = Water(
+                self.server, "/sea", 1, len(frame.grid), GRID_RADIUS, faces=frame.grid.faces, material=material
+            )
         elif material != self.material:
             self.water.set_material(material)
         self.material = material
-        s = picture.surface
-        if self.last is None or s is not self.last.surface:
-            self.water.set_surface(s.vertices[None], s.slope[None], picture.foam[None], picture.time)
+        s = frame.surface
+        if s is not self.surface:
+            self.surface = s
+            self.water.set_surface(s.vertices[None], s.slope[None], frame.foam[None], frame.time)
 
-    def show_bodies(self, picture: RadialFrame) -> None:
-        if picture.kinds != self.kinds or picture.params.size != self.size:
-            for handle, _ in self.groups.values():
+    def show_fire(self, frame: RadialFrame) -> None:
+        """Draw flames, smoke and the oil of the jet, and light what is near the fire."""
+        if self.flames is None and (frame.fire is not None or frame.jet is not None):
+            self.flames = Flames(self.server, "/flames")
+        if self.flames is not None:
+            self.flames.show(frame.fire, frame.jet)
+        burning = frame.fire is not None
+        if self.glow.visible != burning:
+            self.glow.visible = burning
+        if burning:
+            flicker = float(np.sin(23.0 * frame.time) * np.sin(8.3 * frame.time))
+            self.glow.intensity = GLOW_INTENSITY * (1.0 + 0.25 * flicker)
+
+    def show_bodies(self, frame: RadialFrame) -> None:
+        """Draw each kind of body as one batch, and place the handles that are dragged."""
+        if (frame.kinds, frame.params.size) != (self.kinds, self.size):
+            for handle, _ in self.bodies.values():
                 handle.remove()
-            self.groups = {}
-            self.kinds, self.size = picture.kinds, picture.params.size
-            for kind in sorted(set(self.kinds)):
-                chosen = np.array([i for i, other in enumerate(self.kinds) if other == kind])
-                poses = {"batched_wxyzs": picture.rotations[chosen], "batched_positions": picture.positions[chosen]}
-                plain = {"lod": "off", "cast_shadow": False, "receive_shadow": False}
-                name = f"/bodies/{kind}"
-                if kind == OWN:
-                    assert picture.own is not None
-                    vertices, faces = picture.own.vertices.astype(np.float32), picture.own.faces.astype(np.uint32)
-                    handle: Any = self.server.scene.add_batched_meshes_simple(
-                        name, vertices, faces, batched_colors=OWN_COLOUR, flat_shading=True, **poses, **plain
-                    )
-                else:
-                    handle = self.server.scene.add_batched_glb(
-                        name, model(kind), batched_scales=np.full(len(chosen), self.size, np.float32), **poses, **plain
-                    )
-                self.groups[kind] = handle, chosen
-            self.add_handles(picture)
-        for handle, chosen in self.groups.values():
-            handle.batched_positions = picture.positions[chosen]
-            handle.batched_wxyzs = picture.rotations[chosen]
+            self.kinds, self.size = frame.kinds, frame.params.size
+            self.bodies = {kind: self.add_bodies(frame, kind) for kind in sorted(set(self.kinds))}
+            self.add_handles(frame)
+        for handle, chosen in self.bodies.values():
+            handle.batched_positions = frame.positions[chosen]
+            handle.batched_wxyzs = frame.rotations[chosen]
         if self.handles is not None:
-            self.handles.batched_positions = picture.positions
-        self.pull.show(picture.pull)
+            self.handles.batched_positions = frame.positions
 
-    def add_handles(self, picture: RadialFrame) -> None:
-        """Clear balls about the bodies, to be dragged: viser loses a page that drags instances of a GLB (1.1)."""
+    def add_bodies(self, frame: RadialFrame, kind: str) -> tuple[Any, np.ndarray]:
+        """A batch of all bodies of a kind, as its model or else as its hull; and their numbers."""
+        chosen = np.array([i for i, other in enumerate(frame.kinds) if other == kind])
+        poses: dict[str, Any] = {"batched_wxyzs": frame.rotations[chosen], "batched_positions": frame.positions[chosen]}
+        appearance, add = APPEARANCES.get(kind, Appearance(kind, kind)), self.server.scene
+        if appearance.model:
+            scales = np.full(len(chosen), frame.params.size, np.float32)
+            glb = model(appearance.model)
+            return add.add_batched_glb(
+                f"/bodies/{kind}", glb, batched_scales=scales, lod="off", **poses, **NO_SHADOWS
+            ), chosen
+        hull = frame.hulls[kind]
+        vertices, faces = hull.vertices.astype(np.float32), hull.faces.astype(np.uint32)
+        return add.add_batched_meshes_simple(
+            f"/bodies/{kind}", vertices, faces, batched_colors=appearance.color, flat_shading=True, lod="off",
+            **poses, **NO_SHADOWS,
+        ), chosen  # fmt: skip
+
+    def add_handles(self, frame: RadialFrame) -> None:
+        """Invisible balls about the bodies, to be dragged: viser 1.1 loses a page that drags instances of a GLB."""
         if self.handles is not None:
             self.handles.remove()
             self.handles = None
-        n = len(picture.positions)
+        n = len(frame.positions)
         if n == 0:
             return
         vertices, faces = ball(4)
-        sizes = np.full(n, self.size, np.float32)
-        if picture.own is not None:
-            sizes[-1] = 0.5 * np.ptp(picture.own.extents, axis=1).mean() / HANDLE
         self.handles = self.server.scene.add_batched_meshes_simple(
             "/handles",
-            HANDLE * vertices,
+            HANDLE_RADIUS * vertices,
             faces,
             batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)),
-            batched_positions=picture.positions,
-            batched_scales=sizes,
+            batched_positions=frame.positions,
+            batched_scales=np.array([handle_scale(frame, kind) for kind in frame.kinds], np.float32),
             opacity=0.0,
             lod="off",
-            cast_shadow=False,
-            receive_shadow=False,
+            **NO_SHADOWS,
         )
-        self.handles.on_drag("left")(self.on_body)
+        self.handles.on_drag("left")(self.on_body_drag)
 
-    async def on_body(self, event: Any) -> None:
+    async def on_body_drag(self, event: Any) -> None:
+        """A browser drags a body, or lets it go."""
         drag(self.post, event, event.instance_index)
 
-    def move_camera(self, picture: RadialFrame) -> None:
-        """Fly to what is followed when it is chosen, then go along with it; and tell the scene where the camera is."""
-        p = picture.params
-        body = FOLLOWED.get(p.follow, -1)
-        here = picture.positions[body].astype(float) if 0 <= body < len(picture.positions) else None
+    def show_pulls(self, frame: RadialFrame) -> None:
+        """Draw a line from each held body to where it is pulled."""
+        while len(self.pull_lines) < len(frame.pulls):
+            self.pull_lines.append(PullLine(self.server, f"/pull{len(self.pull_lines)}"))
+        for i, line in enumerate(self.pull_lines):
+            line.show(frame.pulls[i] if i < len(frame.pulls) else None)
+
+    def move_camera(self, frame: RadialFrame) -> None:
+        """Move to what is followed when it is chosen, then along with it; tell the scene where the camera is."""
+        p = frame.params
+        body = FOLLOWED_BODY.get(p.follow, -1)
+        target = frame.positions[body].astype(float) if 0 <= body < len(frame.positions) else None
         cameras = {number: client.camera for number, client in self.server.get_clients().items()}
-        if here is not None:
-            here[2] = 0.0  # a camera that heaves with the body would hide that it heaves
-        if p.follow != self.follow:
-            self.follow = p.follow
-            if here is not None:
-                offset = np.array(WINDOW_VIEW if p.follow == "window" else BODY_VIEW) * p.size / 1.5
-                self.follow_camera.start(here, offset)
-                view = tuple(here + offset)
+        if target is not None:
+            target[2] = 0.0  # a camera that heaved with the body would hide that the body heaves
+        if p.follow != self.followed:
+            self.followed = p.follow
+            if target is not None:
+                view = CUTAWAY_VIEW if p.follow == "cutaway" else BODY_VIEW
+                offset = np.array(view) * p.size / VIEW_SIZE
+                self.follow_camera.start(target, offset)
+                position, look_at = target + offset
             else:
-                view = VIEWS.get(p.follow, self.CAMERA)
-            place_cameras(self.server, view[0], view[1])
-        elif here is not None:
-            self.follow_camera.follow(here, cameras)
+                position, look_at = VIEWS.get(p.follow, self.CAMERA)
+            place_cameras(self.server, position, look_at)
+        elif target is not None:
+            self.follow_camera.go(target, cameras)
         now = time.monotonic()
-        if p.centre == "camera" and cameras and now - self.eye_at > EYE_EVERY:
-            self.eye_at = now
-            eye = finite_vector(next(iter(cameras.values())).position)
-            if eye is not None:
-                self.post(Place("eye", eye))
+        if p.centre == "camera" and cameras and now - self.camera_told_at > CAMERA_INTERVAL:
+            self.camera_told_at = now
+            place = finite_vector(next(iter(cameras.values())).position)
+            if place is not None:
+                self.post(Place("camera", place))
 
     def readout(self, snapshot: Snapshot) -> str:
-        """The bodies' drafts and periods, as HTML."""
+        """HTML under the status line: drafts, periods, waves."""
         return readout_of(snapshot)
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
-        """What is written under a parameter."""
+        """Parameter -> the line under its control."""
         return marks_of(snapshot)
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
-        """What folds out below the controls."""
+        """Heading -> HTML of the folders below the controls."""
         return notes_of(snapshot)
 
     def close(self) -> None:
-        """Nothing to give back: removing the nodes removes all."""
+        """Nothing to give back: removing the nodes removes everything."""
+
+
+def handle_scale(frame: RadialFrame, kind: str) -> float:
+    """Factor on the handle of a body of this kind: by the size of the bodies, or of a hull that has its own."""
+    hull = frame.hulls[kind]
+    if hull.shape.lengths:
+        return frame.params.size
+    return 0.5 * float(np.ptp(hull.extents, axis=1).mean()) / HANDLE_RADIUS
 
 
 def warm_up() -> Iterator[str]:

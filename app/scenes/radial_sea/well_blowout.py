@@ -1,4 +1,4 @@
-"""What goes wrong on the rig: it burns, and oil gushes into the sea and spreads there."""
+"""A blowout of the well under the rig: it burns, and oil shoots into the sea and spreads there as a slick."""
 
 import math
 from typing import NamedTuple
@@ -13,19 +13,22 @@ from sim.ocean.tile_sea import TileSea
 from sim.particles.fire import Fire
 from sim.particles.jet import Jet
 
-RIG = (48.0, 100.0)  # [m] where the rig stands
+RIG = (48.0, 100.0)  # [m] position of the rig
 FIRE = (RIG[0] + 3.0, RIG[1] + 3.0, 26.5)  # [m] at the foot of the derrick
 FIRE_WIDTH = 9.0  # [m]
 NOZZLE = (RIG[0] - 12.0, RIG[1] - 17.0, 20.0)  # [m] on the edge of the deck towards the buoys
-GUSH = (-9.0, -7.0, 9.5)  # [m/s]
+JET_VELOCITY = (-9.0, -7.0, 9.5)  # [m/s] at the nozzle
+PARCEL_RADIUS = 0.05  # [m] of the oil
+MAX_FLIGHT_TIME = 4.0  # [s] that a parcel of oil is in the air, about
+MIN_JET_PARCELS = 50
 UPDRAFT = 3.0  # [m/s] of the air that the fire draws up
-SMOKE = 24.0  # [s] that a parcel lives
-FLIGHT = 4.0  # [s] about as long as a parcel is in the air
-PATCH, PATCH_CELL = 16, 3.0  # points a side, and their distance [m], of the sea that parcels are compared with
+SMOKE_LIFE = 24.0  # [s] of a parcel of fire and smoke
+BURN_IN_STEP = 0.1  # [s] of the steps by which the fire burns before the scene begins
+SAMPLE_GRID, SAMPLE_SPACING = 16, 3.0  # points a side and their distance [m], of the sea that parcels fall into
 
 
 class Slick(NamedTuple):
-    """The oil that came from the jet, on the sea."""
+    """The oil of the jet on the sea."""
 
     centre: tuple[float, float]  # [m]
     radius: float  # [m]
@@ -38,51 +41,91 @@ class OilBudget(NamedTuple):
     ejected: float  # [m3]
     in_flight: float  # [m3]
     fed: float  # [m3] that has reached the sea
-    hits: int
+    hits: int  # parcels that have
     radius: float  # [m] of the slick
-    thickness: float  # [m]
-    parcels: int  # of fire alive
+    thickness: float  # [m] of the slick
+    parcels: int  # of fire that burn
+
+
+class JetTotal(NamedTuple):
+    """What jets ejected."""
+
+    ejected: float = 0.0  # [m3]
+    fed: float = 0.0  # [m3]
+    hits: int = 0
+
+
+class FireSettings(NamedTuple):
+    """What a fire is made with."""
+
+    power: float  # [W]
+    parcels: int
+    wind: tuple[float, float]  # [m/s]
+
+
+class JetSettings(NamedTuple):
+    """What a jet is made with."""
+
+    flow: float  # [m3/s]
+    parcels: int
+
+
+def fire_settings(params: Params) -> FireSettings | None:
+    """What the parameters say of the fire; None where nothing burns."""
+    if not (params.rig and params.fire):
+        return None
+    return FireSettings(params.fire_power * 1e6, params.particles, wind_of(params))
+
+
+def jet_settings(params: Params) -> JetSettings | None:
+    """What the parameters say of the jet; None where it is shut."""
+    if not (params.rig and params.jet):
+        return None
+    return JetSettings(params.jet_flow, max(params.particles // 2, MIN_JET_PARCELS))
 
 
 class WellBlowout:
-    """Fire, jet and slick on the simulation thread."""
+    """Fire, jet and slick; used on the simulation thread."""
 
     def __init__(self, params: Params) -> None:
         self.fire: Fire | None = None
         self.jet: Jet | None = None
-        self.since = 0.0  # [s] that oil has been on the sea
-        self.gone = (0.0, 0.0, 0)  # [m3] ejected and fed, hits, by jets before this one
-        fall = (GUSH[2] + math.sqrt(GUSH[2] ** 2 + 2 * 9.81 * NOZZLE[2])) / 9.81
-        self.landing = (NOZZLE[0] + GUSH[0] * fall, NOZZLE[1] + GUSH[1] * fall)
-        half = 0.5 * (PATCH - 1) * PATCH_CELL
+        self.fire_settings: FireSettings | None = None
+        self.jet_settings: JetSettings | None = None
+        self.slick_age = 0.0  # [s] for which oil has been on the sea
+        self.closed_jets_total = JetTotal()
+        up, height = JET_VELOCITY[2], NOZZLE[2]
+        fall_time = (up + math.sqrt(up**2 + 2 * 9.81 * height)) / 9.81
+        self.landing = (NOZZLE[0] + JET_VELOCITY[0] * fall_time, NOZZLE[1] + JET_VELOCITY[1] * fall_time)
+        half = 0.5 * (SAMPLE_GRID - 1) * SAMPLE_SPACING
         self.origin = (self.landing[0] - half, self.landing[1] - half)
-        i, j = np.meshgrid(np.arange(PATCH), np.arange(PATCH), indexing="ij")
-        self.points = np.column_stack([i.ravel(), j.ravel()]) * PATCH_CELL + self.origin
-        self.set_params(params, params)
-        if self.fire is not None:  # it has burnt for long when the scene begins
-            for _ in range(int(SMOKE / 0.1)):
-                self.fire.step(0.1)
+        i, j = np.meshgrid(np.arange(SAMPLE_GRID), np.arange(SAMPLE_GRID), indexing="ij")
+        self.points = np.column_stack([i.ravel(), j.ravel()]) * SAMPLE_SPACING + self.origin
+        self.change(params)
+        if self.fire is not None:  # smoke has risen for some time when the scene begins
+            for _ in range(int(SMOKE_LIFE / BURN_IN_STEP)):
+                self.fire.step(BURN_IN_STEP)
 
-    def set_params(self, params: Params, old: Params) -> None:
-        """Light or put out, open or close, as the parameters say; oil on the sea stays."""
-        wind = wind_of(params)
-        burning, gushing = params.rig and params.fire, params.rig and params.jet
-        fire = (params.fire_power, params.particles, wind)
-        if not burning:
+    def change(self, params: Params) -> None:
+        """Light or put out the fire, open or shut the jet, as the parameters say; oil on the sea stays."""
+        fire, jet = fire_settings(params), jet_settings(params)
+        if fire != self.fire_settings:
+            self.fire_settings = fire
             self.fire = None
-        elif self.fire is None or fire != (old.fire_power, old.particles, wind_of(old)):
-            self.fire = Fire(FIRE, params.fire_power * 1e6, FIRE_WIDTH, params.particles, SMOKE, wind, updraft=UPDRAFT)
-        if not gushing:
-            self.close()
-        elif self.jet is None or (params.jet_flow, params.particles) != (old.jet_flow, old.particles):
-            self.close()
-            self.jet = Jet(NOZZLE, GUSH, params.jet_flow, 0.05, max(params.particles // 2, 50), flight=FLIGHT)
+            if fire is not None:
+                self.fire = Fire(FIRE, fire.power, FIRE_WIDTH, fire.parcels, SMOKE_LIFE, fire.wind, updraft=UPDRAFT)
+        if jet != self.jet_settings:
+            self.jet_settings = jet
+            self.close_jet()
+            if jet is not None:
+                self.jet = Jet(NOZZLE, JET_VELOCITY, jet.flow, PARCEL_RADIUS, jet.parcels, flight=MAX_FLIGHT_TIME)
 
-    def close(self) -> None:
-        """Shut the jet; what was in the air counts as fallen."""
+    def close_jet(self) -> None:
+        """Shut the jet; the oil in the air counts as fallen into the sea."""
         if self.jet is not None:
-            ejected, fed, hits = self.gone
-            self.gone = ejected + self.jet.ejected, fed + self.jet.fed + self.jet.in_flight, hits + self.jet.hits
+            total, jet = self.closed_jets_total, self.jet
+            fed = total.fed + jet.fed + jet.in_flight
+            self.closed_jets_total = JetTotal(total.ejected + jet.ejected, fed, total.hits + jet.hits)
             self.jet = None
 
     def step(self, sea: RadialSea | TileSea, t: float, duration: float) -> None:
@@ -90,36 +133,35 @@ class WellBlowout:
         if self.fire is not None:
             self.fire.step(duration)
         if self.jet is not None:
-            height = sea.at(self.points, t).height.reshape(PATCH, PATCH)
-            self.jet.step(duration, height, self.origin, PATCH_CELL)
+            height = sea.at(self.points, t).height.reshape(SAMPLE_GRID, SAMPLE_GRID)
+            self.jet.step(duration, height, self.origin, SAMPLE_SPACING)
         if self.volume > 0.0:
-            self.since += duration
+            self.slick_age += duration
 
     @property
     def volume(self) -> float:
-        """Oil on the sea from the jet [m3]."""
-        return self.gone[1] + (self.jet.fed if self.jet is not None else 0.0)
+        """Oil of the jets on the sea [m3]."""
+        return self.closed_jets_total.fed + (self.jet.fed if self.jet is not None else 0.0)
 
     def slick(self, column: FluidColumn) -> Slick | None:
-        """The slick, spread as Fay says, or None where there is none."""
-        if self.volume <= 0.0 or self.since <= 0.0:
+        """The slick, spread by Fay's law, or None where there is none."""
+        if self.volume <= 0.0 or self.slick_age <= 0.0:
             return None
         viscosity = column.water.kinematic_viscosity
-        radius = slick_radius(self.volume, self.since, column.oil.density, column.water.density, viscosity)
+        radius = slick_radius(self.volume, self.slick_age, column.oil.density, column.water.density, viscosity)
         return Slick(self.landing, radius, slick_thickness(self.volume, radius))
 
-    def tally(self, column: FluidColumn) -> OilBudget:
+    def oil_budget(self, column: FluidColumn) -> OilBudget:
         """Where the oil is."""
-        slick, jet = self.slick(column), self.jet
-        ejected, _, hits = self.gone
+        slick, jet, closed = self.slick(column), self.jet, self.closed_jets_total
         return OilBudget(
-            ejected + (jet.ejected if jet is not None else 0.0),
-            jet.in_flight if jet is not None else 0.0,
-            self.volume,
-            hits + (jet.hits if jet is not None else 0),
-            slick.radius if slick is not None else 0.0,
-            slick.thickness if slick is not None else 0.0,
-            int(self.fire.burning.sum()) if self.fire is not None else 0,
+            ejected=closed.ejected + (jet.ejected if jet is not None else 0.0),
+            in_flight=jet.in_flight if jet is not None else 0.0,
+            fed=self.volume,
+            hits=closed.hits + (jet.hits if jet is not None else 0),
+            radius=slick.radius if slick is not None else 0.0,
+            thickness=slick.thickness if slick is not None else 0.0,
+            parcels=int(self.fire.burning.sum()) if self.fire is not None else 0,
         )
 
 
@@ -130,5 +172,5 @@ def wind_of(params: Params) -> tuple[float, float]:
 
 
 def slick_reach(slick: Slick, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """How far inside the slick points are [m], negative outside. It is round; drawn, its edge is torn."""
+    """How far inside the slick points (n,) [m] are, (n,) [m], negative outside. It is round; it is drawn ragged."""
     return slick.radius - np.hypot(x - slick.centre[0], y - slick.centre[1])

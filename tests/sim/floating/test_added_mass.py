@@ -7,7 +7,7 @@ import pytest
 from scipy.special import elliprd
 
 from sim.floating import Hull
-from sim.floating.added_mass import added_mass, carlson_rd, ellipsoid, plate
+from sim.floating.added_mass import carlson_rd, ellipsoid, plate
 
 
 def test_carlson_matches_scipy():
@@ -39,11 +39,11 @@ def test_prolate_spheroids_match_lambs_table(ratio, k1, k2, k3):
 
 
 def test_primitives_have_their_closed_forms():
-    assert added_mass(Hull.sphere(0.5))[0] == pytest.approx(math.pi / 12 * np.ones(3))
-    along, about = added_mass(Hull.cylinder(0.5, 2.0))
+    assert Hull.sphere(0.5).added_mass()[0] == pytest.approx(math.pi / 12 * np.ones(3))
+    along, about = Hull.cylinder(0.5, 2.0).added_mass()
     assert along == pytest.approx([math.pi / 2, math.pi / 2, 1 / 3])
     assert about[2] == 0
-    assert added_mass(Hull.box(1.0, 2.0, 1.0))[0] == pytest.approx(
+    assert Hull.box(1.0, 2.0, 1.0).added_mass()[0] == pytest.approx(
         [0.757 * math.pi / 2, 0.579 * math.pi / 4, 0.757 * math.pi / 2]
     )
 
@@ -55,7 +55,7 @@ def test_a_long_plate_tends_to_the_two_dimensional_value():
 
 def test_a_mesh_of_a_sphere_is_a_sphere():
     sphere = Hull.sphere(0.7, frequency=6)
-    along, about = added_mass(Hull.from_arrays(sphere.vertices, sphere.faces))
+    along, about = Hull.from_arrays(sphere.vertices, sphere.faces).added_mass()
     assert along == pytest.approx(sphere.volume / 2 * np.ones(3), rel=1e-6)
     assert about == pytest.approx(np.zeros(3), abs=1e-9)
 
@@ -63,6 +63,6 @@ def test_a_mesh_of_a_sphere_is_a_sphere():
 def test_an_ellipsoid_mesh_is_its_ellipsoid():
     sphere = Hull.sphere(1.0, frequency=12)
     axes = np.array([2.0, 1.0, 0.5])
-    along, about = added_mass(Hull.from_arrays(sphere.vertices * axes, sphere.faces))
+    along, about = Hull.from_arrays(sphere.vertices * axes, sphere.faces).added_mass()
     assert along == pytest.approx(ellipsoid(axes)[0], rel=1e-4)
     assert about == pytest.approx(ellipsoid(axes)[1], rel=1e-3)

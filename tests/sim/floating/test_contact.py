@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.floating import Body, Hull, Laws, make_fleet, make_water, pull, step, still_water
+from sim.floating import Body, Hull, MotionCoefficients, make_fleet, make_water, pull, step, still_water
 from sim.floating.body_collisions import collide
 from sim.floating.motion import advance
 from tests.naive_floating import quaternion
@@ -30,7 +30,7 @@ def test_a_pulled_point_comes_to_its_target_without_overshoot(density, size):
         far.append(fleet.position[0, 0] - target[0])
     assert abs(far[-1]) < 1e-3 * size
     assert max(far) < 0.02 * size
-    hang = 9.81 / Laws().pull_rate ** 2  # the spring gives by g/rate^2 under the weight
+    hang = 9.81 / MotionCoefficients().pull_rate ** 2  # the spring gives by g/rate^2 under the weight
     assert fleet.position[0, 2] - target[2] == pytest.approx(-hang, rel=0.05, abs=1e-3)
 
 
@@ -145,7 +145,9 @@ def test_anything_thrown_anywhere_stays_finite_and_slow(seed):
             )
         )
     fleet = make_fleet(bodies)
-    laws = Laws(gravity=[9.81, 0.1, 45.0][seed % 3], linear_drag=0.3 * (seed > 2), quadratic_drag=1.0 * (seed > 2))
+    coefficients = MotionCoefficients(
+        gravity=[9.81, 0.1, 45.0][seed % 3], linear_drag=0.3 * (seed > 2), quadratic_drag=1.0 * (seed > 2)
+    )
     fastest = 0.0
     for frame in range(600):
         phase = 0.3 * fleet.position[:, 0] - 1.7 * frame * FRAME_INTERVAL
@@ -157,11 +159,11 @@ def test_anything_thrown_anywhere_stays_finite_and_slow(seed):
             velocity=np.stack([3.4 * np.cos(phase), 0 * phase, 3.4 * np.sin(phase)], axis=1),
             acceleration=-5.8 * np.cos(phase),
         )
-        step(fleet, water, FRAME_INTERVAL, laws)
+        step(fleet, water, FRAME_INTERVAL, coefficients)
         fastest = np.abs(fleet.velocity).max()
     assert np.isfinite(fleet.position).all()
     assert np.linalg.norm(fleet.rotation, axis=1) == pytest.approx(np.ones(24), abs=1e-12)
-    free_fall = 60 + laws.gravity * 10
+    free_fall = 60 + coefficients.gravity * 10
     assert fastest < 3 * free_fall
 
 
@@ -206,9 +208,9 @@ def test_bad_arguments_are_refused_by_name():
     water = still_water(fleet, WATER)
     for name, arguments in {
         "duration": {"duration": math.nan},
-        "gravity": {"laws": Laws(gravity=math.nan)},
-        "linear_drag": {"laws": Laws(linear_drag=-1.0)},
-        "restitution": {"laws": Laws(restitution=2.0)},
+        "gravity": {"coefficients": MotionCoefficients(gravity=math.nan)},
+        "linear_drag": {"coefficients": MotionCoefficients(linear_drag=-1.0)},
+        "restitution": {"coefficients": MotionCoefficients(restitution=2.0)},
         "substeps": {"substeps": 0},
     }.items():
         with pytest.raises(ValueError, match=f"{name}: .* is not allowed"):
@@ -240,7 +242,7 @@ def test_whatever_the_arguments_one_signature_is_compiled():
     for bodies in ([Body(Hull.box(1, 1, 1), 500)], [Body(Hull.sphere(1, 2))] * 3, []):
         fleet = make_fleet(bodies)
         n = len(bodies)
-        step(fleet, still_water(fleet, WATER, level=1), 1, Laws(gravity=10))
+        step(fleet, still_water(fleet, WATER, level=1), 1, MotionCoefficients(gravity=10))
         water = make_water(fleet, [(850, 1), (1025, math.inf)], np.zeros(n, dtype=np.float32), slope=np.zeros((2, n)).T)
         step(fleet, water, FRAME_INTERVAL, substeps=2)
     assert len(advance.signatures) == 1

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from sim.floating import Hull
-from sim.floating.hull import geodesic
+from sim.floating.shapes.sphere import geodesic
 from tests.naive_floating import lumpy, quaternion
 
 

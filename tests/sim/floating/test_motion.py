@@ -8,7 +8,7 @@ import pytest
 from sim.floating import (
     Body,
     Hull,
-    Laws,
+    MotionCoefficients,
     equilibrium_draft,
     heave_period,
     lowest,
@@ -19,13 +19,13 @@ from sim.floating import (
     still_water,
     vertices,
 )
-from sim.floating.motion import stiffest
+from sim.floating.motion import frequency_bound
 from tests.naive_floating import lumpy, naive_step, quaternion
 
 FRAME_INTERVAL = 1 / 60
 WATER = [(1025.0, math.inf)]
 SPILL = [(850.0, 0.2), (1025.0, math.inf)]
-FREE = Laws(linear_drag=0.0, quadratic_drag=0.0)
+FREE = MotionCoefficients(linear_drag=0.0, quadratic_drag=0.0)
 
 
 def afloat(hull, density, layers, above=0.0, **more):
@@ -94,11 +94,11 @@ def test_roll_period_is_that_of_the_metacentric_height(layers, axis, added):
     tilt[1 + axis] = math.sin(0.01)
     fleet = make_fleet([afloat(hull, density, layers, rotation=tuple(tilt))])
     water = still_water(fleet, layers)
-    laws = FREE._replace(added_mass=added)
+    coefficients = FREE._replace(added_mass=added)
     expected = roll_period(hull, density, layers, added=added, axis=axis)
     angle = []
     for _ in range(round(6 * expected / FRAME_INTERVAL)):
-        step(fleet, water, FRAME_INTERVAL, laws)
+        step(fleet, water, FRAME_INTERVAL, coefficients)
         angle.append(2 * fleet.rotation[0, 1 + axis])
     assert period_of(FRAME_INTERVAL * np.arange(len(angle)), np.array(angle)) == pytest.approx(expected, rel=0.01)
 
@@ -220,12 +220,12 @@ def test_the_step_is_stable_below_omega_h_of_two_and_not_above():
 @pytest.mark.parametrize("size", [0.1, 1.0, 10.0])
 @pytest.mark.parametrize("gravity", [0.1, 9.81, 981.0])
 def test_the_bound_of_frequency_holds_over_all_parameters(density, size, gravity):
-    """The frequency of heave and of roll of every hull at every pose it may float in lies below `stiffest`."""
-    laws = Laws(gravity=gravity)
+    """The frequency of heave and of roll of every hull at every pose it may float in lies below `frequency_bound`."""
+    coefficients = MotionCoefficients(gravity=gravity)
     hulls = [Hull.box(size, size, size), Hull.box(size, size, size / 10), Hull.sphere(size / 2)]
     hulls += [Hull.cylinder(size / 2, size), Hull.cylinder(size / 2, size / 10)]
     fleet = make_fleet([Body(hull, density) for hull in hulls])
-    bound = stiffest(fleet, 1025.0, laws)
+    bound = frequency_bound(fleet, 1025.0, coefficients)
     for hull, limit in zip(hulls, bound, strict=True):
         for shortest in (heave_period(hull, density, WATER, gravity), roll_period(hull, density, WATER, gravity)):
             assert 2 * math.pi / shortest <= limit
@@ -244,7 +244,7 @@ def test_two_steps_match_the_naive_ones(seed):
     position, rotation = np.append(rng.uniform(-2, 2, 2), rng.uniform(-0.2, 0.2)), quaternion(rng)
     velocity, spin, flow, lift = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3), rng.normal()
     slopes = rng.normal(0, 0.1, (2, 2))
-    laws = Laws(9.0, 0.4, 0.9, 0.8)
+    coefficients = MotionCoefficients(9.0, 0.4, 0.9, 0.8)
     body = Body(hull, 600.0, tuple(position), tuple(rotation), tuple(velocity), tuple(spin))
     fleet = make_fleet([body])
     water = make_water(
@@ -258,28 +258,28 @@ def test_two_steps_match_the_naive_ones(seed):
         interface_slope=slopes[1:],
     )
     planes = (850.0, 0.2, slopes[0]), (1025.0, -5.0 * (seed == 7) - 0.15, slopes[1])
-    step(fleet, water, 0.02, laws, substeps=2)
+    step(fleet, water, 0.02, coefficients, substeps=2)
     state = (position, rotation, velocity, spin, None)
     for middle in (0.005, 0.015):
         rise = middle * np.array([flow[2] - flow[:2] @ slopes[0], 0.0])
         risen = [(rho, height + up, slope) for (rho, height, slope), up in zip(planes, rise, strict=True)]
-        state = naive_step(hull, 600.0, state, *risen, flow, lift, laws, 0.01)
+        state = naive_step(hull, 600.0, state, *risen, flow, lift, coefficients, 0.01)
     for value, wanted in zip(fleet[:5], state, strict=True):
         assert value[0] == pytest.approx(wanted, abs=1e-7)
 
 
 def test_relief_of_a_plane_is_the_plane():
     hulls = [Hull.box(1.0, 1.5, 0.4), Hull.sphere(0.5, 3)]
-    laws = Laws(added_mass=0.0)
+    coefficients = MotionCoefficients(added_mass=0.0)
     fleets = [make_fleet([Body(h, 500.0, (3.0 * i, 0, 0)) for i, h in enumerate(hulls)]) for _ in range(2)]
     place = vertices(fleets[0])
     slope = np.array([[0.1, -0.05], [0.02, 0.2]])
     centre = np.repeat(fleets[0].position[:, :2], [len(h.vertices) for h in hulls], axis=0)
     tilt = np.repeat(slope, [len(h.vertices) for h in hulls], axis=0)
     relief = ((place[:, :2] - centre) * tilt).sum(axis=1)
-    step(fleets[0], make_water(fleets[0], SPILL, np.zeros(2), slope=slope), FRAME_INTERVAL, laws, substeps=1)
+    step(fleets[0], make_water(fleets[0], SPILL, np.zeros(2), slope=slope), FRAME_INTERVAL, coefficients, substeps=1)
     bumpy = make_water(fleets[1], SPILL, np.zeros(2), relief=relief, interface_relief=relief)
-    step(fleets[1], bumpy, FRAME_INTERVAL, laws, substeps=1)
+    step(fleets[1], bumpy, FRAME_INTERVAL, coefficients, substeps=1)
     assert fleets[0].velocity == pytest.approx(fleets[1].velocity, abs=1e-12)
     assert fleets[0].spin == pytest.approx(fleets[1].spin, abs=1e-12)
 
@@ -291,7 +291,7 @@ def test_free_spin_keeps_its_angular_momentum():
     water = still_water(fleet, WATER)
 
     def momentum():
-        from sim.floating.hydrostatics import rotation_matrix
+        from sim.floating.rotation import rotation_matrix
 
         turn = rotation_matrix(fleet.rotation[0])
         return turn @ hull.inertia @ turn.T @ fleet.spin[0]

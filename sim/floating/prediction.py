@@ -1,0 +1,29 @@
+"""What hydrostatics predicts of a hull: the numbers beside which a scene shows its measured ones."""
+
+import math
+from typing import NamedTuple
+
+from sim.floating.equilibrium import Layers, equilibrium_draft, heave_period
+from sim.floating.hull import Hull
+
+
+class HydrostaticPrediction(NamedTuple):
+    """What hydrostatics predicts of an upright hull at rest."""
+
+    draft: float  # [m] of the lowest point below the surface; inf: it sinks
+    draft_in_water: float  # [m] in clean water; inf: it sinks
+    height: float  # [m] of the hull
+    period: float  # [s] of small heave, with added mass; inf: no force restores
+
+
+def predict(hull: Hull, density: float, layers: Layers, water_density: float) -> HydrostaticPrediction:
+    """The prediction for a hull of `density` [kg/m3] in layers (density [kg/m3], thickness [m]) from the top.
+
+    water_density [kg/m3]: of clean water, for comparison. Raises ValueError as `equilibrium_draft`.
+    """
+    return HydrostaticPrediction(
+        draft=equilibrium_draft(hull, density, layers),
+        draft_in_water=equilibrium_draft(hull, density, ((water_density, math.inf),)),
+        height=float(hull.extents[2, 1] - hull.extents[2, 0]),
+        period=heave_period(hull, density, layers),
+    )

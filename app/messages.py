@@ -1,8 +1,9 @@
 """All that crosses a thread: commands to the simulation, snapshots and plot rows from it. All are immutable."""
 
 import math
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Mapping
+from dataclasses import Field
+from typing import ClassVar, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -11,10 +12,31 @@ Vector = tuple[float, float, float]
 MAX_DISTANCE = 100.0  # [m] from the origin: nothing from a browser is placed farther out
 
 
-def finite_vector(values: Any, max_distance: float = MAX_DISTANCE) -> Vector | None:
+class BaseParams(Protocol):
+    """What the parameters of every scene have: a frozen dataclass of parameters (`sim/parameters.py`)."""
+
+    __dataclass_fields__: ClassVar[dict[str, Field[object]]]
+
+    @property
+    def speed(self) -> float:
+        """Target real-time factor."""
+        ...
+
+    @property
+    def grid(self) -> bool:
+        """Whether the grid is drawn (key G)."""
+        ...
+
+
+P = TypeVar("P", bound=BaseParams)
+F = TypeVar("F")
+R = TypeVar("R")
+
+
+def finite_vector(values: Iterable[object], max_distance: float = MAX_DISTANCE) -> Vector | None:
     """Three finite numbers, each bounded to `max_distance`; None where it is not three finite numbers."""
     try:
-        x, y, z = (float(c) for c in values)
+        x, y, z = (float(c) for c in values)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         return None
     if not all(math.isfinite(c) for c in (x, y, z)):
@@ -69,7 +91,7 @@ class Reset(NamedTuple):
 class Load(NamedTuple):
     """Take a whole record of parameters, as a preset has it, and start from it: one command, one step of the loop."""
 
-    params: Any  # the scene's `Params`
+    params: BaseParams  # the scene's `Params`
     number: int  # of the preset, counted from 1: parameters polled with another number belong before or after it
 
 
@@ -136,16 +158,16 @@ class Status(NamedTuple):
     halted: str  # why the run stopped by itself, or ""
 
 
-class Snapshot(NamedTuple):
+class Snapshot(NamedTuple, Generic[P, F, R]):
     """One moment for the viewer: what the scene shows (float32), its readings, and what the loop is doing."""
 
     serial: int
-    frame: Any  # the scene's own record
+    frame: F  # the scene's own record
     status: Status
-    readings: Any  # the scene's own record
+    readings: R  # the scene's own record
     work: WorkCounts  # what the scene did and what it skipped, since it was opened
-    params: Any  # the parameters that this moment was made with
-    curves: Any = None  # parameter -> columns of its chart, where a chart is not a course in time
+    params: P  # the parameters that this moment was made with
+    curves: Mapping[str, object] | None = None  # parameter -> columns of its chart
 
 
 class DivergenceError(Exception):

@@ -16,6 +16,7 @@ from typing import Any, Literal, NamedTuple, TypeVar
 from sim.validation import argument_error
 
 P = TypeVar("P")
+Value = bool | int | float | str
 
 Effect = Literal["look", "forces", "start"]
 EFFECTS: tuple[Effect, ...] = ("look", "forces", "start")  # from the least to the greatest
@@ -31,7 +32,7 @@ class Parameter(NamedTuple):
     other forces; "start": the scene begins again.
     """
 
-    default: Any
+    default: Value
     low: float
     high: float
     unit: str
@@ -120,7 +121,7 @@ def effect_of_change(old: object, new: object) -> Effect | None:
     return max(effects, key=EFFECTS.index, default=None)
 
 
-def clamp_value(parameter: Parameter, value: Any) -> Any:
+def clamp_value(parameter: Parameter, value: object) -> Value:
     """`value` as the parameter's kind, within its range. What is no such value at all becomes the default."""
     if parameter.choices:
         return value if isinstance(value, str) and value in parameter.choices else parameter.default
@@ -140,19 +141,20 @@ def clamp(record: P) -> P:
     return dataclasses.replace(record, **fixed)  # type: ignore[type-var]
 
 
-def check_value(name: str, parameter: Parameter, value: Any) -> Any:
+def check_value(name: str, parameter: Parameter, value: object) -> Any:
     """`value` as the parameter's kind. Raises ValueError where `clamp_value` would have changed it."""
     if parameter.choices or parameter.kind is bool:
         good = clamp_value(parameter, value)
         if good is not value and good != value:
             raise argument_error(name, value, parameter.allowed)
         return good
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or not parameter.low <= value <= parameter.high:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not parameter.low <= value <= parameter.high:
         raise argument_error(name, value, parameter.allowed)
-    if parameter.kind is int and value != int(value):
+    if parameter.kind is not int:
+        return float(value)
+    if value != int(value):
         raise argument_error(name, value, parameter.allowed)
-    return parameter.kind(value)
+    return int(value)
 
 
 def unknown_parameter(name: str, known: Mapping[str, Parameter]) -> ValueError:
@@ -160,7 +162,7 @@ def unknown_parameter(name: str, known: Mapping[str, Parameter]) -> ValueError:
     return ValueError(f"{name}: no such parameter; the parameters are {', '.join(known)}")
 
 
-def check_record(cls: type[P], values: Mapping[str, Any]) -> P:
+def check_record(cls: type[P], values: Mapping[str, object]) -> P:
     """Make `cls` from named values; raises ValueError for an unknown name or a value out of range."""
     known = parameters_of(cls)
     for name in values:
@@ -169,7 +171,7 @@ def check_record(cls: type[P], values: Mapping[str, Any]) -> P:
     return cls(**{name: check_value(name, known[name], value) for name, value in values.items()})
 
 
-def parse_value(name: str, parameter: Parameter, text: str) -> Any:
+def parse_value(name: str, parameter: Parameter, text: str) -> Value:
     """Read a parameter's value from command-line text. Raises ValueError as `check_value` does."""
     word = text.strip()
     if parameter.choices:
@@ -185,10 +187,10 @@ def parse_value(name: str, parameter: Parameter, text: str) -> Any:
     return check_value(name, parameter, number)
 
 
-def parse_assignments(cls: type, assignments: list[str]) -> dict[str, Any]:
+def parse_assignments(cls: type, assignments: list[str]) -> dict[str, Value]:
     """Values from ["name=value", ...]. Raises ValueError for what is not of that form or not allowed."""
     known = parameters_of(cls)
-    values: dict[str, Any] = {}
+    values: dict[str, Value] = {}
     for assignment in assignments:
         name, equals, text = assignment.partition("=")
         if not equals:

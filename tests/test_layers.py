@@ -183,6 +183,12 @@ def test_there_is_no_circle_of_imports(top: str):
         pytest.fail(" - ".join(circle.args[1]))
 
 
+def test_the_spine_is_typed():
+    """What viser's own types leave open has names of its own, in app/render/viser_types.py."""
+    paths = [*below("app/server"), *below("app/panel"), ROOT / "app" / "scenes" / "contract.py"]
+    assert not offences(paths, "typing.Any")
+
+
 def test_nothing_that_ships_imports_the_tests():
     assert not offences([*below("sim"), *below("app"), *below("assets")], "tests")
 

@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import viser
 
-from sim.parameters import Parameter, clamp_value
+from app.render.viser_types import GuiHandle, ViserEvent
+from sim.parameters import Parameter, Value, clamp_value
 
 SLIDER_STEPS = 400  # of a logarithmic slider
 
@@ -22,7 +22,7 @@ def decade_marks(low: float, high: float) -> tuple[tuple[float, str], ...]:
     prefixes = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
     decades = range(math.ceil(low - 1e-9), math.floor(high + 1e-9) + 1)
     every = max(1, math.ceil((high - low) / 4))
-    marks = []
+    marks: list[tuple[float, str]] = []
     for d in decades[:: every if every < 3 else 3]:
         power = 3 * math.floor(d / 3)
         plain = -2 <= d <= 2
@@ -43,62 +43,69 @@ class Control:
     def __init__(
         self,
         gui: viser.GuiApi,
-        folder: Any,
+        folder: viser.GuiFolderHandle,
         name: str,
         parameter: Parameter,
-        value: Any,
-        changed: Callable[[str, Any], None],
+        value: Value,
+        changed: Callable[[str, Value], None],
     ) -> None:
         """folder: its container in the panel, within which it is made. changed: called with what a browser sets."""
         self.gui, self.folder = gui, folder
         self.name, self.parameter, self.value, self.changed = name, parameter, value, changed
         self.visible = True
-        self.slider: Any = None
-        self.mark: Any = None
+        self.slider: viser.GuiMultiSliderHandle[float] | None = None
+        self.mark: viser.GuiHtmlHandle | None = None
         label, hint = title(name, parameter), f"{parameter.doc} ({name}: {parameter.allowed})"
         if parameter.choices:
-            self.field: Any = gui.add_dropdown(label, parameter.choices, initial_value=value, hint=hint)
+            self.field: GuiHandle = gui.add_dropdown(label, parameter.choices, initial_value=str(value), hint=hint)
         elif parameter.kind is bool:
-            self.field = gui.add_checkbox(label, initial_value=value, hint=hint)
+            self.field = gui.add_checkbox(label, initial_value=bool(value), hint=hint)
         elif parameter.log_from:
-            self.add_logarithmic(label, hint)
+            self.field, self.slider = self.make_logarithmic(label, hint, float(value))
         elif parameter.kind is int:
             self.field = gui.add_slider(
-                label, int(parameter.low), int(parameter.high), step=1, initial_value=value, hint=hint
+                label, int(parameter.low), int(parameter.high), step=1, initial_value=int(value), hint=hint
             )
         else:
             step = nice_step(parameter.low, parameter.high)
-            self.field = gui.add_slider(label, parameter.low, parameter.high, step=step, initial_value=value, hint=hint)
+            self.field = gui.add_slider(
+                label, parameter.low, parameter.high, step=step, initial_value=float(value), hint=hint
+            )
         self.field.on_update(self.on_field)
 
-    def add_logarithmic(self, label: str, hint: str) -> None:
+    def make_logarithmic(
+        self, label: str, hint: str, value: float
+    ) -> tuple[GuiHandle, viser.GuiMultiSliderHandle[float]]:
         """A number field, and a slider over the logarithm below it."""
         p = self.parameter
         step = 1 if p.kind is int else 10.0 ** (math.floor(math.log10(p.log_from)) - 2)  # three digits of the smallest
-        self.field = self.gui.add_number(label, self.value, min=p.low, max=p.high, step=step, hint=hint)
+        field = self.gui.add_number(
+            label, round(value) if p.kind is int else value, min=p.low, max=p.high, step=step, hint=hint
+        )
         low, high = math.log10(p.log_from), math.log10(p.high)
         # A multi-slider with one handle: it has no number box, which would show the logarithm.
-        self.slider = self.gui.add_multi_slider(
+        slider = self.gui.add_multi_slider(
             " ",
             low,
             high,
             step=(high - low) / SLIDER_STEPS,
-            initial_value=(self.slider_position(self.value),),
+            initial_value=(self.slider_position(value),),
             marks=decade_marks(low, high),
             hint=f"{label}, logarithmic",
         )
-        self.slider.on_update(self.on_slider)
+        slider.on_update(self.on_slider)
+        return field, slider
 
-    def slider_position(self, value: float) -> float:
-        """Where the logarithmic slider stands for a value."""
-        return math.log10(max(value, self.parameter.log_from))
+    def slider_position(self, value: Value) -> float:
+        """Where the logarithmic slider stands for a number."""
+        return math.log10(max(float(value), self.parameter.log_from))
 
-    async def on_field(self, event: Any) -> None:
+    async def on_field(self, event: ViserEvent) -> None:
         """A browser has set the field; viser also calls this for what `show_value` assigns, without a client."""
         if event.client_id is not None:
             self.set(event.target.value)
 
-    async def on_slider(self, event: Any) -> None:
+    async def on_slider(self, event: ViserEvent) -> None:
         """A browser has moved the logarithmic slider."""
         if event.client_id is None:
             return
@@ -109,14 +116,14 @@ class Control:
         if abs(self.slider_position(self.value) - position) > 1e-3:
             self.set(value)
 
-    def set(self, value: Any) -> None:
+    def set(self, value: object) -> None:
         """Take a value, bounded to what is allowed, show it, and pass it on if it is new."""
         good = clamp_value(self.parameter, value)
         if good != self.value:
             self.show_value(good)
             self.changed(self.name, good)
 
-    def show_value(self, value: Any) -> None:
+    def show_value(self, value: Value) -> None:
         """Show a value that was set by other means."""
         if value == self.value:
             return

@@ -5,24 +5,30 @@ cannot lose each other.
 """
 
 import dataclasses
-import html
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, cast
 
 import viser
+from viser._messages import HotkeyKey  # viser names no public type of its keys
 
-from app.messages import Command, Load, PlotRow, Reset, Snapshot, StepOnce, TogglePlay, WorkCounts
+from app.messages import BaseParams, Load, PlotRow, Reset, StepOnce, TogglePlay, WorkCounts
 from app.panel.control import Control
 from app.panel.plots import Plots
 from app.panel.work_table import work_table
-from app.scenes.contract import SceneKind, View
-from sim.parameters import check_record, parameters_of
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, join, note
+from app.render.viser_types import ViserEvent
+from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
+from sim.parameters import Value, check_record, parameters_of
+
+if TYPE_CHECKING:
+    from app.panel.stability_map import StabilityMapPanel
 
 STATUS_INTERVAL = 0.25  # [s]
 MARKS_INTERVAL = 0.5  # [s]
 WORK_INTERVAL = 2.0  # [s]
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
+DIGITS: tuple[HotkeyKey, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
 OPEN_GROUPS = 2  # the first groups of parameters start open
 
 
@@ -32,10 +38,10 @@ class Panel:
     def __init__(
         self,
         server: viser.ViserServer,
-        kind: SceneKind[Any, Any, Any],
-        view: View[Any],
-        params: Any,
-        post: Callable[[Command], None],
+        kind: AnyKind,
+        view: AnyView,
+        params: BaseParams,
+        post: PostCommand,
         *,
         work: Callable[[], WorkCounts],
         scenes: tuple[str, ...] = (),
@@ -47,15 +53,21 @@ class Panel:
         """
         self.server, self.kind, self.view, self.post, self.work = server, kind, view, post, work
         self.gui = gui = server.gui
-        self.state = params, 0  # parameters as set now, and how many presets were loaded: read by another thread
+        self.state: tuple[BaseParams, int] = (
+            params,
+            0,
+        )  # parameters as set now, and how many presets were loaded: read by another thread
         self.status_at = self.marks_at = self.work_at = 0.0
         self.halted = ""
         self.plots = Plots(server, kind)
         self.add_chooser(scenes, open_scene)
         gui.add_html(
-            '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">'
-            f"{kind.help}<br><b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · "
-            "<b>G</b> grid · <b>1-9</b> presets</div>"
+            fill(
+                '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">{}<br>'
+                "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · <b>G</b> grid · "
+                "<b>1-9</b> presets</div>",
+                Html(kind.help),
+            )
         )
         self.preset = gui.add_dropdown("Preset", tuple(kind.presets), hint="Sets every parameter and starts over")
         self.preset.on_update(self.on_preset)
@@ -64,27 +76,28 @@ class Panel:
         self.status = gui.add_html("")
         self.readout = gui.add_html("")
         self.controls: dict[str, Control] = {}
-        groups: dict[str, Any] = {}
+        groups: dict[str, viser.GuiFolderHandle] = {}
         for name, parameter in parameters_of(params).items():
             if parameter.group not in groups:
                 groups[parameter.group] = gui.add_folder(parameter.group, expand_by_default=len(groups) < OPEN_GROUPS)
             folder = groups[parameter.group]
             with folder:
                 self.controls[name] = Control(gui, folder, name, parameter, getattr(params, name), self.on_change)
-        self.notes: dict[str, Any] = {}
-        self.map: Any = None
+        self.notes: dict[str, viser.GuiHtmlHandle] = {}
+        self.map: StabilityMapPanel | None = None
         with gui.add_folder("Advanced", expand_by_default=False):
             if kind.stability_map is not None:
-                from app.panel.stability_map import StabilityMapPanel  # no sea imports what springs need
+                from app.panel import stability_map  # no sea imports what springs need
 
-                self.map = StabilityMapPanel(gui, kind.stability_map, lambda: self.params, self.set)
+                read = cast(Callable[[], SpringParams], lambda: self.params)
+                self.map = stability_map.StabilityMapPanel(gui, kind.stability_map, read, self.set)
             gui.add_html(note("What this scene did since it was opened, and what it did not have to do."))
             self.work_counts = gui.add_html("")
         self.hide()
         self.add_keys()
 
     @property
-    def params(self) -> Any:
+    def params(self) -> BaseParams:
         """The parameters as set now."""
         return self.state[0]
 
@@ -95,7 +108,7 @@ class Panel:
 
     def add_keys(self) -> None:
         """Keyboard and command palette. W A S D Q E and the arrows already move the camera."""
-        actions: list[tuple[str, Any, Callable[[], None]]] = [
+        actions: list[tuple[str, HotkeyKey | None, Callable[[], None]]] = [
             ("Play or pause", "space", lambda: self.post(TogglePlay())),
             ("Single step", "N", lambda: self.post(StepOnce())),
             ("Reset", "R", lambda: self.post(Reset())),
@@ -103,24 +116,26 @@ class Panel:
             ("Grid", "G", lambda: self.set("grid", not self.params.grid)),
         ]
         for number, preset in enumerate(self.kind.presets, 1):
-            key = str(number) if number <= 9 else None  # the rest in the command palette and the list only
+            key = (
+                DIGITS[number - 1] if number <= len(DIGITS) else None
+            )  # the rest in the command palette and the list only
             actions.append((f"Preset: {preset}", key, lambda preset=preset: self.load(preset)))
         for label, key, action in actions:
             command = self.gui.add_command(label, hotkey=key)
 
             @command.on_trigger
-            async def _(_: Any, action: Callable[[], None] = action) -> None:
+            async def _(_: ViserEvent, action: Callable[[], None] = action) -> None:
                 action()
 
-    def read(self) -> tuple[Any, int]:
+    def read(self) -> tuple[BaseParams, int]:
         """The parameters as set now, and the number of the last preset; polled by the simulation once a frame."""
         return self.state
 
-    def set(self, name: str, value: Any) -> None:
+    def set(self, name: str, value: object) -> None:
         """Set one parameter, as its control would; on viser's event loop."""
         self.controls[name].set(value)
 
-    def on_change(self, name: str, value: Any) -> None:
+    def on_change(self, name: str, value: Value) -> None:
         """A control has a new value."""
         params, number = self.state
         self.state = dataclasses.replace(params, **{name: value}), number
@@ -132,7 +147,7 @@ class Panel:
         for name, control in self.controls.items():
             control.show(name not in hidden)
 
-    async def on_preset(self, event: Any) -> None:
+    async def on_preset(self, event: ViserEvent) -> None:
         """A browser has chosen a preset; viser also calls this where `load` assigns the list, without a client."""
         if event.client_id is not None:
             self.load(event.target.value)
@@ -150,7 +165,7 @@ class Panel:
         if self.preset.value != preset:
             self.preset.value = preset
 
-    async def on_button(self, event: Any) -> None:
+    async def on_button(self, event: ViserEvent) -> None:
         """Play or pause, step, reset."""
         self.post({"Play / pause": TogglePlay(), "Step": StepOnce(), "Reset": Reset()}[event.target.value])
 
@@ -161,7 +176,7 @@ class Panel:
         for control in shown:
             control.set(on)
 
-    def update(self, snapshot: Snapshot, rows: list[PlotRow], send_time: float, busy: float = 0.0) -> None:
+    def update(self, snapshot: AnySnapshot, rows: list[PlotRow], send_time: float, busy: float = 0.0) -> None:
         """Show what the loop is doing, at a few hertz.
 
         rows: new plot rows. send_time: [s] that a frame took to hand over. busy: [s] that the present tick has taken.
@@ -177,7 +192,7 @@ class Panel:
             self.status_at = now
             self.status.content = status_line(snapshot, send_time, busy)
             readout = self.view.readout(snapshot)
-            self.readout.content = f'<div style="padding:2px 12px 6px;font-size:12px">{readout}</div>'
+            self.readout.content = note(Html(readout))
         if now - self.marks_at >= MARKS_INTERVAL:
             self.marks_at = now
             for name, text in self.view.marks(snapshot).items():
@@ -195,7 +210,7 @@ class Panel:
             if heading not in self.notes:
                 with self.gui.add_folder(heading, expand_by_default=False):
                     self.notes[heading] = self.gui.add_html("")
-            self.notes[heading].content = note(text)
+            self.notes[heading].content = note(Html(text))
 
     def notify(self, text: str) -> None:
         """Tell every browser."""
@@ -215,28 +230,28 @@ def add_scene_chooser(
     chooser = gui.add_dropdown("Scene", scenes, initial_value=shown)
 
     @chooser.on_update
-    async def _(event: Any) -> None:
+    async def _(event: ViserEvent) -> None:
         if event.client_id is not None:
             open_scene(event.target.value)
 
 
-def note(text: str) -> str:
-    """Text in small print, as HTML."""
-    return f'<div style="padding:2px 12px 8px;font-size:12px">{text}</div>'
-
-
-def status_line(snapshot: Snapshot, send_time: float, busy: float = 0.0) -> str:
+def status_line(snapshot: AnySnapshot, send_time: float, busy: float = 0.0) -> Html:
     """Running or not, the clock, real-time factors, rates; and why it halted."""
     s = snapshot.status
-    state = "Running" if s.running else "Paused"
-    colour = "#2b8a3e" if s.running else "#e67700"
-    capped = ' <b style="color:#c92a2a">[CAPPED]</b>' if s.capped else ""
+    state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
+    capped = join((" ", coloured("[CAPPED]", ERROR_COLOUR))) if s.capped else ""
     box = "margin-top:6px;padding:6px 8px;border-left:3px solid #c92a2a;background:rgba(201,42,42,.1)"
-    halted = f'<div style="{box}">{html.escape(s.halted)}</div>' if s.halted else ""
-    slow = f"<br>this step has taken {busy:.1f} s so far" if busy >= BUSY_SHOWN_FROM else ""
-    return (
-        '<div style="padding:0 12px 4px;font-size:12px">'
-        f'<b style="color:{colour}">{state}</b> t = {s.time:.2f} s<br>'
-        f"real time ×{s.actual_speed:.2f} of ×{s.speed:g}{capped} · {s.frame_rate:.0f} frames/s · "
-        f"solve {s.solve_time * 1e3:.2f} ms · send {send_time * 1e3:.2f} ms{slow}{halted}</div>"
+    halted = fill('<div style="{}">{}</div>', box, s.halted) if s.halted else ""
+    slow = fill("<br>this step has taken {:.1f} s so far", busy) if busy >= BUSY_SHOWN_FROM else ""
+    return fill(
+        '<div style="padding:0 12px 4px;font-size:12px">{state} t = {s.time:.2f} s<br>'
+        "real time ×{s.actual_speed:.2f} of ×{s.speed:g}{capped} · {s.frame_rate:.0f} frames/s · "
+        "solve {solve:.2f} ms · send {send:.2f} ms{slow}{halted}</div>",
+        s=s,
+        state=state,
+        capped=capped,
+        solve=1e3 * s.solve_time,
+        send=1e3 * send_time,
+        slow=slow,
+        halted=halted,
     )

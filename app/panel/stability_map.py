@@ -12,13 +12,15 @@ import math
 import threading
 import traceback
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import viser
 from numpy.typing import NDArray
 
 from app.render.colormap import OUTCOME_COLOURS
-from app.scenes.contract import StabilityMap
+from app.render.viser_types import GuiHandle, ViserEvent
+from app.scenes.contract import SpringParams, StabilityMap
 from sim.parameters import Parameter, parameters_of
 from sim.springs import INTEGRATORS
 from sim.springs.analysis.growth import outcome
@@ -36,12 +38,12 @@ PICTURE = (300.0, 214.0)
 class Axes(NamedTuple):
     """What a map was asked for."""
 
-    params: Any
+    params: SpringParams
     parameter: str  # of the stiffness
     steps: NDArray[np.float64]  # (COLS,) [s]
     stiffnesses: NDArray[np.float64]  # (ROWS,) in the parameter's unit
 
-    def is_of(self, params: Any) -> bool:
+    def is_of(self, params: SpringParams) -> bool:
         """Whether nothing but step and stiffness has changed since."""
         moved = {"time_step": params.time_step, self.parameter: getattr(params, self.parameter)}
         return shown(dataclasses.replace(self.params, **moved)) == shown(params)
@@ -54,22 +56,20 @@ class Row(NamedTuple):
     critical: float  # [s]
 
 
-def shown(params: Any) -> tuple[Any, ...]:
-    """The parameters that a map depends on."""
-    aside = ("Look", "Plots", "Race")
-    names = [
-        name for name, parameter in parameters_of(params).items() if parameter.group not in aside and name != "speed"
-    ]
+def shown(params: SpringParams) -> tuple[object, ...]:
+    """The values that a map depends on."""
+    names = [name for name, parameter in parameters_of(params).items() if parameter.affects != "look"]
     return tuple(getattr(params, name) for name in names)
 
 
 def span(parameter: Parameter, value: float, count: int) -> NDArray[np.float64]:
     """Values (count,) about `value`, evenly in their logarithms, within what the parameter allows."""
     low = max(value / 10.0**DECADES, parameter.log_from)
-    return np.geomspace(low, max(min(value * 10.0**DECADES, parameter.high), 1.01 * low), count)
+    high = max(min(value * 10.0**DECADES, parameter.high), 1.01 * low)
+    return low * (high / low) ** np.linspace(0.0, 1.0, count)
 
 
-def axes_of(params: Any, parameter: str) -> Axes:
+def axes_of(params: SpringParams, parameter: str) -> Axes:
     """The axes of a map about where the parameters stand."""
     known = parameters_of(params)
     return Axes(
@@ -95,7 +95,11 @@ class StabilityMapPanel:
     """The map in the panel: a button, the picture, and a thread of its own while it is measured."""
 
     def __init__(
-        self, gui: Any, scene: StabilityMap, read: Callable[[], Any], take: Callable[[str, float], None]
+        self,
+        gui: viser.GuiApi,
+        scene: StabilityMap,
+        read: Callable[[], SpringParams],
+        take: Callable[[str, float], None],
     ) -> None:
         """read: the parameters as set now; take: sets a parameter, on viser's event loop."""
         self.scene, self.read, self.take = scene, read, take
@@ -110,11 +114,11 @@ class StabilityMapPanel:
         self.asked = 0  # how often: a thread that is no longer the latest stops
 
         @self.button.on_click
-        async def _(_: Any) -> None:
+        async def _(_: ViserEvent) -> None:
             self.ask()
 
         @self.click.on_update
-        async def _(event: Any) -> None:
+        async def _(event: ViserEvent) -> None:
             if event.client_id is not None:
                 self.go(event.target.value)
 
@@ -135,7 +139,8 @@ class StabilityMapPanel:
             if record.undamped_only and self.scene.build(params).is_damped:
                 self.axes, self.problem = None, f"{record.name} takes no damping."
                 return
-            axes, rows = axes_of(params, self.scene.stiffness(params)), []
+            axes = axes_of(params, self.scene.stiffness(params))
+            rows: list[Row] = []
             for stiffness in axes.stiffnesses:
                 rows.append(measure_row(self.scene, axes, float(stiffness)))
                 if self.asked != number:
@@ -149,7 +154,7 @@ class StabilityMapPanel:
     def draw(self) -> None:
         """Show the map as far as it is known, with a dot where the parameters stand; on the viewer thread."""
         axes = self.axes
-        found = picture(axes, self.rows, self.read(), self.click._impl.uuid) if axes is not None else ""
+        found = picture(axes, self.rows, self.read(), uuid_of(self.click)) if axes is not None else ""
         problem = f'<div style="padding:0 12px">{html.escape(self.problem)}</div>' if self.problem else ""
         self.html.content = found + problem
 
@@ -164,6 +169,11 @@ class StabilityMapPanel:
             self.take(name, float(f"{values[0] * (values[-1] / values[0]) ** min(max(part, 0.0), 1.0):.3g}"))
 
 
+def uuid_of(slider: GuiHandle) -> str:
+    """What viser calls a GUI element in its messages."""
+    return slider._impl.uuid
+
+
 def short(value: float) -> str:
     """A tick's number: plain where that is short."""
     return f"{value:.3g}" if 1e-3 <= value < 1e3 else f"{value:.1e}".replace("e+0", "e").replace("e-0", "e-")
@@ -174,11 +184,11 @@ def place_of(values: NDArray[np.float64], value: float) -> float:
     return math.log(max(value, 1e-300) / values[0]) / math.log(values[-1] / values[0])
 
 
-def picture(axes: Axes, rows: list[Row], params: Any, slider: str) -> str:
+def picture(axes: Axes, rows: list[Row], params: SpringParams, slider: str) -> str:
     """The map as HTML. slider: the uuid of what a click moves."""
     colours = list(OUTCOME_COLOURS.values())
     height, width = HIGH / (ROWS - 1), WIDE / (COLS - 1)
-    parts = []
+    parts: list[str] = []
     for i, row in enumerate(rows):
         y = TOP + HIGH - (i + 0.5) * height
         ends = [0, *(np.flatnonzero(np.diff(row.outcomes)) + 1).tolist(), COLS]

@@ -1,22 +1,22 @@
-"""Colour scales that read alike for colour-blind eyes and in grey."""
+"""Colour scales that are as clear for colour-blind readers, and in grey."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
 
-# What becomes of a disturbance, as `sim.springs.analysis.growth` numbers it; light, middle, dark also in grey.
+# What becomes of a disturbance, in the order of `sim.springs.analysis.growth`; light, medium and dark also in grey.
 OUTCOME_COLOURS = {"holds": "#CFE6F5", "rattles": "#E69F00", "explodes": "#8C2D04"}
 
-# Anchors of matplotlib's "plasma" without its darkest end, sRGB; from calm violet to hot yellow.
+# Anchors of matplotlib's "plasma" without its darkest end, sRGB, from violet (low) to yellow (high).
 ANCHORS = np.array(
     [[62, 4, 156], [126, 3, 168], [179, 38, 131], [218, 91, 105], [248, 149, 64], [253, 197, 39], [240, 249, 33]]
 )
-SCALE = ANCHORS.astype(np.float64)  # for the kernel
+SCALE = ANCHORS.astype(np.float64)  # the same numbers as the kernel takes them
 
 
 def scale_colours(values: NDArray[np.float64], low: float, high: float) -> NDArray[np.float32]:
-    """sRGB in 0..1, (n, 3), of values on the scale from `low` to `high`, clipped at its ends."""
+    """sRGB in 0..1, (n, 3), of values (n,) on the scale from `low` to `high`; values outside get the end colours."""
     span = high - low
     at = np.clip((values - low) / span if span > 0 else np.zeros_like(values), 0.0, 1.0) * (len(ANCHORS) - 1)
     i = np.minimum(at.astype(int), len(ANCHORS) - 2)
@@ -25,16 +25,16 @@ def scale_colours(values: NDArray[np.float64], low: float, high: float) -> NDArr
 
 
 @kernel
-def paint_tube(tension, between, full, anchors, sides, rgb):
-    """The same for a tube of (n - 1) between + 1 rings around n points, into rgb (rings sides + 2, 3) (float32).
+def set_tube_colours(tension, samples, full, anchors, sides, rgb):
+    """Set rgb (rings sides + 2, 3) (float32) of a tube of (n - 1) samples + 1 rings around n points by `scale_colours`.
 
-    tension: (n - 1,) of each link, held at its middle, linear between two and constant beyond the last; the scale goes
-    from 0 to `full`. anchors: `SCALE`.
+    tension: (n - 1,) of each link. It is taken at the middle of the link, is linear between two middles, and constant
+    beyond the first and the last. The scale goes from 0 to `full`. anchors: `SCALE`.
     """
     links, last = tension.shape[0], anchors.shape[0] - 1
-    rings = links * between + 1
+    rings = links * samples + 1
     for ring in range(rings):
-        along = min(max(ring / between - 0.5, 0.0), links - 1.0)
+        along = min(max(ring / samples - 0.5, 0.0), links - 1.0)
         i = min(int(along), max(links - 2, 0))
         value = tension[i]
         if links > 1:
@@ -58,5 +58,5 @@ def css_scale() -> str:
 
 
 def rgb(colour: str) -> tuple[int, int, int]:
-    """A colour written #rrggbb, as numbers in 0..255."""
+    """The colour "#rrggbb" as numbers in 0..255."""
     return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)

@@ -1,4 +1,4 @@
-"""The pull of the mouse: what a drag tells the simulation, and the line from what is held to where it is drawn."""
+"""Dragging with the mouse: what it tells the simulation, and the line from what is held to the mouse."""
 
 from collections.abc import Callable
 from typing import Any
@@ -26,7 +26,7 @@ def nearest(points: np.ndarray, event: Any) -> int:
 
 
 class PullLine:
-    """One segment, whose ends move while something is held."""
+    """A line that is drawn while something is held."""
 
     def __init__(self, server: viser.ViserServer, name: str = "/pull") -> None:
         self.line = server.scene.add_line_segments(
@@ -39,7 +39,7 @@ class PullLine:
         )
 
     def show(self, ends: Any, load: float = 0.4) -> None:
-        """ends: (2, 3) [m], or None while nothing is held; load: part of the most that the hand pulls with."""
+        """ends: (2, 3) [m], None while nothing is held. load: share of the largest force of the mouse, 0 to 1."""
         self.line.visible = ends is not None
         if ends is not None:
             self.line.points = np.array([ends], np.float32)

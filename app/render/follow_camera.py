@@ -1,74 +1,91 @@
-"""A camera that goes along with a body, and still lets itself be turned."""
+"""A camera that moves along with a body, while its user may still turn it."""
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.messages import Vector
 
-SAME = 0.02  # [m] within which a camera, or its target, is where it was put
-HANDS_ON = 0.4  # [s] since a hand last moved the camera, for which it is left alone
-SETTLING = 1.5  # [s] from a camera's first placing: until then a page may still answer with where it was before
-STEP = 0.02  # [m] that the body goes before the cameras follow
-KEPT = 900  # placings, half a minute of them, that a slow page may still answer with
+SAME_PLACE = 0.02  # [m] within which a camera, or its target, is where it was put
+HAND_TIME = 0.4  # [s] for which a camera is left alone after its user moved it
+START_TIME = 1.5  # [s] after a camera was first placed, for which its page may still report an earlier place
+MIN_BODY_MOTION = 0.02  # [m] that the body moves before the cameras follow
+MAX_PLACES = 900  # places that are remembered, for half a minute: a slow page may still report one of them
+
+
+@dataclass
+class FollowedView:
+    """The camera of one browser beside the body. Places are (2, 3) [m]: camera and target."""
+
+    offset: NDArray[np.float64]  # (2, 3) [m] camera and target from the body, as the user has put them
+    first_placed: float  # [s]
+    hand_moved: float = -np.inf  # when the user last moved the camera [s]
+    places: NDArray[np.float64] = field(default_factory=lambda: np.full((MAX_PLACES, 2, 3), np.inf))  # the last ones
+    next_place: int = 0  # index in `places` of the oldest one
+
+    def remember(self, place: NDArray[np.float64]) -> None:
+        """Keep a place, instead of the oldest one."""
+        self.places[self.next_place] = place
+        self.next_place = (self.next_place + 1) % MAX_PLACES
+
+    def is_own(self, place: NDArray[np.float64]) -> bool:
+        """Whether a reported place is one of those remembered.
+
+        Camera and target arrive one after the other, so that a page may report a new one with an old one: each is
+        compared by itself.
+        """
+        return bool(np.abs(place - self.places).max(axis=2).min(axis=0).max() <= SAME_PLACE)
+
+    def put(self, camera: Any, body: NDArray[np.float64]) -> None:
+        """Put the camera beside the body at `body` (3,) [m]."""
+        place = body + self.offset
+        camera.position, camera.look_at = place
+        self.remember(place)
 
 
 class FollowCamera:
-    """Keeps each browser's camera where its user has put it beside a body.
+    """Keeps the camera of each browser where its user has put it beside a body.
 
-    A page answers late, so what it says of its camera is the hand of a user only where it is none of the last placings.
+    A page reports the place of its camera late. A reported place counts as moved by the user only if it is none of the
+    last places where this class has put it.
     """
 
     def __init__(self) -> None:
-        self.here = np.zeros(3)
-        self.offset = np.zeros((2, 3))  # [m] camera and target from the body as it begins
-        self.first = np.zeros((2, 3))  # [m] where both then are: a page that has just come may take them up late
-        self.mine: dict[int, np.ndarray] = {}  # client -> the same, as its user has it now
-        self.placed: dict[int, np.ndarray] = {}  # client -> (KEPT, 2, 3), the last ones in a ring
-        self.turn: dict[int, int] = {}
-        self.since: dict[int, float] = {}  # client -> when it was first placed [s]
-        self.moved: dict[int, float] = {}  # client -> when a hand last moved its camera [s]
+        self.body = np.zeros(3)  # [m] where the cameras last followed to
+        self.start_offset = np.zeros((2, 3))  # [m] of a new view
+        self.start_place = np.zeros((2, 3))  # [m] where a new page puts its camera, maybe late
+        self.views: dict[int, FollowedView] = {}  # by client
 
-    def start(self, here: np.ndarray, offset: Iterable[Vector]) -> None:
-        """Begin beside a body at `here` (3,) [m]; offset: camera and target from it [m]."""
-        self.here, self.offset = here, np.array(list(offset))
-        self.first = here + self.offset
-        self.mine, self.placed, self.turn, self.since, self.moved = {}, {}, {}, {}, {}
+    def start(self, body: NDArray[np.float64], offset: Iterable[Vector]) -> None:
+        """Start beside a body at `body` (3,) [m]; offset: camera and target from it [m]."""
+        self.body, self.start_offset = body, np.array(list(offset))
+        self.start_place = body + self.start_offset
+        self.views = {}
 
-    def go(self, here: np.ndarray, cameras: dict[int, Any], now: float | None = None) -> None:
-        """Follow to `here` (3,) [m] with the cameras by client; now [s]: a clock."""
+    def follow(self, body: NDArray[np.float64], cameras: Mapping[int, Any], now: float | None = None) -> None:
+        """Follow to `body` (3,) [m] with the cameras by client; now: [s] of any clock, None for the computer's."""
         now = time.monotonic() if now is None else now
-        on = float(np.abs(here - self.here).max()) > STEP
+        body_moved = float(np.abs(body - self.body).max()) > MIN_BODY_MOTION
+        for client in self.views.keys() - cameras.keys():
+            del self.views[client]
         for client, camera in cameras.items():
-            if client not in self.mine:
-                before = np.array([camera.position, camera.look_at], float)
-                self.mine[client], self.turn[client], self.since[client] = self.offset, 0, now
-                self.placed[client] = np.full((KEPT, 2, 3), np.inf)
-                self.remember(client, before)
-                self.remember(client, self.first)
-                self.place(client, camera, here)
+            place = np.array([camera.position, camera.look_at], float)
+            view = self.views.get(client)
+            if view is None:
+                view = self.views[client] = FollowedView(self.start_offset, now)
+                view.remember(place)
+                view.remember(self.start_place)
+                view.put(camera, body)
                 continue
-            at = np.array([camera.position, camera.look_at], float)
-            # The two arrive one after the other, so that a page may answer with a new one and an old.
-            off = np.abs(at - self.placed[client]).max(axis=2).min(axis=0)
-            elsewhere = bool(off.max() > SAME)
-            if elsewhere and now - self.since[client] > SETTLING:
-                self.mine[client], self.moved[client] = at - here, now
-                self.remember(client, at)
-            elif (on or elsewhere) and now - self.moved.get(client, -np.inf) > HANDS_ON:
-                self.place(client, camera, here)
-        if on:
-            self.here = here
-
-    def place(self, client: int, camera: Any, here: np.ndarray) -> None:
-        """Put a camera beside `here`."""
-        at = here + self.mine[client]
-        camera.position, camera.look_at = at
-        self.remember(client, at)
-
-    def remember(self, client: int, at: np.ndarray) -> None:
-        """Keep a placing (2, 3) [m] in the place of the oldest."""
-        self.placed[client][self.turn[client]] = at
-        self.turn[client] = (self.turn[client] + 1) % KEPT
+            elsewhere = not view.is_own(place)
+            if elsewhere and now - view.first_placed > START_TIME:
+                view.offset, view.hand_moved = place - body, now
+                view.remember(place)
+            elif (body_moved or elsewhere) and now - view.hand_moved > HAND_TIME:
+                view.put(camera, body)
+        if body_moved:
+            self.body = body

@@ -1,4 +1,4 @@
-"""Arrows that move a thing: a drag posts where it is put, and the arrows follow where it goes by other means."""
+"""Arrows that move a thing: dragging them posts its new position; where it moves by other means, they follow."""
 
 import time
 from collections.abc import Callable
@@ -8,8 +8,8 @@ import viser
 
 from app.messages import Command, Place, Vector, finite_vector
 
-HANDS_OFF = 0.5  # [s] after its last drag that the arrows are left alone
-STILL = 1e-4  # [m] by which they may be off
+DRAG_TIME = 0.5  # [s] after the last drag event for which the arrows are not moved
+MAX_POSITION_ERROR = 1e-4  # [m] by which the arrows may be off
 
 
 class Gizmo:
@@ -18,9 +18,10 @@ class Gizmo:
     def __init__(
         self, server: viser.ViserServer, post: Callable[[Command], None], thing: str, scale: float, **options: Any
     ) -> None:
-        """options: of viser's transform controls."""
-        self.dragged_at = 0.0
-        self.shown: tuple[Vector | None] | None = None  # what it was last found, or put, to show
+        """scale: length of the arrows [m]. options: of viser's transform controls."""
+        self.dragged_at = 0.0  # [s]
+        # In a tuple: the position that was last shown, None where the arrows are hidden. No tuple: it is not known.
+        self.shown: tuple[Vector | None] | None = None
         self.handle = server.scene.add_transform_controls(
             f"/{thing.replace(' ', '_')}_gizmo", scale=scale, disable_rotations=True, depth_test=False, **options
         )
@@ -28,20 +29,20 @@ class Gizmo:
         @self.handle.on_update
         async def _(event: Any) -> None:
             self.dragged_at, self.shown = time.monotonic(), None
-            place = finite_vector(event.target.position)
-            if place is not None:
-                post(Place(thing, place))
+            position = finite_vector(event.target.position)
+            if position is not None:
+                post(Place(thing, position))
 
     def show(self, position: Vector | None) -> None:
-        """Move to where the thing was put by other means, unless being dragged; None hides."""
+        """Move to where the thing is [m], unless the arrows are being dragged; None hides them."""
         if self.shown == (position,):
             return
         self.handle.visible = position is not None
         if position is None:
             self.shown = (None,)
             return
-        if time.monotonic() - self.dragged_at <= HANDS_OFF:
+        if time.monotonic() - self.dragged_at <= DRAG_TIME:
             return
-        if max(abs(float(a) - b) for a, b in zip(self.handle.position, position, strict=True)) > STILL:
+        if max(abs(float(a) - b) for a, b in zip(self.handle.position, position, strict=True)) > MAX_POSITION_ERROR:
             self.handle.position = position
         self.shown = (position,)

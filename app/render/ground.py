@@ -1,12 +1,12 @@
-"""The floor under rope and cloth: an endless plane, with a grid on demand."""
+"""The floor under rope and cloth: an infinite plane, with grid lines where they are wanted."""
 
 import viser
 
-Colour = tuple[int, int, int]
+Colour = tuple[int, int, int]  # sRGB, 0 to 255
 
 
 class Ground:
-    """viser's grid as a floor."""
+    """viser's grid as a floor. Colours of the plane, of the lines every 0.25 m, and of those every 1 m."""
 
     def __init__(self, server: viser.ViserServer, plane: Colour, cells: Colour, sections: Colour) -> None:
         self.shown: tuple[bool, bool] | None = None
@@ -26,7 +26,7 @@ class Ground:
         )
 
     def show(self, floor: bool, grid: bool) -> None:
-        """floor: whether it is there; grid: whether its lines are."""
+        """floor: whether to draw the plane; grid: whether to draw its lines."""
         if (floor, grid) == self.shown:
             return
         self.shown = floor, grid

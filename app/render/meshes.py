@@ -1,4 +1,4 @@
-"""Meshes made of a few numbers: a ball, and a tube of fixed topology around a moving line.
+"""Meshes that are computed: a ball, and a tube of fixed topology around a moving line.
 
 trimesh has both, but takes half a second to import, as long as all the rest of the rope scene.
 """
@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from sim.jit import kernel
 
-SIDES = 10
+SIDES = 10  # of a tube
 
 
 def ball(rows: int = 16) -> tuple[NDArray[np.float64], NDArray[np.uint32]]:
-    """Vertices and triangles of a unit sphere with `rows` rows of quads from pole to pole."""
+    """Vertices (n, 3) and triangles (m, 3) of a unit sphere with `rows` rows of quads from pole to pole."""
     sides = 2 * rows
     theta = np.pi * np.arange(1, rows) / rows
     phi = 2 * np.pi * np.arange(sides) / sides
@@ -53,28 +53,28 @@ def tube_faces(rings: int, sides: int = SIDES) -> NDArray[np.uint32]:
 
 
 @kernel
-def smooth_line(points, between, line):
-    """Catmull-Rom curve through points (n, 3), `between` samples a link, into line ((n - 1) between + 1, 3)."""
+def smooth_line(points, samples, line):
+    """Set line ((n - 1) samples + 1, 3) to the Catmull-Rom curve through points (n, 3), `samples` to a link."""
     n = points.shape[0]
     for i in range(n - 1):
         before, after = max(i - 1, 0), min(i + 2, n - 1)
-        for s in range(between):
-            t = s / between
+        for s in range(samples):
+            t = s / samples
             for e in range(3):
                 p0, p1, p2, p3 = points[before, e], points[i, e], points[i + 1, e], points[after, e]
-                line[i * between + s, e] = 0.5 * (
+                line[i * samples + s, e] = 0.5 * (
                     2.0 * p1
                     + t * (p2 - p0 + t * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 + t * (3.0 * (p1 - p2) + p3 - p0)))
                 )
-    line[(n - 1) * between] = points[n - 1]
+    line[(n - 1) * samples] = points[n - 1]
 
 
 @kernel
 def sweep(line, radius, sides, vertices):
-    """Rings of `sides` vertices around line (rings, 3), then the two end centres, into vertices (float32).
+    """Set vertices (rings sides + 2, 3) (float32) to rings around line (rings, 3), then the centres of the two ends.
 
-    The frame is carried from ring to ring by the double reflection method (Wang et al. 2008, ACM TOG 27(1):2, table 1),
-    so that the tube does not twist.
+    radius [m]. The double reflection method (Wang et al. 2008, ACM TOG 27(1):2, table 1) moves the frame from ring to
+    ring, so that the tube does not twist.
     """
     rings = line.shape[0]
     around = np.empty((sides, 2))
@@ -92,7 +92,7 @@ def sweep(line, radius, sides, vertices):
         else:
             ux, uy, uz = tx, ty, tz
         if i == 0:
-            # Any direction across the first tangent.
+            # Any direction that is not along the first tangent.
             rx, ry, rz = (0.0, 0.0, 1.0) if abs(uz) < 0.9 else (1.0, 0.0, 0.0)
         else:
             vx, vy, vz = line[i, 0] - line[i - 1, 0], line[i, 1] - line[i - 1, 1], line[i, 2] - line[i - 1, 2]

@@ -4,12 +4,16 @@ import importlib
 import pkgutil
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from sim.validation import argument_error
 
 if TYPE_CHECKING:
-    from app.scenes.contract import SceneKind, View
+    from collections.abc import Callable
+
+    from viser import ViserServer
+
+    from app.scenes.contract import AnyKind, AnyView, PostCommand
 
 NAMES = tuple(
     module.name
@@ -28,7 +32,7 @@ def check_name(name: str) -> str:
     return name
 
 
-def scene_named(name: str) -> "SceneKind[Any, Any, Any]":
+def scene_named(name: str) -> "AnyKind":
     """The scene of a folder. Raises ValueError for a name that is none."""
     return importlib.import_module(f"{__name__}.{check_name(name)}.scene").SCENE
 
@@ -38,6 +42,6 @@ def view_module(name: str) -> ModuleType:
     return importlib.import_module(f"{__name__}.{check_name(name)}.view")
 
 
-def view_named(name: str) -> "type[View[Any]]":
-    """The drawing of a scene; imports viser."""
+def view_named(name: str) -> "Callable[[ViserServer, PostCommand], AnyView]":
+    """The class that draws a scene; imports viser."""
     return view_module(name).View

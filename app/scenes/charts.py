@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 # Colours that can be told apart with any colour vision (Okabe and Ito, 2008); black and yellow last.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+Columns = tuple[NDArray[np.floating], ...]  # the first is what the others stand over
 
 
 class PlotAxes(NamedTuple):

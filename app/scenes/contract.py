@@ -13,12 +13,14 @@ The folder is found by being here: command line, panel, sweeps, benchmarks and t
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeAlias, TypeVar
 
+import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import PlotRow, SceneCommand, Snapshot, Vector, WorkCounts
-from app.scenes.charts import Chart, CurveAxes, PlotAxes
+from app.messages import BaseParams, Command, F, P, PlotRow, R, SceneCommand, Snapshot, Vector, WorkCounts
+from app.scenes.charts import Chart, Columns, CurveAxes, PlotAxes
+from sim.parameters import Value
 
 if TYPE_CHECKING:
     from sim.springs.net import Net
@@ -26,24 +28,9 @@ if TYPE_CHECKING:
 FRAME_INTERVAL = 1 / 60  # [s] between ticks of the loop, and between two frames of a scene that asks for nothing else
 
 
-class BaseParams(Protocol):
-    """What every scene's `Params` has."""
-
-    @property
-    def speed(self) -> float:
-        """Target real-time factor."""
-        ...
-
-    @property
-    def grid(self) -> bool:
-        """Whether the grid is drawn (key G)."""
-        ...
-
-
-P = TypeVar("P", bound=BaseParams)
-F = TypeVar("F")
-R = TypeVar("R")
-FrameIn = TypeVar("FrameIn", contravariant=True)
+F_co = TypeVar("F_co", covariant=True)
+R_co = TypeVar("R_co", covariant=True)
+F_contra = TypeVar("F_contra", contravariant=True)
 
 
 class Measure(NamedTuple):
@@ -54,7 +41,7 @@ class Measure(NamedTuple):
     meaning: str
 
 
-class Scene(Protocol[P, F, R]):
+class Scene(Protocol[P, F_co, R_co]):
     """A simulation, used on the simulation thread only. P: its parameters, F: its frames, R: its readings."""
 
     params: P
@@ -99,11 +86,11 @@ class Scene(Protocol[P, F, R]):
         """Take steps. Raises DivergenceError where the state leaves its bounds, and then keeps the last good one."""
         ...
 
-    def frame(self) -> F:
+    def frame(self) -> F_co:
         """What to draw: immutable, arrays float32."""
         ...
 
-    def readings(self) -> R:
+    def readings(self) -> R_co:
         """Numbers for the panel: immutable."""
         ...
 
@@ -111,11 +98,11 @@ class Scene(Protocol[P, F, R]):
         """The plot rows since the last call."""
         ...
 
-    def curves(self) -> Mapping[str, Chart | tuple[NDArray[Any], ...]] | None:
+    def curves(self) -> Mapping[str, Chart | Columns] | None:
         """Parameter -> columns of its chart, for the charts that are not a course in time; None where there is none."""
         ...
 
-    def arrays(self) -> Mapping[str, tuple[NDArray[Any], str]]:
+    def arrays(self) -> Mapping[str, tuple[NDArray[np.generic], str]]:
         """The state for a file: name -> (array, unit)."""
         ...
 
@@ -124,7 +111,7 @@ class Scene(Protocol[P, F, R]):
         ...
 
 
-class View(Protocol[FrameIn]):
+class View(Protocol[P, F, R]):
     """The drawing of a scene, used on the viewer's thread only: `View(server, post)`, and `post` takes commands.
 
     CAMERA: position and target [m] of the first view. FIELD_OF_VIEW: vertical [rad].
@@ -133,19 +120,19 @@ class View(Protocol[FrameIn]):
     CAMERA: tuple[Vector, Vector]
     FIELD_OF_VIEW: float
 
-    def show(self, frame: FrameIn) -> None:
+    def show(self, frame: F) -> None:
         """Assign a frame to the handles; called inside `server.atomic()`."""
         ...
 
-    def readout(self, snapshot: Snapshot) -> str:
+    def readout(self, snapshot: Snapshot[P, F, R]) -> str:
         """HTML under the panel's status line."""
         ...
 
-    def marks(self, snapshot: Snapshot) -> dict[str, str]:
+    def marks(self, snapshot: Snapshot[P, F, R]) -> dict[str, str]:
         """Parameter -> the line under its control."""
         ...
 
-    def notes(self, snapshot: Snapshot) -> dict[str, str]:
+    def notes(self, snapshot: Snapshot[P, F, R]) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
         ...
 
@@ -154,11 +141,30 @@ class View(Protocol[FrameIn]):
         ...
 
 
-class StabilityMap(NamedTuple):
-    """What the panel's map of step and stiffness needs of a scene of springs."""
+class SpringParams(BaseParams, Protocol):
+    """What the parameters of a scene with a stability map have in addition."""
 
-    stiffness: Callable[[Any], str]  # params -> name of the stiffness parameter in force
-    build: Callable[[Any], "Net"]  # params -> the net
+    @property
+    def integrator(self) -> str:
+        """Name in INTEGRATORS."""
+        ...
+
+    @property
+    def time_step(self) -> float:
+        """Step h [s]."""
+        ...
+
+    @property
+    def points(self) -> int:
+        """Number of points."""
+        ...
+
+
+class StabilityMap(NamedTuple):
+    """What the panel's map of step and stiffness needs of a scene; its parameters are `SpringParams`."""
+
+    stiffness: Callable[..., str]  # params -> name of the stiffness parameter in force
+    build: Callable[..., "Net"]  # params -> the net that they describe
 
 
 @dataclass(frozen=True)
@@ -169,7 +175,7 @@ class SceneKind(Generic[P, F, R]):
     title: str
     help: str  # two lines on how to use it, as HTML
     params: type[P]
-    presets: Mapping[str, Mapping[str, Any]]  # name -> the values that differ from the defaults
+    presets: Mapping[str, Mapping[str, Value]]  # name -> the values that differ from the defaults
     make: Callable[[P], Scene[P, F, R]]
     hidden: Callable[[P], set[str]]  # the parameters that mean nothing with the others as they are
     warm_up: Callable[[], Iterator[str]]  # compiles what the scene may call, piece by piece; yields what comes next
@@ -178,5 +184,13 @@ class SceneKind(Generic[P, F, R]):
     curves: Mapping[str, CurveAxes] = field(
         default_factory=dict[str, CurveAxes]
     )  # parameter that opens the chart -> its axes
-    measures: Callable[[Any], dict[str, Measure]] | None = None  # what a sweep records; None: the plot rows
+    measures: Callable[..., dict[str, Measure]] | None = None  # of the scene, what a sweep records; None: the plot rows
     stability_map: StabilityMap | None = None
+
+
+PostCommand: TypeAlias = Callable[[Command], None]  # takes a command for the simulation
+# What the server and the panel work with: a scene of whatever parameters, frames and readings.
+AnyScene: TypeAlias = Scene[BaseParams, object, object]
+AnyView: TypeAlias = View[BaseParams, object, object]
+AnyKind: TypeAlias = SceneKind[BaseParams, object, object]
+AnySnapshot: TypeAlias = Snapshot[BaseParams, object, object]

@@ -6,6 +6,8 @@ from a browser passes `screen`: a short list of message types, only finite bound
 their control offers. The names with a leading underscore are viser's own and the reason for the pin in pyproject.toml.
 """
 
+# pyright: reportPrivateUsage=false
+
 import asyncio
 import collections
 import contextlib
@@ -16,21 +18,25 @@ import logging
 import math
 import socket
 import time
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable, Generator, Sequence
 from http import HTTPStatus
-from typing import Any
+from typing import TypeAlias, TypeGuard, cast
 from urllib.parse import urlsplit
 
 import viser
 import websockets.asyncio.server
 from viser import _messages as vm
 
+from app.render.viser_types import GuiHandle, ViserConnection, ViserMessage
+
 MAX_NUMBER = 1e6  # any number in a message beyond this is refused
 MAX_LENGTH = 1000  # of a text, or of a list
 INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
 MAX_WAITING = 64  # messages of one browser that wait for their turn
 
-Handler = Callable[[Any, Any], Awaitable[None]]
+ClientId: TypeAlias = int
+MergeKey: TypeAlias = tuple[object, ...]
+Handler = Callable[[ClientId, ViserMessage], Awaitable[None]]
 
 # What a browser of ours sends. No uploads, no forms, no share tunnel.
 ALLOWED = (
@@ -80,17 +86,17 @@ def is_loopback(host: str) -> bool:
 
 
 @contextlib.contextmanager
-def checked_origins(bound: str) -> Iterator[None]:
+def checked_origins(bound: str) -> Generator[None]:
     """While open, a websocket server that starts refuses upgrades from other pages with 403."""
     serve = websockets.asyncio.server.serve
 
-    def guarded_serve(*args: Any, process_request: Any = None, **options: Any) -> Any:
-        def check(connection: Any, request: Any) -> Any:
+    def guarded_serve(*args: object, process_request: ViserConnection = None, **options: object) -> object:
+        def check(connection: ViserConnection, request: ViserConnection) -> object:
             if not is_own_origin(request.headers.get("Origin"), request.headers.get("Host"), bound):
                 return connection.respond(HTTPStatus.FORBIDDEN, "This page may not connect here.\n")
             return process_request(connection, request)
 
-        return serve(*args, process_request=check, **options)
+        return serve(*args, process_request=check, **options)  # type: ignore[arg-type]
 
     websockets.asyncio.server.serve = guarded_serve  # type: ignore[assignment]
     try:
@@ -99,7 +105,7 @@ def checked_origins(bound: str) -> Iterator[None]:
         websockets.asyncio.server.serve = serve  # type: ignore[assignment]
 
 
-def is_bounded(value: Any) -> bool:
+def is_bounded(value: object) -> bool:
     """Whether every number in a message is finite and of a sane size, and no text is long."""
     if isinstance(value, bool) or value is None:
         return True
@@ -110,37 +116,54 @@ def is_bounded(value: Any) -> bool:
     if isinstance(value, bytes | bytearray | memoryview):
         return True
     if isinstance(value, dict):
-        return all(is_bounded(k) and is_bounded(v) for k, v in value.items())
-    if isinstance(value, list | tuple):
-        return len(value) <= MAX_LENGTH and all(is_bounded(v) for v in value)
-    return False
+        entries = cast(dict[object, object], value)
+        return all(is_bounded(k) and is_bounded(v) for k, v in entries.items())
+    return is_sequence(value) and len(value) <= MAX_LENGTH and all(is_bounded(v) for v in value)
 
 
-def allowed_value(handle: Any, value: Any) -> Any:
+def is_sequence(value: object) -> TypeGuard[Sequence[object]]:
+    """Whether this is a list or a tuple."""
+    return isinstance(value, list | tuple)
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether this is a finite number, and no bool."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+# What kind of value each GUI element takes.
+FLAGS = (viser.GuiCheckboxHandle, viser.GuiButtonHandle)
+NUMBERS = (viser.GuiSliderHandle, viser.GuiNumberHandle)
+CHOICES = (viser.GuiDropdownHandle, viser.GuiButtonGroupHandle)
+
+
+def allowed_value(handle: GuiHandle, value: object) -> object:
     """`value` within what a GUI control offers, clamped where it has a range; None where it is no such value."""
-    if isinstance(handle, viser.GuiCheckboxHandle | viser.GuiButtonHandle):
+    kind = cast("type[object]", type(handle))
+    if issubclass(kind, FLAGS):
         return value if isinstance(value, bool) else None
-    if isinstance(handle, viser.GuiSliderHandle | viser.GuiNumberHandle):
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if issubclass(kind, NUMBERS):
+        if not is_number(value):
             return None
         low = -MAX_NUMBER if handle.min is None else handle.min
         high = MAX_NUMBER if handle.max is None else handle.max
         bounded = min(max(value, low), high)
         return round(bounded) if isinstance(handle.value, int) else float(bounded)
-    if isinstance(handle, viser.GuiMultiSliderHandle):
-        if not isinstance(value, list | tuple) or len(value) != len(handle.value) or not is_bounded(value):
+    if issubclass(kind, viser.GuiMultiSliderHandle):
+        if not is_sequence(value) or len(value) != len(handle.value) or not is_bounded(value):
             return None
-        if not all(isinstance(v, int | float) and not isinstance(v, bool) for v in value):
+        numbers = [number for number in value if is_number(number)]
+        if len(numbers) < len(value):
             return None
-        return tuple(float(min(max(v, handle.min), handle.max)) for v in value)
-    if isinstance(handle, viser.GuiDropdownHandle | viser.GuiButtonGroupHandle):
-        return value if value in handle.options else None
+        return tuple(float(min(max(number, handle.min), handle.max)) for number in numbers)
+    if issubclass(kind, CHOICES):
+        return value if isinstance(value, str) and value in handle.options else None
     return None
 
 
-def same(good: Any, sent: Any) -> bool:
+def same(good: object, sent: object) -> bool:
     """Whether a browser already shows the value that was made of what it sent."""
-    return list(good) == list(sent) if isinstance(good, tuple) else good == sent
+    return (is_sequence(good) and is_sequence(sent) and list(good) == list(sent)) or good == sent
 
 
 class Screen:
@@ -150,7 +173,7 @@ class Screen:
         self.server = server
         self.refused: collections.Counter[str] = collections.Counter()
 
-    def __call__(self, message: Any) -> Any:
+    def __call__(self, message: ViserMessage) -> ViserMessage:
         """The message, with a value bounded where it only had to be bounded, or None where it is refused.
 
         Counts what is refused, and tells every browser of a value that was bounded.
@@ -177,7 +200,7 @@ class Screen:
         return vm.GuiUpdateMessage(message.uuid, {"value": good})
 
 
-def merge_key(message: Any) -> tuple[Any, ...] | None:
+def merge_key(message: ViserMessage) -> MergeKey | None:
     """Messages with the same key supersede each other: the last counts. None of what is never merged."""
     match message:
         case vm.GuiUpdateMessage() | vm.CommandTriggerMessage() | vm.GuiButtonHoldMessage():
@@ -199,14 +222,14 @@ class Intake:
     of messages that supersede each other only the last is handled: a browser that floods is slowed, others are not.
     """
 
-    def __init__(self, screen: Callable[[Any], Any], handlers: "list[Handler]") -> None:
+    def __init__(self, screen: Callable[[ViserMessage], ViserMessage], handlers: "list[Handler]") -> None:
         self.screen, self.handlers = screen, handlers
-        self.waiting: dict[tuple[Any, ...], Any] = {}
+        self.waiting: dict[MergeKey, ViserMessage] = {}
         self.unmerged = 0  # counts messages that are never merged, for keys of their own
         self.turn: asyncio.Task[None] | None = None
         self.turned_at = -math.inf  # [s] when a message was last handled
 
-    def take(self, client: Any, message: Any) -> None:
+    def take(self, client: ClientId, message: ViserMessage) -> None:
         """Queue a message, over one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""
         if not isinstance(message, ALLOWED):
             self.screen(message)  # refused and counted
@@ -222,7 +245,7 @@ class Intake:
         if self.turn is None:
             self.turn = asyncio.get_running_loop().create_task(self.handle_waiting(client))
 
-    async def handle_waiting(self, client: Any) -> None:
+    async def handle_waiting(self, client: ClientId) -> None:
         """Handle what waits, in turns."""
         try:
             while self.waiting:
@@ -242,22 +265,22 @@ class Intake:
 
 def put_intakes(server: viser.ViserServer, screen: Screen) -> None:
     """Pass every message of every browser through an intake of its own before viser's handlers see it."""
-    connection = server._websock_server
-    handle = connection._handle_incoming_message
-    intakes: dict[Any, Intake] = {}
+    connection: ViserConnection = server._websock_server
+    handle: Handler = connection._handle_incoming_message
+    intakes: dict[ClientId, Intake] = {}
 
-    async def take(client_id: Any, message: Any) -> None:
+    async def take(client_id: ClientId, message: ViserMessage) -> None:
         if client_id in intakes:
             intakes[client_id].take(client_id, message)
 
-    async def ignore(client_id: Any, message: Any) -> None:
+    async def ignore(client_id: ClientId, message: ViserMessage) -> None:
         """The same message as the server is given: one intake serves both."""
 
-    def join(client: Any) -> None:
+    def join(client: ViserConnection) -> None:
         intakes[client.client_id] = Intake(screen, [handle, client._handle_incoming_message])
         client._handle_incoming_message = ignore
 
-    def leave(client: Any) -> None:
+    def leave(client: ViserConnection) -> None:
         intakes.pop(client.client_id, None)
 
     connection._handle_incoming_message = take
@@ -289,7 +312,7 @@ def open_server(host: str, port: int) -> tuple[viser.ViserServer, Screen]:
         server.stop()
         raise OSError(f"port {port} was taken while starting")
     screen = Screen(server)
-    connection = server._websock_server
+    connection: ViserConnection = server._websock_server
     for request in (vm.ShareUrlRequest, vm.ShareUrlDisconnect):
         connection.unregister_handler(request)
     put_intakes(server, screen)

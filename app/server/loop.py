@@ -11,9 +11,9 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
-from typing import Any
 
 from app.messages import (
+    BaseParams,
     Command,
     DivergenceError,
     Halt,
@@ -29,7 +29,7 @@ from app.messages import (
     WorkCount,
     where_not_finite,
 )
-from app.scenes.contract import FRAME_INTERVAL, Scene
+from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.server.merging import merged
 from sim.parameters import effect_of_change
 
@@ -85,9 +85,9 @@ class SimLoop:
 
     def __init__(
         self,
-        scene: Scene[Any, Any, Any],
+        scene: AnyScene,
         commands: "queue.SimpleQueue[Command] | None" = None,
-        read_params: Callable[[], tuple[Any, int]] | None = None,
+        read_params: Callable[[], tuple[BaseParams, int]] | None = None,
         audience: Callable[[], int] = lambda: 1,
         *,
         paused: bool = False,
@@ -117,7 +117,7 @@ class SimLoop:
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
         self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
         self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
-        self.latest: Snapshot = self.snapshot(0.0)
+        self.latest: AnySnapshot = self.snapshot(0.0)
 
     @property
     def frame_interval(self) -> float:
@@ -145,7 +145,7 @@ class SimLoop:
             self.publish(solve)
         self.busy_since = None
 
-    def take(self, params: Any) -> bool:
+    def take(self, params: BaseParams) -> bool:
         """Take parameters by what their change affects; False where they are those of the scene."""
         effect = effect_of_change(self.scene.params, params)
         if effect is None:
@@ -269,13 +269,13 @@ class SimLoop:
         self.latest = self.snapshot(solve)
         self.fresh.set()
 
-    def snapshot(self, solve: float) -> Snapshot:
+    def snapshot(self, solve: float) -> AnySnapshot:
         """What there is to show now; the last good frame where the scene has none."""
         self.counts["snapshots"] += 1
         serial = self.counts["snapshots"]
-        last: Snapshot | None = getattr(self, "latest", None)
+        last: AnySnapshot | None = getattr(self, "latest", None)
         try:
-            found = self.collect()
+            return self.collect(serial, solve)
         except Exception as error:
             if last is None:
                 raise  # nothing to show instead: the scene cannot be opened
@@ -284,10 +284,8 @@ class SimLoop:
                 error = DivergenceError(f"The scene stopped with {type(error).__name__}: {error}")
             self.halt(str(error))
             return last._replace(serial=serial, status=self.status(solve))
-        frame, readings, work, params, curves = found
-        return Snapshot(serial, frame, self.status(solve), readings, work, params, curves)
 
-    def collect(self) -> tuple[Any, ...]:
+    def collect(self, serial: int, solve: float) -> AnySnapshot:
         """The scene's frame, readings, work, parameters and curves; hands its plot rows over.
 
         Raises DivergenceError where the frame holds a number that is not finite.
@@ -297,9 +295,9 @@ class SimLoop:
         where = where_not_finite(frame)
         if where:
             raise DivergenceError(f"The {where} to draw is not finite. Reset, or take a smaller step.")
-        found = frame, scene.readings(), scene.work(), scene.params, scene.curves()
+        readings, work, curves = scene.readings(), scene.work(), scene.curves()
         self.plot_rows.extend(scene.take_plot_rows())
-        return found
+        return Snapshot(serial, frame, self.status(solve), readings, work, scene.params, curves)
 
     def status(self, solve: float) -> Status:
         """The clock and the rates."""

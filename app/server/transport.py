@@ -4,23 +4,28 @@ The names with an underscore are viser's own and a reason for the upper bound in
 they change.
 """
 
+# pyright: reportPrivateUsage=false
+
 import collections
 import contextlib
 import threading
-from collections.abc import Iterator
+from collections.abc import Generator
+from typing import cast
 
 import numpy as np
 import viser
 
 from app.messages import WorkCount
+from app.render.viser_types import ViserConnection
 
 
 def kind_and_size(value: object) -> tuple[str, int] | None:
     """("arrays" or "texts", bytes) of a property; None of a single number, which is not worth counting."""
     if isinstance(value, np.ndarray):
         return "arrays", value.nbytes
-    if isinstance(value, tuple) and value and all(isinstance(part, np.ndarray) for part in value):
-        return "arrays", sum(part.nbytes for part in value)
+    if isinstance(value, tuple):
+        sizes = [getattr(part, "nbytes", 0) for part in cast(tuple[object, ...], value)]
+        return ("arrays", sum(sizes)) if any(sizes) else None
     if isinstance(value, str):
         return "texts", len(value.encode())
     return None
@@ -32,15 +37,15 @@ class TransportCounters:
     def __init__(self, server: viser.ViserServer) -> None:
         self.sent: collections.Counter[str] = collections.Counter()
         self.counting_thread: int | None = None
-        connection = server._websock_server
+        connection: ViserConnection = server._websock_server
         send = connection.queue_message
 
         def queue_message(message: object) -> None:
             if threading.get_ident() == self.counting_thread:
                 self.count(message)
-            send(message)  # type: ignore[arg-type]
+            send(message)
 
-        connection.queue_message = queue_message  # type: ignore[method-assign]
+        connection.queue_message = queue_message
 
     def count(self, message: object) -> None:
         """Count the properties that a message changes, or those of what it makes."""
@@ -54,7 +59,7 @@ class TransportCounters:
                 self.sent["bytes"] += size
 
     @contextlib.contextmanager
-    def counted(self) -> Iterator[None]:
+    def counted(self) -> Generator[None]:
         """While open, what this thread hands over is counted."""
         self.counting_thread = threading.get_ident()
         try:

@@ -1,19 +1,21 @@
 """Owns the server: opens scenes, runs the open scene's loop in a thread, and shows its latest snapshot in another."""
 
-import html
+# pyright: reportPrivateUsage=false
+
 import queue
 import threading
 import time
 import traceback
 from collections.abc import Callable
-from typing import Any
 
 import viser
 
-from app.messages import Command, Halt, Release, WorkCount
-from app.panel.panel import Panel, add_scene_chooser, note
+from app.messages import BaseParams, Command, Halt, Release, WorkCount
+from app.panel.panel import Panel, add_scene_chooser
 from app.render.cameras import place_cameras
+from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_scene
+from app.render.viser_types import ViserConnection
 from app.scenes import NAMES, scene_named, view_named
 from app.scenes.warmup import compile_scene, is_compiled
 from app.server.counters import Unwatched, gather, modules
@@ -22,9 +24,7 @@ from app.server.loop import SimLoop
 from app.server.transport import TransportCounters
 
 HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
-SEND_WINDOW = (
-    0.0  # [s] for which viser holds back what it has to send, by default 17 ms: flushing each picture costs more
-)
+SEND_WINDOW = 0.0  # [s] for which viser holds back what it sends, by default 17 ms: flushing each frame costs more
 MIN_SCENE_TIME = 0.3  # [s] for which a scene is shown before another is opened: long enough for its status line
 MAX_JOIN_TIME = 1.0  # [s] for which leaving a scene waits for each of its threads
 
@@ -37,7 +37,8 @@ class Viewer:
         self.server, self.screen = open_server(host, port)
         if plain:
             disable_shaders(self.server)
-        self.server._websock_server.get_message_buffer().window_duration_sec = SEND_WINDOW
+        connection: ViserConnection = self.server._websock_server
+        connection.get_message_buffer().window_duration_sec = SEND_WINDOW
         self.transport = TransportCounters(self.server)
         self.port = self.server.get_port()
         self.commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
@@ -48,9 +49,8 @@ class Viewer:
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
         self.unwatched = Unwatched()
         self.send_time = 0.0  # [s] that the last frame took to hand over
-        self.view: Any = None
-        self.panel: Any = None
-        self.first_params: dict[str, Any] = {}  # scene -> the parameters that it was first opened with
+        self.is_open = False  # whether scene, view, panel and loop are those of an open scene
+        self.first_params: dict[str, BaseParams] = {}  # scene -> the parameters that it was first opened with
         self.changing = threading.Lock()
         self.wanted: queue.SimpleQueue[str] = queue.SimpleQueue()  # scenes that browsers ask for
         threading.Thread(target=self.open_wanted, name="scene changes", daemon=True).start()
@@ -60,7 +60,7 @@ class Viewer:
         )
         gui.set_panel_label("Springtide")
 
-    def open(self, name: str, params: Any = None, *, paused: bool = False) -> None:
+    def open(self, name: str, params: BaseParams | None = None, *, paused: bool = False) -> None:
         """Show a scene, in place of the one that is open.
 
         params: None for those that the scene was first opened with, or the defaults. Whatever fails leaves a page that
@@ -76,24 +76,26 @@ class Viewer:
                 self.show_failure(name, error)
                 raise
 
-    def make(self, name: str, params: Any, paused: bool) -> None:
+    def make(self, name: str, params: BaseParams | None, paused: bool) -> None:
         """Make scene, view, panel and threads."""
         kind = scene_named(name)
         self.compile(name, kind.title)
         if params is None:
             params = self.first_params.get(name) or kind.params()
         self.first_params.setdefault(name, params)
-        view: Any = view_named(name)
+        make_view = view_named(name)
         self.clear()
         self.scene = kind.make(params)
-        commands = self.commands = queue.SimpleQueue()
-        self.view = view(self.server, commands.put)
+        commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        self.commands = commands
+        self.view = make_view(self.server, commands.put)
         position, target = self.view.CAMERA
         place_cameras(self.server, position, target, self.view.FIELD_OF_VIEW)
         self.panel = Panel(
             self.server, kind, self.view, params, commands.put, work=self.work, scenes=NAMES, open_scene=self.wanted.put
         )
         self.loop = SimLoop(self.scene, commands, self.panel.read, self.audience, paused=paused)
+        self.is_open = True
         self.stop = threading.Event()
         self.threads = [
             threading.Thread(target=self.loop.run, args=(self.stop,), name="simulation", daemon=True),
@@ -110,8 +112,7 @@ class Viewer:
         progress = self.server.gui.add_html("")
 
         def show(part: str) -> None:
-            text = f"<b>{html.escape(title)}</b>: compiling {html.escape(part)}. This is done once."
-            progress.content = note(text)
+            progress.content = note(fill("<b>{}</b>: compiling {}. This is done once.", title, part))
 
         show("kernels")
         compile_scene(name, show=show)
@@ -129,8 +130,8 @@ class Viewer:
         self.close()
         self.clear()
         add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.choose)
-        reason = html.escape(f"{type(error).__name__}: {error}")
-        self.server.gui.add_html(note(f"<b>{html.escape(name)} could not be opened.</b><br>{reason}"))
+        reason = f"{type(error).__name__}: {error}"
+        self.server.gui.add_html(note(fill("<b>{} could not be opened.</b><br>{}", name, reason)))
 
     def choose(self, name: str) -> None:
         """A scene was chosen on the page that says why another could not be opened."""
@@ -179,14 +180,14 @@ class Viewer:
                 self.shown = snapshot.serial
                 self.drawn += 1
                 start = time.perf_counter()
-                self.attempt("picture", self.view.show, snapshot.frame)
+                self.attempt("picture", lambda: self.view.show(snapshot.frame))
                 self.send_time = time.perf_counter() - start
-            self.attempt("panel", self.panel.update, snapshot, rows, self.send_time, busy)
+            self.attempt("panel", lambda: self.panel.update(snapshot, rows, self.send_time, busy))
 
-    def attempt(self, what: str, action: Callable[..., None], *arguments: Any) -> None:
+    def attempt(self, what: str, action: Callable[[], None]) -> None:
         """Show something; what goes wrong halts the run once, and this thread lives to say so."""
         try:
-            action(*arguments)
+            action()
         except Exception as error:
             if not self.loop.halted:
                 traceback.print_exc()
@@ -215,11 +216,10 @@ class Viewer:
     def close(self) -> None:
         """Stop the threads of the open scene and give back what it holds."""
         self.stop_threads()
-        if self.panel is not None:
+        if self.is_open:
+            self.is_open = False
             self.panel.close()
-        if self.view is not None:
             self.view.close()
-        self.panel = self.view = None
 
     def shut(self) -> None:
         """End: stop the threads and the server. A scene that is being opened is not waited for."""

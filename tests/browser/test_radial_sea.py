@@ -66,7 +66,7 @@ def test_a_window_shows_the_interface_and_the_camera_goes_along(shown: tuple[Vie
     def beside() -> float:
         """How far the page's camera is from where it belongs beside the buoy [m]."""
         (client,) = lab.server.get_clients().values()
-        wanted = lab.scene.bodies.fleet.position[0, :2] + lab.view.follow_camera.offset[0, :2]
+        wanted = lab.scene.bodies.fleet.position[0, :2] + lab.view.follow_camera.start_offset[0, :2]
         return float(np.abs(np.asarray(client.camera.position)[:2] - wanted).max())
 
     lab.loop.commands.put(Pause())

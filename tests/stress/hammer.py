@@ -58,7 +58,7 @@ class Hammer:
         self.viewer.open(name)
         self.viewer.stop_threads()  # from here on this thread does their work
         self.viewer.loop.audience = lambda: 1
-        self.viewer.attempt = lambda what, action, *arguments: action(*arguments)  # what goes wrong is to be seen
+        self.viewer.attempt = lambda what, action: action()  # what goes wrong is to be seen
         self.longest = 0.0  # [s] of processor time in a frame
 
     def look_through(self, message: Any) -> None:

@@ -12,5 +12,5 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
     table = []
     for name in NAMES:
         _, counts = run_scene(name, 20 if quick else 150)
-        table += [{"scene": name, **row} for row in work_rows(counts) if row["done"] or row["skipped"]]
+        table += [{"scene": name, **row._asdict()} for row in work_rows(counts) if row.done or row.skipped]
     return table

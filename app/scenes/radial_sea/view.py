@@ -229,7 +229,7 @@ class View:
                 position, look_at = VIEWS.get(p.follow, self.CAMERA)
             place_cameras(self.server, position, look_at)
         elif target is not None:
-            self.follow_camera.go(target, cameras)
+            self.follow_camera.follow(target, cameras)
         now = time.monotonic()
         if p.centre == "camera" and cameras and now - self.camera_told_at > CAMERA_INTERVAL:
             self.camera_told_at = now

@@ -7,7 +7,7 @@ import numpy as np
 import viser
 
 from app.messages import Command, Snapshot
-from app.render.colormap import SCALE, paint_tube
+from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import HELD_COLOUR, drag, nearest
 from app.render.gizmo import Gizmo
@@ -57,7 +57,7 @@ class View:
         self.line = np.zeros((rings, 3))
         self.vertices, self.rgb = np.zeros((2, rings * SIDES + 2, 3), np.float32)
         self.shape_tube(frame)
-        self.paint_tube(frame)
+        self.set_tube_colours(frame)
         if self.tube is not None:
             self.tube.remove()
         if self.beads is not None:
@@ -102,14 +102,14 @@ class View:
         smooth_line(frame.points, self.samples, self.line)
         sweep(self.line, ROPE_RADIUS, SIDES, self.vertices)
 
-    def paint_tube(self, frame: RopeFrame) -> None:
+    def set_tube_colours(self, frame: RopeFrame) -> None:
         """Compute the tube's colours, which then stand for this frame and for all that look the same."""
         self.tension = frame.tension
         self.painted = frame.colour, frame.full_scale
         if frame.colour == "plain":
             self.rgb[:] = np.array(ROPE_COLOUR, np.float32) / 255
         else:
-            paint_tube(frame.tension, self.samples, frame.full_scale, SCALE, SIDES, self.rgb)
+            set_tube_colours(frame.tension, self.samples, frame.full_scale, SCALE, SIDES, self.rgb)
 
     def colours_differ(self, frame: RopeFrame) -> bool:
         """Whether a frame's colours can be told from those that are shown."""
@@ -127,7 +127,7 @@ class View:
         if repaint or float(np.abs(frame.points - self.points).max()) >= POSITION_TOLERANCE:
             self.shape_tube(frame)
         if repaint:
-            self.paint_tube(frame)
+            self.set_tube_colours(frame)
         self.tube.set(self.vertices, self.rgb if repaint else None)
         self.beads.visible = frame.show_points
         if frame.show_points:
@@ -193,7 +193,7 @@ def warm_up() -> Iterator[str]:
     line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
     smooth_line(np.zeros((2, 3), np.float32), 2, line)
     sweep(line, ROPE_RADIUS, SIDES, vertices)
-    paint_tube(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)
+    set_tube_colours(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)
 
 
 def cost_text(cost: NumericalCost | None) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.render.colormap import SCALE, paint_tube, scale_colours
+from app.render.colormap import SCALE, scale_colours, set_tube_colours
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
 
 
@@ -64,7 +64,7 @@ def test_a_tube_is_painted_by_the_tension_at_the_middle_of_each_link(links: int,
     tension = np.random.default_rng(links).uniform(-1.0, 6.0, links).astype(np.float32)
     rings = links * between + 1
     rgb = np.full((rings * SIDES + 2, 3), np.nan, np.float32)
-    paint_tube(tension, between, 5.0, SCALE, SIDES, rgb)
+    set_tube_colours(tension, between, 5.0, SCALE, SIDES, rgb)
     along = np.interp(np.arange(rings) / between, np.arange(links) + 0.5, tension)
     each = scale_colours(along, 0.0, 5.0)
     np.testing.assert_allclose(rgb[:-2].reshape(rings, SIDES, 3), np.repeat(each[:, None], SIDES, axis=1), atol=1e-6)

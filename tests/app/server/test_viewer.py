@@ -87,7 +87,7 @@ def test_a_scene_that_cannot_be_opened_leaves_a_page_that_says_why_and_offers_th
     assert "no room for a cloth" in panel_text(lab)
     monkeypatch.undo()
     lab.choose("rope")
-    wait_for(lambda: lab.panel is not None and lab.panel.kind.name == "rope" and lab.shown > 0)
+    wait_for(lambda: lab.is_open and lab.panel.kind.name == "rope" and lab.shown > 0)
 
 
 def test_a_scene_comes_back_with_the_parameters_it_was_first_opened_with(lab: Viewer) -> None:
@@ -106,7 +106,7 @@ def test_of_several_scenes_asked_for_only_the_last_is_opened(lab: Viewer, monkey
         for name in ("cloth", "square_sea", "rope") * 100 + ("cloth",):
             lab.wanted.put(name)
         time.sleep(0.05)
-    wait_for(lambda: lab.panel is not None and lab.panel.kind.name == "cloth" and lab.wanted.empty())
+    wait_for(lambda: lab.is_open and lab.panel.kind.name == "cloth" and lab.wanted.empty())
     assert len(opened) <= 2
 
 

@@ -1,0 +1,12 @@
+"""The edges at which viser's own types do not say what is handed over."""
+
+from typing import Any, TypeAlias
+
+# A handle of a GUI element, of which the value is a number, a text, a flag or a tuple by what the element is.
+GuiHandle: TypeAlias = Any
+# What viser calls a callback with: its handle, and the browser that it came from (none where the program set a value).
+ViserEvent: TypeAlias = Any
+# A message of viser's protocol, in or out.
+ViserMessage: TypeAlias = Any
+# A connection, with viser's inner names on it.
+ViserConnection: TypeAlias = Any

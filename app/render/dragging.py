@@ -20,9 +20,20 @@ def drag(post: Callable[[Command], None], event: Any, index: int | None) -> None
         post(Grab(int(index), target, event.client_id))
 
 
-def nearest(points: np.ndarray, event: Any) -> int:
-    """Which of points (n, 3) is nearest to where a drag began."""
-    return int(np.argmin(np.linalg.norm(points - event.start_position, axis=1)))
+class SurfaceDrag:
+    """Drags of a surface: each browser pulls the point that was nearest when its drag began."""
+
+    def __init__(self, post: Callable[[Command], None]) -> None:
+        self.post = post
+        self.held: dict[int, int] = {}  # client -> point
+
+    def handle(self, event: Any, points: np.ndarray) -> None:
+        """Post what viser's drag event asks for. points: (n, 3) as drawn [m]."""
+        if event.phase == "start":
+            self.held[event.client_id] = int(np.argmin(np.linalg.norm(points - event.start_position, axis=1)))
+        drag(self.post, event, self.held.get(event.client_id))
+        if event.phase == "end":
+            self.held.pop(event.client_id, None)
 
 
 class PullLine:

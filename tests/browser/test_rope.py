@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.messages import Pause, Play
-from app.panel.panel import stability_map as live
+from app.panel import stability_map as live
 from app.scenes.springs.rope_parameters import ROOT
 from app.server.viewer import Viewer
 from tests.browser.conftest import DPR, Tab
@@ -166,10 +166,10 @@ def test_a_click_on_the_map_sets_step_and_stiffness(shown: tuple[Viewer, Tab]) -
     picture.hover(timeout=60_000)  # scrolls, and waits until the folder has unfolded
     unit = picture.bounding_box()["width"] / live.PICTURE[0]
     x, y = live.LEFT + 0.25 * live.WIDE, live.TOP + 0.25 * live.HIGH
-    params = lab.panel.read()
+    params = lab.panel.params
     picture.click(position={"x": unit * x, "y": unit * y}, timeout=60_000)
-    tab.wait(lambda: lab.panel.read().stiffness != params.stiffness)
+    tab.wait(lambda: lab.panel.params.stiffness != params.stiffness)
     axes = lab.panel.map.axes
-    assert live.place_of(axes.steps, lab.panel.read().time_step) == pytest.approx(0.25, abs=0.02)
-    assert live.place_of(axes.stiffnesses, lab.panel.read().stiffness) == pytest.approx(0.75, abs=0.02)
+    assert live.place_of(axes.steps, lab.panel.params.time_step) == pytest.approx(0.25, abs=0.02)
+    assert live.place_of(axes.stiffnesses, lab.panel.params.stiffness) == pytest.approx(0.75, abs=0.02)
     assert not tab.errors

@@ -38,8 +38,10 @@ def check_results(readings: RaceReadings, ropes: int) -> None:
 @pytest.mark.parametrize("rule", STEP_RULES)
 def test_each_parameter_of_a_race_at_both_ends(rule: str, six: Hammer) -> None:
     six.set("race_steps", rule)
-    for name in [name for name, parameter in six.parameters.items() if parameter.group in ("Race", "Time", "Plots")]:
-        parameter, before = six.parameters[name], getattr(six.viewer.panel.params, name)
+    for name, parameter in six.parameters.items():
+        if parameter.group not in ("Race", "Time", "Plots") or name == "ropes":
+            continue
+        before = getattr(six.viewer.panel.params, name)
         for value in ends(parameter):
             six.set(name, value)
             six.frame(FRAMES)

@@ -9,7 +9,7 @@ import viser
 from app.messages import Command, Snapshot
 from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
-from app.render.dragging import PullLine, drag, nearest
+from app.render.dragging import PullLine, SurfaceDrag
 from app.render.gizmo import Gizmo
 from app.render.ground import Ground
 from app.render.meshes import ball
@@ -61,7 +61,7 @@ class View:
         self.post = post
         self.mesh: ColouredMesh | None = None
         self.shape = (0, 0)
-        self.nearest = 0  # particle that a drag pulls
+        self.drag = SurfaceDrag(post)
         scene = server.scene
         scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
         scene.set_background_image(sky())
@@ -96,9 +96,7 @@ class View:
 
     async def on_cloth(self, event: Any) -> None:
         """Pull the particle nearest to where the drag began."""
-        if event.phase == "start":
-            self.nearest = nearest(self.points, event)
-        drag(self.post, event, self.nearest)
+        self.drag.handle(event, self.points)
 
     def colours(self, frame: ClothFrame) -> np.ndarray:
         """(particles, 3) sRGB in 0..1: strain, or plain."""

@@ -9,7 +9,7 @@ import viser
 from app.messages import Command, Snapshot
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
-from app.render.dragging import HELD_COLOUR, drag, nearest
+from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
 from app.render.gizmo import Gizmo
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
 from app.scenes.rope.scene import NumericalCost, RopeFrame
@@ -41,7 +41,7 @@ class View:
         self.tube: ColouredMesh | None = None
         self.beads: viser.BatchedMeshHandle | None = None
         self.count = 0  # points that tube and beads are made for
-        self.nearest = 0  # point that a drag of the tube pulls
+        self.tube_drag = SurfaceDrag(post)
         self.shown_sphere: tuple[float, float, float, float] | None = None
         scene = server.scene
         self.surroundings = RopeSurroundings(server, post)
@@ -92,9 +92,7 @@ class View:
 
     async def on_tube(self, event: Any) -> None:
         """Pull the point nearest to where the drag began: beads may be close to each other, or hidden."""
-        if event.phase == "start":
-            self.nearest = nearest(self.points, event)
-        drag(self.post, event, self.nearest)
+        self.tube_drag.handle(event, self.points)
 
     def shape_tube(self, frame: RopeFrame) -> None:
         """Compute the tube's vertices, which then stand for this frame and for all that look the same."""

@@ -1,0 +1,43 @@
+"""After the warm-up no kernel is compiled: a new signature would stop the page for 0.1 s and more at its first frames."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+# In a process of its own, as other tests compile other signatures.
+PROGRAM = """
+import sys
+from numba.core.dispatcher import Dispatcher
+from app.scenes import scene_named, warmup
+from app.server.viewer import Viewer
+
+def signatures():
+    kernels = {id(k): k for m in list(sys.modules.values()) for k in vars(m).values() if isinstance(k, Dispatcher)}
+    return {(k.py_func.__module__, k.py_func.__name__, str(s)) for k in kernels.values() for s in k.signatures}
+
+name = sys.argv[1]
+for _ in warmup.parts(name):
+    pass
+before = signatures()
+viewer = Viewer("127.0.0.1", 0)
+viewer.open(name)
+viewer.stop_threads()
+viewer.loop.audience = lambda: 1
+for _ in range(20):
+    viewer.loop.tick(1 / 60)
+    viewer.show_latest()
+assert viewer.loop.counts["steps"] >= 20, viewer.loop.halted
+new = sorted(signatures() - before)
+viewer.shut()
+print(new)
+"""
+
+
+@pytest.mark.parametrize("name", ["rope", "race", "cloth"])
+def test_no_kernel_is_compiled_after_the_warm_up(name: str) -> None:
+    done = subprocess.run([sys.executable, "-c", PROGRAM, name], cwd=ROOT, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1] == "[]"

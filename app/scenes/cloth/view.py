@@ -12,6 +12,7 @@ from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import PullLine, SurfaceDrag
 from app.render.gizmo import Gizmo
 from app.render.ground import Ground
+from app.render.html import fill, join
 from app.render.meshes import ball
 from app.scenes.cloth.scene import ClothFrame
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
@@ -134,15 +135,15 @@ class View:
 
     def readout(self, snapshot: Snapshot) -> str:
         """The stability bar, the cost of an implicit step and the colour scale, as HTML."""
-        gauge, frame = snapshot.readings, snapshot.frame
-        cost, scale = "", ""
-        if gauge.corrections:
-            cost = f"<div>{gauge.corrections:.1f} Newton corrections a step</div>"
-        if gauge.threads > 1:
-            cost += f"<div>forces on {gauge.threads} threads, which is faster at the moment</div>"
+        readings, frame = snapshot.readings, snapshot.frame
+        parts = [stability_bar(readings.stability, exact=readings.exact)]
+        if readings.corrections:
+            parts.append(fill("<div>{:.1f} Newton corrections a step</div>", readings.corrections))
+        if readings.threads > 1:
+            parts.append(fill("<div>forces on {} threads, which is faster at the moment</div>", readings.threads))
         if frame.colour == "strain":
-            scale = colour_scale("0", "strain", f"{100 * frame.full_strain:.3g} %")
-        return stability_bar(gauge.stability, exact=gauge.exact) + cost + scale
+            parts.append(colour_scale("0", "strain", f"{100 * frame.full_strain:.3g} %"))
+        return join(parts)
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest step that is stable with the others as they are."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from app.scenes.charts import PALETTE, Chart, CurveAxes, Line
 from app.scenes.race.entrants import Race
-from app.scenes.race.report import rope_name
+from app.scenes.race.names import rope_name
 
 FIRST_ROW_INTERVAL = 1 / 30  # [s] of simulated time between two rows at the start of a race
 MAX_ROWS = 600  # a longer race keeps every second row, then every fourth, and so on

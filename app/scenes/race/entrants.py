@@ -153,7 +153,7 @@ class Entrant:
         return self.net.families[0].stiffness
 
     @property
-    def name(self) -> str:
+    def integrator(self) -> str:
         """Name of its method."""
         return self.record.name
 
@@ -293,7 +293,7 @@ class Race:
         results = tuple(
             Result(
                 number=e.number,
-                integrator=e.name,
+                integrator=e.integrator,
                 step=e.step,
                 stiffness=e.stiffness,
                 gauge=e.gauge,

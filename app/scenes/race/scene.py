@@ -12,8 +12,8 @@ from app.scenes.contract import FRAME_INTERVAL, SceneKind, StabilityMap
 from app.scenes.race.charts import CURVES, RaceCharts
 from app.scenes.race.entrants import Race, RaceReadings
 from app.scenes.race.measures import measures
+from app.scenes.race.names import rope_label
 from app.scenes.race.parameters import PRESETS, Params, hidden, offset_of
-from app.scenes.race.report import label_of
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles, vector_of
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
@@ -134,7 +134,7 @@ class RaceScene:
         return RaceFrame(
             ropes=(race.points() + offsets).astype(np.float32),
             references=None if references is None else (references + offsets).astype(np.float32),
-            labels=tuple(label_of(entrant, entrant.failure, stiffness_differs) for entrant in race.entrants),
+            labels=tuple(rope_label(entrant, stiffness_differs) for entrant in race.entrants),
             failed=tuple(bool(entrant.failure) for entrant in race.entrants),
             root=handles.root.target,
             floor=params.floor,

@@ -11,7 +11,7 @@ from app.render.colormap import rgb
 from app.render.dragging import drag
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.scenes.charts import PALETTE
-from app.scenes.race.report import results_table
+from app.scenes.race.html import results_table
 from app.scenes.race.scene import RaceFrame
 from app.scenes.springs.rope_parameters import ROPE_RADIUS
 from app.scenes.springs.view import RopeSurroundings

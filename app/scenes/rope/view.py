@@ -11,6 +11,7 @@ from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
 from app.render.gizmo import Gizmo
+from app.render.html import Html, bold, fill
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
 from app.scenes.rope.scene import NumericalCost, RopeFrame
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
@@ -194,13 +195,16 @@ def warm_up() -> Iterator[str]:
     set_tube_colours(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)
 
 
-def cost_text(cost: NumericalCost | None) -> str:
+def cost_text(cost: NumericalCost | None) -> Html:
     """The cost of an implicit method, as HTML; empty for explicit ones."""
     if cost is None:
-        return ""
+        return Html("")
     energy = cost.numerical_dissipation
     damping = f", the rope's own damping {cost.damping_dissipation:.3g} J" if cost.damping_dissipation > 0.0 else ""
-    return (
-        f'<div style="margin-bottom:6px"><b>{cost.corrections:.1f}</b> Newton corrections a step; the method '
-        f"{'took' if energy >= 0 else 'added'} <b>{abs(energy):.3g} J</b>{damping}</div>"
+    return fill(
+        '<div style="margin-bottom:6px">{} Newton corrections a step; the method {} {}{}</div>',
+        bold(f"{cost.corrections:.1f}"),
+        "took" if energy >= 0 else "added",
+        bold(f"{abs(energy):.3g} J"),
+        damping,
     )

@@ -3,21 +3,28 @@
 import math
 
 from app.render.colormap import css_scale
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from sim.springs.stability import Gauge
 
+WARNING_SHARE = 0.8  # of the limit, from which h omega is shown in the colour of a warning
 
-def stability_bar(gauge: Gauge, *, exact: bool = True) -> str:
+
+def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
     """h omega as a bar up to its limit. exact: h omega is that of the state, not an upper bound of it."""
-    part = gauge.h_omega / gauge.limit if gauge.limit > 0 else math.inf
-    width, colour = min(part, 1.0) * 100, "#2b8a3e" if part < 0.8 else "#e67700" if part <= 1.0 else "#c92a2a"
-    verdict = "stable" if part <= 1.0 else "unstable" if exact else "may be unstable"
+    share = gauge.h_omega / gauge.limit if gauge.limit > 0 else math.inf
+    colour = GOOD_COLOUR if share < WARNING_SHARE else WARNING_COLOUR if share <= 1.0 else ERROR_COLOUR
+    verdict = "stable" if share <= 1.0 else "unstable" if exact else "may be unstable"
     limit = f"limit {gauge.limit:.3g} at ζ = {gauge.zeta:.2g}" if gauge.limit < math.inf else "no limit"
-    sign = "=" if exact else "≤"
-    return (
-        f'<div style="display:flex;justify-content:space-between"><b>h ω {sign} {gauge.h_omega:.3g}</b>'
-        f'<span>{limit}</span><b style="color:{colour}">{verdict}</b></div>'
+    return fill(
+        '<div style="display:flex;justify-content:space-between"><b>h ω {} {:.3g}</b><span>{}</span>{}</div>'
         '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 8px">'
-        f'<div style="height:8px;border-radius:4px;width:{width:.0f}%;background:{colour}"></div></div>'
+        '<div style="height:8px;border-radius:4px;width:{:.0f}%;background:{}"></div></div>',
+        "=" if exact else "≤",
+        gauge.h_omega,
+        limit,
+        coloured(verdict, colour),
+        100.0 * min(share, 1.0),
+        colour,
     )
 
 
@@ -28,10 +35,14 @@ def step_mark(critical_step: float) -> str:
     return f"stable up to {critical_step:.3g} s" if critical_step > 0 else "no step is stable with this method"
 
 
-def colour_scale(low: str, name: str, high: str) -> str:
+def colour_scale(low: str, name: str, high: str) -> Html:
     """The colour scale with what its two ends mean, and the name of the quantity."""
-    return (
-        f'<div style="height:8px;border-radius:4px;background:{css_scale()}"></div>'
+    return fill(
+        '<div style="height:8px;border-radius:4px;background:{}"></div>'
         '<div style="display:flex;justify-content:space-between">'
-        f"<span>{low}</span><span>{name}</span><span>{high}</span></div>"
+        "<span>{}</span><span>{}</span><span>{}</span></div>",
+        Html(css_scale()),
+        low,
+        name,
+        high,
     )

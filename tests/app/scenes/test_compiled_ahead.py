@@ -1,4 +1,4 @@
-"""After the warm-up no kernel is compiled: a new signature would stop the page for 0.1 s and more at its first frames."""
+"""After the warm-up no kernel is compiled: a new signature would stop the page for 0.1 s or more."""
 
 import subprocess
 import sys

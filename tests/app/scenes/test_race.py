@@ -11,9 +11,9 @@ from app.messages import Grab, Place, Release
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.race.charts import MAX_ROWS, RaceCharts, round_up
 from app.scenes.race.entrants import tick_of
+from app.scenes.race.html import results_table
 from app.scenes.race.measures import measures
 from app.scenes.race.parameters import PRESETS, Params, hidden
-from app.scenes.race.report import results_table
 from app.scenes.race.scene import SCENE, RaceScene
 from app.scenes.springs.rope_parameters import build_rope
 from app.server.loop import SimLoop

@@ -1,12 +1,12 @@
 """The cloth as a mesh coloured by strain, which can be dragged anywhere; pins and sphere with arrows."""
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, TypeAlias
 
 import numpy as np
 import viser
 
-from app.messages import Command, Snapshot
+from app.messages import Snapshot
 from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import PullLine, SurfaceDrag
@@ -14,7 +14,9 @@ from app.render.gizmo import Gizmo
 from app.render.ground import Ground
 from app.render.html import fill, join
 from app.render.meshes import ball
-from app.scenes.cloth.scene import ClothFrame
+from app.scenes.cloth.parameters import Params
+from app.scenes.cloth.scene import ClothFrame, ClothReadings
+from app.scenes.contract import PostCommand
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 
 CLOTH_COLOUR = (176, 58, 72)
@@ -30,6 +32,8 @@ POLE_COLOUR = (96, 88, 80)
 POLE_WIDTH = 0.03  # [m]
 POLE_OVERHANG = 0.06  # of the flag's height, above the flag
 MIN_POLE_DROP = 0.1  # [m] smallest height of the flag from which the foot of the pole is computed
+
+ClothSnapshot: TypeAlias = Snapshot[Params, ClothFrame, ClothReadings]
 
 
 def sky() -> np.ndarray:
@@ -57,7 +61,7 @@ class View:
     CAMERA = ((1.15, -2.15, 2.05), (0.42, 0.0, 1.3))  # position, target [m]
     FIELD_OF_VIEW = 1.3  # [rad]
 
-    def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
+    def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         self.server = server
         self.post = post
         self.mesh: ColouredMesh | None = None
@@ -133,7 +137,7 @@ class View:
             self.ball.position = frame.sphere[:3]
             self.ball.scale = frame.sphere[3]
 
-    def readout(self, snapshot: Snapshot) -> str:
+    def readout(self, snapshot: ClothSnapshot) -> str:
         """The stability bar, the cost of an implicit step and the colour scale, as HTML."""
         readings, frame = snapshot.readings, snapshot.frame
         parts = [stability_bar(readings.stability, exact=readings.exact)]
@@ -145,12 +149,12 @@ class View:
             parts.append(colour_scale("0", "strain", f"{100 * frame.full_strain:.3g} %"))
         return join(parts)
 
-    def marks(self, snapshot: Snapshot) -> dict[str, str]:
+    def marks(self, snapshot: ClothSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest step that is stable with the others as they are."""
         readings = snapshot.readings
         return {"integrator": readings.note, "time_step": step_mark(readings.stability.critical_step)}
 
-    def notes(self, snapshot: Snapshot) -> dict[str, str]:
+    def notes(self, snapshot: ClothSnapshot) -> dict[str, str]:
         """No folders."""
         return {}
 

@@ -1,17 +1,20 @@
 """The race as drawn: a tube for each rope in its own colour, the reference runs translucent, a label on each root."""
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import viser
 
-from app.messages import Command, Snapshot
+from app.messages import Snapshot
 from app.render.colormap import rgb
 from app.render.dragging import drag
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.scenes.charts import PALETTE
+from app.scenes.contract import PostCommand
+from app.scenes.race.entrants import RaceReadings
 from app.scenes.race.html import results_table
+from app.scenes.race.parameters import Params
 from app.scenes.race.scene import RaceFrame
 from app.scenes.springs.rope_parameters import ROPE_RADIUS
 from app.scenes.springs.view import RopeSurroundings
@@ -25,6 +28,8 @@ REFERENCE_OPACITY = 0.4
 COLOUR_SCALE = 0.6  # of a colour's numbers, so that a rope lit from all sides has the colour it has in the charts
 FAILED_OPACITY = 0.35  # of a rope that has stopped
 LABEL_HEIGHT = 0.16  # [m] from a root to its label, and between the heights of two labels, so that they do not overlap
+
+RaceSnapshot: TypeAlias = Snapshot[Params, RaceFrame, RaceReadings]
 
 
 def material_colour(index: int) -> tuple[int, int, int]:
@@ -141,7 +146,7 @@ class View:
     CAMERA = ((3.4, -2.7, 2.9), (0.45, 0.35, 1.75))  # position, target [m]
     FIELD_OF_VIEW = 1.3  # [rad]
 
-    def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
+    def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         self.server = server
         self.post = post
         self.surroundings = RopeSurroundings(server, post)
@@ -161,16 +166,16 @@ class View:
         self.ropes.show(frame)
         self.surroundings.show(frame.floor, frame.grid, frame.root, frame.pull, frame.ropes.reshape(-1, 3))
 
-    def readout(self, snapshot: Snapshot) -> str:
+    def readout(self, snapshot: RaceSnapshot) -> str:
         """The table of results, as HTML."""
         return results_table(snapshot.readings)
 
-    def marks(self, snapshot: Snapshot) -> dict[str, str]:
+    def marks(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest step of rope 1 that is stable."""
         step = snapshot.readings.results[0].gauge.critical_step
         return {"time_step": "" if step == float("inf") else f"rope 1 is stable up to {step:.3g} s"}
 
-    def notes(self, snapshot: Snapshot) -> dict[str, str]:
+    def notes(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """No folders."""
         return {}
 

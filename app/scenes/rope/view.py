@@ -1,19 +1,21 @@
 """The rope as a tube coloured by tension, its points as beads to be dragged, root and sphere with arrows."""
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, TypeAlias
 
 import numpy as np
 import viser
 
-from app.messages import Command, Snapshot
+from app.messages import Snapshot
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
 from app.render.gizmo import Gizmo
 from app.render.html import Html, bold, fill
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
-from app.scenes.rope.scene import NumericalCost, RopeFrame
+from app.scenes.contract import PostCommand
+from app.scenes.rope.parameters import Params
+from app.scenes.rope.scene import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROPE_RADIUS, SPHERE
 from app.scenes.springs.view import RopeSurroundings
@@ -29,6 +31,8 @@ MIN_BEAD_RADIUS = 0.5 * ROPE_RADIUS  # [m]
 POSITION_TOLERANCE = 2e-4  # [m] that a point may be from where it is drawn: far below a pixel
 COLOUR_TOLERANCE = 2e-3  # of the colour scale that a link may be from its drawn colour: less than 1/256 of it
 
+RopeSnapshot: TypeAlias = Snapshot[Params, RopeFrame, RopeReadings]
+
 
 class View:
     """Draws `RopeFrame`s."""
@@ -36,7 +40,7 @@ class View:
     CAMERA = ((-0.4, -4.3, 2.35), (-0.3, 0.0, 1.75))  # position, target [m]
     FIELD_OF_VIEW = 1.3  # [rad]
 
-    def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
+    def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         self.server = server
         self.post = post
         self.tube: ColouredMesh | None = None
@@ -155,14 +159,14 @@ class View:
                 self.ball.position = frame.sphere[:3]
                 self.ball.scale = frame.sphere[3]
 
-    def readout(self, snapshot: Snapshot) -> str:
+    def readout(self, snapshot: RopeSnapshot) -> str:
         """The stability bar, the cost of an implicit method and the colour scale, as HTML."""
         frame, scale = snapshot.frame, ""
         if frame.colour == "tension":
             scale = colour_scale("slack", "tension", f"{frame.full_scale:.3g} N")
         return stability_bar(snapshot.readings.stability) + cost_text(snapshot.readings.cost) + scale
 
-    def marks(self, snapshot: Snapshot) -> dict[str, str]:
+    def marks(self, snapshot: RopeSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest value that is stable with the others as they are."""
         g = snapshot.readings
         step, stiffness = g.stability.critical_step, g.largest_stiffness
@@ -172,7 +176,7 @@ class View:
             text = "every stiffness is stable"
         return {"integrator": g.note, "time_step": step_mark(step), g.parameter: text}
 
-    def notes(self, snapshot: Snapshot) -> dict[str, str]:
+    def notes(self, snapshot: RopeSnapshot) -> dict[str, str]:
         """No folders."""
         return {}
 

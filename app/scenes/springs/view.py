@@ -1,14 +1,13 @@
 """What the drawings of rope and race share: light, floor, the arrows at the root, and the line of a drag."""
 
-from collections.abc import Callable
-
 import numpy as np
 import viser
 
-from app.messages import Command, Vector
+from app.messages import Vector
 from app.render.dragging import PullLine
 from app.render.gizmo import Gizmo
 from app.render.ground import Ground
+from app.scenes.contract import PostCommand
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_parameters import ROOT
 
@@ -18,7 +17,7 @@ ROOT_ARROW_LENGTH = 0.34  # [m]
 class RopeSurroundings:
     """The handles of all that is drawn around ropes."""
 
-    def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
+    def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         server.scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
         self.ground = Ground(server, (226, 230, 236), (196, 202, 212), (150, 160, 176))
         self.root = Gizmo(server, post, "root", ROOT_ARROW_LENGTH, position=ROOT)

@@ -1,4 +1,4 @@
-"""How benchmark results are shown and kept: tables on screen, CSV, and work-precision figures as SVG and PNG."""
+"""Tables on screen and as CSV, and work-precision figures as SVG and PNG, for bench, stability and sweep."""
 
 import csv
 import os
@@ -16,12 +16,12 @@ from sim.validation import argument_error
 
 Rows = list[dict[str, Any]]
 
-# Told apart by shape too, where two curves share a colour.
+# Curves that share a colour differ in shape.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h", "p", "d")
 
 
 def machine() -> str:
-    """What the figures were measured on, in one line."""
+    """The machine and the versions that results were measured with, in one line."""
     name = platform.processor() or platform.machine()
     try:
         models = [line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
@@ -38,7 +38,7 @@ def machine() -> str:
 
 
 def make_folder(out: Path | None) -> None:
-    """Make the folder for results, where one is asked for; raises ValueError where it cannot be made."""
+    """Make the folder for results, if one is asked for; raises ValueError where it cannot be made."""
     if out is None:
         return
     try:
@@ -48,11 +48,12 @@ def make_folder(out: Path | None) -> None:
 
 
 def columns(rows: Rows) -> list[str]:
-    """Every column of any row, in the order they first come."""
+    """The columns of all rows, in the order of their first appearance."""
     return list(dict.fromkeys(name for row in rows for name in row))
 
 
 def written(value: Any) -> str:
+    """A value as a table on screen shows it."""
     if value is None:
         return ""
     if isinstance(value, float | np.floating):
@@ -70,7 +71,7 @@ def show(title: str, rows: Rows) -> None:
     names = columns(rows)
     for index, name in enumerate(names):
         is_number = any(isinstance(row.get(name), int | float) for row in rows)
-        # Words give way where there is little room, not numbers.
+        # On a narrow screen words are folded, numbers are not.
         room = max(len(written(row.get(name))) for row in rows) if is_number else None
         table.add_column(
             escape(name), justify="right" if is_number else "left", no_wrap=index == 0, min_width=room, overflow="fold"
@@ -81,7 +82,7 @@ def show(title: str, rows: Rows) -> None:
 
 
 def save_table(rows: Rows, path: Path) -> None:
-    """One CSV file, columns with their units in the head."""
+    """Write one CSV file, with units in the names of the columns."""
     with replacing(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns(rows))
         writer.writeheader()
@@ -89,7 +90,7 @@ def save_table(rows: Rows, path: Path) -> None:
 
 
 def save_figures(figures: dict[str, Any], folder: Path) -> list[Path]:
-    """Each figure by name, as SVG and as PNG."""
+    """Write each figure by its name, as SVG and as PNG; returns the paths."""
     paths = []
     for name, figure in figures.items():
         for suffix in ("svg", "png"):
@@ -100,7 +101,7 @@ def save_figures(figures: dict[str, Any], folder: Path) -> list[Path]:
 
 
 def front(rows: Rows) -> list[str]:
-    """Methods that nothing beats in both time and error somewhere."""
+    """Methods with a run that no other run beats in both time and error."""
     points = [(row["error [m]"], row["least [ms]"], row["method"]) for row in rows]
     ahead = [
         name for error, time, name in points if not any(other < error and took < time for other, took, _ in points)
@@ -117,7 +118,7 @@ def slope_mark(axes: Any, x: float, y: float, order: int) -> None:
 
 
 def mark_slopes(axes: Any, curves: Iterable[tuple[list[float], list[float]]]) -> None:
-    """A mark of each whole order that a curve plainly has, below the middle of the first such curve."""
+    """Mark each whole order that a curve clearly has, below the middle of the first such curve."""
     marked = set()
     for x, y in curves:
         good = [(a, b) for a, b in zip(x, y, strict=True) if b > 0.0 and np.isfinite(b)]
@@ -133,7 +134,7 @@ def mark_slopes(axes: Any, curves: Iterable[tuple[list[float], list[float]]]) ->
 
 
 def work_precision(rows: Rows, title: str, error: str = "error [m]") -> Any:
-    """The column `error` over run time and over force evaluations, a curve a method, both logarithmic."""
+    """The column `error` over run time and over force evaluations, one curve for each method, in logarithmic axes."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10.0, 5.2), layout="constrained")

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from sim.jit import kernel
 
 # What becomes of a disturbance, in the order of `sim.springs.analysis.growth`; light, medium and dark also in grey.
-OUTCOME_COLOURS = {"holds": "#CFE6F5", "rattles": "#E69F00", "explodes": "#8C2D04"}
+OUTCOME_COLOURS = {"stable": "#CFE6F5", "bounded growth": "#E69F00", "exploding": "#8C2D04"}
 
 # Anchors of matplotlib's "plasma" without its darkest end, sRGB, from violet (low) to yellow (high).
 ANCHORS = np.array(

@@ -1,1 +1,1 @@
-"""`springtide stability`: maps measured by letting every integrator run, beside what theory says of it."""
+"""`springtide stability`: stability maps measured by running every integrator, and compared with theory."""

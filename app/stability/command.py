@@ -1,11 +1,12 @@
-"""`springtide stability`: measure, show, and keep tables and figures."""
+"""`springtide stability`: measure, print tables, and write tables and figures."""
 
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from app.experiments import tables as report
+from app.experiments import tables
 from app.stability import drift, figures, linear, rope
+from sim.files import replacing
 
 PARTS: tuple[tuple[str, str, Any, Callable[[Any], Any], Callable[[Any], Any]], ...] = (
     ("linear", "Linear oscillator, h ω and ζ", linear, linear.boundary_rows, figures.linear_figure),
@@ -15,25 +16,28 @@ PARTS: tuple[tuple[str, str, Any, Callable[[Any], Any], Callable[[Any], Any]], .
 
 
 def run(quick: bool = False, out: Path | None = None, workers: int = 0) -> int:
-    """Measure all maps on all cores and print their tables; with `out`, keep tables and figures there.
+    """Measure all maps and print their tables; with `out`, write tables and figures there.
+
+    workers: processes, 0 for one on each core.
 
     Returns the exit status, 0. Raises ValueError for an `out` that is not a folder.
     """
-    report.make_folder(out)
-    print(report.machine())
+    tables.make_folder(out)
+    print(tables.machine())
     for name, title, part, details, figure in PARTS:
         found = part.measure(quick=quick, workers=workers)
         table = part.rows(found)
-        report.show(title, table)
+        tables.show(title, table)
         if out is None:
             continue
-        report.save_table(table, out / f"{name}.csv")
-        report.save_table(details(found), out / f"{name}_curves.csv")
+        tables.save_table(table, out / f"{name}.csv")
+        tables.save_table(details(found), out / f"{name}_curves.csv")
         try:
-            report.save_figures({name: figure(found)}, out)
+            tables.save_figures({name: figure(found)}, out)
         except ModuleNotFoundError as missing:
             print(f"no figure of {name}: {missing.name} is not installed (pip install 'springtide[plot]')")
     if out is not None:
-        (out / "machine.txt").write_text(report.machine() + "\n", encoding="utf-8")
+        with replacing(out / "machine.txt") as draft:
+            draft.write_text(tables.machine() + "\n", encoding="utf-8")
         print(f"kept in {out}")
     return 0

@@ -1,4 +1,4 @@
-"""Energy over a million steps of the undamped rope, swinging from 5 degrees: what no method should gain or lose."""
+"""Energy of the undamped rope over a million steps, in a swing of 5 degrees. No method should change it."""
 
 import dataclasses
 import math
@@ -14,24 +14,24 @@ from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.state import State, energy
 from sim.springs.statics import hanging_chain
 
-STEP = 1 / 300  # [s]: h omega = 0.19 of the stiffest mode, where every method but explicit Euler is at home
+STEP = 1 / 300  # [s]: h omega = 0.19 of the stiffest mode, inside the limit of every method but explicit Euler
 STEPS, QUICK_STEPS = 1_000_000, 20_000
 SAMPLES = 500
-ANGLE = math.radians(5.0)  # a small swing keeps to its modes; of a wild one the stiff modes slowly take the energy
-PART = 5  # the first and the last fifth are compared
+ANGLE = math.radians(5.0)  # small: in a large swing, energy moves slowly into the stiff modes
+PARTS = 5  # the course is divided into; the first and the last are compared
 
 
 class Drift(NamedTuple):
-    """One integrator."""
+    """The energy error of one integrator."""
 
     name: str
     symplectic: bool
     t: NDArray[np.float64]  # (samples + 1,) [s]
-    error: NDArray[np.float64]  # (samples + 1,) of the energy, in parts of what the swing holds; NaN: diverged
+    error: NDArray[np.float64]  # (samples + 1,) over the energy of the swing; NaN: diverged
 
 
 def swing() -> Net:
-    """The lab's rope without damping, hung out straight and stretched as it hangs, at an angle."""
+    """The lab's rope without damping: straight, stretched by its weight, at an angle to the vertical."""
     net = rope(10, damping=0.0, drag=0.0)
     depth = -hanging_chain(net).x[:, 2]
     return dataclasses.replace(
@@ -48,13 +48,14 @@ def course(name: str, steps: int) -> NDArray[np.float64]:
 
 
 def resting(net: Net) -> State:
+    """The rope at rest."""
     state = State.at_rest(net)
     state.x[:] = find_rest_positions(net)
     return state
 
 
 def measure(quick: bool = False, workers: int = 0) -> list[Drift]:
-    """Every integrator there is."""
+    """All integrators. workers: processes, 0 for one on each core."""
     found = spread(course, [(name, QUICK_STEPS if quick else STEPS) for name in INTEGRATORS], "energy", workers)
     return [
         Drift(name, record.symplectic, *part) for (name, record), part in zip(INTEGRATORS.items(), found, strict=True)
@@ -62,7 +63,7 @@ def measure(quick: bool = False, workers: int = 0) -> list[Drift]:
 
 
 def rows(drifts: list[Drift]) -> list[dict[str, Any]]:
-    """The table: drift by least squares, the error's largest size, and whether it wanders off or stays."""
+    """The table: drift by least squares, largest error, and whether the error stays bounded."""
     table = []
     for d in drifts:
         good = np.isfinite(d.error)
@@ -82,8 +83,8 @@ def rows(drifts: list[Drift]) -> list[dict[str, Any]]:
 
 
 def course_of(error: NDArray[np.float64]) -> str:
-    """In a word: whether the mean of the last fifth is outside twice the range of the first, or there is no swing."""
-    part = len(error) // PART
+    """The course in a word: "drifts" where the mean of the last fifth is outside twice the range of the first fifth."""
+    part = len(error) // PARTS
     first, last = error[:part], float(error[-part:].mean())
     if last < -0.5:
         return "comes to rest"
@@ -91,5 +92,5 @@ def course_of(error: NDArray[np.float64]) -> str:
 
 
 def course_rows(drifts: list[Drift]) -> list[dict[str, Any]]:
-    """Every sample, a column an integrator."""
+    """All samples, one column for each integrator."""
     return [{"t [s]": float(t), **{d.name: float(d.error[i]) for d in drifts}} for i, t in enumerate(drifts[0].t)]

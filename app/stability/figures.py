@@ -1,4 +1,4 @@
-"""The figures: a small map for each integrator, and the courses of energy. Matplotlib, imported on use."""
+"""The figures: a small map for each integrator, and energy errors over time. Matplotlib is imported on use."""
 
 import math
 from typing import Any
@@ -13,22 +13,22 @@ from app.stability.linear import LinearMap, extra_damping
 from app.stability.rope import RopeMap
 from sim.springs import INTEGRATORS
 
-ACROSS = 4  # maps in a row
-GROWS = "#D55E00"  # Okabe and Ito's vermilion
+COLUMNS = 4  # of maps in a figure
+GROWTH_COLOUR = "#D55E00"  # Okabe and Ito's vermilion
 
 
 def panels(count: int, title: str) -> tuple[Any, list[Any], list[Any]]:
-    """A figure of `count` panels with common axes, those of its left and lower edges, and all of them."""
+    """A figure of `count` panels with common axes; the panels at its lower edge; all panels."""
     from matplotlib.figure import Figure
 
-    down = math.ceil(count / ACROSS)
-    across = min(count, ACROSS)
+    down = math.ceil(count / COLUMNS)
+    across = min(count, COLUMNS)
     figure = Figure(figsize=(2.9 * across + 0.9, 2.6 * down + 0.9), layout="constrained")
     figure.suptitle(title)
     grid = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).ravel().tolist()
     for axes in grid[count:]:
         axes.set_visible(False)
-    # A panel with none below it carries the labels of its column.
+    # A panel without another below it shows the labels of its column.
     for index in range(count):
         if index + across >= count:
             grid[index].tick_params(labelbottom=True)
@@ -44,7 +44,7 @@ def edges(centres: np.ndarray, *, logarithmic: bool = False) -> np.ndarray:
 
 
 def linear_figure(maps: list[LinearMap]) -> Any:
-    """Extra damping in colour, growth in one colour, both boundaries."""
+    """Damping that the method adds in colours, growth in one colour, and both limits as lines and marks."""
     from matplotlib.colors import ListedColormap
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -56,7 +56,7 @@ def linear_figure(maps: list[LinearMap]) -> Any:
         extra = np.ma.masked_invalid(np.where(found.rates > 0.0, np.nan, extra_damping(found)))
         shades = axes.pcolormesh(x, y, extra, cmap="PRGn", vmin=-0.5, vmax=0.5, rasterized=True)
         grows = np.ma.masked_where(~(found.rates > 0.0), np.ones_like(found.rates))
-        axes.pcolormesh(x, y, grows, cmap=ListedColormap([GROWS]), rasterized=True)
+        axes.pcolormesh(x, y, grows, cmap=ListedColormap([GROWTH_COLOUR]), rasterized=True)
         fine = np.linspace(0.0, found.zetas[-1], 400)
         if not np.isnan(found.measured[1:]).all():
             limits = [INTEGRATORS[found.name].limit(float(z)) for z in fine]
@@ -68,18 +68,18 @@ def linear_figure(maps: list[LinearMap]) -> Any:
         axes.set_ylim(y[0], y[-1])
         axes.set_title(found.name.replace("_", " "), fontsize=10)
         if not np.isfinite(found.rates[1:]).any():
-            axes.text(2.0, 1.0, "refuses damping", ha="center", color="0.4")
+            axes.text(2.0, 1.0, "takes no damping", ha="center", color="0.4")
     for axes in lowest:
         axes.set_xlabel("h ω")
-    for axes in grid[::ACROSS]:
+    for axes in grid[::COLUMNS]:
         axes.set_ylabel("damping ratio ζ")
     assert shades is not None
     figure.colorbar(shades, ax=grid, label="damping ratio that the method adds", extend="both", shrink=0.7)
     figure.legend(
         handles=[
-            Patch(color=GROWS, label="grows"),
-            Line2D([], [], color="black", label="limit by theory"),
-            Line2D([], [], color="white", marker="o", markeredgecolor="black", label="limit as measured"),
+            Patch(color=GROWTH_COLOUR, label="grows"),
+            Line2D([], [], color="black", label="limit of theory"),
+            Line2D([], [], color="white", marker="o", markeredgecolor="black", label="measured limit"),
         ],
         loc="outside lower center", ncols=3, frameon=False,
     )  # fmt: skip
@@ -87,12 +87,12 @@ def linear_figure(maps: list[LinearMap]) -> Any:
 
 
 def rope_figure(maps: list[RopeMap]) -> Any:
-    """Outcomes in three colours, `critical_step` on top."""
+    """Outcomes in three colours, and `critical_step` as a line."""
     from matplotlib.colors import ListedColormap
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    figure, lowest, grid = panels(len(maps), "The lab's rope of ten points, disturbed a little at rest")
+    figure, lowest, grid = panels(len(maps), "The lab's rope of ten points at rest, with a small disturbance")
     colours = ListedColormap(list(OUTCOME_COLOURS.values()))
     for axes, found in zip(grid, maps, strict=True):
         x, y = edges(found.steps, logarithmic=True), edges(found.stiffnesses, logarithmic=True)
@@ -105,7 +105,7 @@ def rope_figure(maps: list[RopeMap]) -> Any:
         axes.set_title(found.name.replace("_", " "), fontsize=10)
     for axes in lowest:
         axes.set_xlabel("step h [s]")
-    for axes in grid[::ACROSS]:
+    for axes in grid[::COLUMNS]:
         axes.set_ylabel("stiffness k [N/m]")
     handles: list[Any] = [Patch(color=colour, label=name) for name, colour in OUTCOME_COLOURS.items()]
     handles.append(Line2D([], [], color="black", label="critical_step"))
@@ -114,7 +114,7 @@ def rope_figure(maps: list[RopeMap]) -> Any:
 
 
 def drift_figure(drifts: list[Drift]) -> Any:
-    """Energy errors over time: the symplectic methods to the left, the others to the right."""
+    """Energy errors over time: symplectic methods on the left, the others on the right."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10.0, 4.2), layout="constrained")
@@ -123,8 +123,8 @@ def drift_figure(drifts: list[Drift]) -> Any:
         for index, drift in enumerate(drift for drift in drifts if drift.symplectic == symplectic):
             size = np.maximum.accumulate(np.abs(drift.error[1:]))
             style = {"color": PALETTE[index % 8], "marker": MARKERS[index % 8], "markevery": 0.1}
-            lost = drift.t[np.isnan(drift.error)]
-            label = drift.name.replace("_", " ") + (f" (gone at {lost[0]:.0f} s)" if len(lost) else "")
+            diverged = drift.t[np.isnan(drift.error)]
+            label = drift.name.replace("_", " ") + (f" (diverged at {diverged[0]:.0f} s)" if len(diverged) else "")
             axes.loglog(drift.t[1:], size, label=label, linewidth=1.2, markersize=5, **style)
         axes.set_ylim(1e-15, 1e2)
         axes.set_title("symplectic" if symplectic else "not symplectic", fontsize=10)

@@ -1,4 +1,4 @@
-"""Maps over step and stiffness of the real, nonlinear rope at rest: does a small disturbance grow, does it explode?"""
+"""Maps over step and stiffness of the nonlinear rope at rest: whether a small disturbance decays, grows or explodes."""
 
 import math
 from typing import Any, NamedTuple
@@ -15,11 +15,11 @@ from sim.springs.state import State
 
 STEPS = (3e-4, 0.3)  # [s]
 STIFFNESSES = (30.0, 1e6)  # [N/m]
-FINE = 1.005  # ratio of steps to which a boundary is found
+LIMIT_RESOLUTION = 1.005  # ratio of two steps between which the limit is located
 
 
 class RopeMap(NamedTuple):
-    """One integrator."""
+    """The map of one integrator."""
 
     name: str
     steps: NDArray[np.float64]  # (cols,) [s]
@@ -30,33 +30,35 @@ class RopeMap(NamedTuple):
 
 
 def row(
-    name: str, net: Net, stiffness: float, steps: NDArray[np.float64], most: int
+    name: str, net: Net, stiffness: float, steps: NDArray[np.float64], max_steps: int
 ) -> tuple[NDArray[np.int64], float, float]:
     """(outcomes at each step, the step at which disturbances begin to grow [s], critical_step [s])."""
     record, net = INTEGRATORS[name], net.with_stiffness(stiffness)
     rest = find_rest_positions(net)
     state = State.at_rest(net)
     state.x[:] = rest
-    found = np.array([outcome(record, net, float(h), rest, most) for h in steps])
+    found = np.array([outcome(record, net, float(h), rest, max_steps) for h in steps])
     grows = np.flatnonzero(found != STABLE)
     measured = math.inf
     if len(grows):
         high = float(steps[grows[0]])
         low = float(steps[grows[0] - 1]) if grows[0] else 0.3 * high
-        while high > FINE * low:
+        while high > LIMIT_RESOLUTION * low:
             middle = math.sqrt(low * high)
-            low, high = (middle, high) if outcome(record, net, middle, rest, 16 * most) == STABLE else (low, middle)
+            low, high = (
+                (middle, high) if outcome(record, net, middle, rest, 16 * max_steps) == STABLE else (low, middle)
+            )
         measured = math.sqrt(low * high)
     return found, measured, critical_step(net, name, state)
 
 
 def measure(net: Net | None = None, quick: bool = False, workers: int = 0) -> list[RopeMap]:
-    """Every integrator that takes this rope (None: the lab's ten points)."""
+    """All integrators that can run this rope (None: the lab's). workers: processes, 0: one on each core."""
     net = rope() if net is None else net
-    rows, cols, most = (8, 12, 1 << 12) if quick else (32, 48, 1 << 14)
+    rows, cols, max_steps = (8, 12, 1 << 12) if quick else (32, 48, 1 << 14)
     steps, stiffnesses = np.geomspace(*STEPS, cols), np.geomspace(*STIFFNESSES, rows)
     names = [name for name, record in INTEGRATORS.items() if not (record.undamped_only and net.is_damped)]
-    tasks = [(name, net, float(k), steps, most) for name in names for k in stiffnesses]
+    tasks = [(name, net, float(k), steps, max_steps) for name in names for k in stiffnesses]
     found = spread(row, tasks, "step and stiffness", workers)
     maps = []
     for i, name in enumerate(names):
@@ -67,7 +69,7 @@ def measure(net: Net | None = None, quick: bool = False, workers: int = 0) -> li
 
 
 def rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
-    """The table: how the rope fares, and how far critical_step is from where growth begins."""
+    """The table: numbers of cells by outcome, and how far `critical_step` is from the measured limit."""
     table = []
     for m in maps:
         grows = m.outcomes != STABLE
@@ -78,9 +80,9 @@ def rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
             {
                 "integrator": m.name,
                 "cells": grows.size,
-                "hold": int((m.outcomes == STABLE).sum()),
-                "rattle": int((m.outcomes == BOUNDED_GROWTH).sum()),
-                "explode": int((m.outcomes == EXPLODING).sum()),
+                "stable": int((m.outcomes == STABLE).sum()),
+                "bounded growth": int((m.outcomes == BOUNDED_GROWTH).sum()),
+                "exploding": int((m.outcomes == EXPLODING).sum()),
                 "disagree": int(wrong.sum()),
                 "step off, median [%]": 100.0 * float(np.median(apart)) if len(apart) else None,
                 "at most [%]": 100.0 * float(apart.max()) if len(apart) else None,
@@ -91,7 +93,7 @@ def rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
 
 
 def boundary_rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
-    """Both boundaries, by integrator and stiffness."""
+    """The measured limit and `critical_step`, for each integrator and stiffness."""
     return [
         {
             "integrator": m.name,

@@ -2,19 +2,20 @@
 
     scene = "rope"                                # rope, race, cloth, square_sea, radial_sea
     seconds = 10.0                                # simulated time of each run
-    frames = 1                                    # times measured: 1 is the end alone, n are equally spaced from 0
-    preset = "Stiff rope"                         # optional: one of the scene's presets, as a start
-    design = "grid"                               # every combination; or "random": a Latin hypercube of
-    cases = 200                                   #   so many cases,
-    seed = 1                                      #   drawn from this seed
+    frames = 1                                    # measured times: 1 is the end only, n are equally spaced from 0
+    preset = "Stiff rope"                         # optional: a preset of the scene, or a file FILE.json beside this one
+    design = "grid"                               # all combinations; or "random": a Latin hypercube with
+    cases = 200                                   #   this number of cases, and
+    seed = 1                                      #   this seed of its random numbers
 
     [set]                                         # parameters that are the same in every case
     points = 20
 
-    [parameters]                                       # parameters that are swept
+    [parameters]                                  # parameters that are swept
     integrator = ["leapfrog", "rk4"]
     time_step = { from = 1e-3, to = 0.05, count = 12, log = true }   # no count in a random design
 
-A case is measured at the first whole step at or after each time. `spec.py` reads this, `design.py` makes the cases,
-`case.py` runs one, `workers.py` many, `store.py` keeps what is finished, `results.py` and `figure.py` show it.
+A case is measured at the first whole step at or after each time. `spec.py` reads the file, `design.py` makes the cases,
+`case.py` runs one case and `workers.py` many, `store.py` stores finished cases, `results.py` and `figure.py` write the
+results.
 """

@@ -17,24 +17,24 @@ from app.scenes.measures import plotted
 from sim.jit import sources_hash
 from sim.parameters import check_record
 
-FRAME_INTERVAL = 1 / 30  # [s] of simulated time between two looks at whether the run still holds
+CHECK_INTERVAL = 1 / 30  # [s] of simulated time between two checks for divergence
 FINISHED, DIVERGED, FAILED = "finished", "diverged", "failed"
 ENDS = (FINISHED, DIVERGED, FAILED)
 
 
 class Outcome(NamedTuple):
-    """What became of a case; `_asdict` of it is JSON."""
+    """The result of a case; `_asdict()` of it can be written as JSON."""
 
     end: str  # one of ENDS
     message: str  # why it did not finish, or ""
-    diverged_at: float  # [s] the last time at which the state was sound; nan where it did not diverge
+    diverged_at: float  # [s] the last time with a finite, bounded state; NaN where it did not diverge
     run_time: float  # [s] of processor time
-    measures: dict[str, list[float]]  # one value a time; nan from where it did not get to
+    measures: dict[str, list[float]]  # one value for each time; NaN for times that were not reached
     labels: dict[str, tuple[str, str]]  # unit and meaning of each measure
 
 
 def program() -> str:
-    """Which program this is: its version, and a hash of its sources."""
+    """The identity of this program: its version, and a hash of its sources."""
     try:
         number = version("springtide")
     except PackageNotFoundError:
@@ -50,9 +50,8 @@ def failed(message: str) -> Outcome:
 
 
 def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Outcome:
-    """Run one case and measure it at each of `times` [s]; never raises for what the scene does."""
-    module = scene_named(scene)
-    own = module.measures
+    """Run one case and measure it at each of `times` [s]. What the scene raises becomes a failed outcome."""
+    kind = scene_named(scene)
     found: dict[str, list[float]] = {}
     labels: dict[str, tuple[str, str]] = {}
     end, message, diverged_at = FINISHED, "", math.nan
@@ -61,13 +60,13 @@ def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Ou
     start = time.thread_time()
     try:
         with np.errstate(all="ignore"):
-            running = module.make(check_record(module.params, values))
+            running = kind.make(check_record(kind.params, values))
             if note := running.note:
-                # The numbers of another method than the one asked for are no result.
+                # The numbers of another integrator than the one asked for are no result.
                 return failed(note)
             for index, until in enumerate(times):
                 row = advance_to(running, until) or row
-                for name, measure in (own(running) if own else plotted(module, row)).items():
+                for name, measure in (kind.measures(running) if kind.measures else plotted(kind, row)).items():
                     found.setdefault(name, [math.nan] * len(times))[index] = float(measure.value)
                     labels[name] = measure.unit, measure.meaning
     except DivergenceError as reason:
@@ -82,7 +81,7 @@ def advance_to(running: Any, until: float) -> tuple[float, ...]:
     row: tuple[float, ...] = ()
     due = steps_to(running, until)
     while due > 0:
-        count = min(due, max(1, round(FRAME_INTERVAL / running.step)))
+        count = min(due, max(1, round(CHECK_INTERVAL / running.step)))
         advance(running, count)
         due -= count
         rows = running.take_plot_rows()
@@ -91,9 +90,9 @@ def advance_to(running: Any, until: float) -> tuple[float, ...]:
 
 
 def advance(running: Any, count: int) -> None:
-    """Take `count` steps; where they cannot all be taken, as many as can, and then raises DivergenceError.
+    """Take `count` steps. If the run diverges on the way, take those before that, and raise DivergenceError.
 
-    A scene that diverges keeps its last sound state, so halving the steps finds the last step that holds.
+    A scene that diverges keeps its last good state, so halving the steps finds the last good step.
     """
     while count > 0:
         try:

@@ -1,7 +1,7 @@
 """From ranges and lists of parameters to cases: every combination, or a Latin hypercube.
 
-A Latin hypercube of n cases (McKay, Beckman and Conover 1979, Technometrics 21:239) has one case in each n-th of every
-parameter's range, whatever the number of parameters.
+A Latin hypercube of n cases (McKay, Beckman and Conover 1979, Technometrics 21:239) divides the range of every
+parameter into n equal parts, and has one case in each part.
 """
 
 import itertools
@@ -16,13 +16,13 @@ MAX_CASES = 100_000
 
 
 class Listed(NamedTuple):
-    """Values as given."""
+    """A list of values."""
 
     values: tuple[Any, ...]
 
 
 class Range(NamedTuple):
-    """From `low` to `high`, both included; points: values of a grid, 0 in a random design."""
+    """From `low` to `high`, both included. points: number of values on a grid; 0 in a random design."""
 
     low: float
     high: float
@@ -34,7 +34,7 @@ Axis = Listed | Range
 
 
 def at(axis: Axis, share: float, parameter: Parameter) -> Any:
-    """The value at `share`, 0 to 1, of the axis; equal shares of it go to each listed value and each whole number."""
+    """The value at `share`, 0 to 1, of the axis. Each value of a list and each whole number has an equal share."""
     if isinstance(axis, Listed):
         return axis.values[min(int(share * len(axis.values)), len(axis.values) - 1)]
     low, high = axis.low, axis.high
@@ -47,7 +47,7 @@ def at(axis: Axis, share: float, parameter: Parameter) -> Any:
 
 
 def grid_values(axis: Axis, parameter: Parameter) -> tuple[Any, ...]:
-    """The values of a grid along one axis; whole numbers are rounded to."""
+    """The values of a grid along one axis, rounded for a parameter of whole numbers."""
     if isinstance(axis, Listed):
         return axis.values
     real = parameter._replace(default=0.0)
@@ -56,12 +56,15 @@ def grid_values(axis: Axis, parameter: Parameter) -> tuple[Any, ...]:
 
 
 def grid(axes: dict[str, tuple[Any, ...]]) -> list[dict[str, Any]]:
-    """Every combination, the last parameter the fastest."""
+    """All combinations; the last parameter changes fastest."""
     return [dict(zip(axes, values, strict=True)) for values in itertools.product(*axes.values())]
 
 
 def hypercube(axes: dict[str, Axis], parameters: dict[str, Parameter], count: int, seed: int) -> list[dict[str, Any]]:
-    """`count` cases, one in each `count`-th of every axis."""
+    """A Latin hypercube: `count` cases, one in each `count`-th of every axis.
+
+    One line of numpy does what `scipy.stats.qmc` would; scipy is not needed for anything else.
+    """
     generator = np.random.default_rng(seed)
     columns = {}
     for name, axis in axes.items():
@@ -71,5 +74,5 @@ def hypercube(axes: dict[str, Axis], parameters: dict[str, Parameter], count: in
 
 
 def size(axes: dict[str, Axis]) -> int:
-    """How many combinations there are."""
+    """The number of combinations."""
     return math.prod(len(axis.values) if isinstance(axis, Listed) else axis.points for axis in axes.values())

@@ -1,8 +1,8 @@
 """The first measures of a sweep as one figure: maps or curves of a grid, scattered points of a random design.
 
-Each measure has a row. The two parameters with most values are the axes of a map where both have enough, else the
-first is the axis of curves and the second tells them apart; a third makes the columns; any more stay at their first
-values, which the title then says.
+Each measure has a row. If the two parameters with most values have at least five each, they are the axes of a map.
+Otherwise the first is the axis of curves, and each curve has one value of the second. A third parameter makes the
+columns. Other parameters stay at their first values, and the title names them.
 """
 
 import json
@@ -13,10 +13,10 @@ import numpy as np
 from app.experiments.tables import MARKERS
 from app.scenes.charts import PALETTE
 
-ROWS, COLUMNS, CURVES = 2, 4, 8  # at most
-MAP_FROM = 5  # values of each of two parameters from which a map is drawn
-DECADES = 30.0  # from which ratio on logarithms are shown
-HELD = "0.93"  # grey of cases without a value
+MAX_ROWS, MAX_COLUMNS, MAX_CURVES = 2, 4, 8
+MIN_MAP_VALUES = 5  # of each of two parameters, for a map
+MIN_LOG_RATIO = 30.0  # of the largest value to the smallest, for a logarithmic axis
+NO_VALUE_GREY = "0.93"  # of cases without a value
 
 
 def draw(dataset: Any) -> Any:
@@ -28,9 +28,9 @@ def draw(dataset: Any) -> Any:
     swept = list(json.loads(dataset.attrs["identity"])["spec"]["parameters"])
     random = dataset.attrs["design"] == "random"
     ranked = sorted(swept, key=lambda name: rank(dataset[name]))
-    across = ranked[:COLUMNS] if random else [None]
+    across = ranked[:MAX_COLUMNS] if random else [None]
     if not random and len(ranked) > 2:
-        across = list(dataset[ranked[2]].values[:COLUMNS])
+        across = list(dataset[ranked[2]].values[:MAX_COLUMNS])
     size = (1.2 + 3.4 * len(across), 0.9 + 2.6 * len(shown))
     figure = Figure(figsize=(max(size[0], 5.0), size[1]), layout="constrained")
     panels = figure.subplots(len(shown), len(across), squeeze=False, sharex="col", sharey="row")
@@ -50,7 +50,7 @@ def draw(dataset: Any) -> Any:
                 if len(ranked) > 2:
                     cut = cut.sel({ranked[2]: column})
                     axes.set_title(f"{ranked[2]} = {text(column)}" if is_top else "", fontsize=10)
-                image = picture(axes, cut, ranked[:2], colours, is_top and axes is row[0])
+                image = draw_panel(axes, cut, ranked[:2], colours, is_top and axes is row[0])
             axes.label_outer()
             axes.spines[["top", "right"]].set_visible(False)
         if image is not None:
@@ -61,25 +61,25 @@ def draw(dataset: Any) -> Any:
 
 
 def rank(values: Any) -> tuple[bool, int, bool]:
-    """By this parameters come as axes: numbers of many values first."""
+    """The sort key of parameters as axes: numbers before words, then many values before few."""
     return not is_number(values), -np.unique(values).size, values.dtype.kind != "f"
 
 
 def measures_shown(dataset: Any) -> list[str]:
-    """When cases diverged, if any did; then the first measures that differ from case to case."""
+    """`diverged_at`, if any case diverged; then the first measures that differ from case to case."""
     names = [name for name in dataset.data_vars if name not in ("end", "message", "run_time", "diverged_at")]
     last = {name: dataset[name].isel(time=-1) if "time" in dataset[name].dims else dataset[name] for name in names}
     differing = [name for name in names if np.unique(last[name].values[np.isfinite(last[name].values)]).size > 1]
     diverged = ["diverged_at"] if np.isfinite(dataset["diverged_at"].values).any() else []
-    return (diverged + (differing or names))[:ROWS] or ["run_time"]
+    return (diverged + (differing or names))[:MAX_ROWS] or ["run_time"]
 
 
-def picture(axes: Any, values: Any, names: list[str], colours: Any, is_first: bool) -> Any:
-    """A map (returned, for its colour bar) or curves (None) over one or two parameters; a legend in the first panel."""
-    both = len(names) == 2 and all(is_number(values[n]) and values[n].size >= MAP_FROM for n in names)
+def draw_panel(axes: Any, values: Any, names: list[str], colours: Any, is_first: bool) -> Any:
+    """Draw a map (returned, for its colour bar) or curves (None is returned) over one or two parameters."""
+    both = len(names) == 2 and all(is_number(values[n]) and values[n].size >= MIN_MAP_VALUES for n in names)
     if both:
         x, y = (values[n] for n in names)
-        axes.set_facecolor(HELD)
+        axes.set_facecolor(NO_VALUE_GREY)
         image = axes.pcolormesh(
             edges(x.values), edges(y.values), values.transpose(names[1], names[0]).values,
             cmap="viridis", norm=colours,
@@ -88,7 +88,7 @@ def picture(axes: Any, values: Any, names: list[str], colours: Any, is_first: bo
         set_axis(axes, "y", y)
         return image
     x = values[names[0]]
-    curves = values[names[1]].values[:CURVES] if len(names) == 2 else [None]
+    curves = values[names[1]].values[:MAX_CURVES] if len(names) == 2 else [None]
     for index, curve in enumerate(curves):
         y = values if curve is None else values.sel({names[1]: curve})
         style = {"color": PALETTE[index], "marker": MARKERS[index], "markersize": 4}
@@ -100,27 +100,29 @@ def picture(axes: Any, values: Any, names: list[str], colours: Any, is_first: bo
 
 
 def points(axes: Any, x: Any, y: Any) -> None:
+    """Draw one point for each case."""
     axes.plot(positions(x), y.values, linestyle="", marker=".", color=PALETTE[0])
     set_axis(axes, "x", x)
 
 
 def is_number(values: Any) -> bool:
+    """Whether values are numbers and not words or truth values."""
     return values.dtype.kind in "if"
 
 
 def positions(x: Any) -> Any:
-    """Where values are on an axis: themselves, or the order of their names."""
+    """Positions of values on an axis: the values themselves, or the order of their names."""
     return x.values if is_number(x) else np.unique(x.values, return_inverse=True)[1]
 
 
 def is_log(x: Any) -> bool:
-    """Whether values are better told apart by their logarithms."""
+    """Whether a logarithmic axis shows these values better."""
     low, high = float(x.min()), float(x.max())
-    return low > 0.0 and high / low >= DECADES
+    return low > 0.0 and high / low >= MIN_LOG_RATIO
 
 
 def set_axis(axes: Any, which: str, x: Any) -> None:
-    """Label, scale and ticks of the axis `which`, x or y."""
+    """Set label, scale and ticks of the axis `which`, x or y."""
     getattr(axes, f"set_{which}label")(label(x))
     if not is_number(x):
         names = [text(value) for value in np.unique(x.values)]
@@ -132,8 +134,8 @@ def set_axis(axes: Any, which: str, x: Any) -> None:
 
 
 def edges(values: Any) -> Any:
-    """Borders of the cells about sorted or unsorted `values`, halfway between, in the logarithm where spaced so."""
-    logs = values.min() > 0.0 and values.max() / values.min() >= DECADES
+    """Edges (n + 1,) of the cells of `values` (n,), halfway between them; in logarithms over a large ratio."""
+    logs = values.min() > 0.0 and values.max() / values.min() >= MIN_LOG_RATIO
     v = np.log(values) if logs else np.asarray(values, float)
     middle = 0.5 * (v[1:] + v[:-1])
     found = np.concatenate([[2 * v[0] - middle[0]], middle, [2 * v[-1] - middle[-1]]])
@@ -141,12 +143,12 @@ def edges(values: Any) -> Any:
 
 
 def scale(values: Any) -> Any:
-    """The colours of the finite values; by their logarithms where they span decades."""
+    """The norm of the colours of the finite values, logarithmic over a large ratio."""
     from matplotlib.colors import LogNorm, Normalize
 
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    return LogNorm(low, high) if low > 0.0 and high / low >= DECADES else Normalize(low, high)
+    return LogNorm(low, high) if low > 0.0 and high / low >= MIN_LOG_RATIO else Normalize(low, high)
 
 
 def label(values: Any) -> str:
@@ -157,4 +159,5 @@ def label(values: Any) -> str:
 
 
 def text(value: Any) -> str:
+    """A value in words of a title or legend."""
     return f"{value:.3g}" if isinstance(value, float | np.floating) else str(value)

@@ -1,4 +1,4 @@
-"""The outcomes of a sweep as one labelled xarray dataset, and that as one NetCDF file."""
+"""The outcomes of a sweep as one labelled xarray dataset, written as one NetCDF file."""
 
 import datetime
 import json
@@ -19,7 +19,7 @@ PACKAGES = ("numpy", "numba", "xarray", "netCDF4")
 
 
 def to_dataset(spec: Spec, outcomes: dict[int, Outcome]) -> Any:
-    """An `xarray.Dataset` of all cases: dimensions are the swept parameters of a grid, or `case`, and time if any."""
+    """An `xarray.Dataset` of all cases, over the swept parameters of a grid or over `case`, and over time if it has frames."""
     import xarray as xr
 
     known = parameters_of(spec.kind.params)
@@ -51,7 +51,7 @@ def to_dataset(spec: Spec, outcomes: dict[int, Outcome]) -> Any:
         return dims, np.array(values).reshape(shape), attributes
 
     variables["diverged_at"] = per_case(
-        [o.diverged_at for o in ordered], long_name="Last time at which a run that diverged was sound", units="s"
+        [o.diverged_at for o in ordered], long_name="Last time with a good state of a run that diverged", units="s"
     )
     variables["run_time"] = per_case([o.run_time for o in ordered], long_name="Processor time", units="s")
     variables["end"] = per_case(
@@ -67,7 +67,7 @@ def to_dataset(spec: Spec, outcomes: dict[int, Outcome]) -> Any:
 
 
 def about(spec: Spec) -> dict[str, Any]:
-    """The attributes of the file: what would make it again."""
+    """The attributes of the file: all that is needed to make it again."""
     fixed = {name: getattr(spec.params(0), name) for name in parameters_of(spec.kind.params) if name not in spec.swept}
     versions = ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in PACKAGES)])
     return {
@@ -86,7 +86,7 @@ def about(spec: Spec) -> dict[str, Any]:
 
 
 def identity(spec: Spec) -> dict[str, Any]:
-    """What a sweep is known by: equal ones have equal results."""
+    """The identity of a sweep: sweeps with equal identities have equal results."""
     return {"spec": spec.identity(), "program": program()}
 
 
@@ -102,11 +102,11 @@ def identity_in(path: Path) -> dict[str, Any] | None:
 
 
 def write(dataset: Any, path: Path) -> None:
-    """Write the NetCDF file whole, or leave what was there and raise OSError."""
+    """Write the NetCDF file completely, or leave the old file and raise OSError."""
     packed = {name: {"zlib": True} for name, v in dataset.data_vars.items() if v.dtype.kind == "f" and v.ndim}
     try:
         with replacing(path) as draft:
             dataset.to_netcdf(draft, engine="netcdf4", format="NETCDF4", encoding=packed)
     except RuntimeError as error:
-        # netCDF4's word for a full disk, too
+        # netCDF4 raises this for a full disk, too.
         raise OSError(f"{path} cannot be written ({error}); the finished cases are kept") from None

@@ -19,7 +19,7 @@ PACKAGES = ("numpy", "numba", "xarray", "netCDF4")
 
 
 def to_dataset(spec: Spec, outcomes: dict[int, Outcome]) -> Any:
-    """An `xarray.Dataset` of all cases, over the swept parameters of a grid or over `case`, and over time if it has frames."""
+    """An `xarray.Dataset` of all cases, over the swept parameters of a grid or over `case`, and over time."""
     import xarray as xr
 
     known = parameters_of(spec.kind.params)

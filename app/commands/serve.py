@@ -30,7 +30,9 @@ def check_address(host: str, port: int) -> None:
 
 
 def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, paused: bool, plain: bool) -> int:
-    """Open the scene, print the address that is bound, and wait. Returns the exit status.
+    """Print the address that is bound, open the scene, and wait. Returns the exit status.
+
+    The page is there before the scene is, and shows what is compiled.
 
     Raises ValueError for what is no address.
     """
@@ -43,7 +45,6 @@ def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, pa
     done = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: done.set())
     try:
-        viewer.open(name, params, paused=paused)
         shown = "localhost" if is_loopback(host) or host == "0.0.0.0" else f"[{host}]" if ":" in host else host
         address = f"http://{shown}:{viewer.port}"
         say(f"Springtide is on {address}  (Ctrl-C ends it)")
@@ -51,6 +52,7 @@ def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, pa
             say(f"Warning: anyone who can reach {host} on port {viewer.port} can drive this lab.")
         if browser:
             webbrowser.open(address)
+        viewer.open(name, params, paused=paused)
         wait_until(done)
     except KeyboardInterrupt:
         pass

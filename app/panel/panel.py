@@ -244,7 +244,7 @@ def status_line(snapshot: AnySnapshot, send_time: float, busy: float = 0.0) -> H
     halted = fill('<div style="{}">{}</div>', box, s.halted) if s.halted else ""
     slow = fill("<br>this step has taken {:.1f} s so far", busy) if busy >= BUSY_SHOWN_FROM else ""
     return fill(
-        '<div style="padding:0 12px 4px;font-size:12px">{state} t = {s.time:.2f} s<br>'
+        '<div class="springtide-panel" style="padding:0 12px 4px;font-size:12px">{state} t = {s.time:.2f} s<br>'
         "real time ×{s.actual_speed:.2f} of ×{s.speed:g}{capped} · {s.frame_rate:.0f} frames/s · "
         "solve {solve:.2f} ms · send {send:.2f} ms{slow}{halted}</div>",
         s=s,

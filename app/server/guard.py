@@ -28,6 +28,7 @@ import websockets.asyncio.server
 from viser import _messages as vm
 
 from app.render.viser_types import GuiHandle, ViserConnection, ViserMessage
+from app.server.page import own_answer, with_cover
 
 MAX_NUMBER = 1e6  # any number in a message beyond this is refused
 MAX_LENGTH = 1000  # of a text, or of a list
@@ -94,7 +95,7 @@ def checked_origins(bound: str) -> Generator[None]:
         def check(connection: ViserConnection, request: ViserConnection) -> object:
             if not is_own_origin(request.headers.get("Origin"), request.headers.get("Host"), bound):
                 return connection.respond(HTTPStatus.FORBIDDEN, "This page may not connect here.\n")
-            return process_request(connection, request)
+            return own_answer(request) or with_cover(request, process_request(connection, request))
 
         return serve(*args, process_request=check, **options)  # type: ignore[arg-type]
 

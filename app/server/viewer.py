@@ -110,9 +110,12 @@ class Viewer:
             return
         self.clear()
         progress = self.server.gui.add_html("")
+        start = time.monotonic()
 
         def show(part: str) -> None:
-            progress.content = note(fill("<b>{}</b>: compiling {}. This is done once.", title, part))
+            spent = time.monotonic() - start
+            words = fill("{}: compiling {}, {:.0f} s. This is done once.", title, part, spent)
+            progress.content = note(fill('<span class="springtide-progress">{}</span>', words))
 
         show("kernels")
         compile_scene(name, show=show)
@@ -131,7 +134,9 @@ class Viewer:
         self.clear()
         add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.choose)
         reason = f"{type(error).__name__}: {error}"
-        self.server.gui.add_html(note(fill("<b>{} could not be opened.</b><br>{}", name, reason)))
+        self.server.gui.add_html(
+            note(fill('<b class="springtide-panel">{} could not be opened.</b><br>{}', name, reason))
+        )
 
     def choose(self, name: str) -> None:
         """A scene was chosen on the page that says why another could not be opened."""

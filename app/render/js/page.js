@@ -1,0 +1,57 @@
+// What the page says for itself, before viser's own client runs and after the server has ended.
+//
+// The cover is there from the first bytes of the page. It goes when the panel is drawn; while a scene is compiled it shows
+// what the panel says of that (an element of class "springtide-progress"). It comes back when the server does not answer.
+
+(() => {
+  "use strict";
+  const ALIVE_INTERVAL = 2000; // [ms] between two questions whether the server is still there
+  const cover = document.getElementById("springtide-cover");
+  const words = document.getElementById("springtide-cover-words");
+  let lost = false;
+
+  function hasWebGL() {
+    try {
+      return Boolean(document.createElement("canvas").getContext("webgl2"));
+    } catch {
+      return false;
+    }
+  }
+
+  function say(text, hidden) {
+    if (text !== null && words.textContent !== text) words.textContent = text;
+    cover.classList.toggle("springtide-hidden", hidden);
+  }
+
+  function update() {
+    if (lost) return say("The lab has stopped. Start it again with the command: springtide", false);
+    const progress = document.querySelector(".springtide-progress");
+    if (progress) return say(progress.textContent, false);
+    if (document.querySelector(".springtide-panel")) return say(null, true);
+    return say("Connecting to the lab …", false);
+  }
+
+  async function ask() {
+    let answered = false;
+    try {
+      answered = (await fetch("springtide-alive", { cache: "no-store" })).ok;
+    } catch {
+      answered = false;
+    }
+    if (answered && lost) return void location.reload();
+    lost = !answered;
+    update();
+  }
+
+  if (!hasWebGL()) {
+    const notice = document.createElement("div");
+    notice.id = "springtide-notice";
+    notice.textContent =
+      "This browser has no WebGL 2, so the picture cannot be drawn. The panel works. " +
+      "Switch hardware acceleration on, or try another browser.";
+    document.body.append(notice);
+  }
+  new MutationObserver(update).observe(document.body, { childList: true, subtree: true, characterData: true });
+  setInterval(() => document.visibilityState === "visible" && ask(), ALIVE_INTERVAL);
+  update();
+})();

@@ -1,0 +1,53 @@
+"""The page that a browser is given: viser's, with a title, a cover for while nothing is drawn, and our own script.
+
+viser serves one HTML file. The cover stands at the top of its body, so that it is seen before the client behind it has
+been read; the script below it is `app/render/js/page.js`.
+"""
+
+import functools
+import gzip
+from http import HTTPStatus
+from importlib import resources
+
+from websockets.datastructures import Headers
+from websockets.http11 import Request, Response
+
+ALIVE_PATH = "/springtide-alive"  # what the page asks for, to see whether the server is still there
+TITLE = "<title>Springtide</title>"
+COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'
+
+
+def own_answer(request: Request) -> Response | None:
+    """The answer to a request that viser knows nothing of; None for the others."""
+    if request.path.partition("?")[0] != ALIVE_PATH:
+        return None
+    return Response(HTTPStatus.OK, "OK", Headers({"Content-Type": "text/plain", "Content-Length": "0"}), b"")
+
+
+def with_cover(request: Request, response: Response | None) -> Response | None:
+    """viser's answer; where it is the page, with our title, cover and script."""
+    path = request.path.partition("?")[0]
+    if response is None or response.status_code != HTTPStatus.OK or path not in ("/", "/index.html"):
+        return response
+    body = bytes(response.body or b"")
+    zipped = response.headers.get("Content-Encoding") == "gzip"
+    page = covered(gzip.decompress(body) if zipped else body, zipped)
+    headers = Headers(response.headers)
+    del headers["Content-Length"]
+    headers["Content-Length"] = str(len(page))
+    return Response(response.status_code, response.reason_phrase, headers, page)
+
+
+@functools.cache
+def covered(page: bytes, zipped: bool) -> bytes:
+    """viser's page with ours around it, compressed again where it was."""
+    folder = resources.files("app.render") / "js"
+    style, script = ((folder / name).read_text("utf-8") for name in ("page.css", "page.js"))
+    head, _, body = page.decode("utf-8").rpartition("<body>")
+    # viser's client is one long script in the head: below the cover it does not delay it.
+    start = head.index("<script")
+    client, end = head[start : head.rindex("</script>") + len("</script>")], head.rindex("</script>") + len("</script>")
+    head = head[:start].replace("<title>Viser</title>", TITLE, 1) + f"<style>{style}</style>" + head[end:]
+    body = body.replace("</body>", f"{client}<script>{script}</script></body>", 1)
+    found = f"{head}<body>{COVER}{body}".encode()
+    return gzip.compress(found) if zipped else found

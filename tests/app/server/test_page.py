@@ -1,0 +1,38 @@
+"""The page that a browser is given."""
+
+import gzip
+import http.client
+
+import pytest
+
+from app.server.page import ALIVE_PATH, COVER, TITLE
+from app.server.viewer import Viewer
+
+
+def get(port: int, path: str, **headers: str) -> tuple[int, bytes, dict[str, str]]:
+    """Status, body and headers of an answer."""
+    connection = http.client.HTTPConnection("127.0.0.1", port)
+    connection.request("GET", path, headers={key.replace("_", "-"): value for key, value in headers.items()})
+    answer = connection.getresponse()
+    return answer.status, answer.read(), dict(answer.getheaders())
+
+
+@pytest.mark.parametrize("zipped", [False, True])
+def test_the_page_has_our_title_and_its_cover_before_anything_long(lab: Viewer, zipped: bool) -> None:
+    status, body, headers = get(lab.port, "/?scene=rope", **({"Accept_Encoding": "gzip"} if zipped else {}))
+    assert status == 200
+    assert int(headers["Content-Length"]) == len(body)
+    page = (gzip.decompress(body) if zipped else body).decode()
+    assert TITLE in page[:10_000]
+    assert COVER in page[:10_000]
+    assert "<title>Viser" not in page
+    assert page.index(COVER) < page.index('<div id="root">') < page.rindex("<script")
+
+
+def test_the_page_can_ask_whether_the_server_is_there(lab: Viewer) -> None:
+    assert get(lab.port, ALIVE_PATH)[:2] == (200, b"")
+    assert get(lab.port, "/nothing")[0] == 404
+
+
+def test_a_foreign_page_may_not_ask(lab: Viewer) -> None:
+    assert get(lab.port, ALIVE_PATH, Origin="http://evil.example")[0] == 403

@@ -61,14 +61,13 @@ class Panel:
         self.halted = ""
         self.plots = Plots(server, kind)
         self.add_chooser(scenes, open_scene)
-        gui.add_html(
-            fill(
-                '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">{}<br>'
-                "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · <b>G</b> grid · "
-                "<b>1-9</b> presets</div>",
-                Html(kind.help),
-            )
+        help_text = fill(
+            '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">{}<br>'
+            "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · <b>G</b> grid · "
+            "<b>1-9</b> presets</div>",
+            Html(kind.help),
         )
+        gui.add_html(str(help_text))
         self.preset = gui.add_dropdown("Preset", tuple(kind.presets), hint="Sets every parameter and starts over")
         self.preset.on_update(self.on_preset)
         self.buttons = gui.add_button_group(" ", ("Play / pause", "Step", "Reset"))
@@ -190,7 +189,7 @@ class Panel:
                 self.notify(self.halted)
         if now - self.status_at >= STATUS_INTERVAL:
             self.status_at = now
-            self.status.content = status_line(snapshot, send_time, busy)
+            self.status.content = str(status_line(snapshot, send_time, busy))
             readout = self.view.readout(snapshot)
             self.readout.content = note(Html(readout))
         if now - self.marks_at >= MARKS_INTERVAL:

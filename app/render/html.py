@@ -27,7 +27,10 @@ MAX_GROUPED = 1e6  # numbers below are written out in full, larger ones with a p
 
 
 class Html(str):
-    """Text that is HTML. Any other text is escaped where it becomes part of HTML."""
+    """Text that is HTML. Any other text is escaped where it becomes part of HTML.
+
+    What is handed to viser is converted by `str` first: viser's encoder refuses subclasses of `str`.
+    """
 
     __slots__ = ()
 
@@ -58,9 +61,9 @@ def join(parts: Iterable[object], separator: LiteralString = "") -> Html:
     return Html(separator.join(escape(part) for part in parts))
 
 
-def note(text: object) -> Html:
-    """Small text with the panel's margins."""
-    return fill('<div style="padding:2px 12px 8px;font-size:12px">{}</div>', text)
+def note(text: object) -> str:
+    """Small text with the panel's margins, as viser takes it: a plain `str`, as it encodes no subclass of it."""
+    return str(fill('<div style="padding:2px 12px 8px;font-size:12px">{}</div>', text))
 
 
 def lines(texts: Iterable[object]) -> Html:

@@ -14,15 +14,22 @@ def test_text_is_escaped_and_html_is_not() -> None:
     assert escape(EVIL) == SAFE
     assert escape(Html("<b>x</b>")) == "<b>x</b>"
     assert fill("<p>{} {name}</p>", EVIL, name=bold(EVIL)) == f"<p>{SAFE} <b>{SAFE}</b></p>"
-    for text in (note(EVIL), bold(EVIL), join((EVIL, "x")), lines((EVIL,)), table((EVIL,), ((EVIL, "1"),))):
+    assert "<img" not in note(EVIL)
+    assert SAFE in note(EVIL)
+    for text in (bold(EVIL), join((EVIL, "x")), lines((EVIL,)), table((EVIL,), ((EVIL, "1"),))):
         assert isinstance(text, Html)
         assert "<img" not in text
         assert SAFE in text
 
 
 def test_what_is_escaped_once_is_not_escaped_again() -> None:
-    assert note(note(bold("a < b"))).count("&lt;") == 1
+    assert note(lines((bold("a < b"),))).count("&lt;") == 1
     assert "&amp;" not in note(table(("<",), (("<",),)))
+
+
+def test_what_goes_to_viser_is_a_plain_string() -> None:
+    assert type(note(bold("x"))) is str
+    assert type(str(bold("x"))) is str
 
 
 def test_fields_of_a_template_take_formats() -> None:

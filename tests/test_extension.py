@@ -26,6 +26,24 @@ assert set(viewer.panel.controls) == {"length", "gravity", "angle", "speed", "gr
 assert not viewer.loop.halted
 viewer.shut()
 """
+FLOATED = """
+import time
+from app.scenes.radial_sea.measures import measures
+from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.report import readout_of
+from app.server.viewer import Viewer
+
+viewer = Viewer("127.0.0.1", 0)
+viewer.open("radial_sea", Params(bodies=5))
+end = time.monotonic() + 60.0
+while not viewer.view.bodies and time.monotonic() < end:
+    time.sleep(0.05)
+assert "cone" in viewer.view.bodies
+assert "Cone" in readout_of(viewer.loop.latest)
+assert measures(viewer.scene)["cone_draft_at_rest"].value > 0.0
+assert not viewer.loop.halted
+viewer.shut()
+"""
 BROWSED = """
 SCENE = "pendulum"
 
@@ -69,6 +87,20 @@ def test_a_parameter_is_one_line_in_one_file(tmp_path):
     run(copy, "-m", "app", "run", "rope", "--seconds", "0.3", "--out", "heavy.npz")
     with np.load(copy / "heavy.npz") as file:
         assert file["x"][-1, -1, 2] - file["x"][0, -1, 2] < fall < 0.0
+
+
+def test_a_body_shape_is_one_file(tmp_path):
+    copy = copy_of_sources(tmp_path)
+    blocks = section("Add a body shape")
+    assert len(add(blocks, copy)) == 1
+    (headless,) = commands(blocks)
+    run_command(copy, headless)
+    with np.load(copy / "cone.npz") as file:
+        draft = file["draft"][-1]
+    # What is above the water is a smaller cone: V (1 - d/H)^3, of the height 0.7 m of size 1 at size 1.5.
+    archimedes = 1.5 * 0.7 * (1.0 - (1.0 - 450.0 / 1025.0) ** (1 / 3))
+    assert draft[4] == pytest.approx(archimedes, abs=1e-4)
+    run(copy, "-c", FLOATED)
 
 
 def test_a_scene_is_one_folder(tmp_path):

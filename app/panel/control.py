@@ -49,9 +49,12 @@ class Control:
         value: Value,
         changed: Callable[[str, Value], None],
     ) -> None:
-        """folder: its container in the panel, within which it is made. changed: called with what a browser sets."""
+        """folder: its container in the panel, within which it is made. changed: called with what a browser sets.
+
+        The control holds no value of its own: its widget shows it, and the panel's record of parameters has it.
+        """
         self.gui, self.folder = gui, folder
-        self.name, self.parameter, self.value, self.changed = name, parameter, value, changed
+        self.name, self.parameter, self.changed = name, parameter, changed
         self.visible = True
         self.slider: viser.GuiMultiSliderHandle[float] | None = None
         self.mark: viser.GuiHtmlHandle | None = None
@@ -113,24 +116,23 @@ class Control:
         # At its left end the slider means the least value, which may be 0.
         at_end = position <= math.log10(self.parameter.log_from) + 1e-9
         value = self.parameter.low if at_end else float(f"{10.0**position:.3g}")
-        if abs(self.slider_position(self.value) - position) > 1e-3:
+        if abs(self.slider_position(self.field.value) - position) > 1e-3:
             self.set(value)
 
     def set(self, value: object) -> None:
-        """Take a value, bounded to what is allowed, show it, and pass it on if it is new."""
+        """Take a value, bounded to what is allowed, show it, and pass it on."""
         good = clamp_value(self.parameter, value)
-        if good != self.value:
-            self.show_value(good)
-            self.changed(self.name, good)
+        self.show_value(good)
+        self.changed(self.name, good)
 
     def show_value(self, value: Value) -> None:
         """Show a value that was set by other means."""
-        if value == self.value:
-            return
-        self.value = value
-        self.field.value = value
+        if self.field.value != value:
+            self.field.value = value
         if self.slider is not None:
-            self.slider.value = (self.slider_position(value),)
+            position = (self.slider_position(value),)
+            if self.slider.value != position:
+                self.slider.value = position
 
     def show(self, visible: bool) -> None:
         """Show or hide all of it."""

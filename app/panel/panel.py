@@ -135,8 +135,10 @@ class Panel:
         self.controls[name].set(value)
 
     def on_change(self, name: str, value: Value) -> None:
-        """A control has a new value."""
+        """A control was set."""
         params, number = self.state
+        if getattr(params, name) == value:
+            return
         self.state = dataclasses.replace(params, **{name: value}), number
         self.hide()
 
@@ -171,7 +173,7 @@ class Panel:
     def toggle_plots(self) -> None:
         """Open all plots, or close them where one is open."""
         shown = [c for name, c in self.controls.items() if name in self.kind.plots or name in self.kind.curves]
-        on = not any(c.value for c in shown)
+        on = not any(getattr(self.params, control.name) for control in shown)
         for control in shown:
             control.set(on)
 

@@ -14,26 +14,26 @@ from app.server.viewer import Viewer
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
-DPR = 0.2  # drawn pixels per pixel of the page, each way
-# A software renderer takes seconds to compile the shading of a sea: where no pixel is looked at, all is one colour.
-FLAT = """const put = WebGL2RenderingContext.prototype.shaderSource;
+PIXEL_RATIO = 0.2  # drawn pixels per pixel of the page, in each direction
+# A software renderer takes seconds to compile the shaders of a sea: where a test reads no pixel, all is one colour.
+FLAT_SHADERS = """const put = WebGL2RenderingContext.prototype.shaderSource;
 WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
     const fragment = this.getShaderParameter(shader, this.SHADER_TYPE) === this.FRAGMENT_SHADER;
     const flat = "#version 300 es\\nout lowp vec4 color; void main() { color = vec4(0.3, 0.5, 0.6, 1.0); }";
     put.call(this, shader, fragment ? flat : source);
 };"""
-# What viser itself logs and what changes nothing: its drag layer at each drag of a node, and its splats, whose quads
-# have corners of two coordinates.
-HARMLESS = ("preventDefault inside passive", "computeBoundingSphere(): Computed radius is NaN")
-# The same where one scene follows another: viser 1.1's client gathers the updates of a frame and applies them after its
+# What viser itself logs without harm: its drag layer at each drag of a node, and its splats, the quads of which have
+# corners of two coordinates.
+HARMLESS_ERRORS = ("preventDefault inside passive", "computeBoundingSphere(): Computed radius is NaN")
+# The same when one scene follows another: viser 1.1's client collects the updates of a frame and applies them after its
 # removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a removal.
-LATE = "Tried to update non-existent component"
+LATE_UPDATE = "Tried to update non-existent component"
 
 
 def new_page(chromium: Any, width: int, height: int, shaded: bool) -> Any:
     page = chromium.new_page(viewport={"width": width, "height": height})
     if not shaded:
-        page.add_init_script(FLAT)
+        page.add_init_script(FLAT_SHADERS)
     return page
 
 
@@ -45,8 +45,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def asked_often() -> Iterator[None]:
-    """Many tests wait for a browser to say that it draws water."""
+def frequent_questions() -> Iterator[None]:
+    """Many tests wait until a browser says that it draws the water's shader."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("app.render.injection.ASK_INTERVAL", 0.05)
         yield
@@ -65,22 +65,22 @@ def chromium() -> Iterator[Any]:
 
 
 class Tab:
-    """One page on a server, flat or shaded as it is for users, and what went wrong on it."""
+    """One page on a server, with flat shaders or with those that users see, and the errors on it."""
 
     def __init__(self, chromium: Any, port: int, width: int = 900, height: int = 560, shaded: bool = False) -> None:
         self.page = new_page(chromium, width, height, shaded)
         self.errors: list[str] = []
-        self.followed = 0  # scenes that were opened for it
+        self.followed = 0  # number of scenes that were opened for it
         self.page.on("console", self.note)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.goto(f"http://127.0.0.1:{port}/?hideViserLogo&fixedDpr={DPR}")
+        self.page.goto(f"http://127.0.0.1:{port}/?hideViserLogo&fixedDpr={PIXEL_RATIO}")
 
     def note(self, message: Any) -> None:
-        if message.type == "error" and not any(harmless in message.text for harmless in HARMLESS):
+        if message.type == "error" and not any(harmless in message.text for harmless in HARMLESS_ERRORS):
             self.errors.append(message.text)
 
     def wait(self, condition: Callable[[], Any], seconds: float = 120.0) -> Any:
-        """Run the page until the condition holds; its value, or fail."""
+        """Run the page until the condition holds, and return its value; fail where it does not in time."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             value = condition()
@@ -90,13 +90,13 @@ class Tab:
         pytest.fail(f"not within {seconds:g} s; page errors: {self.errors}")
 
     def follow(self, viewer: Viewer, scene: str, params: Any = None) -> None:
-        """Open a scene in place of the one that is open, and wait until the page has it all, its keys too."""
+        """Open a scene instead of the open one, and wait until the page has all of it, its keys too."""
         viewer.open(scene, params)
         self.followed += 1
         mark = viewer.server.gui.add_html(f'<i class="springtide-mark-{self.followed}"></i>')
         self.wait(lambda: self.page.locator(f".springtide-mark-{self.followed}").count())
         mark.remove()
-        self.errors = [error for error in self.errors if LATE not in error]
+        self.errors = [error for error in self.errors if LATE_UPDATE not in error]
 
     def vertices(self, node: str) -> np.ndarray:
         """The drawn vertices (n, 3) that the page holds of a mesh; empty where it has none."""
@@ -118,10 +118,10 @@ class Tab:
         return np.frombuffer(base64.b64decode(numbers), np.float32).astype(float).reshape(-1, 3)
 
     def drag(self, start: tuple[float, float], end: tuple[float, float], pause: int = 50) -> None:
-        """Press at one pixel, move to another in steps, and hold; `release` lets go."""
+        """Press at one pixel, move to another in steps, and hold; `release` ends the drag."""
         mouse = self.page.mouse
         mouse.move(*start)
-        self.page.wait_for_timeout(500)  # a slow page must notice what is hovered
+        self.page.wait_for_timeout(500)  # a slow page must notice what is under the mouse
         mouse.down()
         for step in range(1, 9):
             mouse.move(
@@ -145,13 +145,13 @@ def one_page(chromium: Any) -> Iterator[tuple[Viewer, Tab]]:
 
 @pytest.fixture
 def shown(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
-    """One viewer and one page for all modules, as a page is slow to load; a test's scene opens anew on it."""
+    """One viewer and one page for all modules, because a page is slow to load; each test's scene is opened on it."""
     viewer, tab = one_page
     tab.errors.clear()
     tab.follow(viewer, request.module.SCENE, getattr(request.module, "PARAMS", None))
     tab.wait(lambda: viewer.loop.counts["steps"] > 0)
     yield viewer, tab
-    viewer.loop.commands.put(Pause())  # it leaves the processor to tests with pages of their own
+    viewer.loop.commands.put(Pause())  # so that it takes no processor time from tests with pages of their own
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from app.messages import Pause, Play
 from app.panel import stability_map as live
 from app.scenes.springs.rope_parameters import ROOT
 from app.server.viewer import Viewer
-from tests.browser.conftest import DPR, Tab
+from tests.browser.conftest import PIXEL_RATIO, Tab
 
 SCENE = "rope"
 
@@ -26,7 +26,9 @@ def pixel(viewer: Viewer, point: Any) -> tuple[float, float]:
     away = np.asarray(point) - camera.position
     focal = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
     x, y, z = away @ right, away @ up, away @ forward
-    return (0.5 * camera.image_width + focal * x / z) / DPR, (0.5 * camera.image_height - focal * y / z) / DPR
+    return (0.5 * camera.image_width + focal * x / z) / PIXEL_RATIO, (
+        0.5 * camera.image_height - focal * y / z
+    ) / PIXEL_RATIO
 
 
 def watching(viewer: Viewer) -> bool:

@@ -1,6 +1,6 @@
-"""In a real Chromium: the patch reaches stock viser, and the pixels show it.
+"""In a real Chromium: the shaders reach stock viser, and the pixels show it.
 
-These tests fail when one of viser's inner names that `app/render/injection.py` leans on changes.
+These tests fail when one of viser's inner names that `app/render/injection.py` uses changes.
 """
 
 import dataclasses
@@ -60,16 +60,16 @@ def pixels(page) -> np.ndarray:
     return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(float)
 
 
-def settled(page) -> np.ndarray:
-    """The pixels once they no longer change: viser fades its canvas in while the sky loads."""
+def final_pixels(page) -> np.ndarray:
+    """The pixels when they no longer change: viser fades its canvas in while the sky loads."""
     shots = [pixels(page)]
 
-    def still() -> bool:
+    def unchanged() -> bool:
         page.wait_for_timeout(700)
         shots.append(pixels(page))
         return bool(np.abs(shots[-1] - shots[-2]).max() < 2)
 
-    assert wait(page, still)
+    assert wait(page, unchanged)
     return shots[-1]
 
 
@@ -100,7 +100,7 @@ def redness(picture: np.ndarray) -> float:
 
 
 def materials(page) -> dict[str, str]:
-    """What each patched node's material says it was dressed with."""
+    """The key of the shader that each node's material has."""
     return page.evaluate(
         """() => Object.fromEntries(Object.entries(window.__viserMutable?.nodeRefFromName ?? {})
             .map(([name, group]) => [name, group?.children?.find(c => c.isMesh)?.material.userData.springtide])
@@ -108,7 +108,7 @@ def materials(page) -> dict[str, str]:
     )
 
 
-def test_the_patch_answers_and_its_programs_link(chromium, server):
+def test_the_script_answers_and_its_programs_link(chromium, server):
     water = make_water(server, tiles=3, dome=True)
     page, errors = visit(chromium, server)
     assert wait(page, lambda: water.has_shader is True)
@@ -117,12 +117,12 @@ def test_the_patch_answers_and_its_programs_link(chromium, server):
     page.close()
 
 
-def test_foam_another_look_and_another_size_reach_the_pixels(chromium, server):
-    """On one page, as its programs are slow to compile."""
+def test_foam_another_material_and_another_size_reach_the_pixels(chromium, server):
+    """On one page, because its programs are slow to compile."""
     water = make_water(server)
     page, errors = visit(chromium, server)
     assert wait(page, lambda: water.has_shader is True)
-    calm = settled(page)
+    calm = final_pixels(page)
     assert redness(calm) < 0
 
     def bright(picture: np.ndarray) -> float:
@@ -155,7 +155,7 @@ def test_foam_another_look_and_another_size_reach_the_pixels(chromium, server):
     page.close()
 
 
-def test_a_late_joiner_and_a_reload_are_dressed_too(chromium, server):
+def test_a_later_page_and_a_reloaded_one_have_the_shader_too(chromium, server):
     water = make_water(server)
     first, _ = visit(chromium, server, shaded=False)
     assert wait(first, lambda: water.has_shader is True)
@@ -168,7 +168,7 @@ def test_a_late_joiner_and_a_reload_are_dressed_too(chromium, server):
     second.close()
 
 
-def test_a_material_that_viser_makes_anew_is_dressed_again(chromium, server):
+def test_a_material_that_viser_makes_anew_gets_the_shader_again(chromium, server):
     water = make_water(server)
     page, errors = visit(chromium, server, shaded=False)
     assert wait(page, lambda: water.has_shader is True)
@@ -232,9 +232,9 @@ def test_colours_reach_the_vertices_of_a_streaming_mesh(chromium, server):
     corners = np.array([[0, 0, 0], [64, 0, 0], [64, 64, 0], [0, 64, 0]], float)
     faces = np.array([[0, 1, 2], [0, 2, 3]])
     red = np.tile([0.5, 0.0, 0.0], (4, 1))
-    painted = ColouredMesh(server, "/quad", corners, faces, red, color=(0, 0, 255))
+    coloured = ColouredMesh(server, "/quad", corners, faces, red, color=(0, 0, 255))
     page, errors = visit(chromium, server)
-    assert wait(page, lambda: painted.has_shader is True)
+    assert wait(page, lambda: coloured.has_shader is True)
 
     def excess(this: int, other: int) -> float:
         middle = pixels(page)[90:110, 150:170].mean((0, 1))
@@ -242,7 +242,7 @@ def test_colours_reach_the_vertices_of_a_streaming_mesh(chromium, server):
 
     assert wait(page, lambda: excess(0, 2) > 40)
     with server.atomic():
-        painted.set(vertices=corners + np.array([0.0, 0.0, 1.0]), colors=np.tile([0.0, 0.5, 0.0], (4, 1)))
+        coloured.set(vertices=corners + np.array([0.0, 0.0, 1.0]), colors=np.tile([0.0, 0.5, 0.0], (4, 1)))
     server.flush()
     assert wait(page, lambda: excess(1, 0) > 40)
     assert errors == []
@@ -257,7 +257,7 @@ def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, monkeypatch
     water = make_water(server)
     page, errors = visit(chromium, server)
     assert wait(page, lambda: water.has_shader is False)
-    before = settled(page)[130:190, 60:260].mean()
+    before = final_pixels(page)[130:190, 60:260].mean()
     water.set_surface(*surface(foam=1.0))
     server.flush()
     assert wait(page, lambda: pixels(page)[130:190, 60:260].mean() > before + 30)
@@ -276,7 +276,7 @@ def test_plain_water_sends_no_script(chromium, server):
     page.close()
 
 
-def test_the_exported_page_is_dressed_without_a_server(chromium, server, tmp_path):
+def test_an_exported_page_has_the_shader_without_a_server(chromium, server, tmp_path):
     make_water(server, tiles=3)
     file = tmp_path / "sea.html"
     file.write_text(server.get_scene_serializer().as_html(), encoding="utf-8")

@@ -66,7 +66,7 @@ def theory(sea: Sea, t: float, params: Params) -> Theory:
 
 
 def measure(sea: Sea, height: np.ndarray, earlier: np.ndarray | None, params: Params) -> Statistics:
-    """Statistics of heights (n, n) [m]; earlier: those of the picture before."""
+    """Statistics of heights (n, n) [m]; earlier: those of the frame before."""
     found = measured(height, sea.length, sea.conditions, earlier)
     # A scale on the dispersion makes every period shorter by as much.
     period = found.peak_period / params.dispersion_scale if params.dispersion_scale > 0.0 else math.nan

@@ -179,14 +179,14 @@ def test_statistics_wave_gauge_and_spectrum_are_computed_only_where_shown():
 def test_the_rain_that_is_counted_is_the_rain_that_theory_has():
     scene = SquareSeaScene(Params(**SMALL, length=32.0, wind_speed=3.0, rain=25.0, drops=1500, rings=0.0))
     run(scene, 30)  # a second for the first drops to reach the water
-    shower = scene.rainfall
-    begun, start = shower.rain.hits, scene.time
+    rainfall = scene.rainfall
+    begun, start = rainfall.rain.hits, scene.time
     run(scene, 240)
-    hits = shower.rain.hits - begun
-    expected = shower.rain.rainfall.flux * shower.span**2 * (scene.time - start)
+    hits = rainfall.rain.hits - begun
+    expected = rainfall.rain.rainfall.flux * rainfall.span**2 * (scene.time - start)
     assert hits > 500
-    assert hits * shower.rain.weight == pytest.approx(expected, rel=4.0 / math.sqrt(hits))
-    assert scene.readings().rain.fallen == shower.rain.hits * shower.rain.weight
+    assert hits * rainfall.rain.weight == pytest.approx(expected, rel=4.0 / math.sqrt(hits))
+    assert scene.readings().rain.fallen == rainfall.rain.hits * rainfall.rain.weight
 
 
 def test_rain_makes_rings_where_the_grid_can_carry_them():

@@ -57,7 +57,7 @@ def test_nothing_steps_until_somebody_looks(lab: Viewer, open_tab) -> None:
     assert lab.loop.counts["steps"] == steps
 
 
-def test_dragging_the_gizmo_moves_the_root(shown: tuple[Viewer, Tab]) -> None:
+def test_dragging_the_arrows_moves_the_root(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     arrow = np.array(ROOT) + (0.0, 0.0, 0.2)
 

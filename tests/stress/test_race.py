@@ -65,7 +65,7 @@ def test_any_methods_and_steps_side_by_side(six: Hammer, tally: Tally) -> None:
             check_results(six.loop.latest.readings, MAX_ROPES)
 
 
-def test_ropes_come_and_go_while_one_is_pulled(six: Hammer, tally: Tally) -> None:
+def test_the_number_of_ropes_changes_while_one_is_dragged(six: Hammer, tally: Tally) -> None:
     points = six.viewer.panel.params.points
     with tally.fault("rope removed while it is dragged", MAX_ROPES):
         for ropes in range(MAX_ROPES, 0, -1):

@@ -1,4 +1,4 @@
-"""The cloth scene without a browser: presets, handles, pulls, and what it says when it goes wrong."""
+"""The cloth scene without a browser: presets, handles, drags, and what it says when it diverges."""
 
 import dataclasses
 
@@ -57,7 +57,7 @@ def test_parameters_that_are_hidden_are_parameters(preset):
     assert hidden(params) <= set(parameters_of(params))
 
 
-def test_a_dragged_particle_comes_and_is_let_go():
+def test_a_dragged_particle_follows_and_is_released():
     scene = ClothScene(SMALL)
     run(scene, 0.5)
     index = 7 * 10 + 4
@@ -72,7 +72,7 @@ def test_a_dragged_particle_comes_and_is_let_go():
     assert scene.frame().pull is None
 
 
-def test_a_moved_pin_takes_its_end_of_the_edge_along():
+def test_a_moved_pin_moves_its_end_of_the_edge():
     scene = ClothScene(SMALL)
     run(scene, 0.1)
     ends = scene.state.x[:, 0, [0, -1]].copy()
@@ -97,8 +97,8 @@ def test_the_sphere_pushes_the_cloth():
     assert gap > 0.0
 
 
-def test_a_sphere_torn_through_the_curtain_takes_the_cloth_along():
-    """Dragged away at once, far beyond: it goes at its top speed, and no particle ends inside what is drawn of it."""
+def test_a_sphere_that_is_pulled_through_the_curtain_takes_the_cloth_along():
+    """Dragged far beyond the cloth: it moves at its largest speed, and no particle gets into the drawn sphere."""
     scene = ClothScene(dataclasses.replace(Params(), sphere=True, wind=0.0))
     run(scene, 0.3)
     scene.handle(Place("sphere", (0.0, 50.0, 1.2)))
@@ -111,7 +111,7 @@ def test_a_sphere_torn_through_the_curtain_takes_the_cloth_along():
         least = min(least, np.linalg.norm(scene.state.x - sphere[:3, None, None], axis=0).min() / sphere[3])
     assert 0.9 * MAX_SPHERE_SPEED < fastest <= MAX_SPHERE_SPEED
     assert least > 0.99
-    # Whatever of the cloth the sphere met it has before it.
+    # The part of the cloth that the sphere met lies in front of it.
     near = np.abs(scene.state.x[0]) + np.abs(scene.state.x[2] - 1.2) < 0.1
     assert near.any()
     assert (scene.state.x[1][near] > sphere[1]).all()
@@ -133,7 +133,7 @@ def test_an_explosion_keeps_the_last_good_state_and_names_a_step_that_holds():
     assert np.isfinite(scene.frame().points).all()
 
 
-def test_where_the_chosen_method_refuses_damping_another_runs_and_the_panel_says_so():
+def test_where_the_chosen_method_takes_no_damping_another_runs_and_the_panel_says_so():
     scene = ClothScene(dataclasses.replace(SMALL, integrator="pefrl"))
     run(scene, 0.1)
     assert scene.integrator.name == "leapfrog"
@@ -145,15 +145,15 @@ def test_where_the_chosen_method_refuses_damping_another_runs_and_the_panel_says
     assert scene.readings().note == marks_of(scene)["integrator"] == ""
 
 
-def test_an_implicit_step_says_what_it_takes():
+def test_the_readings_give_the_cost_of_an_implicit_step():
     scene = ClothScene(dataclasses.replace(SMALL, integrator="implicit_euler", time_step=1 / 60, stiffness=1e5))
     run(scene, 0.5)
     assert 1.0 <= scene.readings().corrections <= 25.0
     assert scene.readings().stability.limit == np.inf
 
 
-def test_while_a_step_takes_longer_than_a_frame_one_is_taken_and_dropped_time_is_said():
-    """Counted by a clock that says 0.3 s of each implicit step: never more than one a frame, however much is due."""
+def test_one_step_a_frame_is_taken_while_it_takes_longer_than_a_frame_and_dropped_time_is_shown():
+    """By a clock that counts 0.3 s for each implicit step: never more than one step a frame, however many are due."""
     spent = 0.0
 
     class ExpensiveScene(ClothScene):
@@ -174,7 +174,7 @@ def test_while_a_step_takes_longer_than_a_frame_one_is_taken_and_dropped_time_is
     assert "Newton corrections a step" in View.readout(object.__new__(View), loop.latest)
 
 
-def test_the_mesh_has_two_triangles_a_cell_all_turned_alike():
+def test_the_mesh_has_two_triangles_a_cell_with_the_same_orientation():
     found = faces(4, 6)
     assert found.shape == (2 * 3 * 5, 3)
     i, j = np.divmod(np.arange(24), 6)
@@ -183,7 +183,7 @@ def test_the_mesh_has_two_triangles_a_cell_all_turned_alike():
     assert len(set(np.sign(np.cross(b - a, c - a)[:, 2]))) == 1
 
 
-def test_samples_and_arrays_carry_what_the_plots_and_files_want():
+def test_plot_rows_and_arrays_have_the_columns_of_plots_and_files():
     scene = ClothScene(dataclasses.replace(SMALL, plot_energy=True))
     run(scene, 0.3)
     rows = scene.take_plot_rows()
@@ -240,7 +240,7 @@ def test_a_change_of_forces_is_booked_as_work_and_not_as_an_error(changes):
 
 
 def test_a_large_cloth_keeps_its_account_from_when_the_plot_is_opened():
-    """Its cost, more than that of the steps themselves, would end real time."""
+    """The account would cost more than the steps themselves, and the drape would no longer run in real time."""
     scene = ClothScene(Params(rows=60, cols=60, integrator="symplectic_euler", time_step=1 / 4800))
     scene.advance(20)
     assert scene.work()["steps with their energy balance"].done == 0

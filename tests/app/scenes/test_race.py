@@ -216,7 +216,7 @@ def test_other_methods_start_the_race_again_and_other_forces_do_not():
 
 
 def test_every_parameter_that_starts_the_race_again_says_so():
-    """What the ropes are compared on; the same list was once kept by the race itself."""
+    """The parameters on which the ropes are compared."""
     named = {f"{what}_{number}" for what in ("integrator", "step") for number in range(2, 7)}
     first = {"ropes", "points", "length", "units", "integrator", "time_step", "race_steps", "stiffness_ratio"}
     declared = parameters_of(Params).items()
@@ -239,7 +239,7 @@ def test_a_change_of_forces_is_booked_as_work_and_no_method_is_charged_with_it()
 
 
 def test_a_change_of_look_costs_nothing_and_leaves_the_accounts_alone():
-    """Bit for bit, with the reference runs and the plots switched, against a race that is left alone."""
+    """Bit for bit the same as in a race that is left alone."""
     alone, changed = race(ropes=2, speed=2.0), race(ropes=2, speed=2.0)
     loops = [SimLoop(scene, clock=lambda: 0.0, effort=lambda: 0.0) for scene in (alone, changed)]
     looks = (
@@ -291,7 +291,7 @@ def test_a_drag_of_one_rope_pulls_all_alike_and_the_reference_run_too():
     assert scene.frame().pull is None
 
 
-def test_all_roots_follow_the_one_gizmo():
+def test_all_roots_follow_the_same_arrows():
     scene = race(ropes=2, integrator="rk4")
     scene.handle(Place("root", (0.3, 0.2, 3.4)))
     run(scene, 2.0)
@@ -303,7 +303,7 @@ def test_all_roots_follow_the_one_gizmo():
     assert scene.readings().results[0].error < 1e-3
 
 
-def test_a_long_race_thins_its_rows_and_keeps_its_beginning():
+def test_a_long_race_keeps_fewer_rows_but_those_of_its_start():
     scene = race(ropes=2, points=2)
     scene.charts = charts = RaceCharts(scene.race)
     charts.row_interval = 1e-9
@@ -334,7 +334,7 @@ def test_both_ends_of_every_race_parameter_survive(name):
         assert np.isfinite(scene.race.points()).all()
 
 
-def test_a_race_hides_what_means_nothing_in_it():
+def test_parameters_that_mean_nothing_are_hidden():
     three = hidden(Params())
     assert {"integrator_4", "step_2", "axial_stiffness"} <= three
     assert not {"integrator_3", "plot_errors", "stiffness_ratio"} & three
@@ -364,7 +364,7 @@ def test_the_charts_end_at_a_round_time(t, end):
 
 
 @pytest.mark.parametrize("steps", [[0.1, 0.03], [1 / 60] * 6, [1e-5, 0.1], [1 / 240, 3 / 960, 4 / 960], [0.01, 0.007]])
-def test_all_meet_at_the_end_of_a_tick_without_much_shorter_steps(steps):
+def test_all_ropes_meet_at_the_end_of_a_tick_with_steps_that_are_hardly_shorter(steps):
     tick = tick_of(steps)
     assert tick <= max(1 / 30, max(steps)) * (1 + 1e-9)
     taken = [tick / steps_for(tick, step) for step in steps]

@@ -71,7 +71,7 @@ def test_the_root_follows_where_it_is_placed() -> None:
     assert (scene.state.v[:, 0, 0] == 0).all()
 
 
-def test_a_rope_lost_in_the_floor_starts_from_home_again() -> None:
+def test_a_rope_that_diverged_in_the_floor_starts_again_where_a_new_one_does() -> None:
     scene = RopeScene(Params())
     scene.handle(Place("root", (0.0, 0.0, -90.0)))
     scene.reset()
@@ -136,7 +136,7 @@ def test_every_integrator_can_be_chosen_while_moving() -> None:
         assert (scene.integrator.name == name) == (scene.readings().note == "")
 
 
-def test_where_the_chosen_method_refuses_damping_another_runs_and_says_so() -> None:
+def test_where_the_chosen_method_takes_no_damping_another_runs_and_the_note_says_so() -> None:
     scene = RopeScene(Params(integrator="pefrl"))
     scene.advance(10)
     assert scene.integrator.name == "leapfrog"
@@ -158,14 +158,14 @@ def test_the_energy_plots_error_is_small_and_reset_leaves_a_gap() -> None:
     assert np.isnan(scene.take_plot_rows()[0][0])
 
 
-def test_nothing_is_sampled_with_the_plots_off() -> None:
+def test_no_plot_row_is_taken_with_the_plots_closed() -> None:
     scene = RopeScene(Params())
     scene.take_plot_rows()
     scene.advance(60)
     assert scene.take_plot_rows() == ()
 
 
-def test_the_follower_is_exact_whatever_the_frame() -> None:
+def test_the_tracker_is_exact_for_any_frame_interval() -> None:
     fine, coarse = CriticallyDampedTracker((0.0, 0.0, 0.0)), CriticallyDampedTracker((0.0, 0.0, 0.0))
     for follower, parts in ((fine, 64), (coarse, 2)):
         follower.target = (1.0, -2.0, 0.5)
@@ -178,11 +178,11 @@ def test_the_follower_is_exact_whatever_the_frame() -> None:
 
 
 @pytest.mark.parametrize("values", [None, "abc", (1, 2), (1, 2, float("nan")), (1, 2, float("inf")), (1, 2, 3, 4)])
-def test_what_is_no_vector_is_none(values: object) -> None:
+def test_values_that_are_not_three_finite_numbers_give_none(values: object) -> None:
     assert finite_vector(values) is None
 
 
-def test_far_vectors_come_within_reach() -> None:
+def test_far_vectors_are_bounded() -> None:
     assert finite_vector((1e9, -1e9, 1)) == (100.0, -100.0, 1.0)
 
 

@@ -1,8 +1,8 @@
 // The shader of water, for "<name>" where there is a "<name>/water_material".
 //
-// "<name>/water_slopes" carries (slope x, slope y, foam) at each vertex. The vertices of "<name>/water_material" are the
-// uniforms, in the order of WATER_UNIFORMS (app/render/material.py). "Sea" in a name means the frame of the node, z up;
-// three's world is rotated against it.
+// "<name>/water_slopes" carries (slope x, slope y, foam) at each vertex. The vertices of "<name>/water_material" are
+// the uniforms, in the order of WATER_UNIFORMS (app/render/material.py). "Sea" in a name means the frame of the node,
+// z up; three's world is rotated against it.
 
 const seas = new Map(); // name of the node -> what this file has made for it
 // Name of the node -> its uniforms. They are kept for good, because viser may keep a material for a new geometry.
@@ -38,8 +38,8 @@ function readMaterial(sea, data) {
   sea.uniforms.toSea.value.copy(sea.mesh.matrixWorld).invert();
 }
 
-// Triangles of a grid at every stride-th vertex, but at every vertex of its rim, so that tiles of different strides meet
-// without a gap. Vertex (i, j) has the number i * columns + j.
+// Triangles of a grid at every stride-th vertex, but at every vertex of its rim, so that tiles of different strides
+// meet without a gap. Vertex (i, j) has the number i * columns + j.
 function levelIndex(rows, columns, stride) {
   const index = [];
   for (let i = 0; i < rows - 1; i += stride) {
@@ -222,9 +222,11 @@ shaders.push({
       replaceShader(sea.wire.material, "springtide-wire", (shader) => {
         Object.assign(shader.uniforms, { wireColor: sea.uniforms.wireColor });
         // A little nearer to the camera than the water, so that the water does not hide it.
-        insertAfter(shader, "vertexShader", "project_vertex", "gl_Position = projectionMatrix * (mvPosition * vec4(vec3(0.998), 1.0));");
+        const nearer = "gl_Position = projectionMatrix * (mvPosition * vec4(vec3(0.998), 1.0));";
+        insertAfter(shader, "vertexShader", "project_vertex", nearer);
         insertAfter(shader, "fragmentShader", "common", "uniform vec3 wireColor;");
-        shader.fragmentShader = shader.fragmentShader.replace("#include <opaque_fragment>", "gl_FragColor = vec4(wireColor, 1.0);");
+        const colour = "gl_FragColor = vec4(wireColor, 1.0);";
+        shader.fragmentShader = shader.fragmentShader.replace("#include <opaque_fragment>", colour);
       });
     }
     // The server may add meshes for browsers without this shader (Water._draw_plain); here they are hidden.

@@ -33,13 +33,13 @@ const WATER_GLSL = {
     #include <cube_uv_reflection_fragment>
     #include <envmap_common_pars_fragment>
     uniform mat4 fromSea;
-    uniform vec3 skyline; // height of the land in the photograph towards the sun and away from it [rad], stretch at the horizon
+    uniform vec3 skyline; // height of the land towards the sun and away from it [rad], stretch at the horizon
     uniform vec3 skyFold; // share of the photograph's azimuths in use, blur of the haze, radiance reduced to its half
     uniform vec3 sunDirection; // towards the sun, of length 1
     uniform vec3 sunLight; // irradiance
     uniform vec3 skyTint; // colour filter on the photograph
     uniform vec3 clouds; // cover, size of a cloud, share of its light that thick cloud takes away
-    uniform vec3 wind; // direction [rad] towards which ripples, foam and clouds move; gravity [m/s2]; size of a patch of foam [m]
+    uniform vec3 wind; // direction of ripples, foam and clouds [rad], gravity [m/s2], size of a patch of foam [m]
     uniform vec3 lens; // haze distance [m], exposure, share of the sun's disc and glitter that is visible
     uniform vec3 seaState; // time [s], significant height [m], mean square slope of the mesh
 
@@ -47,6 +47,7 @@ const WATER_GLSL = {
     // Where trees or houses stand around, only the azimuths near the sun are used, and spread over the circle.
     float sunBearing() { return atan(sunDirection.y, sunDirection.x + 1e-6); }
 
+    // The direction in the photograph that is drawn at the direction d; side: 1, or -1 for its mirror image.
     vec3 photographDirection(vec3 d, float side) {
       float bearing = atan(d.y, d.x) - sunBearing();
       bearing = mod(bearing + 3.14159265, 6.2831853) - 3.14159265;
@@ -58,6 +59,7 @@ const WATER_GLSL = {
       return vec3(cos(e) * cos(a), cos(e) * sin(a), sin(e));
     }
 
+    // Radiance of the photograph in its direction d; blur: 0 sharp to 1.
     vec3 photograph(vec3 d, float blur) {
       #if defined(USE_ENVMAP) && defined(ENVMAP_TYPE_CUBE_UV)
         vec3 c = textureCubeUV(envMap, envMapRotation * (mat3(fromSea) * d), blur).rgb;
@@ -70,6 +72,7 @@ const WATER_GLSL = {
       #endif
     }
 
+    // Noise of several octaves with the shapes of clouds, about -1 to 1.
     float cloudNoise(vec2 p, int octaves) {
       vec2 drift = vec2(gradientNoise(p * 0.6 + 4.0).x, gradientNoise(p * 0.6 - 9.0).x);
       p += 0.7 * drift;
@@ -106,6 +109,7 @@ const WATER_GLSL = {
       return vec4(mix(c, cloud, cover * 0.92 * smoothstep(0.0, 0.09, d.z)), cover);
     }
 
+    // Radiance of the sky without clouds in the direction d.
     vec3 sky(vec3 d, float blur) {
       vec3 c = photograph(photographDirection(d, 1.0), blur);
       // Opposite to the sun the two ends of the spread photograph meet. There each is blended with its mirror image.
@@ -117,12 +121,15 @@ const WATER_GLSL = {
       return c;
     }
 
+    // Mean radiance of the sky.
     vec3 ambientLight() { return photograph(vec3(0.0, 0.0, 1.0), 1.0); }
 
+    // Radiance of the haze in the direction d.
     vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), skyFold.y); }`,
 
   noise: `
     #include <common>
+    // Two random numbers in 0..1 for each whole-numbered p.
     vec2 hash2(vec2 p) {
       uvec2 q = uvec2(ivec2(p)) * uvec2(1597334673u, 3812015801u);
       uint n = (q.x ^ q.y) * 1597334673u;
@@ -151,7 +158,11 @@ const WATER_GLSL = {
     uniform vec3 ripple; // rms slope, longest and shortest ripple [m]
     uniform vec3 extent; // tiles along a side, whether the sky is drawn, whether the wireframe is
 
-    float schlick(float f0, float c) { float m = clamp(1.0 - c, 0.0, 1.0); float m2 = m * m; return f0 + (1.0 - f0) * m2 * m2 * m; }
+    // Fresnel reflectance at the cosine c, from f0 at normal incidence (Schlick 1994, Comput. Graph. Forum 13:233).
+    float schlick(float f0, float c) {
+      float m = clamp(1.0 - c, 0.0, 1.0), m2 = m * m;
+      return f0 + (1.0 - f0) * m2 * m2 * m;
+    }
 
     // Slopes of ripples that are too short for the mesh: (slope x, slope y, variance not shown, gust). Each octave has
     // the same variance, as in the equilibrium range of wind waves. An octave that is finer than a pixel is not shown;
@@ -238,15 +249,16 @@ const WATER_GLSL = {
       vec2 d = x - slick.xy;
       float off = slick.z - length(d), size = 0.22 * slick.z + 1.0;
       if (abs(off) > 1.5 * size) return off > 0.0 ? 1.0 : 0.0;
-      float torn = gradientNoise(d / size).x + 0.5 * gradientNoise(d / size * 2.7 + 5.0).x + 0.25 * gradientNoise(d / size * 7.1 - 3.0).x;
+      float torn = gradientNoise(d / size).x + 0.5 * gradientNoise(d / size * 2.7 + 5.0).x;
+      torn += 0.25 * gradientNoise(d / size * 7.1 - 3.0).x;
       return smoothstep(-0.05, 0.05, off / size + 0.8 * torn);
     }
     vec3 deepUnder(float oil) { return mix(deepColor, slickDeepColor, oil); }
     vec3 scatterUnder(float oil) { return mix(scatterColor, slickScatterColor, oil); }
     vec3 opticsUnder(float oil) { return mix(optics, vec3(slickOptics.xy, optics.z), oil); }
 
-    // The light from a point of the sea. at: the point [m]; rest: its position in still water; flatness: 1 where there is
-    // no mesh any more.
+    // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; flatness: 1 where
+    // there is no mesh.
     vec3 shadeSea(vec3 at, vec2 rest, vec3 slopeAndFoam, float flatness) {
       float oil = slickCover(at.xy);
       vec3 deep = deepUnder(oil), scatter = scatterUnder(oil), optics = opticsUnder(oil);

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from rich import get_console
 from rich.progress import Progress
 
 from app.files import check_out_file
@@ -50,7 +51,7 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
     arrays = {key: np.empty((frames + 1, *array.shape), array.dtype) for key, (array, _) in first.items()}
     count = 0  # frames kept
     problem = ""
-    with Progress(transient=True) as progress:
+    with Progress(transient=True, disable=not get_console().is_terminal) as progress:
         task = progress.add_task(f"{name}, {seconds:g} s", total=frames)
         for frame in range(frames + 1):
             if frame:

@@ -44,6 +44,14 @@ def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, pa
         return 1
     done = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: done.set())
+    before = signal.getsignal(signal.SIGINT)
+    if before is signal.default_int_handler:  # not in a background job of a shell, which ignores it
+
+        def interrupt(*_: object) -> None:
+            done.set()  # the compiler's callbacks lose the exception
+            raise KeyboardInterrupt
+
+        signal.signal(signal.SIGINT, interrupt)
     try:
         shown = "localhost" if is_loopback(host) or host == "0.0.0.0" else f"[{host}]" if ":" in host else host
         address = f"http://{shown}:{viewer.port}"
@@ -57,6 +65,7 @@ def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, pa
     except KeyboardInterrupt:
         pass
     finally:
+        signal.signal(signal.SIGINT, before)
         viewer.shut()
     return 0
 

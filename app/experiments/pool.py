@@ -19,6 +19,7 @@ from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.connection import Connection
 from typing import Any, NamedTuple, TypeVar
 
+from rich import get_console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 K = TypeVar("K", bound=Hashable)
@@ -38,9 +39,9 @@ def core_count() -> int:
 
 
 def progress_bar() -> Progress:
-    """A progress bar that counts tasks and disappears at the end."""
+    """A progress bar that counts tasks and disappears at the end; nothing where the output is no terminal."""
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
-    return Progress(*columns, transient=True)
+    return Progress(*columns, transient=True, disable=not get_console().is_terminal)
 
 
 def spread(work: Callable[..., R], tasks: Sequence[Arguments], title: str, workers: int = 0) -> list[R]:

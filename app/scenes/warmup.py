@@ -33,10 +33,11 @@ def parts(name: str, *, drawn: bool = True) -> Iterator[str]:
 
 def compile_scene(name: str, *, drawn: bool = True, show: Callable[[str], None] = lambda part: None) -> None:
     """Compile a scene's kernels. drawn: and its drawing's. show: told what comes next, beside the terminal."""
+    from rich import get_console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     columns = SpinnerColumn(), TextColumn("compiling {task.description} (once)"), TimeElapsedColumn()
-    with Progress(*columns, transient=True) as progress:
+    with Progress(*columns, transient=True, disable=not get_console().is_terminal) as progress:
         task = progress.add_task(name, total=None)
         for part in parts(name, drawn=drawn):
             progress.update(task, description=f"{name}: {part}")

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from app.__main__ import main
-from app.experiments import tables as report
+from app.experiments import tables
 from app.scenes import NAMES, scene_named
 from sim.parameters import parameters_of
 from tests.stress.clients import clients_of, until
@@ -110,9 +110,9 @@ def test_a_disk_that_is_full_while_tables_and_figures_are_written(tmp_path: Path
     for limit in (0, 500, 3000):
         with tally.fault("disk full while exporting", 2):
             with full_disk(limit), pytest.raises(OSError, match=r"large|space"):
-                report.save_table(rows, tmp_path / "table.csv")
+                tables.save_table(rows, tmp_path / "table.csv")
             with full_disk(limit), pytest.raises(OSError, match=r"large|space"):
-                report.save_figures({"figure": figure}, tmp_path)
+                tables.save_figures({"figure": figure}, tmp_path)
             assert list(tmp_path.iterdir()) == []
 
 

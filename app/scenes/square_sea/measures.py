@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from app.scenes.contract import Measure
-from app.scenes.square_sea.report import measure, theory
+from app.scenes.square_sea.statistics import measure, theory
 
 if TYPE_CHECKING:
     from app.scenes.square_sea.scene import SquareSeaScene

@@ -1,9 +1,6 @@
 """The texts of the panel: the statistics of the sea beside theory, and statements of the course lab beside physics."""
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from app.messages import Snapshot
 from app.render.html import (
@@ -21,72 +18,14 @@ from app.render.html import (
     table,
 )
 from app.scenes.square_sea.parameters import Params, gravity
-from sim.ocean import Sea
+from app.scenes.square_sea.statistics import Report
 from sim.ocean.planets import RADIUS_RULES, gravity_of
-from sim.ocean.statistics import Statistics, beaufort, expected, height_scatter, measured
+from sim.ocean.statistics import beaufort
 
 MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
 BAND_WIDTH = 2.0  # standard deviations to each side: 95 of 100 seas lie within
-PEAK_WIDTH = 0.08  # of the peak frequency: waves no farther from the peak are called dominant
 WATER_VISCOSITY, HEAVY_OIL_VISCOSITY = 1e-6, 1e-3  # [m2/s] kinematic, to compare with
 HEADING = "Lab says, physics says"
-
-
-class Theory(NamedTuple):
-    """What the spectrum says."""
-
-    statistics: Statistics  # as the tile resolves it
-    scatter: float  # relative standard deviation of one sea's Hs
-    whole: float  # Hs [m] on an endless sea, nan where no closed form is known
-    wave: tuple[float, float]  # length [m] and speed [m/s] of the dominant wave
-
-
-class Report(NamedTuple):
-    """The sea as drawn, and as theory has it."""
-
-    measured: Statistics
-    theory: Theory
-
-
-def scaled(s: Statistics, factor: float) -> Statistics:
-    """The statistics of heights `factor` times as high."""
-    return s._replace(
-        significant_height=factor * s.significant_height, mean_square_slope=factor**2 * s.mean_square_slope
-    )
-
-
-def theory(sea: Sea, t: float, params: Params) -> Theory:
-    """Theory of the sea at time t [s] as drawn."""
-    found = expected(sea, t)
-    c = sea.conditions
-    closed = sea.spectrum.significant_height
-    whole = closed(c) if closed is not None and c.wind_speed > 0.0 else math.nan
-    wave = dominant(sea, t, found.peak_period)
-    return Theory(scaled(found, params.amplitude), height_scatter(sea, t), params.amplitude * whole, wave)
-
-
-def measure(sea: Sea, height: np.ndarray, earlier: np.ndarray | None, params: Params) -> Statistics:
-    """Statistics of heights (n, n) [m]; earlier: those of the frame before."""
-    found = measured(height, sea.length, sea.conditions, earlier)
-    # A scale on the dispersion makes every period shorter by as much.
-    period = found.peak_period / params.dispersion_scale if params.dispersion_scale > 0.0 else math.nan
-    return scaled(found, params.amplitude)._replace(peak_period=period)
-
-
-def dominant(sea: Sea, t: float, period: float) -> tuple[float, float]:
-    """Length [m] and phase speed [m/s] of the waves about the peak period [s]; nan where there are none."""
-    if not period > 0.0:
-        return math.nan, math.nan
-    peak = 2.0 * math.pi / period
-    energy = sea.energy_at(t)
-    away = np.where(energy > 0.0, np.abs(sea.frequencies / peak - 1.0), math.inf)
-    # A tile of few waves may have none so near: then the nearest.
-    energy = np.where(away <= max(PEAK_WIDTH, float(away.min())), energy, 0.0)
-    total = float(energy.sum())
-    if not total > 0.0:
-        return math.nan, math.nan
-    k = float((energy * np.hypot(sea.k[:, None], sea.k[None, :])).sum()) / total
-    return 2.0 * math.pi / k, peak / k
 
 
 def readout(snapshot: Snapshot) -> Html:

@@ -14,7 +14,7 @@ from app.scenes.contract import SceneKind
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, Params, conditions, hidden, rain_settings
 from app.scenes.square_sea.rainfall import Rainfall, RainFrame
-from app.scenes.square_sea.report import Report, Theory, measure, theory
+from app.scenes.square_sea.statistics import Report, Theory, measure, theory
 from sim.ocean import Sea
 from sim.ocean.foam import pace, threshold, whitecaps
 from sim.ocean.tile_mesh import set_mesh

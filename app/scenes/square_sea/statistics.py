@@ -1,0 +1,69 @@
+"""The statistics of the sea as drawn, beside those that theory gives for its tile."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from app.scenes.square_sea.parameters import Params
+from sim.ocean import Sea
+from sim.ocean.statistics import Statistics, expected, height_scatter, measured
+
+PEAK_WIDTH = 0.08  # of the peak frequency: waves no farther from the peak are called dominant
+
+
+class Theory(NamedTuple):
+    """What the spectrum says."""
+
+    statistics: Statistics  # as the tile resolves it
+    scatter: float  # relative standard deviation of one sea's Hs
+    whole: float  # Hs [m] on an endless sea, nan where no closed form is known
+    wave: tuple[float, float]  # length [m] and speed [m/s] of the dominant wave
+
+
+class Report(NamedTuple):
+    """The sea as drawn, and as theory has it."""
+
+    measured: Statistics
+    theory: Theory
+
+
+def scaled(s: Statistics, factor: float) -> Statistics:
+    """The statistics of heights `factor` times as high."""
+    return s._replace(
+        significant_height=factor * s.significant_height, mean_square_slope=factor**2 * s.mean_square_slope
+    )
+
+
+def theory(sea: Sea, t: float, params: Params) -> Theory:
+    """Theory of the sea at time t [s] as drawn."""
+    found = expected(sea, t)
+    c = sea.conditions
+    closed = sea.spectrum.significant_height
+    whole = closed(c) if closed is not None and c.wind_speed > 0.0 else math.nan
+    wave = dominant(sea, t, found.peak_period)
+    return Theory(scaled(found, params.amplitude), height_scatter(sea, t), params.amplitude * whole, wave)
+
+
+def measure(sea: Sea, height: np.ndarray, earlier: np.ndarray | None, params: Params) -> Statistics:
+    """Statistics of heights (n, n) [m]; earlier: those of the frame before."""
+    found = measured(height, sea.length, sea.conditions, earlier)
+    # A scale on the dispersion makes every period shorter by as much.
+    period = found.peak_period / params.dispersion_scale if params.dispersion_scale > 0.0 else math.nan
+    return scaled(found, params.amplitude)._replace(peak_period=period)
+
+
+def dominant(sea: Sea, t: float, period: float) -> tuple[float, float]:
+    """Length [m] and phase speed [m/s] of the waves about the peak period [s]; nan where there are none."""
+    if not period > 0.0:
+        return math.nan, math.nan
+    peak = 2.0 * math.pi / period
+    energy = sea.energy_at(t)
+    away = np.where(energy > 0.0, np.abs(sea.frequencies / peak - 1.0), math.inf)
+    # A tile of few waves may have none so near: then the nearest.
+    energy = np.where(away <= max(PEAK_WIDTH, float(away.min())), energy, 0.0)
+    total = float(energy.sum())
+    if not total > 0.0:
+        return math.nan, math.nan
+    k = float((energy * np.hypot(sea.k[:, None], sea.k[None, :])).sum()) / total
+    return 2.0 * math.pi / k, peak / k

@@ -10,12 +10,13 @@ the parameter, the value, its range and unit (command line, files).
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Literal, NamedTuple, TypeVar
 
 from sim.validation import argument_error
 
 P = TypeVar("P")
+T = TypeVar("T")
 Value = bool | int | float | str
 
 Effect = Literal["look", "forces", "start"]
@@ -99,6 +100,26 @@ def redeclare(base: type, name: str, **changes: Any) -> Any:
         raise unknown_parameter(name, known)
     declared = known[name]._replace(**changes)
     return dataclasses.field(default=declared.default, metadata={"parameter": declared})
+
+
+def with_parameters(declared: Mapping[str, Parameter], **changes: Any) -> Callable[[type[T]], type[T]]:
+    """A decorator, below that of a dataclass, which adds parameters that are declared elsewhere at the end of a class.
+
+    changes: fields of `Parameter`, the same for all of them, as in `group="Weather"`. Raises ValueError where the class
+    has such a name already.
+    """
+
+    def add(cls: type[T]) -> type[T]:
+        for name, known in declared.items():
+            if name in cls.__annotations__:
+                raise argument_error("declared", name, f"names that {cls.__name__} has not yet")
+            cls.__annotations__[name] = known.kind
+            setattr(
+                cls, name, dataclasses.field(default=known.default, metadata={"parameter": known._replace(**changes)})
+            )
+        return cls
+
+    return add
 
 
 def parameters_of(record: Any) -> dict[str, Parameter]:

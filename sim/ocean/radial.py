@@ -1,6 +1,7 @@
 """A sea that is a sum of Gerstner waves, drawn on a radial grid and asked at points.
 
-sea = RadialSea(draw_waves(SPECTRA["jonswap"], Conditions(wind_speed=8.0), 64), FluidColumn(thickness=0.2))
+jonswap = SPECTRA["jonswap"]
+sea = RadialSea(draw_waves(jonswap, jonswap.conditions(wind_speed=8.0), 64), FluidColumn(thickness=0.2))
 surface = sea.on(RadialGrid(), t=12.0)
 water = sea.at([[0.0, 0.0]], t=12.0)
 

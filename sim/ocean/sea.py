@@ -17,9 +17,10 @@ from sim.ocean.evolve import set_heights
 from sim.ocean.medium import Medium
 from sim.ocean.query import query
 from sim.ocean.ripples import Ripples
-from sim.ocean.spectra import SPECTRA, Conditions
+from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions
 from sim.ocean.surface import Surface
 from sim.ocean.transforms import PRECISIONS, Transforms
+from sim.parameters import check_value
 from sim.validation import (
     argument_error,
     check_finite,
@@ -33,7 +34,7 @@ SETTLED = 1e-7  # share of a change still to come below which it counts as done
 SIZES = (8, 4096)
 
 
-_CONDITIONS = frozenset(f.name for f in dataclasses.fields(Conditions))
+_CONDITIONS = frozenset(f.name for f in dataclasses.fields(Conditions)) | PARAMETERS.keys()
 _MEDIUM = frozenset(f.name for f in dataclasses.fields(Medium))
 
 
@@ -60,7 +61,9 @@ class Sea:
         """size: cells a side, even, 8 to 4096; length [m] of the tile; the wind is U10, U19.5 for pierson_moskowitz.
 
         amplitudes: "random" (Gaussian) or "fixed" (random phase only); choppiness: factor on the displacement;
-        viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of `Conditions` and `Medium`.
+        viscosity [m2/s]: waves decay at their exact rate from t = 0. More:
+        the fields of `Conditions` and `Medium`, and the
+        parameters of any spectrum (`sim.ocean.spectra.PARAMETERS`), for when it is the one in force.
         Raises ValueError for a value that is not allowed, TypeError for an unknown name.
         """
         if not is_whole_number(size) or size % 2 or not SIZES[0] <= size <= SIZES[1]:
@@ -103,7 +106,8 @@ class Sea:
             "tension": tension,
             "viscosity": viscosity,
         }
-        self._set_conditions(spectrum, given | more, Conditions(), Medium())
+        self._given: dict[str, Any] = {}  # conditions as given, those of other spectra too
+        self._set_conditions(spectrum, given | more, Medium())
         self._start = self._target
         self._set_planes()
 
@@ -149,7 +153,7 @@ class Sea:
         if self._ripples is not None:
             self._ripples.check_time(t)
         before = self._rate, self._decay, self._magnitude(t)
-        self._set_conditions(spectrum or self.spectrum.name, changes, self.conditions, self.medium)
+        self._set_conditions(spectrum or self.spectrum.name, changes, self.medium)
         turns = before[0] * (t - self._base)
         # h0(k) e^(-i omega t): the phase so far goes into the unit amplitudes, in double.
         self._unit = self._unit * self._full(np.exp(-2j * np.pi * (turns - np.rint(turns))))
@@ -165,7 +169,6 @@ class Sea:
 
         Raises ValueError for a size that is not allowed.
         """
-        parts = (self.conditions, self.medium)
         other = Sea(
             size,
             self.length,
@@ -174,7 +177,8 @@ class Sea:
             amplitudes=self.amplitudes,
             seed=self.seed,
             precision=self.precision,
-            **{f.name: getattr(part, f.name) for part in parts for f in dataclasses.fields(part)},
+            **self._given,
+            **{f.name: getattr(self.medium, f.name) for f in dataclasses.fields(self.medium)},
         )
         half = min(self.size, other.size) // 2
         n = np.arange(1 - half, half)
@@ -242,17 +246,20 @@ class Sea:
     def _key(self, t: float) -> tuple:
         return t, self.version, self._choppiness, self._ripples.version if self._ripples is not None else -1
 
-    def _set_conditions(self, spectrum: str, values: dict[str, Any], conditions: Conditions, medium: Medium) -> None:
+    def _set_conditions(self, spectrum: str, values: dict[str, Any], medium: Medium) -> None:
         """Check everything, then set spectrum, conditions, medium, and what follows from them."""
         if spectrum not in SPECTRA:
             raise argument_error("spectrum", spectrum, "one of " + ", ".join(SPECTRA))
         for name in values:
             if name not in _CONDITIONS | _MEDIUM:
                 raise TypeError(f"{name}: no such condition; there are {', '.join(sorted(_CONDITIONS | _MEDIUM))}")
-        conditions = dataclasses.replace(conditions, **{n: v for n, v in values.items() if n in _CONDITIONS})
+        given = self._given | {n: v for n, v in values.items() if n in _CONDITIONS}
+        for name in given.keys() & PARAMETERS.keys():
+            check_value(name, PARAMETERS[name], given[name])
+        conditions = SPECTRA[spectrum].conditions_from(given)
         medium = dataclasses.replace(medium, **{n: v for n, v in values.items() if n in _MEDIUM})
         omega, decay = medium.roots(self._k, conditions)
-        self.spectrum, self.conditions, self.medium = SPECTRA[spectrum], conditions, medium
+        self.spectrum, self.conditions, self.medium, self._given = SPECTRA[spectrum], conditions, medium, given
         self._rate, self._decay, self._decays = omega / (2.0 * np.pi), decay, bool(decay.any())
         self._fall = (-decay).astype(self._real)
         S = self.spectrum(self.k[:, None], self.k[None, :], conditions)

@@ -11,7 +11,7 @@ from sim.ocean import Sea
 from sim.ocean.gerstner import draw_waves
 from sim.ocean.radial import RadialSea
 from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.spectra import SPECTRA, Conditions
+from sim.ocean.spectra import SPECTRA
 from sim.ocean.wave_sum import add_waves
 
 WAVES, RINGS, SPOKES = 64, 128, 128
@@ -88,4 +88,4 @@ def against_square(repeats: int) -> list[dict[str, Any]]:
 
 def default_sea() -> RadialSea:
     """64 waves of the JONSWAP spectrum at 8 m/s."""
-    return RadialSea(draw_waves(SPECTRA["jonswap"], Conditions(wind_speed=8.0), WAVES))
+    return RadialSea(draw_waves(SPECTRA["jonswap"], SPECTRA["jonswap"].conditions(wind_speed=8.0), WAVES))

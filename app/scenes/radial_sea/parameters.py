@@ -7,8 +7,8 @@ from typing import Any
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import MIXTURE_LAWS, fluids
 from sim.ocean.radial_grid import LAWS
-from sim.ocean.spectra import SPECTRA, Conditions
-from sim.parameters import parameter
+from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions
+from sim.parameters import parameter, with_parameters
 
 OILS = tuple(name for name in fluids() if "water" not in name)
 SPILLS = ("none", "layer", "mixed")
@@ -17,8 +17,9 @@ SKIES = ("park", "sunset", "dawn", "night")
 
 
 @dataclasses.dataclass(frozen=True)
+@with_parameters(PARAMETERS, group="Sea")
 class Params:
-    """The parameters; the defaults are clean water in a fresh breeze."""
+    """The parameters, with those of all spectra; the defaults are clean water in a fresh breeze."""
 
     waves: bool = parameter(True, doc="Waves; without them the sea is level", group="Sea")
     wind_speed: float = parameter(7.0, 0.5, 25.0, "m/s", "Wind U10 (U19.5 for pierson_moskowitz)", group="Sea")
@@ -150,7 +151,7 @@ PRESETS: dict[str, dict[str, Any]] = {
 
 def hidden(params: Params) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
-    names: set[str] = set()
+    names = SPECTRA[params.spectrum].unused(spectrum_values(params))
     if params.spill != "layer":
         names.add("thickness")
     if params.spill != "mixed":
@@ -160,7 +161,7 @@ def hidden(params: Params) -> set[str]:
         if not (params.rig and params.jet):
             names.add("oil")
     if not params.waves:
-        names |= {"spectrum", "wave_count", "choppiness", "exposure", "ageing", "film"}
+        names |= {"spectrum", *PARAMETERS, "wave_count", "choppiness", "exposure", "ageing", "film"}
         if not (params.rig and params.fire):  # the wind still blows the smoke
             names |= {"wind_speed", "wind_direction"}
     if params.bodies == 0:
@@ -191,9 +192,14 @@ def column_of(params: Params) -> FluidColumn:
 
 def conditions_of(params: Params) -> Conditions:
     """The conditions under which the spectrum is evaluated."""
-    return Conditions(
-        wind_speed=params.wind_speed if params.waves else 0.0, wind_direction=math.radians(params.wind_direction)
-    )
+    wind_speed = params.wind_speed if params.waves else 0.0
+    wind = {"wind_speed": wind_speed, "wind_direction": math.radians(params.wind_direction)}
+    return SPECTRA[params.spectrum].conditions_from(wind | spectrum_values(params))
+
+
+def spectrum_values(params: Params) -> dict[str, Any]:
+    """The values of the parameters of all spectra."""
+    return {name: getattr(params, name) for name in PARAMETERS}
 
 
 def exposure_of(params: Params) -> float:

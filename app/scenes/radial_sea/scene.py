@@ -1,7 +1,6 @@
 """The radial sea: buoys and a box on water, on oil, or on both mixed, near a rig that may burn."""
 
 import collections
-import dataclasses
 import math
 import time
 from collections.abc import Iterator
@@ -17,7 +16,15 @@ from app.scenes.radial_sea.bodies import FloatingBodies, kind_of
 from app.scenes.radial_sea.cutaway import Cutaway, cutaway_at, outline
 from app.scenes.radial_sea.frame import RadialFrame, RadialReadings, SurfaceReading
 from app.scenes.radial_sea.measures import measures
-from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, conditions_of, exposure_of, hidden
+from app.scenes.radial_sea.parameters import (
+    PRESETS,
+    Params,
+    column_of,
+    conditions_of,
+    exposure_of,
+    hidden,
+    spectrum_values,
+)
 from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
 from sim.floating import MotionCoefficients, Shape, shape_from_file
 from sim.ocean import Sea
@@ -159,7 +166,7 @@ class RadialSeaScene:
         p, fluid = self.params, self.column.surface
         low_pass = 2.0 * math.sqrt(fluid.kinematic_viscosity * self.age)
         self.tile_age = self.age
-        c = dataclasses.replace(conditions_of(p), low_pass=low_pass)
+        c = conditions_of(p)
         sea = Sea(
             TILE_SIZE,
             TILE_LENGTH,
@@ -168,7 +175,8 @@ class RadialSeaScene:
             frequency=self.column.omega,
             wind_speed=c.wind_speed,
             wind_direction=c.wind_direction,
-            low_pass=c.low_pass,
+            low_pass=low_pass,
+            **spectrum_values(p),
         )
         return TileSea(sea)
 

@@ -5,8 +5,8 @@ import math
 from typing import Any, NamedTuple
 
 from sim.ocean.planets import RADIUS_RULES, SOLAR_SYSTEM, gravity_of
-from sim.ocean.spectra import SPECTRA
-from sim.parameters import parameter
+from sim.ocean.spectra import PARAMETERS, SPECTRA
+from sim.parameters import parameter, with_parameters
 
 SIZES = ("64", "128", "256", "512")
 MESHES = ("32", "64", "128", "256")
@@ -16,8 +16,9 @@ MIN_WIND_SPEED = 0.05  # [m/s] below which there are no waves: the spectra squar
 
 
 @dataclasses.dataclass(frozen=True)
+@with_parameters(PARAMETERS, group="Weather")
 class Params:
-    """The square sea's parameters; the defaults are the first preset."""
+    """The square sea's parameters, with those of all spectra; the defaults are the first preset."""
 
     spectrum: str = parameter(
         "pierson_moskowitz", choices=tuple(SPECTRA), doc="Formula of the wave spectrum", group="Weather"
@@ -39,25 +40,6 @@ class Params:
         group="Weather",
         affects="start",
     )
-    fetch: float = parameter(
-        100e3, 1e3, 1e6, "m", "Distance over which the wind has blown", log_from=1e3, group="Weather"
-    )
-    peak_enhancement: float = parameter(
-        3.3, 1.0, 10.0, "", "Gamma: height of the peak of the spectrum", group="Weather"
-    )
-    inverse_wave_age: float = parameter(
-        0.84, 0.84, 5.0, "", "Omega: 0.84 is a fully developed sea, 5 a very young one", group="Weather"
-    )
-    phillips_constant: float = parameter(
-        1.7421e-3,
-        0.0,
-        0.1,
-        "",
-        "Constant A of Phillips; 1.74e-3 gives the wave height of Pierson and Moskowitz",
-        log_from=1e-5,
-        group="Weather",
-    )
-    swell: float = parameter(0.0, 0.0, 1.0, "", "0 is a wind sea, 1 is swell with long crests", group="Weather")
 
     planet: str = parameter(
         "by mass", choices=("by mass", "by gravity", *SOLAR_SYSTEM), doc="What sets the gravity", group="Planet"
@@ -210,16 +192,17 @@ def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any
         "gravity": gravity(params),
         "depth": math.inf if params.deep else params.depth,
         "tension": SURFACE_TENSION,
-        "fetch": params.fetch,
-        "peak_enhancement": params.peak_enhancement,
-        "inverse_wave_age": params.inverse_wave_age,
-        "phillips_constant": params.phillips_constant,
-        "swell": params.swell,
         "low_pass": params.low_pass,
         "viscosity": params.viscosity,
         "dispersion_scale": params.dispersion_scale,
         "loop_period": params.loop_period or None,
+        **spectrum_values(params),
     }
+
+
+def spectrum_values(params: Params) -> dict[str, Any]:
+    """The values of the parameters of all spectra."""
+    return {name: getattr(params, name) for name in PARAMETERS}
 
 
 def rain_settings(params: Params) -> RainSettings:
@@ -232,8 +215,7 @@ def rain_settings(params: Params) -> RainSettings:
 
 def hidden(params: Params) -> set[str]:
     """Names of the parameters that have no effect while the others are as they are."""
-    names = {"fetch", "peak_enhancement", "inverse_wave_age", "phillips_constant", "swell"}
-    names -= set(SPECTRA[params.spectrum].parameters)
+    names = SPECTRA[params.spectrum].unused(spectrum_values(params))
     if params.planet != "by mass":
         names |= {"planet_mass", "radius_rule"}
     if params.planet != "by gravity":

@@ -4,16 +4,25 @@ Choose it for the slopes: its capillary range is measured, not extrapolated. Equ
 The paper's spectrum is symmetric in direction; here its whole energy runs ahead of the wind.
 """
 
+import dataclasses
 import math
 
 import numpy as np
 
 from sim.ocean.spectra.record import Conditions, Spectrum, angle_from
+from sim.parameters import parameter
 
 KM_WATER = 370.0  # [rad/m] wavenumber of the slowest wave on clean water under 9.81 m/s2, eq. 24
 
 
-def density(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class AgeConditions(Conditions):
+    """What a sea of some age is evaluated under."""
+
+    inverse_wave_age: float = parameter(0.84, 0.84, 5.0, "", "Omega: 0.84 is a fully developed sea, 5 a very young one")
+
+
+def density(kx: np.ndarray, ky: np.ndarray, c: AgeConditions) -> np.ndarray:
     """S(kx, ky) [m4] = (B_l + B_h)(1 + Delta cos 2 theta)/(2 pi k^4), doubled ahead of the wind, 0 behind; eq. 67."""
     g, U, Omega = c.gravity, c.wind_speed, c.inverse_wave_age
     k = np.hypot(kx, ky)
@@ -48,13 +57,13 @@ def density(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
     return ahead * (B_l + B_h) * (1.0 + Delta * np.cos(2.0 * theta)) / (2.0 * math.pi * k**4)
 
 
-def friction_velocity(c: Conditions) -> float:
+def friction_velocity(c: AgeConditions) -> float:
     """u* [m/s] from U10 by the roughness z0 = 3.7e-5 U^2/g (U/c_p)^0.9, eq. 66, and the log law, eq. 60-61."""
     z0 = 3.7e-5 * c.wind_speed**2 / c.gravity * c.inverse_wave_age**0.9
     return 0.41 * c.wind_speed / math.log(max(10.0 / z0, 2.0))
 
 
-def peak(c: Conditions) -> float:
+def peak(c: AgeConditions) -> float:
     """omega = sqrt(g k_p) = Omega g/U10 [rad/s], the paper's peak parameter."""
     return c.inverse_wave_age * c.gravity / c.wind_speed
 
@@ -65,5 +74,5 @@ SPECTRUM = Spectrum(
     density,
     None,
     peak,
-    ("wind_speed", "wind_direction", "inverse_wave_age", "low_pass"),
+    AgeConditions,
 )

@@ -1,13 +1,29 @@
 """The lab's spectrum: Phillips as Tessendorf (2001) writes it, with waves that run along the wind both ways."""
 
+import dataclasses
 import math
 
 import numpy as np
 
 from sim.ocean.spectra.record import Conditions, Spectrum
+from sim.parameters import parameter
 
 
-def density(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class PhillipsConditions(Conditions):
+    """What the spectrum of Phillips is evaluated under."""
+
+    phillips_constant: float = parameter(
+        1.7421e-3,
+        0.0,
+        0.1,
+        "",
+        "Constant A of Phillips; 1.74e-3 gives the wave height of Pierson and Moskowitz",
+        log_from=1e-5,
+    )
+
+
+def density(kx: np.ndarray, ky: np.ndarray, c: PhillipsConditions) -> np.ndarray:
     """S(kx, ky) [m4] = A exp(-1/(kL)^2)/k^4 cos^2(theta), L = U^2/g (Tessendorf, eq. 40, with S in the plane)."""
     k2 = kx**2 + ky**2
     L = c.wind_speed**2 / c.gravity
@@ -15,12 +31,12 @@ def density(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
     return c.phillips_constant * np.exp(-1.0 / (k2 * L**2)) / k2**2 * along**2 / k2
 
 
-def significant_height(c: Conditions) -> float:
+def significant_height(c: PhillipsConditions) -> float:
     """Hs = 4 L sqrt(pi A/2) [m]."""
     return 4.0 * c.wind_speed**2 / c.gravity * math.sqrt(0.5 * math.pi * c.phillips_constant)
 
 
-def peak(c: Conditions) -> float:
+def peak(c: PhillipsConditions) -> float:
     """Of S(omega) ~ k^-5/2 exp(-1/(kL)^2), deep water: k_p = sqrt(4/5)/L, omega_p = sqrt(g k_p) [rad/s]."""
     return math.sqrt(math.sqrt(0.8)) * c.gravity / c.wind_speed
 
@@ -31,5 +47,5 @@ SPECTRUM = Spectrum(
     density,
     significant_height,
     peak,
-    ("wind_speed", "wind_direction", "phillips_constant", "low_pass"),
+    PhillipsConditions,
 )

@@ -1,20 +1,25 @@
-"""What a spectrum is, and the conditions it is evaluated under."""
+"""What a spectrum is, and the conditions that it is evaluated under."""
 
 import dataclasses
 import math
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
 from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.spreading import SPREADINGS, spread
-from sim.validation import argument_error, check_finite, check_not_negative, check_positive, check_within
+from sim.parameters import check_value, parameter, parameters_of
+from sim.validation import check_finite, check_not_negative, check_positive
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Conditions:
-    """Everything a spectrum may ask for. Raises ValueError for a value that is not allowed."""
+    """What every spectrum is evaluated under. Raises ValueError for a value that is not allowed.
+
+    A spectrum with parameters of its own has a class of conditions that extends this one and declares each by
+    `parameter(...)`: `Sea`, the panels of both seas, the command line and sweeps take them from there.
+    """
 
     wind_speed: float = 10.0  # [m/s] U10; U19.5 for pierson_moskowitz
     wind_direction: float = 0.0  # [rad] where the wind goes to, from +x towards +y
@@ -22,13 +27,6 @@ class Conditions:
     depth: float = math.inf  # [m]
     tension: float = 0.0  # [N/m]
     density: float = 1000.0  # [kg/m3]
-    fetch: float = 100e3  # [m] for jonswap and tma
-    peak_enhancement: float = 3.3  # gamma of jonswap and tma
-    inverse_wave_age: float = 0.84  # Omega of elfouhaily, 0.84 fully developed to 5 very young
-    phillips_constant: float = 1.7421e-3  # A of phillips; this value gives the height of Pierson and Moskowitz
-    spreading: str = "cos2"  # for the spectra known by frequency
-    spread_exponent: float = 8.0  # s of cos2s
-    swell: float = 0.0  # Horvath's xi: 0 wind sea to 1 long-crested swell
     low_pass: float = 0.0  # [m] l: S is multiplied by exp(-k^2 l^2); l = 2 sqrt(nu T) is fluid nu left for a time T
 
     def __post_init__(self) -> None:
@@ -38,15 +36,9 @@ class Conditions:
         check_positive("depth", self.depth, "m", allow_infinite=True)
         check_not_negative("tension", self.tension, "N/m")
         check_positive("density", self.density, "kg/m3")
-        check_positive("fetch", self.fetch, "m")
-        check_within("peak_enhancement", self.peak_enhancement, 1.0, 20.0)
-        check_within("inverse_wave_age", self.inverse_wave_age, 0.84, 5.0)
-        check_not_negative("phillips_constant", self.phillips_constant, "")
-        check_within("spread_exponent", self.spread_exponent, 0.0, 1000.0)
-        check_within("swell", self.swell, 0.0, 1.0)
         check_not_negative("low_pass", self.low_pass, "m")
-        if self.spreading not in SPREADINGS:
-            raise argument_error("spreading", self.spreading, "one of " + ", ".join(SPREADINGS))
+        for name, declared in parameters_of(self).items():
+            check_value(name, declared, getattr(self, name))
 
     def omega(self, k: np.ndarray) -> np.ndarray:
         """Angular frequency [rad/s] under these conditions."""
@@ -57,17 +49,44 @@ class Conditions:
         return group_speed(k, self.gravity, self.depth, self.tension, self.density)
 
 
-class Spectrum(NamedTuple):
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SpreadConditions(Conditions):
+    """What the spectra are evaluated under that are known by frequency, and spread over the directions."""
+
+    spreading: str = parameter("cos2", choices=SPREADINGS, doc="Formula of the spreading over directions")
+    spread_exponent: float = parameter(
+        8.0, 0.0, 1000.0, "", "Exponent s of the spreading cos2s; larger is narrower", log_from=0.1
+    )
+    swell: float = parameter(0.0, 0.0, 1.0, "", "0 is a wind sea, 1 is swell with long crests")  # xi of Horvath
+
+
+C = TypeVar("C", bound=Conditions)
+
+
+class Spectrum(NamedTuple, Generic[C]):
     """A named spectrum. Closed forms are of the spectrum alone: infinite depth for all but tma, no low-pass."""
 
     name: str
     doc: str
-    density: Callable[[np.ndarray, np.ndarray, Conditions], np.ndarray]  # S(kx, ky) [m4]
-    significant_height: Callable[[Conditions], float] | None  # Hs [m] where a closed form exists
-    peak: Callable[[Conditions], float] | None  # peak angular frequency [rad/s] where a closed form exists
-    parameters: tuple[str, ...]  # the conditions it reads besides gravity, depth, tension and density
+    density: Callable[[np.ndarray, np.ndarray, C], np.ndarray]  # S(kx, ky) [m4]
+    significant_height: Callable[[C], float] | None  # Hs [m] where a closed form exists
+    peak: Callable[[C], float] | None  # peak angular frequency [rad/s] where a closed form exists
+    conditions: type[C]  # what it is evaluated under
 
-    def __call__(self, kx: np.ndarray, ky: np.ndarray, conditions: Conditions) -> np.ndarray:
+    def unused(self, values: Mapping[str, Any]) -> set[str]:
+        """Which of these parameters of spectra, name -> value, have no effect on this one."""
+        names = set(values) - set(parameters_of(self.conditions))
+        return names if values.get("spreading") == "cos2s" else names | (set(values) & {"spread_exponent"})
+
+    def conditions_from(self, values: Mapping[str, Any]) -> C:
+        """The conditions, from those of the values that this spectrum knows.
+
+        Raises ValueError for a value that is not allowed.
+        """
+        known = {field.name for field in dataclasses.fields(self.conditions)}
+        return self.conditions(**{name: value for name, value in values.items() if name in known})
+
+    def __call__(self, kx: np.ndarray, ky: np.ndarray, conditions: C) -> np.ndarray:
         """S(kx, ky) [m4] with the low-pass applied; 0 at k = 0 and without wind. kx, ky [rad/m] of one shape."""
         kx, ky = np.broadcast_arrays(np.asarray(kx, np.float64), np.asarray(ky, np.float64))
         S = np.zeros(kx.shape)
@@ -79,12 +98,15 @@ class Spectrum(NamedTuple):
         return S
 
 
+SpreadC = TypeVar("SpreadC", bound=SpreadConditions)
+
+
 def from_frequency(
-    frequency: Callable[[np.ndarray, Conditions], np.ndarray],
-    peak: Callable[[Conditions], float],
+    frequency: Callable[[np.ndarray, SpreadC], np.ndarray],
+    peak: Callable[[SpreadC], float],
     kx: np.ndarray,
     ky: np.ndarray,
-    c: Conditions,
+    c: SpreadC,
 ) -> np.ndarray:
     """S(kx, ky) = S(omega) D(omega, theta) (d omega/dk)/k, from S(omega) [m2 s] and its peak [rad/s]."""
     k = np.hypot(kx, ky)

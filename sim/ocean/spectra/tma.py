@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from sim.ocean.spectra import jonswap
-from sim.ocean.spectra.record import Conditions, Spectrum
+from sim.ocean.spectra.record import Spectrum
 
 
 def depth_factor(k: np.ndarray, depth: float) -> np.ndarray:
@@ -17,7 +17,7 @@ def depth_factor(k: np.ndarray, depth: float) -> np.ndarray:
     return np.tanh(kh) ** 2 / (1.0 + 4.0 * kh * np.exp(-2.0 * kh) / -np.expm1(-4.0 * kh))
 
 
-def density(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
+def density(kx: np.ndarray, ky: np.ndarray, c: jonswap.FetchConditions) -> np.ndarray:
     """S(kx, ky) [m4] of jonswap, times phi."""
     return jonswap.density(kx, ky, c) * depth_factor(np.hypot(kx, ky), c.depth)
 
@@ -28,5 +28,5 @@ SPECTRUM = Spectrum(
     density,
     None,
     jonswap.peak,
-    jonswap.SPECTRUM.parameters,
+    jonswap.FetchConditions,
 )

@@ -23,6 +23,7 @@ EVERY_OTHER = {  # a parameter that is hidden by default, and what shows it
     "fetch": {"spectrum": "jonswap"},
     "peak_enhancement": {"spectrum": "tma"},
     "swell": {"spectrum": "jonswap"},
+    "spread_exponent": {"spreading": "cos2s"},
     "inverse_wave_age": {"spectrum": "elfouhaily"},
     "phillips_constant": {"spectrum": "phillips"},
     "foam_threshold": {"foam_by_wind": False},

@@ -11,11 +11,11 @@ from sim.ocean.fluids import fluids
 from sim.ocean.gerstner import Waves, draw_waves, widened
 from sim.ocean.radial import RadialSea
 from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.spectra import SPECTRA, Conditions
+from sim.ocean.spectra import SPECTRA
 from tests.naive_ocean import plane_integral
 
 MONTH = 30 * 24 * 3600.0
-WIND = Conditions(wind_speed=8.0)
+WIND = SPECTRA["jonswap"].conditions(wind_speed=8.0)
 
 
 def sea_of(count: int = 64, **column) -> RadialSea:
@@ -45,8 +45,9 @@ def naive(sea: RadialSea, x: np.ndarray, y: np.ndarray, t: float, weights: np.nd
 @pytest.mark.parametrize("name", sorted(SPECTRA))
 @pytest.mark.parametrize("count", [64, 200])
 def test_the_sum_has_the_height_of_its_spectrum_within_a_percent(name: str, count: int) -> None:
-    expected = 4.0 * math.sqrt(plane_integral(SPECTRA[name], WIND))
-    assert draw_waves(SPECTRA[name], WIND, count).significant_height == pytest.approx(expected, rel=0.01)
+    wind = SPECTRA[name].conditions(wind_speed=8.0)
+    expected = 4.0 * math.sqrt(plane_integral(SPECTRA[name], wind))
+    assert draw_waves(SPECTRA[name], wind, count).significant_height == pytest.approx(expected, rel=0.01)
 
 
 def test_the_drawn_surface_has_that_height_too() -> None:
@@ -200,7 +201,7 @@ def test_oil_poured_in_lets_phases_run_on() -> None:
 
 def test_other_waves_take_over_smoothly_and_wholly() -> None:
     sea = sea_of()
-    storm = draw_waves(SPECTRA["jonswap"], Conditions(wind_speed=20.0), 80)
+    storm = draw_waves(SPECTRA["jonswap"], SPECTRA["jonswap"].conditions(wind_speed=20.0), 80)
     before = sea.at([[0.0, 0.0]], 50.0).height
     sea.change(50.0, waves=storm, fade=2.0)
     np.testing.assert_allclose(sea.at([[0.0, 0.0]], 50.0 + 1e-9).height, before, atol=1e-3)
@@ -224,7 +225,7 @@ def test_a_wide_hull_feels_the_mean_over_its_width() -> None:
 
 
 def test_no_wind_is_a_level_sea() -> None:
-    sea = RadialSea(draw_waves(SPECTRA["jonswap"], Conditions(wind_speed=0.0), 64))
+    sea = RadialSea(draw_waves(SPECTRA["jonswap"], SPECTRA["jonswap"].conditions(wind_speed=0.0), 64))
     surface = sea.on(RadialGrid(8, 8), 9.0)
     assert np.abs(surface.vertices[:, 2]).max() == 0.0
     assert np.isfinite(surface.slope).all()

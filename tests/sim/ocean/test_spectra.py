@@ -1,19 +1,24 @@
 """Every registered spectrum against its own closed forms, and against the numbers published for it."""
 
-import dataclasses
 import math
 
 import numpy as np
 import pytest
 
-from sim.ocean.spectra import SPECTRA, Conditions
+from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions
 from sim.ocean.spectra.spreading import SPREADINGS, spread
 from sim.ocean.statistics import theory
+from sim.parameters import parameters_of
 from tests.naive_ocean import plane_integral
 
 
-def height(name: str, **conditions: float | str) -> float:
-    return 4.0 * math.sqrt(plane_integral(SPECTRA[name], Conditions(**conditions)))
+def under(name: str, **values: float | str) -> Conditions:
+    """The conditions of a spectrum."""
+    return SPECTRA[name].conditions(**values)
+
+
+def height(name: str, **values: float | str) -> float:
+    return 4.0 * math.sqrt(plane_integral(SPECTRA[name], under(name, **values)))
 
 
 def test_the_five_are_there():
@@ -26,32 +31,46 @@ def test_declared_height_is_the_integral(name):
     # The DNV factor of jonswap is 0.12 % off; the others are exact.
     tolerance = 1.3e-3 if name == "jonswap" else 1e-5
     for wind in (5.0, 20.0):
-        expected = spectrum.significant_height(Conditions(wind_speed=wind))
+        expected = spectrum.significant_height(under(name, wind_speed=wind))
         assert height(name, wind_speed=wind) == pytest.approx(expected, rel=tolerance)
 
 
 @pytest.mark.parametrize("name", [name for name, s in SPECTRA.items() if s.peak])
 def test_declared_peak_is_the_maximum(name):
     spectrum = SPECTRA[name]
-    c = Conditions(wind_speed=12.0)
+    c = under(name, wind_speed=12.0)
     tolerance = 0.15 if name == "elfouhaily" else 4e-3  # k_p of elfouhaily is the paper's parameter, not the maximum
     assert 2 * math.pi / theory(spectrum, c).peak_period == pytest.approx(spectrum.peak(c), rel=tolerance)
 
 
+@pytest.mark.parametrize(
+    ("name", "parameter"), [(name, p) for name, s in SPECTRA.items() for p in parameters_of(s.conditions)]
+)
+def test_declared_parameters_matter(name, parameter):
+    declared = PARAMETERS[parameter]
+    spectrum, others = SPECTRA[name], {"spreading": "cos2s"} if parameter == "spread_exponent" else {}
+    ends = declared.choices[:2] if declared.choices else (declared.low, declared.high)
+    k = np.geomspace(1e-3, 10.0, 50)
+    one, other = (spectrum(k, 0.3 * k, under(name, **{parameter: end}, **others)) for end in ends)
+    assert not np.array_equal(one, other)
+
+
 @pytest.mark.parametrize("name", SPECTRA)
-def test_declared_parameters_matter_and_exist(name):
-    fields = {f.name for f in dataclasses.fields(Conditions)}
-    assert set(SPECTRA[name].parameters) <= fields
+def test_what_a_spectrum_does_not_read_is_said_to_have_no_effect(name):
+    values = {parameter: declared.default for parameter, declared in PARAMETERS.items()}
+    read = set(parameters_of(SPECTRA[name].conditions))
+    assert SPECTRA[name].unused(values) == PARAMETERS.keys() - read | {"spread_exponent"}
+    assert SPECTRA[name].unused(values | {"spreading": "cos2s"}) == PARAMETERS.keys() - read
 
 
 @pytest.mark.parametrize("name", SPECTRA)
 def test_spectra_are_finite_and_never_negative(name):
     k = np.concatenate([[0.0], np.geomspace(1e-6, 1e5, 200)])
-    S = SPECTRA[name](k[:, None], -k[None, :], Conditions(wind_direction=2.0, wind_speed=3.0))
+    S = SPECTRA[name](k[:, None], -k[None, :], under(name, wind_direction=2.0, wind_speed=3.0))
     assert np.isfinite(S).all()
     assert (S >= 0.0).all()
     assert S[0, 0] == 0.0
-    assert not SPECTRA[name](k[:, None], k[None, :], Conditions(wind_speed=0.0)).any()
+    assert not SPECTRA[name](k[:, None], k[None, :], under(name, wind_speed=0.0)).any()
 
 
 @pytest.mark.parametrize("name", SPECTRA)
@@ -62,20 +81,20 @@ def test_turning_the_wind_turns_the_spectrum(name):
     turned = SPECTRA[name](
         kx * math.cos(turn) - ky * math.sin(turn),
         kx * math.sin(turn) + ky * math.cos(turn),
-        Conditions(wind_direction=turn),
+        under(name, wind_direction=turn),
     )
-    assert turned == pytest.approx(SPECTRA[name](kx, ky, Conditions()), rel=1e-9, abs=1e-15)
+    assert turned == pytest.approx(SPECTRA[name](kx, ky, under(name)), rel=1e-9, abs=1e-15)
 
 
 def test_pierson_moskowitz_at_ten_metres_a_second():
-    c = Conditions(wind_speed=10.0)
+    c = under("pierson_moskowitz", wind_speed=10.0)
     assert SPECTRA["pierson_moskowitz"].significant_height(c) == pytest.approx(2.13300, abs=2e-5)
     assert SPECTRA["pierson_moskowitz"].peak(c) == pytest.approx(0.8772 * 0.981, rel=1e-4)
 
 
 @pytest.mark.parametrize("gravity", [0.0981, 2.114, 9.81, 45.5, 981.0])
 def test_planets_collapse(gravity):
-    conditions = Conditions(wind_speed=10.0, gravity=gravity)
+    conditions = under("pierson_moskowitz", wind_speed=10.0, gravity=gravity)
     found = plane_integral(SPECTRA["pierson_moskowitz"], conditions, k_max=2e3 * max(gravity / 9.81, 1.0))
     assert 4 * math.sqrt(found) * gravity / 100.0 == pytest.approx(0.20925, rel=1e-3)
 
@@ -118,25 +137,27 @@ def test_swell_narrows_the_sea():
 def test_low_pass_is_fluid_left_alone_for_a_time():
     """l = 2 sqrt(nu T): the energy factor exp(-k^2 l^2) is exp(-4 nu k^2 T)."""
     k, nu, T = np.array([0.5, 3.0]), 1e-3, 600.0
-    aged = SPECTRA["phillips"](k, 0 * k, Conditions(low_pass=2 * math.sqrt(nu * T)))
-    assert aged == pytest.approx(SPECTRA["phillips"](k, 0 * k, Conditions()) * np.exp(-4 * nu * k**2 * T), rel=1e-12)
+    fresh = SPECTRA["phillips"](k, 0 * k, under("phillips"))
+    aged = SPECTRA["phillips"](k, 0 * k, under("phillips", low_pass=2 * math.sqrt(nu * T)))
+    assert aged == pytest.approx(fresh * np.exp(-4 * nu * k**2 * T), rel=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("name", "value"),
+    ("name", "value", "spectrum"),
     [
-        ("wind_speed", -1.0),
-        ("wind_speed", math.nan),
-        ("wind_direction", math.inf),
-        ("gravity", 0.0),
-        ("depth", 0.0),
-        ("fetch", -5.0),
-        ("inverse_wave_age", 0.5),
-        ("swell", 1.5),
-        ("spreading", "narrow"),
-        ("low_pass", -1.0),
+        ("wind_speed", -1.0, "phillips"),
+        ("wind_speed", math.nan, "jonswap"),
+        ("wind_direction", math.inf, "phillips"),
+        ("gravity", 0.0, "phillips"),
+        ("depth", 0.0, "tma"),
+        ("low_pass", -1.0, "phillips"),
+        ("fetch", -5.0, "jonswap"),
+        ("fetch", math.nan, "tma"),
+        ("inverse_wave_age", 0.5, "elfouhaily"),
+        ("swell", 1.5, "pierson_moskowitz"),
+        ("spreading", "narrow", "jonswap"),
     ],
 )
-def test_conditions_refuse(name, value):
+def test_conditions_refuse(name, value, spectrum):
     with pytest.raises(ValueError, match=rf"^{name}: .* is not allowed; allowed: "):
-        Conditions(**{name: value})
+        under(spectrum, **{name: value})

@@ -11,7 +11,7 @@ from sim.ocean.statistics import beaufort, drawn, expected, height_scatter, meas
 
 
 def test_theory_of_pierson_moskowitz():
-    found = theory(SPECTRA["pierson_moskowitz"], Conditions(wind_direction=0.5))
+    found = theory(SPECTRA["pierson_moskowitz"], SPECTRA["pierson_moskowitz"].conditions(wind_direction=0.5))
     assert found.significant_height == pytest.approx(2.13298, rel=1e-4)
     assert found.peak_period == pytest.approx(2 * math.pi / 0.86050, rel=4e-3)
     assert found.direction == pytest.approx(0.5, abs=1e-3)

@@ -26,6 +26,26 @@ assert set(viewer.panel.controls) == {"length", "gravity", "angle", "speed", "gr
 assert not viewer.loop.halted
 viewer.shut()
 """
+MEASURED = """
+from app.server.viewer import Viewer
+from sim.ocean import Sea
+
+sea = Sea(64, 1000.0, "bretschneider", wave_height=3.0, amplitudes="fixed")
+assert 2.7 < sea.significant_height < 3.1, sea.significant_height
+viewer = Viewer("127.0.0.1", 0)
+for name, height in (("square_sea", lambda scene: scene.sea), ("radial_sea", lambda scene: scene.sum)):
+    viewer.open(name)
+    viewer.stop_threads()
+    panel, loop = viewer.panel, viewer.loop
+    assert not panel.controls["wave_height"].visible
+    panel.set("spectrum", "bretschneider")
+    assert panel.controls["wave_height"].visible
+    panel.set("wave_height", 4.0)
+    loop.tick(1 / 60)
+    low = height(viewer.scene).conditions.wave_height if name == "square_sea" else viewer.scene.readings().clean_height
+    assert abs(low - 4.0) < 0.05, low
+viewer.shut()
+"""
 FLOATED = """
 import time
 from app.scenes.radial_sea.measures import measures
@@ -73,6 +93,21 @@ def test_an_integrator_is_one_file(tmp_path):
     assert " failed" not in said
     run_command(copy, headless)
     assert parameters_in(copy / "rk2.npz")["integrator"] == "rk2"
+
+
+def test_a_spectrum_with_new_parameters_is_one_file(tmp_path):
+    copy = copy_of_sources(tmp_path)
+    blocks = section("Add a spectrum")
+    assert len(add(blocks, copy)) == 1
+    test, *headless = commands(blocks)
+    said = run_command(copy, test)
+    assert " passed" in said
+    assert " failed" not in said
+    for line in headless:
+        run_command(copy, line)
+    for name in ("square", "radial"):
+        assert parameters_in(copy / f"{name}.npz")["wave_height"] == 3.0
+    run(copy, "-c", MEASURED)
 
 
 def test_a_parameter_is_one_line_in_one_file(tmp_path):

@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, NamedTuple, TypeVar
 
+from sim.quantities import read_number
 from sim.validation import argument_error
 
 P = TypeVar("P")
@@ -193,7 +194,10 @@ def check_record(cls: type[P], values: Mapping[str, object]) -> P:
 
 
 def parse_value(name: str, parameter: Parameter, text: str) -> Value:
-    """Read a parameter's value from command-line text. Raises ValueError as `check_value` does."""
+    """Read a parameter's value from what a person typed; numbers as `read_number` takes them, in the parameter's unit.
+
+    Raises ValueError, with the reason where there is more to say, as `check_value` does.
+    """
     word = text.strip()
     if parameter.choices:
         return check_value(name, parameter, word)
@@ -202,10 +206,13 @@ def parse_value(name: str, parameter: Parameter, text: str) -> Value:
             raise argument_error(name, text, parameter.allowed)
         return word.lower() in TRUE
     try:
-        number = float(word)
+        number = read_number(word, parameter.unit)
+    except ValueError as reason:
+        raise argument_error(name, text, f"{parameter.allowed}; {reason}") from None
+    try:
+        return check_value(name, parameter, number)
     except ValueError:
         raise argument_error(name, text, parameter.allowed) from None
-    return check_value(name, parameter, number)
 
 
 def parse_assignments(cls: type, assignments: list[str]) -> dict[str, Value]:

@@ -5,10 +5,12 @@ from collections.abc import Callable
 
 import viser
 
+from app.render.html import fill
 from app.render.viser_types import GuiHandle, ViserEvent
-from sim.parameters import Parameter, Value, clamp_value
+from sim.parameters import Parameter, Value, clamp_value, parse_value
+from sim.quantities import write_number
 
-SLIDER_STEPS = 400  # of a logarithmic slider
+SLIDER_STEPS = 400  # at most, over a slider's range
 
 
 def title(name: str, parameter: Parameter) -> str:
@@ -17,28 +19,53 @@ def title(name: str, parameter: Parameter) -> str:
     return name.replace("_", " ").capitalize() + unit
 
 
-def decade_marks(low: float, high: float) -> tuple[tuple[float, str], ...]:
-    """Marks at decades between two logarithms, about four of them, written short."""
-    prefixes = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-    decades = range(math.ceil(low - 1e-9), math.floor(high + 1e-9) + 1)
-    every = max(1, math.ceil((high - low) / 4))
-    marks: list[tuple[float, str]] = []
-    for d in decades[:: every if every < 3 else 3]:
-        power = 3 * math.floor(d / 3)
-        plain = -2 <= d <= 2
-        marks.append((float(d), f"{10.0**d:g}" if plain else f"{10 ** (d - power)}{prefixes[power]}"))
-    return tuple(marks)
-
-
 def nice_step(low: float, high: float) -> float:
-    """A slider's step: a round number, some 200 to 500 of them over the range."""
-    rough = (high - low) / 500
+    """A linear slider's step: a round number, some 150 to 400 of them over the range."""
+    rough = (high - low) / SLIDER_STEPS
     decade = 10.0 ** math.floor(math.log10(rough))
     return next(m * decade for m in (1, 2, 5, 10) if m * decade >= rough * 0.999)
 
 
+class SliderScale:
+    """Where a slider stands for a number, and the number that it stands for: linear, or by decades."""
+
+    def __init__(self, parameter: Parameter) -> None:
+        self.parameter = p = parameter
+        if p.log_from:
+            self.low, self.high = math.log10(p.log_from), math.log10(p.high)
+            self.step = (self.high - self.low) / SLIDER_STEPS
+        else:
+            self.low, self.high = float(p.low), float(p.high)
+            step = nice_step(self.low, self.high)
+            self.step = max(1.0, round(step)) if p.kind is int else step
+
+    def position(self, value: Value) -> float:
+        """Where the slider stands for a number."""
+        number = float(value)
+        at = math.log10(max(number, self.parameter.log_from)) if self.parameter.log_from else number
+        return min(max(at, self.low), self.high)
+
+    def value(self, position: float) -> Value:
+        """The number that a position means: three digits by decades, whole steps otherwise.
+
+        Both ends mean the bounds; the left end of a logarithmic slider is the least value, which may be 0.
+        """
+        p = self.parameter
+        if position <= self.low + 1e-9 * abs(self.low):
+            return clamp_value(p, p.low)
+        if position >= self.high - 1e-9 * abs(self.high):
+            return clamp_value(p, p.high)
+        if p.log_from:
+            return clamp_value(p, float(f"{10.0**position:.3g}"))
+        steps = round(position / self.step)
+        return clamp_value(p, float(f"{steps * self.step:.6g}"))
+
+
 class Control:
-    """One parameter's widgets. Its callbacks run on viser's event loop."""
+    """One parameter's widgets. Its callbacks run on viser's event loop.
+
+    A number has a text field, which takes what is typed as it is or refuses it, and a slider beside it.
+    """
 
     def __init__(
         self,
@@ -46,91 +73,90 @@ class Control:
         folder: viser.GuiFolderHandle,
         name: str,
         parameter: Parameter,
-        value: Value,
+        read: Callable[[], Value],
         changed: Callable[[str, Value], None],
     ) -> None:
-        """folder: its container in the panel, within which it is made. changed: called with what a browser sets.
+        """folder: its container in the panel, within which it is made. read: the value as it is set now.
 
-        The control holds no value of its own: its widget shows it, and the panel's record of parameters has it.
+        changed: called with what a browser sets. The control holds no value of its own: the panel's record has it.
         """
         self.gui, self.folder = gui, folder
-        self.name, self.parameter, self.changed = name, parameter, changed
+        self.name, self.parameter, self.read, self.changed = name, parameter, read, changed
         self.visible = True
         self.slider: viser.GuiMultiSliderHandle[float] | None = None
-        self.mark: viser.GuiHtmlHandle | None = None
+        self.line: viser.GuiHtmlHandle | None = None
+        self.text = self.refusal = ""
         label, hint = title(name, parameter), f"{parameter.doc} ({name}: {parameter.allowed})"
+        value = read()
         if parameter.choices:
             self.field: GuiHandle = gui.add_dropdown(label, parameter.choices, initial_value=str(value), hint=hint)
         elif parameter.kind is bool:
             self.field = gui.add_checkbox(label, initial_value=bool(value), hint=hint)
-        elif parameter.log_from:
-            self.field, self.slider = self.make_logarithmic(label, hint, float(value))
-        elif parameter.kind is int:
-            self.field = gui.add_slider(
-                label, int(parameter.low), int(parameter.high), step=1, initial_value=int(value), hint=hint
-            )
         else:
-            step = nice_step(parameter.low, parameter.high)
-            self.field = gui.add_slider(
-                label, parameter.low, parameter.high, step=step, initial_value=float(value), hint=hint
+            self.scale = SliderScale(parameter)
+            self.field = gui.add_text(label, write_number(float_or_int(value)), hint=hint)
+            # A multi-slider with one handle: it has no number box of its own.
+            self.slider = gui.add_multi_slider(
+                " ",
+                self.scale.low,
+                self.scale.high,
+                step=self.scale.step,
+                initial_value=(self.scale.position(value),),
+                marks=(),
             )
+            self.slider.on_update(self.on_slider)
         self.field.on_update(self.on_field)
 
-    def make_logarithmic(
-        self, label: str, hint: str, value: float
-    ) -> tuple[GuiHandle, viser.GuiMultiSliderHandle[float]]:
-        """A number field, and a slider over the logarithm below it."""
-        p = self.parameter
-        step = 1 if p.kind is int else 10.0 ** (math.floor(math.log10(p.log_from)) - 2)  # three digits of the smallest
-        field = self.gui.add_number(
-            label, round(value) if p.kind is int else value, min=p.low, max=p.high, step=step, hint=hint
-        )
-        low, high = math.log10(p.log_from), math.log10(p.high)
-        # A multi-slider with one handle: it has no number box, which would show the logarithm.
-        slider = self.gui.add_multi_slider(
-            " ",
-            low,
-            high,
-            step=(high - low) / SLIDER_STEPS,
-            initial_value=(self.slider_position(value),),
-            marks=decade_marks(low, high),
-            hint=f"{label}, logarithmic",
-        )
-        slider.on_update(self.on_slider)
-        return field, slider
-
-    def slider_position(self, value: Value) -> float:
-        """Where the logarithmic slider stands for a number."""
-        return math.log10(max(float(value), self.parameter.log_from))
+    def shown(self, value: Value) -> Value:
+        """What the field holds for a value."""
+        return value if self.slider is None else write_number(float_or_int(value))
 
     async def on_field(self, event: ViserEvent) -> None:
         """A browser has set the field; viser also calls this for what `show_value` assigns, without a client."""
-        if event.client_id is not None:
-            self.set(event.target.value)
+        if event.client_id is None:
+            return
+        sent: object = event.target.value
+        if self.slider is None:
+            self.set(sent)
+            return
+        try:
+            value = parse_value(self.name, self.parameter, str(sent))
+        except ValueError as reason:
+            self.refuse(str(reason))
+        else:
+            self.set(value)
 
     async def on_slider(self, event: ViserEvent) -> None:
-        """A browser has moved the logarithmic slider."""
+        """A browser has moved the slider."""
         if event.client_id is None:
             return
         position = float(event.target.value[0])
-        # At its left end the slider means the least value, which may be 0.
-        at_end = position <= math.log10(self.parameter.log_from) + 1e-9
-        value = self.parameter.low if at_end else float(f"{10.0**position:.3g}")
-        if abs(self.slider_position(self.field.value) - position) > 1e-3:
-            self.set(value)
+        # Where the slider says the value that is set, rounded to its step, the value stays as it is.
+        if abs(self.scale.position(self.read()) - position) > 0.5 * self.scale.step:
+            self.set(self.scale.value(position))
 
     def set(self, value: object) -> None:
         """Take a value, bounded to what is allowed, show it, and pass it on."""
         good = clamp_value(self.parameter, value)
-        self.show_value(good)
         self.changed(self.name, good)
+        self.show_value(good)
+
+    def refuse(self, reason: str) -> None:
+        """Say why a text was not taken, and show the value that is set, as before."""
+        self.refusal = reason
+        self.field.value = self.shown(self.read())
+        self.show_lines()
 
     def show_value(self, value: Value) -> None:
         """Show a value that was set by other means."""
-        if self.field.value != value:
-            self.field.value = value
+        if self.refusal:
+            self.refusal = ""
+            self.show_lines()
+        shown = self.shown(value)
+        if self.field.value != shown:
+            self.field.value = shown
         if self.slider is not None:
-            position = (self.slider_position(value),)
+            position = (self.scale.position(value),)
             if self.slider.value != position:
                 self.slider.value = position
 
@@ -139,17 +165,31 @@ class Control:
         if visible == self.visible:
             return
         self.visible = visible
-        for widget in (self.field, self.slider, self.mark):
+        for widget in (self.field, self.slider, self.line):
             if widget is not None:
                 widget.visible = visible
 
     def write(self, text: str) -> None:
-        """Write a line under the control."""
-        if self.mark is None:
-            if not text:
+        """Write a line, as HTML, under the control."""
+        if text != self.text:
+            self.text = text
+            self.show_lines()
+
+    def show_lines(self) -> None:
+        """The scene's line under the control, and above it why the last text was not taken."""
+        if self.line is None:
+            if not self.text and not self.refusal:
                 return
             with self.folder:
                 order = (self.slider or self.field).order + 0.5
-                self.mark = self.gui.add_html("", order=order, visible=self.visible)
-        style = "font-size:11px;opacity:.7;padding:0 12px;margin-top:-6px"
-        self.mark.content = f'<div style="{style}">{text}</div>' if text else ""
+                self.line = self.gui.add_html("", order=order, visible=self.visible)
+        refusal = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal) if self.refusal else ""
+        line = f'<div class="springtide-line">{self.text}</div>' if self.text else ""
+        self.line.content = str(refusal) + line
+
+
+def float_or_int(value: Value) -> float:
+    """A numeric parameter's value, an int where it is one. Raises TypeError for anything else."""
+    if isinstance(value, bool | str):
+        raise TypeError(f"{value!r} is no number")
+    return value

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, cast
 import viser
 from viser._messages import HotkeyKey  # viser names no public type of its keys
 
-from app.messages import BaseParams, Load, PlotRow, Reset, StepOnce, TogglePlay, WorkCounts
+from app.messages import BaseParams, Command, Load, Pause, Play, PlotRow, Reset, StepOnce, TogglePlay, WorkCounts
 from app.panel.control import Control
 from app.panel.plots import Plots
 from app.panel.work_table import work_table
@@ -30,6 +30,7 @@ WORK_INTERVAL = 2.0  # [s]
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
 DIGITS: tuple[HotkeyKey, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
 OPEN_GROUPS = 2  # the first groups of parameters start open
+BUTTONS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce(), "Reset": Reset()}
 
 
 class Panel:
@@ -58,7 +59,7 @@ class Panel:
             0,
         )  # parameters as set now, and how many presets were loaded: read by another thread
         self.status_at = self.marks_at = self.work_at = 0.0
-        self.halted = ""
+        self.halted: str = ""
         self.plots = Plots(server, kind)
         self.add_chooser(scenes, open_scene)
         help_text = fill(
@@ -70,7 +71,8 @@ class Panel:
         gui.add_html(str(help_text))
         self.preset = gui.add_dropdown("Preset", tuple(kind.presets), hint="Sets every parameter and starts over")
         self.preset.on_update(self.on_preset)
-        self.buttons = gui.add_button_group(" ", ("Play / pause", "Step", "Reset"))
+        self.running = True  # as the buttons show it
+        self.buttons = gui.add_button_group(" ", button_names(self.running))
         self.buttons.on_click(self.on_button)
         self.status = gui.add_html("")
         self.readout = gui.add_html("")
@@ -81,7 +83,7 @@ class Panel:
                 groups[parameter.group] = gui.add_folder(parameter.group, expand_by_default=len(groups) < OPEN_GROUPS)
             folder = groups[parameter.group]
             with folder:
-                self.controls[name] = Control(gui, folder, name, parameter, getattr(params, name), self.on_change)
+                self.controls[name] = Control(gui, folder, name, parameter, self.reader(name), self.on_change)
         self.notes: dict[str, viser.GuiHtmlHandle] = {}
         self.map: StabilityMapPanel | None = None
         with gui.add_folder("Advanced", expand_by_default=False):
@@ -99,6 +101,10 @@ class Panel:
     def params(self) -> BaseParams:
         """The parameters as set now."""
         return self.state[0]
+
+    def reader(self, name: str) -> Callable[[], Value]:
+        """What reads one parameter as set now."""
+        return lambda: getattr(self.params, name)
 
     def add_chooser(self, scenes: tuple[str, ...], open_scene: Callable[[str], None]) -> None:
         """The list of scenes, where there is more than one."""
@@ -167,8 +173,8 @@ class Panel:
             self.preset.value = preset
 
     async def on_button(self, event: ViserEvent) -> None:
-        """Play or pause, step, reset."""
-        self.post({"Play / pause": TogglePlay(), "Step": StepOnce(), "Reset": Reset()}[event.target.value])
+        """Play or pause, step, reset: what the button said when it was pressed."""
+        self.post(BUTTONS[event.target.value])
 
     def toggle_plots(self) -> None:
         """Open all plots, or close them where one is open."""
@@ -189,6 +195,10 @@ class Panel:
             self.status_at = 0.0
             if self.halted:
                 self.notify(self.halted)
+        if snapshot.status.running != self.running:
+            self.running = snapshot.status.running
+            self.buttons.options = button_names(self.running)
+            self.status_at = 0.0
         if now - self.status_at >= STATUS_INTERVAL:
             self.status_at = now
             self.status.content = str(status_line(snapshot, send_time, busy))
@@ -222,6 +232,11 @@ class Panel:
         """Stop what runs for this panel."""
         if self.map is not None:
             self.map.close()
+
+
+def button_names(running: bool) -> tuple[str, str, str]:
+    """What the buttons say: the first says what it will do."""
+    return "Pause" if running else "Play", "Step", "Reset"
 
 
 def add_scene_chooser(

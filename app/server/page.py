@@ -1,7 +1,7 @@
 """The page that a browser is given: viser's, with a title, a cover for while nothing is drawn, and our own script.
 
 viser serves one HTML file. The cover stands at the top of its body, so that it is seen before the client behind it has
-been read; the script below it is `app/render/js/page.js`.
+been read; the scripts below it are `app/render/js/page.js` and `fields.js`.
 """
 
 import functools
@@ -42,7 +42,8 @@ def with_cover(request: Request, response: Response | None) -> Response | None:
 def covered(page: bytes, zipped: bool) -> bytes:
     """viser's page with ours around it, compressed again where it was."""
     folder = resources.files("app.render") / "js"
-    style, script = ((folder / name).read_text("utf-8") for name in ("page.css", "page.js"))
+    style = (folder / "page.css").read_text("utf-8")
+    script = "".join((folder / name).read_text("utf-8") for name in ("page.js", "fields.js"))
     head, _, body = page.decode("utf-8").rpartition("<body>")
     # viser's client is one long script in the head: below the cover it does not delay it.
     start = head.index("<script")

@@ -54,9 +54,10 @@ def drag(_: Watcher, number: int) -> dict[str, Any]:
 
 
 MAKERS: dict[str, Maker] = {
-    "control": lambda w, n: update(w, "Stiffness", 500 + n % 400),
-    "points": lambda w, n: update(w, "Points", 2 + n % 998),
-    "out of range": lambda w, n: update(w, "Stiffness", 1e12 * (-1) ** n),
+    "control": lambda w, n: update(w, "Stiffness", str(500 + n % 400)),
+    "points": lambda w, n: update(w, "Points", str(2 + n % 998)),
+    "out of range": lambda w, n: update(w, "Stiffness", f"{(-1) ** n}e12"),
+    "no number": lambda w, n: update(w, "Stiffness", f"<b>{n}"),
     "checkbox": lambda w, n: update(w, "Grid", bool(n % 2)),
     "preset": preset,
     "reset": lambda w, n: key(w, "Reset"),

@@ -53,7 +53,7 @@ def test_served_while_clients_come_and_go(name: str, tally: Tally) -> None:
     with clients_of(viewer.port) as clients:
         stays = clients.join()
         for plot in plots:
-            viewer.panel.controls[plot].take(True)
+            viewer.panel.controls[plot].set(True)
         before, half = 0.0, time.monotonic() + 0.5 * SERVED
         end = time.monotonic() + SERVED
         visits = 0

@@ -1,18 +1,23 @@
 """A control: what it is set to is bounded, shown and passed on; the value itself is the panel's."""
 
+import pytest
+
+from app.panel.control import SliderScale
+from app.scenes import NAMES, scene_named
 from app.server.viewer import Viewer
+from sim.parameters import parameters_of
 
 
 def test_what_a_control_is_set_to_is_bounded_shown_and_passed_on(lab: Viewer) -> None:
     control = lab.panel.controls["stiffness"]
     control.set(1e20)
     assert lab.panel.params.stiffness == 1e9
-    assert control.field.value == 1e9
+    assert control.field.value == "1e9"
     assert control.slider is not None
     assert control.slider.value == (9.0,)
     control.set(float("nan"))
     assert lab.panel.params.stiffness == 800.0
-    assert control.field.value == 800.0
+    assert control.field.value == "800"
 
 
 def test_setting_what_is_set_already_changes_no_record(lab: Viewer) -> None:
@@ -25,10 +30,44 @@ def test_a_preset_is_shown_and_holds_its_number(lab: Viewer) -> None:
     lab.panel.load("Lab scene: 50 points")
     params, number = lab.panel.read()
     assert number == 1
-    assert params.points == lab.panel.controls["points"].field.value == 50
+    assert params.points == 50
+    assert lab.panel.controls["points"].field.value == "50"
 
 
 def test_a_control_holds_no_value_of_its_own(lab: Viewer) -> None:
     control = lab.panel.controls["stiffness"]
     control.set(1234.5)
     assert 1234.5 not in [value for value in vars(control).values() if isinstance(value, float)]
+
+
+NUMBERS = [
+    (scene, name)
+    for scene in NAMES
+    for name, parameter in parameters_of(scene_named(scene).params()).items()
+    if parameter.kind in (int, float)
+]
+
+
+@pytest.mark.parametrize(("scene", "name"), NUMBERS)
+def test_a_slider_reaches_both_bounds_and_moves_over_numbers_of_a_few_digits(scene: str, name: str) -> None:
+    parameter = parameters_of(scene_named(scene).params())[name]
+    scale = SliderScale(parameter)
+    assert scale.value(scale.low) == parameter.low
+    assert scale.value(scale.high) == parameter.high
+    before = parameter.low
+    for step in range(1, 40):
+        value = scale.value(scale.low + (scale.high - scale.low) * step / 40)
+        assert type(value) is parameter.kind
+        assert before <= value <= parameter.high
+        assert value == float(f"{value:.6g}")
+        before = value
+    assert before > parameter.low
+
+
+@pytest.mark.parametrize(("scene", "name"), NUMBERS)
+def test_the_default_is_where_the_slider_shows_it(scene: str, name: str) -> None:
+    parameter = parameters_of(scene_named(scene).params())[name]
+    scale = SliderScale(parameter)
+    shown = scale.value(scale.position(parameter.default))
+    coarse = abs(scale.value(min(scale.position(parameter.default) + scale.step, scale.high)) - parameter.default)
+    assert abs(shown - parameter.default) <= max(coarse, 1e-9 * abs(parameter.default))

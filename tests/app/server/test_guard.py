@@ -180,10 +180,12 @@ def test_unbounded_values_are_seen(value: Any) -> None:
 
 def test_gui_values_are_clamped_or_refused(lab: Viewer) -> None:
     controls = lab.panel.controls
-    assert allowed_value(controls["gravity"].field, 1e9) == 100.0
-    assert allowed_value(controls["gravity"].field, -5) == 0.0
-    assert allowed_value(controls["gravity"].field, math.nan) is None
-    assert allowed_value(controls["gravity"].field, "9.81") is None
+    assert allowed_value(controls["gravity"].field, "9.81") == "9.81"  # the control reads it, or says why not
+    assert allowed_value(controls["gravity"].field, "9" * 65) is None
+    assert allowed_value(controls["gravity"].field, "9\n8") is None
+    assert allowed_value(controls["gravity"].field, 9.81) is None
+    assert allowed_value(controls["gravity"].slider, [1e5]) == (100.0,)
+    assert allowed_value(controls["gravity"].slider, [-5]) == (0.0,)
     assert allowed_value(controls["integrator"].field, "rk4") == "rk4"
     assert allowed_value(controls["integrator"].field, "rk5") is None
     assert allowed_value(controls["floor"].field, 1) is None

@@ -1,0 +1,108 @@
+// Fields and lists of the panel, on top of what viser's client does with them.
+//
+// viser sends a text field at each keystroke. Here a text is sent once it is complete: on Enter or when the field is left.
+// Escape brings the value back; the arrows change its second digit. A list or button that was used gives up the focus, so
+// that the keys of the lab (space, N, R, digits) never type into a list or press a button a second time.
+
+(() => {
+  "use strict";
+  const FIELD = "input.mantine-TextInput-input";
+  const setText = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
+  const before = new WeakMap(); // field -> its text when it was entered
+  const drafts = new WeakMap(); // field -> what was typed since
+  let sending = false;
+
+  function fieldOf(event) {
+    return event.target instanceof HTMLInputElement && event.target.matches(FIELD) ? event.target : null;
+  }
+
+  function send(field, text) {
+    drafts.delete(field);
+    before.set(field, text);
+    sending = true;
+    setText.call(field, text);
+    field.dispatchEvent(new Event("input", { bubbles: true }));
+    sending = false;
+  }
+
+  function commit(field) {
+    const draft = drafts.get(field);
+    if (draft === undefined) return;
+    // viser compares with what it last showed: a text that is typed back to the value needs no message.
+    if (draft === before.get(field)) return void drafts.delete(field);
+    send(field, draft);
+  }
+
+  function restore(field) {
+    if (drafts.has(field)) setText.call(field, before.get(field));
+    drafts.delete(field);
+  }
+
+  // The number that a text says, and whether it is written as a whole number; null where it says none.
+  function parse(text) {
+    const [above, below, more] = text.replace(",", ".").split("/");
+    const value = below === undefined ? Number(above) : Number(above) / Number(below);
+    return text.trim() === "" || more !== undefined || !Number.isFinite(value) ? null : value;
+  }
+
+  function stepped(text, up) {
+    const value = parse(text);
+    if (value === null) return null;
+    const digit = value === 0 ? 0.1 : 10 ** (Math.floor(Math.log10(Math.abs(value)) + 1e-9) - 1);
+    const step = /^[-+]?\d+$/.test(text.trim()) ? Math.max(1, digit) : digit;
+    const next = (Math.round(value / step) + (up ? 1 : -1)) * step;
+    return String(Number(next.toPrecision(12)));
+  }
+
+  document.addEventListener("focusin", (event) => {
+    const field = fieldOf(event);
+    if (!field) return;
+    before.set(field, field.value);
+    field.select();
+  });
+  document.addEventListener("input", (event) => {
+    const field = fieldOf(event);
+    if (!field || sending) return;
+    drafts.set(field, field.value);
+    event.stopImmediatePropagation();
+  }, true);
+  document.addEventListener("focusout", (event) => {
+    const field = fieldOf(event);
+    if (field) commit(field);
+  }, true);
+  document.addEventListener("keydown", (event) => {
+    const field = fieldOf(event);
+    if (!field) return;
+    if (event.key === "Enter") {
+      commit(field);
+      field.blur();
+    } else if (event.key === "Escape") {
+      restore(field);
+      field.blur();
+    } else if (event.key === "ArrowUp" || event.key === "ArrowDown") {
+      const text = stepped(drafts.get(field) ?? field.value, event.key === "ArrowUp");
+      event.preventDefault();
+      if (text !== null) send(field, text);
+    }
+  }, true);
+  // After viser's client has handled them:
+  document.addEventListener("keydown", (event) => {
+    const list = event.target instanceof HTMLElement && event.target.matches("[aria-haspopup=listbox]");
+    if (list && event.key === "Enter") event.target.blur();
+  });
+  document.addEventListener("click", (event) => {
+    const used = event.target instanceof Element && event.target.closest("[role=option], button, input[type=checkbox]");
+    // A click by keyboard has no detail: the focus stays where Tab has brought it.
+    if (used && event.detail > 0) document.activeElement?.blur();
+  });
+
+  // Assistive software finds a field by its name: viser's labels refer to an identifier that its text fields lack.
+  function nameFields() {
+    for (const label of document.querySelectorAll("label[for]")) {
+      const field = label.closest(".mantine-Flex-root")?.querySelector(FIELD);
+      if (field && !field.hasAttribute("aria-label")) field.setAttribute("aria-label", label.textContent);
+    }
+  }
+  new MutationObserver(nameFields).observe(document.body, { childList: true, subtree: true });
+  nameFields();
+})();

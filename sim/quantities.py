@@ -1,0 +1,90 @@
+"""Numbers as people write them: `read_number` takes "1e4", "1/60", "0,02", "20k" and "5 ms"; `write_number` shows one.
+
+A number is written so that reading it again gives the very same number.
+"""
+
+import re
+from decimal import Decimal
+from fractions import Fraction
+
+PREFIXES = {"n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "k": 3, "K": 3, "M": 6, "G": 9}
+MAX_LENGTH = 64  # characters of a number
+MAX_EXPONENT = 400  # beyond it every float is 0 or infinite
+MAX_DENOMINATOR = 100_000  # of a number that is written as 1/n
+MIN_PLAIN, MAX_PLAIN = 1e-4, 1e6  # below and from there a number is written with an exponent
+LONGEST_PLAIN = 7  # significant digits; of a number with more of them, 1/n is tried first
+
+DIGITS = r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?"
+NUMBER = re.compile(rf"(?P<number>{DIGITS})(?:\s*/\s*(?P<divisor>{DIGITS}))?\s*(?P<suffix>[^\d\s].*)?")
+GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+")  # 1,000: one or one thousand, according to the country
+
+
+def plain_unit(unit: str) -> str:
+    """A unit in characters that every keyboard has: m/s^2 for m/s²."""
+    for sign, plain in (("²", "^2"), ("³", "^3"), ("·", " "), ("°", "deg")):
+        unit = unit.replace(sign, plain)
+    return unit
+
+
+def exponent_of(suffix: str, unit: str) -> int | None:
+    """The power of ten that a suffix stands for: a prefix, the unit, or both; None where it is none of these."""
+    suffix, unit = plain_unit(suffix), plain_unit(unit)
+    if suffix in ("", unit):
+        return 0
+    prefix = suffix.removesuffix(unit).strip() if unit else suffix
+    return PREFIXES.get(prefix)
+
+
+def fraction_of(digits: str) -> Fraction:
+    """Decimal digits as an exact number. Raises ValueError where it is beyond every float."""
+    _, _, exponent = digits.lower().partition("e")
+    if exponent and abs(int(exponent)) > MAX_EXPONENT:
+        raise ValueError(f"{digits}: not a number that can be kept")
+    return Fraction(digits.replace(",", "."))
+
+
+def read_number(text: str, unit: str = "") -> float:
+    """The number that a text says, rounded once.
+
+    It may be a quotient, have a comma for its point, and end in a prefix (n, µ or u, m, k, M, G), in the unit, or in
+    both. "5m" is five metres where the unit is m, and five thousandths elsewhere.
+    Raises ValueError for what is no number, and for "1,000", which means one number here and another there.
+    """
+    word = text.strip().replace("\u2212", "-")
+    word = re.sub(r"(?<=\d)[\u00a0\u2009\u202f ](?=\d{3}(?!\d))", "", word)  # spaces between groups of digits
+    match = NUMBER.fullmatch(word) if len(word) <= MAX_LENGTH else None
+    if match is None:
+        raise ValueError("not a number")
+    number, divisor, suffix = match["number"], match["divisor"], (match["suffix"] or "").strip()
+    if GROUPED.fullmatch(number):
+        raise ValueError("the comma may mean two things: write 1000 or 1.000")
+    exponent = exponent_of(suffix, unit)
+    if exponent is None:
+        raise ValueError(f"{suffix!r} is no unit of it")
+    value = fraction_of(number)
+    if divisor is not None:
+        if fraction_of(divisor) == 0:
+            raise ValueError("divided by zero")
+        value /= fraction_of(divisor)
+    try:
+        return float(value * Fraction(10) ** exponent)
+    except OverflowError:
+        raise ValueError("too large a number") from None
+
+
+def write_number(value: float) -> str:
+    """The shortest text that `read_number` reads as the same number: decimal digits, 1/n, or digits and exponent.
+
+    A float below ten that is whole has a decimal place, "5.0", so that one sees that it may have others.
+    """
+    if isinstance(value, int):
+        return str(value)
+    decimal = Decimal(repr(float(value))).normalize()
+    if value and len(decimal.as_tuple().digits) > LONGEST_PLAIN:
+        divisor = round(1 / value)
+        if 1 < divisor <= MAX_DENOMINATOR and 1 / divisor == value:
+            return f"1/{divisor}"
+    if value and not MIN_PLAIN <= abs(value) < MAX_PLAIN:
+        return f"{decimal.scaleb(-decimal.adjusted()):f}e{decimal.adjusted()}"
+    whole = value == int(value) and abs(value) < 10
+    return f"{value:.1f}" if whole else f"{decimal:f}"

@@ -1,0 +1,120 @@
+"""Numbers typed key by key, and what the panel says of playing, in a real browser."""
+
+import pytest
+
+from app.panel.control import title
+from app.server.viewer import Viewer
+from sim.parameters import parameters_of
+from sim.quantities import write_number
+from tests.browser.conftest import Tab
+
+SCENE = "rope"
+
+
+def field(lab: Viewer, tab: Tab, name: str):
+    """The text field of a parameter on the page, in an open folder."""
+    return tab.page.get_by_label(title(name, parameters_of(lab.panel.params)[name]), exact=True)
+
+
+def type_into(lab: Viewer, tab: Tab, name: str, text: str, end: str = "Enter", delay: int = 50) -> None:
+    found = field(lab, tab, name)
+    found.click()
+    tab.page.keyboard.press("Control+A")
+    tab.page.keyboard.press("Delete")
+    tab.page.keyboard.type(text, delay=delay)
+    tab.page.keyboard.press(end)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "value"),
+    [
+        ("time_step", "0.02", 0.02),
+        ("time_step", "0,005", 0.005),
+        ("time_step", "1/60", 1 / 60),
+        ("time_step", "5 ms", 0.005),
+        ("stiffness", "1e4", 1e4),
+        ("stiffness", "3.7e+03", 3.7e3),
+        ("stiffness", "20k", 20e3),
+        ("mass", "0.25", 0.25),
+        ("length", "2.345", 2.345),
+        ("points", "27", 27),
+    ],
+)
+def test_a_number_is_taken_as_it_is_typed(shown: tuple[Viewer, Tab], name: str, text: str, value: float) -> None:
+    lab, tab = shown
+    type_into(lab, tab, name, text)
+    tab.wait(lambda: getattr(lab.panel.params, name) == value, 10)
+    tab.wait(lambda: field(lab, tab, name).input_value() == write_number(value), 10)
+    tab.wait(lambda: getattr(lab.scene.params, name) == value, 10)
+
+
+def test_the_simulation_never_sees_a_number_that_is_half_typed(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    seen: set[float] = set()
+    take = lab.loop.take
+
+    def watched(params):
+        seen.add(params.time_step)
+        return take(params)
+
+    lab.loop.take = watched
+    type_into(lab, tab, "time_step", "0.005", delay=150)
+    tab.wait(lambda: lab.scene.params.time_step == 0.005, 10)
+    assert seen == {0.005}
+
+
+@pytest.mark.parametrize("text", ["0.5", "abc", "", "1e10", "nan", "2,000", "5 m/s"])
+def test_what_is_not_allowed_is_refused_with_name_value_and_range(shown: tuple[Viewer, Tab], text: str) -> None:
+    lab, tab = shown
+    type_into(lab, tab, "stiffness", text)
+    refusal = tab.wait(lambda: tab.page.locator(".springtide-refusal").all_inner_texts(), 10)
+    assert len(refusal) == 1
+    assert refusal[0].startswith(f"stiffness: {text!r} is not allowed; allowed: 1 to 1e+09 N/m")
+    assert lab.panel.params.stiffness == lab.scene.params.stiffness == 800.0
+    tab.wait(lambda: field(lab, tab, "stiffness").input_value() == "800", 10)
+    type_into(lab, tab, "stiffness", "900")
+    tab.wait(lambda: tab.page.locator(".springtide-refusal").count() == 0, 10)
+    assert lab.panel.params.stiffness == 900.0
+
+
+def test_escape_and_arrows_and_leaving_a_field(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    type_into(lab, tab, "stiffness", "123", end="Escape")
+    assert field(lab, tab, "stiffness").input_value() == "800"
+    type_into(lab, tab, "stiffness", "850", end="ArrowUp")
+    tab.wait(lambda: lab.panel.params.stiffness == 860.0, 10)
+    type_into(lab, tab, "points", "12", end="ArrowDown")
+    tab.wait(lambda: lab.panel.params.points == 11, 10)
+    type_into(lab, tab, "mass", "0.4", end="Tab")
+    tab.wait(lambda: lab.panel.params.mass == 0.4, 10)
+
+
+def test_keys_go_to_the_lab_after_a_list_was_used(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.page.get_by_label("Preset").click()
+    tab.page.get_by_role("option", name="Pendulum", exact=False).first.click()
+    tab.wait(lambda: lab.panel.read()[1] > 0, 10)
+    tab.wait(lambda: lab.loop.running, 10)
+    tab.page.keyboard.press("Space")
+    tab.wait(lambda: not lab.loop.running, 10)
+
+
+def test_the_panel_says_at_once_whether_the_lab_plays(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    panel = tab.page.locator(".springtide-panel").first
+
+    def says(word: str, button: str) -> None:
+        tab.wait(lambda: panel.inner_text().startswith(word), 5)
+        assert lab.loop.running == (word == "Running")
+        tab.wait(lambda: tab.page.get_by_role("button", name=button, exact=True).count() == 1, 5)
+
+    says("Running", "Pause")
+    for _ in range(5):
+        tab.page.keyboard.press("Space")
+        says("Paused", "Play")
+        tab.page.get_by_role("button", name="Play", exact=True).click()
+        says("Running", "Pause")
+        tab.page.get_by_role("button", name="Step", exact=True).click()
+        says("Paused", "Play")
+        tab.page.keyboard.press("Space")
+        says("Running", "Pause")

@@ -1,0 +1,82 @@
+"""Numbers as people write them."""
+
+import random
+
+import pytest
+
+from sim.quantities import read_number, write_number
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("1e4", "", 1e4),
+        ("3.7e+03", "N/m", 3700.0),
+        ("1/60", "s", 1 / 60),
+        ("1 / 60 s", "s", 1 / 60),
+        ("0,02", "s", 0.02),
+        (".5", "", 0.5),
+        ("20k", "N/m", 20e3),
+        ("20 kN/m", "N/m", 20e3),
+        ("5m", "s", 0.005),
+        ("5 ms", "s", 0.005),
+        ("5m", "m", 5.0),
+        ("5mm", "m", 0.005),
+        ("9.81 m/s²", "m/s^2", 9.81),
+        ("9.81 m/s^2", "m/s²", 9.81),
+        ("3 700", "N/m", 3700.0),
+        ("\u22123", "", -3.0),
+        ("0.1", "", 0.1),
+        ("0.3u", "m", 3e-7),
+    ],
+)
+def test_a_number_is_read_in_the_ways_that_people_write_it(text: str, unit: str, value: float) -> None:
+    assert read_number(text, unit) == value
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "abc", "nan", "inf", "1/0", "1e999", "1e99999999999", "--3", "1/2/3", "5 kg", "0x10", "1_000", "9" * 65],
+)
+def test_what_is_no_number_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match=r"\w"):
+        read_number(text, "N/m")
+
+
+@pytest.mark.parametrize("text", ["1,000", "-12,345", "1,000,000"])
+def test_a_comma_that_may_mean_two_things_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="two things"):
+        read_number(text)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (1 / 60, "1/60"),
+        (0.02, "0.02"),
+        (800.0, "800"),
+        (10, "10"),
+        (5, "5"),
+        (5.0, "5.0"),
+        (1e-5, "1e-5"),
+        (1e9, "1e9"),
+        (9.81, "9.81"),
+        (0.0, "0.0"),
+    ],
+)
+def test_a_number_is_written_as_one_would(value: float, text: str) -> None:
+    assert write_number(value) == text
+
+
+def test_what_is_written_is_read_as_the_same_number() -> None:
+    source = random.Random(1)
+    for _ in range(20_000):
+        value = source.choice(
+            [
+                source.uniform(-1, 1) * 10 ** source.uniform(-300, 300),
+                round(source.uniform(-1e3, 1e3), source.randrange(6)),
+                1 / source.randrange(1, 5000),
+                float(source.randrange(-(10**9), 10**9)),
+            ]
+        )
+        assert read_number(write_number(value)) == value

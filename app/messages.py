@@ -156,6 +156,7 @@ class Status(NamedTuple):
     solve_time: float  # [s] per frame spent solving
     frame_rate: float  # frames per second published
     halted: str  # why the run stopped by itself, or ""
+    starts: int = 0  # how often it was begun again, by a reset or a preset
 
 
 class Snapshot(NamedTuple, Generic[P, F, R]):

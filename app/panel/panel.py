@@ -16,6 +16,7 @@ from app.messages import BaseParams, Command, Load, Pause, Play, PlotRow, Reset,
 from app.panel.control import Control
 from app.panel.plots import Plots
 from app.panel.work_table import work_table
+from app.render.cameras import place_camera
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, join, note
 from app.render.viser_types import ViserEvent
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
@@ -64,8 +65,8 @@ class Panel:
         self.add_chooser(scenes, open_scene)
         help_text = fill(
             '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">{}<br>'
-            "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>P</b> plots · <b>G</b> grid · "
-            "<b>1-9</b> presets</div>",
+            "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset view · <b>P</b> plots · "
+            "<b>G</b> grid · <b>1-9</b> presets</div>",
             Html(kind.help),
         )
         gui.add_html(str(help_text))
@@ -74,6 +75,8 @@ class Panel:
         self.running = True  # as the buttons show it
         self.buttons = gui.add_button_group(" ", button_names(self.running))
         self.buttons.on_click(self.on_button)
+        self.tools = gui.add_button_group("View", ("Reset view", "Plots"))
+        self.tools.on_click(self.on_tool)
         self.status = gui.add_html("")
         self.readout = gui.add_html("")
         self.controls: dict[str, Control] = {}
@@ -132,6 +135,8 @@ class Panel:
             async def _(_: ViserEvent, action: Callable[[], None] = action) -> None:
                 action()
 
+        self.gui.add_command("Reset view", hotkey="V").on_trigger(self.reset_view)
+
     def read(self) -> tuple[BaseParams, int]:
         """The parameters as set now, and the number of the last preset; polled by the simulation once a frame."""
         return self.state
@@ -175,6 +180,18 @@ class Panel:
     async def on_button(self, event: ViserEvent) -> None:
         """Play or pause, step, reset: what the button said when it was pressed."""
         self.post(BUTTONS[event.target.value])
+
+    async def on_tool(self, event: ViserEvent) -> None:
+        """Reset the view, open or close the plots."""
+        if event.target.value == "Plots":
+            self.toggle_plots()
+        else:
+            await self.reset_view(event)
+
+    async def reset_view(self, event: ViserEvent) -> None:
+        """Put the camera of this browser where a new one would be."""
+        if event.client is not None:
+            place_camera(event.client.camera, *self.view.first_view(self.params), self.view.FIELD_OF_VIEW)
 
     def toggle_plots(self) -> None:
         """Open all plots, or close them where one is open."""

@@ -21,6 +21,11 @@ def place_cameras(
 ) -> None:
     """Place every camera at `position` [m], looking at `target` [m]; field_of_view: vertical [rad], None to keep it."""
     for camera in all_cameras(server):
-        camera.position, camera.look_at = position, target
-        if field_of_view is not None:
-            camera.fov = field_of_view
+        place_camera(camera, position, target, field_of_view)
+
+
+def place_camera(camera: Camera, position: Vector, target: Vector, field_of_view: float | None = None) -> None:
+    """The same for one camera."""
+    camera.position, camera.look_at = position, target
+    if field_of_view is not None:
+        camera.fov = field_of_view

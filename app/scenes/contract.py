@@ -114,11 +114,14 @@ class Scene(Protocol[P, F_co, R_co]):
 class View(Protocol[P, F, R]):
     """The drawing of a scene, used on the viewer's thread only: `View(server, post)`, and `post` takes commands.
 
-    CAMERA: position and target [m] of the first view. FIELD_OF_VIEW: vertical [rad].
+    FIELD_OF_VIEW: of a new camera, vertical [rad].
     """
 
-    CAMERA: tuple[Vector, Vector]
     FIELD_OF_VIEW: float
+
+    def first_view(self, params: P) -> tuple[Vector, Vector]:
+        """Position and target [m] of a camera that has not been moved, with these parameters."""
+        ...
 
     def show(self, frame: F) -> None:
         """Assign a frame to the handles; called inside `server.atomic()`."""

@@ -243,8 +243,10 @@ class SimLoop:
                 self.loaded = number
                 self.scene.params = params
                 self.cost_unknown = True
+                self.counts["starts"] += 1
                 self.reset()
             case Reset():
+                self.counts["starts"] += 1
                 self.reset()
             case _:
                 self.guarded(lambda: self.scene.handle(command))
@@ -316,6 +318,7 @@ class SimLoop:
             solve_time=solve,
             frame_rate=(len(self.history) - 1) / elapsed if elapsed > 0 else 0.0,
             halted=self.halted,
+            starts=self.counts["starts"],
         )
 
     def run(self, stop: threading.Event) -> None:

@@ -1,7 +1,7 @@
 """The page that a browser is given: viser's, with a title, a cover for while nothing is drawn, and our own script.
 
 viser serves one HTML file. The cover stands at the top of its body, so that it is seen before the client behind it has
-been read; the scripts below it are `app/render/js/page.js` and `fields.js`.
+been read; the scripts below it are those of `SCRIPTS` in `app/render/js`.
 """
 
 import functools
@@ -14,6 +14,7 @@ from websockets.http11 import Request, Response
 
 ALIVE_PATH = "/springtide-alive"  # what the page asks for, to see whether the server is still there
 TITLE = "<title>Springtide</title>"
+SCRIPTS = ("page.js", "fields.js", "camera.js")
 COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'
 
 
@@ -43,7 +44,7 @@ def covered(page: bytes, zipped: bool) -> bytes:
     """viser's page with ours around it, compressed again where it was."""
     folder = resources.files("app.render") / "js"
     style = (folder / "page.css").read_text("utf-8")
-    script = "".join((folder / name).read_text("utf-8") for name in ("page.js", "fields.js"))
+    script = "".join((folder / name).read_text("utf-8") for name in SCRIPTS)
     head, _, body = page.decode("utf-8").rpartition("<body>")
     # viser's client is one long script in the head: below the cover it does not delay it.
     start = head.index("<script")

@@ -47,6 +47,7 @@ class Viewer:
         self.ended = False
         self.threads: list[threading.Thread] = []
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
+        self.starts = 0  # how often the shown run was begun again
         self.unwatched = Unwatched()
         self.send_time = 0.0  # [s] that the last frame took to hand over
         self.is_open = False  # whether scene, view, panel and loop are those of an open scene
@@ -89,8 +90,7 @@ class Viewer:
         commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
         self.commands = commands
         self.view = make_view(self.server, commands.put)
-        position, target = self.view.CAMERA
-        place_cameras(self.server, position, target, self.view.FIELD_OF_VIEW)
+        place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
         self.panel = Panel(
             self.server, kind, self.view, params, commands.put, work=self.work, scenes=NAMES, open_scene=self.wanted.put
         )
@@ -124,7 +124,7 @@ class Viewer:
         """An empty panel and an empty scene."""
         self.server.gui.reset()
         reset_scene(self.server)
-        self.shown = self.drawn = 0
+        self.shown = self.drawn = self.starts = 0
         self.transport.begin()
         self.unwatched = Unwatched()
 
@@ -187,6 +187,9 @@ class Viewer:
                 start = time.perf_counter()
                 self.attempt("picture", lambda: self.view.show(snapshot.frame))
                 self.send_time = time.perf_counter() - start
+                if snapshot.status.starts != self.starts:  # after the picture: another scene size moves cameras too
+                    self.starts = snapshot.status.starts
+                    place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, self.send_time, busy))
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:

@@ -22,6 +22,13 @@ WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
     const flat = "#version 300 es\\nout lowp vec4 color; void main() { color = vec4(0.3, 0.5, 0.6, 1.0); }";
     put.call(this, shader, fragment ? flat : source);
 };"""
+# Where a point of the scene [m] is on the page [pixels].
+PIXEL = """point => { const viewer = window.__viserMutable, camera = viewer.camera;
+    const nodes = Object.entries(viewer.nodeRefFromName);
+    const top = nodes.find(([name, node]) => node && name.split("/").length === 2)[1];
+    const box = viewer.canvas.getBoundingClientRect(), place = camera.position.clone().set(...point);
+    top.parent.localToWorld(place).project(camera);
+    return [box.left + box.width * (1 + place.x) / 2, box.top + box.height * (1 - place.y) / 2]; }"""
 # What viser itself logs without harm: its drag layer at each drag of a node, and its splats, the quads of which have
 # corners of two coordinates.
 HARMLESS_ERRORS = ("preventDefault inside passive", "computeBoundingSphere(): Computed radius is NaN")
@@ -116,6 +123,11 @@ class Tab:
             node,
         )
         return np.frombuffer(base64.b64decode(numbers), np.float32).astype(float).reshape(-1, 3)
+
+    def pixel(self, point: Any) -> tuple[float, float]:
+        """Where a point [m] is on the page."""
+        x, y = self.page.evaluate(PIXEL, [float(c) for c in point])
+        return x, y
 
     def drag(self, start: tuple[float, float], end: tuple[float, float], pause: int = 50) -> None:
         """Press at one pixel, move to another in steps, and hold; `release` ends the drag."""

@@ -5,7 +5,6 @@ import numpy as np
 from app.messages import Pause, Play
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
-from tests.browser.test_rope import pixel
 
 SCENE = "cloth"
 COUNT_FRAMES = """() => { const scene = window.__viserMutable.scene, earlier = scene.onBeforeRender; window.frames = 0;
@@ -46,7 +45,7 @@ def test_a_particle_is_dragged_by_the_mouse(shown: tuple[Viewer, Tab]) -> None:
     lab.loop.commands.put(Pause())
     tab.page.wait_for_timeout(500)
     here = lab.scene.state.x[:, 16, 10].copy()
-    start = pixel(lab, here)
+    start = tab.pixel(here)
     tab.page.mouse.move(*start)
     lab.loop.commands.put(Play())
     tab.drag(start, (start[0] - 80, start[1] - 30))
@@ -65,7 +64,7 @@ def test_a_pin_is_moved_by_its_arrow(shown: tuple[Viewer, Tab]) -> None:
     arrow = pin + (0.0, 0.0, 0.15)
 
     def drag_up() -> bool:
-        tab.drag(pixel(lab, arrow), pixel(lab, arrow + (0.0, 0.0, 0.4)))
+        tab.drag(tab.pixel(arrow), tab.pixel(arrow + (0.0, 0.0, 0.4)))
         tab.release()
         tab.page.wait_for_timeout(500)
         return lab.scene.handles[0].position[2] > pin[2] + 0.1

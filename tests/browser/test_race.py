@@ -5,7 +5,6 @@ from app.scenes.springs.rope_parameters import ROOT
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests.browser.conftest import Tab
-from tests.browser.test_rope import pixel
 
 SCENE = "race"
 CHARTS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({chart}) => ({
@@ -54,7 +53,7 @@ def test_a_bead_is_dragged_and_another_preset_starts_at_once(shown: tuple[Viewer
     tab.wait(lambda: len(tab.vertices("/race/rope_4")) > 0)
 
     def dragged() -> bool:
-        start = pixel(lab, lab.scene.frame().ropes[0, 7])
+        start = tab.pixel(lab.scene.frame().ropes[0, 7])
         tab.drag(start, (start[0] - 60, start[1] - 40))
         tab.page.wait_for_timeout(500)
         held = lab.scene.handles.drag.hold is not None

@@ -8,7 +8,6 @@ from app.messages import Pause, Play, Reset
 from app.scenes.radial_sea.parameters import PRESETS
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
-from tests.browser.test_rope import pixel
 
 SCENE = "radial_sea"
 
@@ -86,7 +85,7 @@ def test_a_buoy_dragged_under_bobs_back(shown: tuple[Viewer, Tab]) -> None:
     lab.loop.commands.put(Pause())
     tab.page.wait_for_timeout(500)
     rest = lab.scene.bodies.fleet.position[0].copy()
-    start = pixel(lab, rest)
+    start = tab.pixel(rest)
     tab.page.mouse.move(*start)
     lab.loop.commands.put(Play())
     tab.drag(start, (start[0], start[1] + 110), pause=100)

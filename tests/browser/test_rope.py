@@ -1,7 +1,5 @@
 """The rope scene in a real browser, driven by mouse and keyboard."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -9,26 +7,9 @@ from app.messages import Pause, Play
 from app.panel import stability_map as live
 from app.scenes.springs.rope_parameters import ROOT
 from app.server.viewer import Viewer
-from tests.browser.conftest import PIXEL_RATIO, Tab
+from tests.browser.conftest import Tab
 
 SCENE = "rope"
-
-
-def pixel(viewer: Viewer, point: Any) -> tuple[float, float]:
-    """Where a point [m] is on the only page."""
-    (client,) = viewer.server.get_clients().values()
-    camera = client.camera
-    forward = np.asarray(camera.look_at) - camera.position
-    forward /= np.linalg.norm(forward)
-    right = np.cross(forward, [0.0, 0.0, 1.0])
-    right /= np.linalg.norm(right)
-    up = np.cross(right, forward)
-    away = np.asarray(point) - camera.position
-    focal = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
-    x, y, z = away @ right, away @ up, away @ forward
-    return (0.5 * camera.image_width + focal * x / z) / PIXEL_RATIO, (
-        0.5 * camera.image_height - focal * y / z
-    ) / PIXEL_RATIO
 
 
 def watching(viewer: Viewer) -> bool:
@@ -62,7 +43,7 @@ def test_dragging_the_arrows_moves_the_root(shown: tuple[Viewer, Tab]) -> None:
     arrow = np.array(ROOT) + (0.0, 0.0, 0.2)
 
     def drag_up() -> bool:
-        tab.drag(pixel(lab, arrow), pixel(lab, arrow + (0.0, 0.0, 0.5)))
+        tab.drag(tab.pixel(arrow), tab.pixel(arrow + (0.0, 0.0, 0.5)))
         tab.release()
         tab.page.wait_for_timeout(500)
         return lab.scene.handles.root.position[2] > ROOT[2] + 0.2
@@ -81,7 +62,7 @@ def test_dragging_a_bead_pulls_it_and_lets_go(shown: tuple[Viewer, Tab]) -> None
     tab.page.wait_for_timeout(500)
     particle = 6
     bead = lab.scene.state.x[:, 0, particle].copy()
-    start = pixel(lab, bead)
+    start = tab.pixel(bead)
     tab.page.mouse.move(*start)
     lab.loop.commands.put(Play())
     tab.drag(start, (start[0] + 70, start[1] - 40))

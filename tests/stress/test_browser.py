@@ -11,7 +11,6 @@ import pytest
 from app.messages import Pause
 from app.server.viewer import Viewer
 from tests.browser.conftest import CHROMIUM, FLAGS, Tab
-from tests.browser.test_rope import pixel
 from tests.stress.clients import until
 from tests.stress.tally import Tally
 
@@ -43,7 +42,7 @@ def test_a_chromium_killed_while_it_drags(lab: Viewer, process: tuple[subprocess
     tab.wait(lambda: lab.audience() == 1 and lab.loop.scene.time > 6)
     lab.commands.put(Pause())  # a slow page must hit what it sees
     tab.page.wait_for_timeout(1500)
-    start = pixel(lab, lab.scene.state.x[:, 0, 6])
+    start = tab.pixel(lab.scene.state.x[:, 0, 6])
     with tally.fault("Chromium killed in mid-drag"):
 
         def grab() -> bool:

@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import viser
 
-from app.messages import Snapshot
+from app.messages import Snapshot, Vector
 from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import PullLine, SurfaceDrag
@@ -108,6 +108,10 @@ class View:
         if frame.colour == "plain":
             return np.tile(np.array(CLOTH_COLOUR, np.float32) / 255, (frame.strain.size, 1))
         return scale_colours(frame.strain.ravel().astype(np.float64), 0.0, frame.full_strain)
+
+    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+        """Position and target [m] of a camera that has not been moved."""
+        return self.CAMERA
 
     def show(self, frame: ClothFrame) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""

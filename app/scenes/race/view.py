@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import viser
 
-from app.messages import Snapshot
+from app.messages import Snapshot, Vector
 from app.render.colormap import rgb
 from app.render.dragging import drag
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
@@ -155,6 +155,10 @@ class View:
     async def on_bead(self, event: Any) -> None:
         """Pull the bead that is dragged."""
         drag(self.post, event, event.instance_index)
+
+    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+        """Position and target [m] of a camera that has not been moved."""
+        return self.CAMERA
 
     def show(self, frame: RaceFrame) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.messages import Command, Place, Snapshot, finite_vector
+from app.messages import Command, Place, Snapshot, Vector, finite_vector
 from app.render.cameras import place_cameras
 from app.render.dragging import PullLine, drag
 from app.render.follow_camera import FollowCamera
@@ -22,6 +22,7 @@ from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.fire_view import Flames
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.materials import material_of
+from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
 from app.scenes.radial_sea.scene import GRID_RADIUS
 from app.scenes.radial_sea.well_blowout import FIRE, RIG
@@ -74,6 +75,7 @@ class View:
         self.bodies: dict[str, tuple[Any, np.ndarray]] = {}  # kind -> handle, numbers of its bodies
         self.handles: viser.BatchedMeshHandle | None = None
         self.followed, self.follow_camera = "free", FollowCamera()
+        self.followed_body: np.ndarray | None = None  # (3,) [m] where the followed body is, at mean water
         self.camera_told_at = 0.0
         scene = server.scene
         self.rig = scene.add_glb("/rig", model("rig"), position=(*RIG, 0.0), cast_shadow=False, receive_shadow=False)
@@ -83,6 +85,13 @@ class View:
         self.flames: Flames | None = None
         self.walls: Walls | None = None
         self.pull_lines: list[PullLine] = []
+
+    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+        """Position and target [m] of a camera that has not been moved: beside what is followed."""
+        if self.followed_body is None or params.follow not in FOLLOWED_BODY:
+            return VIEWS.get(params.follow, self.CAMERA)
+        position, target = self.followed_body + offset_of_view(params)
+        return vector_of(position), vector_of(target)
 
     def show(self, frame: RadialFrame) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
@@ -218,16 +227,12 @@ class View:
         cameras = {number: client.camera for number, client in self.server.get_clients().items()}
         if target is not None:
             target[2] = 0.0  # a camera that heaved with the body would hide that the body heaves
+        self.followed_body = target
         if p.follow != self.followed:
             self.followed = p.follow
             if target is not None:
-                view = CUTAWAY_VIEW if p.follow == "cutaway" else BODY_VIEW
-                offset = np.array(view) * p.size / VIEW_SIZE
-                self.follow_camera.start(target, offset)
-                position, look_at = target + offset
-            else:
-                position, look_at = VIEWS.get(p.follow, self.CAMERA)
-            place_cameras(self.server, position, look_at)
+                self.follow_camera.start(target, offset_of_view(p))
+            place_cameras(self.server, *self.first_view(p))
         elif target is not None:
             self.follow_camera.follow(target, cameras)
         now = time.monotonic()
@@ -251,6 +256,16 @@ class View:
 
     def close(self) -> None:
         """Nothing to give back: removing the nodes removes everything."""
+
+
+def offset_of_view(params: Params) -> np.ndarray:
+    """(2, 3) [m] from the followed body to a camera that has not been moved, and to its target."""
+    return np.array(CUTAWAY_VIEW if params.follow == "cutaway" else BODY_VIEW) * params.size / VIEW_SIZE
+
+
+def vector_of(x: np.ndarray) -> Vector:
+    """(3,) [m] as a tuple."""
+    return float(x[0]), float(x[1]), float(x[2])
 
 
 def handle_scale(frame: RadialFrame, kind: str) -> float:

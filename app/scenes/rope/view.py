@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import viser
 
-from app.messages import Snapshot
+from app.messages import Snapshot, Vector
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
@@ -119,6 +119,10 @@ class View:
         if self.painted != (frame.colour, frame.full_scale):
             return True
         return float(np.abs(frame.tension - self.tension).max()) >= COLOUR_TOLERANCE * frame.full_scale
+
+    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+        """Position and target [m] of a camera that has not been moved."""
+        return self.CAMERA
 
     def show(self, frame: RopeFrame) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""

@@ -50,7 +50,6 @@ def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
 class View:
     """Draws `SeaFrame`s."""
 
-    CAMERA = camera_of(DEFAULTS.view, DEFAULTS.length)
     FIELD_OF_VIEW = 0.65  # [rad]
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
@@ -64,6 +63,10 @@ class View:
         self.sky_material = self.material = Material()
         self.last: SeaFrame | None = None
         server.scene.on_click()(self.on_click)
+
+    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+        """Position and target [m] of a camera that has not been moved."""
+        return camera_of(params.view, params.length)
 
     def on_click(self, event: Any) -> None:
         """Tell the scene what the mouse points at."""

@@ -25,7 +25,9 @@ from numba.core.compiler import Flags
 from numba.core.options import TargetOptions
 from numba.core.registry import cpu_target
 
-__all__ = ["CACHE", "MAX_THREADS", "kernel", "prange", "set_threads"]
+from sim.compiler import Choice, Entry, EntryCompiler, Part, PartCompiler, PartResult
+
+__all__ = ["CACHE", "MAX_THREADS", "chosen", "kernel", "prange", "set_threads"]
 
 ROOT = Path(__file__).resolve().parent.parent
 OWN_PACKAGES = ("sim", "app", "tests")
@@ -148,20 +150,6 @@ class KernelFile(IndexDataCacheFile):
                 super().save(key, data)
 
 
-class KernelResult(CompileResultCacheImpl):
-    """numba's reading of a kept kernel, which also tells its callers what it needs.
-
-    A kernel that calls a parallel one keeps with it that the threads are to be started as it is loaded. numba hands
-    that on from callee to caller as both are compiled, but forgets it of a callee that came from the cache: the caller,
-    kept in its turn, would end the program that loads it first ("Symbol not found: allocate_sched").
-    """
-
-    def rebuild(self, target_context: Any, payload: Any) -> Any:
-        result = super().rebuild(target_context, payload)
-        result.library._reload_init.update(result.reload_init)
-        return result
-
-
 def kernel(
     function: Callable[..., Any] | None = None,
     *,
@@ -187,22 +175,59 @@ def kernel(
         "parallel": parallel,
         "forceinline": inline,
         "_nrt": allocates and not inline,
+        "no_cfunc_wrapper": True,
     }
     if noalias and _HAS_NOALIAS:
         options["noalias"] = True
+    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+        return function
     folder = kernel_folder(Path(function.__code__.co_filename).resolve())
+    entry = compiled(function, folder, "", EntryCompiler, CompileResultCacheImpl, options)
+    part = compiled(function, folder, "-part", PartCompiler, PartResult, {**options, "no_cpython_wrapper": True})
+    entry.__class__, part.__class__ = Entry, Part
+    entry.part = part
+    return entry
+
+
+def compiled(
+    function: Callable[..., Any],
+    folder: Path | None,
+    suffix: str,
+    pipeline: type,
+    result: type,
+    options: dict[str, Any],
+) -> Any:
+    """numba's function of a kernel, kept in `folder`, in files with `suffix`, as `result` says."""
     previous = numba.config.CACHE_DIR  # type: ignore[attr-defined]
     try:
         # numba reads the setting once, here; other libraries' kernels stay where they were.
         numba.config.CACHE_DIR = str(folder) if folder else previous  # type: ignore[attr-defined]
-        compiled = numba.njit(cache=folder is not None, **options)(function)
+        made = numba.njit(cache=folder is not None, pipeline_class=pipeline, **options)(function)
     finally:
         numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
-    if folder is not None and hasattr(compiled, "_cache"):  # a plain function with NUMBA_DISABLE_JIT=1
-        cache = compiled._cache  # type: ignore[attr-defined]
-        cache._cache_file = KernelFile(str(folder), cache._impl.filename_base, "")
-        cache._impl.__class__ = KernelResult
-    return compiled
+    if folder is not None:
+        cache = made._cache  # type: ignore[attr-defined]
+        cache._cache_file = KernelFile(str(folder), cache._impl.filename_base + suffix, "")
+        cache._impl.__class__ = result
+    return made
+
+
+def chosen(variants: dict[type, Any]) -> Any:
+    """A kernel that stands for one of `variants`, by the class of a record (a NamedTuple) among its arguments.
+
+    Which one is known as soon as the types are, so that a caller holds the code of that one and of no other.
+    """
+    kernels = list(variants.values())
+    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+
+        def call(*args: Any) -> Any:
+            return next(variants[type(arg)] for arg in args if type(arg) in variants)(*args)
+
+        return call
+    choice: Any = numba.njit(kernels[0].py_func)
+    choice.__class__ = Choice
+    choice.variants = variants
+    return choice
 
 
 def set_threads(count: int) -> None:

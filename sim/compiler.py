@@ -1,0 +1,190 @@
+"""How numba compiles kernels here: each kernel that Python calls becomes one piece of machine code, and no other does.
+
+By default numba makes machine code, a wrapper for Python and one for C of every function, also of those that only
+other kernels call, and optimises each of them again inside every caller. That is most of the compile time, and callers
+can be optimised less, because their callees must stay callable from outside. Here a kernel has two forms:
+
+- a *part*, which other kernels call: typed and lowered to LLVM's code, and no further;
+- an *entry*, which Python calls: all its parts are linked into it as private functions, so that constants and unused
+  arguments go through them, and the whole is optimised and made machine code once.
+
+A part is compiled for the types of its arguments and never for the value of a constant argument; LLVM sees to that.
+The names used here are numba's own. They are a reason for the upper bound of numba in pyproject.toml.
+"""
+
+from typing import Any
+
+import llvmlite.binding as llvm
+from numba.core import event, sigutils, types
+from numba.core.caching import CompileResultCacheImpl
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler, CompileResult
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.environment import lookup_environment
+from numba.core.registry import CPUDispatcher
+
+
+class PartLibrary(JITCodeLibrary):
+    """LLVM code of a part: neither optimised as a whole nor made machine code."""
+
+    def _optimize_final_module(self) -> None:
+        """Left to the entry that it is linked into."""
+
+    def _finalize_final_module(self) -> None:
+        self._finalized = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        self._ensure_finalized()
+        return 0  # there is none
+
+    @property
+    def has_dynamic_globals(self) -> bool:
+        """Whether it holds an address of this process. Before it is optimised it may, without using it.
+
+        An entry that does use one is not kept, so its parts would be compiled again only to be linked into it.
+        """
+        return False
+
+
+class EntryLibrary(JITCodeLibrary):
+    """LLVM code of an entry and of all its parts."""
+
+    _codegen: Any
+
+    def _optimize_final_module(self) -> None:
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == llvm.Linkage.linkonce_odr:
+                function.linkage = llvm.Linkage.internal
+        super()._optimize_final_module()
+
+    def _finalize_specific(self) -> None:
+        """Tell the machine code where the environments of its parts are: the Python objects that they name."""
+        super()._finalize_specific()
+        for environment in environments(self._final_module):
+            self._codegen.set_env(environment.env_name, environment)
+
+
+class PartCompiler(Compiler):
+    """Compiles a part."""
+
+    def compile_extra(self, func: Any) -> Any:
+        self.state.flags.no_compile = True
+        self.state.library = PartLibrary(self.state.targetctx.codegen(), func.__qualname__)
+        return super().compile_extra(func)
+
+
+class EntryCompiler(Compiler):
+    """Compiles an entry."""
+
+    def compile_extra(self, func: Any) -> Any:
+        self.state.library = EntryLibrary(self.state.targetctx.codegen(), func.__qualname__)
+        self.state.library.enable_object_caching()  # without it, it could not be kept
+        return super().compile_extra(func)
+
+
+class PartResult(CompileResultCacheImpl):
+    """How a part is kept: its LLVM code, and what its callers have to know of it."""
+
+    def reduce(self, cres: Any) -> Any:
+        library, about = cres.library, cres.fndesc
+        about.typemap = about.calltypes = None  # large, and not needed to call it
+        code = library._get_module_for_linking().as_bitcode()
+        used = environments(library._final_module)
+        return library.name, code, list(library._reload_init), about, cres.environment, cres.signature, used
+
+    def rebuild(self, target_context: Any, payload: Any) -> Any:
+        name, code, reload_init, about, environment, signature, used = payload
+        for start in reload_init:  # the threads of a parallel kernel
+            start()
+        library = PartLibrary(target_context.codegen(), name)
+        library._final_module = library._shared_module = llvm.parse_bitcode(code)
+        library._finalize_final_module()
+        library._reload_init.update(reload_init)
+        return CompileResult(
+            typing_context=target_context.typing_context,
+            target_context=target_context,
+            entry_point=None,
+            typing_error=None,
+            type_annotation="",
+            signature=signature,
+            objectmode=False,
+            lifted=(),
+            fndesc=about,
+            library=library,
+            call_helper=None,
+            environment=environment,
+            metadata=None,
+            reload_init=reload_init,
+            referenced_envs=used,  # kept, so that an entry finds them by their names
+        )
+
+
+def environments(module: Any) -> list[Any]:
+    """The environments that the code of a module names."""
+    names = (variable.name for variable in module.global_variables)
+    found = (lookup_environment(name) for name in names if name.startswith("_ZN08NumbaEnv"))
+    return [environment for environment in found if environment is not None]
+
+
+class Part(CPUDispatcher):
+    """A kernel as other kernels call it."""
+
+    _cache: Any
+    _compiler: Any
+
+    def compile(self, sig: Any) -> Any:
+        """What stands for the part of these argument types among numba's functions; made where there is none yet."""
+        with global_compiler_lock:
+            args, return_type = sigutils.normalize_signature(sig)
+            known = self.overloads.get(tuple(args))
+            if known is not None:
+                return known.entry_point
+            result = self._cache.load_overload(sig, self.targetctx)
+            if result is None:
+                about = {"dispatcher": self, "args": args, "return_type": return_type}
+                with event.trigger_event("numba:compile", data=about):
+                    result = self._compiler.compile(args, return_type)
+                self._cache.save_overload(sig, result)
+            # numba finds the code of a call by what Python would call, so here by an object of no other meaning.
+            result = result._replace(entry_point=object())
+            self.targetctx.insert_user_function(result.entry_point, result.fndesc, [result.library])
+            self.overloads[tuple(args)] = result
+            return result.entry_point
+
+
+class Entry(CPUDispatcher):
+    """A kernel as Python calls it; other kernels are given its part."""
+
+    part: Any
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """numba asks for this as it types a call: constants count as any other value of their type."""
+        return self.part.get_call_template([types.unliteral(a) for a in args], kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        """numba asks for this as it lowers a call."""
+        return self.part.get_overload(sig)
+
+
+class Choice(Entry):
+    """One of several kernels, by the class of a record (a NamedTuple) among the arguments."""
+
+    variants: dict[Any, Any]
+
+    def variant(self, args: Any) -> Any:
+        """The kernel for these argument types. Raises TypeError where there is none."""
+        for arg in args:
+            kernel = self.variants.get(getattr(arg, "instance_class", None))
+            if kernel is not None:
+                return kernel
+        raise TypeError(f"{self.__name__}: no kernel for arguments of types {', '.join(map(str, args))}")
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        return self.variant(args).get_call_template(args, kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        return self.variant(sig).get_overload(sig)
+
+    def compile(self, sig: Any) -> Any:
+        """Called from Python."""
+        return self.variant(sigutils.normalize_signature(sig)[0]).compile(sig)

@@ -9,10 +9,12 @@ the parameter, the value, its range and unit (command line, files).
 """
 
 import dataclasses
+import difflib
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, NamedTuple, TypeVar
 
+from sim.formatting import plain
 from sim.quantities import read_number
 from sim.validation import argument_error
 
@@ -30,6 +32,7 @@ FALSE = ("false", "no", "off", "0")
 class Parameter(NamedTuple):
     """What the value of one parameter may be. `choices` is non-empty for named values only; low and high bound numbers.
 
+    title: what the panel calls it, "" for the name in words. choice_titles: what the panel calls each of `choices`.
     affects: what a change does. "look": only the picture or the pace of the clock; "forces": the motion goes on under
     other forces; "start": the scene begins again.
     """
@@ -43,6 +46,8 @@ class Parameter(NamedTuple):
     choices: tuple[str, ...] = ()
     group: str = ""
     affects: Effect = "forces"
+    title: str = ""
+    choice_titles: tuple[str, ...] = ()
 
     @property
     def kind(self) -> type:
@@ -58,7 +63,15 @@ class Parameter(NamedTuple):
             return "true or false"
         unit = f" {self.unit}" if self.unit else ""
         whole = "a whole number from " if self.kind is int else ""
-        return f"{whole}{self.low:g} to {self.high:g}{unit}"
+        return f"{whole}{plain(self.low)} to {plain(self.high)}{unit}"
+
+    def title_of(self, choice: str) -> str:
+        """What the panel calls one of `choices`."""
+        return self.choice_titles[self.choices.index(choice)]
+
+    def choice_of(self, title: str) -> str:
+        """The choice that the panel calls `title`. Raises ValueError where there is none."""
+        return self.choices[self.choice_titles.index(title)]
 
 
 def parameter(
@@ -69,13 +82,15 @@ def parameter(
     doc: str = "",
     *,
     log_from: float = 0.0,
-    choices: tuple[str, ...] = (),
+    choices: tuple[str, ...] | Mapping[str, str] = (),
     group: str = "",
     affects: Effect = "forces",
+    title: str = "",
 ) -> Any:
-    """A dataclass field that is a parameter; see `Parameter` for `affects`.
+    """A dataclass field that is a parameter; see `Parameter` for `affects` and `title`.
 
     log_from: above 0, the slider moves over the logarithm from here to `high`; its left end is `low`, which may be 0.
+    choices: names in the order of the panel's list, or name -> its title in the panel; by default the name in words.
     Raises ValueError for a declaration that contradicts itself.
     """
     if choices and default not in choices:
@@ -86,8 +101,18 @@ def parameter(
         raise argument_error("log_from", log_from, f"{max(low, 0.0):g} to below {high:g}")
     if affects not in EFFECTS:
         raise argument_error("affects", affects, f"one of {', '.join(EFFECTS)}")
-    declared = Parameter(default, low, high, unit, doc, log_from, choices, group, affects)
+    names = tuple(choices)
+    titles = tuple(choices.values()) if isinstance(choices, Mapping) else tuple(in_words(name) for name in names)
+    if len(set(titles)) < len(titles):
+        raise argument_error("choices", choices, "titles that differ")
+    declared = Parameter(default, low, high, unit, doc, log_from, names, group, affects, title, titles)
     return dataclasses.field(default=default, metadata={"parameter": declared})
+
+
+def in_words(name: str) -> str:
+    """A name as the panel writes it: "time_step" is "Time step". Names with capitals of their own stay as they are."""
+    words = name.replace("_", " ")
+    return words[:1].upper() + words[1:]
 
 
 def redeclare(base: type, name: str, **changes: Any) -> Any:
@@ -168,7 +193,11 @@ def check_value(name: str, parameter: Parameter, value: object) -> Any:
     if parameter.choices or parameter.kind is bool:
         good = clamp_value(parameter, value)
         if good is not value and good != value:
-            raise argument_error(name, value, parameter.allowed)
+            raise (
+                choice_error(name, parameter, value)
+                if parameter.choices
+                else argument_error(name, value, parameter.allowed)
+            )
         return good
     if isinstance(value, bool) or not isinstance(value, int | float) or not parameter.low <= value <= parameter.high:
         raise argument_error(name, value, parameter.allowed)
@@ -180,8 +209,26 @@ def check_value(name: str, parameter: Parameter, value: object) -> Any:
 
 
 def unknown_parameter(name: str, known: Mapping[str, Parameter]) -> ValueError:
-    """The error for a name that is no parameter."""
+    """The error for a name that is no parameter: those that it resembles, or all that there are."""
+    close = similar(name, known)
+    if close:
+        return ValueError(f"{name}: no such parameter; did you mean {' or '.join(close)}?")
     return ValueError(f"{name}: no such parameter; the parameters are {', '.join(known)}")
+
+
+def similar(word: object, names: Iterable[str]) -> list[str]:
+    """At most four of `names` that `word` may have been meant for: written alike, or with it as a part."""
+    names = tuple(names)
+    lower = str(word).lower()
+    parts = [name for name in names if len(lower) > 2 and lower in name.lower()]
+    return (parts or difflib.get_close_matches(lower, names, n=2, cutoff=0.6))[:4]
+
+
+def choice_error(name: str, parameter: Parameter, value: object) -> ValueError:
+    """The error for a value that is none of the choices: those that it resembles come first."""
+    close = similar(value, parameter.choices)
+    hint = f"; did you mean {' or '.join(close)}?" if close else ""
+    return ValueError(f"{argument_error(name, value, parameter.allowed)}{hint}")
 
 
 def check_record(cls: type[P], values: Mapping[str, object]) -> P:

@@ -3,7 +3,8 @@
 from typing import NamedTuple
 
 from app.messages import WorkCounts
-from app.render.html import Html, bold, fixed, number, table
+from app.render.html import Html, table
+from sim.formatting import fixed, number
 
 
 class WorkRow(NamedTuple):
@@ -26,6 +27,6 @@ def work_rows(counts: WorkCounts) -> list[WorkRow]:
 def work_table(counts: WorkCounts) -> Html:
     """The work counts as an HTML table."""
     return table(
-        ("", bold("done"), bold("not needed"), bold("%")),
+        (("", ""), ("done", ""), ("not needed", ""), ("not needed", "%")),
         ((row.what, number(row.done), number(row.skipped), fixed(row.skipped_percent, 0)) for row in work_rows(counts)),
     )

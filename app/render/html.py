@@ -1,29 +1,16 @@
-"""HTML for panel and reports: text from outside is escaped by construction, and numbers are written alike everywhere.
+"""HTML for panel and reports: text from outside is escaped by construction.
 
 `fill` puts values into a template and escapes each one unless it is `Html` already. Templates are literals in the
 source, which pyright checks, so that no text from outside can be taken for HTML.
 """
 
 import html
-import math
 import string
 from collections.abc import Iterable, Sequence
 from typing import Any, LiteralString
 
-NO_NUMBER = "–"
-GOOD_COLOUR, WARNING_COLOUR, ERROR_COLOUR = "#2b8a3e", "#e67700", "#c92a2a"  # readable on light and dark panels
-LENGTH_UNITS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9))  # [m]
-# [s] of each unit, and how many of it there must be at least before it is used.
-TIME_UNITS = (
-    ("years", 3.156e7, 1.5),
-    ("days", 86400.0, 1.5),
-    ("h", 3600.0, 1.5),
-    ("min", 60.0, 1.5),
-    ("s", 1.0, 0.9995),
-    ("ms", 1e-3, 0.9995),
-    ("µs", 1e-6, 0.0),
-)
-MAX_GROUPED = 1e6  # numbers below are written out in full, larger ones with a power of ten
+# Declared in `js/page.css`, once for the light and once for the dark panel.
+GOOD_COLOUR, WARNING_COLOUR, ERROR_COLOUR = (f"var(--springtide-{name})" for name in ("good", "warning", "error"))
 
 
 class Html(str):
@@ -62,8 +49,8 @@ def join(parts: Iterable[object], separator: LiteralString = "") -> Html:
 
 
 def note(text: object) -> str:
-    """Small text with the panel's margins, as viser takes it: a plain `str`, as it encodes no subclass of it."""
-    return str(fill('<div style="padding:2px 12px 8px;font-size:12px">{}</div>', text))
+    """Text with the panel's margins, as viser takes it: a plain `str`, as it encodes no subclass of it."""
+    return str(fill('<div class="springtide-note">{}</div>', text))
 
 
 def lines(texts: Iterable[object]) -> Html:
@@ -73,7 +60,7 @@ def lines(texts: Iterable[object]) -> Html:
 
 def faint(text: object) -> Html:
     """Text of secondary importance, on a line of its own."""
-    return fill('<div style="opacity:.75">{}</div>', text)
+    return fill('<div class="springtide-faint">{}</div>', text)
 
 
 def bold(text: object) -> Html:
@@ -86,54 +73,17 @@ def coloured(text: object, colour: str) -> Html:
     return fill('<b style="color:{}">{}</b>', colour, text)
 
 
-def row(cells: Sequence[object], tag: LiteralString = "td") -> Html:
-    """A row of a table: the first cell to the left, the others to the right, where numbers belong."""
-    first = '<{0} style="text-align:left;font-weight:inherit;padding:1px 6px 1px 0">{1}</{0}>'
-    other = '<{0} style="text-align:right;font-weight:inherit;padding:1px 0 1px 6px">{1}</{0}>'
-    return fill("<tr>{}</tr>", join(fill(other if i else first, tag, cell) for i, cell in enumerate(cells)))
+def table_row(cells: Iterable[object], tag: LiteralString = "td") -> Html:
+    """A row of a table. The style sheet puts the first cell to the left, and the others, numbers, to the right."""
+    return fill("<tr>{}</tr>", join(fill("<{0}>{1}</{0}>", tag, cell) for cell in cells))
 
 
-def table(head: Sequence[object], rows: Iterable[Sequence[object]]) -> Html:
-    """A table as wide as the panel; `head` and each row hold one entry a column."""
-    return fill(
-        '<table style="width:100%;border-spacing:0;font-size:12px;font-variant-numeric:tabular-nums">'
-        '<thead style="opacity:.75">{}</thead><tbody>{}</tbody></table>',
-        row(head, "th"),
-        join(row(cells) for cells in rows),
-    )
+def table_head(columns: Iterable[tuple[object, object]]) -> Html:
+    """The head of a table: for each column its name over its unit."""
+    return fill("<thead>{}</thead>", table_row((fill("{}<br>{}", *column) for column in columns), "th"))
 
 
-def number(value: float, digits: int = 3) -> str:
-    """A number with `digits` significant digits; – for NaN, ∞ for infinity. Whole thousands are written out."""
-    if math.isnan(value):
-        return NO_NUMBER
-    if math.isinf(value):
-        return "∞" if value > 0.0 else "-∞"
-    if abs(value) < MAX_GROUPED and (value == int(value) or abs(value) >= 10**digits):
-        return f"{value:,.0f}"
-    return f"{value:.{digits}g}"
-
-
-def fixed(value: float, decimals: int) -> str:
-    """A number with `decimals` digits after the point; – where it is NaN or infinite."""
-    return f"{value:.{decimals}f}" if math.isfinite(value) else NO_NUMBER
-
-
-def metres(value: float) -> str:
-    """A length [m] in the unit in which it is easily read, m to nm; – for NaN."""
-    if not math.isfinite(value):
-        return number(value)
-    for unit, size in LENGTH_UNITS:
-        if abs(value) >= 0.9995 * size:
-            return f"{number(value / size)} {unit}"
-    return f"{value:.1e} m" if value else "0 m"
-
-
-def seconds(value: float, digits: int = 3) -> str:
-    """A time [s] in the unit in which it is easily read, years to µs; – for NaN."""
-    if not math.isfinite(value):
-        return number(value)
-    if value == 0.0:
-        return "0 s"
-    unit, size = next((unit, size) for unit, size, least in TIME_UNITS if abs(value) >= least * size)
-    return f"{number(value / size, digits)} {unit}"
+def table(columns: Iterable[tuple[object, object]], rows: Iterable[Sequence[object]]) -> Html:
+    """A table as wide as the panel, of at most five columns. columns: (name, unit) of each; rows: one cell a column."""
+    body = join(table_row(cells) for cells in rows)
+    return fill('<table class="springtide-table">{}<tbody>{}</tbody></table>', table_head(columns), body)

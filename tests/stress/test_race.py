@@ -39,7 +39,7 @@ def check_results(readings: RaceReadings, ropes: int) -> None:
 def test_each_parameter_of_a_race_at_both_ends(rule: str, six: Hammer) -> None:
     six.set("race_steps", rule)
     for name, parameter in six.parameters.items():
-        if parameter.group not in ("Race", "Time", "Plots") or name == "ropes":
+        if parameter.group not in ("Main", "Time", "Plots") or name == "ropes":
             continue
         before = getattr(six.viewer.panel.params, name)
         for value in ends(parameter):

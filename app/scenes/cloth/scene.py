@@ -77,7 +77,8 @@ def gusty_wind(params: Params, t: float) -> Vector:
     """The wind at time t [m/s]: three slow waves along it, across it and upwards."""
     along = params.wind * (1.0 + params.gust * (0.3 * math.sin(1.7 * t) + 0.2 * math.sin(4.3 * t + 1.0)))
     across = params.wind * params.gust * 0.35 * math.sin(2.3 * t + 0.5)
-    c, s = math.cos(params.wind_direction), math.sin(params.wind_direction)
+    bearing = math.radians(params.wind_direction)
+    c, s = math.cos(bearing), math.sin(bearing)
     return c * along - s * across, s * along + c * across, params.wind * params.gust * 0.15 * math.sin(3.1 * t)
 
 
@@ -282,8 +283,8 @@ class ClothScene:
 
     def diagnosis(self) -> str:
         """Why the run diverged, and what would hold."""
-        alternative = "so would implicit_euler at any step"
-        return divergence_text("cloth", self.state.t, self.integrator, self.step, self.stability.stability, alternative)
+        alternative = "" if self.integrator.implicit else "implicit Euler, which is stable at every step"
+        return divergence_text(self.state.t, self.integrator, self.step, self.stability.stability, alternative)
 
     def work(self) -> WorkCounts:
         """What was computed and what was left out."""
@@ -341,7 +342,8 @@ class ClothScene:
 SCENE = SceneKind(
     name="cloth",
     title="Cloth",
-    help="<b>Drag the cloth</b> anywhere to pull it. <b>Drag the arrows</b> to move its pins and the sphere.",
+    help="<b>Drag the cloth</b> to pull it, or the arrows to move its pins and the sphere. Next: turn the wind up, or "
+    "press <b>2</b> for a flag and <b>3</b> for a cloth that falls over a sphere.",
     params=Params,
     presets=PRESETS,
     make=ClothScene,

@@ -18,6 +18,7 @@ from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.scene import ClothFrame, ClothReadings
 from app.scenes.contract import PostCommand
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
+from sim.formatting import number
 
 CLOTH_COLOUR = (176, 58, 72)
 FLOOR_COLOUR = (222, 227, 233)
@@ -146,11 +147,11 @@ class View:
         readings, frame = snapshot.readings, snapshot.frame
         parts = [stability_bar(readings.stability, exact=readings.exact)]
         if readings.corrections:
-            parts.append(fill("<div>{:.1f} Newton corrections a step</div>", readings.corrections))
+            parts.append(fill("<div>{:.1f} Newton iterations a step</div>", readings.corrections))
         if readings.threads > 1:
-            parts.append(fill("<div>forces on {} threads, which is faster at the moment</div>", readings.threads))
+            parts.append(fill("<div>forces computed on {} threads</div>", readings.threads))
         if frame.colour == "strain":
-            parts.append(colour_scale("0", "strain", f"{100 * frame.full_strain:.3g} %"))
+            parts.append(colour_scale("0", "strain", f"{number(100 * frame.full_strain)} %"))
         return join(parts)
 
     def marks(self, snapshot: ClothSnapshot) -> dict[str, str]:

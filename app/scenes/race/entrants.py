@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.race.parameters import Params, method_of
+from app.scenes.springs.divergence import stability_number
 from sim.springs import INTEGRATORS, Integrator, Net
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
@@ -127,7 +128,7 @@ class Entrant:
         self.gauge = gauge(net, record, self.step, self.state)
         self.set_bounds()
         if record.undamped_only and net.is_damped:
-            self.failure = "takes no damping: set damping and drag to 0, the floor off"
+            self.failure = "allows no damping: set damping and air drag to 0, and switch the floor off"
         self.assess_stability()
 
     def set_bounds(self) -> None:
@@ -171,9 +172,10 @@ class Entrant:
     def failure_at(self, t: float) -> str:
         """Why it diverged at time t [s]."""
         g = self.gauge
+        h_omega, limit = stability_number(g.h_omega), stability_number(g.limit)
         if g.h_omega > g.limit:
-            return f"diverged at {t:.2f} s: h ω = {g.h_omega:.3g} is over {g.limit:.3g}"
-        return f"diverged at {t:.2f} s: too sudden for the step, though h ω = {g.h_omega:.3g} of {g.limit:.3g}"
+            return f"diverged at {t:.2f} s: hω = {h_omega} exceeds the limit {limit}"
+        return f"diverged at {t:.2f} s: hω = {h_omega} is below the limit {limit}, but an impact was too sudden"
 
     def move_root(self, position: Vector) -> None:
         """Put the root to rest at a position [m]."""

@@ -2,56 +2,59 @@
 
 import math
 
-from app.render.html import ERROR_COLOUR, Html, bold, escape, fill, join, metres, seconds
+from app.render.html import ERROR_COLOUR, Html, bold, coloured, escape, fill, join, table_head, table_row
 from app.scenes.charts import PALETTE
 from app.scenes.race.entrants import RaceReadings, Result
 from app.scenes.race.names import rope_name
+from app.scenes.springs.divergence import stability_number
+from sim.formatting import NO_NUMBER, metres, number, seconds
 
 MIN_SHOWN_ENERGY = 1e-10  # [J]: less is round-off and is shown as 0
+HEAD = (("error", ""), ("energy error", "J"), ("hω", "of limit"), ("forces", "1/s"), ("time", "a step"))
 
 
 def error_text(result: Result) -> Html:
     """The distance from the reference run, as far as the reference can tell it."""
     if math.isnan(result.error_floor):
-        return escape("no reference to compare with")
+        return escape(NO_NUMBER)
     if result.error < result.error_floor:
-        return fill("off by less than {}", metres(result.error_floor))
-    return fill("off by {}", bold(metres(result.error)))
+        return fill("&lt; {}", metres(result.error_floor, 2))
+    return bold(metres(result.error))
 
 
-def outcome(result: Result) -> Html:
-    """Why the rope failed, or its error and what its method took."""
-    if result.failure:
-        return fill('<span style="color:{}">{}</span>', ERROR_COLOUR, result.failure)
-    energy = result.numerical_dissipation if abs(result.numerical_dissipation) > MIN_SHOWN_ENERGY else 0.0
-    verb = "took" if energy >= 0 else "added"
-    return fill("{} · method {} {:.2g} J", error_text(result), verb, abs(energy))
+def energy_text(result: Result) -> str:
+    """The energy [J] that the method added, negative where it took some."""
+    energy = -result.numerical_dissipation
+    return "0" if abs(energy) < MIN_SHOWN_ENERGY else f"{'+' if energy > 0.0 else ''}{number(energy, 2)}"
 
 
-def cost(result: Result) -> Html:
-    """How near its limit the step is, and what it costs."""
-    stable = result.gauge.h_omega <= result.gauge.limit
-    return fill(
-        '<span style="color:{}">h ω {:.3g} of {}</span> · {:.0f} forces/s · {} a step{}',
-        "inherit" if stable else ERROR_COLOUR,
-        result.gauge.h_omega,
-        "any" if math.isinf(result.gauge.limit) else f"{result.gauge.limit:.3g}",
-        result.evals / result.step,
-        seconds(result.step_time),
-        f" · {result.corrections:.1f} Newton corrections a step" if result.corrections else "",
-    )
+def stability_text(result: Result) -> Html:
+    """h omega, and the limit of the method."""
+    limit = "∞" if math.isinf(result.gauge.limit) else stability_number(result.gauge.limit)
+    text = f"{stability_number(result.gauge.h_omega)} / {limit}"
+    return escape(text) if result.gauge.h_omega <= result.gauge.limit else coloured(text, ERROR_COLOUR)
 
 
-def result_block(result: Result, stiffness_differs: bool) -> Html:
-    """One rope: its name, and below it how accurate it is and what it costs."""
-    return fill(
-        '<div><span style="color:{};font-size:15px;line-height:11px">●</span> <b>{}</b></div>'
-        '<div style="padding-left:17px;font-size:11px;margin-bottom:5px"><div>{}</div>{}</div>',
+def result_rows(result: Result, stiffness_differs: bool) -> Html:
+    """One rope: a row with its name, and one with its numbers or with the reason why it has stopped."""
+    iterations = f", {result.corrections:.1f} Newton iterations a step" if result.corrections else ""
+    name = fill(
+        '<tr><td colspan="5" style="padding-top:5px"><span class="springtide-dot" style="background:{}"></span> '
+        "<b>{}</b>{}</td></tr>",
         PALETTE[result.number - 1],
         rope_name(result, stiffness_differs),
-        outcome(result),
-        cost(result),
+        iterations,
     )
+    if result.failure:
+        return fill('{}<tr><td colspan="5" style="color:{}">{}</td></tr>', name, ERROR_COLOUR, result.failure)
+    cells = (
+        error_text(result),
+        energy_text(result),
+        stability_text(result),
+        number(round(result.evals / result.step)),
+        seconds(result.step_time, 2),
+    )
+    return join((name, table_row(cells)))
 
 
 def reference_text(readings: RaceReadings) -> Html:
@@ -60,21 +63,19 @@ def reference_text(readings: RaceReadings) -> Html:
         return fill("There is no reference run: {}.", readings.no_reference)
     if readings.reference_horizon is not None:
         return fill(
-            "<b>Chaos made the reference run meaningless at t = {:.1f} s</b>: a second run, which started 0.1 nm away, "
-            "was then a hundredth of the rope's length away from it. Errors after that time mean nothing. Reset starts "
-            "again.",
+            "<b>Chaotic after t = {:.1f} s</b>: two references that started 0.1 nm apart now differ by 1 % of the "
+            "length, so errors after this time are meaningless. Press R to restart.",
             readings.reference_horizon,
         )
     floor = max((result.error_floor for result in readings.results), default=0.0)
-    return fill(
-        "Grey: the reference run, dopri5 at a tolerance of 1e-10. A second run, which started 0.1 nm away, shows "
-        "that it can tell errors above {}.",
-        metres(floor),
-    )
+    return fill("Grey: reference (Dormand-Prince 5, tolerance 1e-10), reliable to {}.", metres(floor, 2))
 
 
 def results_table(readings: RaceReadings) -> Html:
     """The results of all ropes, and what is to be said of the reference run."""
     stiffness_differs = len({result.stiffness for result in readings.results}) > 1
-    blocks = join(result_block(result, stiffness_differs) for result in readings.results)
-    return fill('{}<div style="font-size:11px;opacity:.75">{}</div>', blocks, reference_text(readings))
+    rows = join(result_rows(result, stiffness_differs) for result in readings.results)
+    return fill(
+        '<table class="springtide-table">{}<tbody>{}</tbody></table><div>{}</div>',
+        table_head(HEAD), rows, reference_text(readings),
+    )  # fmt: skip

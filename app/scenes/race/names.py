@@ -2,6 +2,9 @@
 
 from typing import Protocol
 
+from app.scenes.springs.methods import method_name
+from sim.formatting import number, time_step
+
 
 class Named(Protocol):
     """What a name is made of; entrants and results have it."""
@@ -32,18 +35,10 @@ class Named(Protocol):
         ...
 
 
-def step_text(step: float) -> str:
-    """A step [s] in a few characters: 1/240 s where it is nearly one over a whole number, else in ms."""
-    whole = round(1.0 / step)
-    if whole >= 10 and abs(whole * step - 1.0) < 1e-4 and whole <= 10_000:
-        return f"1/{whole} s"
-    return f"{1e3 * step:.3g} ms"
-
-
 def rope_name(rope: Named, stiffness_differs: bool) -> str:
     """A rope by number, method and step, and by its stiffness where the ropes differ in it."""
-    words = f"{rope.number} {rope.integrator}, {step_text(rope.step)}"
-    return f"{words}, k {rope.stiffness:g}" if stiffness_differs else words
+    words = f"{rope.number} {method_name(rope.integrator)}, {time_step(rope.step)}"
+    return f"{words}, {number(rope.stiffness)} N/m" if stiffness_differs else words
 
 
 def rope_label(rope: Named, stiffness_differs: bool) -> str:

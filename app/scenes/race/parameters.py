@@ -3,46 +3,73 @@
 import dataclasses
 from typing import Any
 
+from app.scenes.springs.methods import METHODS
 from app.scenes.springs.rope_parameters import RopeParams, hidden_of_rope
 from sim.parameters import parameter, redeclare
-from sim.springs import INTEGRATORS
 
 MAX_ROPES = 6
 NUMBERS = range(2, MAX_ROPES + 1)  # of the ropes that have an integrator and a step parameter of their own
-STEP_RULES = ("same step", "same cost", "own steps")
+STEP_RULES = {"same step": "Same step", "same cost": "Same cost", "own steps": "Own steps"}
 
 
 def method_of_rope(number: int, default: str) -> Any:
     """The parameter of one rope's method."""
-    return parameter(default, choices=tuple(INTEGRATORS), doc=f"Method of rope {number}", group="Race", affects="start")
+    return parameter(
+        default,
+        choices=METHODS,
+        doc=f"Method of integration of rope {number}",
+        group="Main",
+        affects="start",
+        title=f"{number}: method",
+    )
 
 
 def step_of_rope(number: int) -> Any:
     """The parameter of one rope's time step."""
-    return parameter(1 / 60, 1e-5, 0.1, "s", f"Step of rope {number}", log_from=1e-5, group="Race", affects="start")
+    return parameter(
+        1 / 60,
+        1e-5,
+        0.1,
+        "s",
+        f"Step of rope {number}",
+        log_from=1e-5,
+        group="Main",
+        affects="start",
+        title=f"{number}: time step",
+    )
 
 
 @dataclasses.dataclass(frozen=True)
 class RaceRules:
-    """Which ropes take part, and how they are shown."""
+    """How many ropes take part, and in what they differ."""
 
     ropes: int = parameter(
-        3, 1, MAX_ROPES, "", "Number of ropes, each with its own method and step", group="Race", affects="start"
+        3, 1, MAX_ROPES, "", "Number of ropes, each with its own method and step", group="Main", affects="start"
     )
     race_steps: str = parameter(
         "same cost",
         choices=STEP_RULES,
-        doc="same cost: as many force evaluations a second as rope 1; own steps: as set for each rope",
-        group="Race",
+        doc="Same cost: as many force evaluations a second as rope 1; own steps: as set for each rope",
+        group="Main",
         affects="start",
+        title="Steps",
     )
     stiffness_ratio: float = parameter(
-        1.0, 1.0, 10.0, "", "Stiffness of each rope over that of the one before", group="Race", affects="start"
+        1.0,
+        1.0,
+        10.0,
+        "",
+        "Stiffness of each rope over that of the rope before it",
+        group="Rope",
+        affects="start",
+        title="Stiffness ratio",
     )
-    show_reference: bool = parameter(
-        True, doc="Draw the reference run beside each rope: dopri5, tolerance 1e-10", group="Race", affects="look"
-    )
-    spacing: float = parameter(0.5, 0.0, 2.0, "m", "Distance between the drawn ropes", group="Race", affects="look")
+
+
+@dataclasses.dataclass(frozen=True)
+class RaceMethods:
+    """The methods of all ropes but the first, and how the ropes are shown."""
+
     integrator_2: str = method_of_rope(2, "rk4")
     step_2: float = step_of_rope(2)
     integrator_3: str = method_of_rope(3, "leapfrog")
@@ -53,24 +80,48 @@ class RaceRules:
     step_5: float = step_of_rope(5)
     integrator_6: str = method_of_rope(6, "implicit_midpoint")
     step_6: float = step_of_rope(6)
+    show_reference: bool = parameter(
+        True,
+        doc="Draw the reference run in grey: Dormand-Prince 5 with a tolerance of 1e-10",
+        group="Look",
+        affects="look",
+    )
+    spacing: float = parameter(0.5, 0.0, 2.0, "m", "Distance between the drawn ropes", group="Look", affects="look")
 
 
 @dataclasses.dataclass(frozen=True)
-class Params(RopeParams, RaceRules):
+class Params(RaceMethods, RopeParams, RaceRules):
     """The race's parameters. What the methods are compared on starts it again; other forces do not."""
 
     integrator: str = redeclare(
-        RopeParams, "integrator", default="explicit_euler", doc="Method of rope 1", affects="start"
+        RopeParams,
+        "integrator",
+        default="explicit_euler",
+        doc="Method of integration of rope 1",
+        affects="start",
+        title="1: method",
     )
-    time_step: float = redeclare(RopeParams, "time_step", default=1 / 240, doc="Step of rope 1", affects="start")
+    time_step: float = redeclare(
+        RopeParams, "time_step", default=1 / 240, doc="Step of rope 1", affects="start", title="1: time step"
+    )
     units: str = redeclare(RopeParams, "units", affects="start")
-    points: int = redeclare(RopeParams, "points", affects="start")
+    points: int = redeclare(RopeParams, "points", affects="start", group="Rope")
     length: float = redeclare(RopeParams, "length", affects="start")
+    stiffness: float = redeclare(RopeParams, "stiffness", group="Rope")
+    damping: float = redeclare(RopeParams, "damping", group="Rope")
+    axial_stiffness: float = redeclare(RopeParams, "axial_stiffness", group="Rope")
+    axial_viscosity: float = redeclare(RopeParams, "axial_viscosity", group="Rope")
 
     plot_errors: bool = parameter(
-        True, doc="Distance of each rope from the reference run over time", group="Plots", affects="look"
+        True,
+        doc="Distance of each rope from the reference run over time",
+        group="Plots",
+        affects="look",
+        title="Distance from reference",
     )
-    plot_energies: bool = parameter(True, doc="Energy of each rope over time", group="Plots", affects="look")
+    plot_energies: bool = parameter(
+        True, doc="Energy of each rope over time", group="Plots", affects="look", title="Energies"
+    )
 
 
 def line_up(*integrators: str, **others: Any) -> dict[str, Any]:

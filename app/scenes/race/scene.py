@@ -178,7 +178,8 @@ class RaceScene:
 SCENE = SceneKind(
     name="race",
     title="Race of ropes",
-    help="<b>Drag a bead</b> to pull all ropes alike. <b>Drag the arrows</b> to move their roots.",
+    help="The same rope by different methods. <b>Drag a bead</b> to pull all ropes alike. Next: press <b>2</b> to see "
+    "which stiffness Euler's method survives, and <b>3</b> for Runge-Kutta 4 at the same values.",
     params=Params,
     presets=PRESETS,
     make=RaceScene,

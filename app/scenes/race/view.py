@@ -16,6 +16,7 @@ from app.scenes.race.entrants import RaceReadings
 from app.scenes.race.html import results_table
 from app.scenes.race.parameters import Params
 from app.scenes.race.scene import RaceFrame
+from app.scenes.springs.html import step_mark
 from app.scenes.springs.rope_parameters import ROPE_RADIUS
 from app.scenes.springs.view import RopeSurroundings
 
@@ -177,7 +178,7 @@ class View:
     def marks(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest step of rope 1 that is stable."""
         step = snapshot.readings.results[0].gauge.critical_step
-        return {"time_step": "" if step == float("inf") else f"rope 1 is stable up to {step:.3g} s"}
+        return {"time_step": step_mark(step)}
 
     def notes(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """No folders."""

@@ -5,122 +5,191 @@ import math
 from typing import Any
 
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import MIXTURE_LAWS, fluids
+from sim.ocean.fluids import fluids
 from sim.ocean.radial_grid import LAWS
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions
 from sim.parameters import parameter, with_parameters
 
 OILS = tuple(name for name in fluids() if "water" not in name)
-SPILLS = ("none", "layer", "mixed")
 CAMERA_TARGETS = ("free", "first buoy", "second buoy", "box", "cutaway", "from above", "rig")
-SKIES = ("park", "sunset", "dawn", "night")
+SPECTRUM_TITLES = {
+    name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
+}
+SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
 
 
 @dataclasses.dataclass(frozen=True)
-@with_parameters(PARAMETERS, group="Sea")
+@with_parameters(PARAMETERS, group="Waves")
 class Params:
     """The parameters, with those of all spectra; the defaults are clean water in a fresh breeze."""
 
-    waves: bool = parameter(True, doc="Waves; without them the sea is level", group="Sea")
-    wind_speed: float = parameter(7.0, 0.5, 25.0, "m/s", "Wind U10 (U19.5 for pierson_moskowitz)", group="Sea")
-    wind_direction: float = parameter(
-        25.0, -180.0, 180.0, "deg", "Where the wind goes to, from +x towards +y", group="Sea"
+    wind_speed: float = parameter(
+        7.0,
+        0.5,
+        25.0,
+        "m/s",
+        "Wind speed 10 m above the sea; with the spectrum of Pierson and Moskowitz 19.5 m above it",
+        group="Main",
     )
-    spectrum: str = parameter(
-        "jonswap", choices=tuple(SPECTRA), doc="Spectrum that the waves are drawn from", group="Sea"
-    )
-    wave_count: int = parameter(96, 8, 512, "", "Waves in the sum, of equal energy", log_from=8, group="Sea")
-    choppiness: float = parameter(1.0, 0.0, 1.5, "", "Factor on the horizontal motion; 1 is Gerstner's", group="Sea")
-
     spill: str = parameter(
         "none",
-        choices=SPILLS,
-        doc="layer: oil floats on the water; mixed: oil and water are one fluid, the lab's 'entirely mixed'",
-        group="Oil",
+        choices={"none": "No oil", "layer": "Layer of oil", "mixed": "Entirely mixed"},
+        doc="Layer: oil floats on the water. Entirely mixed: oil and water are one fluid, as the lab assumes",
+        group="Main",
+        title="Oil spill",
     )
-    oil: str = parameter("Alaska North Slope 2002", choices=OILS, doc="Oil, from NOAA's records", group="Oil")
-    thickness: float = parameter(0.2, 0.0, 2.0, "m", "Thickness d of the layer", group="Oil")
-    fraction: float = parameter(0.5, 0.01, 0.99, "", "Share of oil in the mixture, by volume", group="Oil")
-    mixture_law: str = parameter("taylor", choices=tuple(MIXTURE_LAWS), doc="Viscosity of the mixture", group="Oil")
-    film: bool = parameter(
-        False, doc="A film that cannot be stretched on top, as of fish oil: it damps short waves", group="Oil"
+    oil: str = parameter("Alaska North Slope 2002", choices=OILS, doc="Kind of oil, from NOAA's records", group="Main")
+    thickness: float = parameter(
+        0.2, 0.0, 2.0, "m", "Thickness d of the layer of oil", group="Main", title="Layer thickness"
     )
-    exposure: float = parameter(
-        60.0, 0.0, 3600.0, "s", "For how long the waves have run under the oil at the start", log_from=1.0, group="Oil"
+    fraction: float = parameter(
+        0.5, 0.01, 0.99, "", "Share of oil in the mixture, by volume", group="Main", title="Share of oil"
     )
-    ageing: bool = parameter(True, doc="The waves keep decaying under the oil", group="Oil")
-    optics: str = parameter(
-        "physical",
-        choices=("physical", "lab"),
-        doc="physical: Fresnel reflection by the fluid's own refractive index; lab: reflections of oil scaled down",
-        group="Oil",
+    cutaway: bool = parameter(
+        False,
+        doc="Cut the sea open beside the first buoy, to see the oil, the interface, and the hull in both",
+        group="Main",
         affects="look",
+        title="Cut the sea open",
+    )
+    follow: str = parameter(
+        "free",
+        choices=CAMERA_TARGETS,
+        doc="What the camera looks at and moves with",
+        group="Main",
+        affects="look",
+        title="Camera follows",
     )
 
-    bodies: int = parameter(3, 0, 200, "", "Floating bodies: two buoys, a box, then all kinds in turn", group="Bodies")
-    density: float = parameter(450.0, 50.0, 1020.0, "kg/m^3", "Density of the bodies", group="Bodies")
+    waves: bool = parameter(True, doc="Waves; without them the sea is level", group="Waves")
+    wind_direction: float = parameter(
+        25.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y", group="Waves"
+    )
+    spectrum: str = parameter(
+        "jonswap", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from", group="Waves"
+    )
+    wave_count: int = parameter(
+        96, 8, 512, "", "Number of waves in the sum; each has the same energy", log_from=8, group="Waves",
+        title="Number of waves",
+    )  # fmt: skip
+    choppiness: float = parameter(
+        1.0, 0.0, 1.5, "", "Factor on the horizontal motion, which sharpens the crests; 1 is physics", group="Waves"
+    )
+
+    mixture_law: str = parameter(
+        "taylor",
+        choices={
+            "taylor": "Taylor (emulsion)",
+            "arrhenius": "Arrhenius (solution)",
+            "kendall_monroe": "Kendall-Monroe (solution)",
+        },
+        doc="Viscosity of the mixture",
+        group="Oil",
+        title="Mixture law",
+    )
+    film: bool = parameter(
+        False, doc="A surface film that cannot be stretched, which damps ripples", group="Oil", title="Surface film"
+    )
+    exposure: float = parameter(
+        60.0,
+        0.0,
+        3600.0,
+        "s",
+        "For how long the oil has damped the waves at the start",
+        log_from=1.0,
+        group="Oil",
+        title="Age at the start",
+    )
+    ageing: bool = parameter(True, doc="Keep damping the waves as time passes", group="Oil", title="Keep damping")
+    optics: str = parameter(
+        "physical",
+        choices={"physical": "Physical", "lab": "Lab: oil reflects less"},
+        doc="Physical: Fresnel reflection by the fluid's refractive index. Lab: reflections of oil are scaled down",
+        group="Oil",
+        affects="look",
+        title="Reflections",
+    )
+
+    bodies: int = parameter(
+        3, 0, 200, "", "Number of floating bodies: two buoys, a box, then all kinds in turn", group="Bodies"
+    )
+    density: float = parameter(450.0, 50.0, 1020.0, "kg/m³", "Density of the bodies", group="Bodies")
     size: float = parameter(1.5, 0.3, 4.0, "", "Size of the bodies; at 1 the box is 1.2 m wide", group="Bodies")
-    ripples: bool = parameter(True, doc="Bodies make waves of their own", group="Bodies")
+    ripples: bool = parameter(
+        True, doc="Bodies that move make waves of their own", group="Bodies", title="Radiated waves"
+    )
     mooring: bool = parameter(True, doc="A slack line keeps each body near its place", group="Bodies")
     pull: float = parameter(
-        6.0, 0.5, 50.0, "", "Largest pull of a drag, in weights of the body", group="Bodies", affects="look"
+        6.0,
+        0.5,
+        50.0,
+        "",
+        "Largest force with which the mouse pulls a body, in weights of the body",
+        group="Bodies",
+        affects="look",
+        title="Mouse force",
     )
 
     rig: bool = parameter(True, doc="The oil rig", group="Rig")
     fire: bool = parameter(False, doc="The rig burns", group="Rig")
     fire_power: float = parameter(400.0, 10.0, 2000.0, "MW", "Power of the fire", log_from=10.0, group="Rig")
-    jet: bool = parameter(False, doc="A jet of oil shoots from the rig and feeds a slick", group="Rig")
-    jet_flow: float = parameter(2.0, 0.05, 20.0, "m^3/s", "Flow of the jet", log_from=0.05, group="Rig")
-    particles: int = parameter(4000, 100, 20000, "", "Parcels of fire; half as many of oil", log_from=100, group="Rig")
+    jet: bool = parameter(
+        False, doc="A jet of oil shoots from the rig and feeds a slick", group="Rig", title="Jet of oil"
+    )
+    jet_flow: float = parameter(2.0, 0.05, 20.0, "m³/s", "Flow of the jet", log_from=0.05, group="Rig")
+    particles: int = parameter(
+        4000, 100, 20000, "", "Particles of the fire; the jet has half as many", log_from=100, group="Rig"
+    )
 
     surface: str = parameter(
         "sum",
-        choices=("sum", "fft"),
-        doc="sum: single waves added up; fft: the square sea, drawn on the same grid",
-        group="Surface",
+        choices={"sum": "Sum of waves (radial)", "fft": "FFT (the square sea)"},
+        doc="How the surface is computed; both are drawn on the same radial grid",
+        group="Grid",
     )
     centre: str = parameter(
         "fixed",
-        choices=("fixed", "camera"),
-        doc="Where the grid is dense: at the bodies, or below the camera",
-        group="Surface",
+        choices={"fixed": "At the bodies", "camera": "Below the camera"},
+        doc="Where the grid is dense",
+        group="Grid",
         affects="look",
+        title="Grid centre",
     )
-    rings: int = parameter(128, 16, 256, "", "Rings of the grid", group="Surface", affects="look")
-    spokes: int = parameter(128, 16, 256, "", "Points on a ring", group="Surface", affects="look")
+    rings: int = parameter(128, 16, 256, "", "Rings of the grid", group="Grid", affects="look")
+    spokes: int = parameter(128, 16, 256, "", "Points on a ring", group="Grid", affects="look")
     ring_law: str = parameter(
         "geometric",
-        choices=LAWS,
-        doc="How the spacing of the rings grows; power: as in the lab",
-        group="Surface",
+        choices={LAWS[0]: "Geometric", LAWS[1]: "Power (lab)"},
+        doc="How the spacing of the rings grows outwards",
+        group="Grid",
         affects="look",
+        title="Ring spacing",
     )
     compare: bool = parameter(
         False,
-        doc="Time the other surface every 2 s, for the table in the folder 'Radial or square'",
-        group="Surface",
+        doc="Time both surfaces every 2 s, for the table 'Radial or square'",
+        group="Grid",
         affects="look",
+        title="Compare surfaces",
     )
 
-    time_step: float = parameter(1 / 60, 1 / 500, 1 / 20, "s", "Step of the bodies", group="Time")
+    time_step: float = parameter(1 / 60, 1 / 500, 1 / 20, "s", "Step of the bodies' motion", group="Time")
     speed: float = parameter(
-        1.0, 0.05, 4.0, "", "Simulated time per real time", log_from=0.05, group="Time", affects="look"
-    )
-
-    follow: str = parameter(
-        "free", choices=CAMERA_TARGETS, doc="What the camera looks at and moves with", group="Look", affects="look"
-    )
-    sky: str = parameter("park", choices=SKIES, doc="Sky and light", group="Look", affects="look")
-    cutaway: bool = parameter(
-        False,
-        doc="Cut the sea open beside the first buoy, to see the oil, the interface, and the hull in both",
-        group="Look",
+        1.0, 0.05, 4.0, "", "Simulated time over real time: 0.1 is slow motion", log_from=0.05, group="Time",
         affects="look",
+    )  # fmt: skip
+
+    sky: str = parameter("park", choices=SKY_TITLES, doc="Sky and its light", group="Look", affects="look")
+    grid: bool = parameter(False, doc="Lines of the grid (key G)", group="Look", affects="look")
+    plot_draft: bool = parameter(
+        False, doc="Drafts of the first three bodies over time", group="Plots", affects="look", title="Drafts"
     )
-    grid: bool = parameter(False, doc="Lines of the mesh", group="Look", affects="look")
-    plot_draft: bool = parameter(False, doc="Drafts of the first three bodies over time", group="Plots", affects="look")
     plot_surface: bool = parameter(
-        False, doc="Height of the sea at the first buoy, and of the buoy, over time", group="Plots", affects="look"
+        False,
+        doc="Height of the sea at the first buoy, and of the buoy, over time",
+        group="Plots",
+        affects="look",
+        title="Buoy and sea",
     )
 
     hull: str = ""  # a mesh file that floats too; it is named on the command line only, never by a browser

@@ -5,72 +5,72 @@ import math
 import numpy as np
 
 from app.messages import Snapshot
-from app.render.html import Html, bold, faint, fill, fixed, join, number, table
+from app.render.html import Html, bold, faint, fill, join, table
 from app.scenes.radial_sea.frame import RadialReadings
 from app.scenes.radial_sea.materials import LAB_SPECULAR
 from app.scenes.radial_sea.parameters import conditions_of
 from app.scenes.radial_sea.well_blowout import OilBudget
+from sim.formatting import fixed, metres, number, percent, seconds
 from sim.ocean.dispersion import viscous_root
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import diffuse_reflectance, normal_reflectance
 from sim.ocean.gerstner import peak_wavenumber
 from sim.ocean.spectra import SPECTRA
+from sim.parameters import parameters_of
 
 SAMPLE_WAVE = 10.0  # [m] length of the wave in statements about the speed of waves
 SHORT_WAVE = 1.0  # [m] length of the wave in statements about viscosity
 SURFACES = (("sum", "radial sum"), ("fft", "square FFT"))
 
 
-def heading(name: str, unit: str = "") -> Html:
-    """The head of a column: the name over the unit."""
-    return fill("{}<br>{}", name, unit)
-
-
 def draft_text(value: float) -> str:
     """A draft [m], or that the body sinks."""
-    return "sinks" if math.isinf(value) else f"{value:.3f}"
+    return "sinks" if math.isinf(value) else fixed(value, 3)
 
 
-def readout_of(snapshot: Snapshot) -> str:
+def readout_of(snapshot: Snapshot) -> Html:
     """Under the status line: a row for each body, then the waves and the oil of the jet."""
     readings: RadialReadings = snapshot.readings
     if not readings.bodies:
-        return "No bodies."
-    head = (
-        "", heading("draft", "m"), heading("mean", "m"), heading("at rest", "m"), heading("oil adds", "m"),
-        heading("heave", "s"), heading("theory", "s"),
-    )  # fmt: skip
-    rows = []
+        return Html("No bodies.")
+    drafts = []
     for body in readings.bodies:
         p = body.prediction
-        added = "sinks" if math.isinf(p.draft) else f"{p.draft - p.draft_in_water:+.3f}"
-        rows.append((
-            body.title, f"{body.draft:.3f}", f"{body.mean_draft:.3f}", bold(draft_text(p.draft)), added,
-            fixed(body.period, 2), fixed(p.period, 2),
+        added = "sinks" if math.isinf(p.draft) else fixed(p.draft - p.draft_in_water, 3, sign=True)
+        drafts.append((
+            body.title, fixed(body.draft, 3), fixed(body.mean_draft, 3), bold(draft_text(p.draft)), added,
         ))  # fmt: skip
+    periods = [(body.title, fixed(body.period, 2), fixed(body.prediction.period, 2)) for body in readings.bodies]
     parts = [
-        table(head, rows),
+        table((("draft", ""), ("now", "m"), ("mean, 8 s", "m"), ("at rest", "m"), ("oil adds", "m")), drafts),
+        table((("heave period", ""), ("measured", "s"), ("theory", "s")), periods),
         faint(
-            "mean: over 8 s; at rest: by Archimedes' principle in these fluids; oil adds: to the draft in clean water; "
-            "heave: measured period; theory: predicted period."
+            "At rest: by Archimedes' principle in these fluids. Waves disturb it: switch them off to compare exactly."
+            if snapshot.frame.params.waves
+            else "At rest: by Archimedes' principle in these fluids."
         ),
         archimedes(readings.column),
-        fill(
-            "<div>Waves: Hs {:.2f} m, without oil {:.2f} m; root mean square slope {:.3f}.</div>",
-            readings.height, readings.clean_height, math.sqrt(readings.slope),
-        ),
-    ]  # fmt: skip
+        waves_text(readings),
+    ]
     if readings.oil_budget.ejected > 0.0:
         parts.append(oil_budget_text(readings.oil_budget))
     return join(parts)
 
 
+def waves_text(readings: RadialReadings) -> Html:
+    """Height and slope of the waves, with the height without oil where oil has lowered it."""
+    height, clean = number(readings.height), number(readings.clean_height)
+    lowered = f" ({clean} m without oil)" if clean != height else ""
+    slope = number(math.sqrt(readings.slope), 2)
+    return fill("<div>Waves: H<sub>s</sub> = {} m{}, rms slope {}.</div>", height, lowered, slope)
+
+
 def oil_budget_text(budget: OilBudget) -> Html:
     """Where the oil of the jet is."""
     return fill(
-        "<div>Oil from the jet: {:.1f} m³, of which {:.1f} m³ in the air and {:.1f} m³ on the sea ({} parcels), in a "
-        "slick with a radius of {:.1f} m and a thickness of {:.0f} mm.</div>",
-        budget.ejected, budget.in_flight, budget.fed, budget.hits, budget.radius, 1e3 * budget.thickness,
+        "<div>Oil released: {} m³; {} m³ in the air, {} m³ on the sea. Slick: radius {} m, thickness {}.</div>",
+        number(budget.ejected), number(budget.in_flight), number(budget.fed), number(budget.radius),
+        metres(budget.thickness, 2),
     )  # fmt: skip
 
 
@@ -79,19 +79,20 @@ def archimedes(column: FluidColumn) -> Html:
     oil, water = column.oil.density, column.water.density
     if column.kind == "layer":
         return fill(
-            "<div>A body that reaches through the oil floats deeper by d (1 − ρ₁/ρ₂) = {:g} × (1 − {:g}/{:g}) = "
+            "<div>A body that reaches through the oil floats deeper by d (1 − ρ₁/ρ₂) = {:g} m × (1 − {:g}/{:g}) = "
             "<b>{:.4f} m</b>.</div>",
             column.thickness, oil, water, column.thickness * (1.0 - oil / water),
         )  # fmt: skip
     if column.kind == "mixed":
         mixed = column.surface.density
         return fill(
-            "<div>The mixture has ρ = {:.1f} kg/m³, water {:g} kg/m³: a body with straight sides floats {:.4f} times "
-            "as deep.</div>",
+            "<div>Density of the mixture {:.1f} kg/m³, of water {:g} kg/m³: a body with straight sides floats {:.4f} "
+            "times as deep.</div>",
             mixed, water, water / mixed,
         )  # fmt: skip
     return fill(
-        "<div>Archimedes' principle: ρ V = {:g} V<sub>wet</sub>. The displaced water weighs as much as the body.</div>",
+        "<div>Archimedes' principle: ρV = {:g} kg/m³ × V<sub>wet</sub>. The displaced water weighs as much as the "
+        "body.</div>",
         water,
     )
 
@@ -122,8 +123,9 @@ def claims_html(snapshot: Snapshot) -> Html:
     prediction = readings.bodies[0].prediction if readings.bodies else None
     here = ""
     if prediction is not None and not math.isinf(prediction.draft):
-        here = f" The {readings.bodies[0].title.lower()} here: {prediction.draft - prediction.draft_in_water:+.4f} m."
-    shown = f"as the lab asks, reflections times {LAB_SPECULAR:g}" if p.optics == "lab" else "as physics says"
+        added = fixed(prediction.draft - prediction.draft_in_water, 4, sign=True)
+        here = f" The {readings.bodies[0].title.lower()} here: {added} m."
+    shown = f"as in the lab, reflections times {LAB_SPECULAR:g}" if p.optics == "lab" else "physical"
     claims: tuple[tuple[str, Html], ...] = (
         (
             "1. Which fluid is on top?",
@@ -144,36 +146,37 @@ def claims_html(snapshot: Snapshot) -> Html:
         (
             "5. The viscosity of the mixture.",
             fill(
-                "{:.3g} mPa s ({}); that of water is {:.3g} mPa s. Oil and water do not dissolve in each other: "
-                "Taylor's law is that of the emulsion which forms, Arrhenius' law that of a true solution, the lab's "
-                "'entirely mixed'.",
-                surface.viscosity * 1e3, p.mixture_law if column.kind == "mixed" else surface.name,
-                water.viscosity * 1e3,
+                "{} mPa·s ({}); that of water is {} mPa·s. Oil and water do not dissolve in each other: Taylor's law "
+                "holds for the emulsion that forms, Arrhenius' law for a true solution, the lab's 'entirely mixed'.",
+                number(surface.viscosity * 1e3),
+                parameters_of(p)["mixture_law"].title_of(p.mixture_law) if column.kind == "mixed" else surface.name,
+                number(water.viscosity * 1e3),
             ),
         ),
         (
             "6a. Viscosity changes the speed of waves.",
             fill(
-                "Hardly: a wave of {:g} m runs at {:.3f} m/s here and at {:.3f} m/s on clean water, since ω² = g k "
-                "does not depend on the density. Viscosity slows a wave of {:g} m by {:.2%}.",
-                SAMPLE_WAVE, speed, clean_speed, SHORT_WAVE, slowing,
+                "Hardly: a wave of {:g} m runs at {:.3f} m/s here and at {:.3f} m/s on clean water, because ω² = gk "
+                "does not contain the density. Viscosity slows a wave of {:g} m by {}.",
+                SAMPLE_WAVE, speed, clean_speed, SHORT_WAVE, percent(slowing),
             ),
         ),
         (
             "6b. Viscosity lowers the waves.",
             fill(
-                "The short ones: after {:.0f} s Hs is {:.1%} lower and the mean square slope {:.0%} lower. A wave of "
-                "{:g} m decays as e<sup>−t/{:,.0f} s</sup>.",
-                readings.age, height_loss, slope_loss, SHORT_WAVE, 1.0 / decay,
+                "The short ones: after {} H<sub>s</sub> is {} lower and the mean square slope {} lower. A wave of {:g} "
+                "m falls to 37 % in {}.",
+                seconds(readings.age, 2), percent(height_loss), percent(slope_loss), SHORT_WAVE, seconds(1.0 / decay),
             ),
         ),
         (
             "7. Oil reflects less.",
             fill(
-                "It reflects more, at every angle: {:.2%} straight down (water {:.2%}), {:.2%} of the light of a "
-                "whole sky (water {:.2%}), with n = {:.3f}. It looks darker because no light comes up from below, and "
-                "smoother because it damps the ripples. Drawn {}.",
-                normal_oil, normal_water, sky_oil, sky_water, surface.refractive_index, shown,
+                "It reflects more, at every angle: {} straight down (water {}), {} of the light of a whole sky "
+                "(water {}), with n = {:.3f}. It looks darker because no light is scattered back from below, and "
+                "smoother because it damps the ripples. Rendering: {}.",
+                percent(normal_oil), percent(normal_water), percent(sky_oil), percent(sky_water),
+                surface.refractive_index, shown,
             ),
         ),
     )  # fmt: skip
@@ -183,16 +186,15 @@ def claims_html(snapshot: Snapshot) -> Html:
 def fluids_html(snapshot: Snapshot) -> Html:
     """The fluids in use."""
     column: FluidColumn = snapshot.readings.column
-    head = ("", heading("ρ", "kg/m³"), heading("μ", "mPa s"), heading("ν", "m²/s"), heading("n"))
+    head = (("at 15 °C", ""), ("ρ", "kg/m³"), ("μ", "mPa·s"), ("ν", "m²/s"), ("n", ""))
     fluids = [column.water, column.oil, *([column.surface] if column.kind == "mixed" else [])]
     rows = [
-        (f.name, f"{f.density:.1f}", f"{f.viscosity * 1e3:.3g}", f"{f.kinematic_viscosity:.2e}",
-         f"{f.refractive_index:.3f}") for f in fluids
+        (f.name, fixed(f.density, 1), number(f.viscosity * 1e3), number(f.kinematic_viscosity),
+         fixed(f.refractive_index, 3)) for f in fluids
     ]  # fmt: skip
     return join((
         table(head, rows),
-        "ρ: density, μ: dynamic viscosity, ν: kinematic viscosity, n: refractive index, at 15 °C, from NOAA's records "
-        "of oils.",
+        faint("ρ density, μ dynamic and ν kinematic viscosity, n refractive index. Oils: NOAA's records."),
     ))  # fmt: skip
 
 
@@ -200,24 +202,23 @@ def surfaces_html(snapshot: Snapshot) -> Html:
     """The lab's question 1.2-6, answered by measurement where that is asked for."""
     readings: RadialReadings = snapshot.readings
     if not readings.surfaces:
-        return fill("Turn on <b>compare</b> in the folder Surface to time both surfaces on the same vertices.")
-    head = (
-        "", heading("cost", "ms"), heading("waves"), heading("shortest", "m"), heading("extent", "m"),
-        heading("Hs", "m"), heading("error", "of Hs"), heading("slope²", "mean"),
-    )  # fmt: skip
-    rows = []
-    for name, title in SURFACES:
-        s = readings.surfaces.get(name)
-        if s is not None:
-            rows.append((
-                title, f"{s.cost * 1e3:.2f}", s.waves, f"{s.shortest:.2g}", number(s.extent), f"{s.height:.2f}",
-                f"{s.error:+.1%}", f"{s.slope:.4f}",
-            ))  # fmt: skip
+        return fill("Switch on <b>Compare surfaces</b> in the folder Grid to time both surfaces on the same vertices.")
+    found = [(title, readings.surfaces[name]) for name, title in SURFACES if name in readings.surfaces]
+    head = (("", ""), *((title, "") for title, _ in found))
+    rows = (
+        ("cost [ms]", *(fixed(s.cost * 1e3, 2) for _, s in found)),
+        ("waves", *(number(s.waves) for _, s in found)),
+        ("shortest wave", *(metres(s.shortest, 2) for _, s in found)),
+        ("extent", *(metres(s.extent, 3) for _, s in found)),
+        (Html("height H<sub>s</sub> [m]"), *(fixed(s.height, 2) for _, s in found)),
+        (Html("error of H<sub>s</sub>"), *(percent(s.error) for _, s in found)),
+        ("mean square slope", *(number(s.slope) for _, s in found)),
+    )
     return join((
         table(head, rows),
-        "Both on the same vertices, timed just now. The radial grid reaches the horizon and never repeats; it is "
-        "dense near the viewer; each of its waves costs a pass over the vertices. The transform computes every wave "
-        "of its tile at once, repeats after the extent, and is as fine far away as near by.",
+        "Both on the same vertices, timed just now. The radial grid reaches the horizon and never repeats. It is "
+        "dense near the viewer; each of its waves costs a pass over the vertices. The FFT computes every wave of its "
+        "tile at once, repeats beyond the extent, and is as fine far away as nearby.",
     ))  # fmt: skip
 
 
@@ -227,20 +228,21 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
     column, grid = readings.column, snapshot.frame.grid
     oil = column.oil
     marks = {
-        "wind_speed": f"Hs {readings.clean_height:.2f} m, period in the middle of the energy "
-        f"{readings.middle_period:.1f} s",
-        "oil": f"{oil.density:g} kg/m³, {oil.viscosity * 1e3:g} mPa s, n = {oil.refractive_index:.3f}",
-        "rings": f"{len(grid)} points, {grid.spacing[0]:.2g} m apart in the middle, {grid.spacing[-2]:.0f} m outside",
+        "wind_speed": f"Hs = {number(readings.clean_height)} m, mean period {number(readings.middle_period, 2)} s",
+        "oil": f"{number(oil.density, 4)} kg/m³, {number(oil.viscosity * 1e3)} mPa·s, n = {oil.refractive_index:.3f}",
+        "rings": f"{number(len(grid))} points, spacing {metres(grid.spacing[0], 2)} in the middle, "
+        f"{metres(grid.spacing[-2], 2)} at the rim",
     }
     if readings.bodies:
         prediction = readings.bodies[0].prediction
-        rest = "sinks" if math.isinf(prediction.draft) else f"draft at rest {prediction.draft:.3f} m"
-        marks["density"] = f"{readings.bodies[0].title}, {prediction.height:.2f} m high: {rest}"
+        rest = "sinks" if math.isinf(prediction.draft) else f"draft at rest {fixed(prediction.draft, 3)} m"
+        marks["density"] = f"{readings.bodies[0].title}, {fixed(prediction.height, 2)} m high: {rest}"
     if column.kind == "mixed":
-        marks["mixture_law"] = f"{column.surface.viscosity * 1e3:.3g} mPa s, {column.surface.density:.0f} kg/m³"
+        density, viscosity = column.surface.density, column.surface.viscosity
+        marks["mixture_law"] = f"{number(viscosity * 1e3)} mPa·s, {fixed(density, 0)} kg/m³"
     if column.kind != "water":
         p = snapshot.frame.params
         k = np.array([peak_wavenumber(SPECTRA[p.spectrum], conditions_of(p))])
         remaining = math.exp(-float(column.roots(k)[1][0]) * readings.age)
-        marks["exposure"] = f"{readings.age:.0f} s so far: the peak wave keeps {remaining:.2%} of its height"
+        marks["exposure"] = f"after {seconds(readings.age)} the peak wave keeps {percent(remaining, 3)} of its height"
     return marks

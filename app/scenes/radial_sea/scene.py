@@ -39,8 +39,8 @@ from sim.ocean.tile_sea import TileSea
 from sim.parameters import check_record
 
 HELP = (
-    "<b>Drag</b> a buoy or the box under the water and let go, or throw it. <b>Pour oil</b> (spill) and compare each "
-    "draft in the table with the one that Archimedes' principle predicts."
+    "<b>Drag a buoy</b> under the water and let go. Next: press <b>2</b> for an oil spill, and compare the drafts "
+    "in the table with Archimedes' principle; <b>6</b> sets the rig on fire."
 )
 PLOTTED_BODIES = 3  # bodies whose draft is plotted
 BODY_SERIES = tuple(kind_of(i).title.lower() for i in range(PLOTTED_BODIES))

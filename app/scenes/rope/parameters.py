@@ -11,14 +11,22 @@ from sim.parameters import parameter
 class Params(RopeParams):
     """The rope's parameters."""
 
-    sphere: bool = parameter(False, doc="Sphere, which arrows move", group="Surroundings")
+    sphere: bool = parameter(False, doc="A sphere; drag its arrows to move it", group="Main")
     sphere_radius: float = parameter(0.75, 0.05, 3.0, "m", "Radius of the sphere", group="Surroundings")
 
     colour: str = parameter(
-        "tension", choices=("tension", "plain"), doc="What the rope's colour shows", group="Look", affects="look"
+        "tension",
+        choices={"tension": "Tension", "plain": "One colour"},
+        doc="What the colour of the rope shows",
+        group="Look",
+        affects="look",
     )
-    plot_energy: bool = parameter(False, doc="Energy account over time", group="Plots", affects="look")
-    plot_tip: bool = parameter(False, doc="Height of the tip over time", group="Plots", affects="look")
+    plot_energy: bool = parameter(
+        False, doc="Energies over time, and what damping has dissipated", group="Plots", affects="look", title="Energy"
+    )
+    plot_tip: bool = parameter(
+        False, doc="Height of the last point over time", group="Plots", affects="look", title="Height of the tip"
+    )
 
 
 PRESETS: dict[str, dict[str, Any]] = {

@@ -12,7 +12,7 @@ from app.scenes.contract import FRAME_INTERVAL, SceneKind, StabilityMap
 from app.scenes.plot_rows import PlotRows
 from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import PRESETS, Params, hidden
-from app.scenes.springs.divergence import divergence_text
+from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles, vector_of
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
@@ -234,8 +234,8 @@ class RopeScene:
     def diagnosis(self) -> str:
         """Why the run diverged, and what would hold."""
         g = self.stability.stability
-        alternative = f"so would leapfrog below {2.0 / g.omega:.3g} s" if g.omega > 0.0 else "so would leapfrog"
-        return divergence_text("rope", self.state.t, self.integrator, self.step, g, alternative)
+        alternative = leapfrog_alternative(self.integrator, g)
+        return divergence_text(self.state.t, self.integrator, self.step, g, alternative)
 
     def add_plot_row(self) -> None:
         """Add the energy account and the tip's height at the scene's time."""
@@ -295,7 +295,8 @@ class RopeScene:
 SCENE = SceneKind(
     name="rope",
     title="Rope",
-    help="<b>Drag a bead</b> to pull the rope. <b>Drag the arrows</b> to move its root.",
+    help="<b>Drag a bead</b> to pull the rope, or the arrows to move its root. Next: raise the stiffness until hω "
+    "reaches its limit, or press <b>3</b> to see Euler's method explode.",
     params=Params,
     presets=PRESETS,
     make=RopeScene,

@@ -19,6 +19,7 @@ from app.scenes.rope.scene import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROPE_RADIUS, SPHERE
 from app.scenes.springs.view import RopeSurroundings
+from sim.formatting import number
 
 ROPE_COLOUR = (196, 154, 92)
 BEAD_COLOUR = (58, 68, 86)
@@ -167,7 +168,7 @@ class View:
         """The stability bar, the cost of an implicit method and the colour scale, as HTML."""
         frame, scale = snapshot.frame, ""
         if frame.colour == "tension":
-            scale = colour_scale("slack", "tension", f"{frame.full_scale:.3g} N")
+            scale = colour_scale("slack", "tension", f"{number(frame.full_scale)} N")
         return stability_bar(snapshot.readings.stability) + cost_text(snapshot.readings.cost) + scale
 
     def marks(self, snapshot: RopeSnapshot) -> dict[str, str]:
@@ -175,7 +176,7 @@ class View:
         g = snapshot.readings
         step, stiffness = g.stability.critical_step, g.largest_stiffness
         unit = "N/m" if g.parameter == "stiffness" else "N"
-        text = f"stable up to {stiffness:.3g} {unit}" if stiffness > 0 else "no stiffness is stable at this step"
+        text = f"stable up to {number(stiffness)} {unit}" if stiffness > 0 else "no stiffness is stable at this step"
         if step == float("inf"):
             text = "every stiffness is stable"
         return {"integrator": g.note, "time_step": step_mark(step), g.parameter: text}
@@ -208,11 +209,11 @@ def cost_text(cost: NumericalCost | None) -> Html:
     if cost is None:
         return Html("")
     energy = cost.numerical_dissipation
-    damping = f", the rope's own damping {cost.damping_dissipation:.3g} J" if cost.damping_dissipation > 0.0 else ""
+    damping = f", {number(cost.damping_dissipation)} J by damping" if cost.damping_dissipation > 0.0 else ""
     return fill(
-        '<div style="margin-bottom:6px">{} Newton corrections a step; the method {} {}{}</div>',
+        '<div style="margin-bottom:6px">{} Newton iterations a step. Energy {} by the method: {}{}.</div>',
         bold(f"{cost.corrections:.1f}"),
-        "took" if energy >= 0 else "added",
-        bold(f"{abs(energy):.3g} J"),
+        "taken" if energy >= 0 else "added",
+        bold(f"{number(abs(energy))} J"),
         damping,
     )

@@ -1,19 +1,38 @@
 """Why a net of springs left its bounds, and what would hold, in words."""
 
+import math
+
+from app.scenes.springs.methods import method_name
+from sim.formatting import number, seconds
 from sim.springs.integrators import Integrator
 from sim.springs.stability import Gauge
 
 
-def divergence_text(thing: str, t: float, integrator: Integrator, step: float, gauge: Gauge, alternative: str) -> str:
-    """The sentences for the panel. thing: "rope" or "cloth"; t [s]; step [s]; alternative: what else would hold."""
-    start = f"The {thing} left its bounds at t = {t:.2f} s: h ω = {gauge.h_omega:.3g}"
+def stability_number(value: float) -> str:
+    """h omega or its limit, with two decimals where that says enough."""
+    return f"{value:.2f}" if 0.1 <= value < 100.0 else number(value, 2)
+
+
+def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge, alternative: str) -> str:
+    """The sentences for the panel. t [s]; step [s]; alternative: what else would hold, or ""."""
+    method = method_name(integrator.name)
+    start = f"Unstable: the run diverged at t = {t:.2f} s."
+    limit = stability_number(gauge.limit)
     if gauge.h_omega > gauge.limit:
-        step_that_holds = f"A step below {gauge.critical_step:.3g} s" if gauge.critical_step > 0 else "No step"
+        holds = f"h < {seconds(gauge.critical_step, 2)}" if gauge.critical_step > 0 else ""
+        proposals = " or ".join(words for words in (holds, alternative) if words)
         return (
-            f"{start} is over {integrator.name}'s limit {gauge.limit:.3g} at damping ratio {gauge.zeta:.3g}. "
-            f"{step_that_holds} would hold; {alternative}."
+            f"{start} hω = {stability_number(gauge.h_omega)} exceeds the limit of {method}, "
+            f"{limit} (ζ = {number(gauge.zeta, 2)}). Use {proposals or 'another method'}."
         )
     return (
-        f"{start} is within the limit {gauge.limit:.3g} of {integrator.name}, so an impact or a pull was too sudden "
-        f"for the step. Try h = {step / 4:.3g} s."
+        f"{start} hω = {stability_number(gauge.h_omega)} is below the limit of {method}, {limit}, "
+        f"so an impact or a pull was too sudden for this step. Try h = {seconds(step / 4, 2)}."
     )
+
+
+def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
+    """The step at which leapfrog would hold; "" where that is no news."""
+    if integrator.name == "leapfrog" or not 0.0 < gauge.omega < math.inf:
+        return ""
+    return f"leapfrog with h < {seconds(2.0 / gauge.omega, 2)}"

@@ -4,6 +4,8 @@ import math
 
 from app.render.colormap import css_scale
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
+from app.scenes.springs.divergence import stability_number
+from sim.formatting import number, seconds
 from sim.springs.stability import Gauge
 
 WARNING_SHARE = 0.8  # of the limit, from which h omega is shown in the colour of a warning
@@ -14,13 +16,15 @@ def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
     share = gauge.h_omega / gauge.limit if gauge.limit > 0 else math.inf
     colour = GOOD_COLOUR if share < WARNING_SHARE else WARNING_COLOUR if share <= 1.0 else ERROR_COLOUR
     verdict = "stable" if share <= 1.0 else "unstable" if exact else "may be unstable"
-    limit = f"limit {gauge.limit:.3g} at ζ = {gauge.zeta:.2g}" if gauge.limit < math.inf else "no limit"
+    limit = "no limit"
+    if gauge.limit < math.inf:
+        limit = f"limit {stability_number(gauge.limit)} at ζ = {number(gauge.zeta, 2)}"
     return fill(
-        '<div style="display:flex;justify-content:space-between"><b>h ω {} {:.3g}</b><span>{}</span>{}</div>'
+        '<div style="display:flex;justify-content:space-between"><b>hω {} {}</b><span>{}</span>{}</div>'
         '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 8px">'
         '<div style="height:8px;border-radius:4px;width:{:.0f}%;background:{}"></div></div>',
         "=" if exact else "≤",
-        gauge.h_omega,
+        stability_number(gauge.h_omega),
         limit,
         coloured(verdict, colour),
         100.0 * min(share, 1.0),
@@ -32,7 +36,7 @@ def step_mark(critical_step: float) -> str:
     """The line below the control of the time step. critical_step: the largest stable step [s], 0 or infinity too."""
     if critical_step == math.inf:
         return "every step is stable"
-    return f"stable up to {critical_step:.3g} s" if critical_step > 0 else "no step is stable with this method"
+    return f"stable up to {seconds(critical_step)}" if critical_step > 0 else "no step is stable with this method"
 
 
 def colour_scale(low: str, name: str, high: str) -> Html:

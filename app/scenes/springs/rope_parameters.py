@@ -3,8 +3,9 @@
 import dataclasses
 
 from app.messages import Vector
+from app.scenes.springs.methods import METHODS
 from sim.parameters import parameter
-from sim.springs import INTEGRATORS, Contact, Net, lab_units, rope
+from sim.springs import Contact, Net, lab_units, rope
 from sim.springs.net import CONTACT_LAWS, DAMPING_MODELS
 
 ROOT: Vector = (0.0, 0.0, 3.0)  # [m]
@@ -16,56 +17,74 @@ ROPE_RADIUS = 0.035  # [m] of the drawn rope, and of its points for contact
 class RopeParams:
     """Clock, material and surroundings of a rope; the defaults are the lab's code defaults with a better integrator."""
 
-    integrator: str = parameter("leapfrog", choices=tuple(INTEGRATORS), doc="Method of integration", group="Time")
-    time_step: float = parameter(1 / 60, 1e-5, 0.1, "s", "Step h of the integrator", log_from=1e-5, group="Time")
-    speed: float = parameter(
-        1.0, 0.01, 8.0, "", "Simulated time over real time", log_from=0.01, group="Time", affects="look"
+    integrator: str = parameter("leapfrog", choices=METHODS, doc="Method of integration", group="Main", title="Method")
+    time_step: float = parameter(1 / 60, 1e-5, 0.1, "s", "Step h of the integrator", log_from=1e-5, group="Main")
+    stiffness: float = parameter(800.0, 1.0, 1e9, "N/m", "Stiffness k of a link", log_from=1.0, group="Main")
+    damping: float = parameter(7.0, 0.0, 1e5, "N·s/m", "Damping b of a link", log_from=1e-3, group="Main")
+    axial_stiffness: float = parameter(178.0, 1.0, 1e9, "N", "Stiffness EA", log_from=1.0, group="Main")
+    axial_viscosity: float = parameter(
+        1.56, 0.0, 1e5, "N·s", "Damping of one metre of rope", log_from=1e-3, group="Main"
     )
+    points: int = parameter(10, 2, 1000, "", "Number of points, with the root", log_from=2, group="Main")
 
     units: str = parameter(
         "lab",
-        choices=("lab", "material"),
-        doc="lab: values per point and link, so the rope changes with its number of points; material: per metre",
+        choices={"lab": "Per point and link (lab)", "material": "Per metre of rope"},
+        doc="Per point and link, the rope changes with its number of points; per metre, it stays the same rope",
         group="Rope",
+        title="Values",
     )
-    points: int = parameter(10, 2, 1000, "", "Number of points, with the root", log_from=2, group="Rope")
     length: float = parameter(2.0, 0.1, 10.0, "m", "Length at rest", group="Rope")
-    stiffness: float = parameter(800.0, 1.0, 1e9, "N/m", "Stiffness k of a link", log_from=1.0, group="Rope")
-    damping: float = parameter(7.0, 0.0, 1e5, "N s/m", "Damping b of a link", log_from=1e-3, group="Rope")
     mass: float = parameter(1.0, 1e-3, 1e3, "kg", "Mass of a point", log_from=1e-3, group="Rope")
-    drag: float = parameter(1.0, 0.0, 1e3, "N s/m", "Air drag c on a point", log_from=1e-3, group="Rope")
-    axial_stiffness: float = parameter(178.0, 1.0, 1e9, "N", "Stiffness EA", log_from=1.0, group="Rope")
-    axial_viscosity: float = parameter(
-        1.56, 0.0, 1e5, "N s", "Damping of one metre of rope", log_from=1e-3, group="Rope"
+    drag: float = parameter(
+        1.0, 0.0, 1e3, "N·s/m", "Air drag c on a point", log_from=1e-3, group="Rope", title="Air drag"
     )
-    mass_per_length: float = parameter(4.5, 1e-3, 1e3, "kg/m", "Mass per metre of rope", log_from=1e-3, group="Rope")
+    mass_per_length: float = parameter(
+        4.5, 1e-3, 1e3, "kg/m", "Mass per metre of rope", log_from=1e-3, group="Rope", title="Mass per metre"
+    )
     drag_per_length: float = parameter(
-        4.5, 0.0, 1e3, "N s/m^2", "Air drag per metre of rope", log_from=1e-3, group="Rope"
+        4.5, 0.0, 1e3, "N·s/m²", "Air drag per metre of rope", log_from=1e-3, group="Rope", title="Drag per metre"
     )
     damping_model: str = parameter(
         "isotropic",
-        choices=DAMPING_MODELS,
-        doc="isotropic: b acts on the whole relative velocity, as in the lab; axial: along the link only",
+        choices={DAMPING_MODELS[0]: "Isotropic (lab eq. 2)", DAMPING_MODELS[1]: "Along the link"},
+        doc="Isotropic: b acts on the whole relative velocity, as in the lab. Or on its part along the link only",
         group="Rope",
     )
 
-    gravity: float = parameter(10.0, 0.0, 100.0, "m/s^2", "Gravity, downwards", group="Surroundings")
+    gravity: float = parameter(10.0, 0.0, 100.0, "m/s²", "Gravity, downwards", group="Surroundings")
     floor: bool = parameter(True, doc="Floor at height 0", group="Surroundings")
-    friction: float = parameter(0.3, 0.0, 2.0, "", "Coulomb friction coefficient", group="Surroundings")
+    friction: float = parameter(0.3, 0.0, 2.0, "", "Coefficient of Coulomb friction", group="Surroundings")
     contact_stiffness: float = parameter(
-        800.0, 1.0, 1e7, "N/m", "Contact stiffness", log_from=1.0, group="Surroundings"
+        800.0, 1.0, 1e7, "N/m", "Stiffness of floor and sphere", log_from=1.0, group="Surroundings"
     )
-    contact_damping: float = parameter(5.0, 0.0, 1e4, "N s/m", "Contact damping", log_from=1e-2, group="Surroundings")
+    contact_damping: float = parameter(
+        5.0, 0.0, 1e4, "N·s/m", "Damping of floor and sphere", log_from=1e-2, group="Surroundings"
+    )
     contact_law: str = parameter(
         "clipped",
-        choices=CONTACT_LAWS,
-        doc="clipped: contact never pulls, and has friction; lab: the lab's own law, which sticks and is viscous",
+        choices={CONTACT_LAWS[0]: "Pushes only, with friction", CONTACT_LAWS[1]: "Lab's law (may stick)"},
+        doc="The lab's own law may also pull, and its friction is viscous",
         group="Surroundings",
     )
-    pull: float = parameter(300.0, 1.0, 1e5, "N", "Largest force of a drag", log_from=1.0, group="Surroundings")
+    pull: float = parameter(
+        300.0,
+        1.0,
+        1e5,
+        "N",
+        "Largest force with which the mouse pulls a point",
+        log_from=1.0,
+        group="Surroundings",
+        title="Mouse force",
+    )
+
+    speed: float = parameter(
+        1.0, 0.01, 8.0, "", "Simulated time over real time: 0.1 is slow motion", log_from=0.01, group="Time",
+        affects="look",
+    )  # fmt: skip
 
     show_points: bool = parameter(True, doc="Draw the points, which can be dragged", group="Look", affects="look")
-    grid: bool = parameter(True, doc="Lines on the floor", group="Look", affects="look")
+    grid: bool = parameter(True, doc="Lines on the floor (key G)", group="Look", affects="look")
 
 
 LAB_ONLY = {"stiffness", "damping", "mass", "drag"}

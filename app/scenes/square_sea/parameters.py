@@ -10,98 +10,123 @@ from sim.parameters import parameter, with_parameters
 
 SIZES = ("64", "128", "256", "512")
 MESHES = ("32", "64", "128", "256")
-VIEWS = ("swimmer", "deck", "bridge", "mast", "gull")
+VIEW_HEIGHTS = {"swimmer": 1.7, "deck": 2.6, "bridge": 4.5, "mast": 8.0, "gull": 40.0}  # [m] of the camera
+SPECTRUM_TITLES = {
+    name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
+}
+SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
 SURFACE_TENSION = 0.0728  # [N/m] of water against air
 MIN_WIND_SPEED = 0.05  # [m/s] below which there are no waves: the spectra square it, and smaller squares underflow
 
 
 @dataclasses.dataclass(frozen=True)
-@with_parameters(PARAMETERS, group="Weather")
+@with_parameters(PARAMETERS, group="Waves")
 class Params:
     """The square sea's parameters, with those of all spectra; the defaults are the first preset."""
 
-    spectrum: str = parameter(
-        "pierson_moskowitz", choices=tuple(SPECTRA), doc="Formula of the wave spectrum", group="Weather"
-    )
     wind_speed: float = parameter(
-        8.0, 0.0, 60.0, "m/s", "Wind speed 10 m above the sea; for pierson_moskowitz 19.5 m above it", group="Weather"
+        8.0,
+        0.0,
+        60.0,
+        "m/s",
+        "Wind speed 10 m above the sea; with the spectrum of Pierson and Moskowitz 19.5 m above it",
+        group="Main",
+    )
+    rain: float = parameter(0.0, 0.0, 200.0, "mm/h", "Rainfall; 0 is no rain", log_from=0.1, group="Main")
+    planet: str = parameter(
+        "by mass", choices=("by mass", "by gravity", *SOLAR_SYSTEM), doc="What sets the gravity", group="Main"
+    )
+    planet_mass: float = parameter(
+        1.0, 0.01, 100.0, "Earths", "Mass of the planet", log_from=0.01, group="Main", title="Mass"
+    )
+    gravity: float = parameter(9.81, 0.01, 1000.0, "m/s²", "Gravity", log_from=0.01, group="Main")
+    view: str = parameter(
+        "deck",
+        choices={name: f"{name.capitalize()}, {height:g} m up" for name, height in VIEW_HEIGHTS.items()},
+        doc="Where the camera stands",
+        group="Main",
+        affects="look",
+    )
+
+    spectrum: str = parameter(
+        "pierson_moskowitz", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from", group="Waves"
     )
     wind_direction: float = parameter(
-        20.0, -180.0, 180.0, "°", "Direction the wind blows to, from x towards y", group="Weather"
+        20.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y", group="Waves"
     )
-    rain: float = parameter(0.0, 0.0, 200.0, "mm/h", "Rainfall; 0 is no rain", log_from=0.1, group="Weather")
     transition: float = parameter(
-        3.0, 0.0, 600.0, "s", "Time in which the sea adapts to new weather", log_from=0.1, group="Weather"
+        3.0,
+        0.0,
+        600.0,
+        "s",
+        "Time for the sea to adapt to new weather",
+        log_from=0.1,
+        group="Waves",
+        title="Time to adapt",
     )
     start: str = parameter(
         "as set",
-        choices=("as set", "calm", "storm"),
-        doc="The sea at reset: as set here, or a calm or a storm from which it then develops",
-        group="Weather",
+        choices={"as set": "As set here", "calm": "Calm", "storm": "Storm"},
+        doc="The sea at the start: as set here, or a calm or a storm, from which it then develops",
+        group="Waves",
         affects="start",
     )
 
-    planet: str = parameter(
-        "by mass", choices=("by mass", "by gravity", *SOLAR_SYSTEM), doc="What sets the gravity", group="Planet"
-    )
-    planet_mass: float = parameter(1.0, 0.01, 100.0, "Earths", "Mass of the planet", log_from=0.01, group="Planet")
     radius_rule: str = parameter(
         "same_density",
         choices=tuple(RADIUS_RULES),
         doc="How the radius of the planet depends on its mass",
-        group="Planet",
+        group="Water and planet",
+        title="Planet radius",
     )
-    gravity: float = parameter(9.81, 0.01, 1000.0, "m/s^2", "Gravity", log_from=0.01, group="Planet")
-
-    deep: bool = parameter(True, doc="Water without a bottom; off: water of the depth below", group="Water")
-    depth: float = parameter(20.0, 0.1, 5000.0, "m", "Depth of the water", log_from=0.1, group="Water")
+    deep: bool = parameter(
+        True, doc="Deep water; off: water of the depth below", group="Water and planet", title="Deep water"
+    )
+    depth: float = parameter(20.0, 0.1, 5000.0, "m", "Depth of the water", log_from=0.1, group="Water and planet")
     choppiness: float = parameter(
-        1.0, 0.0, 2.0, "", "Horizontal motion that sharpens crests; 1 is physics", group="Water"
+        1.0, 0.0, 2.0, "", "Factor on the horizontal motion, which sharpens the crests; 1 is physics",
+        group="Water and planet",
+    )  # fmt: skip
+    amplitude: float = parameter(
+        1.0, 0.0, 5.0, "", "Factor on every height; 1 is physics", group="Water and planet", title="Height factor"
     )
-    amplitude: float = parameter(1.0, 0.0, 5.0, "", "Factor on every drawn height; 1 is physics", group="Water")
     low_pass: float = parameter(
         0.0,
         0.0,
         100.0,
         "m",
-        "The damping of the course lab: a length l, below which waves are left out",
+        "The damping parameter of the course lab: a length l, below which waves are left out; 0 is off",
         log_from=1e-2,
-        group="Water",
+        group="Water and planet",
+        title="Lab's damping length",
     )
     viscosity: float = parameter(
         0.0,
         0.0,
         10.0,
-        "m^2/s",
-        "Kinematic viscosity: waves decay after the last change; water 1e-6, heavy oil 2e-2",
+        "m²/s",
+        "Kinematic viscosity: waves decay after the last change. Water 1e-6, heavy oil 2e-2",
         log_from=1e-7,
-        group="Water",
+        group="Water and planet",
     )
-    dispersion_scale: float = parameter(1.0, 0.0, 4.0, "", "Factor on every frequency; 1 is physics", group="Water")
+    dispersion_scale: float = parameter(
+        1.0,
+        0.0,
+        4.0,
+        "",
+        "Factor on the frequency of every wave; 1 is physics",
+        group="Water and planet",
+        title="Frequency factor",
+    )
     loop_period: float = parameter(
         0.0,
         0.0,
         1000.0,
         "s",
-        "The dispersion of the course lab: the sea repeats after this time; 0 is never",
+        "The dispersion of the course lab: the sea repeats after this time; 0 is off",
         log_from=1.0,
-        group="Water",
-    )
-
-    length: float = parameter(
-        192.0, 32.0, 4096.0, "m", "Side of the square tile that repeats", log_from=32.0, group="Grid", affects="start"
-    )
-    size: str = parameter("256", choices=SIZES, doc="Grid points of the solved sea along a side", group="Grid")
-    mesh: str = parameter(
-        "128", choices=MESHES, doc="Points of the drawn mesh along a side, at most as many as are solved", group="Grid"
-    )
-    grid: bool = parameter(False, doc="Show the grid of the drawn mesh (key G)", group="Grid", affects="look")
-    frame_rate: float = parameter(30.0, 5.0, 60.0, "Hz", "Frames per second", group="Grid", affects="look")
-    speed: float = parameter(
-        1.0, 0.01, 8.0, "", "Simulated time per real time", log_from=0.01, group="Grid", affects="look"
-    )
-    seed: int = parameter(
-        4, 0, 999, "", "Seed of the random waves: another sea under the same weather", group="Grid", affects="start"
+        group="Water and planet",
+        title="Lab's repeat period",
     )
 
     foam: bool = parameter(True, doc="Foam where crests fold", group="Foam and rain")
@@ -109,33 +134,78 @@ class Params:
         True, doc="As much foam as Monahan measured at this wind speed", group="Foam and rain"
     )
     foam_threshold: float = parameter(0.5, -1.0, 1.0, "", "Jacobian below which there is foam", group="Foam and rain")
-    foam_fade: float = parameter(4.0, 0.1, 60.0, "s", "Time in which foam fades", log_from=0.1, group="Foam and rain")
-    drops: int = parameter(1500, 1, 5000, "", "Largest number of drops drawn", log_from=1, group="Foam and rain")
+    foam_fade: float = parameter(
+        4.0, 0.1, 60.0, "s", "Time in which foam fades", log_from=0.1, group="Foam and rain", title="Foam lifetime"
+    )
+    drops: int = parameter(
+        1500, 1, 5000, "", "Largest number of drops shown", log_from=1, group="Foam and rain", title="Drops shown"
+    )
     rings: float = parameter(
-        1.0, 0.0, 5.0, "", "Strength of the rings that drops make; 0 is no rings", group="Foam and rain"
+        1.0, 0.0, 5.0, "", "Strength of the rings that drops make; 0 is off", group="Foam and rain", title="Drop rings"
     )
 
-    view: str = parameter("deck", choices=VIEWS, doc="Where the camera stands", group="Look", affects="look")
-    sky: str = parameter(
-        "park", choices=("park", "sunset", "dawn", "night"), doc="Sky and its light", group="Look", affects="look"
+    length: float = parameter(
+        192.0,
+        32.0,
+        4096.0,
+        "m",
+        "Side of the square tile that repeats",
+        log_from=32.0,
+        group="Grid",
+        affects="start",
+        title="Tile side",
     )
+    size: str = parameter(
+        "256",
+        choices={n: f"{n} × {n}" for n in SIZES},
+        doc="Grid on which the sea is solved",
+        group="Grid",
+        title="Solved grid",
+    )
+    mesh: str = parameter(
+        "128",
+        choices={n: f"{n} × {n}" for n in MESHES},
+        doc="Grid that is drawn, at most as fine as the solved one",
+        group="Grid",
+        title="Drawn grid",
+    )
+    seed: int = parameter(
+        4, 0, 999, "", "Seed of the random numbers: another sea in the same weather", group="Grid", affects="start",
+        title="Random seed",
+    )  # fmt: skip
+
+    speed: float = parameter(
+        1.0, 0.01, 8.0, "", "Simulated time over real time: 0.1 is slow motion", log_from=0.01, group="Time",
+        affects="look",
+    )  # fmt: skip
+    frame_rate: float = parameter(30.0, 5.0, 60.0, "Hz", "Frames per second", group="Time", affects="look")
+
+    grid: bool = parameter(False, doc="Lines of the drawn grid (key G)", group="Look", affects="look")
+    sky: str = parameter("park", choices=SKY_TITLES, doc="Sky and its light", group="Look", affects="look")
     sun: float = parameter(
-        18.0, -180.0, 180.0, "°", "Direction of the sun, from x towards y", group="Look", affects="look"
+        18.0, -180.0, 180.0, "°", "Where the sun stands, from +x towards +y", group="Look", affects="look",
+        title="Sun direction",
+    )  # fmt: skip
+    clouds: float = parameter(
+        0.4, 0.0, 1.0, "", "Share of the sky that clouds cover", group="Look", affects="look", title="Cloud cover"
     )
-    clouds: float = parameter(0.4, 0.0, 1.0, "", "Cloud cover", group="Look", affects="look")
-    daylight: float = parameter(0.85, 0.05, 3.0, "", "Brightness", group="Look", affects="look")
+    daylight: float = parameter(0.85, 0.05, 3.0, "", "Brightness", group="Look", affects="look", title="Brightness")
     visibility: float = parameter(
         3000.0, 50.0, 20000.0, "m", "Distance at which haze hides the sea", log_from=50.0, group="Look", affects="look"
     )
 
     statistics: bool = parameter(
-        True, doc="Measure the drawn sea and compare it with theory", group="Plots", affects="look"
+        True, doc="Measure the sea as drawn, and compare it with theory", group="Plots", affects="look"
     )
     plot_wave_gauge: bool = parameter(
-        False, doc="Height at the wave gauge; click the water to place it", group="Plots", affects="look"
+        False,
+        doc="Height at the wave gauge over time; click the water to place the gauge",
+        group="Plots",
+        affects="look",
+        title="Wave gauge",
     )
     plot_wave_spectrum: bool = parameter(
-        False, doc="Spectrum at the wave gauge beside theory", group="Plots", affects="look"
+        False, doc="Spectrum at the wave gauge beside theory", group="Plots", affects="look", title="Wave spectrum"
     )
 
 

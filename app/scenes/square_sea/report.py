@@ -1,26 +1,18 @@
 """The texts of the panel: the statistics of the sea beside theory, and statements of the course lab beside physics."""
 
 import math
+from typing import TYPE_CHECKING
 
 from app.messages import Snapshot
-from app.render.html import (
-    WARNING_COLOUR,
-    Html,
-    bold,
-    coloured,
-    faint,
-    fill,
-    fixed,
-    join,
-    lines,
-    number,
-    seconds,
-    table,
-)
+from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, join, lines, table
 from app.scenes.square_sea.parameters import Params, gravity
 from app.scenes.square_sea.statistics import Report
+from sim.formatting import count, fixed, metres, number, percent, seconds
 from sim.ocean.planets import RADIUS_RULES, gravity_of
 from sim.ocean.statistics import beaufort
+
+if TYPE_CHECKING:
+    from app.scenes.square_sea.scene import RainReadings
 
 MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
 BAND_WIDTH = 2.0  # standard deviations to each side: 95 of 100 seas lie within
@@ -35,22 +27,24 @@ def readout(snapshot: Snapshot) -> Html:
     if r.report is not None:
         texts.append(statistics_table(r.report))
     if frame.params.foam:
-        texts.append(f"Foam covers {r.foam_cover:.1%} of the sea; by Monahan's law {r.expected_foam_cover:.1%}.")
-    if r.rain is not None:
-        rain = r.rain
-        rings = (
-            f"A ring is drawn as strong as that of {rain.drops_per_ring:.1e} drops."
-            if rain.drops_per_ring
-            else "The grid is too coarse for rings."
-        )
         texts.append(
-            f"Rain: {rain.fallen:.3g} drops have fallen on {rain.span:.0f} m × {rain.span:.0f} m. {rain.drawn} drops "
-            f"are drawn, each in place of {rain.weight:.3g}; {rain.hits} of them have reached the water. {rings}"
+            f"Foam covers {percent(r.foam_cover)} of the sea; by Monahan's law {percent(r.expected_foam_cover)}."
         )
+    if r.rain is not None:
+        texts.append(rain_text(r.rain))
     if frame.gauge is not None:
         x, y, z = frame.gauge
-        texts.append(f"Wave gauge at ({x:.1f}, {y:.1f}) m: {z:+.2f} m, accurate to {r.gauge_residual:.0e} m.")
+        texts.append(f"Wave gauge at ({x:.1f}, {y:.1f}) m: {fixed(z, 2, sign=True)} m.")
     return lines(texts)
+
+
+def rain_text(rain: "RainReadings") -> str:
+    """How much of the rain is shown."""
+    rings = "The grid is too coarse for rings."
+    if rain.drops_per_ring:
+        rings = f"Each ring stands for {count(rain.drops_per_ring)} drops."
+    falling = count(rain.drawn * rain.weight)
+    return f"Rain {number(rain.rate)} mm/h. Shown: {rain.drawn} of {falling} falling drops. {rings}"
 
 
 def statistics_table(r: Report) -> Html:
@@ -60,14 +54,14 @@ def statistics_table(r: Report) -> Html:
     inside = abs(m.significant_height - e.significant_height) <= band + 1e-9
     height = number(m.significant_height)
     measured = table(
-        ("", "drawn", "theory, 95 %"),
+        (("", ""), ("as drawn", ""), ("theory", "95 % band")),
         (
             (
-                Html("H<sub>s</sub> [m]"),
+                Html("height H<sub>s</sub> [m]"),
                 bold(height) if inside else coloured(height, WARNING_COLOUR),
                 f"{number(e.significant_height)} ± {number(band, 2)}",
             ),
-            (Html("T<sub>p</sub> [s]"), bold(number(m.peak_period)), number(e.peak_period)),
+            (Html("period T<sub>p</sub> [s]"), bold(number(m.peak_period)), number(e.peak_period)),
             ("mean square slope", bold(number(m.mean_square_slope)), number(e.mean_square_slope)),
             ("direction [°]", bold(fixed(math.degrees(m.direction), 0)), fixed(math.degrees(e.direction), 0)),
         ),
@@ -76,9 +70,11 @@ def statistics_table(r: Report) -> Html:
         return measured
     share = e.significant_height / endless
     if share < MAX_SHARE_OF_ENDLESS_SEA:
-        text = f"The waves of this tile have {share:.0%} of the height of an endless, undamped sea, {endless:.3g} m."
+        text = fill("The tile captures {} of the open-sea H<sub>s</sub> ({} m).", percent(share, 3), number(endless))
     else:
-        text = f"Waves of the earlier weather are still here; this wind alone would make {endless:.3g} m."
+        text = fill(
+            "Waves of the earlier weather are still here; this wind alone makes H<sub>s</sub> = {} m.", number(endless)
+        )
     return join((measured, faint(text)))
 
 
@@ -89,13 +85,14 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     cell = p.length / int(p.size)
     return {
         "wind_speed": wind_line(p),
-        "planet_mass": planet_line(p),
+        "planet": f"g = {number(gravity(p))} m/s²",
+        "radius_rule": radius_line(p),
         "low_pass": low_pass_line(p),
         "viscosity": viscosity_line(p, snapshot.readings.age),
         "loop_period": f"repeats every {seconds(p.loop_period, 2)}" if p.loop_period else "never repeats",
-        "size": f"grid spacing {cell:.3g} m, shortest wave {2 * cell:.3g} m",
-        "mesh": f"drawn every {p.length / len(snapshot.frame.vertices):.3g} m",
-        "foam_by_wind": f"foam where the Jacobian is below {limit:.2f}" if math.isfinite(limit) else "no foam",
+        "size": f"grid spacing {metres(cell)}, shortest wave {metres(2 * cell)}",
+        "mesh": f"grid spacing {metres(p.length / len(snapshot.frame.vertices))}",
+        "foam_by_wind": f"foam where the Jacobian is below {fixed(limit, 2)}" if math.isfinite(limit) else "no foam",
     }
 
 
@@ -110,10 +107,12 @@ def wind_line(params: Params) -> str:
     return f"Beaufort {force}, {name}"
 
 
-def planet_line(params: Params) -> str:
+def radius_line(params: Params) -> str:
     """Gravity of a planet of this mass by each rule for its radius."""
-    each = ", ".join(f"{rule.replace('_', ' ')} {gravity_of(params.planet_mass, rule):.3g}" for rule in RADIUS_RULES)
-    return f"g = {gravity(params):.3g} m/s² ({each})"
+    each = ", ".join(
+        f"{number(gravity_of(params.planet_mass, rule))} ({rule.replace('_', ' ')})" for rule in RADIUS_RULES
+    )
+    return f"g in m/s² by each rule: {each}"
 
 
 def low_pass_line(params: Params) -> str:
@@ -121,7 +120,7 @@ def low_pass_line(params: Params) -> str:
     if params.low_pass == 0.0:
         return "no wave is left out"
     water, oil = (params.low_pass**2 / (4.0 * nu) for nu in (WATER_VISCOSITY, HEAVY_OIL_VISCOSITY))
-    return f"as after {seconds(water, 2)} of decay in water, or {seconds(oil, 2)} in heavy oil (1e-3 m²/s)"
+    return f"like {seconds(water, 2)} of decay in water, or {seconds(oil, 2)} in heavy oil (10⁻³ m²/s)"
 
 
 def viscosity_line(params: Params, age: float) -> str:
@@ -131,7 +130,7 @@ def viscosity_line(params: Params, age: float) -> str:
     length = 2.0 * math.sqrt(params.viscosity * age)
     decay = 1.0 / (2.0 * params.viscosity * (2.0 * math.pi / 1.0) ** 2)
     return (
-        f"after {age:.0f} s: the lab's l = 2 √(ν T) = {length:.2g} m; a wave of 1 m falls to 37 % in "
+        f"after {seconds(age, 2)} the lab's l = 2√(νT) is {metres(length, 2)}; a wave of 1 m falls to 37 % in "
         f"{seconds(decay, 2)}"
     )
 
@@ -141,16 +140,16 @@ def lab_statements(params: Params, r: Report | None) -> Html:
     g, U = gravity(params), params.wind_speed
     storm = fill(
         "Both are true. A fully developed sea has H<sub>s</sub> = 0.209 U²/g, and its crests run at c = U/0.877: "
-        "for {:.3g} m/s these are {:.3g} m and {:.3g} m/s.",
-        U, 0.20925 * U * U / g, U / 0.877,
+        "for U = {} m/s these are {} m and {} m/s.",
+        number(U), number(0.20925 * U * U / g), number(U / 0.877),
     )  # fmt: skip
     if r is not None and not math.isnan(r.theory.wave[0]):
         length, speed = r.theory.wave
-        storm = join((storm, f" The dominant waves here are {length:.3g} m long and run at {speed:.3g} m/s."))
+        storm = join((storm, f" The dominant waves here are {number(length)} m long and run at {number(speed)} m/s."))
     planet = fill(
-        "That depends on its radius too: here g = {:.3g} m/s². At one wind, heights and lengths are proportional to "
-        "1/g, and speeds stay as they are: H<sub>s</sub> g/U² is 0.209 on every planet.",
-        g,
+        "That depends on its radius too: here g = {} m/s². In the same wind, heights and lengths are proportional to "
+        "1/g, and speeds stay the same: H<sub>s</sub> g/U² is 0.209 on every planet.",
+        number(g),
     )
     time = f": {low_pass_line(params)}" if params.low_pass else ""
     damping = (
@@ -160,10 +159,10 @@ def lab_statements(params: Params, r: Report | None) -> Html:
     )
     height = ""
     if r is not None:
-        height = fill("H<sub>s</sub> stays {:.3g} m. ", r.measured.significant_height)
+        height = fill("H<sub>s</sub> stays {} m. ", number(r.measured.significant_height))
     after_storm = fill(
         "The lab's dispersion rounds frequencies down so that the sea repeats after 200 s, and a factor slows it down. "
-        "Neither lowers a wave. {}A calm sea needs less wind: try the preset Storm over.",
+        "Neither lowers a wave. {}A calm sea needs less wind: load the preset Storm over.",
         height,
     )
     pairs: list[tuple[str, object]] = [
@@ -180,7 +179,7 @@ def lab_statements(params: Params, r: Report | None) -> Html:
     ]
     return join(
         fill(
-            '<div style="margin-bottom:8px"><div style="opacity:.7"><b>Lab:</b> {}</div>'
+            '<div style="margin-bottom:8px"><div class="springtide-faint"><b>Lab:</b> {}</div>'
             "<div><b>Physics:</b> {}</div></div>",
             statement, physics,
         )

@@ -21,7 +21,10 @@ from sim.ocean.tile_mesh import set_mesh
 from sim.ocean.wave_gauge import WaveGauge, where_hit
 from sim.parameters import effect_of_change
 
-HELP = "<b>Click the water</b> to place the wave gauge. Drag to look around, scroll to move."
+HELP = (
+    "<b>Click the water</b> to place a wave gauge; drag to look around, scroll to move. Next: turn the wind up, or "
+    "press <b>2</b> for a storm and <b>4</b> for a planet of 1/100 of the Earth's mass."
+)
 SERIES = ("wave gauge",)
 PLOTS = {"plot_wave_gauge": PlotAxes("Height at the wave gauge", "m", SERIES)}
 CURVES = {"plot_wave_spectrum": CurveAxes("Spectrum at the wave gauge [m²/Hz]", "f [Hz]", ("measured", "theory"))}

@@ -14,17 +14,17 @@ from app.render.material import Material
 from app.render.skies import CAMERA_RANGE, set_sky
 from app.render.water import Water
 from app.scenes.square_sea import report
-from app.scenes.square_sea.parameters import SURFACE_TENSION, Params, gravity
+from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity
 from app.scenes.square_sea.rain_view import RainMesh
 from app.scenes.square_sea.scene import SeaFrame
 
 DEFAULTS = Params()
-VIEWS = {  # [m]: height of the camera; how far ahead its target is, and the target's height
-    "swimmer": (1.7, 6.0, 0.5),
-    "deck": (2.6, 11.5, 2.2),
-    "bridge": (4.5, 30.0, 3.6),
-    "mast": (8.0, 40.0, 6.0),
-    "gull": (40.0, 70.0, 0.0),
+TARGETS = {  # [m] of each view: how far ahead its target is, and the target's height
+    "swimmer": (6.0, 0.5),
+    "deck": (11.5, 2.2),
+    "bridge": (30.0, 3.6),
+    "mast": (40.0, 6.0),
+    "gull": (70.0, 0.0),
 }
 CAMERA_SETBACK = 0.14  # of the tile's side: how far the camera stands behind the middle of the tile,
 MAX_CAMERA_SETBACK = 20.0  # [m] but no farther than this, so that it is near the rain
@@ -42,9 +42,9 @@ GAUGE_COLOUR, SPAR_COLOUR = (240, 96, 32), (245, 245, 240)
 
 def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
     """Position and target [m] of a view over a tile of side `length` [m]; its height does not depend on the tile."""
-    height, ahead, target_height = VIEWS[view]
+    ahead, target_height = TARGETS[view]
     x = 0.5 * length - min(CAMERA_SETBACK * length, MAX_CAMERA_SETBACK)
-    return (x, 0.5 * length, height), (x + ahead, 0.5 * length, target_height)
+    return (x, 0.5 * length, VIEW_HEIGHTS[view]), (x + ahead, 0.5 * length, target_height)
 
 
 class View:

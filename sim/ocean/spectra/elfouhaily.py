@@ -19,7 +19,9 @@ KM_WATER = 370.0  # [rad/m] wavenumber of the slowest wave on clean water under 
 class AgeConditions(Conditions):
     """What a sea of some age is evaluated under."""
 
-    inverse_wave_age: float = parameter(0.84, 0.84, 5.0, "", "Omega: 0.84 is a fully developed sea, 5 a very young one")
+    inverse_wave_age: float = parameter(
+        0.84, 0.84, 5.0, "", "0.84 is a fully developed sea, 5 a very young one", title="Inverse wave age Ω"
+    )
 
 
 def density(kx: np.ndarray, ky: np.ndarray, c: AgeConditions) -> np.ndarray:

@@ -12,8 +12,8 @@ from sim.parameters import parameter
 class FetchConditions(SpreadConditions):
     """What a sea of limited fetch is evaluated under."""
 
-    fetch: float = parameter(100e3, 100.0, 1e7, "m", "Distance over which the wind has blown", log_from=100.0)
-    peak_enhancement: float = parameter(3.3, 1.0, 20.0, "", "Gamma: height of the peak of the spectrum")
+    fetch: float = parameter(100e3, 100.0, 1e7, "m", "Distance the wind blows over water", log_from=100.0)
+    peak_enhancement: float = parameter(3.3, 1.0, 20.0, "", "Height of the peak of the spectrum", title="Peak factor γ")
 
 
 def frequency(w: np.ndarray, c: FetchConditions) -> np.ndarray:

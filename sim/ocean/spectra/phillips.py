@@ -18,8 +18,9 @@ class PhillipsConditions(Conditions):
         0.0,
         0.1,
         "",
-        "Constant A of Phillips; 1.74e-3 gives the wave height of Pierson and Moskowitz",
+        "Constant of Phillips' spectrum; 1.74e-3 gives the wave height of Pierson and Moskowitz",
         log_from=1e-5,
+        title="Phillips constant A",
     )
 
 

@@ -67,11 +67,16 @@ class Spectrum(NamedTuple, Generic[C]):
     """A named spectrum. Closed forms are of the spectrum alone: infinite depth for all but tma, no low-pass."""
 
     name: str
-    doc: str
+    doc: str  # its authors and year, a colon, and what it is good for
     density: Callable[[np.ndarray, np.ndarray, C], np.ndarray]  # S(kx, ky) [m4]
     significant_height: Callable[[C], float] | None  # Hs [m] where a closed form exists
     peak: Callable[[C], float] | None  # peak angular frequency [rad/s] where a closed form exists
     conditions: type[C]  # what it is evaluated under
+
+    @property
+    def title(self) -> str:
+        """What a list of spectra calls it: the first words of `doc`."""
+        return self.doc.partition(":")[0]
 
     def unused(self, values: Mapping[str, Any]) -> set[str]:
         """Which of these parameters of spectra, name -> value, have no effect on this one."""

@@ -22,7 +22,7 @@ def refused(capsys: pytest.CaptureFixture, *arguments: str) -> str:
 @pytest.mark.parametrize(
     ("assignment", "words"),
     [
-        ("stiffness=-3", ["stiffness", "-3", "1 to 1e+09 N/m"]),
+        ("stiffness=-3", ["stiffness", "-3", "1 to 1e9 N/m"]),
         ("stiffness=nan", ["stiffness", "nan", "N/m"]),
         ("points=2.5", ["points", "2.5", "whole number from 2 to 1000"]),
         ("integrator=rk5", ["integrator", "rk5", "leapfrog"]),
@@ -94,7 +94,7 @@ def test_run_writes_arrays_units_and_all_parameters(tmp_path: Path) -> None:
 def test_a_diverging_run_keeps_what_it_had_and_says_so(capsys: pytest.CaptureFixture, tmp_path: Path) -> None:
     out = tmp_path / "boom.npz"
     assert main(["run", "rope", "--seconds", "5", "--out", str(out), "--set", "integrator=explicit_euler"]) == 1
-    assert "explicit_euler" in capsys.readouterr().out
+    assert "exceeds the limit of explicit Euler" in capsys.readouterr().out
     data = np.load(out)
     assert 0 < data["t"][-1] < 5
     assert np.isfinite(data["x"]).all()

@@ -1,0 +1,27 @@
+"""What the panel calls the methods of integration, in the order in which one looks for them."""
+
+from sim.parameters import in_words
+from sim.springs import INTEGRATORS
+
+TITLES = {  # name -> (title in a list, name in a sentence)
+    "explicit_euler": ("Euler, explicit (lab eq. 5)", "explicit Euler"),
+    "symplectic_euler": ("Euler, symplectic (lab's code)", "symplectic Euler"),
+    "rk4": ("Runge-Kutta 4 (RK4)", "Runge-Kutta 4"),
+    "leapfrog": ("Leapfrog", "leapfrog"),
+    "leapfrog_lagged": ("Leapfrog, lagged (lab eq. 8)", "lagged leapfrog"),
+    "implicit_euler": ("Euler, implicit", "implicit Euler"),
+    "implicit_midpoint": ("Midpoint, implicit", "implicit midpoint"),
+    "tr_bdf2": ("TR-BDF2, implicit", "TR-BDF2"),
+    "xpbd": ("XPBD (position based)", "XPBD"),
+    "pefrl": ("PEFRL (no damping)", "PEFRL"),
+    "dopri5": ("Dormand-Prince 5, adaptive", "Dormand-Prince 5"),
+    "dop853": ("Dormand-Prince 8, adaptive", "Dormand-Prince 8"),
+}
+ORDER = sorted(INTEGRATORS, key=[*TITLES, *INTEGRATORS].index)
+# A method that is not listed above comes last, with its name in words.
+METHODS = {name: TITLES[name][0] if name in TITLES else in_words(name) for name in ORDER}
+
+
+def method_name(integrator: str) -> str:
+    """A method in a sentence or a label."""
+    return TITLES[integrator][1] if integrator in TITLES else in_words(integrator)

@@ -1,0 +1,105 @@
+"""Numbers and quantities as text: significant digits, units that are easily read, and one form for all of them.
+
+Thousands are separated by a narrow no-break space, and powers of ten are written 1.3 × 10⁸, as the SI brochure asks.
+"""
+
+import math
+
+NO_NUMBER = "–"
+THOUSANDS = "\u202f"  # narrow no-break space
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+MIN_PLAIN, MAX_PLAIN = 1e-3, 1e6  # numbers outside are written with a power of ten
+LENGTH_UNITS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9))  # [m]
+# [s] of each unit, and how many of it there must be at least before it is used.
+TIME_UNITS = (
+    ("years", 3.156e7, 1.5),
+    ("days", 86400.0, 1.5),
+    ("h", 3600.0, 1.5),
+    ("min", 60.0, 1.5),
+    ("s", 1.0, 0.9995),
+    ("ms", 1e-3, 0.9995),
+    ("µs", 1e-6, 0.0),
+)
+COUNT_UNITS = (("billion", 1e9), ("million", 1e6))
+MAX_STEP_RATE = 10_000  # [1/s] up to which a step is written as one over a whole number
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number with `digits` significant digits; – for NaN, ∞ for infinity. Whole numbers below a million are exact."""
+    if math.isnan(value):
+        return NO_NUMBER
+    if math.isinf(value):
+        return "∞" if value > 0.0 else "−∞"
+    if value == int(value) and abs(value) < MAX_PLAIN:
+        return decimal(value, 0)
+    rounded = float(f"{value:.{digits}g}")
+    exponent = math.floor(math.log10(abs(rounded)) + 1e-12)
+    if MIN_PLAIN <= abs(rounded) < MAX_PLAIN:
+        return decimal(rounded, max(digits - 1 - exponent, 0))
+    return f"{decimal(rounded / 10.0**exponent, digits - 1)} × 10{str(exponent).translate(SUPERSCRIPTS)}"
+
+
+def decimal(value: float, decimals: int) -> str:
+    """At most `decimals` digits after the point, without trailing zeros; thousands apart, and a real minus sign."""
+    text = f"{value:,.{decimals}f}"
+    if "." in text:
+        text = text.rstrip("0").rstrip(".")
+    return text.replace(",", THOUSANDS).replace("-", "−")
+
+
+def fixed(value: float, decimals: int, *, sign: bool = False) -> str:
+    """Always `decimals` digits after the point, for what changes all the time; – where it is NaN or infinite.
+
+    sign: write a plus, too.
+    """
+    if not math.isfinite(value):
+        return NO_NUMBER
+    return f"{value:{'+' if sign else ''},.{decimals}f}".replace(",", THOUSANDS).replace("-", "−")
+
+
+def percent(share: float, digits: int = 2) -> str:
+    """A share, 0 to 1, in percent, with `digits` significant digits."""
+    return f"{number(100.0 * share, digits)} %" if math.isfinite(share) else NO_NUMBER
+
+
+def metres(value: float, digits: int = 3) -> str:
+    """A length [m] in the unit in which it is easily read, m to nm; – for NaN."""
+    if not math.isfinite(value):
+        return number(value)
+    for unit, size in LENGTH_UNITS:
+        if abs(value) >= 0.9995 * size:
+            return f"{number(float(f'{value / size:.{digits}g}'), digits)} {unit}"
+    return f"{number(value, digits)} m"
+
+
+def seconds(value: float, digits: int = 3) -> str:
+    """A time [s] in the unit in which it is easily read, years to µs; – for NaN."""
+    if not math.isfinite(value):
+        return number(value)
+    if value == 0.0:
+        return "0 s"
+    unit, size = next((unit, size) for unit, size, least in TIME_UNITS if abs(value) >= least * size)
+    return f"{number(float(f'{value / size:.{digits}g}'), digits)} {unit}"
+
+
+def time_step(step: float) -> str:
+    """A time step [s]: 1/240 s where it is nearly one over a whole number, else in ms or µs."""
+    rate = round(1.0 / step)
+    if 10 <= rate <= MAX_STEP_RATE and abs(rate * step - 1.0) < 1e-4:
+        return f"1/{rate} s"
+    return seconds(step)
+
+
+def count(value: float) -> str:
+    """How many, in words where there are millions of them: 30 million."""
+    for word, size in COUNT_UNITS:
+        if abs(value) >= 0.9995 * size:
+            return f"{number(float(f'{value / size:.2g}'))} {word}"
+    return number(round(value))
+
+
+def plain(value: float) -> str:
+    """A number as it is typed: 0.5, 1000, 1e9. For ranges and messages."""
+    text = f"{value:g}"
+    mantissa, e, exponent = text.partition("e")
+    return f"{mantissa}e{int(exponent)}" if e else text

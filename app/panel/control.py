@@ -7,16 +7,22 @@ import viser
 
 from app.render.html import fill
 from app.render.viser_types import GuiHandle, ViserEvent
-from sim.parameters import Parameter, Value, clamp_value, parse_value
+from sim.parameters import Parameter, Value, clamp_value, in_words, parse_value
 from sim.quantities import write_number
 
 SLIDER_STEPS = 400  # at most, over a slider's range
 
 
 def title(name: str, parameter: Parameter) -> str:
-    """The parameter's name in words, with its unit."""
+    """What the panel calls the parameter, with its unit."""
     unit = f" [{parameter.unit}]" if parameter.unit else ""
-    return name.replace("_", " ").capitalize() + unit
+    return (parameter.title or in_words(name)) + unit
+
+
+def hint_of(name: str, parameter: Parameter) -> str:
+    """What the parameter means, what it may be, and its name on the command line."""
+    allowed = "" if parameter.choices or parameter.kind is bool else f" Allowed: {parameter.allowed}."
+    return f"{parameter.doc}.{allowed} Command line: {name}"
 
 
 def nice_step(low: float, high: float) -> float:
@@ -86,10 +92,11 @@ class Control:
         self.slider: viser.GuiMultiSliderHandle[float] | None = None
         self.line: viser.GuiHtmlHandle | None = None
         self.text = self.refusal = ""
-        label, hint = title(name, parameter), f"{parameter.doc} ({name}: {parameter.allowed})"
+        label, hint = title(name, parameter), hint_of(name, parameter)
         value = read()
         if parameter.choices:
-            self.field: GuiHandle = gui.add_dropdown(label, parameter.choices, initial_value=str(value), hint=hint)
+            shown = parameter.title_of(str(value))
+            self.field: GuiHandle = gui.add_dropdown(label, parameter.choice_titles, initial_value=shown, hint=hint)
         elif parameter.kind is bool:
             self.field = gui.add_checkbox(label, initial_value=bool(value), hint=hint)
         else:
@@ -109,6 +116,8 @@ class Control:
 
     def shown(self, value: Value) -> Value:
         """What the field holds for a value."""
+        if self.parameter.choices:
+            return self.parameter.title_of(str(value))
         return value if self.slider is None else write_number(float_or_int(value))
 
     async def on_field(self, event: ViserEvent) -> None:
@@ -116,6 +125,9 @@ class Control:
         if event.client_id is None:
             return
         sent: object = event.target.value
+        if self.parameter.choices:
+            self.set(self.parameter.choice_of(str(sent)))
+            return
         if self.slider is None:
             self.set(sent)
             return

@@ -30,7 +30,7 @@ MARKS_INTERVAL = 0.5  # [s]
 WORK_INTERVAL = 2.0  # [s]
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
 DIGITS: tuple[HotkeyKey, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
-OPEN_GROUPS = 2  # the first groups of parameters start open
+OPEN_GROUPS = 1  # the first groups of parameters start open
 BUTTONS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce(), "Reset": Reset()}
 
 

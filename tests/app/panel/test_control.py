@@ -1,8 +1,12 @@
 """A control: what it is set to is bounded, shown and passed on; the value itself is the panel's."""
 
+import asyncio
+import re
+from types import SimpleNamespace
+
 import pytest
 
-from app.panel.control import SliderScale
+from app.panel.control import SliderScale, title
 from app.scenes import NAMES, scene_named
 from app.server.viewer import Viewer
 from sim.parameters import parameters_of
@@ -71,3 +75,42 @@ def test_the_default_is_where_the_slider_shows_it(scene: str, name: str) -> None
     shown = scale.value(scale.position(parameter.default))
     coarse = abs(scale.value(min(scale.position(parameter.default) + scale.step, scale.high)) - parameter.default)
     assert abs(shown - parameter.default) <= max(coarse, 1e-9 * abs(parameter.default))
+
+
+def test_a_list_shows_titles_and_the_record_has_names(lab: Viewer) -> None:
+    control = lab.panel.controls["integrator"]
+    assert control.field.value == "Leapfrog"
+    assert control.field.options[:4] == (
+        "Euler, explicit (lab eq. 5)", "Euler, symplectic (lab's code)", "Runge-Kutta 4 (RK4)", "Leapfrog",
+    )  # fmt: skip
+    lab.panel.set("integrator", "rk4")
+    assert control.field.value == "Runge-Kutta 4 (RK4)"
+    assert lab.panel.params.integrator == "rk4"
+    event = SimpleNamespace(client_id=1, target=SimpleNamespace(value="Euler, implicit"))
+    asyncio.run(control.on_field(event))
+    assert lab.panel.params.integrator == "implicit_euler"
+
+
+FIRST_FOLDER, LAST_FOLDERS = "Main", ("Surroundings", "Time", "Look", "Plots")
+PANEL_UNITS = re.compile(r"|[A-Za-z%°µ]+([²³]|·[a-z]+|/[a-z]+[²³]?)*")
+
+
+@pytest.mark.parametrize("scene", NAMES)
+def test_the_folders_of_every_scene_are_in_one_order(scene: str) -> None:
+    parameters = parameters_of(scene_named(scene).params())
+    folders = list(dict.fromkeys(parameter.group for parameter in parameters.values()))
+    assert folders[0] == FIRST_FOLDER
+    shared = [folder for folder in folders if folder in LAST_FOLDERS]
+    assert shared == [folder for folder in LAST_FOLDERS if folder in folders]
+    assert folders[-len(shared) :] == shared
+    assert parameters["speed"].group == "Time"
+
+
+@pytest.mark.parametrize("scene", NAMES)
+def test_what_the_panel_calls_things_is_typeset(scene: str) -> None:
+    for name, parameter in parameters_of(scene_named(scene).params()).items():
+        assert PANEL_UNITS.fullmatch(parameter.unit), name
+        texts = (title(name, parameter), parameter.doc, *parameter.choice_titles)
+        assert not any(re.search(r"_|\^|\b(deg|rad)\b", text) for text in texts), name
+        assert parameter.doc[0].isupper() or parameter.doc[0].isdigit(), name
+        assert not parameter.doc.endswith("."), name

@@ -81,6 +81,8 @@ class Viewer:
         """Make scene, view, panel and threads."""
         kind = scene_named(name)
         self.compile(name, kind.title)
+        if self.ended:  # while it was compiled
+            return
         if params is None:
             params = self.first_params.get(name) or kind.params()
         self.first_params.setdefault(name, params)

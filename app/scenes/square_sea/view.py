@@ -68,7 +68,7 @@ class View:
         """Position and target [m] of a camera that has not been moved."""
         return camera_of(params.view, params.length)
 
-    def on_click(self, event: Any) -> None:
+    async def on_click(self, event: Any) -> None:
         """Tell the scene what the mouse points at."""
         origin, direction = finite_vector(event.ray_origin, MAX_CLICK_DISTANCE), finite_vector(event.ray_direction)
         if origin is not None and direction is not None:

@@ -62,8 +62,10 @@ class Scene:
         return FRAME_INTERVAL
 
     def change_forces(self, params: Params) -> None:
-        self.params = params
         self.changes += 1
+        if self.fails:
+            raise self.fails
+        self.params = params
 
     def advance(self, steps: int) -> None:
         if self.fails:
@@ -207,6 +209,22 @@ def test_what_goes_wrong_pauses_the_run_and_is_said(error: Exception, capsys: py
     assert loop.running
     assert loop.latest.status.halted == ""
     capsys.readouterr()
+
+
+def test_parameters_that_the_scene_cannot_take_pause_the_run_and_are_tried_once(capsys: pytest.CaptureFixture) -> None:
+    values = Params()
+    loop, scene = make(read_params=lambda: (values, 0))
+    loop.tick(FRAME_INTERVAL)
+    values, scene.fails = Params(stiffness=3.0), ValueError("no such net")
+    for _ in range(5):
+        loop.tick(FRAME_INTERVAL)
+    assert "no such net" in loop.latest.status.halted
+    assert scene.changes == 1
+    assert capsys.readouterr().err.count("Traceback") == 1
+    loop.commands.put(Reset())
+    loop.tick(FRAME_INTERVAL)
+    assert loop.running
+    assert scene.starts == [values]
 
 
 def test_the_real_time_factor_is_measured() -> None:

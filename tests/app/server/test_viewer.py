@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.messages import Grab, StepOnce
+from app.messages import Grab, Reset, StepOnce
 from app.scenes import scene_named
 from app.server.viewer import Viewer
 from tests.app.server.test_guard import talk
@@ -120,6 +120,53 @@ def test_ending_does_not_wait_for_a_long_solve(monkeypatch: pytest.MonkeyPatch) 
     start = time.monotonic()
     viewer.shut()
     assert time.monotonic() - start < 3.0
+
+
+def test_ending_while_a_scene_is_opened_leaves_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    compiling, compiled = threading.Event(), threading.Event()
+    monkeypatch.setattr(viewer, "compile", lambda *_: (compiling.set(), compiled.wait(20.0)))
+    opening = threading.Thread(target=viewer.open, args=("rope",))
+    opening.start()
+    assert compiling.wait(10.0)
+    viewer.shut()
+    compiled.set()
+    opening.join(20.0)
+    assert not opening.is_alive()
+    assert not viewer.is_open
+    assert viewer.threads == []
+
+
+def test_a_scene_that_must_be_compiled_says_so_on_the_page(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[str] = []
+
+    def compile_scene(name: str, show: Any) -> None:
+        show("the solver")
+        seen.append(panel_text(lab))
+
+    monkeypatch.setattr("app.server.viewer.is_compiled", lambda name: False)
+    monkeypatch.setattr("app.server.viewer.compile_scene", compile_scene)
+    lab.open("cloth")
+    assert len(seen) == 1
+    assert "compiling the solver" in seen[0]
+    assert "springtide-panel" not in seen[0]  # nothing is left of the scene before
+    assert "compiling the solver" not in panel_text(lab)
+
+
+def test_plot_rows_of_snapshots_that_were_never_shown_reach_the_charts(lab: Viewer) -> None:
+    lab.stop_threads()
+    lab.loop.audience = lambda: 1
+    lab.panel.set("plot_tip", True)
+    for _ in range(30):
+        lab.loop.tick(1 / 60)
+    lab.loop.commands.put(Reset())
+    for _ in range(20):
+        lab.loop.tick(1 / 60)
+    lab.show_latest()  # the only one
+    times = [row[0] for row in lab.panel.plots.rows]
+    assert len(times) >= 5
+    assert times == sorted(times)
+    assert times[0] < 2 / 60  # from the reset on: its mark has arrived too
 
 
 def test_a_long_solve_is_said_in_the_status(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:

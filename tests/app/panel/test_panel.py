@@ -1,0 +1,83 @@
+"""The panel on a viser server without a browser."""
+
+import asyncio
+import inspect
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+import viser
+
+from app.messages import Load
+from app.scenes import NAMES
+from app.server.viewer import Viewer
+from tests.app.server.test_viewer import wait_for
+
+
+@pytest.fixture(scope="module")
+def viewer() -> Iterator[Viewer]:
+    viewer = Viewer("127.0.0.1", 0)
+    yield viewer
+    viewer.shut()
+
+
+def callbacks(viewer: Viewer) -> Iterator[Callable[..., Any]]:
+    """All that viser calls for what a browser does: with widgets, commands, and nodes of the scene."""
+    gui, scene = viewer.server.gui, viewer.server.scene
+    for widget in gui._gui_input_handle_from_uuid.values():
+        yield from widget._impl.update_cb
+    for command in gui._command_handle_from_uuid.values():
+        yield from command._impl.trigger_cb
+    for pointer in scene._scene_pointer_cb:
+        yield pointer.callback
+    for node in scene._handle_from_node_name.values():
+        yield from (entry.callback for entry in (*node._impl.click_cb, *node._impl.drag_cb))
+        if isinstance(node, viser.TransformControlsHandle):
+            yield from node._impl_aux.update_cb
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_callback_runs_on_the_one_event_loop(viewer: Viewer, name: str) -> None:
+    """viser runs others in a pool of threads, where two changes of the parameters could lose each other."""
+    viewer.open(name)
+    wait_for(lambda: viewer.shown > 0)
+    found = list(callbacks(viewer))
+    assert len(found) > 20
+    assert [callback for callback in found if not inspect.iscoroutinefunction(callback)] == []
+
+
+def test_a_line_under_a_hidden_control_is_hidden_too(lab: Viewer) -> None:
+    lab.stop_threads()
+    control = lab.panel.controls["sphere_radius"]
+    assert not control.visible
+    control.write("as wide as a ball")
+    handles = [h for h in vars(control).values() if getattr(h, "content", "") and "as wide as a ball" in h.content]
+    assert [handle.visible for handle in handles] == [False]
+    lab.panel.set("sphere", True)
+    assert [handle.visible for handle in handles] == [True]
+
+
+class Event:
+    """What viser calls back with."""
+
+    def __init__(self, target: Any, client_id: int | None) -> None:
+        self.target, self.client_id = target, client_id
+
+
+def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) -> None:
+    posted: list[Any] = []
+    panel = lab.panel
+    panel.post = posted.append
+    before = panel.preset.value
+    command = next(c for c in lab.server.gui._command_handle_from_uuid.values() if "Pendulum" in c._impl.props.label)
+    for callback in command._impl.trigger_cb:
+        asyncio.run(callback(Event(command, 1)))
+    assert panel.preset.value == "Pendulum" != before
+    time.sleep(0.3)  # viser tells of the assignment to the list, too
+    assert [type(c) for c in posted] == [Load]
+    panel.preset.value = before
+    for callback in panel.preset._impl.update_cb:
+        asyncio.run(callback(Event(panel.preset, 1)))
+    time.sleep(0.3)
+    assert [c.number for c in posted] == [1, 2]

@@ -332,6 +332,8 @@ class SimLoop:
             except Exception as error:  # outside what `guarded` covers: the thread lives to say so
                 traceback.print_exc()
                 self.halt(f"The scene stopped with {type(error).__name__}: {error}")
+                with contextlib.suppress(Exception):  # said once, and where even the clock fails not at all
+                    self.publish(0.0)
                 self.busy_since = None
             last = now
             rest = (self.frame_interval if busy else IDLE_INTERVAL) - (self.clock() - now)

@@ -4,7 +4,10 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from numba.core.caching import CompileResultCacheImpl, IndexDataCacheFile
+from numba.core.compiler import Flags
 
+from app.__main__ import main
 from sim import jit
 from sim.jit import kernel, reachable_hash, sources_hash
 
@@ -156,6 +159,43 @@ def test_a_nan_stays_visible():
 def test_kernels_let_other_threads_run():
     assert halved.targetoptions["nogil"]  # type: ignore[attr-defined]
     assert add.targetoptions["nogil"]  # type: ignore[attr-defined]
+
+
+def test_numba_has_the_inner_names_that_are_used():
+    """sim/jit.py uses them; where one is missing, a newer numba has renamed it and its upper bound is too high."""
+    assert jit._HAS_NOALIAS
+    assert callable(Flags)
+    assert "noalias" in Flags.options
+    for method in ("load", "save", "flush"):
+        assert callable(getattr(IndexDataCacheFile, method))
+    assert callable(CompileResultCacheImpl.rebuild)
+    assert isinstance(halved._cache._cache_file, jit.KernelFile)  # type: ignore[attr-defined]
+    assert isinstance(halved._cache._impl, jit.KernelResult)  # type: ignore[attr-defined]
+    halved(1.0)
+    (compiled,) = halved.overloads.values()  # type: ignore[attr-defined]
+    assert isinstance(compiled.reload_init, list)
+    assert isinstance(compiled.library._reload_init, set)
+
+
+INTERPRETED = """
+import importlib, pkgutil, sim, app.scenes
+from app.__main__ import main
+for package in (sim, app.scenes):
+    for module in pkgutil.walk_packages(package.__path__, package.__name__ + "."):
+        importlib.import_module(module.name)
+print(main(["run", "rope", "--seconds", "0.05", "--out", r"{out}", "--set", "points=4"]))
+"""
+
+
+def test_everything_runs_interpreted_for_who_debugs(tmp_path):
+    said = python(INTERPRETED.format(out=tmp_path / "a.npz"), NUMBA_DISABLE_JIT="1", SPRINGTIDE_CACHE=str(tmp_path))
+    assert said.splitlines()[-1] == "0"
+    assert not list(tmp_path.rglob("*.nbi"))
+    with np.load(tmp_path / "a.npz") as file:
+        interpreted = file["x"][-1]
+    assert main(["run", "rope", "--seconds", "0.05", "--out", str(tmp_path / "b.npz"), "--set", "points=4"]) == 0
+    with np.load(tmp_path / "b.npz") as file:
+        np.testing.assert_allclose(file["x"][-1], interpreted, rtol=1e-12)
 
 
 ADDS = """

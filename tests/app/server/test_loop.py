@@ -414,7 +414,8 @@ def test_a_scene_that_fails_outside_its_guard_halts_the_run_and_the_thread_lives
     thread.start()
     stop.wait(0.1)
     assert thread.is_alive()
-    assert "no such step" in loop.halted
+    assert "no such step" in loop.latest.status.halted
+    assert not loop.latest.status.running
     stop.set()
     thread.join(5.0)
     assert "no such step" in capsys.readouterr().err

@@ -62,7 +62,7 @@ class View:
         self.sky: tuple[str, float] | None = None  # name of the sky and direction of the sun as shown
         self.sky_material = self.material = Material()
         self.last: SeaFrame | None = None
-        server.scene.on_click()(self.on_click)
+        server.scene.on_click()(self.on_click)  # type: ignore[arg-type]  # it takes coroutines, as on_drag does
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved."""

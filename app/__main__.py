@@ -121,6 +121,7 @@ def add_serving(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
     parser.add_argument("--paused", action="store_true", help="start paused")
     parser.add_argument("--plain-water", action="store_true", help="draw with viser's public interface only")
+    parser.add_argument("--developer", action="store_true", help="show in the panel what was computed and what was not")
     add_parameters(parser)
 
 
@@ -171,6 +172,7 @@ def serve(arguments: argparse.Namespace) -> int:
         browser=not arguments.no_open,
         paused=arguments.paused,
         plain=arguments.plain_water,
+        developer=arguments.developer,
     )
 
 

@@ -29,7 +29,9 @@ def check_address(host: str, port: int) -> None:
         raise argument_error("--host", host, f"{allowed} ({reason})") from None
 
 
-def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, paused: bool, plain: bool) -> int:
+def serve_lab(
+    name: str, params: Any, host: str, port: int, *, browser: bool, paused: bool, plain: bool, developer: bool
+) -> int:
     """Print the address that is bound, open the scene, and wait. Returns the exit status.
 
     The page is there before the scene is, and shows what is compiled.
@@ -38,7 +40,7 @@ def serve_lab(name: str, params: Any, host: str, port: int, *, browser: bool, pa
     """
     check_address(host, port)
     try:
-        viewer = Viewer(host, port, plain=plain)
+        viewer = Viewer(host, port, plain=plain, developer=developer)
     except OSError as error:
         print(f"springtide: cannot serve on {host}:{port}: {error.strerror or error}; try --port 0", file=sys.stderr)
         return 1

@@ -48,10 +48,11 @@ class Panel:
         work: Callable[[], WorkCounts],
         scenes: tuple[str, ...] = (),
         open_scene: Callable[[str], None] = lambda name: None,
+        developer: bool = False,
     ) -> None:
         """post: takes commands for the simulation. open_scene: takes the name of a scene to show instead; both at once.
 
-        work: the work counts of the open scene.
+        work: the work counts of the open scene. developer: show them.
         """
         self.server, self.kind, self.view, self.post, self.work = server, kind, view, post, work
         self.gui = gui = server.gui
@@ -79,6 +80,13 @@ class Panel:
         self.tools.on_click(self.on_tool)
         self.status = gui.add_html("")
         self.readout = gui.add_html("")
+        self.map: StabilityMapPanel | None = None
+        if kind.stability_map is not None:
+            from app.panel import stability_map  # no sea imports what springs need
+
+            read = cast(Callable[[], SpringParams], lambda: self.params)
+            with gui.add_folder("Stability map", expand_by_default=False):
+                self.map = stability_map.StabilityMapPanel(gui, kind.stability_map, read, self.set)
         self.controls: dict[str, Control] = {}
         groups: dict[str, viser.GuiFolderHandle] = {}
         for name, parameter in parameters_of(params).items():
@@ -88,15 +96,10 @@ class Panel:
             with folder:
                 self.controls[name] = Control(gui, folder, name, parameter, self.reader(name), self.on_change)
         self.notes: dict[str, viser.GuiHtmlHandle] = {}
-        self.map: StabilityMapPanel | None = None
-        with gui.add_folder("Advanced", expand_by_default=False):
-            if kind.stability_map is not None:
-                from app.panel import stability_map  # no sea imports what springs need
-
-                read = cast(Callable[[], SpringParams], lambda: self.params)
-                self.map = stability_map.StabilityMapPanel(gui, kind.stability_map, read, self.set)
-            gui.add_html(note("What this scene did since it was opened, and what it did not have to do."))
-            self.work_counts = gui.add_html("")
+        self.work_counts: viser.GuiHtmlHandle | None = None
+        if developer:
+            with gui.add_folder("Work counts", expand_by_default=False):
+                self.work_counts = gui.add_html("")
         self.hide()
         self.add_keys()
 
@@ -228,7 +231,7 @@ class Panel:
             self.write_notes(self.view.notes(snapshot))
             if self.map is not None:
                 self.map.draw()
-        if now - self.work_at >= WORK_INTERVAL:
+        if self.work_counts is not None and now - self.work_at >= WORK_INTERVAL:
             self.work_at = now
             self.work_counts.content = note(work_table(self.work()))
 

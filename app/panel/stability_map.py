@@ -6,7 +6,6 @@ Of viser's inner names the handler uses `window.__viserMutable.sendMessage`; `te
 """
 
 import dataclasses
-import html
 import itertools
 import math
 import threading
@@ -19,8 +18,10 @@ import viser
 from numpy.typing import NDArray
 
 from app.render.colormap import OUTCOME_COLOURS
+from app.render.html import note
 from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.contract import SpringParams, StabilityMap
+from sim.formatting import SUPERSCRIPTS
 from sim.parameters import Parameter, parameters_of
 from sim.springs import INTEGRATORS
 from sim.springs.analysis.growth import outcome
@@ -31,8 +32,8 @@ from sim.springs.state import State
 ROWS, COLS = 20, 28
 DECADES = 1.5  # of step and of stiffness to each side of where the parameters stand
 WORK = 200_000  # steps times points that a cell may take
-LEFT, TOP, WIDE, HIGH = 54.0, 8.0, 238.0, 168.0  # of the map within its picture
-PICTURE = (300.0, 214.0)
+LEFT, TOP, WIDE, HIGH = 46.0, 6.0, 246.0, 168.0  # of the map within its picture
+PICTURE = (300.0, 210.0)
 
 
 class Axes(NamedTuple):
@@ -104,7 +105,7 @@ class StabilityMapPanel:
         """read: the parameters as set now; take: sets a parameter, on viser's event loop."""
         self.scene, self.read, self.take = scene, read, take
         self.button = gui.add_button(
-            "Map of step and stiffness", hint="Measures which steps and stiffnesses hold; click the map to go there"
+            "Measure the map", hint="Measures which time steps and stiffnesses are stable; click the map to go there"
         )
         self.html = gui.add_html("")
         self.click = gui.add_multi_slider(" ", 0.0, 1.0, step=1e-4, initial_value=(0.0, 0.0), visible=False)
@@ -137,7 +138,7 @@ class StabilityMapPanel:
         record = INTEGRATORS[params.integrator]
         try:
             if record.undamped_only and self.scene.build(params).is_damped:
-                self.axes, self.problem = None, f"{record.name} takes no damping."
+                self.axes, self.problem = None, f"{record.name.upper()} allows no damping: set damping and drag to 0."
                 return
             axes = axes_of(params, self.scene.stiffness(params))
             rows: list[Row] = []
@@ -155,7 +156,7 @@ class StabilityMapPanel:
         """Show the map as far as it is known, with a dot where the parameters stand; on the viewer thread."""
         axes = self.axes
         found = picture(axes, self.rows, self.read(), uuid_of(self.click)) if axes is not None else ""
-        problem = f'<div style="padding:0 12px">{html.escape(self.problem)}</div>' if self.problem else ""
+        problem = note(self.problem) if self.problem else ""
         self.html.content = found + problem
 
     def go(self, place: tuple[float, ...]) -> None:
@@ -174,14 +175,42 @@ def uuid_of(slider: GuiHandle) -> str:
     return slider._impl.uuid
 
 
-def short(value: float) -> str:
-    """A tick's number: plain where that is short."""
-    return f"{value:.3g}" if 1e-3 <= value < 1e3 else f"{value:.1e}".replace("e+0", "e").replace("e-0", "e-")
-
-
 def place_of(values: NDArray[np.float64], value: float) -> float:
     """Where a value lies between the first and the last, 0 to 1, by logarithms."""
     return math.log(max(value, 1e-300) / values[0]) / math.log(values[-1] / values[0])
+
+
+def decade_ticks(values: NDArray[np.float64]) -> tuple[list[float], list[float]]:
+    """The powers of ten between the first and the last value, and the other whole multiples of them."""
+    low, high = values[0] * (1.0 - 1e-9), values[-1] * (1.0 + 1e-9)
+    exponents = range(math.floor(math.log10(low)), math.floor(math.log10(high)) + 1)
+    multiples = [(digit, float(f"{digit}e{exponent}")) for exponent in exponents for digit in range(1, 10)]
+    inside = [(digit, value) for digit, value in multiples if low <= value <= high]
+    return [value for digit, value in inside if digit == 1], [value for digit, value in inside if digit > 1]
+
+
+def tick_text(value: float) -> str:
+    """A power of ten, with its exponent raised."""
+    exponent = round(math.log10(value))
+    return f"{value:g}" if -2 <= exponent <= 2 else f"10{str(exponent).translate(SUPERSCRIPTS)}"
+
+
+def axis(values: NDArray[np.float64], name: str, *, across: bool) -> str:
+    """Ticks at the decades, short ones at their multiples, and the name with its unit, as SVG."""
+    parts: list[str] = []
+    decades, others = decade_ticks(values)
+    for value in (*decades, *others):
+        part, length = place_of(values, value), 5 if value in decades else 3
+        x, y = (LEFT + WIDE * part, TOP + HIGH) if across else (LEFT, TOP + HIGH * (1.0 - part))
+        dx, dy = (0, length) if across else (-length, 0)
+        parts.append(f'<path d="M{x:.1f} {y:.1f}l{dx} {dy}" stroke="currentColor"/>')
+        if value in decades:
+            at = f'x="{x:.1f}" y="{y + 16:.1f}" text-anchor="middle"'
+            at = at if across else f'x="{x - 7:.1f}" y="{y + 4:.1f}" text-anchor="end"'
+            parts.append(f"<text {at}>{tick_text(value)}</text>")
+    x, y = (LEFT + WIDE / 2, TOP + HIGH + 30) if across else (11.0, TOP + HIGH / 2)
+    turn = "" if across else f' transform="rotate(-90 {x} {y})"'
+    return "".join(parts) + f'<text x="{x}" y="{y}" text-anchor="middle"{turn}>{name}</text>'
 
 
 def picture(axes: Axes, rows: list[Row], params: SpringParams, slider: str) -> str:
@@ -206,24 +235,15 @@ def picture(axes: Axes, rows: list[Row], params: SpringParams, slider: str) -> s
     x = LEFT + WIDE * place_of(axes.steps, params.time_step)
     y = TOP + HIGH * (1.0 - place_of(axes.stiffnesses, getattr(params, axes.parameter)))
     known = parameters_of(params)
-    ticks = ""
-    for values, unit, across in ((axes.steps, "s", True), (axes.stiffnesses, known[axes.parameter].unit, False)):
-        for part in (0.0, 0.5, 1.0):
-            value = values[0] * (values[-1] / values[0]) ** part
-            at = (LEFT + WIDE * part, TOP + HIGH + 12) if across else (LEFT - 4, TOP + HIGH * (1.0 - part) + 4)
-            anchor = ("start", "middle", "end")[int(2 * part)] if across else "end"
-            ticks += f'<text x="{at[0]:.0f}" y="{at[1]:.0f}" text-anchor="{anchor}">{short(value)}</text>'
-        name = f"h [{unit}]" if across else f"k [{unit}]"
-        at = (LEFT + WIDE / 2, TOP + HIGH + 25) if across else (8, TOP + HIGH / 2)
-        turn = "" if across else f' transform="rotate(-90 {at[0]} {at[1]})"'
-        ticks += f'<text x="{at[0]}" y="{at[1]}" text-anchor="middle"{turn}>{name}</text>'
+    stiffness = f"stiffness [{known[axes.parameter].unit}]"
+    ticks = axis(axes.steps, "time step h [s]", across=True) + axis(axes.stiffnesses, stiffness, across=False)
     done = len(rows) == ROWS
     words = " · ".join(
         f'<span style="border-left:9px solid {colour};padding-left:4px">{name}</span>'
         for name, colour in OUTCOME_COLOURS.items()
     )
-    stale = "" if axes.is_of(params) else "<br><b>Of other parameters than now: measure again.</b>"
-    progress = "" if done else f"<br>measuring, {len(rows)} of {ROWS} stiffnesses"
+    stale = "" if axes.is_of(params) else "<br><b>Settings have changed: measure again.</b>"
+    progress = "" if done else f"<br>measuring: {len(rows)} of {ROWS} rows"
     send = (
         "const p=new DOMPoint(event.clientX,event.clientY).matrixTransform(this.getScreenCTM().inverse());"
         f"const x=(p.x-{LEFT})/{WIDE},y=1-(p.y-{TOP})/{HIGH};"
@@ -232,11 +252,11 @@ def picture(axes: Axes, rows: list[Row], params: SpringParams, slider: str) -> s
     )
     clip = f'<clipPath id="springtide-map"><rect x="{LEFT}" y="{TOP}" width="{WIDE}" height="{HIGH}"/></clipPath>'
     return (
-        f'<div style="padding:2px 12px 8px;font-size:12px"><svg viewBox="0 0 {PICTURE[0]:.0f} {PICTURE[1]:.0f}" '
-        f'class="springtide-map" style="width:100%;cursor:crosshair;font-size:10px" fill="currentColor" '
+        f'<div class="springtide-note"><svg viewBox="0 0 {PICTURE[0]:.0f} {PICTURE[1]:.0f}" '
+        f'class="springtide-map" role="img" aria-label="Stability over time step and stiffness" fill="currentColor" '
         f'onclick="{send}">{clip}<g clip-path="url(#springtide-map)" shape-rendering="crispEdges">{"".join(parts)}'
         f'</g><g clip-path="url(#springtide-map)">'
         f'<polyline points="{" ".join(limits)}" fill="none" stroke="#000" stroke-width="1.6"/>'
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="#fff" stroke="#000" stroke-width="2"/></g>{ticks}</svg>'
-        f"{words} · line: critical step{progress}{stale}</div>"
+        f"{words}<br>Line: critical step by theory. Dot: the settings now. Click to go there.{progress}{stale}</div>"
     )

@@ -32,8 +32,12 @@ MAX_JOIN_TIME = 1.0  # [s] for which leaving a scene waits for each of its threa
 class Viewer:
     """The lab in a browser. Everything drawn is assigned on the viewer thread, everything simulated on the loop's."""
 
-    def __init__(self, host: str, port: int, *, plain: bool = False) -> None:
-        """plain: draw by viser's public API alone. Raises OSError where the port cannot be bound."""
+    def __init__(self, host: str, port: int, *, plain: bool = False, developer: bool = False) -> None:
+        """plain: draw by viser's public API alone. developer: show the work counts in the panel.
+
+        Raises OSError where the port cannot be bound.
+        """
+        self.developer = developer
         self.server, self.screen = open_server(host, port)
         if plain:
             disable_shaders(self.server)
@@ -94,8 +98,9 @@ class Viewer:
         self.view = make_view(self.server, commands.put)
         place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
         self.panel = Panel(
-            self.server, kind, self.view, params, commands.put, work=self.work, scenes=NAMES, open_scene=self.wanted.put
-        )
+            self.server, kind, self.view, params, commands.put, work=self.work, scenes=NAMES,
+            open_scene=self.wanted.put, developer=self.developer,
+        )  # fmt: skip
         self.loop = SimLoop(self.scene, commands, self.panel.read, self.audience, paused=paused)
         self.is_open = True
         self.stop = threading.Event()

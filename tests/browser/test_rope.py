@@ -144,7 +144,7 @@ def test_a_click_on_the_map_sets_step_and_stiffness(shown: tuple[Viewer, Tab]) -
     lab.loop.commands.put(Pause())
     lab.panel.map.ask()
     tab.wait(lambda: len(lab.panel.map.rows) == live.ROWS)
-    tab.page.get_by_text("Advanced", exact=True).first.click()
+    tab.page.get_by_text("Stability map", exact=True).first.click()
     picture = tab.page.locator("svg.springtide-map")
     picture.hover(timeout=60_000)  # scrolls, and waits until the folder has unfolded
     unit = picture.bounding_box()["width"] / live.PICTURE[0]

@@ -27,7 +27,7 @@ def strings(value: Any) -> Iterator[str]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_text_is_of_the_one_type_that_viser_encodes(name: str) -> None:
-    viewer = Viewer("127.0.0.1", 0)
+    viewer = Viewer("127.0.0.1", 0, developer=True)
     try:
         viewer.open(name)
         wait_for(lambda: viewer.drawn > 0 and viewer.panel.notes is not None and viewer.panel.work_at > 0.0)

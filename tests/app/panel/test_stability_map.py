@@ -93,7 +93,7 @@ def test_a_map_of_other_parameters_says_so():
     assert axes.is_of(moved)
     other = dataclasses.replace(params, damping=0.0)
     assert not axes.is_of(other)
-    assert "measure again" in live.picture(axes, [], other, "")
+    assert "Settings have changed: measure again" in live.picture(axes, [], other, "")
     assert "measure again" not in live.picture(axes, [], moved, "")
 
 
@@ -102,7 +102,7 @@ def test_a_method_that_takes_no_damping_says_so():
     shown, _ = make(rope.Params(integrator="pefrl"))
     shown.measure(shown.asked)
     shown.draw()
-    assert "takes no damping" in shown.html.content
+    assert "PEFRL allows no damping" in shown.html.content
 
 
 @pytest.mark.usefixtures("small")
@@ -136,3 +136,15 @@ def test_leaving_the_scene_stops_the_measurement():
     shown.close()
     shown.measure(number)
     assert shown.rows == []
+
+
+def test_ticks_stand_at_the_decades():
+    decades, others = live.decade_ticks(np.array([5.3e-4, 0.1]))
+    assert decades == [1e-3, 1e-2, 1e-1]
+    assert others[:4] == [6e-4, 7e-4, 8e-4, 9e-4]
+    assert [live.tick_text(value) for value in (1e-5, 1e-2, 1.0, 100.0, 1e4)] == ["10⁻⁵", "0.01", "1", "100", "10⁴"]
+    axes = live.axes_of(rope.Params(), "stiffness")
+    picture = live.picture(axes, [], rope.Params(), "")
+    assert "time step h [s]" in picture
+    assert "stiffness [N/m]" in picture
+    assert picture.count(">10⁴</text>") == 1

@@ -42,10 +42,11 @@ def argument_error(capsys: pytest.CaptureFixture, *arguments: str) -> str:
 @pytest.mark.parametrize(("former", "name"), [("phillips", "square_sea"), ("radial", "radial_sea")])
 def test_former_scene_names_are_told_the_new_ones(capsys, tmp_path, former, name):
     out = str(tmp_path / "a.npz")
-    assert name in argument_error(capsys, "run", former, "--seconds", "1", "--out", out)
-    assert name in argument_error(capsys, "--scene", former, "--no-open")
+    told = f"scene: '{former}' is not allowed; allowed: {name}, its new name"
+    assert told in argument_error(capsys, "run", former, "--seconds", "1", "--out", out)
+    assert told in argument_error(capsys, "--scene", former, "--no-open")
     (tmp_path / "s.toml").write_text(f'scene = "{former}"\nseconds = 1\n[parameters]\nspeed = [1, 2]\n')
-    assert name in argument_error(capsys, "sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "a.nc"))
+    assert told in argument_error(capsys, "sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "a.nc"))
     assert "rope" in argument_error(capsys, "run", "moon", "--seconds", "1", "--out", out)
 
 

@@ -410,7 +410,7 @@ def test_a_scene_that_fails_outside_its_guard_halts_the_run_and_the_thread_lives
         return read()
 
     loop.read_params = fail_once
-    thread = threading.Thread(target=loop.run, args=(stop,))
+    thread = threading.Thread(target=loop.run, args=(stop,), daemon=True)
     thread.start()
     stop.wait(0.1)
     assert thread.is_alive()

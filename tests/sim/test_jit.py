@@ -164,7 +164,7 @@ def test_kernels_let_other_threads_run():
 
 
 def test_numba_has_the_inner_names_that_are_used():
-    """sim/jit.py and sim/compiler.py use them. Where one is missing, numba's upper bound in pyproject.toml is too high."""
+    """They are used in sim. Where one is missing, the upper bound of numba in pyproject.toml is too high."""
     flags = {"noalias", "nrt", "no_compile", "no_cfunc_wrapper", "no_cpython_wrapper", "forceinline"}
     assert flags <= set(Flags.options)
     for owner, names in {

@@ -75,7 +75,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def reset(self) -> None:
-        """Begin again with `params`."""
+        """Begin again with `params`; what a browser has moved goes back to where a new scene has it."""
         ...
 
     def handle(self, command: SceneCommand) -> None:

@@ -70,7 +70,7 @@ class RaceScene:
         return self.race.t
 
     def reset(self) -> None:
-        """All ropes at rest, level from their roots."""
+        """All ropes at rest, level from their roots, and these where a new scene has them."""
         self.handles.restart()
         self.net = build_rope(self.params, self.handles.root.position)  # of rope 1
         self.race = Race(self.net, self.params)

@@ -93,7 +93,6 @@ class RopeScene:
     def __init__(self, params: Params) -> None:
         self.params = params
         self.handles = RopeHandles()
-        self.diverged = False  # since the last reset
         self.plot_rows = PlotRows(len(SERIES))
         self.counts = SpringWorkCounts()
         self.reset()
@@ -123,12 +122,8 @@ class RopeScene:
         return self.fallback_note
 
     def reset(self) -> None:
-        """The rope at rest, level from its root.
-
-        After a divergence root and sphere go back to where a new scene has them: the floor may be where they were.
-        """
-        self.handles.restart(home=self.diverged)
-        self.diverged = False
+        """The rope at rest, level from its root; root and sphere where a new scene has them."""
+        self.handles.restart()
         self.net = build(self.params, self.handles.root.position, self.handles.sphere.position)
         self.state = State.at_rest(self.net)
         self.account = EnergyAccount(self.net, self.state)
@@ -187,7 +182,6 @@ class RopeScene:
         found = extremes(self.state.x, self.state.v)
         if not found.reach < self.max_reach:  # true of a NaN as well
             self.state = good
-            self.diverged = True
             raise DivergenceError(self.diagnosis())
         self.max_speed = found.speed
         if net.pin_paths and self.handles.root.at_rest:  # it has just come to rest

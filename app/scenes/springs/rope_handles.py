@@ -33,10 +33,10 @@ class RopeHandles:
         """Whether nothing is moved."""
         return self.root.at_rest and self.sphere.at_rest and self.drag.hold is None
 
-    def restart(self, *, home: bool = False) -> None:
-        """Root and sphere at rest where they were going to, or where a new scene has them; nothing held."""
-        self.root.place_at(ROOT if home else self.root.target)
-        self.sphere.place_at(SPHERE if home else self.sphere.target)
+    def restart(self) -> None:
+        """Root and sphere at rest where a new scene has them; nothing held."""
+        self.root.place_at(ROOT)
+        self.sphere.place_at(SPHERE)
         self.drag.clear()
 
     def net_during(self, net: Net, t: float, duration: float, step: float, max_force: float) -> Net:

@@ -10,7 +10,7 @@ from app.messages import DivergenceError, Grab, Place, Release, WorkCount, finit
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.parameters import PRESETS, Params
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, RopeScene
-from app.scenes.springs.rope_parameters import ROOT
+from app.scenes.springs.rope_parameters import ROOT, SPHERE
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
 from sim.springs import INTEGRATORS
@@ -73,14 +73,16 @@ def test_the_root_follows_where_it_is_placed() -> None:
     assert (scene.state.v[:, 0, 0] == 0).all()
 
 
-def test_a_rope_that_diverged_in_the_floor_starts_again_where_a_new_one_does() -> None:
-    scene = RopeScene(Params())
+def test_a_reset_puts_root_and_sphere_back() -> None:
+    scene = RopeScene(Params(sphere=True))
     scene.handle(Place("root", (0.0, 0.0, -90.0)))
-    scene.reset()
+    scene.handle(Place("sphere", (1.0, 2.0, 3.0)))
     with pytest.raises(DivergenceError):
         run(scene, 600, 1)
     scene.reset()
     assert tuple(scene.state.x[:, 0, 0]) == ROOT
+    assert scene.handles.sphere.position == SPHERE
+    assert scene.handles.at_rest
     run(scene, 600, 1)
 
 

@@ -104,7 +104,7 @@ class Control:
             self.field = gui.add_text(label, write_number(float_or_int(value)), hint=hint)
             # A multi-slider with one handle: it has no number box of its own.
             self.slider = gui.add_multi_slider(
-                " ",
+                "",
                 self.scale.low,
                 self.scale.high,
                 step=self.scale.step,

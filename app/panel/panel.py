@@ -14,13 +14,14 @@ from viser._messages import HotkeyKey  # viser names no public type of its keys
 
 from app.messages import BaseParams, Command, Load, Pause, Play, PlotRow, Reset, StepOnce, TogglePlay, WorkCounts
 from app.panel.control import Control
+from app.panel.history import History, Settings
 from app.panel.plots import Plots
 from app.panel.work_table import work_table
 from app.render.cameras import place_camera
-from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, join, note
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, note
 from app.render.viser_types import ViserEvent
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
-from sim.parameters import Value, check_record, parameters_of
+from sim.parameters import Value, changed_names, check_record, parameters_of
 
 if TYPE_CHECKING:
     from app.panel.stability_map import StabilityMapPanel
@@ -62,24 +63,30 @@ class Panel:
         )  # parameters as set now, and how many presets were loaded: read by another thread
         self.status_at = self.marks_at = self.work_at = 0.0
         self.halted: str = ""
+        self.visitors = 0
+        self.history = History()
         self.plots = Plots(server, kind)
-        self.add_chooser(scenes, open_scene)
+        # The block stays in sight while the rest is scrolled (page.css): what says "springtide-panel" is in it.
+        with gui.add_folder("Lab"):
+            self.add_chooser(scenes, open_scene)
+            presets = tuple(kind.presets)
+            self.loaded = presets[0]  # name of the preset that was loaded last
+            self.preset = gui.add_dropdown("Preset", presets, hint="Loads all settings and starts again from rest")
+            self.preset.on_update(self.on_preset)
+            self.running = True  # as the buttons show it
+            self.buttons = gui.add_button_group("", button_names(self.running))
+            self.buttons.on_click(self.on_button)
+            self.tools = gui.add_button_group("", ("Reset view", "Plots", "Undo"))
+            self.tools.on_click(self.on_tool)
+            self.status = gui.add_html("")
+            self.readout = gui.add_html("")
         help_text = fill(
             '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">{}<br>'
             "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset view · <b>P</b> plots · "
-            "<b>G</b> grid · <b>1-9</b> presets</div>",
+            "<b>G</b> grid · <b>U</b> undo · <b>1-9</b> presets</div>",
             Html(kind.help),
         )
         gui.add_html(str(help_text))
-        self.preset = gui.add_dropdown("Preset", tuple(kind.presets), hint="Sets every parameter and starts over")
-        self.preset.on_update(self.on_preset)
-        self.running = True  # as the buttons show it
-        self.buttons = gui.add_button_group(" ", button_names(self.running))
-        self.buttons.on_click(self.on_button)
-        self.tools = gui.add_button_group("View", ("Reset view", "Plots"))
-        self.tools.on_click(self.on_tool)
-        self.status = gui.add_html("")
-        self.readout = gui.add_html("")
         self.map: StabilityMapPanel | None = None
         if kind.stability_map is not None:
             from app.panel import stability_map  # no sea imports what springs need
@@ -101,6 +108,7 @@ class Panel:
             with gui.add_folder("Work counts", expand_by_default=False):
                 self.work_counts = gui.add_html("")
         self.hide()
+        self.show_preset()
         self.add_keys()
 
     @property
@@ -125,6 +133,7 @@ class Panel:
             ("Reset", "R", lambda: self.post(Reset())),
             ("Plots", "P", self.toggle_plots),
             ("Grid", "G", lambda: self.set("grid", not self.params.grid)),
+            ("Undo", "U", self.undo),
         ]
         for number, preset in enumerate(self.kind.presets, 1):
             key = (
@@ -153,8 +162,10 @@ class Panel:
         params, number = self.state
         if getattr(params, name) == value:
             return
+        self.history.note(Settings(params, self.loaded), name)
         self.state = dataclasses.replace(params, **{name: value}), number
         self.hide()
+        self.show_preset()
 
     def hide(self) -> None:
         """Hide the controls that mean nothing just now."""
@@ -163,33 +174,64 @@ class Panel:
             control.show(name not in hidden)
 
     async def on_preset(self, event: ViserEvent) -> None:
-        """A browser has chosen a preset; viser also calls this where `load` assigns the list, without a client."""
-        if event.client_id is not None:
+        """A browser has chosen a preset; viser also calls this where `show_preset` assigns it, without a client."""
+        if event.client_id is not None and event.target.value in self.kind.presets:
             self.load(event.target.value)
+
+    def params_of(self, preset: str) -> BaseParams:
+        """The parameters that a preset sets. What is no parameter (a hull from a file) stays as it is."""
+        params = self.params
+        kept = {f.name: getattr(params, f.name) for f in dataclasses.fields(params) if "parameter" not in f.metadata}
+        return dataclasses.replace(check_record(type(params), self.kind.presets[preset]), **kept)
 
     def load(self, preset: str) -> None:
         """Every parameter as the preset has it, and the scene from its start: one command."""
-        params, number = self.state
-        kept = {f.name: getattr(params, f.name) for f in dataclasses.fields(params) if "parameter" not in f.metadata}
-        loaded = dataclasses.replace(check_record(type(params), self.kind.presets[preset]), **kept)
-        self.state = loaded, number + 1
-        self.post(Load(loaded, number + 1))
+        params, number = self.params_of(preset), self.state[1] + 1
+        self.history.note(Settings(self.params, self.loaded), preset)
+        self.take(params, preset, number)
+        self.post(Load(params, number))
+
+    def undo(self) -> None:
+        """The settings before the last change of a parameter or preset."""
+        settings = self.history.take_last()
+        if settings is not None:
+            self.take(*settings, self.state[1])
+
+    def take(self, params: BaseParams, preset: str, number: int) -> None:
+        """Take and show parameters. preset: that they come from. number: how many presets have been loaded."""
+        self.state, self.loaded = (params, number), preset
         for name, control in self.controls.items():
-            control.show_value(getattr(loaded, name))
+            control.show_value(getattr(params, name))
         self.hide()
-        if self.preset.value != preset:
-            self.preset.value = preset
+        self.show_preset()
+
+    def show_preset(self) -> None:
+        """The list of presets, with "(changed)" where a parameter is not as the preset has it.
+
+        "(changed)" is an entry of its own, so that the preset itself can be chosen again.
+        """
+        look = {name for name, parameter in parameters_of(self.params).items() if parameter.affects == "look"}
+        changed = changed_names(self.params_of(self.loaded), self.params) - look
+        shown = f"{self.loaded} (changed)" if changed else self.loaded
+        options = (*self.kind.presets, *((shown,) if changed else ()))
+        if self.preset.options != options:
+            self.preset.options = options
+        if self.preset.value != shown:
+            self.preset.value = shown
 
     async def on_button(self, event: ViserEvent) -> None:
         """Play or pause, step, reset: what the button said when it was pressed."""
         self.post(BUTTONS[event.target.value])
 
     async def on_tool(self, event: ViserEvent) -> None:
-        """Reset the view, open or close the plots."""
-        if event.target.value == "Plots":
-            self.toggle_plots()
-        else:
-            await self.reset_view(event)
+        """Reset the view, open or close the plots, undo a change."""
+        match event.target.value:
+            case "Plots":
+                self.toggle_plots()
+            case "Undo":
+                self.undo()
+            case _:
+                await self.reset_view(event)
 
     async def reset_view(self, event: ViserEvent) -> None:
         """Put the camera of this browser where a new one would be."""
@@ -203,10 +245,10 @@ class Panel:
         for control in shown:
             control.set(on)
 
-    def update(self, snapshot: AnySnapshot, rows: list[PlotRow], send_time: float, busy: float = 0.0) -> None:
-        """Show what the loop is doing, at a few hertz.
+    def update(self, snapshot: AnySnapshot, rows: list[PlotRow], busy: float = 0.0) -> None:
+        """Show what the loop is doing, at a few hertz, and at once where it starts, stops or halts.
 
-        rows: new plot rows. send_time: [s] that a frame took to hand over. busy: [s] that the present tick has taken.
+        rows: new plot rows. busy: [s] that the present tick has taken.
         """
         now = time.monotonic()
         self.plots.update(snapshot, rows)
@@ -219,9 +261,13 @@ class Panel:
             self.running = snapshot.status.running
             self.buttons.options = button_names(self.running)
             self.status_at = 0.0
+        visitors = len(self.server.get_clients())
+        if visitors != self.visitors:
+            self.visitors = visitors
+            self.status_at = 0.0
         if now - self.status_at >= STATUS_INTERVAL:
             self.status_at = now
-            self.status.content = str(status_line(snapshot, send_time, busy))
+            self.status.content = str(status_line(snapshot, busy, visitors))
             readout = self.view.readout(snapshot)
             self.readout.content = note(Html(readout))
         if now - self.marks_at >= MARKS_INTERVAL:
@@ -271,23 +317,25 @@ def add_scene_chooser(
             open_scene(event.target.value)
 
 
-def status_line(snapshot: AnySnapshot, send_time: float, busy: float = 0.0) -> Html:
-    """Running or not, the clock, real-time factors, rates; and why it halted."""
+def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> Html:
+    """Running or not, the clock, the pace, and why the run stopped; how many browsers share the lab."""
     s = snapshot.status
     state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
-    capped = join((" ", coloured("[CAPPED]", ERROR_COLOUR))) if s.capped else ""
-    box = "margin-top:6px;padding:6px 8px;border-left:3px solid #c92a2a;background:rgba(201,42,42,.1)"
-    halted = fill('<div style="{}">{}</div>', box, s.halted) if s.halted else ""
-    slow = fill("<br>this step has taken {:.1f} s so far", busy) if busy >= BUSY_SHOWN_FROM else ""
+    if s.halted:
+        state = coloured("Stopped", ERROR_COLOUR)
+    pace = fill("×{:.2f} real time, {:.0f} frames/s", s.actual_speed, s.frame_rate) if s.running else fill("real time")
+    if s.running and s.capped:
+        pace = fill(
+            "{}: ×{:.2f} instead of ×{:g}",
+            coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed,
+        )  # fmt: skip
     return fill(
-        '<div class="springtide-panel" style="padding:0 12px 4px;font-size:12px">{state} t = {s.time:.2f} s<br>'
-        "real time ×{s.actual_speed:.2f} of ×{s.speed:g}{capped} · {s.frame_rate:.0f} frames/s · "
-        "solve {solve:.2f} ms · send {send:.2f} ms{slow}{halted}</div>",
-        s=s,
-        state=state,
-        capped=capped,
-        solve=1e3 * s.solve_time,
-        send=1e3 * send_time,
-        slow=slow,
-        halted=halted,
+        '<div class="springtide-panel" data-state="{}">{} t = {:.2f} s{}{}{}{}</div>',
+        "running" if s.running else "paused",
+        state,
+        s.time,
+        fill(' · <span class="springtide-pace">{}</span>', pace) if s.running else "",
+        fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
+        fill("<br>{} browsers share this lab.", visitors) if visitors > 1 else "",
+        fill('<div class="springtide-stopped" role="alert">{}</div>', s.halted) if s.halted else "",
     )

@@ -245,6 +245,7 @@ class SimLoop:
                 self.cost_unknown = True
                 self.counts["starts"] += 1
                 self.reset()
+                self.running = not self.halted
             case Reset():
                 self.counts["starts"] += 1
                 self.reset()

@@ -53,7 +53,6 @@ class Viewer:
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
         self.starts = 0  # how often the shown run was begun again
         self.unwatched = Unwatched()
-        self.send_time = 0.0  # [s] that the last frame took to hand over
         self.is_open = False  # whether scene, view, panel and loop are those of an open scene
         self.first_params: dict[str, BaseParams] = {}  # scene -> the parameters that it was first opened with
         self.changing = threading.Lock()
@@ -191,13 +190,11 @@ class Viewer:
             if snapshot.serial != self.shown:
                 self.shown = snapshot.serial
                 self.drawn += 1
-                start = time.perf_counter()
                 self.attempt("picture", lambda: self.view.show(snapshot.frame))
-                self.send_time = time.perf_counter() - start
                 if snapshot.status.starts != self.starts:  # after the picture: another scene size moves cameras too
                     self.starts = snapshot.status.starts
                     place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)
-            self.attempt("panel", lambda: self.panel.update(snapshot, rows, self.send_time, busy))
+            self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
         """Show something; what goes wrong halts the run once, and this thread lives to say so."""

@@ -89,6 +89,20 @@ def test_escape_and_arrows_and_leaving_a_field(shown: tuple[Viewer, Tab]) -> Non
     tab.wait(lambda: lab.panel.params.mass == 0.4, 10)
 
 
+def test_a_preset_that_was_changed_is_chosen_again(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    preset = tab.page.get_by_label("Preset")
+    type_into(lab, tab, "stiffness", "2000")
+    tab.wait(lambda: preset.input_value() == "Lab code: 10 points (changed)", 10)
+    preset.click()
+    tab.page.get_by_role("option", name="Lab code: 10 points", exact=True).click()
+    tab.wait(lambda: preset.input_value() == "Lab code: 10 points", 10)
+    tab.wait(lambda: field(lab, tab, "stiffness").input_value() == "800", 10)
+    assert lab.panel.params.stiffness == 800.0
+    tab.page.keyboard.press("u")
+    tab.wait(lambda: field(lab, tab, "stiffness").input_value() == "2000", 10)
+
+
 def test_keys_go_to_the_lab_after_a_list_was_used(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     tab.page.get_by_label("Preset").click()

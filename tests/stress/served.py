@@ -21,7 +21,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from tests.stress.clients import CAMERA
 
-STATUS_WORDS = "real time"  # in the panel's status line, and nowhere else
+STATUS_WORDS = 'class="springtide-panel"'  # in the panel's status line, and nowhere else
 MAX_END_TIME = 3.0  # [s] in which a server ends after a signal
 
 

@@ -103,6 +103,16 @@
       if (field && !field.hasAttribute("aria-label")) field.setAttribute("aria-label", label.textContent);
     }
   }
-  new MutationObserver(nameFields).observe(document.body, { childList: true, subtree: true });
-  nameFields();
+
+  // The block that stays in sight: the folder that says whether the lab plays.
+  function markLab() {
+    document.querySelector(".springtide-panel[data-state]")?.closest(".mantine-Paper-root")?.classList.add("springtide-lab");
+  }
+
+  function adorn() {
+    nameFields();
+    markLab();
+  }
+  new MutationObserver(adorn).observe(document.body, { childList: true, subtree: true });
+  adorn();
 })();

@@ -172,7 +172,7 @@ def test_plot_rows_of_snapshots_that_were_never_shown_reach_the_charts(lab: View
 def test_a_long_solve_is_said_in_the_status(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lab.scene, "advance", lambda steps: time.sleep(2.0))
     lab.loop.audience = lambda: 1
-    wait_for(lambda: "this step has taken" in lab.panel.status.content)
+    wait_for(lambda: "This step has taken" in lab.panel.status.content)
 
 
 def test_a_thousand_presets_under_load_each_start_on_exactly_their_own_record(lab: Viewer) -> None:

@@ -12,8 +12,14 @@ SCENE = "rope"
 
 
 def field(lab: Viewer, tab: Tab, name: str):
-    """The text field of a parameter on the page, in an open folder."""
-    return tab.page.get_by_label(title(name, parameters_of(lab.panel.params)[name]), exact=True)
+    """The text field of a parameter on the page; its folder is opened."""
+    parameter = parameters_of(lab.panel.params)[name]
+    found = tab.page.get_by_label(title(name, parameter), exact=True)
+    if not found.is_visible():
+        tab.page.get_by_text(parameter.group, exact=True).click()
+        tab.wait(found.is_visible, 10)
+        tab.page.wait_for_timeout(300)  # the folder unfolds
+    return found
 
 
 def type_into(lab: Viewer, tab: Tab, name: str, text: str, end: str = "Enter", delay: int = 50) -> None:
@@ -69,7 +75,7 @@ def test_what_is_not_allowed_is_refused_with_name_value_and_range(shown: tuple[V
     type_into(lab, tab, "stiffness", text)
     refusal = tab.wait(lambda: tab.page.locator(".springtide-refusal").all_inner_texts(), 10)
     assert len(refusal) == 1
-    assert refusal[0].startswith(f"stiffness: {text!r} is not allowed; allowed: 1 to 1e+09 N/m")
+    assert refusal[0].startswith(f"stiffness: {text!r} is not allowed; allowed: 1 to 1e9 N/m")
     assert lab.panel.params.stiffness == lab.scene.params.stiffness == 800.0
     tab.wait(lambda: field(lab, tab, "stiffness").input_value() == "800", 10)
     type_into(lab, tab, "stiffness", "900")

@@ -51,7 +51,8 @@ class Watcher:
     def __init__(self, port: int) -> None:
         self.connection = join(port)
         self.told: list[float] = []  # [s] when a status line came
-        self.controls: dict[str, str] = {}  # label -> uuid
+        self.controls: dict[str, str] = {}  # label -> uuid; "slider of LABEL" for the slider beside a field
+        self.label = ""  # of the newest control
         self.commands: dict[str, str] = {}  # label -> uuid
         self.thread = threading.Thread(target=self.read, daemon=True)
         self.thread.start()
@@ -71,8 +72,11 @@ class Watcher:
             self.told.append(time.monotonic())
         if message["type"] == "RegisterCommandMessage":
             self.commands[props["label"]] = message["uuid"]
+        elif message["type"] == "GuiMultiSliderMessage":
+            self.controls[f"slider of {self.label}"] = message["uuid"]
         elif "label" in props and "uuid" in message:
-            self.controls[props["label"]] = message["uuid"]
+            self.label = props["label"]
+            self.controls[self.label] = message["uuid"]
 
     def longest_silence(self, start: float, end: float) -> float:
         """Longest time [s] without a status line between two moments of the monotonic clock."""

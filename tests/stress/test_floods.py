@@ -23,6 +23,8 @@ USUAL_SILENCE = 0.6  # [s] between two status lines as before, on a busy machine
 # Methods that hold at any step, so that the run goes on and its status line keeps changing.
 ROPE = ("--scene", "rope", "--set", "integrator=implicit_euler")
 CLOTH = ("--scene", "cloth", "--set", "rows=128", "cols=128", "integrator=implicit_euler")
+RACE = ("--scene", "race", "--preset", "Implicit methods on a very stiff rope")
+SEA = ("--scene", "square_sea", "--set", "size=512")
 
 Maker = Callable[[Watcher, int], dict[str, Any]]
 
@@ -58,12 +60,14 @@ MAKERS: dict[str, Maker] = {
     "points": lambda w, n: update(w, "Points", str(2 + n % 998)),
     "out of range": lambda w, n: update(w, "Stiffness", f"{(-1) ** n}e12"),
     "no number": lambda w, n: update(w, "Stiffness", f"<b>{n}"),
+    "slider": lambda w, n: update(w, "slider of Stiffness", [2.5 + n % 400 / 200]),
+    "slider out of range": lambda w, n: update(w, "slider of Stiffness", [1e5 * (-1) ** n]),
     "checkbox": lambda w, n: update(w, "Grid", bool(n % 2)),
     "preset": preset,
     "reset": lambda w, n: key(w, "Reset"),
     "step": lambda w, n: key(w, "Single step"),
     "play": lambda w, n: key(w, "Play or pause"),
-    "scene": lambda w, n: update(w, "Scene", ("rope", "square_sea", "radial_sea", "cloth")[n % 4]),
+    "scene": lambda w, n: update(w, "Scene", ("rope", "square_sea", "radial_sea", "cloth", "race")[n % 5]),
     "drag": drag,
     "camera": lambda w, n: CAMERA,
 }
@@ -126,13 +130,15 @@ def test_a_flood_slows_the_browser_that_sends_it_and_no_other(what: str, reader:
 @pytest.mark.parametrize(
     ("arguments", "what"),
     [
-        (("--scene", "race", "--preset", "Stiffness without fear"), "reset"),
-        (("--scene", "race", "--preset", "Stiffness without fear"), "preset"),
+        (RACE, "reset"),
+        (RACE, "preset"),
+        (RACE, "step"),
         (CLOTH, "reset"),
         (CLOTH, "preset"),
         (CLOTH, "step"),
-        (("--scene", "square_sea", "--set", "size=512"), "reset"),
-        (("--scene", "square_sea", "--set", "size=512"), "preset"),
+        (SEA, "reset"),
+        (SEA, "preset"),
+        (SEA, "step"),
         (("--scene", "radial_sea"), "reset"),
         (("--scene", "rope", "--set", "points=1000", "integrator=implicit_midpoint"), "step"),
     ],

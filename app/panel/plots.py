@@ -1,9 +1,11 @@
-"""Live plots in a dock of their own, made when first asked for. Of a long run the last rows are kept."""
+"""Live plots in a dock of their own, made when first asked for. Rows are kept whether a plot is open or not."""
 
+import collections
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias, cast
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import viser
@@ -12,16 +14,59 @@ from viser import uplot
 
 from app.messages import PlotRow, WorkCount
 from app.render.viser_types import GuiHandle
-from app.scenes.charts import Chart, Line
+from app.scenes.charts import Chart, Columns, CurveAxes, Line
 from app.scenes.contract import AnyKind, AnySnapshot
 
 SEND_INTERVAL = 0.12  # [s] between two sends
-MAX_ROWS = 600
+MAX_ROWS = 900  # kept: half a minute of a scene that adds 30 a second
 CHART_HEIGHT, TALL_CHART_HEIGHT = 220, 260  # [pixels] of a chart, and of one with a logarithmic scale
-TICK_WIDTH = 66  # [pixels] for the words at a scale
-COLOURS = ("#4c6ef5", "#f76707", "#12b886", "#ae3ec9", "#868e96", "#e03131", "#1c7ed6")
+PADDING = (12, 16, 0, 0)  # [pixels] above, right, below, left: room for half of the highest tick's words
+DIGIT_WIDTH, TICK_ROOM = 7.5, 16.0  # [pixels] of a digit of a tick, and beside the words
+LOGARITHMIC_TICK_WIDTH = 66.0  # [pixels] for the words at a logarithmic scale
+TICKS = 4  # about so many intervals between two ends of a scale
+MIN_SPAN = 1e-3  # of a scale, over the size of its numbers: a constant has a scale too
+MIN_FILLED = 0.3  # share of a scale that its data must fill, or the scale is made anew
+COLOURS = ("#7048e8", "#1c7ed6", "#f76707", "#12b886", "#e64980", "#868e96", "#e03131")
+EMPTY = np.array([0.0, 1.0])  # the times of a chart without rows
 
-Look: TypeAlias = tuple[str, tuple[Line, ...], float]
+Look: TypeAlias = tuple[str, tuple[Line, ...], float | None, "Scale | None"]
+
+
+class Scale(NamedTuple):
+    """A linear scale from one round number to another, with a tick every `step`."""
+
+    low: float
+    high: float
+    step: float
+
+    @property
+    def ticks(self) -> tuple[float, ...]:
+        """From end to end."""
+        return tuple(self.low + k * self.step for k in range(round((self.high - self.low) / self.step) + 1))
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """At the ticks, with the digits that tell them apart."""
+        if 1e-4 <= self.step < 1e5:
+            digits = max(0, -math.floor(math.log10(self.step) + 1e-9))
+            words = [f"{tick + 0.0:.{digits}f}" for tick in self.ticks]
+        else:
+            words = [f"{tick:.3g}" if abs(tick) > 1e-9 * self.step else "0" for tick in self.ticks]
+        return tuple(word.replace("-", "\N{MINUS SIGN}") for word in words)
+
+    def fits(self, low: float, high: float) -> bool:
+        """Whether data from low to high lie within, and fill enough of it."""
+        return self.low <= low and high <= self.high and high - low >= MIN_FILLED * (self.high - self.low)
+
+
+def scale_of(low: float, high: float) -> Scale:
+    """A scale for data from low to high."""
+    size = max(abs(low), abs(high))
+    rough = max(high - low, MIN_SPAN * size) / TICKS if size else 1.0 / TICKS
+    decade = 10.0 ** math.floor(math.log10(rough))
+    step = next(m * decade for m in (1, 2, 5, 10) if m * decade >= rough * 0.999)
+    first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
+    return Scale(first * step, max(last, first + 1) * step, step)
 
 
 @dataclass
@@ -37,11 +82,12 @@ class Plots:
 
     def __init__(self, server: viser.ViserServer, kind: AnyKind) -> None:
         self.server, self.kind = server, kind
-        self.rows: list[PlotRow] = []
+        self.rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_ROWS)
         self.charts: dict[str, viser.GuiUplotHandle] = {}  # by the parameter that opens it
-        self.looks: dict[str, Look] = {}  # label, lines and scale of each chart that a `Chart` gives
+        self.looks: dict[str, Look] = {}  # label, lines and scales of each chart
         self.sent: dict[str, object] = {}  # the columns that each curve shows, and the last row of each plot
         self.dock: Dock | None = None
+        self.open: frozenset[str] = frozenset()  # parameters of the open charts
         self.sent_at = 0.0
         self.drawn = self.skipped = 0  # charts sent anew, and charts that were closed or had nothing new
 
@@ -56,98 +102,136 @@ class Plots:
                 self.rows.clear()
             else:
                 self.rows.append(row)
-        if len(self.rows) > MAX_ROWS:
-            self.rows = self.rows[-MAX_ROWS:]
         now = time.monotonic()
         if now - self.sent_at < SEND_INTERVAL:
             return
         self.sent_at = now
         names = (*self.kind.plots, *self.kind.curves)
         hidden = self.kind.hidden(snapshot.params)
-        wanted = {name for name in names if name not in hidden and getattr(snapshot.params, name)}
-        for name in names:
-            if name in self.charts:
-                self.charts[name].visible = name in wanted
-            elif name in wanted:
-                self.charts[name] = self.add(name)
-        if self.dock is not None:
-            self.dock.panel.visible = bool(wanted)
+        wanted = frozenset(name for name in names if name not in hidden and getattr(snapshot.params, name))
+        if wanted != self.open:
+            self.show(wanted)
         before = self.drawn
         if wanted:
             self.send_curves(snapshot, wanted)
             self.send_plots(wanted)
         self.skipped += len(names) - (self.drawn - before)
 
-    def send_curves(self, snapshot: AnySnapshot, wanted: set[str]) -> None:
+    def show(self, wanted: frozenset[str]) -> None:
+        """Show these charts and hide the others, with the dock that they stand in."""
+        was_open, self.open = bool(self.open), wanted
+        if self.dock is None:
+            panel = self.server.gui.add_panel()
+            self.dock = Dock(panel, panel.add_tab("Plots"))
+            panel.dock_left()
+        self.dock.panel.visible = bool(wanted)
+        if wanted and not was_open:
+            self.dock.panel.expand()  # where it was folded, as it is at first on a small screen
+        for name in (*self.kind.plots, *self.kind.curves):
+            if name in self.charts:
+                self.charts[name].visible = name in wanted
+            elif name in wanted:
+                self.charts[name] = self.add(name)
+
+    def send_curves(self, snapshot: AnySnapshot, wanted: frozenset[str]) -> None:
         """Send the open charts of columns that the scene has made anew."""
         for name, columns in (snapshot.curves or {}).items():
             if name not in wanted or self.sent.get(name) is columns:
                 continue
             self.sent[name] = columns
-            # Lines and their columns together: the browser must not see more of one than of the other.
-            with self.server.atomic():
-                if isinstance(columns, Chart):
-                    self.set_look(name, columns)
-                    self.charts[name].data = columns.columns
-                else:
-                    self.charts[name].data = cast("tuple[NDArray[np.float64], ...]", columns)
-            self.drawn += 1
+            if isinstance(columns, Chart):
+                self.send(name, columns.first, columns.lines, columns.columns, columns.end)
+            else:
+                axes = self.kind.curves[name]
+                self.send(name, axes.first, lines_of(axes.names), columns)  # type: ignore[arg-type]
 
-    def send_plots(self, wanted: set[str]) -> None:
+    def send_plots(self, wanted: frozenset[str]) -> None:
         """Send the open charts over time that lack the newest row."""
-        if len(self.rows) < 2:
-            return
-        behind = [name for name in self.kind.plots if name in wanted and self.sent.get(name) is not self.rows[-1]]
-        table: NDArray[np.float64] = np.array(self.rows).T if behind else np.empty(0)
+        newest = self.rows[-1] if self.rows else None
+        behind = [name for name in self.kind.plots if name in wanted and self.sent.get(name, 0) is not newest]
+        table: NDArray[np.float64] = np.array(self.rows).T if behind and self.rows else np.empty((1, 0))
         for name in behind:
-            self.sent[name] = self.rows[-1]
-            columns = [1 + self.kind.series.index(series) for series in self.kind.plots[name].series]
-            self.charts[name].data = (table[0], *(table[c] for c in columns))
-            self.drawn += 1
+            self.sent[name] = newest
+            series = self.kind.plots[name].series
+            rows = [1 + self.kind.series.index(one) for one in series]
+            columns = (table[0], *(table[row] for row in rows)) if self.rows else (table[0],) * (1 + len(rows))
+            self.send(name, "t [s]", lines_of(series), columns)
 
-    def set_look(self, name: str, chart: Chart) -> None:
-        """Give a chart the lines and the scale that it has now, where they are others than before."""
-        look = chart.first, chart.lines, chart.end
-        if self.looks.get(name) == look:
-            return
-        self.looks[name] = look
+    def send(self, name: str, first: str, lines: tuple[Line, ...], columns: Columns, end: float | None = None) -> None:
+        """Send one chart. end: of the scale of the first column, which then starts at 0; None to fit it to the data."""
+        if len(columns[0]) < 2:
+            columns = (EMPTY * (end or 1.0), *(np.full(2, math.nan) for _ in lines))
+        scale = None if self.is_logarithmic(name) else self.scale_for(name, columns[1:])
+        look = first, lines, end, scale
         handle = self.charts[name]
-        handle.series = series_of(chart.first, chart.lines)
-        # Left to itself the scale would carry on from the lines before.
-        time_scale = uplot.Scale(time=False, auto=False, range=(0.0, chart.end))
-        handle.scales = {**(handle.scales or {}), "x": time_scale}
+        # Lines, scales and columns together: the browser must not see more of one than of the others.
+        with self.server.atomic():
+            if self.looks.get(name) != look:
+                self.looks[name] = look
+                handle.series = series_of(first, lines)
+                time_scale = uplot.Scale(time=False, auto=end is None)
+                if end is not None:  # left to itself the scale would carry on from the lines before
+                    time_scale["range"] = (0.0, end)
+                if scale is None:
+                    handle.scales = {**(handle.scales or {}), "x": time_scale}
+                else:
+                    handle.scales = {"x": time_scale, "y": uplot.Scale(auto=False, range=(scale.low, scale.high))}
+                    handle.axes = axes_of(scale.ticks, scale.words)
+            handle.data = tuple(np.asarray(column, float) for column in columns)
+        self.drawn += 1
+
+    def is_logarithmic(self, name: str) -> bool:
+        """Whether a chart has a logarithmic scale, from end to end of its ticks."""
+        return name in self.kind.curves and bool(self.kind.curves[name].ticks)
+
+    def scale_for(self, name: str, columns: Sequence[NDArray[np.floating]]) -> Scale:
+        """The scale of a chart: the one it has, unless the data leave it or fill little of it."""
+        finite = np.concatenate(columns)
+        finite = finite[np.isfinite(finite)]
+        low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+        last = self.looks.get(name)
+        if last is not None and last[3] is not None and last[3].fits(low, high):
+            return last[3]
+        return scale_of(low, high)
 
     def add(self, name: str) -> viser.GuiUplotHandle:
         """The chart that a parameter opens, in the dock."""
-        gui = self.server.gui
-        if self.dock is None:
-            panel = gui.add_panel()
-            self.dock = Dock(panel, panel.add_tab("Plots"))
-            panel.dock_left()
+        assert self.dock is not None
         if name in self.kind.curves:
             title, first, names, ticks = self.kind.curves[name]
         else:
             plot = self.kind.plots[name]
-            title, first, names, ticks = f"{plot.title} [{plot.unit}]", "t [s]", plot.series, ()
-        series = series_of(first, [Line(*look) for look in zip(names, COLOURS, strict=False)])
-        x_scale = uplot.Scale(time=False, auto=True)
-        start = np.array([0.0, 1.0])
+            title, first, names, ticks = CurveAxes(f"{plot.title} [{plot.unit}]", "t [s]", plot.series)
+        scales = {"x": uplot.Scale(time=False, auto=True)}
+        axes = axes_of((0.0, 1.0), ("0", "1"))
+        if ticks:
+            places, words = tuple(place for place, _ in ticks), tuple(word for _, word in ticks)
+            scales["y"] = uplot.Scale(distr=3, log=10, range=(places[0], places[-1]), auto=False)
+            axes = axes_of(places, words, LOGARITHMIC_TICK_WIDTH)
         with self.dock.tab:
-            if not ticks:
-                data = (start, *(start for _ in names))
-                return gui.add_uplot(data, series, title=title, scales={"x": x_scale}, height=CHART_HEIGHT)
-            places, words = [place for place, _ in ticks], [word for _, word in ticks]
-            y_scale = uplot.Scale(distr=3, log=10, range=(places[0], places[-1]), auto=False)
-            return gui.add_uplot(
-                (start, *(np.full(2, places[0]) for _ in names)),
-                series,
+            return self.server.gui.add_uplot(
+                (EMPTY, *(np.full(2, math.nan) for _ in names)),
+                series_of(first, lines_of(names)),
                 title=title,
-                scales={"x": x_scale, "y": y_scale},
-                height=TALL_CHART_HEIGHT,
-                # The chart's own words for small numbers are zeros, on the axis as in its legend.
-                legend=uplot.Legend(live=False),
-                axes=(uplot.Axis(), uplot.Axis(splits=tuple(places), values=tuple(words), size=TICK_WIDTH)),
+                scales=scales,
+                axes=axes,
+                height=TALL_CHART_HEIGHT if ticks else CHART_HEIGHT,
+                padding=PADDING,
+                legend=uplot.Legend(live=False),  # a short key, without a column of values
             )
+
+
+def lines_of(names: Sequence[str]) -> tuple[Line, ...]:
+    """The lines of a chart that has them from the start; the sum of the others is drawn the widest."""
+    return tuple(
+        Line(name, colour, 3.0 if name == "total" else 2.0) for name, colour in zip(names, COLOURS, strict=False)
+    )
+
+
+def axes_of(ticks: tuple[float, ...], words: tuple[str, ...], width: float | None = None) -> tuple[uplot.Axis, ...]:
+    """The two axes of a chart, with words at the ticks of the second; width: [pixels] for the words."""
+    size = width or TICK_ROOM + DIGIT_WIDTH * max(map(len, words))
+    return uplot.Axis(), uplot.Axis(splits=ticks, values=words, size=size)
 
 
 def series_of(first: str, lines: Sequence[Line]) -> tuple[uplot.Series, ...]:

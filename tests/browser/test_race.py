@@ -30,14 +30,18 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(shown: tuple[
 
         def charts(ropes=ropes) -> list:
             found = {chart["title"]: chart for chart in tab.page.evaluate(CHARTS)}
-            errors, energies = found.get("Distance from the reference"), found.get("Energy above the start [J]")
+            errors, energies = found.get("Distance from the reference"), found.get("Energy error [J]")
             full = errors and energies and min(errors["rows"], energies["rows"]) > 5
-            return [errors, energies] if full and len(errors["labels"]) == ropes + 2 else []
+            return (
+                [errors, energies]
+                if full and len(errors["labels"]) == ropes + 2 and len(energies["labels"]) == ropes + 1
+                else []
+            )
 
         errors, energies = tab.wait(charts)
         assert errors["log"]
         assert errors["labels"][1] == "below what the reference can tell"
-        named = [label for label in energies["labels"][1:] if label != "reference"]
+        named = energies["labels"][1:]
         assert named == errors["labels"][2:]
         assert [label.split()[0] for label in named] == [str(number + 1) for number in range(ropes)]
     assert not lab.loop.halted

@@ -12,7 +12,9 @@
   const MIN_ASPECT = 1.25; // width over height of what the field of view shows at least
   const MIN_FREE = 120; // [pixels] of a side of the free rectangle: a smaller one is not used
   const MEASURE_INTERVAL = 150; // [ms] between two looks at where the panels are
-  const PANELS = "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root)";
+  const PANELS =
+    "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root), " +
+    ".mantine-Tabs-root:has(> [aria-label=\"Collapse panel Plots\"])";
 
   let free = null; // the free part of the canvas: { x, y, width, height } [pixels] from its top left corner
 

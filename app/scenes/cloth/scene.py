@@ -39,7 +39,7 @@ MAX_DISTANCE = 60.0  # [m] from the origin; farther out the run has diverged
 PULL_LENGTH = 0.1  # [m] at which a pull has its largest force, if the step allows
 MAX_PULL_STIFFNESS_STEP = 0.1  # stiffness of a pull over mass / step^2, so that the pull is stable at any step
 BOB_RATE = 4.0  # [rad/s] of the sphere's motion up and down
-ENERGY_SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated")
+ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact", "dissipated")
 SERIES = (*ENERGY_SERIES, "largest strain")
 PLOTS = {
     "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES),
@@ -209,7 +209,7 @@ class ClothScene:
         self.counts.add("stability checks", 1, is_due)
         if is_due:
             self.assess_stability()
-        if (self.params.plot_energy or self.params.plot_strain) and self.plot_rows.is_due(self.state.t):
+        if self.plot_rows.is_due(self.state.t):
             self.add_plot_row()
 
     def net_during(self, t: float, duration: float) -> Net:
@@ -297,8 +297,9 @@ class ClothScene:
     def add_plot_row(self) -> None:
         """Add the energies and the largest strain at the scene's time."""
         e, state = energy(self.net, self.state), self.state
+        dissipated = state.dissipated if self.account_kept else math.nan
         strain = 100.0 * float(structural_strain(self.net, self.state.x).max())
-        self.plot_rows.add(state.t, e.kinetic, e.elastic, e.gravity, e.contact, state.dissipated, strain)
+        self.plot_rows.add(state.t, e.total, e.kinetic, e.elastic, e.gravity, e.contact, dissipated, strain)
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
         """The plot rows since the last call."""

@@ -1,9 +1,8 @@
-"""The race over time: the error of each rope on a logarithmic chart, and the energy of each."""
+"""The race over time: the error of each rope on a logarithmic chart, and the energy error of each."""
 
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.scenes.charts import PALETTE, Chart, CurveAxes, Line
 from app.scenes.race.entrants import Race
@@ -16,14 +15,12 @@ ERROR_TICKS = (  # [m] from end to end of the error's scale
 )  # fmt: skip
 CURVES = {
     "plot_errors": CurveAxes("Distance from the reference", "t [s]", ("rope 1",), ERROR_TICKS),
-    "plot_energies": CurveAxes("Energy above the start [J]", "t [s]", ("rope 1",)),
+    "plot_energies": CurveAxes("Energy error [J]", "t [s]", ("rope 1",)),
 }
 FLOOR_LINE = Line("below what the reference can tell", "rgba(120,120,120,0.6)", 1.0, fill="rgba(120,120,120,0.3)")
-REFERENCE_LINE = Line("reference", "#000000", 1.5, (4.0, 4.0))
 DASHES = ((), (10.0, 4.0), (3.0, 3.0), (12.0, 3.0, 3.0, 3.0), (6.0, 6.0), (1.0, 4.0))  # to tell lines apart in grey
-MAX_ENERGY_RATIO = 0.7  # drawn energy over the potential energy of the rope's whole fall, at most
-ERROR_OF_FAILED_ROPE = 1e3  # [m], above the scale: a chart with a logarithmic scale accepts no gaps
-ERROR_WITHOUT_REFERENCE = 1e-12  # [m], below the scale
+MAX_ENERGY_RATIO = 0.7  # drawn energy error over the potential energy of the rope's whole fall, at most
+FLOOR_WITHOUT_REFERENCE = 1e3  # [m], above the scale
 
 
 def round_up(t: float) -> float:
@@ -37,12 +34,11 @@ class RaceCharts:
 
     def __init__(self, race: Race) -> None:
         self.race = race
-        self.rows = np.zeros((MAX_ROWS, 3 + 2 * len(race.entrants)))
+        self.rows = np.zeros((MAX_ROWS, 2 + 2 * len(race.entrants)))
         self.count = 0
         self.row_interval = FIRST_ROW_INTERVAL  # [s]
         self.next_row = 0.0  # [s]
         self.drawn: dict[str, Chart] = {}
-        self.initial = [entrant.account.initial.total for entrant in race.entrants]  # [J]
         net = race.entrants[0].net
         n, weight = net.shape[1] - 1, net.mass * abs(net.gravity[2])
         fall = n * net.families[0].rest + 0.5 * weight / net.families[0].stiffness * n * (n + 1)  # [m]
@@ -60,44 +56,30 @@ class RaceCharts:
         row = self.rows[self.count]
         row[0] = race.t
         row[1] = self.error_floor()
-        last = self.rows[max(self.count - 1, 0)]
-        reference = race.references[0].energy(race.entrants[0].net, race.t) - self.initial[0]
-        row[2] = self.bounded(reference, last[2])
         for i, entrant in enumerate(race.entrants):
-            error = race.error(entrant)
-            if entrant.failure:
-                row[3 + 2 * i] = ERROR_OF_FAILED_ROPE
-            else:
-                row[3 + 2 * i] = ERROR_WITHOUT_REFERENCE if math.isnan(error) else max(error, ERROR_TICKS[0][0])
-            energy = math.nan if entrant.failure else entrant.stored_energy() - self.initial[i]
-            row[4 + 2 * i] = self.bounded(energy, last[4 + 2 * i])
+            row[2 + 2 * i] = np.maximum(race.error(entrant), ERROR_TICKS[0][0])  # NaN stays
+            energy_error = math.nan if entrant.failure else entrant.account.error(entrant.net, entrant.state)
+            row[3 + 2 * i] = np.clip(energy_error, -self.max_energy, self.max_energy)
         self.count += 1
         self.drawn = {}
-
-    def bounded(self, energy: float, last: float) -> float:
-        """The energy to draw [J]; the last one for NaN, which a rope that has stopped has and no chart accepts."""
-        return last if math.isnan(energy) else min(max(energy, -self.max_energy), self.max_energy)
 
     def error_floor(self) -> float:
         """Smallest error [m] that all reference runs can tell; above the chart where one is lost."""
         floors = [self.race.error_floor(entrant) for entrant in self.race.entrants]
-        return ERROR_OF_FAILED_ROPE if any(math.isnan(floor) for floor in floors) else max(floors)
+        return FLOOR_WITHOUT_REFERENCE if any(math.isnan(floor) for floor in floors) else max(floors)
 
     def charts(self) -> dict[str, Chart]:
-        """By parameter; the same objects until there is a new row. Empty before there are two rows."""
-        if not self.drawn and self.count > 1:
+        """By parameter; the same objects until there is a new row."""
+        if not self.drawn:
             race, table = self.race, self.rows[: self.count].T.copy()
             stiffness_differs = race.ratio != 1.0
             lines = tuple(
                 Line(rope_name(entrant, stiffness_differs), PALETTE[i], 2.0, DASHES[i])
                 for i, entrant in enumerate(race.entrants)
             )
-            references: tuple[NDArray[np.float64], ...] = () if stiffness_differs else (table[2],)
-            errors = (table[0], table[1], *table[3::2])
-            energies = (table[0], *table[4::2], *references)
-            reference_lines = (REFERENCE_LINE,) * len(references)
+            errors, energy_errors = (table[0], table[1], *table[2::2]), (table[0], *table[3::2])
             self.drawn = {
                 "plot_errors": Chart("t [s]", (FLOOR_LINE, *lines), errors, round_up(race.t)),
-                "plot_energies": Chart("t [s]", (*lines, *reference_lines), energies, round_up(race.t)),
+                "plot_energies": Chart("t [s]", lines, energy_errors, round_up(race.t)),
             }
         return self.drawn

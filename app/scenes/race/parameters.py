@@ -120,7 +120,11 @@ class Params(RaceMethods, RopeParams, RaceRules):
         title="Distance from reference",
     )
     plot_energies: bool = parameter(
-        True, doc="Energy of each rope over time", group="Plots", affects="look", title="Energies"
+        True,
+        doc="Numerical error of the energy of each rope over time",
+        group="Plots",
+        affects="look",
+        title="Energy errors",
     )
 
 

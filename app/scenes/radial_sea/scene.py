@@ -246,8 +246,7 @@ class RadialSeaScene:
                     bodies.step(self.column, at, h, layer, coefficients)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
-                plotted = self.params.plot_draft or self.params.plot_surface
-                if plotted and self.time - self.plotted_at >= PLOT_INTERVAL:
+                if self.time - self.plotted_at >= PLOT_INTERVAL:
                     self.add_plot_row(float(at.height[0]))
             self.time += h
         if self.params.ageing and self.column.kind != "water":
@@ -279,7 +278,7 @@ class RadialSeaScene:
     def add_plot_row(self, surface: float) -> None:
         """Add a plot row; `surface` [m] is the height of the sea at the first body."""
         bodies = self.bodies
-        draft = np.zeros(PLOTTED_BODIES)  # 0 for a body that is not there: no browser may be sent a NaN
+        draft = np.full(PLOTTED_BODIES, math.nan)  # of a body that is not there
         draft[: min(PLOTTED_BODIES, bodies.count)] = bodies.draft[:PLOTTED_BODIES]
         self.plot_rows.append((self.time, *draft.tolist(), surface, float(bodies.fleet.position[0, 2])))
         self.plotted_at = self.time

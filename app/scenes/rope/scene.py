@@ -31,7 +31,7 @@ ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of th
 MIN_MOVE_TO_ASSESS = 1e-3  # of a link: a rope that has moved by less since the last assessment is as stable as it was
 FULL_RATE_SPEED = 0.6  # [m/s] on screen: 10 mm, about two pixels, between frames at the highest rate
 QUARTER_RATE_SPEED = 0.075  # [m/s] on screen: 5 mm between frames at a quarter of it
-ENERGY_SERIES = ("kinetic", "elastic", "gravity", "contact", "dissipated", "error")
+ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact", "dissipated", "error")
 SERIES = (*ENERGY_SERIES, "tip height")
 PLOTS = {
     "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES),
@@ -192,7 +192,7 @@ class RopeScene:
         self.counts.add("stability checks", 1, is_due)
         if is_due:
             self.assess_stability()
-        if (self.params.plot_energy or self.params.plot_tip) and self.plot_rows.is_due(self.state.t):
+        if self.plot_rows.is_due(self.state.t):
             self.add_plot_row()
 
     def has_news(self) -> bool:
@@ -237,7 +237,8 @@ class RopeScene:
         gained = e.gravity - account.initial.gravity
         error = account.error(self.net, state)
         tip = float(state.x[2, 0, -1])
-        self.plot_rows.add(state.t, e.kinetic, e.elastic, gained, e.contact, state.dissipated, error, tip)
+        total = e.kinetic + e.elastic + gained + e.contact
+        self.plot_rows.add(state.t, total, e.kinetic, e.elastic, gained, e.contact, state.dissipated, error, tip)
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
         """The plot rows since the last call."""

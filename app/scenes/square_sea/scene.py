@@ -259,13 +259,17 @@ class SquareSeaScene:
             self.counts["rings"] += self.rainfall.advance(self.sea, t, dt, height, displacement, p.amplitude)
             self.counts["rainfall steps"] += 1
             rain = self.rainfall.frame()
-        gauge = None
-        if self.gauge_shown:
+        gauge, row_is_due = None, t - self.plotted_at >= PLOT_ROW_INTERVAL
+        if self.gauge_shown or row_is_due:
             self.gauge.read(self.sea, t, p.amplitude)
             self.counts["gauge readings"] += 1
+        if self.gauge_shown:
             gauge = (*self.gauge.at, self.gauge.height)
+        if row_is_due:
+            self.plotted_at = t
+            self.plot_rows.append((t, self.gauge.height))
         self.update_statistics(height)
-        self.update_plots()
+        self.update_spectrum()
         self.earlier_height = height if p.statistics else None
         self.counts["frames"] += 1
         self.counts["transforms"] += self.sea.transforms.count - transforms_before
@@ -299,17 +303,14 @@ class SquareSeaScene:
         self.report = Report(measure(self.sea, height, self.earlier_height, p), self.theory)
         self.counts["statistics"] += 1
 
-    def update_plots(self) -> None:
-        """Spectrum and height at the wave gauge, where they are shown and out of date."""
+    def update_spectrum(self) -> None:
+        """The spectrum at the wave gauge, where it is shown and out of date."""
         p, t = self.params, self.time
         if p.plot_wave_spectrum and abs(t - self.spectrum_at) >= STATISTICS_INTERVAL:
             self.spectrum_at = t
             columns = self.gauge.spectrum(self.sea, t, p.amplitude)
             self.curve_columns = {"plot_wave_spectrum": columns} if columns[0].size else None
             self.counts["gauge spectra"] += 1
-        if p.plot_wave_gauge and t - self.plotted_at >= PLOT_ROW_INTERVAL:
-            self.plotted_at = t
-            self.plot_rows.append((t, self.gauge.height))
 
     def expected_foam_cover(self, t: float) -> float:
         """Share of the sea that is foam by Monahan's law; it adapts to new weather as the waves do."""

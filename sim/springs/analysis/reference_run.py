@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs import INTEGRATORS, Net
-from sim.springs.analysis.energy import energies
 from sim.springs.simulate import FRICTION_STEP
 from sim.springs.stability import gershgorin
 from sim.springs.state import DIVERGENCE_BOUND
@@ -97,12 +96,6 @@ class ReferenceRun:
         if not self.is_available:
             return math.nan
         return float(np.linalg.norm(x[:, 0] - self.x, axis=0).max())
-
-    def energy(self, net: Net, t: float) -> float:
-        """Stored energy [J] at time t [s]; NaN where there is none."""
-        if not self.is_available:
-            return math.nan
-        return sum(energies(*self.runs[0], t, net.kernel_view(1.0)))
 
 
 def too_dear(net: Net, count: int) -> str:

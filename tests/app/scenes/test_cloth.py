@@ -8,7 +8,7 @@ import pytest
 from app.messages import DivergenceError, Grab, Place, Release
 from app.panel.panel import status_line
 from app.scenes.cloth.parameters import PRESETS, Params, hidden
-from app.scenes.cloth.scene import MAX_SPHERE_SPEED, ClothScene
+from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene
 from app.scenes.cloth.view import View, faces
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
@@ -184,11 +184,12 @@ def test_the_mesh_has_two_triangles_a_cell_with_the_same_orientation():
 
 
 def test_plot_rows_and_arrays_have_the_columns_of_plots_and_files():
-    scene = ClothScene(dataclasses.replace(SMALL, plot_energy=True))
+    scene = ClothScene(SMALL)
     run(scene, 0.3)
     rows = scene.take_plot_rows()
     assert len(rows) > 3
-    assert all(len(row) == 7 for row in rows)
+    assert all(len(row) == 1 + len(SCENE.series) for row in rows)
+    np.testing.assert_allclose(rows[-1][1], sum(rows[-1][2:6]))
     assert scene.take_plot_rows() == ()
     assert scene.arrays()["x"][0].shape == (10, 10, 3)
 
@@ -244,6 +245,8 @@ def test_a_large_cloth_keeps_its_account_from_when_the_plot_is_opened():
     scene = ClothScene(Params(rows=60, cols=60, integrator="symplectic_euler", time_step=1 / 4800))
     scene.advance(20)
     assert scene.work()["steps with their energy balance"].done == 0
+    scene.advance(200)
+    assert np.isnan(scene.take_plot_rows()[-1][6])  # what was dissipated is not known
     change(scene, plot_energy=True)
     scene.advance(20)
     assert scene.work()["steps with their energy balance"].done == 20

@@ -311,7 +311,7 @@ def test_a_long_race_keeps_fewer_rows_but_those_of_its_start():
     scene = race(ropes=2, points=2)
     scene.charts = charts = RaceCharts(scene.race)
     charts.row_interval = 1e-9
-    assert charts.charts() == {}
+    assert all(chart.columns[0].size == 0 for chart in charts.charts().values())
     for _ in range(2 * MAX_ROWS + 10):
         charts.next_row = 0.0
         scene.race.advance(scene.net, 1)

@@ -443,10 +443,11 @@ def test_a_mesh_that_is_not_closed_ends_the_command_with_one_line(tmp_path: Path
     assert main(["run", "radial_sea", *out, str(tmp_path / "boat.stl")]) == 0
 
 
-def test_plot_rows_are_numbers_with_fewer_bodies_than_curves():
-    scene = RadialSeaScene(Params(bodies=1, plot_draft=True))
+def test_a_body_that_is_not_there_has_no_draft_in_the_plots():
+    scene = RadialSeaScene(Params(bodies=1))
     scene.take_plot_rows()
     scene.advance(20)
-    rows = scene.take_plot_rows()
-    assert rows
-    assert np.isfinite(rows).all()
+    rows = np.array(scene.take_plot_rows())
+    assert len(rows) > 1
+    assert np.isnan(rows[:, 2:4]).all()
+    assert np.isfinite(rows[:, [0, 1, 4, 5]]).all()

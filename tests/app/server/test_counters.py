@@ -164,6 +164,7 @@ def test_closed_charts_are_not_drawn(still: Any):
     plots.sent_at = -1e9
     plots.update(still.loop.latest, [])
     assert plots.work()["charts drawn"] == WorkCount(drawn, spared + charts)
+    still.loop.plot_rows.clear()
     scene.params = type(scene.params)(plot_tip=True)
     for _ in range(3):
         scene.advance(3)

@@ -141,7 +141,7 @@ class WorkCount(NamedTuple):
 
 
 WorkCounts = Mapping[str, WorkCount]
-PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SERIES); a NaN time starts the plots anew
+PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SERIES); a NaN time clears the plots
 
 
 class Status(NamedTuple):

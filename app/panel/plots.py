@@ -89,7 +89,7 @@ class Plots:
         self.dock: Dock | None = None
         self.open: frozenset[str] = frozenset()  # parameters of the open charts
         self.sent_at = 0.0
-        self.drawn = self.skipped = 0  # charts sent anew, and charts that were closed or had nothing new
+        self.drawn = self.skipped = 0  # charts sent again, and charts that were closed or had nothing new
 
     def work(self) -> dict[str, WorkCount]:
         """How many charts were drawn and how many did not have to be."""
@@ -134,7 +134,7 @@ class Plots:
                 self.charts[name] = self.add(name)
 
     def send_curves(self, snapshot: AnySnapshot, wanted: frozenset[str]) -> None:
-        """Send the open charts of columns that the scene has made anew."""
+        """Send the open charts with columns that the scene has replaced."""
         for name, columns in (snapshot.curves or {}).items():
             if name not in wanted or self.sent.get(name) is columns:
                 continue

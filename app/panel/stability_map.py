@@ -1,6 +1,6 @@
 """The map of the open scene over step and stiffness: measured on request, drawn in the panel, clickable.
 
-viser has no picture that answers a click. The map is SVG in an HTML element, whose click handler moves a hidden slider
+viser has no picture that answers a click. The map is SVG in an HTML element. Its click handler moves a hidden slider
 of two handles; from there on a click is a change like any other, bounded by `app/guard.py` and taken by the controls.
 Of viser's inner names the handler uses `window.__viserMutable.sendMessage`; `tests/browser/test_rope.py` clicks it.
 """
@@ -124,7 +124,7 @@ class StabilityMapPanel:
                 self.go(event.target.value)
 
     def ask(self) -> None:
-        """Measure anew, in place of what is being measured."""
+        """Measure again, in place of what is being measured."""
         self.asked += 1
         threading.Thread(target=self.measure, args=(self.asked,), name="stability map", daemon=True).start()
 

@@ -1,4 +1,4 @@
-"""A mesh whose vertices move and change colour every frame, which stock viser does not have.
+"""A mesh with vertices that move and change colour in every frame, which stock viser does not have.
 
 The colours travel in one array with the vertices, behind them, where no face refers to them; `js/injection.js` gives
 them to the shader (see `app/render/injection.py`). A browser without that shader draws the mesh in one colour.

@@ -37,7 +37,7 @@ ASK_INTERVAL = 0.5  # [s] between two questions to a browser that has not answer
 QUESTION_TIMEOUT = 5.0  # [s] after which a question is given up, and asked again later
 MAX_QUESTIONS = 16  # open at the same time, a thread each: browsers that are stuck do not delay the others
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
-MAX_ANSWER_LENGTH = 10_000  # [characters] of which an answer is read
+MAX_ANSWER_LENGTH = 10_000  # [characters] that are read of an answer
 SCRIPTS = ("injection.js", "water_shader.js", "water.js", "rain.js")
 
 _injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
@@ -188,7 +188,7 @@ def reset_scene(server: viser.ViserServer) -> None:
 
 
 def add_data_mesh(server: viser.ViserServer, name: str, values: np.ndarray) -> viser.MeshHandle:
-    """A hidden mesh whose vertices carry numbers to the script. values: (n, 3), n >= 1.
+    """A hidden mesh. Its vertices carry numbers to the script. values: (n, 3), n >= 1.
 
     Its only face is degenerate, so that the browser computes no normals for it.
     """

@@ -2,7 +2,7 @@
 
 from typing import Any, TypeAlias
 
-# A handle of a GUI element, of which the value is a number, a text, a flag or a tuple by what the element is.
+# A handle of a GUI element. Its value is a number, a text, a flag or a tuple; the kind of element decides.
 GuiHandle: TypeAlias = Any
 # What viser calls a callback with: its handle, and the browser that it came from (none where the program set a value).
 ViserEvent: TypeAlias = Any

@@ -43,4 +43,4 @@ class Chart(NamedTuple):
     first: str  # label of the first column
     lines: tuple[Line, ...]
     columns: tuple[NDArray[np.float64], ...]  # the first, then one a line
-    end: float  # of the first column's scale, from 0; best changed seldom, as the chart is then made anew
+    end: float  # of the first column's scale, from 0; a change replaces the chart, so it should be rare

@@ -67,7 +67,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def change_forces(self, params: P) -> None:
-        """Take parameters of which at least one that affects the forces differs; the motion goes on.
+        """Take parameters. At least one that affects the forces has changed; the motion goes on.
 
         A change that affects only the look is assigned to `params`; one that affects the start is assigned, and then
         `reset` is called.

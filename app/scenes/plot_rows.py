@@ -16,7 +16,7 @@ class PlotRows:
         self.restart()
 
     def restart(self) -> None:
-        """Start the plots anew: a row without numbers, as the contract has it."""
+        """Clear the plots, by a row without numbers (see `app/messages.py`)."""
         self.waiting.append((math.nan,) * (self.columns + 1))
         self.last = -math.inf  # [s] time of the last row
 

@@ -1,6 +1,6 @@
 """Bodies: what each is made of, and the arrays in which many of them move.
 
-`Body` describes one body and where it starts; `make_fleet` packs many into a `Fleet`, whose state arrays `step`
+`Body` describes one body and where it starts; `make_fleet` packs many into a `Fleet` with state arrays that `step`
 (motion.py) advances in place. A hull used by several bodies is packed once.
 """
 

@@ -52,7 +52,7 @@ def closed_mesh(vertices: np.ndarray, faces: np.ndarray, extents: np.ndarray | N
 
 
 def checked_mesh(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -> ClosedMesh:
-    """The record of vertices (n, 3) [m] and faces (m, 3) from outside. A mesh whose faces all point inward is turned.
+    """The record of vertices (n, 3) [m] and faces (m, 3) from outside. A mesh with all faces inward is turned.
 
     Raises ValueError, which begins with `name`, where the mesh is not closed, oriented and finite.
     """

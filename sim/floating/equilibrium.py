@@ -1,6 +1,6 @@
 """Where a hull floats upright in layered fluids, and its periods of heave and roll there.
 
-Archimedes through layers of densities rho_1, rho_2, ... whose tops lie at depths D_1 = 0, D_2, ... is a sum over
+Archimedes through layers of densities rho_1, rho_2, ... with tops at depths D_1 = 0, D_2, ... is a sum over
 interfaces, since each one adds the pressure (rho_i - rho_{i-1}) g (depth below it):
 
   rho V = sum_i (rho_i - rho_{i-1}) V(h - D_i),   rho_0 = 0

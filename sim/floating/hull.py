@@ -72,7 +72,7 @@ class Hull(ClosedMesh):
 
     @staticmethod
     def from_arrays(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -> "Hull":
-        """A hull from vertices (n, 3) [m] and faces (m, 3). A mesh whose faces all point inward is turned.
+        """A hull from vertices (n, 3) [m] and faces (m, 3). A mesh with all faces inward is turned.
 
         Raises ValueError, which begins with `name`, where the mesh is not closed, oriented and finite.
         """

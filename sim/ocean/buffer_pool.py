@@ -16,7 +16,7 @@ def references(blocks: list[np.ndarray], i: int) -> int:
     return sys.getrefcount(blocks[i])
 
 
-IDLE = references([np.empty(0)], 0)  # what a block counts that only its list holds
+UNUSED_REFERENCES = references([np.empty(0)], 0)  # what a block counts that only its list holds
 
 
 class BufferPool:
@@ -31,7 +31,7 @@ class BufferPool:
         blocks = self._blocks.setdefault(count, [])
         for i in range(len(blocks)):
             # Every view of a block, however derived, holds the block itself as its base.
-            if references(blocks, i) <= IDLE:
+            if references(blocks, i) <= UNUSED_REFERENCES:
                 return self._grids(blocks[i], count)
         blocks.append(np.empty(count * self.size**2 * np.dtype(self.real).itemsize + ALIGNMENT, np.uint8))
         return self._grids(blocks[-1], count)

@@ -24,7 +24,7 @@ class FluidColumn:
     thickness: float = 0.0  # [m] of the layer; 0: clean water
     fraction: float = 0.0  # of oil by volume, entirely mixed; above 0 there is no layer
     law: str = "taylor"  # of the mixture's viscosity
-    film: bool = False  # an inextensible film besides
+    film: bool = False  # an inextensible film on top
     gravity: float = 9.81  # [m/s2]
 
     def __post_init__(self) -> None:
@@ -43,7 +43,7 @@ class FluidColumn:
 
     @property
     def surface(self) -> Fluid:
-        """The fluid whose surface is seen."""
+        """The fluid on top."""
         if self.kind == "mixed":
             return mixed(self.oil, self.water, self.fraction, self.law)
         return self.oil if self.kind == "layer" else self.water

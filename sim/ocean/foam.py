@@ -13,12 +13,12 @@ from sim.validation import check_not_negative
 if TYPE_CHECKING:
     from sim.ocean.sea import Sea
 
-MOST = 0.6  # share of the sea that is foam at most: beyond 35 m/s the law has no measurements and passes 1
+MAX_COVER = 0.6  # share of the sea that is foam at most: beyond 35 m/s the law has no measurements and passes 1
 
 
 def whitecaps(wind_speed: float) -> float:
-    """Share of the sea that is foam, W = 3.84e-6 U10^3.41 (Monahan and O'Muircheartaigh 1980), at most MOST."""
-    return min(3.84e-6 * check_not_negative("wind_speed", wind_speed, "m/s") ** 3.41, MOST)
+    """Share of the sea that is foam, W = 3.84e-6 U10^3.41 (Monahan and O'Muircheartaigh 1980), at most MAX_COVER."""
+    return min(3.84e-6 * check_not_negative("wind_speed", wind_speed, "m/s") ** 3.41, MAX_COVER)
 
 
 def pace(sea: "Sea", t: float) -> tuple[float, float]:

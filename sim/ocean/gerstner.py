@@ -12,7 +12,7 @@ import numpy as np
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.validation import argument_error, check_within, is_whole_number
 
-MOST = 4096
+MAX_WAVES = 4096
 DECADES = (-1.7, 4.0)  # of wavenumber about the peak that are looked at: beyond lie 1e-8 of the energy
 CELLS, BEARINGS = 1500, 120  # of the polar grid over which energy is shared out
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
@@ -44,8 +44,8 @@ def draw_waves(spectrum: Spectrum, conditions: Conditions, count: int = 64, seed
     and a bearing drawn from the spreading there (by a golden-ratio sequence, so that few waves already spread evenly).
     Without wind all amplitudes are 0. Raises ValueError for a count that is not 1 to 4096 or a seed that is not whole.
     """
-    if not is_whole_number(count) or not 1 <= count <= MOST:
-        raise argument_error("count", count, f"a whole number from 1 to {MOST}")
+    if not is_whole_number(count) or not 1 <= count <= MAX_WAVES:
+        raise argument_error("count", count, f"a whole number from 1 to {MAX_WAVES}")
     if not is_whole_number(seed):
         raise argument_error("seed", seed, "a whole number")
     random = np.random.default_rng(seed)

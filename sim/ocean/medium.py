@@ -1,4 +1,4 @@
-"""What waves propagate in, besides the conditions of their spectrum: decay, and the lab's ways to bend dispersion."""
+"""What waves propagate in, apart from their spectrum's conditions: decay, and the lab's ways to bend dispersion."""
 
 import dataclasses
 import math

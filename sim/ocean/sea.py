@@ -30,7 +30,7 @@ from sim.validation import (
     is_whole_number,
 )
 
-SETTLED = 1e-7  # share of a change still to come below which it counts as done
+SETTLED_SHARE = 1e-7  # share of a change still to come below which it counts as done
 SIZES = (8, 4096)
 
 
@@ -87,7 +87,7 @@ class Sea:
 
         n = integers(self.size)
         self.k = n * (2.0 * math.pi / self.length)  # [rad/m], FFT order
-        self._folded = np.abs(n) % (self.size // 2)  # |n|, with the Nyquist index (whose amplitude is 0) sent to 0
+        self._folded = np.abs(n) % (self.size // 2)  # |n|, with the Nyquist index, where the amplitude is 0, sent to 0
         quarter = self.k[: self.size // 2]
         self._k = np.hypot(quarter[:, None], quarter[None, :])
         inverse = np.divide(1.0, self._k, out=np.zeros_like(self._k), where=self._k > 0.0)
@@ -273,7 +273,7 @@ class Sea:
     def _share(self, t: float) -> float:
         """Share of the last change that is still to come at time t."""
         share = math.exp(-(t - self._base) / self._relax) if self._relax > 0.0 else 0.0
-        return share if share > SETTLED else 0.0
+        return share if share > SETTLED_SHARE else 0.0
 
     def _set_planes(self) -> None:
         """Fold the amplitudes into even and odd half planes: the target, and what the start lacks of it."""

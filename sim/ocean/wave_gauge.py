@@ -29,7 +29,7 @@ class WaveGauge:
         self.trace: collections.deque[tuple[float, float]] = collections.deque()
 
     def put(self, at: tuple[float, float]) -> None:
-        """Move it, and begin the trace anew."""
+        """Move it, and begin a new trace."""
         self.at = at
         self.trace.clear()
 

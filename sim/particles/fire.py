@@ -5,8 +5,8 @@ A parcel of excess heat theta, 1 at the fire, cools as e^(-t/c) and is dragged t
   dv/dt = b theta z - (v - wind)/tau,   theta = e^(-age/c)
 
 integrated exactly, so that any step will do. b = 23.3 m/s2 is the rise of gas in a flame (McCaffrey 1979, NBSIR
-79-1910: v = 6.83 sqrt(z), any fire), and c is the time it takes through the flame, whose height is Heskestad's (1983,
-Fire Saf. J. 5:103). Eddies are a swirl of its own for each parcel, that grows as the plume widens.
+79-1910: v = 6.83 sqrt(z), any fire), and c is the time it takes through the flame, which is as high as Heskestad says
+(1983, Fire Saf. J. 5:103). Eddies are a swirl of its own for each parcel, that grows as the plume widens.
 Limits: no gas dynamics between parcels; the plume does not entrain, it is only dragged.
 """
 
@@ -98,7 +98,7 @@ class Fire:
 def burn(
     position, velocity, age, life, heat, turn, dt, x, y, z, radius, wind_x, wind_y, cooling, mean_life, eddy, updraft
 ):
-    """One step of all parcels; returns how many started anew."""
+    """One step of all parcels; returns how many started again."""
     tau, rise = np.float32(DRAG_TIME), np.float32(RISE)
     one, zero, tiny = np.float32(1.0), np.float32(0.0), np.float32(1e-6)
     keep = np.exp(-dt / tau)

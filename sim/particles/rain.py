@@ -98,7 +98,7 @@ class Rain:
         self._sizes = D
         self._by_volume = _cumulative(N)
         self._by_flux = _cumulative(N * terminal_speed(D, gravity))
-        # In the air sizes are as N(D); those that arrive, and so those that start anew, as N(D) v(D).
+        # In the air sizes are as N(D); those that arrive, and so those that start again, as N(D) v(D).
         self.position = self._random.uniform(0.0, [[length], [length], [ceiling]], (3, drawn))
         self.diameter = self._draw(self._by_volume, drawn)
         self.speed = terminal_speed(self.diameter, gravity)
@@ -113,7 +113,7 @@ class Rain:
     def step(self, dt: float, height: np.ndarray, displacement: np.ndarray | None = None) -> Hits:
         """Let the drops fall for dt [s] onto the surface as it is at the end of the step.
 
-        height (m, m) [m]; displacement (m, m, 2) [m] or None: of the mesh as drawn. Drops that hit start anew on top.
+        height (m, m) [m]; displacement (m, m, 2) [m] or None: of the mesh as drawn. Drops that hit start again on top.
         Raises ValueError for a dt that is negative or not finite.
         """
         if not 0.0 <= dt < math.inf:

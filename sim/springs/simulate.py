@@ -49,7 +49,7 @@ def simulate(
     """Integrate `net` from rest and sample it at `frames` equal times from 0 to `duration` [s].
 
     step: [s], 1/1200 by default; shortened equally where it does not divide a frame interval. rtol, atol: adaptive
-    methods choose steps whose error is within atol + rtol |value| of each position [m] and velocity [m/s], 1e-6 and
+    methods choose steps with an error within atol + rtol |value| of each position [m] and velocity [m/s], 1e-6 and
     1e-9 by default; given a step instead they take that. with_account: also integrate what damping takes and pins
     put in; the stored energies are always there. progress: called with (frames done, frames).
     A run that diverges ends there: `diverged_at` is the time of the first step that left any sane bound, and later

@@ -252,7 +252,7 @@ def test_colours_reach_the_vertices_of_a_streaming_mesh(chromium, server):
 def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, monkeypatch):
     monkeypatch.setattr("app.render.injection.MAX_ANSWER_TIME", 1.0)
     monkeypatch.setattr(
-        "app.render.injection.ShaderInjector.script", lambda self: "/* a viser whose inner names have changed */"
+        "app.render.injection.ShaderInjector.script", lambda self: "/* a viser with other inner names */"
     )
     water = make_water(server)
     page, errors = visit(chromium, server)

@@ -105,7 +105,7 @@ except ValueError as error:
 
 
 def test_a_kept_kernel_raises_as_a_new_one_does(tmp_path):
-    """Compiled anew, from kept parts, and kept itself."""
+    """Compiled again, from kept parts, and kept itself."""
     said = [python(RAISES, SPRINGTIDE_CACHE=str(tmp_path)) for _ in range(2)]
     for path in tmp_path.rglob("*last_of*.nb?"):
         path.unlink()

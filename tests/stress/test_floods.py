@@ -30,7 +30,7 @@ Maker = Callable[[Watcher, int], dict[str, Any]]
 
 
 def update(watcher: Watcher, label: str, value: Any) -> dict[str, Any]:
-    """Set the control of which the label begins so."""
+    """Set the control with a label that begins so."""
     uuid = next(uuid for name, uuid in watcher.controls.items() if name.startswith(label))
     return {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {"value": value}}
 

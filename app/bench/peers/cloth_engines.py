@@ -132,7 +132,7 @@ def mujoco_tendons(net: Net, h: float) -> Run:
     return run
 
 
-ENGINE_STEP = 1 / 600  # [s] of engines whose step is not limited by stability
+ENGINE_STEP = 1 / 600  # [s] of engines with no stability limit of the step
 
 ENGINES = (
     Peer("newton SemiImplicit", "newton", newton_springs("SolverSemiImplicit"), "axial", MAX_ROWS),

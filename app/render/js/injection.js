@@ -13,7 +13,7 @@
 // Each shader: { suffix, update(context), removeUnused() }. `update` is called for each node with that suffix. It
 // returns the material that has the shader, or null. `removeUnused` (optional) disposes of what removed nodes left.
 const shaders = [];
-const refused = new WeakSet(); // materials whose program did not link: they keep viser's own shader
+const refused = new WeakSet(); // materials with a program that did not link: they keep viser's own shader
 
 // The mesh of a node is the first child of its group; shadow meshes and child nodes come after it.
 function meshOf(name) {
@@ -85,7 +85,7 @@ shaders.push({
 let lastAnswer = "";
 
 // The answer to the server: the token and the names of the nodes that are drawn with their shader. The server reads it
-// through viser's ClientHandle.local_storage, whose client puts the prefix "viser-user:" before each key.
+// through viser's ClientHandle.local_storage. Its client puts the prefix "viser-user:" before each key.
 function answerServer(activeNodes) {
   const answer = [TOKEN, ...activeNodes.sort()].join("\n");
   if (answer === lastAnswer) return;

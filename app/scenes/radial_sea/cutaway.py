@@ -29,7 +29,7 @@ class Cutaway(NamedTuple):
 
 
 def outline(middle: tuple[float, float], size: float) -> NDArray[np.float64]:
-    """Points (n, 2) [m] around the box whose far wall has this middle [m], for bodies of this size."""
+    """Points (n, 2) [m] around the box. Its far wall has this middle [m]; it suits bodies of this size."""
     (x, y), (dx, dy) = middle, DIRECTION
     half, length = HALF_WIDTH * size, LENGTH * size
     corners = [(half, 0.0), (-half, 0.0), (-half, length), (half, length), (half, 0.0)]

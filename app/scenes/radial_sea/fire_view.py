@@ -1,4 +1,4 @@
-"""Fire, smoke and the jet's oil as soft blobs: viser's Gaussian splats, of which one buffer a frame is sent.
+"""Fire, smoke and the jet's oil as soft blobs: viser's Gaussian splats. One buffer is sent for each frame.
 
 A splat is eight words: centre (3 x float32), one of the renderer's own, covariance (6 x float16), colour (4 x uint8).
 """

@@ -42,7 +42,7 @@ HELP = (
     "<b>Drag a buoy</b> under the water and let go. Next: press <b>2</b> for an oil spill, and compare the drafts "
     "in the table with Archimedes' principle; <b>6</b> sets the rig on fire."
 )
-PLOTTED_BODIES = 3  # bodies whose draft is plotted
+PLOTTED_BODIES = 3  # bodies with a plotted draft
 BODY_SERIES = tuple(kind_of(i).title.lower() for i in range(PLOTTED_BODIES))
 HEIGHT_SERIES = ("surface", f"height of the {BODY_SERIES[0]}")
 SERIES = (*BODY_SERIES, *HEIGHT_SERIES)
@@ -56,7 +56,7 @@ FIRST_RING = 0.35  # [m] radius of the first ring
 TILE_SIZE, TILE_LENGTH = 128, 256.0  # points a side (as many vertices as the rings have) and side [m] of the square sea
 PLOT_INTERVAL = 1 / 15  # [s] of simulated time between plot rows
 SUM_AGEING_INTERVAL = 1.0  # [s] of simulated time between two decays of the sum of waves
-TILE_AGEING_GROWTH = 0.2  # growth of the age after which the square sea, which takes longer to make, is made anew
+TILE_AGEING_GROWTH = 0.2  # growth of the age after which the square sea, which takes longer to make, is replaced
 COMPARE_INTERVAL = 2.0  # [s] of wall time between two timings of the other surface
 COST_MEMORY = 0.9  # share of the old value in the running mean of a surface's cost
 FOAM_RADIUS = 80.0  # [m] within which the foam threshold is measured
@@ -192,7 +192,7 @@ class RadialSeaScene:
         return self.sum if self.params.surface == "sum" else self.tile_now()
 
     def change_forces(self, params: Params) -> None:
-        """Take parameters under way: only what their change affects is made anew."""
+        """Take parameters under way: only what their change affects is replaced."""
         old, self.params = self.params, params
         column, choice = column_of(params), wave_choice_of(params)
         other_fluids = column != self.column or exposure_of(params) != exposure_of(old)
@@ -215,7 +215,7 @@ class RadialSeaScene:
         self.forget_costs()
 
     def forget_costs(self) -> None:
-        """Time the surfaces anew: they may cost something else now."""
+        """Forget what the surfaces cost: it may have changed."""
         self.costs, self.compared_at = {}, -math.inf
 
     def handle(self, command: SceneCommand) -> None:

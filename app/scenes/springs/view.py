@@ -24,7 +24,7 @@ class RopeSurroundings:
         self.pull = PullLine(server)
 
     def show(self, floor: bool, grid: bool, root: Vector, pull: PullFrame | None, points: np.ndarray) -> None:
-        """Assign what has changed. points: (n, 3) as drawn [m], of which the pull names one."""
+        """Assign what has changed. points: (n, 3) as drawn [m]; the pull names one of them."""
         self.ground.show(floor, grid)
         self.root.show(root)
         if pull is None:

@@ -232,7 +232,7 @@ PRESETS: dict[str, dict[str, Any]] = {
 
 
 class RainSettings(NamedTuple):
-    """What the rainfall depends on: it is made anew where one of these changes."""
+    """What the rainfall depends on: when one of these changes, it starts again."""
 
     rate: float  # [mm/h]
     drops: int  # largest number of drops drawn

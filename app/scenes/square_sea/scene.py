@@ -141,7 +141,7 @@ class SquareSeaScene:
         self.make_sea()
 
     def begin_plots(self) -> None:
-        """Start the plots anew."""
+        """Clear the plots."""
         self.plot_rows.append((math.nan,) * (len(SERIES) + 1))
         self.plotted_at = self.spectrum_at = -math.inf
         self.curve_columns: dict[str, tuple[NDArray[np.floating], ...]] | None = None
@@ -171,7 +171,7 @@ class SquareSeaScene:
             self.rainfall = Rainfall(self.sea, rain_settings(p), highest, p.seed)
 
     def clear_mesh(self) -> None:
-        """Start the drawn mesh anew, without foam."""
+        """Start a new drawn mesh, without foam."""
         n = min(int(self.params.mesh), self.sea.size)
         self.foam = np.zeros((n, n), np.float32)
         self.drawn: SeaFrame | None = None

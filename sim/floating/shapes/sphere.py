@@ -16,7 +16,7 @@ BODY_FREQUENCY = 5  # of a scene's bodies: 500 triangles
 
 
 def sphere(radius: float, frequency: int = 8) -> ClosedMesh:
-    """A sphere [m] as an icosahedron whose edges are divided by `frequency`: 20 frequency^2 triangles.
+    """A sphere [m] as an icosahedron with edges divided by `frequency`: 20 frequency^2 triangles.
 
     Raises ValueError for a radius that is not 0.001 to 10000 m or a frequency that is not 1 to 64.
     """

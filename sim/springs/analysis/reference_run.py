@@ -18,17 +18,17 @@ from sim.springs.state import DIVERGENCE_BOUND
 
 RTOL = 1e-10
 ATOL = 1e-13  # [m], [m/s]
-NUDGE = 1e-10  # [m] between the two at the start
+PERTURBATION = 1e-10  # [m] between the two at the start
 TRUST_FACTOR = 10.0  # separations above which an error is the racing method's own
 HORIZON_SEPARATION = 1e-2  # of the rope's length: a separation at which there is nothing left to compare with
-DEAREST = 5e7  # evaluations of a point that a second of all references may take, some half a second
+MAX_EVALUATION_RATE = 5e7  # evaluations of a point that a second of all references may take, some half a second
 METHOD = INTEGRATORS["dopri5"]
 
 
 def nudged(x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Flat positions (3 n,) with every point but the root moved by NUDGE, each another way."""
+    """Flat positions (3 n,) with every point but the root moved by PERTURBATION, each another way."""
     away = np.random.default_rng(0).standard_normal((3, x.size // 3))
-    away *= NUDGE / np.linalg.norm(away, axis=0)
+    away *= PERTURBATION / np.linalg.norm(away, axis=0)
     away[:, 0] = 0.0
     return x + away.ravel()
 
@@ -41,7 +41,7 @@ class ReferenceRun:
         x = net.x0.reshape(-1)
         self.length = length
         self.runs = [[x.copy(), np.zeros(x.size)], [nudged(x), np.zeros(x.size)]]
-        self.separation = NUDGE  # [m]
+        self.separation = PERTURBATION  # [m]
         self.horizon: float | None = None  # [s] when chaos took it
         self.count = count
         self.failure = ""  # why there is none, or ""
@@ -62,7 +62,7 @@ class ReferenceRun:
         return self.runs[0][1].reshape(3, -1)
 
     def update(self, net: Net) -> None:
-        """Other parameters, which may be too dear to follow."""
+        """Other parameters, which may be too expensive to follow."""
         self.failure = self.failure or too_dear(net, self.count)
 
     def advance(self, net: Net, t: float, duration: float) -> None:
@@ -81,7 +81,7 @@ class ReferenceRun:
             run[:] = xs[1], vs[1]
         apart = (self.runs[0][0] - self.runs[1][0]).reshape(3, -1)
         # Where a rope comes to rest the two meet again; below the nudge they say nothing new.
-        self.separation = max(NUDGE, float(np.linalg.norm(apart, axis=0).max()))
+        self.separation = max(PERTURBATION, float(np.linalg.norm(apart, axis=0).max()))
         if self.horizon is None and self.separation > HORIZON_SEPARATION * self.length:
             self.horizon = t + duration
 
@@ -104,6 +104,6 @@ def too_dear(net: Net, count: int) -> str:
     # two runs.
     omega, rate = gershgorin(net)
     steps = max(omega / 0.7, rate / 3.3)
-    if count * 12.0 * steps * net.x0[0].size <= DEAREST:
+    if count * 12.0 * steps * net.x0[0].size <= MAX_EVALUATION_RATE:
         return ""
     return f"it would take {steps:.2g} steps a second, too many for ropes of {net.x0[0].size} points"

@@ -12,7 +12,7 @@ from sim.springs.state import State, advance, energy
 from sim.springs.statics import hanging_chain
 
 LOOKS, STEPS = 4000, 20  # most looks, and steps between two
-STILL = 1e-16  # kinetic energy of a peak, over the potential's, at which it rests
+REST_ENERGY_SHARE = 1e-16  # kinetic energy of a peak, over the potential's, at which it rests
 
 
 def find_rest_positions(net: Net, x: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
@@ -45,7 +45,7 @@ def find_rest_positions(net: Net, x: NDArray[np.float64] | None = None) -> NDArr
         advance(still, state, LEAPFROG, h, STEPS)
         now = energy(still, state)
         if now.kinetic < before:
-            if before < STILL * max(abs(now.gravity), now.elastic, 1e-12):
+            if before < REST_ENERGY_SHARE * max(abs(now.gravity), now.elastic, 1e-12):
                 break
             state.v[:], before = 0.0, 0.0
         else:

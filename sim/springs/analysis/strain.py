@@ -9,7 +9,7 @@ from sim.springs.net import Net
 def structural_strain(net: Net, x: NDArray[np.float64]) -> NDArray[np.float64]:
     """(rows, cols) largest |length / rest length - 1| of the links to the nearest neighbours of each particle.
 
-    net: a cloth, whose first two families are the links along a row and along a column. x: (3, rows, cols) [m].
+    net: a cloth. Its first two families are the links along a row and along a column. x: (3, rows, cols) [m].
     """
     strain = np.zeros(net.shape)
     along_row, along_column = net.families[:2]

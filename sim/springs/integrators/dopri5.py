@@ -1,7 +1,7 @@
-"""Dormand-Prince 5(4), adaptive: steps of its own choosing for a given tolerance, frames filled in between.
+"""Dormand-Prince 5(4), adaptive: it chooses its steps for a given tolerance, and fills frames in between.
 
-Six force evaluations a step of fifth order. Undamped modes hold to h omega = 1 only, so that stiffness makes it dear; a
-tolerance of 1e-5 to 1e-8 on a soft net is where it pays.
+Six force evaluations a step of fifth order. Undamped modes hold to h omega = 1 only, so that it is expensive on stiff
+nets. Choose it for soft nets and tolerances of 1e-5 to 1e-8.
 """
 
 from sim.springs.analysis.amplification import limit_of_polynomial, polynomial_of

@@ -106,8 +106,8 @@ def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, tmp_path, capsys):
     kept, out = tmp_path / "out.nc.cases", tmp_path / "out.nc"
     command = [sys.executable, "-m", "app", "sweep", str(tmp_path / "s.toml"), "--out", str(out)]
     # A shell's background job ignores SIGINT, and so would what it starts.
-    heed = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=heed) as process:
+    default_sigint = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=default_sigint) as process:
         changes, last = 0, 0
         deadline = time.monotonic() + 200
         # Its making, and then at least two cases.

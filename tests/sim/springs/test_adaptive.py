@@ -60,7 +60,7 @@ def test_frames_are_as_good_between_steps_as_at_their_ends(name):
 
 @pytest.mark.parametrize("points", [7, 200, 385])
 def test_a_bare_rope_s_blocks_change_nothing(points):
-    """Against the same step stage by stage, for one block, two, and five of which the last is cut."""
+    """Against the same step stage by stage, for one block, for two, and for five with a shorter last one."""
     net = rope(points, length=0.1 * points, stiffness=2e4)
     p, x = net.kernel_view(1.0), net.x0.ravel() + 1e-3 * np.random.default_rng(0).standard_normal(net.x0.size)
     v, start, found = 0.1 * np.sin(np.arange(x.size)), np.zeros(x.size), []

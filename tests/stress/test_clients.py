@@ -2,6 +2,7 @@
 
 import gc
 from collections.abc import Iterator
+from typing import Any
 
 import psutil
 import pytest
@@ -81,6 +82,12 @@ def test_a_client_that_stops_reading_holds_up_nobody(viewer: Viewer, clients: Cl
         assert len(pending) < 5000
 
 
+def is_pulled(viewer: Viewer) -> bool:
+    """Whether something is drawn as pulled: one thing, or in the radial sea any number of bodies."""
+    frame: Any = viewer.loop.latest.frame
+    return bool(frame.pulls) if viewer.panel.kind.name == "radial_sea" else frame.pull is not None
+
+
 def test_a_browser_killed_in_mid_drag_lets_go(viewer: Viewer, clients: Clients, tally: Tally) -> None:
     name = viewer.panel.kind.name
     if name not in HANDLES:
@@ -94,11 +101,11 @@ def test_a_browser_killed_in_mid_drag_lets_go(viewer: Viewer, clients: Clients, 
         def held() -> bool:
             for phase in ("start", "update"):  # again, where the first came before the thing was drawn
                 clients.drag(hand, node, phase, instance, (-1.0, 0.5, 2.0))
-            return viewer.loop.latest.frame.pull is not None
+            return is_pulled(viewer)
 
         until(held, "it is held")
         clients.kill(hand)
-        until(lambda: viewer.loop.latest.frame.pull is None, "it is let go")
+        until(lambda: not is_pulled(viewer), "it is let go")
         runs(viewer)
 
 

@@ -8,7 +8,8 @@ from importlib.metadata import packages_distributions
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text())
+PROJECT = SETTINGS["project"]
 OWN = {"app", "assets", "sim"}
 # Peers that are no extras of ours: pypbd and bpy are installed by hand, warp's distribution is warp-lang.
 BY_HAND = {"bpy", "pypbd"}
@@ -57,3 +58,12 @@ def test_what_is_imported_anywhere_is_a_dependency_or_an_extra():
 def test_what_is_used_by_its_inner_names_has_an_upper_bound():
     bounded = {name for name in ("numba", "viser") for r in PROJECT["dependencies"] if r.startswith(name) and "<" in r}
     assert bounded == {"numba", "viser"}
+
+
+def test_the_wheel_holds_of_the_assets_what_the_program_reads_and_nothing_else():
+    excluded = {Path(path).name for path in SETTINGS["tool"]["hatch"]["build"]["targets"]["wheel"]["exclude"]}
+    kept = {path.name for path in (ROOT / "assets").iterdir()} - excluded - {"__init__.py", "__pycache__"}
+    sources = "".join(path.read_text("utf-8") for top in ("app", "sim") for path in (ROOT / top).rglob("*.py"))
+    assert kept
+    assert [name for name in sorted(kept) if name not in sources and f'"{Path(name).stem}"' not in sources] == []
+    assert excluded == {"bench", "make_models.py", "pictures", "stability"}

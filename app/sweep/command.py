@@ -10,10 +10,11 @@ from app.experiments.pool import progress_bar
 from app.files import check_out_file
 from app.sweep.case import DIVERGED, ENDS, FAILED, Outcome
 from app.sweep.spec import Spec, read_spec
-from sim.files import replacing
+from sim.files import draft_of, replacing
 from sim.validation import argument_error
 
 REQUIRED_PACKAGES = ("xarray", "netCDF4")
+FIGURE_SUFFIXES = (".png", ".svg")
 
 Outcomes = Generator[tuple[int, Outcome], None, None]  # the number and the outcome of each case, as it is finished
 Run = Callable[[dict[int, Any]], Outcomes]  # takes jobs by number
@@ -28,7 +29,8 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
     spec = read_spec(spec_path)
     if out.suffix != ".nc":
         raise argument_error("--out", str(out), "a name that ends in .nc")
-    check_out_file("--out", out, f"{out.name}.cases-journal")
+    figures = [draft_of(out.with_suffix(suffix)).name for suffix in FIGURE_SUFFIXES]
+    check_out_file("--out", out, f"{out.name}.cases-journal", *figures)
     for package in (*REQUIRED_PACKAGES, *(("distributed",) if scheduler is not None else ())):
         if importlib.util.find_spec(package) is None:
             raise ValueError(f"sweep: {package} is not installed (pip install 'springtide[sweep]')")
@@ -124,7 +126,7 @@ def write_figures(dataset: Any, out: Path) -> list[Path]:
     except ModuleNotFoundError as missing:
         print(f"no figure: {missing.name} is not installed (pip install 'springtide[plot]')")
         return []
-    paths = [out.with_suffix(suffix) for suffix in (".png", ".svg")]
+    paths = [out.with_suffix(suffix) for suffix in FIGURE_SUFFIXES]
     for path in paths:
         with replacing(path) as draft:
             figure.savefig(draft, dpi=150)

@@ -28,9 +28,8 @@
   function commit(field) {
     const draft = drafts.get(field);
     if (draft === undefined) return;
-    // viser compares with what it last showed: a text that is typed back to the value needs no message.
-    if (draft === before.get(field)) return void drafts.delete(field);
-    send(field, draft);
+    // viser sends nothing where the text is what it last showed, so a space is added: it may follow a text that was refused.
+    send(field, draft === before.get(field) ? `${draft} ` : draft);
   }
 
   function restore(field) {

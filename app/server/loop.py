@@ -297,7 +297,7 @@ class SimLoop:
         frame = scene.frame()
         where = where_not_finite(frame)
         if where:
-            raise DivergenceError(f"The {where} to draw is not finite. Reset, or take a smaller step.")
+            raise DivergenceError(f"What is to be drawn is not finite ({where}). Reset, or take a smaller step.")
         readings, work, curves = scene.readings(), scene.work(), scene.curves()
         self.plot_rows.extend(scene.take_plot_rows())
         return Snapshot(serial, frame, self.status(solve), readings, work, scene.params, curves)

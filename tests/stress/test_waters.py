@@ -124,10 +124,10 @@ def test_hulls_in_places_where_no_hull_belongs(wind: float, spill: str, tally: T
             assert (np.abs(fleet.position[:, 2]) < 15.0).all()
     with tally.fault("hull that is no longer a number"):
         loop = SimLoop(scene)
-        start(position=math.nan)
+        start(velocity=math.nan)
         loop.tick(FRAME_INTERVAL)
         loop.tick(FRAME_INTERVAL)
-        assert "no number" in loop.latest.status.halted
+        assert "no longer finite" in loop.latest.status.halted
         assert where_not_finite(loop.latest.frame) == ""
         loop.commands.put(Reset())
         for _ in range(30):

@@ -14,6 +14,7 @@ from viser._messages import HotkeyKey  # viser names no public type of its keys
 
 from app.messages import BaseParams, Command, Load, Pause, Play, PlotRow, Reset, StepOnce, TogglePlay, WorkCounts
 from app.panel.control import Control
+from app.panel.display import Display
 from app.panel.history import History, Settings
 from app.panel.plots import Plots
 from app.panel.work_table import work_table
@@ -21,7 +22,7 @@ from app.render.cameras import place_camera
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, note
 from app.render.viser_types import ViserEvent
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
-from sim.parameters import Value, changed_names, check_record, parameters_of
+from sim.parameters import Value, changed_names, check_record, in_words, parameters_of
 
 if TYPE_CHECKING:
     from app.panel.stability_map import StabilityMapPanel
@@ -81,7 +82,7 @@ class Panel:
             self.status = gui.add_html("")
             self.readout = gui.add_html("")
         help_text = fill(
-            '<div style="padding:0 12px 4px;font-size:12px;line-height:1.45;opacity:.85">{}<br>'
+            '<div class="springtide-note">{}<br>'
             "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset view · <b>P</b> plots · "
             "<b>G</b> grid · <b>U</b> undo · <b>1-9</b> presets</div>",
             Html(kind.help),
@@ -102,6 +103,7 @@ class Panel:
             folder = groups[parameter.group]
             with folder:
                 self.controls[name] = Control(gui, folder, name, parameter, self.reader(name), self.on_change)
+        self.display = Display(gui, view)
         self.notes: dict[str, viser.GuiHtmlHandle] = {}
         self.work_counts: viser.GuiHtmlHandle | None = None
         if developer:
@@ -308,13 +310,14 @@ def button_names(running: bool) -> tuple[str, str, str]:
 def add_scene_chooser(
     gui: viser.GuiApi, scenes: tuple[str, ...], shown: str | None, open_scene: Callable[[str], None]
 ) -> None:
-    """The list of scenes."""
-    chooser = gui.add_dropdown("Scene", scenes, initial_value=shown)
+    """The list of scenes, each with its name in words."""
+    names = {in_words(name): name for name in scenes}
+    chooser = gui.add_dropdown("Scene", tuple(names), initial_value=None if shown is None else in_words(shown))
 
     @chooser.on_update
     async def _(event: ViserEvent) -> None:
         if event.client_id is not None:
-            open_scene(event.target.value)
+            open_scene(names[event.target.value])
 
 
 def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> Html:

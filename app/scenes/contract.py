@@ -23,6 +23,8 @@ from app.scenes.charts import Chart, Columns, CurveAxes, PlotAxes
 from sim.parameters import Value
 
 if TYPE_CHECKING:
+    from viser import ClientHandle
+
     from sim.springs.net import Net
 
 FRAME_INTERVAL = 1 / 60  # [s] between ticks of the loop, and between two frames of a scene that asks for nothing else
@@ -137,6 +139,10 @@ class View(Protocol[P, F, R]):
 
     def notes(self, snapshot: Snapshot[P, F, R]) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
+        ...
+
+    def set_dark(self, client: "ClientHandle", dark: bool) -> None:
+        """Draw what stands around the scene dark, or light again, for one browser."""
         ...
 
     def close(self) -> None:

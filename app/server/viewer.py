@@ -11,6 +11,7 @@ from collections.abc import Callable
 import viser
 
 from app.messages import BaseParams, Command, Halt, Release, WorkCount
+from app.panel.display import set_theme
 from app.panel.panel import Panel, add_scene_chooser
 from app.render.cameras import place_cameras
 from app.render.html import fill, note
@@ -59,9 +60,7 @@ class Viewer:
         self.wanted: queue.SimpleQueue[str] = queue.SimpleQueue()  # scenes that browsers ask for
         threading.Thread(target=self.open_wanted, name="scene changes", daemon=True).start()
         gui = self.server.gui
-        gui.configure_theme(
-            show_logo=False, show_share_button=False, control_width="medium", brand_color=(28, 106, 168)
-        )
+        set_theme(gui, dark=False)
         gui.set_panel_label("Springtide")
 
     def open(self, name: str, params: BaseParams | None = None, *, paused: bool = False) -> None:

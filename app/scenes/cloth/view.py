@@ -11,9 +11,9 @@ from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import PullLine, SurfaceDrag
 from app.render.gizmo import Gizmo
-from app.render.ground import Ground
 from app.render.html import fill, join
 from app.render.meshes import ball
+from app.render.surroundings import Surroundings, set_dark
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.scene import ClothFrame, ClothReadings
 from app.scenes.contract import PostCommand
@@ -21,10 +21,6 @@ from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 from sim.formatting import number
 
 CLOTH_COLOUR = (176, 58, 72)
-FLOOR_COLOUR = (222, 227, 233)
-HORIZON_COLOUR, ZENITH_COLOUR = (232, 237, 243), (126, 168, 214)  # of the sky
-SKY_ROWS = 512
-ZENITH_SHARE = 0.45  # of the image's height over which the sky goes from one colour to the other
 SPHERE_COLOUR = (92, 140, 190)
 PIN_COLOUR = (60, 66, 80)
 PIN_RADIUS = 0.018  # [m] of the balls that mark the pins
@@ -35,13 +31,6 @@ POLE_OVERHANG = 0.06  # of the flag's height, above the flag
 MIN_POLE_DROP = 0.1  # [m] smallest height of the flag from which the foot of the pole is computed
 
 ClothSnapshot: TypeAlias = Snapshot[Params, ClothFrame, ClothReadings]
-
-
-def sky() -> np.ndarray:
-    """(SKY_ROWS, 4, 3) sRGB: from the zenith down to the horizon, and one colour below it."""
-    up = np.clip(1.0 - np.linspace(0.0, 1.0, SKY_ROWS) / ZENITH_SHARE, 0.0, 1.0)[:, None]
-    column = np.array(HORIZON_COLOUR) * (1.0 - up) + np.array(ZENITH_COLOUR) * up
-    return np.repeat(column.round().astype(np.uint8)[:, None], 4, axis=1)
 
 
 def faces(rows: int, cols: int) -> np.ndarray:
@@ -69,9 +58,7 @@ class View:
         self.shape = (0, 0)
         self.drag = SurfaceDrag(post)
         scene = server.scene
-        scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
-        scene.set_background_image(sky())
-        self.ground = Ground(server, FLOOR_COLOUR, (190, 198, 208), (160, 170, 184))
+        self.surroundings = Surroundings(server)
         self.ball = scene.add_mesh_simple("/sphere/ball", *ball(48), color=SPHERE_COLOUR, visible=False)
         arrows = {"disable_sliders": True, "visible": False}
         self.pins = [Gizmo(server, post, name, PIN_ARROW_LENGTH, **arrows) for name in ("pin a", "pin b")]
@@ -125,7 +112,7 @@ class View:
             self.pull.show(None)
         else:
             self.pull.show((self.points[frame.pull.particle], frame.pull.target), frame.pull.load)
-        self.ground.show(frame.floor, frame.grid)
+        self.surroundings.show(frame.floor, frame.grid)
         for index, (gizmo, pin_ball) in enumerate(zip(self.pins, self.pin_balls, strict=True)):
             pin_ball.visible = frame.pins is not None
             gizmo.show(None if frame.pins is None else frame.pins[index])
@@ -162,6 +149,10 @@ class View:
     def notes(self, snapshot: ClothSnapshot) -> dict[str, str]:
         """No folders."""
         return {}
+
+    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
+        """Draw sky and floor dark, or light again, for one browser."""
+        set_dark(client, dark)
 
     def close(self) -> None:
         """Removing the nodes of the scene removes everything."""

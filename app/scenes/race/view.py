@@ -10,6 +10,7 @@ from app.messages import Snapshot, Vector
 from app.render.colormap import rgb
 from app.render.dragging import drag
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
+from app.render.surroundings import set_dark
 from app.scenes.charts import PALETTE
 from app.scenes.contract import PostCommand
 from app.scenes.race.entrants import RaceReadings
@@ -183,6 +184,10 @@ class View:
     def notes(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """No folders."""
         return {}
+
+    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
+        """Draw sky and floor dark, or light again, for one browser."""
+        set_dark(client, dark)
 
     def close(self) -> None:
         """Removing the nodes of the scene removes everything."""

@@ -254,6 +254,9 @@ class View:
         """Heading -> HTML of the folders below the controls."""
         return notes_of(snapshot)
 
+    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
+        """Nothing to do: the light of a sea is that of its sky, a parameter."""
+
     def close(self) -> None:
         """Nothing to give back: removing the nodes removes everything."""
 

@@ -13,6 +13,7 @@ from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
 from app.render.gizmo import Gizmo
 from app.render.html import Html, bold, fill
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
+from app.render.surroundings import set_dark
 from app.scenes.contract import PostCommand
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import NumericalCost, RopeFrame, RopeReadings
@@ -184,6 +185,10 @@ class View:
     def notes(self, snapshot: RopeSnapshot) -> dict[str, str]:
         """No folders."""
         return {}
+
+    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
+        """Draw sky and floor dark, or light again, for one browser."""
+        set_dark(client, dark)
 
     def close(self) -> None:
         """Removing the nodes of the scene removes everything."""

@@ -1,4 +1,4 @@
-"""What the drawings of rope and race share: light, floor, the arrows at the root, and the line of a drag."""
+"""What the drawings of rope and race share: sky, floor, the arrows at the root, and the line of a drag."""
 
 import numpy as np
 import viser
@@ -6,7 +6,7 @@ import viser
 from app.messages import Vector
 from app.render.dragging import PullLine
 from app.render.gizmo import Gizmo
-from app.render.ground import Ground
+from app.render.surroundings import Surroundings
 from app.scenes.contract import PostCommand
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_parameters import ROOT
@@ -18,14 +18,13 @@ class RopeSurroundings:
     """The handles of all that is drawn around ropes."""
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
-        server.scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
-        self.ground = Ground(server, (226, 230, 236), (196, 202, 212), (150, 160, 176))
+        self.surroundings = Surroundings(server)
         self.root = Gizmo(server, post, "root", ROOT_ARROW_LENGTH, position=ROOT)
         self.pull = PullLine(server)
 
     def show(self, floor: bool, grid: bool, root: Vector, pull: PullFrame | None, points: np.ndarray) -> None:
         """Assign what has changed. points: (n, 3) as drawn [m]; the pull names one of them."""
-        self.ground.show(floor, grid)
+        self.surroundings.show(floor, grid)
         self.root.show(root)
         if pull is None:
             self.pull.show(None)

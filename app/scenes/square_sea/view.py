@@ -175,6 +175,9 @@ class View:
         """Heading -> HTML of the folders below the controls."""
         return dict(report.notes(snapshot))
 
+    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
+        """Nothing to do: the light of a sea is that of its sky, a parameter."""
+
     def close(self) -> None:
         """Remove the click callback, which viser keeps when it removes the nodes of a scene."""
         self.server.scene.remove_click_callback(self.on_click)

@@ -1,0 +1,50 @@
+"""How a browser shows the lab: dark or light, and how large its text is. Each browser has its own (`js/display.js`)."""
+
+# pyright: reportPrivateUsage=false
+
+import viser
+
+from app.render.html import fill
+from app.render.viser_types import GuiHandle, ViserEvent
+from app.scenes.contract import AnyView
+
+BRAND_COLOUR = (28, 106, 168)
+
+
+def set_theme(gui: viser.GuiApi, *, dark: bool) -> None:
+    """The look of viser's panel: of every browser, or of one by its own `gui`."""
+    gui.configure_theme(
+        dark_mode=dark, show_logo=False, show_share_button=False, control_width="medium", brand_color=BRAND_COLOUR
+    )
+
+
+class Display:
+    """The switches, and two hidden buttons by which a browser says whether panel and floor are to be dark.
+
+    They are buttons because two browsers may say the same: viser passes on only what changes the value of a checkbox.
+    """
+
+    def __init__(self, gui: viser.GuiApi, view: AnyView) -> None:
+        self.dark: GuiHandle = gui.add_button("Dark", visible=False)
+        self.light: GuiHandle = gui.add_button("Light", visible=False)
+
+        @self.dark.on_click
+        async def _(event: ViserEvent) -> None:
+            if event.client is not None:
+                set_theme(event.client.gui, dark=True)
+                view.set_dark(event.client, True)
+
+        @self.light.on_click
+        async def _(event: ViserEvent) -> None:
+            if event.client is not None:
+                set_theme(event.client.gui, dark=False)
+                view.set_dark(event.client, False)
+
+        switches = fill(
+            '<div class="springtide-switches" data-springtide-dark="{}" data-springtide-light="{}">'
+            '<button type="button" data-springtide-switch="dark">Dark</button>'
+            '<button type="button" data-springtide-switch="large">Large text</button></div>',
+            self.dark._impl.uuid,
+            self.light._impl.uuid,
+        )
+        gui.add_html(str(switches))

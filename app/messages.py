@@ -157,6 +157,8 @@ class Status(NamedTuple):
     frame_rate: float  # frames per second published
     halted: str  # why the run stopped by itself, or ""
     starts: int = 0  # how often it was begun again, by a reset or a preset
+    # While the last moments of a run that diverged are shown again, and at their end: corners [m] of what they fill.
+    replayed: tuple[Vector, Vector] | None = None
 
 
 class Snapshot(NamedTuple, Generic[P, F, R]):
@@ -171,5 +173,21 @@ class Snapshot(NamedTuple, Generic[P, F, R]):
     curves: Mapping[str, object] | None = None  # parameter -> columns of its chart
 
 
+class Moment(NamedTuple):
+    """A frame of a run that diverged."""
+
+    time: float  # [s] simulated
+    frame: object  # the scene's own record
+    low: Vector  # [m] corners of the box that what moves fills
+    high: Vector  # [m]
+
+
 class DivergenceError(Exception):
-    """A run left any sane bound; the text says which h omega did it and which step would hold."""
+    """A run left any sane bound; the text says which h omega did it and which step would hold.
+
+    moments: the last ones before that, for the viewer to show again slowly; () where there are none to show.
+    """
+
+    def __init__(self, text: str, moments: tuple[Moment, ...] = ()) -> None:
+        super().__init__(text)
+        self.moments = moments

@@ -324,6 +324,8 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
     """Running or not, the clock, the pace, and why the run stopped; how many browsers share the lab."""
     s = snapshot.status
     state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
+    if s.replayed is not None and not s.halted:
+        state = coloured("Slow motion", WARNING_COLOUR)
     if s.halted:
         state = coloured("Stopped", ERROR_COLOUR)
     pace = fill("×{:.2f} real time, {:.0f} frames/s", s.actual_speed, s.frame_rate) if s.running else fill("real time")
@@ -333,11 +335,12 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
             coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed,
         )  # fmt: skip
     return fill(
-        '<div class="springtide-panel" data-state="{}">{} t = {:.2f} s{}{}{}{}</div>',
+        '<div class="springtide-panel" data-state="{}">{} t = {:.2f} s{}{}{}{}{}</div>',
         "running" if s.running else "paused",
         state,
         s.time,
         fill(' · <span class="springtide-pace">{}</span>', pace) if s.running else "",
+        fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
         fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
         fill("<br>{} browsers share this lab.", visitors) if visitors > 1 else "",
         fill('<div class="springtide-stopped" role="alert">{}</div>', s.halted) if s.halted else "",

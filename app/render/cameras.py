@@ -1,11 +1,13 @@
 """The cameras of all browsers."""
 
+import math
 from collections.abc import Iterator
 
 import viser
 
 from app.messages import Vector
 
+FIT_MARGIN = 1.1  # room around what a camera shows
 Camera = viser.CameraHandle | viser.InitialCameraConfig
 
 
@@ -22,6 +24,22 @@ def place_cameras(
     """Place every camera at `position` [m], looking at `target` [m]; field_of_view: vertical [rad], None to keep it."""
     for camera in all_cameras(server):
         place_camera(camera, position, target, field_of_view)
+
+
+def fit_cameras(
+    server: viser.ViserServer, view: tuple[Vector, Vector], field_of_view: float, corners: tuple[Vector, Vector]
+) -> None:
+    """Place the camera of each browser where `view` looks from, but far enough away to show a box; all in [m].
+
+    view: position and target. field_of_view: vertical [rad]. corners: of the box.
+    """
+    position, target = view
+    offset = [a - b for a, b in zip(position, target, strict=True)]
+    radius = math.hypot(*(max(abs(low - c), abs(high - c)) for low, high, c in zip(*corners, target, strict=True)))
+    scale = max(1.0, FIT_MARGIN * radius / math.sin(0.5 * field_of_view) / math.hypot(*offset))
+    x, y, z = (c + scale * d for c, d in zip(target, offset, strict=True))
+    for client in server.get_clients().values():
+        place_camera(client.camera, (x, y, z), target)
 
 
 def place_camera(camera: Camera, position: Vector, target: Vector, field_of_view: float | None = None) -> None:

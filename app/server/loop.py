@@ -31,6 +31,7 @@ from app.messages import (
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.server.merging import merged
+from app.server.replay import Replay
 from sim.parameters import effect_of_change
 
 SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
@@ -107,6 +108,7 @@ class SimLoop:
         self.first: Command | None = None  # what ended a sleep, for the next tick
         self.running = not paused
         self.halted = ""
+        self.replay: Replay | None = None  # of a run that has just diverged
         self.cost_unknown = True  # the cost of a step with the parameters as they are is not known
         self.loaded = 0  # number of the last `Load` that was handled
         self.pacer = FixedStep()
@@ -133,7 +135,9 @@ class SimLoop:
         changed = loads == self.loaded and params is not self.scene.params and self.take(params)
         changed |= self.handle_waiting()
         solve = 0.0
-        if self.running and self.audience():
+        if self.running and self.audience() and self.replay is not None:
+            changed |= self.play_replay(self.replay, wall)
+        elif self.running and self.audience():
             n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame_interval)
             if n:
                 solve = self.advance_within_budget(n) if self.cost_unknown else self.advance(n)
@@ -154,6 +158,9 @@ class SimLoop:
             self.scene.params = params
             return True
         self.cost_unknown = True
+        if self.replay is not None:
+            self.halt(self.replay.reason)
+            self.replay = None
         if effect == "forces":
             self.guarded(lambda: self.scene.change_forces(params))
             self.scene.params = params  # also where the scene failed: not to be tried again in every tick
@@ -168,7 +175,7 @@ class SimLoop:
         Another method or more points may make a step a thousand times as expensive as the last one was.
         """
         part, spent = 1, 0.0
-        while n > 0 and part > 0 and self.running:
+        while n > 0 and part > 0 and self.running and self.replay is None:
             part = min(part, n)
             self.pacer.cost = 0.0
             spent += self.advance(part)
@@ -202,11 +209,22 @@ class SimLoop:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say."""
         try:
             action()
-        except DivergenceError as reason:
-            self.halt(str(reason))
+        except DivergenceError as error:
+            if error.moments and self.running:
+                self.replay = Replay(error.moments, str(error))
+            else:
+                self.halt(str(error))
         except Exception as error:
             traceback.print_exc()
             self.halt(f"The scene stopped with {type(error).__name__}: {error}")
+
+    def play_replay(self, replay: Replay, wall: float) -> bool:
+        """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""
+        self.capped = False
+        changed = replay.play(wall)
+        if replay.ended:
+            self.halt(replay.reason)
+        return changed or replay.ended
 
     def halt(self, reason: str) -> None:
         """Pause, and keep the reason for the panel."""
@@ -230,6 +248,8 @@ class SimLoop:
         match command:
             case Play():
                 self.running, self.halted = True, ""
+                if self.replay is not None and self.replay.ended:
+                    self.replay = None  # on from the last good state
             case Pause():
                 self.running = False
             case TogglePlay():
@@ -254,6 +274,12 @@ class SimLoop:
 
     def step_by_hand(self, count: int) -> None:
         """Take up to `count` single steps, at least one, while the frame's budget lasts; the rest is dropped."""
+        if self.replay is not None and not self.replay.ended:
+            self.replay.step()
+            if self.replay.ended:
+                self.halt(self.replay.reason)
+            return
+        self.replay = None
         spent = 0.0
         for done in range(count):
             spent += self.advance(1)
@@ -265,6 +291,7 @@ class SimLoop:
         """The scene from its start; a run that had halted goes on."""
         self.running, self.halted = self.running or bool(self.halted), ""
         self.pacer.debt = 0.0
+        self.replay = None
         self.guarded(self.scene.reset)
 
     def publish(self, solve: float) -> None:
@@ -291,10 +318,11 @@ class SimLoop:
     def collect(self, serial: int, solve: float) -> AnySnapshot:
         """The scene's frame, readings, work, parameters and curves; hands its plot rows over.
 
+        While the last moments before a divergence are shown again, the frame is of one of them.
         Raises DivergenceError where the frame holds a number that is not finite.
         """
         scene = self.scene
-        frame = scene.frame()
+        frame = scene.frame() if self.replay is None else self.replay.moment.frame
         where = where_not_finite(frame)
         if where:
             raise DivergenceError(f"What is to be drawn is not finite ({where}). Reset, or take a smaller step.")
@@ -304,7 +332,8 @@ class SimLoop:
 
     def status(self, solve: float) -> Status:
         """The clock and the rates."""
-        simulated = self.scene.time
+        moment = None if self.replay is None else self.replay.moment
+        simulated = self.scene.time if moment is None else moment.time
         self.history.append((self.wall, simulated))
         while len(self.history) > 2 and self.history[0][0] < self.wall - RATE_WINDOW:
             self.history.popleft()
@@ -320,6 +349,7 @@ class SimLoop:
             frame_rate=(len(self.history) - 1) / elapsed if elapsed > 0 else 0.0,
             halted=self.halted,
             starts=self.counts["starts"],
+            replayed=None if moment is None else (moment.low, moment.high),
         )
 
     def run(self, stop: threading.Event) -> None:

@@ -13,7 +13,7 @@ import viser
 from app.messages import BaseParams, Command, Halt, Release, WorkCount
 from app.panel.display import set_theme
 from app.panel.panel import Panel, add_scene_chooser
-from app.render.cameras import place_cameras
+from app.render.cameras import fit_cameras, place_cameras
 from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_scene
 from app.render.viser_types import ViserConnection
@@ -190,6 +190,10 @@ class Viewer:
                 self.shown = snapshot.serial
                 self.drawn += 1
                 self.attempt("picture", lambda: self.view.show(snapshot.frame))
+                replayed = snapshot.status.replayed
+                if replayed is not None and not snapshot.status.halted:
+                    view = self.view.first_view(snapshot.params)
+                    fit_cameras(self.server, view, self.view.FIELD_OF_VIEW, replayed)
                 if snapshot.status.starts != self.starts:  # after the picture: another scene size moves cameras too
                     self.starts = snapshot.status.starts
                     place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)

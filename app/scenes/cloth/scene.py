@@ -14,7 +14,7 @@ from app.scenes.cloth.parameters import MAX_ACCOUNTED_PARTICLES, PRESETS, Params
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, SceneKind
 from app.scenes.plot_rows import PlotRows
-from app.scenes.springs.divergence import divergence_text
+from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
 from app.scenes.springs.drag import Drag, PullFrame
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.warmup import compile_integrators
@@ -98,6 +98,7 @@ class ClothScene:
     def __init__(self, params: Params) -> None:
         self.params = params
         self.plot_rows = PlotRows(len(SERIES))
+        self.last_moments = LastMoments()
         self.counts = SpringWorkCounts()
         self.tuner = ThreadTuner()
         self.drag = Drag()
@@ -139,6 +140,7 @@ class ClothScene:
         self.hold_pins()
         self.corrections = 0.0
         self.plot_rows.restart()
+        self.last_moments.clear()
         self.assess_stability()
 
     def hold_pins(self) -> None:
@@ -200,8 +202,8 @@ class ClothScene:
         self.tuner.advance(steps, take, large=self.particles >= MIN_PARTICLES_FOR_TWO_THREADS)
         self.counts.update(net, self.state.force_evals - good.force_evals, steps, with_account=with_account)
         if not extremes(self.state.x, self.state.v).max_coordinate < MAX_DISTANCE:  # true of a NaN as well
-            self.state = good
-            raise DivergenceError(self.diagnosis())
+            self.repeat_to_divergence(net, good, steps)
+            raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
         if self.integrator.implicit:
             self.corrections = (self.state.force_evals - good.force_evals) / steps
         self.net = net
@@ -211,6 +213,18 @@ class ClothScene:
             self.assess_stability()
         if self.plot_rows.is_due(self.state.t):
             self.add_plot_row()
+
+    def repeat_to_divergence(self, net: Net, good: State, steps: int) -> None:
+        """Take the steps that left the bounds once more, keep a frame of each, and go back to the last good state."""
+        self.state = good.copy()
+        for _ in range(steps):
+            advance(net, self.state, self.integrator, self.step, 1, with_account=False)
+            distance = extremes(self.state.x, self.state.v).max_coordinate
+            if distance < MAX_OVERSHOOT * MAX_DISTANCE:  # false of a NaN as well
+                self.frame()
+            if not distance < MAX_DISTANCE:
+                break
+        self.state = good
 
     def net_during(self, t: float, duration: float) -> Net:
         """The net with the motions of pins, sphere and pull, and the wind, over the next `duration` [s] from time t."""
@@ -310,14 +324,14 @@ class ClothScene:
         return self.stability._replace(corrections=self.corrections, threads=self.tuner.threads)
 
     def frame(self) -> ClothFrame:
-        """What to draw."""
+        """What to draw; kept for a while, to be shown again if the run diverges."""
         params = self.params
         pull = None
         if self.drag.hold is not None:
             _, index, hand = self.drag.hold
             distance = float(np.linalg.norm(np.asarray(hand.position) - self.state.x.reshape(3, -1)[:, index]))
             pull = PullFrame(index, hand.position, min(1.0, distance * self.pull_spring()[0] / params.pull))
-        return ClothFrame(
+        frame = ClothFrame(
             points=np.ascontiguousarray(np.moveaxis(self.state.x, 0, -1), dtype=np.float32),
             strain=structural_strain(self.net, self.state.x).astype(np.float32),
             full_strain=0.01 * params.full_strain,
@@ -330,6 +344,8 @@ class ClothScene:
             colour=params.colour,
             pull=pull,
         )
+        self.last_moments.add(self.state.t, frame, frame.points)
+        return frame
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
         """The state for a file: name -> (array, unit)."""

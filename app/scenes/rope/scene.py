@@ -12,7 +12,7 @@ from app.scenes.contract import FRAME_INTERVAL, SceneKind, StabilityMap
 from app.scenes.plot_rows import PlotRows
 from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import PRESETS, Params, hidden
-from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
+from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles, vector_of
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
@@ -94,6 +94,7 @@ class RopeScene:
         self.params = params
         self.handles = RopeHandles()
         self.plot_rows = PlotRows(len(SERIES))
+        self.last_moments = LastMoments()
         self.counts = SpringWorkCounts()
         self.reset()
 
@@ -130,6 +131,7 @@ class RopeScene:
         self.counted = 0, 0  # force evaluations and steps at the last assessment
         self.corrections = 0.0
         self.plot_rows.restart()
+        self.last_moments.clear()
         self.set_bounds()
         self.assess_stability()
 
@@ -181,8 +183,8 @@ class RopeScene:
         self.counts.update(net, self.state.force_evals - good.force_evals, steps, with_account=True)
         found = extremes(self.state.x, self.state.v)
         if not found.reach < self.max_reach:  # true of a NaN as well
-            self.state = good
-            raise DivergenceError(self.diagnosis())
+            self.repeat_to_divergence(net, good, steps)
+            raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
         self.max_speed = found.speed
         if net.pin_paths and self.handles.root.at_rest:  # it has just come to rest
             self.state.x[:, 0, 0] = self.handles.root.position
@@ -194,6 +196,18 @@ class RopeScene:
             self.assess_stability()
         if self.plot_rows.is_due(self.state.t):
             self.add_plot_row()
+
+    def repeat_to_divergence(self, net: Net, good: State, steps: int) -> None:
+        """Take the steps that left the bounds once more, keep a frame of each, and go back to the last good state."""
+        self.state, reach = good.copy(), 0.0
+        for _ in range(steps):
+            advance(net, self.state, self.integrator, self.step, 1, with_account=True)
+            reach = extremes(self.state.x, self.state.v).reach
+            if reach < MAX_OVERSHOOT * self.max_reach:  # false of a NaN as well
+                self.frame()
+            if not reach < self.max_reach:
+                break
+        self.state = good
 
     def has_news(self) -> bool:
         """Whether the stability, or the cost of an implicit method, may have changed since the last assessment."""
@@ -261,11 +275,11 @@ class RopeScene:
         return rope_tension(self.net, self.state.x)
 
     def frame(self) -> RopeFrame:
-        """What to draw."""
+        """What to draw; kept for a while, to be shown again if the run diverges."""
         params, handles = self.params, self.handles
         weight = self.net.mass * abs(self.net.gravity[2]) * (params.points - 1)
         held = self.state.x[:, 0, handles.drag.hold.particle if handles.drag.hold else 0]
-        return RopeFrame(
+        frame = RopeFrame(
             points=np.ascontiguousarray(self.state.x[:, 0].T, dtype=np.float32),
             tension=self.tension().astype(np.float32),
             full_scale=max(1.25 * weight, 1e-3),
@@ -277,6 +291,8 @@ class RopeScene:
             show_points=params.show_points,
             pull=handles.pull_frame(held, 0.0, self.net.mass, self.step, params.pull),
         )
+        self.last_moments.add(self.state.t, frame, frame.points)
+        return frame
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
         """The state for a file: name -> (array, unit)."""

@@ -1,11 +1,45 @@
-"""Why a net of springs left its bounds, and what would hold, in words."""
+"""A net of springs that left its bounds: its last moments, why that was, and what would hold."""
 
+import collections
 import math
+from collections.abc import Iterator
 
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import Moment, Vector
 from app.scenes.springs.methods import method_name
 from sim.formatting import number, seconds
 from sim.springs.integrators import Integrator
 from sim.springs.stability import Gauge
+
+MOMENTS = 60  # that are kept: a second at 60 frames a second
+MAX_OVERSHOOT = 3.0  # of the bounds, up to which a moment beyond them is kept too
+
+
+class LastMoments:
+    """The last frames of a run."""
+
+    def __init__(self) -> None:
+        self.moments: collections.deque[Moment] = collections.deque(maxlen=MOMENTS)
+
+    def add(self, t: float, frame: object, points: NDArray[np.float32]) -> None:
+        """Keep the frame of time t [s], unless it is kept already. points: (..., 3) [m] of what moves."""
+        if not self.moments or self.moments[-1].time < t:
+            flat = points.reshape(-1, 3)
+            self.moments.append(Moment(t, frame, vector_of(flat.min(axis=0)), vector_of(flat.max(axis=0))))
+
+    def clear(self) -> None:
+        """The run begins again."""
+        self.moments.clear()
+
+    def __iter__(self) -> Iterator[Moment]:
+        return iter(self.moments)
+
+
+def vector_of(x: NDArray[np.floating]) -> Vector:
+    """(3,) [m] as a tuple."""
+    return float(x[0]), float(x[1]), float(x[2])
 
 
 def stability_number(value: float) -> str:

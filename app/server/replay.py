@@ -1,0 +1,38 @@
+"""The last moments of a run that diverged, shown one after the other, so that the divergence is seen."""
+
+from app.messages import Moment
+
+MOMENT_INTERVAL = 1 / 12  # [s] of wall time for which each moment is shown
+
+
+class Replay:
+    """Plays the moments of one divergence, of which there is at least one, once."""
+
+    def __init__(self, moments: tuple[Moment, ...], reason: str) -> None:
+        """reason: why the run diverged."""
+        self.moments, self.reason = moments, reason
+        self.number = 0  # of the moment that is shown
+        self.shown_for = 0.0  # [s] of wall time
+
+    @property
+    def moment(self) -> Moment:
+        """The moment that is shown; the last one at the end."""
+        return self.moments[self.number]
+
+    @property
+    def ended(self) -> bool:
+        """Whether all were shown."""
+        return self.number == len(self.moments) - 1 and self.shown_for >= MOMENT_INTERVAL
+
+    def play(self, wall: float) -> bool:
+        """Go on by `wall` [s]; returns whether another moment is shown than before. A late tick skips none."""
+        self.shown_for += wall
+        if self.shown_for < MOMENT_INTERVAL or self.number == len(self.moments) - 1:
+            return False
+        self.step()
+        return True
+
+    def step(self) -> None:
+        """Show the next moment; at the last one, end."""
+        last = self.number == len(self.moments) - 1
+        self.number, self.shown_for = (self.number, MOMENT_INTERVAL) if last else (self.number + 1, 0.0)

@@ -328,15 +328,16 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         state = coloured("Slow motion", WARNING_COLOUR)
     if s.halted:
         state = coloured("Stopped", ERROR_COLOUR)
-    pace = fill("×{:.2f} real time, {:.0f} frames/s", s.actual_speed, s.frame_rate) if s.running else fill("real time")
-    if s.running and s.capped:
+    pace = fill("×{:.2f} real time, {:.0f} frames/s", s.actual_speed, s.frame_rate)
+    if s.capped:
         pace = fill(
             "{}: ×{:.2f} instead of ×{:g}",
             coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed,
         )  # fmt: skip
     return fill(
-        '<div class="springtide-panel" data-state="{}">{} t = {:.2f} s{}{}{}{}{}</div>',
+        '<div class="springtide-panel" data-state="{}" data-snapshot="{}">{} t = {:.2f} s{}{}{}{}{}</div>',
         "running" if s.running else "paused",
+        snapshot.serial,  # so that one sees that it is fresh, where its words repeat
         state,
         s.time,
         fill(' · <span class="springtide-pace">{}</span>', pace) if s.running else "",

@@ -60,6 +60,12 @@ def viscous_roots(theta: float) -> np.ndarray:
     return theta * (m[m.real > 0.0] ** 2 - 1.0)
 
 
+def film_roots(theta: float) -> np.ndarray:
+    """All s/omega0 with Re m > 0 under a film that cannot be stretched, by the roots of theta^2 (m^2 - 1)^2 = 1/m - 1."""
+    m = np.roots([1.0, 0.0, -2.0, 0.0, 1.0 + 1.0 / theta**2, -1.0 / theta**2])
+    return theta * (m[(m.real > 0.0) & (np.abs(m - 1.0) > 1e-9)] ** 2 - 1.0)
+
+
 def dropped_gaussian(r: float, t: float, width: float, gravity: float = 9.81) -> float:
     """Height [m] at r [m], t [s] after a unit volume was dropped on deep water as a Gaussian: the Hankel integral."""
     k = np.linspace(0.0, 9.0 / width, 400001)
@@ -82,3 +88,72 @@ def plane_integral(spectrum, conditions, weight: float = 0.0, k_max: float = 2e3
     k = np.exp(log_k)[:, None]
     S = spectrum(k * np.cos(theta), k * np.sin(theta), conditions)
     return float((S * k ** (2.0 + weight)).sum() * step * 2.0 * np.pi / 360)
+
+
+def layer_determinant(
+    s: np.ndarray, k: np.ndarray, d: np.ndarray, rho: tuple, mu: tuple, gravity: float, tension: tuple
+) -> np.ndarray:
+    """(n,) determinants, over their largest products, of the six conditions of two viscous layers, in long doubles.
+
+    Unknowns: the factors of e^(kz), e^(-k(z + d)), e^(mz), e^(-m(z + d)) of the vertical velocity above the interface
+    z = -d, and of e^(k(z + d)), e^(m(z + d)) below it, in time e^(st). rho [kg/m3], mu [Pa s], tension [N/m]: (above,
+    below), each (n,). Rows: shear and normal stress at z = 0; both velocities, shear and normal stress at z = -d.
+    """
+    n = len(k)
+    m = [np.sqrt(k**2 + s * r / v) for r, v in zip(rho, mu, strict=True)]
+    e, E = np.exp(-k * d), np.exp(-m[0] * d)
+    one, zero = np.ones(n, np.clongdouble), np.zeros(n, np.clongdouble)
+    rates = [k, -k, m[0], -m[0], k, m[1]]
+    potential = [1, 1, 0, 0, 1, 0]
+    top, bottom = [one, e, one, E, zero, zero], [e, one, E, one, one, one]
+    M = np.zeros((n, 6, 6), np.clongdouble)
+    for j in range(6):
+        layer = 0 if j < 4 else 1
+        q, P = rates[j], potential[j]
+        # i times what the names say, where that makes them real: u = i w'/k, shear = i mu (w'' + k^2 w)/k
+        shear = mu[layer] * (q**2 + k**2) / k
+        normal = -P * rho[layer] * s * q / k**2 - 2 * mu[layer] * q  # pressure less viscous stress
+        sign = 1 if layer == 0 else -1
+        M[:, 0, j] = shear * top[j]
+        M[:, 1, j] = (normal * s - (rho[0] * gravity + tension[0] * k**2)) * top[j]
+        M[:, 2, j] = sign * bottom[j]
+        M[:, 3, j] = sign * q / k * bottom[j]
+        M[:, 4, j] = sign * shear * bottom[j]
+        M[:, 5, j] = sign * normal * s * bottom[j]
+        if layer == 0:
+            M[:, 5, j] += ((rho[1] - rho[0]) * gravity + tension[1] * k**2) * bottom[j]
+    M /= np.abs(M).max(axis=2, keepdims=True)
+    determinant = one.copy()
+    for j in range(6):  # Gauss with pivots: numpy's own knows no long doubles
+        pivot = j + np.abs(M[:, j:, j]).argmax(axis=1)
+        swapped = pivot != j
+        rows = np.arange(n)
+        M[rows, j], M[rows, pivot] = M[rows, pivot].copy(), M[rows, j].copy()
+        determinant = determinant * np.where(swapped, -1, 1) * M[:, j, j]
+        M[:, j + 1 :] -= M[:, j + 1 :, j, None] / M[:, j, j][:, None, None] * M[:, j, None, :]
+    return determinant
+
+
+def layer_roots(k, d, rho, mu, gravity: float, tension, steps: int = 60) -> np.ndarray:
+    """(n,) roots s of the surface wave, followed by Newton's method from that without viscosity as both viscosities
+    grow by equal factors. All arguments but gravity: arrays (n,), or pairs of them."""
+    wide = np.longdouble
+    k, d = np.asarray(k, wide), np.asarray(d, wide)
+    rho, mu, tension = (
+        tuple(np.broadcast_to(np.asarray(x, wide), k.shape) for x in pair) for pair in (rho, mu, tension)
+    )
+    G1, G2 = gravity + tension[0] * k**2 / rho[0], (rho[1] - rho[0]) * gravity + tension[1] * k**2
+    th = np.tanh(k * d)
+    A, B, C = rho[1] + rho[0] * th, k * (rho[1] * G1 * th + rho[0] * G1 + G2), k**2 * G1 * G2 * th
+    s = 1j * np.sqrt((B + np.sqrt(B * B - 4 * A * C)) / (2 * A)).astype(np.clongdouble)
+    for share in np.geomspace(1e-6, 1.0, steps):
+        thin = tuple(wide(share) * v for v in mu)
+        for _ in range(12):
+            h = 1e-7 * np.abs(s)
+            f, up, down = (layer_determinant(x, k, d, rho, thin, gravity, tension) for x in (s, s + h, s - h))
+            # Each determinant is scaled by its own rows, and these change with s too slowly to matter to the root.
+            change = f * 2 * h / (up - down)
+            s = s - change
+            if (np.abs(change) < 1e-17 * np.abs(s)).all():
+                break
+    return s

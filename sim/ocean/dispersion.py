@@ -1,7 +1,8 @@
 """Linear dispersion: one fluid, two layers, viscosity, films. Pure numpy; every function takes arrays of k.
 
-Choose `omega` for water, `two_layer` for oil on water, `viscous_root` for how fast a wave dies. Limits: small slopes
-(Stokes's third order adds (ka)^2/2 to the speed); the viscous root is that of deep fluid.
+Choose `omega` for water, `two_layer` for oil on water, `viscous_root` and `viscous_two_layer` for how fast a wave
+decays on either. Limits: small slopes (Stokes's third order adds (ka)^2/2 to the speed); the viscous roots are those of
+deep fluid.
 Sources: H. Lamb, Hydrodynamics (1932), articles named at each function.
 """
 
@@ -10,10 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sim.ocean.viscous_layers import Layers, surface_roots
 from sim.validation import argument_error, check_not_negative, check_positive, check_wavenumbers
 
 INF = math.inf
 CRITICAL = 1.3114687221932  # nu k^2/omega0 above which a wave no longer oscillates: the quartic's double root
+CRITICAL_FILM = 1.2703246811008881  # the same under a film
 EVANESCENT = 18.0  # kd beyond which the far mode is under 2e-8 of the near one and lost in rounding
 
 
@@ -103,45 +106,87 @@ def mode_ratios(
     return ModeRatios(np.where(seen, down, 0.0)[()], np.where(seen, up, 0.0)[()])
 
 
-def viscous_root(k: Any, viscosity: float, gravity: float = 9.81) -> tuple[Any, Any]:
+def viscous_root(k: Any, viscosity: float, gravity: float = 9.81, film: bool = False) -> tuple[Any, Any]:
     """(omega [rad/s], decay rate [1/s]) of a wave on deep fluid of kinematic viscosity [m2/s].
 
-    omega is 0 where the motion creeps without oscillating; the rate is then that of the slower root.
-    Raises ValueError for a negative or non-finite argument, or gravity not above 0. Lamb, Art. 349.
+    film: the surface cannot be stretched, "oil on troubled waters". omega is 0 where the motion creeps without
+    oscillating; the rate is then that of the slower root. Raises ValueError for a negative or non-finite argument, or
+    gravity not above 0. Lamb, Art. 349 and 351.
     """
     k = check_wavenumbers("k", k)
     check_not_negative("viscosity", viscosity, "m2/s")
-    w, rate = damped_root(omega(k, gravity), viscosity * k**2)
+    w, rate = damped_root(omega(k, gravity), viscosity * k**2, film)
     return w[()], rate[()]
 
 
-def damped_root(natural: Any, rate: Any) -> tuple[np.ndarray, np.ndarray]:
+def viscous_two_layer(
+    k: Any,
+    upper_density: float,
+    upper_viscosity: float,
+    thickness: float,
+    lower_density: float,
+    lower_viscosity: float,
+    gravity: float = 9.81,
+    surface_tension: float = 0.0,
+    interface_tension: float = 0.0,
+    film: bool = False,
+) -> tuple[Any, Any]:
+    """(omega [rad/s], decay rate [1/s]) of the surface wave on a layer of viscous fluid on deep viscous fluid.
+
+    densities [kg/m3]; dynamic viscosities [Pa s], above 0; thickness [m]; tensions [N/m]; film: the upper surface
+    cannot be stretched. The exact linear problem, see `sim.ocean.viscous_layers`; the root is the one that grows out of
+    the surface mode of `two_layer` with the viscosities. omega is 0 where the motion creeps without oscillating.
+    Raises ValueError where a value is not allowed or the upper fluid is the heavier.
+    """
+    k, X_surface, X_interface, G1 = _two_layer_roots(
+        k, upper_density, thickness, lower_density, gravity, INF, surface_tension, interface_tension
+    )
+    check_positive("thickness", thickness, "m")
+    check_positive("upper_viscosity", upper_viscosity, "Pa s")
+    check_positive("lower_viscosity", lower_viscosity, "Pa s")
+    w, rate = np.zeros_like(k), np.zeros_like(k)
+    moving = k > 0.0
+    if moving.any():
+        found = k[moving]
+        layers = Layers(
+            found,
+            upper_density,
+            upper_viscosity,
+            thickness,
+            lower_density,
+            lower_viscosity,
+            G1[moving],
+            (lower_density - upper_density) * gravity + interface_tension * found**2,
+            np.sqrt(X_surface[moving]),
+            np.sqrt(X_interface[moving]),
+        )
+        w[moving], rate[moving] = surface_roots(layers, film)
+    return w[()], rate[()]
+
+
+def damped_root(natural: Any, rate: Any, film: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """(omega, decay rate) from the inviscid frequency omega0 [rad/s] and nu k^2 [1/s], arrays of one shape.
 
-    s solves (s + 2 nu k^2)^2 + omega0^2 = 4 nu^2 k^4 sqrt(1 + s/(nu k^2)) with Re s < 0 (Lamb, Art. 349, eq. 13).
-    With theta = nu k^2/omega0 and m = sqrt(1 + s/(nu k^2)) it is the quartic (m^2 + 1)^2 - 4 m + 1/theta^2 = 0.
+    With theta = nu k^2/omega0 and m = sqrt(1 + s/(nu k^2)), Re m > 0, Re s < 0:
+    clean surface: (s + 2 nu k^2)^2 + omega0^2 = 4 nu^2 k^4 m (Lamb, Art. 349, eq. 13), the quartic
+    (m^2 + 1)^2 - 4 m + 1/theta^2 = 0;
+    film, no velocity along the surface: s^2 + omega0^2 (1 - 1/m) = 0, the quartic m (m - 1)(m + 1)^2 + 1/theta^2 = 0.
+    For weak viscosity the film's decay is k sqrt(nu omega0/8) (Lamb, Art. 351).
     """
     natural, rate = np.broadcast_arrays(np.asarray(natural, np.float64), np.asarray(rate, np.float64))
     w, decay = natural.copy(), np.zeros_like(natural)
     moving = (natural > 0.0) & (rate > 0.0)
     theta = np.divide(rate, natural, out=np.zeros_like(natural), where=moving)
-    waves, creeping = moving & (theta < CRITICAL), moving & (theta >= CRITICAL)
+    # Below this the decay is under the rounding of the frequency, and 1/theta^2 would overflow.
+    moving &= theta > 1e-100
+    critical = CRITICAL_FILM if film else CRITICAL
+    waves, creeping = moving & (theta < critical), moving & (theta >= critical)
     if waves.any():
-        s = _oscillating(theta[waves])
+        s = _oscillating_film(theta[waves]) if film else _oscillating(theta[waves])
         w[waves], decay[waves] = natural[waves] * s.imag, -natural[waves] * s.real
     if creeping.any():
-        w[creeping], decay[creeping] = 0.0, natural[creeping] * _aperiodic(theta[creeping])
+        w[creeping], decay[creeping] = 0.0, natural[creeping] * _aperiodic(theta[creeping], film)
     return w, decay
-
-
-def film_decay(k: Any, viscosity: float, gravity: float = 9.81) -> Any:
-    """Decay rate [1/s] under an inextensible film, "oil on troubled waters": k sqrt(nu omega/8). Lamb, Art. 351.
-
-    viscosity: kinematic, of the water [m2/s]. Errors as for `viscous_root`.
-    """
-    k = check_wavenumbers("k", k)
-    check_not_negative("viscosity", viscosity, "m2/s")
-    return (k * np.sqrt(viscosity * omega(k, gravity) / 8.0))[()]
 
 
 def _checked(k: Any, gravity: float, depth: float, tension: float, density: float) -> tuple[np.ndarray, float]:
@@ -203,14 +248,31 @@ def _oscillating(theta: np.ndarray) -> Any:
     return -2.0 * theta + 1j - 1j * e / (1.0 + np.sqrt(1.0 - e))
 
 
-def _aperiodic(theta: np.ndarray) -> np.ndarray:
-    """The slower decay rate over omega0, for theta above CRITICAL: m = 1 - delta, delta small when theta is large."""
+def _oscillating_film(theta: np.ndarray) -> Any:
+    """The same under a film, for theta below CRITICAL_FILM."""
+    inverse = 1.0 / theta**2
+    m = np.sqrt(1j / theta) + 0.25
+    for _ in range(80):
+        change = (m * (m - 1.0) * (m + 1.0) ** 2 + inverse) / (((4.0 * m + 3.0) * m - 2.0) * m - 1.0)
+        m = m - change
+        if np.all(np.abs(change) <= 1e-15 * np.abs(m)):
+            break
+    # s = i sqrt(1 - 1/m), written so that a small decay keeps its digits.
+    return 1j - 1j / m / (1.0 + np.sqrt(1.0 - 1.0 / m))
+
+
+def _aperiodic(theta: np.ndarray, film: bool) -> np.ndarray:
+    """The slower decay rate over omega0 where nothing oscillates: m = 1 - delta, delta small when theta is large."""
     inverse = 1.0 / theta**2
     delta = 0.25 * inverse
     for _ in range(80):
-        # (m^2 + 1)^2 - 4 m + 1/theta^2 in delta, and its derivative
-        f = delta * (-4.0 + delta * (8.0 + delta * (-4.0 + delta))) + inverse
-        change = f / (-4.0 + delta * (16.0 + delta * (-12.0 + 4.0 * delta)))
+        # The quartic of `damped_root` in delta, and its derivative.
+        if film:
+            f = delta * (-4.0 + delta * (8.0 + delta * (-5.0 + delta))) + inverse
+            change = f / (-4.0 + delta * (16.0 + delta * (-15.0 + 4.0 * delta)))
+        else:
+            f = delta * (-4.0 + delta * (8.0 + delta * (-4.0 + delta))) + inverse
+            change = f / (-4.0 + delta * (16.0 + delta * (-12.0 + 4.0 * delta)))
         delta = delta - change
         if np.all(np.abs(change) <= 1e-15 * delta):
             break

@@ -1,8 +1,7 @@
 """What waves run on: clean water, a layer of oil on water, or the two entirely mixed; and what that does to them.
 
 Choose a thickness for oil on water, which is what happens; `mixed` for the lab's other reading. Limits: only the
-surface mode is excited (the interfacial one, slow and hidden, is not), and the viscosity that a wave feels through a
-layer is an average, see `FluidColumn.felt_viscosity`.
+surface mode is excited (the interfacial one, slow and hidden, is not), and both fluids are at rest but for the waves.
 """
 
 import dataclasses
@@ -10,7 +9,7 @@ import math
 
 import numpy as np
 
-from sim.ocean.dispersion import damped_root, film_decay, mode_ratios, omega, two_layer
+from sim.ocean.dispersion import damped_root, mode_ratios, omega, two_layer, viscous_two_layer
 from sim.ocean.fluids import MIXTURE_LAWS, Fluid, fluids, mixed
 from sim.validation import argument_error, check_not_negative, check_positive, check_within
 
@@ -68,27 +67,17 @@ class FluidColumn:
             return np.ones_like(np.asarray(k, np.float64))
         return np.asarray(mode_ratios(k, *self._two()).surface)
 
-    def felt_viscosity(self, k: np.ndarray) -> np.ndarray:
-        """Kinematic viscosity [m2/s] that a wave of wavenumber k feels.
-
-        A weak wave loses energy as e^(2kz) with depth, so a layer of thickness d takes the share 1 - e^(-2kd).
-        """
+    def roots(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """omega [rad/s] and decay rate [1/s] of waves of wavenumber k [rad/m]: the roots of the exact linear problem."""
         k = np.asarray(k, np.float64)
         if self.kind != "layer":
-            return np.full_like(k, self.surface.kinematic_viscosity)
-        share = np.exp(-2.0 * k * self.thickness)
-        return (1.0 - share) * self.oil.kinematic_viscosity + share * self.water.kinematic_viscosity
-
-    def roots(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """omega [rad/s] and decay rate [1/s] of waves of wavenumber k: Lamb's exact root with the felt viscosity.
-
-        film: the decay is at least that of an inextensible film on this water (Lamb, Art. 351).
-        """
-        k = np.asarray(k, np.float64)
-        w, decay = damped_root(self.omega(k), self.felt_viscosity(k) * k**2)
-        if self.film:
-            decay = np.maximum(decay, film_decay(k, self.water.kinematic_viscosity, self.gravity))
-        return w, decay
+            return damped_root(self.omega(k), self.surface.kinematic_viscosity * k**2, self.film)
+        oil, water = self.oil, self.water
+        tensions = (oil.surface_tension or 0.0, oil.interface_tension or 0.0)
+        return viscous_two_layer(
+            k, oil.density, oil.viscosity, self.thickness, water.density, water.viscosity, self.gravity, *tensions,
+            film=self.film,
+        )  # fmt: skip
 
     def _two(self) -> tuple[float, float, float, float, float, float, float]:
         o = self.oil

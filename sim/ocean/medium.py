@@ -8,7 +8,7 @@ import numpy as np
 
 from sim.ocean.dispersion import damped_root
 from sim.ocean.spectra import Conditions
-from sim.validation import check_not_negative, check_positive
+from sim.validation import argument_error, check_not_negative, check_positive
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -16,27 +16,42 @@ class Medium:
     """A medium. Raises ValueError for a value that is not allowed. The bottom takes no energy."""
 
     viscosity: float = 0.0  # [m2/s] kinematic
-    film: bool = False  # decay as under an inextensible film instead of a clean surface
+    film: bool = False  # the surface cannot be stretched; else it is clean
     dispersion_scale: float = 1.0  # factor on every frequency
     loop_period: float | None = None  # [s] after which the sea repeats: omega is floored to multiples of 2 pi/period
-    frequency: Callable[[np.ndarray], np.ndarray] | None = None  # omega(k) in place of the conditions' own
+    frequency: Callable[[np.ndarray], np.ndarray] | None = None  # omega(k) [rad/s] in place of the conditions' own
+    decay: Callable[[np.ndarray], np.ndarray] | None = None  # decay rate (k) [1/s] in place of the viscosity's
 
     def __post_init__(self) -> None:
         check_not_negative("viscosity", self.viscosity, "m2/s")
         check_not_negative("dispersion_scale", self.dispersion_scale, "")
+        if not isinstance(self.film, bool):
+            raise argument_error("film", self.film, "True or False")
+        for name in ("frequency", "decay"):
+            given = getattr(self, name)
+            if given is not None and not callable(given):
+                raise argument_error(name, given, "a function of the wavenumber, or None")
         if self.loop_period is not None:
             check_positive("loop_period", self.loop_period, "s")
 
     def roots(self, k: np.ndarray, conditions: Conditions) -> tuple[np.ndarray, np.ndarray]:
-        """omega [rad/s] and decay rate [1/s] of wavenumbers k [rad/m]."""
-        natural = conditions.omega(k) if self.frequency is None else np.asarray(self.frequency(k), np.float64)
-        if self.film:
-            # Lamb, Art. 351: gamma = k sqrt(nu omega/8)
-            omega, decay = natural, k * np.sqrt(self.viscosity * natural / 8.0)
-        else:
-            omega, decay = damped_root(natural, self.viscosity * k**2)
+        """omega [rad/s] and decay rate [1/s] of wavenumbers k [rad/m]. Raises ValueError where a function that stands for
+        either gives another shape than that of k, or what is not finite or below 0."""
+        natural = conditions.omega(k) if self.frequency is None else self._given("frequency", k)
+        omega, decay = damped_root(natural, self.viscosity * k**2, self.film)
+        if self.decay is not None:
+            omega, decay = natural, self._given("decay", k)
         omega = omega * self.dispersion_scale
         if self.loop_period is not None:
             base = 2.0 * math.pi / self.loop_period
             omega = np.floor(omega / base) * base
         return omega, decay
+
+    def _given(self, name: str, k: np.ndarray) -> np.ndarray:
+        """What the function of this name gives for k."""
+        values = np.asarray(getattr(self, name)(k), np.float64)
+        if values.shape != k.shape:
+            raise argument_error(name, values.shape, f"a function that returns the shape of k, {k.shape}")
+        if not (np.isfinite(values) & (values >= 0.0)).all():
+            raise argument_error(name, float(values[~(values >= 0.0) | ~np.isfinite(values)][0]), "0 or above, finite")
+        return values

@@ -61,8 +61,7 @@ class Sea:
         """size: cells a side, even, 8 to 4096; length [m] of the tile; the wind is U10, U19.5 for pierson_moskowitz.
 
         amplitudes: "random" (Gaussian) or "fixed" (random phase only); choppiness: factor on the displacement;
-        viscosity [m2/s]: waves decay at their exact rate from t = 0. More:
-        the fields of `Conditions` and `Medium`, and the
+        viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of `Conditions` and `Medium`, and the
         parameters of any spectrum (`sim.ocean.spectra.PARAMETERS`), for when it is the one in force.
         Raises ValueError for a value that is not allowed, TypeError for an unknown name.
         """
@@ -80,6 +79,7 @@ class Sea:
         self._real = PRECISIONS[precision][0]
         self._unit = unit_amplitudes(self.size, self.seed, amplitudes)
         self._base, self._last, self._relax = 0.0, 0.0, 0.0
+        self._past: dict[tuple[Medium, Conditions], float] = {}  # [s] spent in each medium before the last change
         self.version = 0  # counts changes of the conditions
         self._evolved: tuple | None = None
         self._latest: tuple[tuple, dict[str, np.ndarray]] | None = None
@@ -107,6 +107,9 @@ class Sea:
             "viscosity": viscosity,
         }
         self._given: dict[str, Any] = {}  # conditions as given, those of other spectra too
+        self._lost = np.zeros_like(
+            self._k
+        )  # -ln of the amplitude that is left of each wave since then, a quarter plane
         self._set_conditions(spectrum, given | more, Medium())
         self._start = self._target
         self._set_planes()
@@ -123,9 +126,7 @@ class Sea:
     def surface(self, t: float) -> Surface:
         """The surface at time t [s]; each field is computed when first read. Raises ValueError for a time not allowed:
         not finite, or before the last change where waves decay or relax."""
-        t = check_finite("t", t, "s")
-        if t < self._base and (self._relax > 0.0 or self._decays):
-            raise argument_error("t", t, f"{self._base:g} s or later: decaying and relaxing waves do not run back")
+        t = self._checked_time(t)
         key = self._key(t)
         if self._latest is None or self._latest[0] != key:
             self._latest = key, {}
@@ -145,24 +146,38 @@ class Sea:
         """From time t [s] on, other conditions: any of the constructor's that describe wind, gravity or the medium.
 
         Phases go on without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
-        relax = 0. Raises ValueError for a value that is not allowed, TypeError for an unknown name.
+        relax = 0. What waves have lost to viscosity stays lost: the new size is that of the new spectrum times the share
+        that is left. Raises ValueError for a value that is not allowed, TypeError for an unknown name.
         """
-        t, relax = check_finite("t", t, "s"), check_not_negative("relax", relax, "s")
-        if t < self._base and (self._relax > 0.0 or self._decays):
-            raise argument_error("t", t, f"{self._base:g} s or later")
+        t, relax = self._checked_time(t), check_not_negative("relax", relax, "s")
         if self._ripples is not None:
             self._ripples.check_time(t)
-        before = self._rate, self._decay, self._magnitude(t)
+        before, rate = self._undecayed(t), self._rate
+        medium, conditions, decay = self.medium, self.conditions, self._decay
         self._set_conditions(spectrum or self.spectrum.name, changes, self.medium)
-        turns = before[0] * (t - self._base)
+        self._add_to_past(medium, conditions, decay, t - self._base)
+        turns = rate * (t - self._base)
         # h0(k) e^(-i omega t): the phase so far goes into the unit amplitudes, in double.
         self._unit = self._unit * self._full(np.exp(-2j * np.pi * (turns - np.rint(turns))))
-        self._start = before[2] if relax > 0.0 else self._target
-        self._base, self._relax = t, relax
+        self._start = before if relax > 0.0 else self._target
+        self._base, self._relax, self._last = t, relax, max(self._last, t)
         self.version += 1
         self._set_planes()
         if self._ripples is not None:
             self._ripples.set_medium(t, self._rate, self._decay, self._push())
+
+    def expose(self, duration: float, medium: Medium | None = None) -> None:
+        """Let the waves decay at once as they would in `duration` [s] in a medium, by default in the sea's own.
+
+        The clock stands still, phases stay as they are, rings are not touched. Raises ValueError for a duration that is
+        negative or not finite.
+        """
+        duration = check_not_negative("duration", duration, "s")
+        chosen = self.medium if medium is None else medium
+        decay = self._decay if medium is None else medium.roots(self._k, self.conditions)[1]
+        self._add_to_past(chosen, self.conditions, decay, duration)
+        self.version += 1
+        self._set_planes()
 
     def resized(self, size: int) -> "Sea":
         """The same sea on a grid of another size: shared waves and rings go on as they are.
@@ -186,6 +201,8 @@ class Sea:
         other._start = other._target.copy()
         other._unit[shared], other._start[shared] = self._unit[shared], self._start[shared]
         other._base, other._relax, other._last = self._base, self._relax, self._last
+        for (medium, water), duration in self._past.items():
+            other._add_to_past(medium, water, medium.roots(other._k, water)[1], duration)
         other._set_planes()
         if self._ripples is not None:
             other.ripples.take_over(self._ripples)
@@ -196,14 +213,19 @@ class Sea:
         """Hs = 4 sqrt(m0) [m] of the amplitudes as drawn, at the time of the last surface asked for."""
         return self.significant_height_at(self._last)
 
+    @property
+    def time(self) -> float:
+        """Time [s] of the last surface asked for, or of the last change where that is later."""
+        return self._last
+
     def significant_height_at(self, t: float) -> float:
         """Hs = 4 sqrt(m0) [m] of the amplitudes at time t [s]; rings are not counted."""
         return 4.0 * math.sqrt(2.0 * float((np.abs(self.amplitudes_at(t)) ** 2).sum()))
 
     def amplitudes_at(self, t: float) -> np.ndarray:
-        """h0(k), complex (size, size) [m], FFT order: as large as at time t, with the phase of the last change.
+        """h0(k), complex (size, size) [m], FFT order: as large as at time t [s], with the phase of the last change.
 
-        The sea is Re sum 2 h0 exp(i(k.x - omega (t - change))); without a change these are the amplitudes as drawn.
+        Raises ValueError for a time that `surface` does not take either. The sea is Re sum 2 h0 exp(i(k.x - omega (t - change))); without a change these are the amplitudes as drawn.
         """
         return self._unit * self._magnitude(t)
 
@@ -265,10 +287,31 @@ class Sea:
         S = self.spectrum(self.k[:, None], self.k[None, :], conditions)
         self._target = np.sqrt(S) * (2.0 * math.pi / self.length)
 
+    def _checked_time(self, t: float) -> float:
+        """Raises ValueError for a time that is not finite, or before the last change where waves decay or relax."""
+        t = check_finite("t", t, "s")
+        if t < self._base and (self._relax > 0.0 or self._decays):
+            raise argument_error("t", t, f"{self._base:g} s or later: decaying and relaxing waves do not run back")
+        return t
+
+    def _add_to_past(self, medium: Medium, conditions: Conditions, decay: np.ndarray, duration: float) -> None:
+        """Book a time [s] in a medium, where waves have decayed at these rates (a quarter plane, [1/s])."""
+        if duration == 0.0 or not decay.any():
+            return
+        c = conditions
+        water = Conditions(gravity=c.gravity, depth=c.depth, tension=c.tension, density=c.density)
+        self._past[medium, water] = self._past.get((medium, water), 0.0) + duration
+        self._lost = self._lost + decay * duration
+
+    def _undecayed(self, t: float) -> np.ndarray:
+        """sqrt(S dk^2) of each wave at time t, relaxed, as if nothing had decayed, (size, size) [m]."""
+        return self._target + self._share(t) * (self._start - self._target)
+
     def _magnitude(self, t: float) -> np.ndarray:
         """sqrt(S dk^2) of each wave at time t, relaxed and decayed, (size, size) [m]."""
-        size = self._target + self._share(t) * (self._start - self._target)
-        return size * self._full(np.exp(-self._decay * (t - self._base))) if self._decays else size
+        t = self._checked_time(t)
+        lost = self._lost + self._decay * (t - self._base) if self._decays else self._lost
+        return self._undecayed(t) * self._full(np.exp(-lost)) if lost.any() else self._undecayed(t)
 
     def _share(self, t: float) -> float:
         """Share of the last change that is still to come at time t."""
@@ -277,8 +320,9 @@ class Sea:
 
     def _set_planes(self) -> None:
         """Fold the amplitudes into even and odd half planes: the target, and what the start lacks of it."""
-        self._settled = self._planes(self._unit * self._target)
-        self._to_come = self._planes(self._unit * (self._start - self._target)) if self._relax > 0.0 else None
+        unit = self._unit * self._full(np.exp(-self._lost)) if self._lost.any() else self._unit
+        self._settled = self._planes(unit * self._target)
+        self._to_come = self._planes(unit * (self._start - self._target)) if self._relax > 0.0 else None
 
     def _planes(self, h0: np.ndarray) -> list[np.ndarray]:
         wide = PRECISIONS[self.precision][1]

@@ -39,31 +39,47 @@ def beaufort(wind_speed: float) -> tuple[int, str]:
 
 def theory(spectrum: Spectrum, conditions: Conditions, k_max: float = 1e4, k_min: float = 1e-6) -> Statistics:
     """Statistics of the spectrum itself between two wavenumbers [rad/m], by a sum over log k and direction."""
-    log_k, step = np.linspace(math.log(k_min), math.log(k_max), 3000, retstep=True)
-    theta = np.arange(180) * (2.0 * math.pi / 180)
-    k = np.exp(log_k)
-    S = spectrum(k[:, None] * np.cos(theta), k[:, None] * np.sin(theta), conditions)
-    energy = S * k[:, None] ** 2 * (step * 2.0 * math.pi / theta.size)  # S k dk dtheta = S k^2 dlog(k) dtheta
-    along = energy.sum(axis=1)
+    k, cells, theta = _polar_cells(spectrum, conditions, k_max, k_min)
+    along = cells.sum(axis=1)
     if not along.any():
         return Statistics(0.0, math.nan, 0.0, math.nan)
     # S(omega) = S(log k) dlog(k)/domega = S(log k)/(k cg)
     omega = conditions.omega(k)
     peak = omega[np.argmax(along / (k * conditions.group_speed(k)))]
-    east, north = (energy * np.cos(theta)).sum(), (energy * np.sin(theta)).sum()
+    east, north = (cells * np.cos(theta)).sum(), (cells * np.sin(theta)).sum()
     return Statistics(
         4.0 * math.sqrt(along.sum()), 2.0 * math.pi / peak, float((along * k**2).sum()), _direction(east, north)
     )
 
 
-def expected(sea: "Sea", t: float = 0.0) -> Statistics:
-    """Statistics of the spectrum as the tile resolves it: sums of S dk^2 over its waves."""
-    return _of_energy(sea, sea.energy_at(t))
+def energy_by_wavenumber(
+    spectrum: Spectrum, conditions: Conditions, k_max: float = 1e4, k_min: float = 1e-6
+) -> tuple[np.ndarray, np.ndarray]:
+    """(k [rad/m], energy [m2]), (n,) each: what the spectrum has in n cells of log k; the sum of the energies is m0."""
+    k, cells, _ = _polar_cells(spectrum, conditions, k_max, k_min)
+    return k, cells.sum(axis=1)
 
 
-def drawn(sea: "Sea", t: float = 0.0) -> Statistics:
-    """Statistics of the amplitudes as drawn: sums of 2 |h0|^2 over the tile's waves."""
-    return _of_energy(sea, 2.0 * np.abs(sea.amplitudes_at(t)) ** 2)
+def _polar_cells(
+    spectrum: Spectrum, conditions: Conditions, k_max: float, k_min: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """k (n,) [rad/m], energy (n, m) [m2] of cells of log k and direction, and theta (m,) [rad]."""
+    log_k, step = np.linspace(math.log(k_min), math.log(k_max), 3000, retstep=True)
+    theta = np.arange(180) * (2.0 * math.pi / 180)
+    k = np.exp(log_k)
+    S = spectrum(k[:, None] * np.cos(theta), k[:, None] * np.sin(theta), conditions)
+    return k, S * k[:, None] ** 2 * (step * 2.0 * math.pi / theta.size), theta  # S k dk dtheta = S k^2 dlog(k) dtheta
+
+
+def expected(sea: "Sea", t: float | None = None) -> Statistics:
+    """Statistics of the spectrum as the tile resolves it at time t [s], by default the sea's own: sums of S dk^2 over its
+    waves. Raises ValueError for a time that the sea does not take."""
+    return _of_energy(sea, sea.energy_at(sea.time if t is None else t))
+
+
+def drawn(sea: "Sea", t: float | None = None) -> Statistics:
+    """Statistics of the amplitudes as drawn: sums of 2 |h0|^2 over the tile's waves. t and errors as for `expected`."""
+    return _of_energy(sea, 2.0 * np.abs(sea.amplitudes_at(sea.time if t is None else t)) ** 2)
 
 
 def measured(
@@ -102,13 +118,13 @@ def measured(
     )
 
 
-def height_scatter(sea: "Sea", t: float = 0.0) -> float:
-    """Relative standard deviation of the Hs of one snapshot of this tile, over seeds.
+def height_scatter(sea: "Sea", t: float | None = None) -> float:
+    """Relative standard deviation of the Hs of one snapshot of this tile, over seeds. t and errors as for `expected`.
 
     m0 of a snapshot is sum |h(k)|^2. Random amplitudes: each |h|^2 of a pair +-k is exponential with mean
     s = (S(k) + S(-k)) dk^2/2, so Var m0 = 2 sum s^2. Fixed ones: only the beat of S(k) with S(-k), Var = sum S S' dk^4.
     """
-    energy = sea.energy_at(t)
+    energy = sea.energy_at(sea.time if t is None else t)
     opposite = np.roll(energy[::-1, ::-1], 1, axis=(0, 1))
     if not energy.any():
         return 0.0

@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.jit import kernel
+from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.medium import Medium
 from sim.ocean.query import bicubic, sample
 from sim.ocean.radial import RadialSurface, SurfaceAt
 from sim.ocean.radial_grid import FADE, RadialGrid
 from sim.ocean.sea import Sea
-from sim.validation import check_positions
+from sim.validation import argument_error, check_positions
 
 INSTANT = 1 / 60  # [s] between the three heights from which rise and acceleration are differences
 REACH = 0.05  # [m] of the differences that give the slope at a point
@@ -25,11 +27,28 @@ STEPS = 12  # towards a label: where the surface does not nearly fold, each leav
 class TileSea:
     """A `Sea` with the questions of `RadialSea`."""
 
-    def __init__(self, sea: Sea) -> None:
+    def __init__(self, sea: Sea, column: FluidColumn | None = None, exposure: float = 0.0) -> None:
+        """column: what takes energy from the waves, by default nothing does; exposure [s]: for how long they have run on it
+        and decayed. Raises ValueError for a negative one."""
         self.sea = sea
+        self.medium = None if column is None else Medium(decay=lambda k: column.roots(k)[1])
+        self.exposure = 0.0
+        self.age(exposure)
         self.evaluated = self.skipped = 0  # (wave, vertex) pairs: a transform has no such thing
         self._grid: RadialGrid | None = None
         self._share = np.zeros(0, np.float32)
+
+    def age(self, exposure: float) -> None:
+        """The same waves, grown older: they have now run `exposure` [s] in all on this medium, and decayed.
+
+        Raises ValueError where that is less than before.
+        """
+        if not self.exposure <= exposure < math.inf:
+            raise argument_error("exposure", exposure, f"{self.exposure:g} or above, finite s")
+        if self.medium is not None:
+            self.sea.expose(exposure - self.exposure, self.medium)
+        self.exposure = exposure
+        self._grid = None  # the shares of the grid's rings follow the energy
 
     def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
         """The sea on a grid about `centre` (x, y) [m] at time t [s]."""
@@ -48,7 +67,7 @@ class TileSea:
 
     def shares(self, grid: RadialGrid) -> np.ndarray:
         """Amplitude (bands,) that the rings can show: root of the energy in waves of enough cells."""
-        energy = self.sea.energy_at(0.0).ravel()
+        energy = self.sea.energy_at(self.sea.time).ravel()
         k = np.hypot(self.sea.k[:, None], self.sea.k[None, :]).ravel()
         order = np.argsort(k)
         below = np.concatenate([[0.0], np.cumsum(energy[order])])
@@ -58,13 +77,14 @@ class TileSea:
 
     @property
     def significant_height(self) -> float:
+        """Hs [m] of the amplitudes as drawn."""
         return self.sea.significant_height
 
     @property
     def mean_square_slope(self) -> float:
-        """Of the amplitudes as drawn: sum k^2 S dk^2."""
+        """As expected of the tile: sum k^2 S dk^2."""
         k = np.hypot(self.sea.k[:, None], self.sea.k[None, :])
-        return float((k**2 * self.sea.energy_at(0.0)).sum())
+        return float((k**2 * self.sea.energy_at(self.sea.time)).sum())
 
     def at(self, points: ArrayLike, t: float, size: ArrayLike = 0.0) -> SurfaceAt:
         """The sea above points (n, 2) [m] at time t [s]; `size` is not used, the tile has no shorter waves than its

@@ -45,9 +45,9 @@ class SurfaceReading(NamedTuple):
     waves: int
     shortest: float  # [m] shortest wave at the viewer
     extent: float  # [m] across, before it repeats
-    height: float  # Hs [m] of its waves
+    height: float  # Hs [m] expected of its waves
     slope: float  # mean square slope of its waves
-    error: float  # of Hs, as a share of that of the sum of waves
+    error: float  # of Hs, as a share of that of the whole spectrum on these fluids
 
 
 class RadialReadings(NamedTuple):

@@ -28,6 +28,7 @@ from app.scenes.radial_sea.parameters import (
 from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
 from sim.floating import MotionCoefficients, Shape, shape_from_file
 from sim.ocean import Sea
+from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.foam import whitecaps
 from sim.ocean.gerstner import Waves, draw_waves
 from sim.ocean.radial import RadialSea, RadialSurface
@@ -35,6 +36,7 @@ from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.radiated_waves import LENGTH as RADIATED_WAVES_LENGTH
 from sim.ocean.radiated_waves import RadiatedWaves
 from sim.ocean.spectra import SPECTRA, Conditions
+from sim.ocean.statistics import energy_by_wavenumber, expected
 from sim.ocean.tile_sea import TileSea
 from sim.parameters import check_record
 
@@ -55,8 +57,8 @@ GRID_RADIUS = 5000.0  # [m] of the last ring
 FIRST_RING = 0.35  # [m] radius of the first ring
 TILE_SIZE, TILE_LENGTH = 128, 256.0  # points a side (as many vertices as the rings have) and side [m] of the square sea
 PLOT_INTERVAL = 1 / 15  # [s] of simulated time between plot rows
-SUM_AGEING_INTERVAL = 1.0  # [s] of simulated time between two decays of the sum of waves
-TILE_AGEING_GROWTH = 0.2  # growth of the age after which the square sea, which takes longer to make, is replaced
+AGEING_INTERVAL = 1.0  # [s] of simulated time between two decays of the waves
+NEGLIGIBLE_ENERGY = 1e-4  # of the largest of all parts of the spectrum: a part with less is left out
 COMPARE_INTERVAL = 2.0  # [s] of wall time between two timings of the other surface
 COST_MEMORY = 0.9  # share of the old value in the running mean of a surface's cost
 FOAM_RADIUS = 80.0  # [m] within which the foam threshold is measured
@@ -128,12 +130,13 @@ class RadialSeaScene:
         self.wave_choice = wave_choice_of(p)
         self.sum = RadialSea(draw(self.wave_choice), self.column, self.age, p.choppiness)
         self.tile: TileSea | None = None
-        self.tile_age = 0.0
         self.costs: dict[str, float] = {}  # surface -> [s] a frame, a running mean
         self.bodies = self.make_bodies()
         self.radiated_waves = RadiatedWaves()
         self.well_blowout = WellBlowout(p)
         self.camera = (0.0, 0.0)  # [m] where the browser's camera is
+        self.spectrum_energy: tuple[WaveChoice, NDArray[np.float64], NDArray[np.float64]] | None = None
+        self.decayed_height: tuple[tuple[WaveChoice, FluidColumn, float], float] | None = None  # Hs [m] of the spectrum
         self.foam_threshold = 0.0  # Jacobian below which there is foam, a running mean
         self.compared_at = self.plotted_at = -math.inf
         self.set_grid()
@@ -162,23 +165,20 @@ class RadialSeaScene:
             self.forget_costs()
 
     def make_tile(self) -> TileSea:
-        """The square sea under the same wind and oil; the oil's decay of a wave, exp(-2 nu k^2 T), is its low-pass."""
-        p, fluid = self.params, self.column.surface
-        low_pass = 2.0 * math.sqrt(fluid.kinematic_viscosity * self.age)
-        self.tile_age = self.age
+        """The square sea under the same wind, on the same fluids."""
+        p, column = self.params, self.column
         c = conditions_of(p)
         sea = Sea(
             TILE_SIZE,
             TILE_LENGTH,
             p.spectrum,
             choppiness=p.choppiness,
-            frequency=self.column.omega,
+            frequency=lambda k: column.roots(k)[0],
             wind_speed=c.wind_speed,
             wind_direction=c.wind_direction,
-            low_pass=low_pass,
             **spectrum_values(p),
         )
-        return TileSea(sea)
+        return TileSea(sea, column, self.age)
 
     def tile_now(self) -> TileSea:
         """The square sea, made where it is not there."""
@@ -262,10 +262,9 @@ class RadialSeaScene:
     def age_waves(self, duration: float) -> None:
         """Let the waves decay under the oil for `duration` [s] more."""
         self.age += duration
-        if self.age - self.sum.exposure >= SUM_AGEING_INTERVAL:
-            self.sum.age(self.age)
-        if self.tile is not None and self.age > (1.0 + TILE_AGEING_GROWTH) * self.tile_age + SUM_AGEING_INTERVAL:
-            self.tile = None
+        for sea in (self.sum, self.tile):
+            if sea is not None and self.age - sea.exposure >= AGEING_INTERVAL:
+                sea.age(self.age)
 
     def layer_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Thickness (n,) [m] of oil under the surface at points (n, 2) [m]."""
@@ -411,8 +410,13 @@ class RadialSeaScene:
         )
 
     def compared_surfaces(self) -> dict[str, SurfaceReading]:
-        """The radial sum and the square sea side by side, as far as they were timed."""
+        """The radial sum and the square sea side by side, as far as they were timed, each as expected of its waves."""
         found, s, grid, tile = {}, self.sum, self.grid, self.tile
+        whole = self.spectrum_height() if self.costs else 0.0
+
+        def error(height: float) -> float:
+            return height / whole - 1.0 if whole > 0.0 else 0.0
+
         if "sum" in self.costs:
             found["sum"] = SurfaceReading(
                 cost=self.costs["sum"],
@@ -421,19 +425,33 @@ class RadialSeaScene:
                 extent=2 * float(grid.radii[-1]),
                 height=s.significant_height,
                 slope=s.mean_square_slope,
-                error=0.0,  # its waves have equal shares of the spectrum's energy by construction
+                error=error(s.significant_height),
             )
         if "fft" in self.costs and tile is not None:
+            height = expected(tile.sea).significant_height
             found["fft"] = SurfaceReading(
                 cost=self.costs["fft"],
                 waves=TILE_SIZE * TILE_SIZE // 2,
                 shortest=2 * TILE_LENGTH / TILE_SIZE,
                 extent=TILE_LENGTH,
-                height=tile.significant_height,
+                height=height,
                 slope=tile.mean_square_slope,
-                error=tile.significant_height / s.significant_height - 1.0 if s.significant_height > 0.0 else 0.0,
+                error=error(height),
             )
         return found
+
+    def spectrum_height(self) -> float:
+        """Hs [m] of the whole spectrum after the decay of the sum of waves: an integral over all wavenumbers."""
+        key = self.wave_choice, self.column, self.sum.exposure
+        if self.decayed_height is None or self.decayed_height[0] != key:
+            if self.spectrum_energy is None or self.spectrum_energy[0] != self.wave_choice:
+                choice = self.wave_choice
+                self.spectrum_energy = choice, *energy_by_wavenumber(SPECTRA[choice.spectrum], choice.conditions)
+            _, k, energy = self.spectrum_energy
+            some = energy > NEGLIGIBLE_ENERGY * energy.max()
+            kept = np.exp(-2.0 * self.column.roots(k[some])[1] * self.sum.exposure)
+            self.decayed_height = key, 4.0 * math.sqrt(float((energy[some] * kept).sum()))
+        return self.decayed_height[1]
 
     def curves(self) -> None:
         """No charts but courses in time."""

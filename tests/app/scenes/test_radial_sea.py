@@ -21,6 +21,7 @@ from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
 from sim.floating import Hull, equilibrium_draft, heave_period
 from sim.ocean.fluids import fluids
 from sim.ocean.radial import RadialSea
+from sim.ocean.spectra import SPECTRA
 from sim.parameters import check_record, clamp, effect_of_change, parameters_of
 
 CALM = {"waves": False, "rig": False, "ripples": False}
@@ -451,3 +452,31 @@ def test_a_body_that_is_not_there_has_no_draft_in_the_plots():
     assert len(rows) > 1
     assert np.isnan(rows[:, 2:4]).all()
     assert np.isfinite(rows[:, [0, 1, 4, 5]]).all()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"wind_speed": 14.0},
+        {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 600.0},
+        {"spill": "layer", "oil": "IFO 180", "thickness": 0.01, "exposure": 600.0},
+        {"spill": "layer", "oil": "Maya", "thickness": 0.05, "exposure": 1800.0, "film": True},
+        {"spill": "mixed", "oil": "Maya", "fraction": 0.4, "exposure": 600.0},
+    ],
+)
+def test_both_surfaces_have_the_height_of_the_spectrum_on_the_same_fluids(changes: dict[str, Any]) -> None:
+    scene = RadialSeaScene(with_parameters(compare=True, bodies=0, **changes))
+    scene.frame()
+    found = scene.readings().surfaces
+    # Independent of both: the integral over the spectrum, with the decay of the fluids.
+    choice = scene.wave_choice
+    k, step = np.linspace(math.log(1e-3), math.log(30.0), 400, retstep=True)
+    k, theta = np.exp(k)[:, None], np.arange(72) * (2.0 * math.pi / 72)
+    S = SPECTRA[choice.spectrum](k * np.cos(theta), k * np.sin(theta), choice.conditions)
+    _, decay = scene.column.roots(k[:, 0])
+    energy = (S * k**2).sum(axis=1) * np.exp(-2.0 * decay * scene.age) * step * 2.0 * math.pi / 72
+    height = 4.0 * math.sqrt(energy.sum())
+    for reading in found.values():
+        assert reading.height == pytest.approx(height, rel=0.01)
+        assert reading.error == pytest.approx(reading.height / height - 1.0, abs=1e-3)

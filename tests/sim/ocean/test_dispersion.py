@@ -9,16 +9,18 @@ import pytest
 
 from sim.ocean.dispersion import (
     CRITICAL,
+    CRITICAL_FILM,
     damped_root,
-    film_decay,
     group_speed,
     mode_ratios,
     omega,
     phase_speed,
     two_layer,
     viscous_root,
+    viscous_two_layer,
 )
-from tests.naive_ocean import two_layer_determinant, viscous_roots
+from sim.ocean.fluids import fluids
+from tests.naive_ocean import film_roots, layer_roots, two_layer_determinant, viscous_roots
 
 INF = math.inf
 WATER = {"tension": 0.0728, "density": 998.2}
@@ -166,7 +168,75 @@ def test_viscous_limits_keep_their_digits():
 
 
 def test_film_damps_as_lamb_says():
-    assert film_decay(wavenumber(1.0), 1e-6) == pytest.approx(6.2244e-3, rel=1e-5)
+    k = wavenumber(1.0)
+    assert k * math.sqrt(1e-6 * omega(k) / 8.0) == pytest.approx(6.2244e-3, rel=1e-5)  # Art. 351
+    assert viscous_root(k, 1e-6, film=True)[1] == pytest.approx(6.2244e-3, rel=2e-3)
+    assert viscous_root(k, 1e-12, film=True)[1] == pytest.approx(6.2244e-6, rel=1e-5)
+
+
+@pytest.mark.parametrize("theta", [1e-8, 1e-4, 0.01, 0.5, 1.27, 1.2704, 3.0, 30.0])
+def test_film_root_is_the_slowest_root_of_its_quartic(theta):
+    w, rate = damped_root(1.0, theta, film=True)
+    roots = film_roots(theta)
+    s = roots[np.argmax(roots.real)]
+    assert float(rate) == pytest.approx(-s.real, rel=1e-6)
+    assert float(w) == pytest.approx(abs(s.imag), abs=1e-7)
+    assert (float(w) == 0.0) == (theta > CRITICAL_FILM)
+
+
+OILS = ("diesel 2002", "Alaska North Slope 2002", "Maya", "IFO 120", "IFO 180", "Bunker C Zalinski")
+THICKNESSES = (1e-3, 0.01, 0.1, 1.0)  # [m]
+LENGTHS = (0.3, 1.0, 3.0, 10.0, 30.0, 60.0)  # [m]
+
+
+def test_waves_on_a_layer_are_the_root_of_the_six_conditions():
+    water, k = fluids()["sea water"], 2.0 * math.pi / np.array(LENGTHS)
+    oils = [fluids()[name] for name in OILS]
+    found = [
+        viscous_two_layer(
+            k, oil.density, oil.viscosity, d, water.density, water.viscosity, 9.81,
+            oil.surface_tension or 0.0, oil.interface_tension or 0.0,
+        )
+        for oil in oils
+        for d in THICKNESSES
+    ]  # fmt: skip
+    w, rate = (np.concatenate(part) for part in zip(*found, strict=True))
+    each = len(THICKNESSES) * len(LENGTHS)
+
+    def of_oils(name):
+        return np.repeat([getattr(oil, name) or 0.0 for oil in oils], each)
+
+    s = layer_roots(
+        np.tile(k, len(w) // len(k)), np.tile(np.repeat(THICKNESSES, len(k)), len(oils)),
+        (of_oils("density"), water.density), (of_oils("viscosity"), water.viscosity), 9.81,
+        (of_oils("surface_tension"), of_oils("interface_tension")), steps=30,
+    )  # fmt: skip
+    np.testing.assert_allclose(w, s.imag.astype(float), rtol=1e-9)
+    np.testing.assert_allclose(rate, -s.real.astype(float), rtol=1e-9)
+
+
+def test_a_layer_of_the_same_fluid_is_one_fluid():
+    k = np.geomspace(0.05, 300.0, 40)
+    for viscosity, film in ((1e-6, False), (2e-2, False), (1e-6, True), (2e-2, True)):
+        natural = omega(k, tension=0.05)
+        w, rate = viscous_two_layer(
+            k, 1000.0, 1e3 * viscosity, 0.1, 1000.0, 1e3 * viscosity, surface_tension=0.05, film=film
+        )
+        expected = damped_root(natural, viscosity * k**2, film)
+        np.testing.assert_allclose(w, expected[0], rtol=1e-6)
+        np.testing.assert_allclose(rate, expected[1], rtol=1e-6)
+
+
+def test_thin_and_thick_layers_have_their_limits():
+    k, water, oil = wavenumber(30.0), fluids()["sea water"], fluids()["IFO 180"]
+    arguments = (water.density, water.viscosity)
+    thin = viscous_two_layer(k, oil.density, oil.viscosity, 1e-3, *arguments)[1]
+    # 2 nu k^2 below, and the extension of the layer: 4 mu d k^3 (k/omega)^2 g/rho/2 = 2 mu d k^3/rho
+    bare = 2.0 * k**2 * water.kinematic_viscosity + 2.0 * oil.viscosity * 1e-3 * k**3 / water.density
+    assert thin == pytest.approx(bare, rel=0.05)
+    thick = viscous_two_layer(k, oil.density, oil.viscosity, 1e3, *arguments)[1]
+    assert thick == pytest.approx(viscous_root(k, oil.kinematic_viscosity)[1], rel=1e-9)
+    assert viscous_two_layer(0.0, oil.density, oil.viscosity, 1.0, *arguments) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -182,6 +252,9 @@ def test_film_damps_as_lamb_says():
         (lambda: two_layer(1.0, 1025.0, 1.0, 850.0), "lower_density"),
         (lambda: two_layer(1.0, 850.0, 0.0, 1025.0), "thickness"),
         (lambda: viscous_root(1.0, -1e-6), "viscosity"),
+        (lambda: viscous_two_layer(1.0, 850.0, 0.0, 1.0, 1025.0, 1e-3), "upper_viscosity"),
+        (lambda: viscous_two_layer(1.0, 850.0, 1e-2, INF, 1025.0, 1e-3), "thickness"),
+        (lambda: viscous_two_layer(1.0, 850.0, 1e-2, 1.0, 1025.0, math.nan), "lower_viscosity"),
         (lambda: viscous_root(1.0, "thick"), "viscosity"),
     ],
 )

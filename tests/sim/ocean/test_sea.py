@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
+from sim.ocean.dispersion import viscous_root
+from sim.ocean.medium import Medium
 from sim.ocean.spectra import SPECTRA
+from sim.ocean.statistics import expected as expected_of
 from tests.naive_ocean import grid_fields, sum_of_waves
 
 FIELDS = ("height", "displacement", "slope", "jacobian")
@@ -215,6 +218,63 @@ def test_viscous_sea_loses_height_and_slope():
 def test_film_damps_more_than_clean_water():
     clean, film = (Sea(32, 20.0, wind_speed=3.0, viscosity=1e-6, film=f) for f in (False, True))
     assert film.significant_height_at(100.0) < clean.significant_height_at(100.0)
+
+
+def test_a_change_keeps_the_decay_so_far():
+    sea = Sea(64, 20.0, wind_speed=3.0, viscosity=1e-2, precision="double")
+    lasting = sea.significant_height_at(300.0)
+    sea.change(300.0, wind_direction=0.01)
+    assert sea.significant_height_at(300.0) == pytest.approx(lasting, rel=1e-3)
+    sea.change(400.0, viscosity=0.0)
+    kept = sea.significant_height_at(400.0)
+    same = Sea(64, 20.0, wind_speed=3.0, wind_direction=0.01, viscosity=1e-2).significant_height_at(400.0)
+    assert kept == pytest.approx(same, rel=1e-9)
+    assert sea.significant_height_at(1000.0) == kept
+    # A stronger wind raises what is left, and brings back nothing of what was lost.
+    sea.change(1000.0, relax=5.0, wind_speed=6.0)
+    assert sea.significant_height_at(1000.0) == pytest.approx(kept, rel=1e-9)
+    share = sea.energy_at(2000.0) / Sea(64, 20.0, wind_speed=6.0, wind_direction=0.01).energy_at(0.0).clip(1e-300)
+    k = np.hypot(sea.k[:, None], sea.k[None, :])
+    _, decay = viscous_root(k, 1e-2)
+    seen = sea.energy_at(2000.0) > 0.0
+    np.testing.assert_allclose(share[seen], np.exp(-2.0 * 400.0 * decay[seen]), rtol=1e-9)
+
+
+def test_a_resized_sea_has_lost_as_much():
+    def aged(size):
+        sea = Sea(size, 20.0, wind_speed=3.0, viscosity=1e-2, precision="double")
+        sea.change(5.0, viscosity=1e-3)
+        sea.change(9.0, viscosity=0.0)
+        return sea
+
+    np.testing.assert_allclose(aged(32).resized(64).energy_at(9.0), aged(64).energy_at(9.0), rtol=1e-12)
+
+
+def test_exposure_is_waiting_with_the_clock_stopped():
+    sea, other = (Sea(32, 20.0, wind_speed=3.0, viscosity=1e-3, precision="double") for _ in range(2))
+    sea.expose(50.0)
+    np.testing.assert_allclose(sea.energy_at(0.0), other.energy_at(50.0), rtol=1e-12)
+    still = Sea(32, 20.0, wind_speed=3.0, precision="double")
+    still.expose(50.0, Medium(viscosity=1e-3))
+    np.testing.assert_allclose(still.energy_at(7.0), other.energy_at(50.0), rtol=1e-12)
+    height = still.surface(0.0).height
+    assert 4.0 * height.std() == pytest.approx(still.significant_height, rel=0.2)
+    with pytest.raises(ValueError, match="duration"):
+        sea.expose(-1.0)
+
+
+def test_what_is_asked_of_a_sea_without_a_time_is_at_its_own():
+    sea = Sea(64, 300.0, wind_speed=6.0)
+    sea.change(60.0, relax=5.0, wind_speed=12.0)
+    assert sea.time == 60.0
+    calm, windy = (expected_of(Sea(64, 300.0, wind_speed=U)).significant_height for U in (6.0, 12.0))
+    assert expected_of(sea).significant_height == pytest.approx(calm)
+    sea.surface(200.0)
+    assert expected_of(sea).significant_height == pytest.approx(windy)
+    for call in (sea.significant_height_at, sea.energy_at, sea.amplitudes_at, lambda t: expected_of(sea, t)):
+        for t in (0.0, math.nan, math.inf):
+            with pytest.raises(ValueError, match=r"^t: "):
+                call(t)
 
 
 def test_change_relaxes_without_a_jump():

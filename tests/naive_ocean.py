@@ -61,7 +61,7 @@ def viscous_roots(theta: float) -> np.ndarray:
 
 
 def film_roots(theta: float) -> np.ndarray:
-    """All s/omega0 with Re m > 0 under a film that cannot be stretched, by the roots of theta^2 (m^2 - 1)^2 = 1/m - 1."""
+    """All s/omega0 with Re m > 0 under a film, by the roots of theta^2 (m^2 - 1)^2 = 1/m - 1."""
     m = np.roots([1.0, 0.0, -2.0, 0.0, 1.0 + 1.0 / theta**2, -1.0 / theta**2])
     return theta * (m[(m.real > 0.0) & (np.abs(m - 1.0) > 1e-9)] ** 2 - 1.0)
 

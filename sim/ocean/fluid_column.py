@@ -68,7 +68,7 @@ class FluidColumn:
         return np.asarray(mode_ratios(k, *self._two()).surface)
 
     def roots(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """omega [rad/s] and decay rate [1/s] of waves of wavenumber k [rad/m]: the roots of the exact linear problem."""
+        """omega [rad/s] and decay rate [1/s] of waves of wavenumber k [rad/m], from the exact linear problem."""
         k = np.asarray(k, np.float64)
         if self.kind != "layer":
             return damped_root(self.omega(k), self.surface.kinematic_viscosity * k**2, self.film)

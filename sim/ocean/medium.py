@@ -35,8 +35,11 @@ class Medium:
             check_positive("loop_period", self.loop_period, "s")
 
     def roots(self, k: np.ndarray, conditions: Conditions) -> tuple[np.ndarray, np.ndarray]:
-        """omega [rad/s] and decay rate [1/s] of wavenumbers k [rad/m]. Raises ValueError where a function that stands for
-        either gives another shape than that of k, or what is not finite or below 0."""
+        """omega [rad/s] and decay rate [1/s] of wavenumbers k [rad/m].
+
+        Raises ValueError where a function for either gives another shape than that of k, or what is not finite or
+        below 0.
+        """
         natural = conditions.omega(k) if self.frequency is None else self._given("frequency", k)
         omega, decay = damped_root(natural, self.viscosity * k**2, self.film)
         if self.decay is not None:

@@ -61,8 +61,8 @@ class Sea:
         """size: cells a side, even, 8 to 4096; length [m] of the tile; the wind is U10, U19.5 for pierson_moskowitz.
 
         amplitudes: "random" (Gaussian) or "fixed" (random phase only); choppiness: factor on the displacement;
-        viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of `Conditions` and `Medium`, and the
-        parameters of any spectrum (`sim.ocean.spectra.PARAMETERS`), for when it is the one in force.
+        viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of `Conditions` and `Medium`,
+        and the parameters of any spectrum (`sim.ocean.spectra.PARAMETERS`), for when it is the one in force.
         Raises ValueError for a value that is not allowed, TypeError for an unknown name.
         """
         if not is_whole_number(size) or size % 2 or not SIZES[0] <= size <= SIZES[1]:
@@ -107,9 +107,7 @@ class Sea:
             "viscosity": viscosity,
         }
         self._given: dict[str, Any] = {}  # conditions as given, those of other spectra too
-        self._lost = np.zeros_like(
-            self._k
-        )  # -ln of the amplitude that is left of each wave since then, a quarter plane
+        self._lost = np.zeros_like(self._k)  # -ln of the share of each wave that is left of that time, a quarter plane
         self._set_conditions(spectrum, given | more, Medium())
         self._start = self._target
         self._set_planes()
@@ -146,8 +144,8 @@ class Sea:
         """From time t [s] on, other conditions: any of the constructor's that describe wind, gravity or the medium.
 
         Phases go on without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
-        relax = 0. What waves have lost to viscosity stays lost: the new size is that of the new spectrum times the share
-        that is left. Raises ValueError for a value that is not allowed, TypeError for an unknown name.
+        relax = 0. What waves have lost to viscosity stays lost: the new size is that of the new spectrum times the
+        share that is left. Raises ValueError for a value that is not allowed, TypeError for an unknown name.
         """
         t, relax = self._checked_time(t), check_not_negative("relax", relax, "s")
         if self._ripples is not None:
@@ -225,7 +223,8 @@ class Sea:
     def amplitudes_at(self, t: float) -> np.ndarray:
         """h0(k), complex (size, size) [m], FFT order: as large as at time t [s], with the phase of the last change.
 
-        Raises ValueError for a time that `surface` does not take either. The sea is Re sum 2 h0 exp(i(k.x - omega (t - change))); without a change these are the amplitudes as drawn.
+        The sea is Re sum 2 h0 exp(i(k.x - omega (t - change))); without a change these are the amplitudes as drawn.
+        Raises ValueError for a time that `surface` does not take either.
         """
         return self._unit * self._magnitude(t)
 

@@ -72,8 +72,10 @@ def _polar_cells(
 
 
 def expected(sea: "Sea", t: float | None = None) -> Statistics:
-    """Statistics of the spectrum as the tile resolves it at time t [s], by default the sea's own: sums of S dk^2 over its
-    waves. Raises ValueError for a time that the sea does not take."""
+    """Statistics of the spectrum as the tile resolves it: sums of S dk^2 over its waves at time t [s].
+
+    By default that is the sea's own time. Raises ValueError for a time that the sea does not take.
+    """
     return _of_energy(sea, sea.energy_at(sea.time if t is None else t))
 
 

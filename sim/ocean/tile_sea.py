@@ -28,8 +28,8 @@ class TileSea:
     """A `Sea` with the questions of `RadialSea`."""
 
     def __init__(self, sea: Sea, column: FluidColumn | None = None, exposure: float = 0.0) -> None:
-        """column: what takes energy from the waves, by default nothing does; exposure [s]: for how long they have run on it
-        and decayed. Raises ValueError for a negative one."""
+        """column: what takes energy from the waves, by default nothing does; exposure [s]: for how long they have run
+        on it and decayed. Raises ValueError for a negative one."""
         self.sea = sea
         self.medium = None if column is None else Medium(decay=lambda k: column.roots(k)[1])
         self.exposure = 0.0

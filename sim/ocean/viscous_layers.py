@@ -1,4 +1,4 @@
-"""The surface wave on a layer of viscous fluid on deep viscous fluid: root of the exact linear problem, for arrays of k.
+"""The surface wave on a layer of viscous fluid on deep viscous fluid: the root of the exact linear problem.
 
 In each fluid the vertical velocity is w = P + Q, times e^(ikx + st): P'' = k^2 P is the potential part, which carries
 the pressure -rho s P'/k^2, and Q'' = m^2 Q, m^2 = k^2 + s/nu, the rotational part, which carries none. Six constants
@@ -117,7 +117,6 @@ def _new_shift(shift: np.ndarray, share: Any, layers: Layers, film: bool) -> np.
     mu1, mu2 = share * mu1, share * mu2
     nu1, nu2 = mu1 / rho1, mu2 / rho2
     m1, m2 = np.sqrt(k**2 + s / nu1), np.sqrt(k**2 + s / nu2)
-    above_k = (s / nu1) / (m1 + k)  # m1 - k
     a, b = s + 2.0 * nu1 * k**2, 2.0 * nu1 * k**2
     e, E = np.exp(-k * d), np.exp(-m1 * d)
     coth_m, both = (1.0 + E * E) / (1.0 - E * E), 2.0 * E / (1.0 - E * E)  # 1/tanh and 1/sinh of m1 d

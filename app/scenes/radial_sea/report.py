@@ -216,8 +216,8 @@ def surfaces_html(snapshot: Snapshot) -> Html:
     )
     return join((
         table(head, rows),
-        "Both on the same vertices, timed just now. The error is that of the expected height against the whole spectrum, "
-        "on the same fluids. The radial grid reaches the horizon and never repeats. It is "
+        "Both on the same vertices, timed just now. The error is that of the expected height, against the whole "
+        "spectrum on the same fluids. The radial grid reaches the horizon and never repeats. It is "
         "dense near the viewer; each of its waves costs a pass over the vertices. The FFT computes every wave of its "
         "tile at once, repeats beyond the extent, and is as fine far away as nearby.",
     ))  # fmt: skip

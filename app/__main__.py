@@ -108,9 +108,30 @@ def make_parser() -> argparse.ArgumentParser:
     sweep.add_argument("--fresh", action="store_true", help="start over, and replace earlier results")
     sweep.set_defaults(command=run_sweep)
 
+    add_lab(commands.add_parser("lab", help="the course lab: make a folder of exercises, check it"))
+
     warmup = commands.add_parser("warmup", help="compile all kernels and plan all transforms, once")
     warmup.set_defaults(command=run_warmup)
     return parser
+
+
+def add_lab(lab: argparse.ArgumentParser) -> None:
+    """The commands of `springtide lab`."""
+    commands = lab.add_subparsers(metavar="new or check", required=True)
+    new = commands.add_parser("new", help="write a folder with the exercises")
+    new.add_argument("folder", type=Path, metavar="DIR", help="a new or empty folder")
+    new.add_argument("--solutions", action="store_true", help="for teachers: with the reference solutions")
+    new.set_defaults(command=make_lab)
+    check = commands.add_parser("check", help="check the exercises; status 0 where all that is mandatory is right")
+    check.add_argument("folders", type=Path, nargs="+", metavar="DIR", help="one folder, or those of a class")
+    json = "write the results as JSON; without a file, print them"
+    check.add_argument("--json", type=Path, nargs="?", const=Path("-"), metavar="FILE", help=json)
+    check.add_argument("--csv", type=Path, metavar="FILE.csv", help="write a table, one row a folder")
+    check.add_argument("--report", type=Path, metavar="FILE.html", help="write the page to hand in")
+    check.set_defaults(command=check_lab)
+    for command in (new, check):
+        more = "a folder with tasks of your own, beside those of the course; see docs/lab.md"
+        command.add_argument("--tasks", type=Path, action="append", default=[], metavar="FOLDER", help=more)
 
 
 def add_serving(parser: argparse.ArgumentParser) -> None:
@@ -204,6 +225,21 @@ def run_sweep(arguments: argparse.Namespace) -> int:
     from app.sweep.command import sweep
 
     return sweep(arguments.spec, arguments.out, arguments.scheduler, fresh=arguments.fresh)
+
+
+def make_lab(arguments: argparse.Namespace) -> int:
+    """`springtide lab new`."""
+    from app.commands.lab import new
+
+    return new(arguments.folder, arguments.tasks, solutions=arguments.solutions)
+
+
+def check_lab(arguments: argparse.Namespace) -> int:
+    """`springtide lab check`."""
+    from app.commands.lab import check
+
+    out = {"json": arguments.json, "csv": arguments.csv, "report": arguments.report}
+    return check(arguments.folders, arguments.tasks, out)
 
 
 def run_warmup(arguments: argparse.Namespace) -> int:

@@ -21,6 +21,7 @@ ORDER = (
     ("server",),
     ("panel",),
     ("scenes",),
+    ("lab",),
     ("render",),
     ("messages", "files"),
 )

@@ -1,1 +1,1 @@
-"""The commands `springtide`, `springtide run` and `springtide warmup`: one module each."""
+"""The commands `springtide`, `springtide run`, `springtide lab` and `springtide warmup`: one module each."""

@@ -1,0 +1,7 @@
+"""The course lab: a folder of exercises, checks that say what is wrong, and a report to hand in.
+
+`tasks/` holds the tasks, one TOML file each and, where something is to be programmed, one Python file with the
+reference solution and its check. `folder.py` writes the student's folder, `runner.py` runs the student's functions in
+a process of their own, `program_check.py` and `answer_check.py` judge, `report.py` writes the page to hand in.
+Nothing here imports a viewer.
+"""

@@ -1,0 +1,81 @@
+"""Checks a student's folder: every function, every answer."""
+
+import dataclasses
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from app.lab.answer_check import AnswerVerdict, check_answer
+from app.lab.answers import Answers, read_answers
+from app.lab.program_check import Verdict, check_program
+from app.lab.runner import Runner
+from app.lab.task import Task
+from sim.validation import argument_error
+
+
+@dataclasses.dataclass(frozen=True)
+class TaskResult:
+    """One task of one student."""
+
+    task: Task
+    program: Verdict | None  # None where nothing is to be programmed
+    answers: tuple[AnswerVerdict, ...]
+
+    @property
+    def state(self) -> str:
+        """ "failed", "wrong", "not begun", "incomplete" or "right": the first of these that a part of the task has."""
+        states = [*([self.program.state] if self.program else []), *(answer.state for answer in self.answers)]
+        for state in ("failed", "wrong"):
+            if state in states:
+                return state
+        open_parts = states.count("not begun")
+        return "right" if not open_parts else "not begun" if open_parts == len(states) else "incomplete"
+
+    @property
+    def messages(self) -> tuple[str, ...]:
+        """What to tell the student of the parts that are not right."""
+        texts = []
+        if self.program is not None and self.program.state in ("wrong", "failed"):
+            named = f"{self.program.mistake}: " if self.program.state == "wrong" and self.program.mistake else ""
+            texts.append(f"{self.task.name}: {named}{self.program.text}")
+        texts += [f"{answer.question.key}: {answer.text}" for answer in self.answers if answer.state == "wrong"]
+        if self.state == "incomplete":
+            missing = [self.task.name] if self.program is not None and self.program.state == "not begun" else []
+            missing += [answer.question.key for answer in self.answers if answer.state == "not begun"]
+            texts.append("still to do: " + ", ".join(missing))
+        return tuple(texts)
+
+
+@dataclasses.dataclass(frozen=True)
+class FolderResult:
+    """All tasks of one student."""
+
+    folder: Path
+    answers: Answers
+    tasks: tuple[TaskResult, ...]
+    seconds: float
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether every task that is not optional is right."""
+        return all(result.state == "right" for result in self.tasks if not result.task.optional)
+
+    def count(self, *, optional: bool) -> tuple[int, int]:
+        """How many of the mandatory or optional tasks are right, and how many there are."""
+        chosen = [result for result in self.tasks if result.task.optional == optional]
+        return sum(result.state == "right" for result in chosen), len(chosen)
+
+
+def check_folder(folder: Path, tasks: Sequence[Task]) -> FolderResult:
+    """Check all tasks of a student's folder. Raises ValueError where it is no folder."""
+    if not folder.is_dir():
+        raise argument_error("DIR", str(folder), "a folder that `springtide lab new` has made")
+    began = time.monotonic()
+    answers = read_answers(folder)
+    results = []
+    with Runner(folder) as runner:
+        for task in tasks:
+            program = check_program(folder, runner, task) if task.check is not None else None
+            judged = tuple(check_answer(question, answers.of(task, question)) for question in task.questions)
+            results.append(TaskResult(task, program, judged))
+    return FolderResult(folder, answers, tuple(results), time.monotonic() - began)

@@ -1,0 +1,59 @@
+"""What the check of a programming task is made of; the Python file of a task uses these names.
+
+Beside the reference solution, such a file has
+- `inputs(rng)`, required: one set of arguments, drawn from a numpy generator. Functions may be among them.
+- `MISTAKES`, a tuple of `Mistake`: wrong solutions that are recognised by what they return.
+- `behaviour(student)`: calls the student's function and raises `Wrong` where it does not behave as it must.
+- `normalise(result)`: brings results that mean the same to one form, for example a list in any order.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+
+class Mistake(NamedTuple):
+    """A typical mistake: its name, what to tell who made it, and a function that makes it."""
+
+    name: str
+    hint: str
+    function: Callable[..., Any]
+
+
+class Wrong(Exception):  # noqa: N818 - a judgement on a solution, not an error of the program
+    """The student's function does not behave as it must. mistake: its name where it is a known one."""
+
+    def __init__(self, text: str, mistake: str = "") -> None:
+        super().__init__(text)
+        self.mistake = mistake
+
+
+class Counted:
+    """A function that counts its calls and keeps the arguments of each."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.function = function
+        self.calls: list[tuple[Any, ...]] = []
+
+    def __call__(self, *arguments: Any) -> Any:
+        """The function's value."""
+        self.calls.append(arguments)
+        return self.function(*arguments)
+
+
+def require(condition: object, text: str, mistake: str = "") -> None:
+    """Raises `Wrong` unless the condition holds."""
+    if not condition:
+        raise Wrong(text, mistake)
+
+
+def number_text(value: Any) -> str:
+    """A result in a few figures, for messages."""
+    if isinstance(value, tuple):
+        return "(" + ", ".join(number_text(part) for part in value) + ")"
+    array = np.asarray(value)
+    if array.size > 12:
+        return f"an array of shape {array.shape}"
+    text = np.array2string(array, precision=4, suppress_small=True, separator=", ", max_line_width=10_000)
+    return " ".join(text.split())

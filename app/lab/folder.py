@@ -1,0 +1,112 @@
+"""`springtide lab new`: the student's folder, made from the tasks."""
+
+import ast
+import inspect
+from collections.abc import Sequence
+from pathlib import Path
+
+from app.lab.answers import FILE, Answers, Value, answers_text
+from app.lab.task import Task
+from sim.validation import argument_error
+
+PICTURES = "pictures"  # folder for pictures of the screen, which the report shows
+
+
+def make_folder(folder: Path, tasks: Sequence[Task], *, solutions: bool = False) -> list[Path]:
+    """Write the exercises into a new or empty folder; returns the files. solutions: with the reference solutions.
+
+    Raises ValueError where the folder holds something, OSError where it cannot be written.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise argument_error("DIR", str(folder), "a new or empty folder")
+    texts = {name: file_text(name, tasks, solutions=solutions) for name in files_of(tasks)}
+    texts[FILE] = answers_text(tasks, right_answers(tasks) if solutions else Answers("", {}))
+    texts["README.md"] = readme_text(folder.name, tasks)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / PICTURES).mkdir()
+    for name, text in texts.items():
+        (folder / name).write_text(text, "utf-8")
+    return [folder / name for name in texts]
+
+
+def files_of(tasks: Sequence[Task]) -> list[str]:
+    """The Python files of the programming tasks, in the order of the lab."""
+    return list(dict.fromkeys(task.file for task in tasks if task.file))
+
+
+def file_text(name: str, tasks: Sequence[Task], *, solutions: bool) -> str:
+    """A Python file with the functions that belong there: to be written, or as the reference has them."""
+    own = [task for task in tasks if task.file == name]
+    head = (
+        '"""Your functions. Write each body in place of the three dots; `springtide lab check` tests it."""'
+        "\n\nimport numpy as np\n"
+    )
+    blocks = [
+        f"\n\n# {task.item}{' (optional)' if task.optional else ''}  {task.title}\n"
+        + (inspect.getsource(task.function) if solutions else stub(task))
+        for task in own
+    ]
+    return head + "".join(blocks)
+
+
+def stub(task: Task) -> str:
+    """The function with its docstring, and `...` as body."""
+    source = inspect.getsource(task.function)
+    node = ast.parse(source).body[0]
+    assert isinstance(node, ast.FunctionDef)
+    lines = source.splitlines()[: node.body[0].end_lineno]
+    return "\n".join(lines) + "\n    ...\n"
+
+
+def right_answers(tasks: Sequence[Task]) -> Answers:
+    """Right answers to all questions, for the teacher: of a prediction any, of a text the explanation of the task."""
+    values: dict[tuple[str, str], Value] = {}
+    for task in tasks:
+        for question in task.questions:
+            if question.right is not None:
+                value = question.right
+            elif question.kind == "choice":
+                value = question.choices[0]
+            elif question.kind == "number":
+                value = 1.0
+            else:
+                value = question.why or "Any sentence counts; the teacher reads it."
+            values[task.name, question.key] = value
+    return Answers("Reference solutions", values)
+
+
+def readme_text(name: str, tasks: Sequence[Task]) -> str:
+    """The README of the student's folder: what to do, and every task."""
+    mandatory = sum(not task.optional for task in tasks)
+    lines = [
+        "# Springs and waves: the lab",
+        "",
+        f"{mandatory} tasks, and {len(tasks) - mandatory} optional ones. For each one:",
+        "",
+        "1. Read it below. Predict first: write your prediction into `answers.toml`.",
+        "2. Write the function, where there is one. The docstring has the equation, the units and the shapes.",
+        "3. Look at it in Springtide: the command below each task opens the right scene.",
+        f"4. Check your work in the folder above this one: `springtide lab check {name}`. It says what is right,",
+        "   and what is wrong and why. Check as often as you like.",
+        "5. Answer the questions in `answers.toml`.",
+        "",
+        f"Put pictures of your screen (PNG or JPEG) into `{PICTURES}`. At the end write the page that you hand in:",
+        f"`springtide lab check {name} --report report.html`.",
+        "",
+        "Functions take and return numpy arrays and numbers. Loops are as right as array operations. You may write",
+        "functions and files of your own beside those that are asked for.",
+    ]
+    section = ""
+    for task in tasks:
+        if task.item.partition("-")[0] != section:
+            section = task.item.partition("-")[0]
+            lines += ["", f"## Section {section} of the course lab"]
+        lines += ["", f"### {task.item} {task.title}{' (optional)' if task.optional else ''}", "", task.statement]
+        if task.file:
+            lines += ["", f"Write `{task.name}` in `{task.file}`."]
+        if task.setup is not None:
+            preset = f' --preset "{task.setup.preset}"' if task.setup.preset else ""
+            lines += ["", f"See it: `springtide --scene {task.setup.scene}{preset}`. {task.setup.look}"]
+        if task.questions:
+            lines += ["", "Questions:", *(f"- `{question.key}`: {question.ask}" for question in task.questions)]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,173 @@
+"""Runs a student's functions in a process of their own: nothing that they do harms the lab.
+
+A call that takes more than 2 s is ended with its process, and the next call gets a new one. What went wrong is a
+`RunError`, which says what and where in words for the student.
+"""
+
+import contextlib
+import os
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from app.lab.wire import pack, receive, send, unpack
+
+TIME_LIMIT = 2.0  # [s] of one call
+LOAD_LIMIT = 10.0  # [s] until a new process answers its first call, which imports numpy
+ROOT = Path(__file__).resolve().parents[2]  # the folder that holds `app`
+START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.worker import main; main()"
+
+
+class RunError(Exception):
+    """A student's function did not come to a result.
+
+    kind: "missing", "syntax", "raised", "endless", "ended", "memory" or "printed". file, line: in the student's folder.
+    """
+
+    def __init__(self, kind: str, text: str, file: str, line: int | None = None) -> None:
+        super().__init__(text)
+        self.kind = kind
+        self.text = text
+        self.file = file
+        self.line = line
+
+    def __str__(self) -> str:
+        return f"{self.file}, line {self.line}: {self.text}" if self.line else f"{self.file}: {self.text}"
+
+
+class Runner:
+    """The functions in the Python files of one folder. Use it in a `with` block, which ends its process."""
+
+    def __init__(self, folder: Path, time_limit: float = TIME_LIMIT) -> None:
+        self.folder = folder.resolve()
+        self.time_limit = time_limit
+        self.starts = 0  # processes started
+        self._process: subprocess.Popen[bytes] | None = None
+        self._answers: queue.SimpleQueue[list[Any] | None] = queue.SimpleQueue()
+
+    def __enter__(self) -> "Runner":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def call(self, file: str, function: str, *arguments: Any) -> Any:
+        """What a function returns: None, numbers, texts, arrays, lists and tuples of these, or `Foreign`.
+
+        Functions among the arguments are computed here when the student's function calls them. Raises RunError.
+        """
+        if not (self.folder / file).is_file():
+            raise RunError("missing", "there is no such file", file)
+        functions: list[Callable[..., Any]] = []
+
+        def refer(function: Callable[..., Any]) -> int:
+            functions.append(function)
+            return len(functions) - 1
+
+        process = self._ready()
+        deadline = time.monotonic() + self.time_limit
+        self._say(process, ["call", file, function, pack(list(arguments), refer)])
+        while True:
+            answer = self._next(deadline, file, function)
+            if answer[0] == "result":
+                return unpack(answer[1], lambda _: None)
+            if answer[0] == "failed":
+                _, kind, text, where, line = answer
+                if kind == "memory":
+                    self.close()  # what it holds is given back
+                raise RunError(str(kind), str(text), str(where), line if isinstance(line, int) else None)
+            self._say(process, compute(functions, answer))
+
+    def close(self) -> None:
+        """End the process, and all that it has started."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        with contextlib.suppress(OSError):  # it has ended already
+            if os.name == "posix":
+                os.killpg(process.pid, signal.SIGKILL)
+            else:
+                process.kill()
+        for stream in (process.stdin, process.stdout):
+            with contextlib.suppress(OSError):  # what was not yet sent is dropped
+                if stream is not None:
+                    stream.close()
+        process.wait()
+
+    def _ready(self) -> subprocess.Popen[bytes]:
+        """The process, started unless it runs already. Raises RunError where it does not start."""
+        if self._process is not None and self._process.poll() is None:
+            return self._process
+        self.close()
+        self.starts += 1
+        # One thread for linear algebra: more would count as memory, and the arrays are small.
+        surroundings = {
+            **os.environ,
+            "OPENBLAS_NUM_THREADS": "1",
+            "OMP_NUM_THREADS": "1",
+            "PYTHONDONTWRITEBYTECODE": "1",
+        }
+        process = subprocess.Popen(
+            [sys.executable, "-P", "-c", START, str(ROOT), str(self.folder)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            cwd=self.folder,
+            env=surroundings,
+            start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle
+        )
+        self._process = process
+        self._answers = queue.SimpleQueue()
+        threading.Thread(target=read_answers, args=(process, self._answers), daemon=True).start()
+        self._next(time.monotonic() + LOAD_LIMIT, "Python", "the start of the process")
+        return process
+
+    def _say(self, process: subprocess.Popen[bytes], message: list[Any]) -> None:
+        """Send a message; a process that has ended is noticed at the next answer."""
+        assert process.stdin is not None
+        with contextlib.suppress(OSError):
+            send(process.stdin, message)
+
+    def _next(self, deadline: float, file: str, function: str) -> list[Any]:
+        """The next message of the process. Raises RunError where none comes in time, or the process has ended."""
+        try:
+            answer = self._answers.get(timeout=max(deadline - time.monotonic(), 0.0))
+        except queue.Empty:
+            self.close()
+            text = f"{function} does not come to an end within {self.time_limit:g} s: is there an endless loop?"
+            raise RunError("endless", text, file) from None
+        if answer is None:
+            process = self._process
+            status = process.wait() if process is not None else None
+            self.close()
+            how = f"signal {-status}" if status is not None and status < 0 else f"exit status {status}"
+            raise RunError("ended", f"{function} ended its process ({how})", file)
+        return answer
+
+
+def read_answers(process: subprocess.Popen[bytes], answers: "queue.SimpleQueue[list[Any] | None]") -> None:
+    """Put every message of the process into the queue, and None at its end."""
+    assert process.stdout is not None
+    while True:
+        try:
+            answer = receive(process.stdout)
+        except (OSError, ValueError):  # closed from here
+            answer = None
+        answers.put(answer)
+        if answer is None:
+            return
+
+
+def compute(functions: list[Callable[..., Any]], answer: list[Any]) -> list[Any]:
+    """The reply to a callback: the value, or why these arguments are refused."""
+    arguments = unpack(answer[2], lambda _: None)
+    try:
+        return ["value", pack(functions[answer[1]](*arguments), lambda _: 0)]
+    except (TypeError, ValueError, IndexError, AttributeError) as error:
+        return ["refused", f"the function that was handed over cannot take these arguments: {error}"]

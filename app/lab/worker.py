@@ -1,0 +1,164 @@
+"""The process that runs a student's functions. `runner.py` starts it and speaks to it by pipes.
+
+It says `["ready"]` once. It takes `["call", file, function, arguments]` and answers with `["result", value]`,
+`["callback", number, arguments]` (a function among the arguments is called: the other side computes it), or
+`["failed", kind, text, file, line]`. What a student prints is counted and dropped: the pipes are the lab's own.
+"""
+
+import contextlib
+import importlib.util
+import io
+import os
+import sys
+import threading
+import time
+import traceback
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NoReturn
+
+from app.lab.wire import pack, receive, send, unpack
+
+MAX_LINES = 10_000  # printed in one call
+MEMORY = 768 * 2**20  # [bytes] that a call may ask for, where the system can limit it
+LOOK_AT_PARENT = 1.0  # [s] between two looks whether the lab still runs
+
+
+class PrintedTooMuchError(BaseException):
+    """Not an `Exception`, so that a student's `except Exception` lets it through."""
+
+
+class CountedOutput(io.TextIOBase):
+    """Stands for standard output: counts lines and drops them."""
+
+    def __init__(self) -> None:
+        self.lines = 0
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, text: str, /) -> int:
+        self.lines += text.count("\n")
+        if self.lines > MAX_LINES:
+            raise PrintedTooMuchError
+        return len(text)
+
+
+class Worker:
+    """Loads a student's files and calls their functions."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.output = CountedOutput()
+        # The pipes get numbers of their own; 0, 1 and 2, which the student's code sees, lead nowhere.
+        self.incoming = os.fdopen(os.dup(0), "rb")
+        self.outgoing = os.fdopen(os.dup(1), "wb")
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        for number in (0, 1, 2):
+            os.dup2(nowhere, number)
+        sys.stdin = io.StringIO()
+        sys.stdout = sys.stderr = self.output
+        sys.path.insert(0, str(folder))
+        self.modules: dict[str, ModuleType] = {}
+
+    def serve(self) -> None:
+        """Say that the process is ready, then answer until the lab closes the pipe."""
+        send(self.outgoing, ["ready"])
+        while (message := receive(self.incoming)) is not None:
+            _, file, function, arguments = message
+            self.output.lines = 0
+            try:
+                answer = self.answer(file, function, arguments)
+                send(self.outgoing, answer)
+            except BrokenPipeError:
+                return
+            except ValueError as error:  # the result is too long to send
+                send(self.outgoing, ["failed", "raised", f"the result has {error}", file, None])
+
+    def answer(self, file: str, function: str, arguments: Any) -> list[Any]:
+        """The message that tells what a call came to."""
+        try:
+            module = self.load(file)
+            target = getattr(module, function, None)
+            if not callable(target):
+                return ["failed", "missing", f"there is no function {function}", file, None]
+            value = target(*unpack(arguments, self.remote))
+            return ["result", pack(value, lambda _: 0)]
+        except PrintedTooMuchError:
+            return ["failed", "printed", f"prints more than {MAX_LINES} lines in one call", *self.place(file)]
+        except MemoryError:
+            text = f"asks for more memory than the {MEMORY // 2**20} MiB that a call may take"
+            return ["failed", "memory", text, *self.place(file)]
+        except SystemExit:
+            return ["failed", "ended", "calls exit(), which ends the program", *self.place(file)]
+        except SyntaxError as error:
+            where = Path(error.filename or file).name
+            return ["failed", "syntax", f"{type(error).__name__}: {error.msg}", where, error.lineno]
+        except BaseException as error:
+            text = "".join(traceback.format_exception_only(error)).strip().splitlines()
+            return ["failed", "raised", text[-1] if text else type(error).__name__, *self.place(file)]
+
+    def place(self, file: str) -> tuple[str, int | None]:
+        """File and line of the student's code where the present exception arose."""
+        _, error, _ = sys.exc_info()
+        frames = traceback.extract_tb(error.__traceback__ if error else None)
+        own = [frame for frame in frames if Path(frame.filename).parent == self.folder]
+        return (Path(own[-1].filename).name, own[-1].lineno) if own else (file, None)
+
+    def load(self, file: str) -> ModuleType:
+        """The student's module, run once."""
+        if file not in self.modules:
+            name = Path(file).stem
+            spec = importlib.util.spec_from_file_location(name, self.folder / file)
+            if spec is None or spec.loader is None:
+                raise ImportError(f"{file} is not Python")
+            module = importlib.util.module_from_spec(spec)
+            sys.modules[name] = module
+            spec.loader.exec_module(module)
+            self.modules[file] = module
+        return self.modules[file]
+
+    def remote(self, number: int) -> Any:
+        """A function of the lab as the student's function calls it."""
+
+        def function(*arguments: Any) -> Any:
+            send(self.outgoing, ["callback", number, pack(list(arguments), lambda _: 0)])
+            message = receive(self.incoming)
+            if message is None:
+                os._exit(0)  # the lab has gone
+            if message[0] == "refused":
+                raise ValueError(message[1])
+            return unpack(message[1], self.remote)
+
+        return function
+
+
+def limit_memory() -> None:
+    """Let this process ask for `MEMORY` more than it has, where the system can limit that (Linux)."""
+    if sys.platform != "linux":
+        return
+    import resource
+
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    bound = pages * resource.getpagesize() + MEMORY
+    with contextlib.suppress(ValueError, OSError):  # where a lower limit is set already
+        resource.setrlimit(resource.RLIMIT_AS, (bound, bound))
+
+
+def end_with_parent(parent: int) -> None:
+    """End this process when the lab has ended, also in the middle of an endless loop."""
+
+    def watch() -> NoReturn:
+        while os.getppid() == parent:
+            time.sleep(LOOK_AT_PARENT)
+        os._exit(0)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+def main() -> None:
+    """Serve the folder that the command line names."""
+    end_with_parent(os.getppid())
+    worker = Worker(Path(sys.argv[2]))
+    limit_memory()
+    worker.serve()

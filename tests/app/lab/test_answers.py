@@ -1,0 +1,124 @@
+"""answers.toml: read leniently, written whole or not at all."""
+
+import subprocess
+import sys
+import time
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from app.lab.answer_check import check_answer
+from app.lab.answers import FILE, Answers, answers_text, read_answers, write_answers
+from app.lab.task import Question, TypicalError, load_tasks
+
+ROOT = Path(__file__).parents[3]
+TASKS = load_tasks()
+FIRST = next(task for task in TASKS if task.questions)
+ODD = (
+    "",
+    "plain",
+    'a "quote" and \\ and \\n',
+    "two\nlines\n\n'''\"\"\"",
+    "tab\t\x07\x7f",
+    "åäö 波 🌊",
+    "# not a comment",
+    "[x]\r\n",
+)
+
+
+@pytest.mark.parametrize("text", ODD)
+def test_any_text_survives_being_written(tmp_path: Path, text: str) -> None:
+    given = Answers(
+        text.strip(), {(FIRST.name, FIRST.questions[0].key): text, ("other", "k"): text, ("other", "n"): -1.5e-300}
+    )
+    write_answers(tmp_path, TASKS, given)
+    back = read_answers(tmp_path)
+    assert back.error == ""
+    assert back.name == text.strip()
+    assert {key: value for key, value in back.values.items() if value != ""} == {
+        key: value for key, value in given.values.items() if value != ""
+    }
+
+
+def test_half_a_surrogate_pair_does_not_stop_the_writing(tmp_path: Path) -> None:
+    write_answers(tmp_path, TASKS, Answers("x\ud800y", {}))
+    assert read_answers(tmp_path).name == "x?y"
+
+
+def test_every_question_has_its_place(tmp_path: Path) -> None:
+    table = tomllib.loads(answers_text(TASKS, Answers("", {})))
+    asked = {(task.name, question.key) for task in TASKS for question in task.questions}
+    assert {(name, key) for name, entries in table.items() if isinstance(entries, dict) for key in entries} == asked
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [("0.5", 0.5), ('"0,5"', 0.5), ('" 0.5 "', 0.5), ("1", 1.0), ("nan", None), ("inf", None), ('""', None),
+     ('" "', None), ("true", None), ("[1]", None), ('"half"', "half"), ("1" + "0" * 400, None)],
+)  # fmt: skip
+def test_a_number_is_read_however_it_is_written(tmp_path: Path, text: str, expected: object) -> None:
+    task = next(task for task in TASKS if any(question.kind == "number" for question in task.questions))
+    question = next(question for question in task.questions if question.kind == "number")
+    (tmp_path / FILE).write_text(f"[{task.name}]\n{question.key} = {text}\n")
+    assert read_answers(tmp_path).of(task, question) == expected
+
+
+@pytest.mark.parametrize("data", [b"a = ", b"\xff\xfe", b"x = 1\nx = 2", b"[" * 100_000, b"# " + b"x" * 2**21])
+def test_a_broken_file_is_said_to_be_broken(tmp_path: Path, data: bytes) -> None:
+    (tmp_path / FILE).write_bytes(data)
+    assert FILE in read_answers(tmp_path).error
+
+
+def test_no_file_is_said(tmp_path: Path) -> None:
+    assert FILE in read_answers(tmp_path).error
+
+
+WRITER = """
+import sys
+from pathlib import Path
+from app.lab.answers import Answers, write_answers
+from app.lab.task import load_tasks
+tasks, folder, number = load_tasks(), Path(sys.argv[1]), 0
+print("ready", flush=True)
+while True:
+    number += 1
+    write_answers(folder, tasks, Answers(str(number), {("filler", str(i)): "x" * 1000 for i in range(100)}))
+"""
+
+
+@pytest.mark.parametrize("pause", [0.001 * i for i in range(10)])
+def test_a_kill_while_answers_are_written_breaks_nothing(tmp_path: Path, pause: float) -> None:
+    write_answers(tmp_path, TASKS, Answers("0", {("filler", str(i)): "x" * 1000 for i in range(100)}))
+    writer = subprocess.Popen([sys.executable, "-c", WRITER, str(tmp_path)], cwd=ROOT, stdout=subprocess.PIPE)
+    assert writer.stdout is not None
+    writer.stdout.readline()
+    time.sleep(pause)
+    writer.kill()
+    writer.wait()
+    back = read_answers(tmp_path)
+    assert back.error == ""
+    assert back.name.isdigit()
+    assert len([key for key in back.values if key[0] == "filler"]) == 100
+
+
+NUMBER = Question("n", "?", "number", right=2.0, tolerance=0.1, why="so", typical_errors=(TypicalError(4, "twice"),))
+CHOICE = Question("c", "?", "choice", ("a", "b", "x"), right="a", typical_errors=(TypicalError("b", "not b"),))
+
+
+@pytest.mark.parametrize(
+    ("question", "answer", "state", "text"),
+    [
+        (NUMBER, 2.19, "right", "so"), (NUMBER, 1.79, "wrong", "measure"), (NUMBER, 4.1, "wrong", "twice"),
+        (NUMBER, "two", "wrong", "not a number"), (NUMBER, None, "not begun", ""),
+        (CHOICE, "a", "right", ""), (CHOICE, "b", "wrong", "not b"), (CHOICE, "x", "wrong", "measure"),
+        (CHOICE, "z", "wrong", "none of the choices"), (CHOICE, 1.0, "wrong", "none of the choices"),
+        (Question("p", "?", "choice", ("a", "b")), "b", "given", ""), (Question("p", "?", "number"), 1.0, "given", ""),
+        (Question("t", "?", "text"), "It falls down.", "given", ""),
+        (Question("t", "?", "text"), "yes", "wrong", "sentence"),
+    ],
+)  # fmt: skip
+def test_answers_are_judged(question: Question, answer: str | float | None, state: str, text: str) -> None:
+    verdict = check_answer(question, answer)
+    assert verdict.state == state
+    assert text in verdict.text

@@ -1,0 +1,158 @@
+"""Functions of students in a process of their own: what can go wrong in one is named, and the next call works."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.lab.runner import RunError, Runner
+
+ROOT = Path(__file__).parents[3]
+# What a function does -> the kind of the error and a part of its text.
+ACCIDENTS = {
+    "while True: pass": ("endless", "endless loop"),
+    "import time\n    time.sleep(60)": ("endless", "does not come to an end within"),
+    "exit()": ("ended", "calls exit()"),
+    "import os\n    os._exit(3)": ("ended", "exit status 3"),
+    "import os\n    os.kill(os.getpid(), 11)": ("ended", "signal 11"),
+    "return np.ones(1 << 27)": ("memory", "MiB"),
+    "kept = []\n    while True: kept.append(bytearray(1 << 22))": ("memory", "MiB"),
+    "for i in range(1_000_000): print(i)": ("printed", "more than 10000 lines"),
+    "try:\n        while True: print()\n    except Exception: pass": ("printed", "more than 10000 lines"),
+    "import os\n    while True: os.write(1, b'x' * 9999)": ("endless", "endless loop"),
+    "return 1 / 0": ("raised", "ZeroDivisionError: division by zero"),
+    "return f(1)": ("raised", "RecursionError"),
+    "return input()": ("raised", "EOFError"),
+    "raise KeyboardInterrupt": ("raised", "KeyboardInterrupt"),
+}
+
+
+def write(folder: Path, body: str) -> None:
+    (folder / "mine.py").write_text(f"import numpy as np\n\ndef f(x):\n    {body}\n\ndef right(x):\n    return 2 * x\n")
+
+
+@pytest.mark.parametrize("body", ACCIDENTS)
+def test_what_goes_wrong_is_named_and_the_next_call_works(tmp_path: Path, body: str) -> None:
+    write(tmp_path, body)
+    with Runner(tmp_path, time_limit=1.0 if ACCIDENTS[body][0] == "endless" else 20.0) as runner:
+        with pytest.raises(RunError) as caught:
+            runner.call("mine.py", "f", 1.0)
+        assert (caught.value.kind, caught.value.file) == (ACCIDENTS[body][0], "mine.py")
+        assert ACCIDENTS[body][1] in str(caught.value)
+        assert runner.call("mine.py", "right", 3.0) == 6.0
+
+
+def test_an_error_names_file_and_line(tmp_path: Path) -> None:
+    write(tmp_path, "import own\n    return own.g(x)")
+    (tmp_path / "own.py").write_text("def g(x):\n    y = 1\n    return x + 'a'\n")
+    with Runner(tmp_path) as runner, pytest.raises(RunError, match=r"own\.py, line 3: TypeError"):
+        runner.call("mine.py", "f", 1.0)
+    (tmp_path / "broken.py").write_text("x = 1\ndef f(:\n")
+    with Runner(tmp_path) as runner, pytest.raises(RunError, match=r"broken\.py, line 2: SyntaxError"):
+        runner.call("broken.py", "f", 1.0)
+
+
+def test_what_is_not_there_is_named(tmp_path: Path) -> None:
+    write(tmp_path, "return x")
+    with Runner(tmp_path) as runner:
+        with pytest.raises(RunError, match="no such file"):
+            runner.call("other.py", "f", 1.0)
+        with pytest.raises(RunError, match="no function h"):
+            runner.call("mine.py", "h", 1.0)
+        with pytest.raises(RunError, match="takes 1 positional argument"):
+            runner.call("mine.py", "f", 1.0, 2.0)
+
+
+def test_values_pass_unchanged(tmp_path: Path) -> None:
+    write(tmp_path, "return x")
+    array = np.random.default_rng(1).normal(size=(2, 3))
+    with Runner(tmp_path) as runner:
+        for value in (None, True, 3, 2.5, "text", [1.0, [2.0]], (1, (2.5,)), float("inf")):
+            assert runner.call("mine.py", "f", value) == value
+        for given in (array, array.astype("f4"), array > 0, np.arange(3), array.T, np.zeros((0, 3)), np.array(1 + 2j)):
+            back = runner.call("mine.py", "f", given)
+            assert back.dtype == given.dtype
+            assert np.array_equal(back, given)
+        assert runner.call("mine.py", "f", np.float32(0.5)) == 0.5
+        assert runner.starts == 1
+
+
+def test_values_that_cannot_pass_are_named_by_their_type(tmp_path: Path) -> None:
+    write(tmp_path, "return (i for i in range(3)) if x else {1: 2}")
+    with Runner(tmp_path) as runner:
+        assert runner.call("mine.py", "f", 1).type_name == "generator"
+        assert runner.call("mine.py", "f", 0).type_name == "dict"
+
+
+def test_a_function_among_the_arguments_is_computed_here(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text("def f(x, h, a):\n    return x + h * a(x, 2.0)\n")
+    seen = []
+
+    def acceleration(x: np.ndarray, v: float) -> np.ndarray:
+        seen.append((x.copy(), v))
+        return 3.0 * x + v
+
+    with Runner(tmp_path) as runner:
+        assert np.array_equal(runner.call("mine.py", "f", np.ones(3), 0.5, acceleration), np.full(3, 3.5))
+        assert len(seen) == 1
+        (tmp_path / "other.py").write_text("def f(x, h, a):\n    return a(x)\n")
+        with pytest.raises(RunError, match=r"other\.py, line 2: ValueError: .*cannot take these arguments"):
+            runner.call("other.py", "f", np.ones(3), 0.5, acceleration)
+
+
+def test_the_arguments_of_the_lab_stay_as_they_are(tmp_path: Path) -> None:
+    write(tmp_path, "x += 1\n    return x")
+    x = np.zeros(3)
+    with Runner(tmp_path) as runner:
+        assert np.array_equal(runner.call("mine.py", "f", x), np.ones(3))
+    assert not x.any()
+
+
+def gone(pid: int) -> bool:
+    """Whether no process of this number runs any more."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    state = Path(f"/proc/{pid}/stat")
+    return state.exists() and state.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs process groups")
+def test_no_process_stays_behind(tmp_path: Path) -> None:
+    start = "import subprocess, sys\n    p = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)'])"
+    write(tmp_path, f"{start}\n    return p.pid")
+    with Runner(tmp_path, time_limit=20.0) as runner:
+        pid = runner.call("mine.py", "f", 0)
+        assert not gone(pid)
+    end = time.monotonic() + 10.0
+    while not gone(pid) and time.monotonic() < end:
+        time.sleep(0.02)
+    assert gone(pid)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+def test_an_endless_loop_ends_when_the_lab_is_killed(tmp_path: Path) -> None:
+    write(tmp_path, "open('pid', 'w').write(str(__import__('os').getpid()))\n    while True: pass")
+    lab = subprocess.Popen(
+        [
+            sys.executable,
+            "-c",
+            f"from app.lab.runner import *; Runner(Path({str(tmp_path)!r}), 600).call('mine.py', 'f', 1)",
+        ],
+        cwd=ROOT,
+    )
+    end = time.monotonic() + 30.0
+    while not ((tmp_path / "pid").exists() and (tmp_path / "pid").read_text()) and time.monotonic() < end:
+        time.sleep(0.02)
+    pid = int((tmp_path / "pid").read_text())
+    lab.send_signal(signal.SIGKILL)
+    lab.wait()
+    while not gone(pid) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert gone(pid)

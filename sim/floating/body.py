@@ -49,14 +49,15 @@ class PackedHulls(NamedTuple):
 
 
 class Fleet(NamedTuple):
-    """n bodies. `step` changes the first six arrays, `pull` the next three; the rest is fixed."""
+    """n bodies. `step` changes the first seven arrays, `pull` the next three; the rest is fixed."""
 
     position: np.ndarray  # (n, 3) [m]
     rotation: np.ndarray  # (n, 4) quaternion (w, x, y, z)
     velocity: np.ndarray  # (n, 3) [m/s]
     spin: np.ndarray  # (n, 3) [rad/s] in world axes
     wetted: np.ndarray  # (n, 3) [kg/m] wetted area across each body axis times density at the last step; -1 before it
-    buoyancy: np.ndarray  # (n,) [N] upward force of the fluids at the last step
+    buoyancy: np.ndarray  # (n,) [N] upward force of the fluids' pressure at the last step
+    wet_volume: np.ndarray  # (n, 2) [m3] in the upper and in the lower fluid at the last step
     pull_point: np.ndarray  # (n, 3) [m] where each is pulled, in body axes
     pull_target: np.ndarray  # (n, 3) [m] where to, in world axes
     pull_limit: np.ndarray  # (n,) [N] greatest pull; 0 for none
@@ -90,6 +91,7 @@ def make_fleet(bodies: Sequence[Body]) -> Fleet:
         spin=np.array([body.spin for body in bodies], dtype=float).reshape(n, 3),
         wetted=np.full((n, 3), -1.0),
         buoyancy=np.zeros(n),
+        wet_volume=np.zeros((n, 2)),
         pull_point=np.zeros((n, 3)),
         pull_target=np.zeros((n, 3)),
         pull_limit=np.zeros(n),

@@ -111,7 +111,7 @@ def step(
         counts = np.full(len(fleet.mass), int(substeps), dtype=np.int64)
     else:
         raise argument_error("substeps", substeps, "a whole number from 1")
-    state = fleet[:6]
+    state = fleet[:7]
     before = [array.copy() for array in state]
     advance(fleet, water, MotionCoefficients(*(float(value) for value in coefficients)), counts, float(duration))
     # Checked here and not in the kernel: its compiler may take x - x for 0, and with that a NaN for finite.
@@ -159,6 +159,7 @@ def set_load(fleet, water, i, t, gravity, depth, scratch):
     scratch.moment[:] = 0.0
     scratch.wetted[:] = 0.0
     pressure[:] = 0.0
+    fleet.wet_volume[i] = 0.0
     dx, dy = fleet.position[i, 0] - water.at[i, 0], fleet.position[i, 1] - water.at[i, 1]
     sx, sy = water.slope[i, 0], water.slope[i, 1]
     # kinematic condition at the surface: d eta/dt = w - u . slope
@@ -174,6 +175,9 @@ def set_load(fleet, water, i, t, gravity, depth, scratch):
             depth[0, v] += water.relief[start + v]
     g = felt_gravity(water, i, gravity)
     add_pressure(hulls.x, hulls.faces, hulls.area, first_face, last_face, depth[0], water.upper, pressure)
+    # int d n_z dA over the wet surface is the volume below the surface, with the sign of the outward normal
+    upper = -(R[2, 0] * pressure[0] + R[2, 1] * pressure[1] + R[2, 2] * pressure[2])
+    fleet.wet_volume[i, 0] = upper / water.upper
     if water.lower > water.upper:
         sx, sy = water.interface_slope[i, 0], water.interface_slope[i, 1]
         top = water.interface[i] + sx * dx + sy * dy + water.interface_rise[i] * t - fleet.position[i, 2]
@@ -185,6 +189,9 @@ def set_load(fleet, water, i, t, gravity, depth, scratch):
             depth[1, v] = min(depth[1, v], depth[0, v])
         difference = water.lower - water.upper
         add_pressure(hulls.x, hulls.faces, hulls.area, first_face, last_face, depth[1], difference, pressure)
+        both = -(R[2, 0] * pressure[0] + R[2, 1] * pressure[1] + R[2, 2] * pressure[2])
+        fleet.wet_volume[i, 1] = (both - upper) / difference
+        fleet.wet_volume[i, 0] -= fleet.wet_volume[i, 1]
     for c in range(3):
         scratch.force[c] = -g * pressure[c]
         scratch.moment[c] = -g * pressure[3 + c]

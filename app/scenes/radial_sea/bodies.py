@@ -35,6 +35,8 @@ MOORING_SLACK = 1.5  # [m] at size 1 that a body drifts before its mooring line 
 MOORING_STIFFNESS = 0.06  # weights of the body per metre of pull-out at size 1: slower than the waves
 MAX_MOORING_PULL = 0.6  # weights of the body
 MAX_READINGS = 6  # bodies of the scene's own in the table
+MIN_COSINE = 0.2  # of the angle between a body's axis and the normal of the water, where drafts still mean something
+SLICK_RESOLUTION = 1e-4  # [m] of a slick's thickness in predictions
 
 
 class BodyKind(NamedTuple):
@@ -91,8 +93,13 @@ class BodyReading(NamedTuple):
 
     kind: str
     title: str
-    draft: float  # [m] of the keel below the plane of the water there
-    mean_draft: float  # [m] over the last seconds
+    density: float  # [kg/m3]
+    volume: float  # [m3]
+    mass: float  # [kg]
+    buoyancy: float  # [N] upward force of the fluids' pressure
+    wet_volume: tuple[float, float]  # [m3] in oil, or the fluid of both mixed, and in the water below it
+    draft: float  # [m] of the body below the surface, along its own axis
+    mean_draft: float  # [m] over the last minute
     period: float  # [s] of heave, measured; NaN until it is known
     prediction: HydrostaticPrediction
 
@@ -101,10 +108,19 @@ class FloatingBodies:
     """The bodies of a scene; used on the simulation thread."""
 
     def __init__(
-        self, count: int, size: float, density: float, column: FluidColumn, file_shape: Shape | None = None
+        self,
+        count: int,
+        size: float,
+        density: float,
+        column: FluidColumn,
+        file_shape: Shape | None = None,
+        own_densities: tuple[float, ...] = (),
     ) -> None:
-        """count bodies of `density` [kg/m3], and one of `file_shape` in its own size."""
-        self.count_asked, self.size, self.density = count, size, density
+        """count bodies of `density` [kg/m3], and one of `file_shape` in its own size.
+
+        own_densities [kg/m3]: those of the first bodies, where they differ from the others'.
+        """
+        self.count_asked, self.size = count, size
         body_kinds = [kind_of(i) for i in range(count)]
         places = [place_of(i, size) for i in range(count)]
         self.hulls = {kind.name: Hull.of_shape(kind.shape, size) for kind in BODY_KINDS}
@@ -115,12 +131,15 @@ class FloatingBodies:
             places.append(place_of_file_hull(self.hulls[kind.name], size))
         self.body_kinds = tuple(body_kinds)
         self.count = len(body_kinds)
-        self.predictions = self.predict(column)
+        self.column = column
+        self.slick = np.zeros(self.count)  # (n,) [m] thickness of the slick at each body
+        self.known_predictions: dict[tuple[str, float, float], HydrostaticPrediction] = {}
+        self.densities = self.densities_of(density, own_densities)
         bodies = []
-        for kind, (x, y) in zip(body_kinds, places, strict=True):
-            prediction, hull = self.predictions[kind.name], self.hulls[kind.name]
+        for i, (kind, (x, y)) in enumerate(zip(body_kinds, places, strict=True)):
+            prediction, hull = self.prediction(i), self.hulls[kind.name]
             initial_draft = prediction.draft if math.isfinite(prediction.draft) else 0.5 * prediction.height
-            bodies.append(Body(hull, density, (x, y, -hull.extents[2, 0] - initial_draft)))
+            bodies.append(Body(hull, self.densities[i], (x, y, -hull.extents[2, 0] - initial_draft)))
         self.fleet: Fleet = make_fleet(bodies)
         self.home = self.fleet.position[:, :2].copy()  # (n, 2) [m] where each is moored
         hulls = [self.hulls[kind.name] for kind in body_kinds]
@@ -139,18 +158,30 @@ class FloatingBodies:
         """Name of the kind of each body."""
         return tuple(kind.name for kind in self.body_kinds)
 
-    def predict(self, column: FluidColumn) -> dict[str, HydrostaticPrediction]:
-        """What hydrostatics predicts of each kind of body in these fluids."""
-        return {
-            name: predict(hull, self.density, column.layers, column.water.density) for name, hull in self.hulls.items()
-        }
+    def densities_of(self, density: float, own: tuple[float, ...]) -> tuple[float, ...]:
+        """Density of each body [kg/m3]."""
+        return tuple(own[i] if i < min(len(own), self.count_asked) else density for i in range(self.count))
 
-    def set_fluids(self, density: float, column: FluidColumn) -> None:
-        """Take another density of the bodies [kg/m3], or other fluids; nothing is moved."""
-        self.density = density
-        self.predictions = self.predict(column)
-        self.fleet.mass[:] *= density / self.fleet.density
-        self.fleet.density[:] = density
+    def prediction(self, i: int) -> HydrostaticPrediction:
+        """What hydrostatics predicts of body i in the fluids where it is, the slick among them."""
+        name, column = self.body_kinds[i].name, self.column
+        slick = SLICK_RESOLUTION * round(float(self.slick[i]) / SLICK_RESOLUTION)
+        key = (name, self.densities[i], slick)
+        if key not in self.known_predictions:
+            layers = column.layers
+            if slick > 0.0 and column.kind != "mixed":
+                layers = ((column.oil.density, column.thickness + slick), (column.water.density, math.inf))
+            found = predict(self.hulls[name], self.densities[i], layers, column.water.density)
+            self.known_predictions[key] = found
+        return self.known_predictions[key]
+
+    def set_fluids(self, density: float, column: FluidColumn, own_densities: tuple[float, ...] = ()) -> None:
+        """Take other densities of the bodies [kg/m3], or other fluids; nothing is moved."""
+        self.column = column
+        self.densities = self.densities_of(density, own_densities)
+        self.known_predictions.clear()
+        self.fleet.mass[:] *= self.densities / self.fleet.density
+        self.fleet.density[:] = self.densities
         self.heave_meter = HeaveMeter(self.count)
 
     def hold(self, index: int, target: tuple[float, float, float], limit: float, client: int = 0) -> None:
@@ -169,6 +200,7 @@ class FloatingBodies:
         """Let go of what a browser holds; the body keeps its velocity."""
         for index in [index for index, holder in self.holders.items() if holder == client]:
             self.fleet.pull_limit[index] = 0.0
+            self.heave_meter.restart(index)
             del self.holders[index], self.targets[index]
 
     def moor(self) -> None:
@@ -194,18 +226,19 @@ class FloatingBodies:
 
     def step(
         self,
-        column: FluidColumn,
         at: SurfaceAt,
         h: float,
-        layer: np.ndarray,
+        slick: np.ndarray,
         coefficients: MotionCoefficients,
     ) -> None:
-        """One step of h [s] on the sea `at` the bodies; layer (n,) [m]: thickness of oil at each.
+        """One step of h [s] on the sea `at` the bodies; slick (n,) [m]: thickness of oil at each that is no layer.
 
         Raises FloatingPointError where a body's state is no longer finite.
         """
         if self.count == 0:
             return
+        column, self.slick = self.column, slick
+        layer = column.thickness + slick
         oil = column.kind != "mixed" and bool((layer > 0.0).any())
         layers = ((column.oil.density, 1.0), (column.water.density, math.inf)) if oil else column.layers
         interface = {}
@@ -234,16 +267,18 @@ class FloatingBodies:
         self.fleet.velocity[at_rest] = 0.0
 
     def measure(self, t: float, at: SurfaceAt, duration: float) -> None:
-        """Measure drafts at time t [s]: how deep each keel lies below the plane of the water.
+        """Measure drafts at time t [s]: the length of each body below the plane of the water, along its own axis.
 
-        A body on a wave leans with the water, so that depth is along the normal of that plane.
+        That length, times the area of the cross-section, is the wet volume of a hull with straight sides, however it
+        leans. Of a sphere every diameter is an axis; it is measured along the normal of the water.
         """
         normal = np.column_stack([-at.slope, np.ones(self.count)])
         normal /= np.sqrt((normal * normal).sum(axis=1, keepdims=True))
         up = np.where(self.is_round[:, None], normal, body_z_axes(self.fleet.rotation))
         keel = self.keel[:, None] * up  # from a body's centre
         keel[:, 2] += self.fleet.position[:, 2] - at.height
-        self.draft[:] = -(normal * keel).sum(axis=1)
+        lean = np.maximum((normal * up).sum(axis=1), MIN_COSINE)
+        self.draft[:] = -(normal * keel).sum(axis=1) / lean
         self.heave_meter.update(t, self.draft, duration)
 
     def readings(self, t: float, count: int = MAX_READINGS) -> tuple[BodyReading, ...]:
@@ -252,10 +287,15 @@ class FloatingBodies:
             BodyReading(
                 kind.name,
                 kind.title,
-                float(self.draft[i]),
-                float(self.heave_meter.mean[i]),
-                self.heave_meter.period(i, t),
-                self.predictions[kind.name],
+                density=self.densities[i],
+                volume=self.hulls[kind.name].volume,
+                mass=float(self.fleet.mass[i]),
+                buoyancy=float(self.fleet.buoyancy[i]),
+                wet_volume=(float(self.fleet.wet_volume[i, 0]), float(self.fleet.wet_volume[i, 1])),
+                draft=float(self.draft[i]),
+                mean_draft=float(self.heave_meter.mean[i]),
+                period=self.heave_meter.period(i, t),
+                prediction=self.prediction(i),
             )
             for i, kind in enumerate(self.body_kinds)
             if i < count or i >= self.count_asked

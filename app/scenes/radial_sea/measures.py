@@ -22,9 +22,15 @@ def measures(scene: "RadialSeaScene") -> dict[str, Measure]:
         body = next((r for r in readings.bodies if r.kind == kind.name), None)
         prediction = body.prediction if body is not None else None
         for name, unit, meaning, value in (
-            ("mean_draft", "m", "mean draft over 8 s", body and body.mean_draft),
+            ("mean_draft", "m", "mean draft over the last minute", body and body.mean_draft),
             ("draft_at_rest", "m", "draft at rest by Archimedes", prediction and prediction.draft),
             ("draft", "m", "draft", body and body.draft),
+            ("density", "kg/m3", "density", body and body.density),
+            ("mass", "kg", "mass", body and body.mass),
+            ("volume", "m3", "volume", body and body.volume),
+            ("buoyancy", "N", "upward force of the fluids' pressure", body and body.buoyancy),
+            ("wet_volume_above", "m3", "wet volume in the upper fluid", body and body.wet_volume[0]),
+            ("wet_volume_below", "m3", "wet volume in the lower fluid", body and body.wet_volume[1]),
             ("heave_period", "s", "heave period as measured", body and body.period),
             ("heave_period_theory", "s", "heave period by theory", prediction and prediction.period),
         ):

@@ -15,6 +15,7 @@ CAMERA_TARGETS = ("free", "first buoy", "second buoy", "box", "cutaway", "from a
 SPECTRUM_TITLES = {
     name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
 }
+OWN_DENSITIES = ("density_1", "density_2", "density_3")  # parameters: densities of the first bodies
 SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
 
 
@@ -114,6 +115,19 @@ class Params:
         3, 0, 200, "", "Number of floating bodies: two buoys, a box, then all kinds in turn", group="Bodies"
     )
     density: float = parameter(450.0, 50.0, 1020.0, "kg/m³", "Density of the bodies", group="Bodies")
+    own_densities: bool = parameter(
+        False, doc="Densities of their own for the first three bodies", group="Bodies", title="Own densities"
+    )
+    density_1: float = parameter(
+        300.0, 50.0, 1020.0, "kg/m³", "Density of the first body, the red buoy", group="Bodies", title="Red buoy"
+    )
+    density_2: float = parameter(
+        600.0, 50.0, 1020.0, "kg/m³", "Density of the second body, the yellow buoy", group="Bodies",
+        title="Yellow buoy",
+    )  # fmt: skip
+    density_3: float = parameter(
+        900.0, 50.0, 1020.0, "kg/m³", "Density of the third body, the box", group="Bodies", title="Box"
+    )
     size: float = parameter(1.5, 0.3, 4.0, "", "Size of the bodies; at 1 the box is 1.2 m wide", group="Bodies")
     ripples: bool = parameter(
         True, doc="Bodies that move make waves of their own", group="Bodies", title="Radiated waves"
@@ -234,7 +248,8 @@ def hidden(params: Params) -> set[str]:
         if not (params.rig and params.fire):  # the wind still blows the smoke
             names |= {"wind_speed", "wind_direction"}
     if params.bodies == 0:
-        names |= {"density", "size", "ripples", "mooring", "pull"}
+        names |= {"density", "own_densities", "size", "ripples", "mooring", "pull"}
+    names |= {name for i, name in enumerate(OWN_DENSITIES) if not params.own_densities or i >= params.bodies}
     if not params.rig:
         names |= {"fire", "jet"}
     if not (params.rig and params.fire):
@@ -246,6 +261,16 @@ def hidden(params: Params) -> set[str]:
     if params.surface == "fft":
         names.add("wave_count")
     return names
+
+
+def own_densities_of(params: Params) -> tuple[float, ...]:
+    """Densities [kg/m3] of the first bodies, where they have their own."""
+    return tuple(getattr(params, name) for name in OWN_DENSITIES) if params.own_densities else ()
+
+
+def densities_of(params: Params) -> tuple[float, ...]:
+    """What the parameters say of densities [kg/m3]; equal ones make equal bodies."""
+    return (params.density, *own_densities_of(params))
 
 
 def column_of(params: Params) -> FluidColumn:

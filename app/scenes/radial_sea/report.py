@@ -42,7 +42,8 @@ def readout_of(snapshot: Snapshot) -> Html:
         ))  # fmt: skip
     periods = [(body.title, fixed(body.period, 2), fixed(body.prediction.period, 2)) for body in readings.bodies]
     parts = [
-        table((("draft", ""), ("now", "m"), ("mean, 8 s", "m"), ("at rest", "m"), ("oil adds", "m")), drafts),
+        table((("draft", ""), ("now", "m"), ("mean, 60 s", "m"), ("at rest", "m"), ("oil adds", "m")), drafts),
+        *weight_tables(readings),
         table((("heave period", ""), ("measured", "s"), ("theory", "s")), periods),
         faint(
             "At rest: by Archimedes' principle in these fluids. Waves disturb it: switch them off to compare exactly."
@@ -55,6 +56,26 @@ def readout_of(snapshot: Snapshot) -> Html:
     if readings.oil_budget.ejected > 0.0:
         parts.append(oil_budget_text(readings.oil_budget))
     return join(parts)
+
+
+def weight_tables(readings: RadialReadings) -> tuple[Html, Html]:
+    """Weights and the buoyancy that carries them, with all that Archimedes' sum is made of."""
+    gravity = readings.column.gravity
+    weights = [
+        (body.title, fixed(body.density, 0), number(body.volume, 4), number(body.mass, 4),
+         number(body.mass * gravity, 4)) for body in readings.bodies
+    ]  # fmt: skip
+    layered = readings.column.kind == "layer" or any(body.wet_volume[1] > 0.0 for body in readings.bodies)
+    forces = [
+        (body.title, *(number(v, 4) for v in (body.wet_volume if layered else body.wet_volume[:1])),
+         number(body.buoyancy, 4)) for body in readings.bodies
+    ]  # fmt: skip
+    wet = (("wet in oil", "m³"), ("in water", "m³")) if layered else (("wet volume", "m³"),)
+    return (
+        table((("weight", ""), ("density", "kg/m³"), ("volume V", "m³"), ("mass ρV", "kg"), ("weight gρV", "N")),
+              weights),
+        table((("buoyancy now", ""), *wet, ("buoyancy", "N")), forces),
+    )  # fmt: skip
 
 
 def waves_text(readings: RadialReadings) -> Html:

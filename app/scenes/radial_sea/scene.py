@@ -21,8 +21,10 @@ from app.scenes.radial_sea.parameters import (
     Params,
     column_of,
     conditions_of,
+    densities_of,
     exposure_of,
     hidden,
+    own_densities_of,
     spectrum_values,
 )
 from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
@@ -61,6 +63,7 @@ AGEING_INTERVAL = 1.0  # [s] of simulated time between two decays of the waves
 NEGLIGIBLE_ENERGY = 1e-4  # of the largest of all parts of the spectrum: a part with less is left out
 COMPARE_INTERVAL = 2.0  # [s] of wall time between two timings of the other surface
 COST_MEMORY = 0.9  # share of the old value in the running mean of a surface's cost
+SLICK_EDGE = 3.0  # [m] over which the slick of the jet grows to its thickness: a step would kick the bodies
 FOAM_RADIUS = 80.0  # [m] within which the foam threshold is measured
 FOAM_GAIN = 0.05  # share of the new value in the running mean of the foam threshold
 FOAM_WIDTH = 0.07  # change of the Jacobian over which foam goes from none to full
@@ -146,7 +149,7 @@ class RadialSeaScene:
     def make_bodies(self) -> FloatingBodies:
         """The bodies that the parameters ask for, at rest in their places."""
         p = self.params
-        return FloatingBodies(p.bodies, p.size, p.density, self.column, self.shape_of_file())
+        return FloatingBodies(p.bodies, p.size, p.density, self.column, self.shape_of_file(), own_densities_of(p))
 
     def shape_of_file(self) -> Shape | None:
         """The shape in the hull file that the parameters name, which is read once."""
@@ -207,8 +210,8 @@ class RadialSeaScene:
         self.sum.choppiness = params.choppiness
         if (params.bodies, params.size) != (self.bodies.count_asked, self.bodies.size):
             self.bodies = self.make_bodies()
-        elif other_fluids or params.density != self.bodies.density:
-            self.bodies.set_fluids(params.density, column)
+        elif other_fluids or densities_of(params) != densities_of(old):
+            self.bodies.set_fluids(params.density, column, own_densities_of(params))
         if old.ripples and not params.ripples:
             self.radiated_waves = RadiatedWaves()
         self.well_blowout.change(params)
@@ -236,14 +239,14 @@ class RadialSeaScene:
         for _ in range(steps):
             if bodies.count:
                 at = sea.at(bodies.fleet.position[:, :2], self.time, bodies.widths)
-                layer = self.layer_at(bodies.fleet.position[:, :2])
+                slick = self.slick_at(bodies.fleet.position[:, :2])
                 bodies.measure(self.time, at, h)
                 if self.params.mooring:
                     bodies.moor()
                 else:
                     bodies.unmoor()
                 try:
-                    bodies.step(self.column, at, h, layer, coefficients)
+                    bodies.step(at, h, slick, coefficients)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
                 if self.time - self.plotted_at >= PLOT_INTERVAL:
@@ -266,13 +269,17 @@ class RadialSeaScene:
             if sea is not None and self.age - sea.exposure >= AGEING_INTERVAL:
                 sea.age(self.age)
 
+    def slick_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Thickness (n,) [m] of the slick at points (n, 2) [m]. It grows from its edge over `SLICK_EDGE`."""
+        slick = self.well_blowout.slick(self.column)
+        if slick is None or self.column.kind == "mixed":
+            return np.zeros(len(points))
+        reach = slick_reach(slick, points[:, 0], points[:, 1])
+        return slick.thickness * np.clip(reach / SLICK_EDGE, 0.0, 1.0)
+
     def layer_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Thickness (n,) [m] of oil under the surface at points (n, 2) [m]."""
-        found = np.full(len(points), self.column.thickness)
-        slick = self.well_blowout.slick(self.column)
-        if slick is not None and self.column.kind != "mixed":
-            found[slick_reach(slick, points[:, 0], points[:, 1]) > 0.0] += slick.thickness
-        return found
+        return self.column.thickness + self.slick_at(points)
 
     def add_plot_row(self, surface: float) -> None:
         """Add a plot row; `surface` [m] is the height of the sea at the first body."""

@@ -1,0 +1,139 @@
+"""The bodies of the radial sea: drafts in waves, the sum of Archimedes from the readings, own densities, the slick."""
+
+import math
+
+import numpy as np
+import pytest
+
+from app.scenes.radial_sea.measures import measures
+from app.scenes.radial_sea.parameters import PRESETS, Params
+from app.scenes.radial_sea.report import readout_of
+from app.scenes.radial_sea.scene import RadialSeaScene
+from app.scenes.radial_sea.well_blowout import JetTotal
+from app.server.loop import SimLoop
+from sim.floating import equilibrium_draft
+from sim.floating.heave_meter import HeaveMeter
+from sim.parameters import check_record
+
+CALM = {"waves": False, "rig": False, "ripples": False}
+
+
+def scene_with(**changes) -> RadialSeaScene:
+    return RadialSeaScene(check_record(Params, changes))
+
+
+@pytest.mark.parametrize("preset", ["Clear water", "Storm with buoys"])
+def test_the_mean_draft_in_waves_is_that_of_archimedes(preset: str) -> None:
+    scene = scene_with(**PRESETS[preset])
+    drafts = []
+    for i in range(110 * 60):
+        scene.advance(1)
+        if i >= 600:
+            drafts.append(scene.bodies.draft.copy())
+    mean = np.mean(drafts, axis=0)
+    straight = [i for i, kind in enumerate(scene.bodies.kinds) if kind != "ball"]
+    rest = np.array([scene.bodies.prediction(i).draft for i in range(scene.bodies.count)])
+    assert np.abs(mean - rest).mean() < 1e-3  # one body's own mean wanders by a millimetre in a storm
+    assert mean[straight].mean() == pytest.approx(rest[straight].mean(), abs=5e-4)
+
+
+@pytest.mark.parametrize("spill", ["none", "layer", "mixed"])
+def test_archimedes_sum_can_be_done_from_the_readings(spill: str) -> None:
+    scene = scene_with(**CALM, spill=spill, thickness=0.15)
+    for _ in range(20):
+        scene.advance(1)
+    densities = [density for density, _ in scene.column.layers]
+    for reading in scene.readings().bodies:
+        assert reading.mass == pytest.approx(reading.density * reading.volume)
+        displaced = sum(rho * v for rho, v in zip(densities, reading.wet_volume, strict=False))
+        assert 9.81 * displaced == pytest.approx(reading.buoyancy, rel=1e-12)
+        assert reading.buoyancy == pytest.approx(9.81 * reading.mass, rel=1e-4)
+    box = scene.readings().bodies[2]
+    area = (1.2 * 1.5) ** 2
+    assert sum(box.wet_volume) == pytest.approx(area * box.draft, rel=1e-4)
+    assert box.wet_volume[0] == pytest.approx(area * (0.15 if spill == "layer" else box.draft), rel=1e-4)
+
+
+def test_a_leaning_box_has_the_draft_of_its_wet_volume() -> None:
+    scene = scene_with(**CALM)
+    angle = 0.2
+    scene.bodies.fleet.rotation[2] = (math.cos(angle / 2), math.sin(angle / 2), 0.0, 0.0)
+    at = scene.sea.at(scene.bodies.fleet.position[:, :2], 0.0)
+    scene.bodies.measure(0.0, at, 1 / 60)
+    leaning = scene.bodies.draft[2]
+    hull = scene.bodies.hulls["crate"]
+    from sim.floating import submerged
+
+    found = submerged(hull, scene.bodies.fleet.position[2], scene.bodies.fleet.rotation[2])
+    assert leaning == pytest.approx(found.volume / (1.2 * 1.5) ** 2, rel=1e-6)
+
+
+def test_bodies_of_their_own_densities_float_at_their_own_drafts() -> None:
+    scene = scene_with(**CALM, bodies=5, own_densities=True, density=500.0, density_1=200.0, density_3=800.0)
+    assert scene.bodies.fleet.density.tolist() == [200.0, 600.0, 800.0, 500.0, 500.0]
+    scene.change_forces(
+        check_record(Params, {**CALM, "bodies": 5, "own_densities": True, "density_1": 300.0, "density_3": 700.0})
+    )
+    assert scene.bodies.fleet.density.tolist() == [300.0, 600.0, 700.0, 450.0, 450.0]
+    for _ in range(60 * 60):
+        scene.advance(1)
+    for i, reading in enumerate(scene.readings().bodies):
+        hull = scene.bodies.hulls[reading.kind]
+        rest = equilibrium_draft(hull, scene.bodies.densities[i], scene.column.layers)
+        assert reading.prediction.draft == rest
+        assert reading.draft == pytest.approx(rest, abs=2e-3)
+    scene.change_forces(check_record(Params, {**CALM, "bodies": 5}))
+    assert scene.bodies.fleet.density.tolist() == [450.0] * 5
+    assert scene.bodies.fleet.mass[0] == pytest.approx(450.0 * scene.bodies.hulls["buoy_red"].volume)
+
+
+def test_the_slick_of_the_jet_counts_at_rest() -> None:
+    scene = scene_with(waves=False, ripples=False, jet=True)
+    scene.well_blowout.closed_jets_total = JetTotal(2000.0, 2000.0, 100)
+    for _ in range(150 * 6):
+        scene.advance(10)
+    slick = scene.well_blowout.slick(scene.column)
+    assert slick is not None
+    reading = scene.readings().bodies[0]
+    layers = [(scene.column.oil.density, slick.thickness), (scene.column.water.density, math.inf)]
+    hull = scene.bodies.hulls[reading.kind]
+    assert slick.thickness > 2e-3
+    assert reading.prediction.draft == pytest.approx(equilibrium_draft(hull, 450.0, layers), abs=2e-5)
+    assert reading.draft == pytest.approx(reading.prediction.draft, abs=3e-4)
+    added = reading.prediction.draft - reading.prediction.draft_in_water
+    assert added == pytest.approx(slick.thickness * (1 - layers[0][0] / layers[1][0]), abs=2e-5)
+
+
+def test_the_edge_of_the_slick_is_no_step() -> None:
+    scene = scene_with(waves=False, jet=True)
+    scene.well_blowout.closed_jets_total = JetTotal(500.0, 500.0, 100)
+    scene.advance(60)
+    slick = scene.well_blowout.slick(scene.column)
+    assert slick is not None
+    x = slick.centre[0] + slick.radius + np.linspace(-5.0, 1.0, 61)
+    found = scene.slick_at(np.column_stack([x, np.full(61, slick.centre[1])]))
+    assert found[0] == slick.thickness
+    assert found[-1] == 0.0
+    assert np.abs(np.diff(found)).max() < 0.05 * slick.thickness
+
+
+def test_weights_and_forces_are_on_screen_and_in_sweeps() -> None:
+    loop = SimLoop(scene_with(**CALM, spill="layer"))
+    loop.tick(0.1)
+    text = readout_of(loop.latest)
+    box = loop.latest.readings.bodies[2]
+    for shown in (f"{box.mass:,.0f}", "wet in oil", "in water", "weight gρV"):
+        assert shown.replace(",", "") in text.replace("\u202f", "").replace(",", ""), shown
+    found = measures(loop.scene)
+    assert found["box_mass"].value == pytest.approx(box.density * box.volume)
+
+
+def test_a_mean_begins_anew_when_a_body_is_let_go() -> None:
+    meter = HeaveMeter(2)
+    for i in range(600):
+        meter.update(i / 60, np.array([0.5, 0.5]), 1 / 60)
+    meter.restart(0)
+    for i in range(60):
+        meter.update(10 + i / 60, np.array([0.7, 0.7]), 1 / 60)
+    assert meter.mean[0] == pytest.approx(0.7)
+    assert meter.mean[1] == pytest.approx(0.5 + 0.2 / 11, abs=1e-3)

@@ -151,6 +151,8 @@
   // A script that replaces its own earlier hook asks for `springtideEarlier`, what there was before it.
   function makeHook(earlier) {
     const hook = function (renderer, scene, camera, target) {
+      // viser fades the canvas in over the first frames after its sky is there: many seconds where frames are slow.
+      if (scene.environment) renderer.domElement.style.opacity = "1";
       beforeRender(camera);
       earlier.call(this, renderer, scene, camera, target);
     };

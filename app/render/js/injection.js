@@ -98,8 +98,6 @@ function answerServer(activeNodes) {
 }
 
 function beforeRender(renderer, scene, camera) {
-  // viser fades the canvas in over the first five frames after its sky is there: many seconds where frames are slow.
-  if (scene.environment) renderer.domElement.style.opacity = "1";
   window.__springtide = { memory: () => ({ ...renderer.info.memory }) }; // tests read it to find leaks
   const nodes = window.__viserMutable.nodeRefFromName;
   const active = [];

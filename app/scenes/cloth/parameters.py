@@ -137,6 +137,7 @@ class Params:
         title="Strain scale",
     )
     grid: bool = parameter(True, doc="Lines on the floor (key G)", group="Look", affects="look")
+    handles: bool = parameter(True, doc="Arrows that move the pins and the sphere", group="Look", affects="look")
     plot_energy: bool = parameter(
         False,
         doc=f"Energies over time; above {MAX_ACCOUNTED_PARTICLES} particles they are recorded once the plot is open",

@@ -57,6 +57,7 @@ class ClothFrame(NamedTuple):
     pole: bool
     sphere: tuple[float, float, float, float] | None  # x, y, z, radius [m]
     sphere_home: Vector  # [m] where the sphere's arrows are
+    handles: bool
     floor: bool
     grid: bool
     colour: str
@@ -341,6 +342,7 @@ class ClothScene:
             sphere_home=self.sphere.target,
             floor=params.floor,
             grid=params.grid,
+            handles=params.handles,
             colour=params.colour,
             pull=pull,
         )

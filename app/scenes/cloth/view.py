@@ -24,7 +24,8 @@ CLOTH_COLOUR = (176, 58, 72)
 SPHERE_COLOUR = (92, 140, 190)
 PIN_COLOUR = (60, 66, 80)
 PIN_RADIUS = 0.018  # [m] of the balls that mark the pins
-PIN_ARROW_LENGTH, SPHERE_ARROW_LENGTH = 0.22, 0.55  # [m]
+PIN_ARROW_LENGTH, SPHERE_ARROW_LENGTH = 0.22, 0.3  # [m]
+SPHERE_ARROW_GAP = 0.3  # [m] between the sphere and its arrows below it, where no cloth lies
 POLE_COLOUR = (96, 88, 80)
 POLE_WIDTH = 0.03  # [m]
 POLE_OVERHANG = 0.06  # of the flag's height, above the flag
@@ -60,9 +61,8 @@ class View:
         scene = server.scene
         self.surroundings = Surroundings(server)
         self.ball = scene.add_mesh_simple("/sphere/ball", *ball(48), color=SPHERE_COLOUR, visible=False)
-        arrows = {"disable_sliders": True, "visible": False}
-        self.pins = [Gizmo(server, post, name, PIN_ARROW_LENGTH, **arrows) for name in ("pin a", "pin b")]
-        self.sphere = Gizmo(server, post, "sphere", SPHERE_ARROW_LENGTH, **arrows)
+        self.pins = [Gizmo(server, post, name, PIN_ARROW_LENGTH, visible=False) for name in ("pin a", "pin b")]
+        self.sphere = Gizmo(server, post, "sphere", SPHERE_ARROW_LENGTH, visible=False)
         self.pin_balls = [
             scene.add_mesh_simple(f"/pin_{name}", *ball(12), scale=PIN_RADIUS, color=PIN_COLOUR) for name in ("a", "b")
         ]
@@ -115,7 +115,7 @@ class View:
         self.surroundings.show(frame.floor, frame.grid)
         for index, (gizmo, pin_ball) in enumerate(zip(self.pins, self.pin_balls, strict=True)):
             pin_ball.visible = frame.pins is not None
-            gizmo.show(None if frame.pins is None else frame.pins[index])
+            gizmo.show(None if frame.pins is None or not frame.handles else frame.pins[index])
             if frame.pins is not None:
                 pin_ball.position = tuple(frame.points[0, -index])
         self.pole.visible = frame.pole
@@ -124,7 +124,10 @@ class View:
             foot = low + (low - top) * (low[2] / max(float(top[2] - low[2]), MIN_POLE_DROP))
             self.pole.points = np.array([[top + POLE_OVERHANG * (top - low), foot]], np.float32)
         self.ball.visible = frame.sphere is not None
-        self.sphere.show(None if frame.sphere is None else frame.sphere_home)
+        if frame.sphere is None or not frame.handles:
+            self.sphere.show(None)
+        else:
+            self.sphere.show(frame.sphere_home, -frame.sphere[3] - SPHERE_ARROW_GAP)
         if frame.sphere is not None:
             self.ball.position = frame.sphere[:3]
             self.ball.scale = frame.sphere[3]

@@ -42,6 +42,5 @@ def rope_name(rope: Named, stiffness_differs: bool) -> str:
 
 
 def rope_label(rope: Named, stiffness_differs: bool) -> str:
-    """The label at its root. A failure comes first, as a label may reach out of view."""
-    words = rope_name(rope, stiffness_differs)
-    return f"{rope.number} {rope.failure.partition(':')[0]}: {words.partition(' ')[2]}" if rope.failure else words
+    """The label at its root, short enough to stay in view: of a rope that has stopped, its number and why."""
+    return f"{rope.number} {rope.failure.partition(':')[0]}" if rope.failure else rope_name(rope, stiffness_differs)

@@ -32,6 +32,7 @@ class RaceFrame(NamedTuple):
     labels: tuple[str, ...]
     failed: tuple[bool, ...]
     root: Vector  # [m] where the roots are going to
+    handles: bool
     floor: bool
     grid: bool
     show_points: bool
@@ -139,6 +140,7 @@ class RaceScene:
             root=handles.root.target,
             floor=params.floor,
             grid=params.grid,
+            handles=params.handles,
             show_points=params.show_points,
             pull=handles.pull_frame(held, offset, self.net.mass, self.step, params.pull),
         )

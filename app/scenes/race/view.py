@@ -1,5 +1,6 @@
 """The race as drawn: a tube for each rope in its own colour, the reference runs translucent, a label on each root."""
 
+import math
 from collections.abc import Callable, Iterator
 from typing import Any, TypeAlias
 
@@ -18,7 +19,7 @@ from app.scenes.race.html import results_table
 from app.scenes.race.parameters import Params
 from app.scenes.race.scene import RaceFrame
 from app.scenes.springs.html import step_mark
-from app.scenes.springs.rope_parameters import ROPE_RADIUS
+from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS
 from app.scenes.springs.view import RopeSurroundings
 
 RING_COUNT = 90  # rings of a drawn tube, about
@@ -29,7 +30,14 @@ REFERENCE_COLOUR = (70, 76, 88)
 REFERENCE_OPACITY = 0.4
 COLOUR_SCALE = 0.6  # of a colour's numbers, so that a rope lit from all sides has the colour it has in the charts
 FAILED_OPACITY = 0.35  # of a rope that has stopped
-LABEL_HEIGHT = 0.16  # [m] from a root to its label, and between the heights of two labels, so that they do not overlap
+LABEL_SCALE = 1.25  # of a label, over viser's own size
+LABEL_HEIGHT = 0.19  # [m] from a root to its label, and between the heights of two labels, so that they do not overlap
+
+BEARING = math.cos(0.7), math.sin(0.7)  # of the first view, from along the row of ropes towards their side
+ELEVATION = 0.2  # [rad] of the first view
+SHOWN_SWING = 0.8  # share of the length of a rope to either side that the first view shows
+SHOWN_FALL = 1.45  # lengths of a rope below its root that the first view shows
+SHOWN_ASPECT = 1.25  # width over height of what the first view shows at least (`js/camera.js`)
 
 RaceSnapshot: TypeAlias = Snapshot[Params, RaceFrame, RaceReadings]
 
@@ -95,7 +103,7 @@ class RopesDrawing:
             thickness_units="screen",
         )
         self.labels = [
-            scene.add_label(f"/race/label_{i + 1}", text, font_screen_scale=0.8, anchor="bottom-left")
+            scene.add_label(f"/race/label_{i + 1}", text, font_screen_scale=LABEL_SCALE, anchor="bottom-left")
             for i, text in enumerate(frame.labels)
         ]
         self.shown_roots: np.ndarray | None = None
@@ -145,8 +153,7 @@ class RopesDrawing:
 class View:
     """Draws `RaceFrame`s."""
 
-    CAMERA = ((3.4, -2.7, 2.9), (0.45, 0.35, 1.75))  # position, target [m]
-    FIELD_OF_VIEW = 1.3  # [rad]
+    FIELD_OF_VIEW = 0.45  # [rad], so narrow that the farthest rope looks about as large as the nearest
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         self.server = server
@@ -159,8 +166,14 @@ class View:
         drag(self.post, event, event.instance_index)
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
-        """Position and target [m] of a camera that has not been moved."""
-        return self.CAMERA
+        """Position and target [m] of a camera that has not been moved: all ropes, as far as they swing, and labels."""
+        depth, labels = (params.ropes - 1) * params.spacing, (params.ropes + 2) * LABEL_HEIGHT
+        across = BEARING[0] * 2.0 * params.length * SHOWN_SWING + BEARING[1] * depth
+        height = max(params.length * SHOWN_FALL + labels, across / SHOWN_ASPECT)
+        distance = 0.5 * height / math.tan(0.5 * self.FIELD_OF_VIEW) + 0.5 * BEARING[0] * depth
+        x, y, z = target = 0.0, 0.0, ROOT[2] + labels - 0.5 * height
+        flat = distance * math.cos(ELEVATION)
+        return (x + BEARING[1] * flat, y - BEARING[0] * flat, z + distance * math.sin(ELEVATION)), target
 
     def show(self, frame: RaceFrame) -> None:
         """Assign a new frame to the handles; call inside `server.atomic()`."""
@@ -170,7 +183,8 @@ class View:
         if self.ropes is None:
             self.ropes = RopesDrawing(self.server, frame, self.on_bead)
         self.ropes.show(frame)
-        self.surroundings.show(frame.floor, frame.grid, frame.root, frame.pull, frame.ropes.reshape(-1, 3))
+        root = frame.root if frame.handles else None
+        self.surroundings.show(frame.floor, frame.grid, root, frame.pull, frame.ropes.reshape(-1, 3))
 
     def readout(self, snapshot: RaceSnapshot) -> str:
         """The table of results, as HTML."""

@@ -47,6 +47,7 @@ class RopeFrame(NamedTuple):
     full_scale: float  # [N] tension at the end of the colour scale
     root: Vector  # [m] where the root is going to
     sphere: tuple[float, float, float, float] | None  # x, y, z, radius [m]
+    handles: bool
     floor: bool
     grid: bool
     colour: str
@@ -287,6 +288,7 @@ class RopeScene:
             sphere=(*handles.sphere.position, params.sphere_radius) if self.net.sphere else None,
             floor=params.floor,
             grid=params.grid,
+            handles=params.handles,
             colour=params.colour,
             show_points=params.show_points,
             pull=handles.pull_frame(held, 0.0, self.net.mass, self.step, params.pull),

@@ -26,7 +26,8 @@ ROPE_COLOUR = (196, 154, 92)
 BEAD_COLOUR = (58, 68, 86)
 HOOK_COLOUR = (60, 66, 80)
 SPHERE_COLOUR = (92, 140, 190)
-SPHERE_ARROW_LENGTH = 1.1  # [m]
+SPHERE_ARROW_LENGTH = 0.45  # [m]
+SPHERE_ARROW_GAP = 0.08  # [m] between the top of the sphere and its arrows
 RING_COUNT = 120  # rings of the drawn tube, about
 MAX_BEAD_RADIUS = 1.9 * ROPE_RADIUS  # [m]
 MIN_BEAD_RADIUS = 0.5 * ROPE_RADIUS  # [m]
@@ -152,12 +153,16 @@ class View:
         if root != self.shown_hook:
             self.shown_hook = root
             self.hook.position = root
-        self.surroundings.show(frame.floor, frame.grid, frame.root, frame.pull, frame.points)
+        root = frame.root if frame.handles else None
+        self.surroundings.show(frame.floor, frame.grid, root, frame.pull, frame.points)
         self.show_sphere(frame)
 
     def show_sphere(self, frame: RopeFrame) -> None:
         """Assign the sphere and its arrows."""
-        self.sphere.show(None if frame.sphere is None else frame.sphere[:3])
+        if frame.sphere is None or not frame.handles:
+            self.sphere.show(None)
+        else:
+            self.sphere.show(frame.sphere[:3], frame.sphere[3] + SPHERE_ARROW_GAP)
         if frame.sphere != self.shown_sphere:
             self.shown_sphere = frame.sphere
             self.ball.visible = frame.sphere is not None

@@ -85,6 +85,7 @@ class RopeParams:
 
     show_points: bool = parameter(True, doc="Draw the points, which can be dragged", group="Look", affects="look")
     grid: bool = parameter(True, doc="Lines on the floor (key G)", group="Look", affects="look")
+    handles: bool = parameter(True, doc="Arrows that move the root and the sphere", group="Look", affects="look")
 
 
 LAB_ONLY = {"stiffness", "damping", "mass", "drag"}

@@ -22,8 +22,9 @@ class RopeSurroundings:
         self.root = Gizmo(server, post, "root", ROOT_ARROW_LENGTH, position=ROOT)
         self.pull = PullLine(server)
 
-    def show(self, floor: bool, grid: bool, root: Vector, pull: PullFrame | None, points: np.ndarray) -> None:
-        """Assign what has changed. points: (n, 3) as drawn [m]; the pull names one of them."""
+    def show(self, floor: bool, grid: bool, root: Vector | None, pull: PullFrame | None, points: np.ndarray) -> None:
+        """Assign what has changed. root: [m] of its arrows; None hides them. points: (n, 3) as drawn [m]; the pull
+        names one of them."""
         self.surroundings.show(floor, grid)
         self.root.show(root)
         if pull is None:

@@ -13,10 +13,11 @@ from app.scenes.race.charts import MAX_ROWS, RaceCharts, round_up
 from app.scenes.race.entrants import tick_of
 from app.scenes.race.html import results_table
 from app.scenes.race.measures import measures
-from app.scenes.race.parameters import PRESETS, Params, hidden
+from app.scenes.race.parameters import PRESETS, Params, hidden, offset_of
 from app.scenes.race.scene import SCENE, RaceScene
+from app.scenes.race.view import LABEL_HEIGHT, SHOWN_ASPECT, View
 from app.scenes.springs.methods import method_name
-from app.scenes.springs.rope_parameters import build_rope
+from app.scenes.springs.rope_parameters import ROOT, build_rope
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
 from sim.springs import simulate
@@ -293,6 +294,23 @@ def test_a_drag_of_one_rope_pulls_all_alike_and_the_reference_run_too():
     assert scene.readings().results[0].error < 1e-3
     scene.handle(Release())
     assert scene.frame().pull is None
+
+
+@pytest.mark.parametrize("changes", [{"ropes": 1}, {"ropes": 6}, {"ropes": 6, "spacing": 2.0}, {"length": 10.0}])
+def test_the_first_view_shows_all_ropes_hanging_and_swinging_with_their_labels(changes):
+    params = Params(**changes)
+    position, target = np.array(View.first_view(object.__new__(View), params))
+    ahead = (target - position) / np.linalg.norm(target - position)
+    right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
+    tan = np.tan(0.5 * View.FIELD_OF_VIEW)
+    reach = 0.7 * params.length
+    for number in range(params.ropes):
+        root = np.array([0.0, offset_of(params, number), ROOT[2]])
+        for shift in ((0, 0, LABEL_HEIGHT * (number + 1)), (0, 0, -1.3 * params.length), (reach, 0, 0), (-reach, 0, 0)):
+            seen = root + shift - position
+            depth = seen @ ahead
+            assert abs(seen @ right) < SHOWN_ASPECT * tan * depth
+            assert abs(seen @ np.cross(right, ahead)) < tan * depth
 
 
 def test_all_roots_follow_the_same_arrows():

@@ -25,7 +25,7 @@ from numba.core.compiler import Flags
 from numba.core.options import TargetOptions
 from numba.core.registry import cpu_target
 
-from sim.compiler import Choice, Entry, EntryCompiler, Part, PartCompiler, PartResult
+from sim.compiler import Choice, Entry, EntryCompiler, KernelFlags, Part, PartCompiler, PartResult
 
 __all__ = ["CACHE", "MAX_THREADS", "chosen", "kernel", "prange", "set_threads"]
 
@@ -205,6 +205,7 @@ def compiled(
         made = numba.njit(cache=folder is not None, pipeline_class=pipeline, **options)(function)
     finally:
         numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
+    made._compiler._customize_flags = KernelFlags  # type: ignore[attr-defined]
     if folder is not None:
         cache = made._cache  # type: ignore[attr-defined]
         cache._cache_file = KernelFile(str(folder), cache._impl.filename_base + suffix, "")

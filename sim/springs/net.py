@@ -7,12 +7,13 @@ Links are families of neighbour offsets, never index lists: every particle of th
 import dataclasses
 import functools
 import math
-from typing import NamedTuple
+from collections import namedtuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.jit import MAX_THREADS
+from sim.jit import MAX_THREADS, chosen
 from sim.validation import argument_error, check_choice, check_number, check_vector
 
 Vector = tuple[float, float, float]
@@ -82,13 +83,11 @@ class PinPath(NamedTuple):
     coefficients: tuple[Vector, Vector, Vector, Vector]
 
 
-class NetArrays(NamedTuple):
-    """What the kernels read: flat numbers and arrays, one type for every net, so that each kernel compiles once."""
+class RopeArrays(NamedTuple):
+    """What the kernels read of a rope without air around it: flat numbers and arrays."""
 
-    rows: int
+    rows: int  # 1
     cols: int
-    is_rope: bool  # one row, linked to the next point only
-    is_cloth: bool  # the families of CLOTH
     inverse_masses: NDArray[np.float64]  # (rows cols,) inverse masses [1/kg], 0 where pinned
     mass: float  # [kg] per point
     drag: float  # [N s/m] per point
@@ -124,6 +123,11 @@ class NetArrays(NamedTuple):
     grab_k: float
     grab_b: float
     grab_max: float
+
+
+class WideArrays(NamedTuple):
+    """What the kernels read in addition of any other net."""
+
     has_air: bool
     wind_x: float  # [m/s]
     wind_y: float
@@ -134,6 +138,17 @@ class NetArrays(NamedTuple):
     pairs: NDArray[np.int64]  # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     bands: int  # of rows, whose forces a cloth's threads work out at once
+
+
+# A net of any families of links, and one of those of CLOTH. A kernel is compiled for each of the three classes of
+# arrays, with no more than nets of that class can need: numba tells them apart by their types.
+GridArrays = namedtuple("GridArrays", RopeArrays._fields + WideArrays._fields)
+ClothArrays = namedtuple("ClothArrays", RopeArrays._fields + WideArrays._fields)
+
+
+def by_net(rope: Any, grid: Any, cloth: Any = None) -> Any:
+    """A kernel that stands for one of these, by the class of its argument p. cloth: None for that of any other net."""
+    return chosen({RopeArrays: rope, GridArrays: grid, ClothArrays: cloth or grid})
 
 
 @dataclasses.dataclass(frozen=True)
@@ -198,7 +213,12 @@ class Net:
         families = (f._replace(stiffness=stiffness * r) for f, r in zip(self.families, ratios, strict=True))
         return dataclasses.replace(self, families=tuple(families))
 
-    def kernel_view(self, h: float) -> NetArrays:
+    @property
+    def bands(self) -> int:
+        """Bands of rows, whose forces threads compute at once."""
+        return max(1, min(self.threads, MAX_THREADS, self.shape[0] // LEAST_BAND))
+
+    def kernel_view(self, h: float) -> Any:
         """The kernels' view of this net for steps of h [s]. Its arrays are shared, but for those the kernels fill."""
         view = self._unit_step_view._replace(stop_rate=1.0 / h)
         if self.thickness == 0.0:
@@ -206,7 +226,7 @@ class Net:
         return view._replace(pairs=np.full_like(view.pairs, -1), seen=np.zeros_like(view.seen))
 
     @functools.cached_property
-    def _unit_step_view(self) -> NetArrays:
+    def _unit_step_view(self) -> Any:
         """`kernel_view` for a step of 1 s: a scene asks for it every frame, and a net does not change."""
         rows, cols = self.shape
         paths = np.zeros((len(self.pin_paths), 5, 3))
@@ -216,12 +236,9 @@ class Net:
         sx, sy, sz, sr = self.sphere or (0.0, 0.0, 0.0, 0.0)
         svx, svy, svz = self.sphere_velocity
         grab = self.grab or Grab(0, 0, (0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
-        air = self.air or Air()
-        return NetArrays(
+        view = RopeArrays(
             rows=rows,
             cols=cols,
-            is_rope=self.is_rope,
-            is_cloth=[f[:2] for f in self.families] == CLOTH,
             inverse_masses=self.inverse_masses(),
             mass=float(self.mass),
             drag=float(self.drag),
@@ -257,6 +274,11 @@ class Net:
             grab_k=float(grab.stiffness),
             grab_b=float(grab.damping),
             grab_max=float(grab.max_force),
+        )
+        if self.is_rope and self.air is None and self.thickness == 0.0:
+            return view
+        air = self.air or Air()
+        wide = WideArrays(
             has_air=self.air is not None,
             wind_x=float(air.wind[0]),
             wind_y=float(air.wind[1]),
@@ -266,8 +288,9 @@ class Net:
             thickness=float(self.thickness),
             pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1, dtype=np.int64),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
-            bands=max(1, min(self.threads, MAX_THREADS, rows // LEAST_BAND)),
+            bands=self.bands,
         )
+        return (ClothArrays if [f[:2] for f in self.families] == CLOTH else GridArrays)(*view, *wide)
 
 
 def check_surroundings(

@@ -11,14 +11,14 @@ all modes and is a guide only.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos
-from sim.springs.net import Net, NetArrays
+from sim.springs.net import Net
 from sim.springs.state import State
 from sim.validation import check_number
 
@@ -86,7 +86,7 @@ def gershgorin(net: Net) -> tuple[float, float]:
     return math.sqrt(float(stiffness[free].max()) / net.mass), float(damping[free].max()) / net.mass
 
 
-def sawtooth(net: Net, x: NDArray[np.float64], p: NetArrays) -> NDArray[np.float64]:
+def sawtooth(net: Net, x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:
     """A unit vector (3 rows cols,) near the stiffest mode: neighbours move against each other along their links.
 
     A rope's top mode is one almost exactly, so that Lanczos starts where it is to end. The fixed noise keeps anything
@@ -103,7 +103,7 @@ def sawtooth(net: Net, x: NDArray[np.float64], p: NetArrays) -> NDArray[np.float
     return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
 
 
-def across(net: Net, x: NDArray[np.float64], p: NetArrays) -> NDArray[np.float64]:
+def across(net: Net, x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:
     """The same, (3 rows cols,), at right angles to the links, where they are least stiff."""
     rows, cols = net.shape
     along = np.gradient(x, axis=2) if cols > 1 else np.gradient(x, axis=1)
@@ -119,7 +119,7 @@ def across(net: Net, x: NDArray[np.float64], p: NetArrays) -> NDArray[np.float64
     return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
 
 
-def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: NetArrays, part: int):
+def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int):
     """The unit vector (3 rows cols,) of the largest eigenvalue of `part` of the tangent about x."""
     basis = np.zeros((min(VECTORS, x.size), x.size))
     basis[0] = start

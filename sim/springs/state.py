@@ -79,8 +79,8 @@ def advance(
     set_lag(net, state, integrator.lag * h)
     # The sums go on from where they are, so that they do not depend on how the steps are shared out among the calls.
     ledger, p = np.array([state.dissipated, state.work]), net.kernel_view(h)
-    if p.bands > 1:
-        set_threads(p.bands)
+    if net.bands > 1:
+        set_threads(net.bands)
     state.force_evals += integrator.advance(
         state.x.reshape(-1), state.v.reshape(-1), ledger, state.t, h, steps, p, with_account
     )

@@ -13,6 +13,7 @@ from sim.springs.forces.contact import contact_force, surface_velocity, touches,
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import self_contact_energy
 from sim.springs.forces.wind import wind_power
+from sim.springs.net import by_net
 
 
 class Energy(NamedTuple):
@@ -137,14 +138,40 @@ def contact_power(x, v, t, p, with_damping):
     return dissipated, work
 
 
+@kernel(inline=True)
+def no_wind_power(x, v, p):
+    return 0.0
+
+
+@kernel
+def wide_wind_power(x, v, p):
+    return wind_power(x, v, p) if p.has_air else 0.0
+
+
+power_of_air = by_net(rope=no_wind_power, grid=wide_wind_power)
+
+
+@kernel(inline=True)
+def no_self_contact_energy(x, p):
+    return 0.0
+
+
+@kernel
+def wide_self_contact_energy(x, p):
+    return self_contact_energy(x, p) if p.thickness > 0.0 else 0.0
+
+
+energy_of_own_contacts = by_net(rope=no_self_contact_energy, grid=wide_self_contact_energy)
+
+
 @kernel(allocates=False)
 def power(x, v, t, p, with_damping):
     """(dissipated, put in) [W]. with_damping False: without every force that depends on v."""
     dissipated, work = link_power(x, v, p, with_damping)
     if with_damping and p.drag > 0.0:
         dissipated += 2.0 * p.drag / p.mass * kinetic_energy(v, p)
-    if with_damping and p.has_air:
-        work += wind_power(x, v, p)
+    if with_damping:
+        work += power_of_air(x, v, p)
     if p.has_floor or p.has_sphere:
         lost, done = contact_power(x, v, t, p, with_damping)
         dissipated += lost
@@ -170,6 +197,5 @@ def add_power(x, v, t, p, with_damping, weight, ledger):
 def energies(x, v, t, p):
     """(kinetic, elastic, gravity, contact) [J]."""
     contact = contact_energy(x, t, p) if p.has_floor or p.has_sphere else 0.0
-    if p.thickness > 0.0:
-        contact += self_contact_energy(x, p)
+    contact += energy_of_own_contacts(x, p)
     return kinetic_energy(v, p), elastic_energy(x, p), gravity_energy(x, p), contact

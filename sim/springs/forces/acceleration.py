@@ -16,6 +16,7 @@ from sim.springs.forces.contact import add_contacts
 from sim.springs.forces.links import link_forces
 from sim.springs.forces.self_contact import add_self_contacts
 from sim.springs.forces.wind import add_wind, wind_scratch_size
+from sim.springs.net import by_net
 
 
 @kernel(noalias=True, inline=True)
@@ -105,6 +106,26 @@ def grab_secant(dx, dy, dz, p):
     return p.grab_max / distance if p.grab_k * distance > p.grab_max else p.grab_k
 
 
+accelerate_links = by_net(rope=accelerate_rope, grid=accelerate_grid, cloth=accelerate_cloth)
+
+
+@kernel(inline=True)
+def add_no_wide_forces(x, v, p, with_damping, f, a):
+    """A rope has no cells that catch air, and does not push itself."""
+
+
+@kernel(noalias=True, inline=True)
+def add_wide_forces(x, v, p, with_damping, f, a):
+    """Air, and the net against itself."""
+    if p.has_air and with_damping:
+        add_wind(x, v, p, f, a)
+    if p.thickness > 0.0:
+        add_self_contacts(x, v, p, with_damping, a)
+
+
+add_forces_of_width = by_net(rope=add_no_wide_forces, grid=add_wide_forces)
+
+
 @kernel(noalias=True, inline=True)
 def accelerate(x, v, t, p, with_damping, f, a):
     """Acceleration a of every particle at time t, 0 where pinned.
@@ -113,27 +134,35 @@ def accelerate(x, v, t, p, with_damping, f, a):
     f: scratch of `make_scratch`.
     """
     b = 1.0 if with_damping else 0.0
-    if p.is_rope:
-        accelerate_rope(x, v, p, b, b * p.drag, f, a)
-    elif p.is_cloth:
-        accelerate_cloth(x, v, p, b, b * p.drag, f, a)
-    else:
-        accelerate_grid(x, v, p, b, b * p.drag, f, a)
-    if p.has_air and with_damping:
-        add_wind(x, v, p, f, a)
-    if p.thickness > 0.0:
-        add_self_contacts(x, v, p, with_damping, a)
+    accelerate_links(x, v, p, b, b * p.drag, f, a)
+    add_forces_of_width(x, v, p, with_damping, f, a)
     if p.has_floor or p.has_sphere:
         add_contacts(x, v, t, p, with_damping, a)
     if p.grabbed >= 0:
         add_grab(x, v, p, b, a)
 
 
+@kernel(inline=True)
+def rope_scratch_size(p):
+    return 3 * (p.cols + 1)
+
+
+@kernel(inline=True)
+def grid_scratch_size(p):
+    return 3 * (p.cols + 1) + wind_scratch_size(p.cols)
+
+
+@kernel(inline=True)
+def whole_cloth_scratch_size(p):
+    return p.bands * cloth_scratch_size(p.cols) + wind_scratch_size(p.cols)
+
+
+scratch_size = by_net(rope=rope_scratch_size, grid=grid_scratch_size, cloth=whole_cloth_scratch_size)
+
+
 @kernel
 def make_scratch(p):
-    return np.zeros(
-        (p.bands * cloth_scratch_size(p.cols) if p.is_cloth else 3 * (p.cols + 1)) + wind_scratch_size(p.cols)
-    )
+    return np.zeros(scratch_size(p))
 
 
 @kernel(inline=True)

@@ -19,6 +19,7 @@ from sim.springs.forces.contact import surface_velocity, touches, touching
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import damp_self_contacts
 from sim.springs.forces.wind import add_wind
+from sim.springs.net import by_net
 
 
 @kernel(noalias=True, inline=True)
@@ -187,17 +188,26 @@ def damp_rope(v, decay, p, reverse):
 
 
 @kernel(noalias=True, inline=True)
+def damp_rope_links(x, v, decay, p, reverse):
+    """`damp_links` of a rope."""
+    if p.axial:
+        damp_links(x, v, decay, p, reverse)
+    else:
+        damp_rope(v, decay, p, reverse)
+
+
+damp_all_links = by_net(rope=damp_rope_links, grid=damp_links)
+
+
+@kernel(noalias=True, inline=True)
 def damp_motion(x, v, decay, p, reverse):
     """Link damping, then drag, or in reverse. Drag scales every free velocity; moving pins keep theirs."""
     n = np.uint64(p.rows * p.cols)
     keep = decay[p.offsets.shape[0], 0]
     for turn in range(2):
         if (turn == 0) != reverse:
-            if p.is_rope and not p.axial:
-                if p.damped:
-                    damp_rope(v, decay, p, reverse)
-            elif p.damped:
-                damp_links(x, v, decay, p, reverse)
+            if p.damped:
+                damp_all_links(x, v, decay, p, reverse)
         elif keep < 1.0:
             scale_free(v, p.inverse_masses, np.uint64(0), n, keep)
             scale_free(v, p.inverse_masses, n, n, keep)
@@ -205,11 +215,13 @@ def damp_motion(x, v, decay, p, reverse):
 
 
 @kernel(allocates=False)
-def blow(x, v, s, p, f, a, middle):
-    """The air's push for a time s [s], by the explicit midpoint rule.
+def blow_wide(x, v, s, p, f, a, middle):
+    """The air's push for a time s [s], by the explicit midpoint rule, where there is air.
 
     a, middle: scratch (3 rows cols,); f: of `make_scratch`.
     """
+    if not p.has_air:
+        return
     for j in range(v.shape[0]):
         a[j], middle[j] = 0.0, v[j]
     add_wind(x, v, p, f, a)
@@ -221,13 +233,55 @@ def blow(x, v, s, p, f, a, middle):
         v[j] += s * a[j]
 
 
+@kernel(inline=True)
+def blow_nothing(x, v, s, p, f, a, middle):
+    """A rope catches no air."""
+
+
+blow = by_net(rope=blow_nothing, grid=blow_wide)
+
+
+@kernel(inline=True)
+def no_air_scratch_size(x, p):
+    return 0
+
+
+@kernel(inline=True)
+def wide_air_scratch_size(x, p):
+    return x.shape[0] if p.has_air else 0
+
+
+air_scratch_size = by_net(rope=no_air_scratch_size, grid=wide_air_scratch_size)
+
+
+@kernel(inline=True)
+def never_pushes_itself(p):
+    return False
+
+
+@kernel(inline=True)
+def wide_pushes_itself(p):
+    return p.thickness > 0.0
+
+
+pushes_itself = by_net(rope=never_pushes_itself, grid=wide_pushes_itself)
+
+
+@kernel(inline=True)
+def damp_no_self_contacts(x, v, s, p, reverse):
+    """A rope does not push itself."""
+
+
+damp_own_contacts = by_net(rope=damp_no_self_contacts, grid=damp_self_contacts)
+
+
 @kernel(allocates=False)
 def damp_surfaces(x, v, t, s, p, reverse):
     """Itself, floor, sphere, pull, or in reverse."""
     for step in range(4):
         part = 2 - step if reverse else step - 1
-        if part == -1 and p.thickness > 0.0:
-            damp_self_contacts(x, v, s, p, reverse)
+        if part == -1 and pushes_itself(p):
+            damp_own_contacts(x, v, s, p, reverse)
         if part == 0 and p.has_floor:
             damp_contact(x, v, t, s, p, False)
         elif part == 1 and p.has_sphere:
@@ -245,7 +299,7 @@ def is_odd(t, h, s):
 @kernel(inline=True)
 def damp(x, v, t, s, decay, p, reverse):
     """All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards."""
-    outside = p.has_floor or p.has_sphere or p.grabbed >= 0 or p.thickness > 0.0
+    outside = p.has_floor or p.has_sphere or p.grabbed >= 0 or pushes_itself(p)
     if outside and reverse:
         damp_surfaces(x, v, t, s, p, reverse)
     damp_motion(x, v, decay, p, reverse)

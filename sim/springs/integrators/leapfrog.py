@@ -11,7 +11,7 @@ import numpy as np
 from sim.jit import kernel
 from sim.springs.analysis.energy import add_power, kinetic_energy
 from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
-from sim.springs.forces.damping import blow, damp, is_odd, make_decay
+from sim.springs.forces.damping import air_scratch_size, blow, damp, is_odd, make_decay
 from sim.springs.integrators import Integrator
 from sim.springs.vector_ops import add_scaled
 
@@ -26,7 +26,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     a = np.empty_like(x)
     f = make_scratch(p)
     decay = make_decay(p, 0.5 * h)
-    spare = np.empty(x.shape[0] if p.has_air else 0)
+    spare = np.empty(air_scratch_size(x, p))
     middle = np.empty_like(spare)
     kinetic = 0.0
     set_pins(x, v, t, p)
@@ -36,8 +36,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
         if with_account:
             add_power(x, v, now, p, False, 0.5 * h, ledger)
             kinetic = kinetic_energy(v, p)
-        if p.has_air:
-            blow(x, v, 0.5 * h, p, f, spare, middle)
+        blow(x, v, 0.5 * h, p, f, spare, middle)
         damp(x, v, now, 0.5 * h, decay, p, odd)
         if with_account:
             ledger[0] += kinetic - kinetic_energy(v, p)
@@ -49,8 +48,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
         if with_account:
             kinetic = kinetic_energy(v, p)
         damp(x, v, now + h, 0.5 * h, decay, p, not odd)
-        if p.has_air:
-            blow(x, v, 0.5 * h, p, f, spare, middle)
+        blow(x, v, 0.5 * h, p, f, spare, middle)
         if with_account:
             ledger[0] += kinetic - kinetic_energy(v, p)
             add_power(x, v, now + h, p, False, 0.5 * h, ledger)

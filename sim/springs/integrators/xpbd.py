@@ -67,8 +67,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
         set_velocities(x, before, h, p, v)
         if with_account:
             kinetic = kinetic_energy(v, p)
-        if p.has_air:
-            blow(x, v, h, p, f, spare, middle)
+        blow(x, v, h, p, f, spare, middle)
         damp(x, v, after, 0.5 * h, decay, p, not odd)
         if with_account:
             ledger[0] += kinetic - kinetic_energy(v, p)

@@ -16,6 +16,7 @@ from sim.jit import kernel
 from sim.springs.analysis.energy import add_power
 from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.forces.links import link_forces
+from sim.springs.net import by_net
 
 WHOLE = 160  # points: a rope no longer than this is one block
 BLOCK = 96  # points in a block of a longer one: the rows of their stages are 30 kB
@@ -161,9 +162,8 @@ def accelerate_all(x, v, t, p, f, a):
 
 @kernel(inline=True)
 def is_bare(p):
-    """Whether links, gravity and drag of a row of points are all there is."""
-    touched = p.has_floor or p.has_sphere or p.has_air or p.thickness > 0.0
-    return p.is_rope and not touched and p.grabbed < 0 and p.pins.shape[0] == 0
+    """Whether links, gravity and drag of a rope are all there is."""
+    return not (p.has_floor or p.has_sphere) and p.grabbed < 0 and p.pins.shape[0] == 0
 
 
 @kernel(noalias=True, inline=True)
@@ -254,16 +254,17 @@ def weight_of(method, i):
 
 
 @kernel(allocates=False)
-def take_step(method, x, v, t, h, p, stages, xn, vn, ledger, with_account):
-    """The state a step h after x, v at t into xn, vn, and its acceleration into the last row of stages.k.
-
-    The acceleration at x, v is given in its first row. With `with_account`, ledger gets what was dissipated and put in
-    [J].
-    """
+def step_rope(method, x, v, t, h, p, stages, xn, vn, ledger, with_account):
+    """`take_step` of a rope."""
     if is_bare(p) and not with_account:
         step_bare_rope(method, x, v, h, p, stages, xn, vn)
     else:
         step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_account)
+
+
+# The state a step h after x, v at t into xn, vn, and its acceleration into the last row of stages.k. The acceleration
+# at x, v is given in its first row. With `with_account`, ledger gets what was dissipated and put in [J].
+take_step = by_net(rope=step_rope, grid=step_any)
 
 
 @kernel(noalias=True, allocates=False)

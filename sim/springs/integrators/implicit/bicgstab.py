@@ -5,8 +5,7 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.integrators.implicit.blocks import GENERAL
-from sim.springs.integrators.implicit.conjugate_gradients import MOST, precondition, set_matrix_product
+from sim.springs.integrators.implicit.conjugate_gradients import MOST, precondition, set_general_product
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.vector_ops import add_scaled
 
@@ -35,14 +34,14 @@ def solve_stabilised_gradients(points, links, factors, r, reduction, p, f, z, d,
             return count
         set_turned(d, rho / before * alpha / omega, omega, q, r)
         precondition(factors, d, n, z)
-        set_matrix_product(points, links, GENERAL, z, p, f, q)
+        set_general_product(points, links, z, p, f, q)
         alpha = rho / dot(shadow, q)
         add_scaled(u, alpha, z)
         add_scaled(r, -alpha, q)
         if not math.sqrt(dot(r, r)) > goal:
             return count
         precondition(factors, r, n, z)
-        set_matrix_product(points, links, GENERAL, z, p, f, s)
+        set_general_product(points, links, z, p, f, s)
         omega = dot(s, r) / dot(s, s)
         add_scaled(u, omega, z)
         add_scaled(r, -omega, s)

@@ -4,7 +4,7 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.forces.acceleration import add_row
-from sim.springs.integrators.implicit.blocks import SYMMETRIC
+from sim.springs.integrators.implicit.blocks import GENERAL, SYMMETRIC
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.vector_ops import add_scaled
 
@@ -43,7 +43,7 @@ def hold_pinned(w, u, o, n):
         u[o + j] = u[o + j] if w[j] > 0.0 else 0.0
 
 
-@kernel(noalias=True, allocates=False)
+@kernel(noalias=True, inline=True)
 def set_matrix_product(points, links, numbers, u, p, f, q):
     """q = (M + g D + g^2 K) u of `sim.springs.integrators.implicit.blocks`, 0 where pinned; u is 0 there."""
     n, m = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1)
@@ -63,6 +63,18 @@ def set_matrix_product(points, links, numbers, u, p, f, q):
                 add_row(f, of, count, -1.0, q, o + ib)
     for e in range(3):
         hold_pinned(p.inverse_masses, q, np.uint64(e) * n, n)
+
+
+@kernel(noalias=True, allocates=False)
+def set_symmetric_product(points, links, u, p, f, q):
+    """`set_matrix_product` of a symmetric matrix: a constant number of a link's block saves a fourth of the loads."""
+    set_matrix_product(points, links, SYMMETRIC, u, p, f, q)
+
+
+@kernel(noalias=True, allocates=False)
+def set_general_product(points, links, u, p, f, q):
+    """`set_matrix_product` of a matrix that is not symmetric."""
+    set_matrix_product(points, links, GENERAL, u, p, f, q)
 
 
 @kernel(noalias=True, allocates=False)
@@ -121,7 +133,7 @@ def solve_conjugate_gradients(points, links, factors, r, reduction, p, f, z, d, 
     for count in range(MOST):
         if rho <= goal:
             return count
-        set_matrix_product(points, links, SYMMETRIC, d, p, f, q)
+        set_symmetric_product(points, links, d, p, f, q)
         alpha = rho / dot(d, q)
         add_scaled(u, alpha, d)
         add_scaled(r, -alpha, q)

@@ -24,6 +24,7 @@ from sim.springs.integrators.implicit.blocks import (
 from sim.springs.integrators.implicit.conjugate_gradients import factorise, solve_conjugate_gradients
 from sim.springs.integrators.implicit.mean_length import add_mean_lengths, set_mean_blocks
 from sim.springs.integrators.implicit.tangent import dot
+from sim.springs.net import by_net
 from sim.springs.vector_ops import set_sum
 
 MOST = 25  # corrections a stage: a stage that has not settled by then is taken as it is
@@ -54,11 +55,25 @@ class WorkCount(NamedTuple):
     u: NDArray[np.float64]
 
 
+@kernel(inline=True)
+def rope_sizes(p):
+    """Rows of a rope's matrix, and numbers in a vector of conjugate gradients, which it does not need."""
+    return p.cols, 0
+
+
+@kernel(inline=True)
+def grid_sizes(p):
+    return 0, 3 * p.rows * p.cols
+
+
+solver_sizes = by_net(rope=rope_sizes, grid=grid_sizes)
+
+
 @kernel
 def make_work(p, mean):
     size = p.rows * p.cols
     numbers = GENERAL if mean else SYMMETRIC
-    n, m = (p.cols, 0) if p.is_rope else (0, 3 * size)
+    n, m = solver_sizes(p)
     more = m if mean else 0
     return WorkCount(
         mean,
@@ -106,8 +121,8 @@ def set_rope_blocks(p, points, links, numbers, diagonal, beside):
 
 
 @kernel
-def correct_rope(p, work):
-    """The correction of a rope's velocities into work.u, from the blocks and the residual in work.r."""
+def correct_rope(before, p, work):
+    """The correction of a rope's velocities into work.u, from the blocks and the residual in work.r; solved exactly."""
     n = p.cols
     set_rope_blocks(p, work.points, work.links, work.numbers, work.diagonal, work.beside)
     u = work.u.reshape(n, 3)
@@ -120,12 +135,24 @@ def correct_rope(p, work):
             work.r[e * n + j] = u[j, e]
     for j in range(3 * n):
         work.u[j] = work.r[j]
+    return 0.0
+
+
+@kernel(inline=True)
+def forcing(found, before):
+    """How far a linear solve is taken, of squared residuals: as far as Newton goes (Eisenstat & Walker 1996)."""
+    return LOOSEST if found > before else max(TIGHTEST, min(LOOSEST, 0.9 * found / before))
 
 
 @kernel
-def correct_net(reduction, p, work):
-    """The correction of any net's velocities into work.u, from the blocks and the residual in work.r."""
+def correct_net(before, p, work):
+    """The correction of any net's velocities into work.u, from the blocks and the residual in work.r.
+
+    before: squared residual of the last correction, 0 of the first; returns that of this one.
+    """
     n = p.rows * p.cols
+    found = dot(work.r, work.r)
+    reduction = forcing(found, before)
     for j in range(6 * n):
         work.factors[j] = work.points[j]
     add_links_to_points(p, work.links, work.numbers, work.factors)
@@ -142,6 +169,23 @@ def correct_net(reduction, p, work):
     # The scratch of forces is zero at its ends for whoever relies on it.
     for j in range(work.f.shape[0]):
         work.f[j] = 0.0
+    return found
+
+
+correct = by_net(rope=correct_rope, grid=correct_net)
+
+
+@kernel(inline=True)
+def rope_tolerance(p):
+    return SETTLED
+
+
+@kernel(inline=True)
+def net_tolerance(p):
+    return SETTLED_NET
+
+
+tolerance = by_net(rope=rope_tolerance, grid=net_tolerance)
 
 
 @kernel(inline=True)
@@ -153,12 +197,6 @@ def largest(u):
         if size > found or size != size:
             found = size
     return found
-
-
-@kernel(inline=True)
-def forcing(found, before):
-    """How far a linear solve is taken, of squared residuals: as far as Newton goes (Eisenstat & Walker 1996)."""
-    return LOOSEST if found > before else max(TIGHTEST, min(LOOSEST, 0.9 * found / before))
 
 
 @kernel
@@ -184,11 +222,7 @@ def solve_stage(x0, v0, g, t, p, x, v, work, most):
             set_mean_blocks(x0, x, g, p, work.links)
         else:
             set_link_blocks(x, g, p, work.links)
-        if p.is_rope:
-            correct_rope(p, work)
-        else:
-            before, found = found, dot(work.r, work.r)
-            correct_net(forcing(found, before), p, work)
+        found = correct(found, p, work)
         for i in range(3 * n):
             v[i] += work.u[i]
         taken += 1
@@ -196,7 +230,7 @@ def solve_stage(x0, v0, g, t, p, x, v, work, most):
         # What is left is what further corrections would add, each smaller than the one before by the same ratio.
         rest = size * size / (last - size) if size < last < np.inf else size
         noise = ROUND_OFF * largest(x) / g
-        settled = rest <= (SETTLED if p.is_rope else SETTLED_NET) * largest(v) + noise or size <= noise
+        settled = rest <= tolerance(p) * largest(v) + noise or size <= noise
         # A NaN ends the search too: it only spreads.
         if settled or not size <= np.inf:
             break

@@ -13,6 +13,7 @@ from sim.jit import kernel
 from sim.springs.forces.contact import touches, touching
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import refresh_pairs
+from sim.springs.net import by_net
 
 
 @kernel(noalias=True, inline=True)
@@ -77,7 +78,7 @@ def sweep_surface(x, t, h, p, on_sphere):
 @kernel(allocates=False)
 def sweep_pairs(x, h, p):
     """Particles of the net nearer to each other than its thickness."""
-    if p.contact_k == 0.0:
+    if p.contact_k == 0.0 or p.thickness == 0.0:
         return
     n = p.rows * p.cols
     give = 1.0 / (p.contact_k * h * h)
@@ -112,12 +113,19 @@ def sweep_grab(x, h, p):
     x[2 * n + j] += s * dz
 
 
+@kernel(inline=True)
+def sweep_no_pairs(x, h, p):
+    """A rope does not push itself."""
+
+
+sweep_own_contacts = by_net(rope=sweep_no_pairs, grid=sweep_pairs)
+
+
 @kernel(allocates=False)
 def sweep(x, t, h, p):
     """Move x (3 rows cols,), predicted for time t without them, by every elastic constraint once."""
     sweep_links(x, h, p)
-    if p.thickness > 0.0:
-        sweep_pairs(x, h, p)
+    sweep_own_contacts(x, h, p)
     if p.has_floor:
         sweep_surface(x, t, h, p, False)
     if p.has_sphere:

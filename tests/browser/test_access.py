@@ -1,0 +1,120 @@
+"""The panel for everyone: texts of enough contrast, light and dark; controls that Tab reaches, and that have a name."""
+
+from typing import Any
+
+import pytest
+
+from app.messages import Pause
+from app.scenes import NAMES
+from app.server.viewer import Viewer
+from tests.browser.conftest import Tab
+
+MIN_CONTRAST = 4.5  # WCAG 2.2, 1.4.3, level AA
+CONTRAST = """() => {
+  const numbers = (css) => [...css.match(/[\\d.]+/g).map(Number), 1].slice(0, 4);
+  const over = (top, under) => [0, 1, 2].map((i) => top[i] * top[3] + under[i] * (1 - top[3]));
+  const linear = (c) => (c /= 255) <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
+  const luminance = ([r, g, b]) => 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
+  function background(element) {
+    const layers = [];
+    for (let node = element; node; node = node.parentElement) {
+      const colour = numbers(getComputedStyle(node).backgroundColor);
+      if (colour[3] > 0) layers.push(colour);
+      if (colour[3] === 1) return layers.reverse().reduce((under, top) => over(top, under), [255, 255, 255]);
+    }
+    return null; // it stands before the picture
+  }
+  function contrast(element) {
+    const under = background(element);
+    if (under === null) return Infinity;
+    const colour = numbers(getComputedStyle(element).color);
+    for (let node = element; node; node = node.parentElement) colour[3] *= Number(getComputedStyle(node).opacity);
+    const [dark, light] = [luminance(over(colour, under)), luminance(under)].sort((a, b) => a - b);
+    return (light + 0.05) / (dark + 0.05);
+  }
+  const texts = [];
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) {
+    const element = walker.currentNode.parentElement, text = walker.currentNode.textContent.trim();
+    if (text && !element.closest("script, style, svg, #springtide-cover")) texts.push([element, text]);
+  }
+  for (const field of document.querySelectorAll("input[type=text]")) texts.push([field, field.value]);
+  return texts.filter(([element]) => element.checkVisibility({ visibilityProperty: true }) && element.offsetHeight > 0)
+    .map(([element, text]) => [text.slice(0, 60), contrast(element)]);
+}"""
+# What a mouse can press or move in the panel, and whether the keyboard reaches it under which name.
+CONTROLS = """() => [...document.querySelectorAll(
+    "button, input:not([type=file]), [role=button], [role=slider], .multi-slider-thumb, " +
+    ".mantine-Paper-root > .mantine-Paper-root:first-child")]
+  .filter((element) => element.checkVisibility() && element.getBoundingClientRect().width > 0)
+  .map((element) => [
+    element.getAttribute("aria-label") || [...(element.labels ?? [])].map((label) => label.textContent).join(" ") ||
+      element.textContent.trim(),
+    element.tabIndex, element.tagName + "." + element.className])"""
+FOLDED = ".mantine-Paper-root > .mantine-Paper-root[aria-expanded=false]"
+
+
+@pytest.fixture(params=NAMES)
+def opened(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> tuple[Viewer, Tab]:
+    """Each scene with every folder of its panel open, paused."""
+    viewer, tab = one_page
+    tab.follow(viewer, request.param)
+    tab.wait(lambda: tab.page.locator(".springtide-panel").count())
+    viewer.loop.commands.put(Pause())
+    tab.wait(lambda: tab.page.locator(FOLDED).count() > 3)
+    tab.page.evaluate("folded => document.querySelectorAll(folded).forEach(title => title.click())", FOLDED)
+    tab.wait(lambda: not tab.page.locator(FOLDED).count())
+    # viser shows its own settings while a panel is empty, and fades them out.
+    tab.wait(lambda: not tab.page.get_by_text("Save Canvas").is_visible())
+    tab.page.wait_for_timeout(500)  # folders unfold
+    return viewer, tab
+
+
+def low_contrasts(tab: Tab) -> list[Any]:
+    found = tab.page.evaluate(CONTRAST)
+    assert len(found) > 40
+    return [(text, round(ratio, 2)) for text, ratio in found if ratio is not None and ratio < MIN_CONTRAST]
+
+
+def test_every_text_has_enough_contrast_light_and_dark(opened: tuple[Viewer, Tab]) -> None:
+    _, tab = opened
+    assert low_contrasts(tab) == []
+    switch = tab.page.locator("[data-springtide-switch=dark]")
+    switch.click()
+    tab.wait(lambda: tab.page.locator("html[data-mantine-color-scheme=dark]").count())
+    tab.page.wait_for_timeout(500)  # colours change gradually
+    try:
+        assert low_contrasts(tab) == []
+    finally:
+        switch.click()
+        tab.wait(lambda: tab.page.locator("html[data-mantine-color-scheme=light]").count())
+
+
+def test_every_control_is_reached_by_tab_and_has_a_name(opened: tuple[Viewer, Tab]) -> None:
+    _, tab = opened
+    controls = tab.page.evaluate(CONTROLS)
+    assert len(controls) > 25
+    assert [control for control in controls if not control[0] or control[1] < 0] == []
+    names = [name for name, _, _ in controls]
+    assert "Main" in names
+    assert sum("multi-slider-thumb" in kind for _, _, kind in controls) > 10
+
+
+def test_folders_and_sliders_obey_the_keyboard(one_page: tuple[Viewer, Tab]) -> None:
+    viewer, tab = one_page
+    tab.follow(viewer, "rope")
+    slider = tab.page.get_by_role("slider", name="Stiffness [N/m]")
+    tab.wait(lambda: slider.count() == 1)
+    slider.focus()
+    tab.page.keyboard.press("ArrowRight")
+    tab.wait(lambda: viewer.panel.params.stiffness == 810.0)
+    folder = tab.page.get_by_role("button", name="Surroundings", exact=True)
+    folder.focus()
+    tab.page.keyboard.press("Enter")
+    tab.wait(lambda: folder.get_attribute("aria-expanded") == "true")
+    tab.wait(lambda: viewer.loop.running)
+    tab.page.get_by_role("button", name="Pause").focus()
+    tab.page.keyboard.press("Space")  # presses the button, and is not also the key that plays
+    tab.wait(lambda: not viewer.loop.running)
+    tab.page.wait_for_timeout(500)
+    assert not viewer.loop.running

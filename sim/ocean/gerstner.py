@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.ocean.spectra import Conditions, Spectrum
+from sim.ocean.spectra.record import wavenumber_of
 from sim.validation import argument_error, check_within, is_whole_number
 
 MAX_WAVES = 4096
@@ -42,15 +43,18 @@ def draw_waves(spectrum: Spectrum, conditions: Conditions, count: int = 64, seed
 
     The energy, as a function of wavenumber, is cut into `count` equal parts; each gives the wavenumber of its middle
     and a bearing drawn from the spreading there (by a golden-ratio sequence, so that few waves already spread evenly).
-    Without wind all amplitudes are 0. Raises ValueError for a count that is not 1 to 4096 or a seed that is not whole.
+    Without wind all amplitudes are 0. A regular wave is one wave, and those of the second system, if there is one, are
+    the other `count`. Raises ValueError for a count that is not 1 to 4096 or a seed that is not whole.
     """
     if not is_whole_number(count) or not 1 <= count <= MAX_WAVES:
         raise argument_error("count", count, f"a whole number from 1 to {MAX_WAVES}")
     if not is_whole_number(seed):
         raise argument_error("seed", seed, "a whole number")
     random = np.random.default_rng(seed)
-    peak = peak_wavenumber(spectrum, conditions)
-    k = peak * np.logspace(*DECADES, CELLS)
+    if spectrum.line is not None and conditions.second_height == 0.0:
+        kx, ky, m0 = spectrum.line(conditions)
+        return Waves(np.array([kx]), np.array([ky]), np.array([math.sqrt(2.0 * m0)]), np.zeros(1))
+    k = np.geomspace(*energy_range(spectrum, conditions), CELLS)
     theta = np.arange(BEARINGS) * (2.0 * math.pi / BEARINGS)
     S = spectrum(k[:, None] * np.cos(theta), k[:, None] * np.sin(theta), conditions)
     # m0 = int int S k dk dtheta = int int S k^2 dln k dtheta
@@ -59,7 +63,7 @@ def draw_waves(spectrum: Spectrum, conditions: Conditions, count: int = 64, seed
     m0 = float(below[-1])
     phase = random.uniform(size=count)
     if m0 <= 0.0:
-        return Waves(np.full(count, peak), np.zeros(count), np.zeros(count), phase)
+        return Waves(np.full(count, peak_wavenumber(spectrum, conditions)), np.zeros(count), np.zeros(count), phase)
     middles = (np.arange(count) + 0.5) / count * m0
     log_k = np.interp(middles, below, np.log(k))
     rows = np.clip(np.searchsorted(k, np.exp(log_k)), 0, CELLS - 1)
@@ -70,22 +74,29 @@ def draw_waves(spectrum: Spectrum, conditions: Conditions, count: int = 64, seed
     bearing = np.array([np.interp(u * row[-1], row, edges) for u, row in zip(at, share, strict=True)])
     wavenumber = np.exp(log_k)
     amplitude = np.full(count, math.sqrt(2.0 * m0 / count))
+    if spectrum.line is not None:
+        kx, ky, m0 = spectrum.line(conditions)
+        both = np.append(wavenumber * np.cos(bearing), kx), np.append(wavenumber * np.sin(bearing), ky)
+        order = np.argsort(np.hypot(*both), kind="stable")
+        single = math.sqrt(2.0 * m0)
+        return Waves(both[0][order], both[1][order], np.append(amplitude, single)[order], np.append(phase, 0.0)[order])
     return Waves(wavenumber * np.cos(bearing), wavenumber * np.sin(bearing), amplitude, phase)
+
+
+def energy_range(spectrum: Spectrum, conditions: Conditions) -> tuple[float, float]:
+    """Least and greatest wavenumber [rad/m] of what is looked at: beyond lies less than 1e-8 of the energy."""
+    low = high = peak_wavenumber(spectrum, conditions)
+    if conditions.second_height > 0.0:
+        second = wavenumber_of(conditions, 2.0 * math.pi / conditions.second_period)
+        low, high = min(low, second), max(high, second)
+    return low * 10.0 ** DECADES[0], high * 10.0 ** DECADES[1]
 
 
 def peak_wavenumber(spectrum: Spectrum, conditions: Conditions) -> float:
     """Wavenumber [rad/m] about which the spectrum's energy lies; of 10 m/s where there is no wind to tell."""
-    if spectrum.peak is None or conditions.wind_speed == 0.0:
+    if spectrum.peak is None or spectrum.is_level(conditions):
         return conditions.gravity / 10.0**2
-    omega = spectrum.peak(conditions)
-    low, high = 1e-9, 1e6
-    for _ in range(200):
-        middle = math.sqrt(low * high)
-        if float(conditions.omega(np.asarray(middle))) < omega:
-            low = middle
-        else:
-            high = middle
-    return high
+    return wavenumber_of(conditions, spectrum.peak(conditions))
 
 
 def widened(waves: Waves, length: float) -> np.ndarray:

@@ -284,7 +284,22 @@ class Sea:
         self._rate, self._decay, self._decays = omega / (2.0 * np.pi), decay, bool(decay.any())
         self._fall = (-decay).astype(self._real)
         S = self.spectrum(self.k[:, None], self.k[None, :], conditions)
-        self._target = np.sqrt(S) * (2.0 * math.pi / self.length)
+        dk = 2.0 * math.pi / self.length
+        if self.spectrum.line is not None:
+            self._add_line(S, self.spectrum.line(conditions), dk)
+        self._target = np.sqrt(S) * dk
+
+    def _add_line(self, S: np.ndarray, line: tuple[float, float, float], dk: float) -> None:
+        """Give the energy of one regular wave to the tile's wave that is nearest to it, which is drawn as high as that.
+
+        A wave that is longer than the tile, or too short for its grid, is left out.
+        """
+        kx, ky, m0 = line
+        i, j = round(kx / dk), round(ky / dk)
+        if max(abs(i), abs(j)) >= self.size // 2 or i == j == 0:
+            return
+        S[i, j] += m0 / dk**2
+        self._unit[i, j] *= math.sqrt(0.5) / abs(self._unit[i, j])
 
     def _checked_time(self, t: float) -> float:
         """Raises ValueError for a time that is not finite, or before the last change where waves decay or relax."""

@@ -3,11 +3,13 @@
 One tile is a sample: even a perfect one differs from its spectrum. `height_scatter` says by how much to expect.
 """
 
+import functools
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from sim.ocean.gerstner import energy_range
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.validation import argument_error, check_not_negative
 
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from sim.ocean.sea import Sea
 
 # Lower bounds of forces 1 to 12 [m/s] (WMO No. 306) and the names of 0 to 12.
+BREAKING_HEIGHT = 0.6  # Hs over the depth above which the waves of a sea break on the bottom
 BEAUFORT_FROM = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
 BEAUFORT_NAMES = (
     "calm", "light air", "light breeze", "gentle breeze", "moderate breeze", "fresh breeze", "strong breeze",
@@ -52,6 +55,19 @@ def theory(spectrum: Spectrum, conditions: Conditions, k_max: float = 1e4, k_min
     )
 
 
+@functools.lru_cache(maxsize=64)
+def open_sea_height(spectrum: Spectrum, conditions: Conditions) -> float:
+    """Hs [m] of an endless sea under these conditions: a closed form where there is one, or the integral."""
+    if spectrum.is_level(conditions):
+        closed = 0.0
+    else:
+        closed = math.nan if spectrum.significant_height is None else spectrum.significant_height(conditions)
+    if math.isfinite(closed) and conditions.low_pass == 0.0:
+        return math.hypot(closed, conditions.second_height)
+    k_min, k_max = energy_range(spectrum, conditions)
+    return theory(spectrum, conditions, k_max, k_min).significant_height
+
+
 def energy_by_wavenumber(
     spectrum: Spectrum, conditions: Conditions, k_max: float = 1e4, k_min: float = 1e-6
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -68,7 +84,12 @@ def _polar_cells(
     theta = np.arange(180) * (2.0 * math.pi / 180)
     k = np.exp(log_k)
     S = spectrum(k[:, None] * np.cos(theta), k[:, None] * np.sin(theta), conditions)
-    return k, S * k[:, None] ** 2 * (step * 2.0 * math.pi / theta.size), theta  # S k dk dtheta = S k^2 dlog(k) dtheta
+    cells = S * k[:, None] ** 2 * (step * 2.0 * math.pi / theta.size)  # S k dk dtheta = S k^2 dlog(k) dtheta
+    if spectrum.line is not None:
+        kx, ky, m0 = spectrum.line(conditions)
+        row = int(np.argmin(np.abs(log_k - math.log(math.hypot(kx, ky)))))
+        cells[row, round(math.atan2(ky, kx) / (2.0 * math.pi) * theta.size) % theta.size] += m0
+    return k, cells, theta
 
 
 def expected(sea: "Sea", t: float | None = None) -> Statistics:

@@ -7,7 +7,7 @@ from typing import Any
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import fluids
 from sim.ocean.radial_grid import LAWS
-from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions
+from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, Spectrum
 from sim.parameters import parameter, with_parameters
 
 OILS = tuple(name for name in fluids() if "water" not in name)
@@ -16,20 +16,21 @@ SPECTRUM_TITLES = {
     name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
 }
 OWN_DENSITIES = ("density_1", "density_2", "density_3")  # parameters: densities of the first bodies
+LEVEL_SPECTRUM = "pierson_moskowitz"  # makes no waves without wind
 SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
 
 
 @dataclasses.dataclass(frozen=True)
 @with_parameters(PARAMETERS, group="Waves")
 class Params:
-    """The parameters, with those of all spectra; the defaults are clean water in a fresh breeze."""
+    """The parameters, with those of all spectra; the defaults are clean water in a moderate breeze."""
 
     wind_speed: float = parameter(
         7.0,
         0.5,
         25.0,
         "m/s",
-        "Wind speed 10 m above the sea; with the spectrum of Pierson and Moskowitz 19.5 m above it",
+        "Wind speed 10 m above the sea",
         group="Main",
     )
     spill: str = parameter(
@@ -258,7 +259,7 @@ def hidden(params: Params) -> set[str]:
         names.add("jet_flow")
     if not (params.rig and (params.fire or params.jet)):
         names.add("particles")
-    if params.surface == "fft":
+    if params.surface == "fft" or (params.spectrum == "regular" and spectrum_values(params)["second_height"] == 0.0):
         names.add("wave_count")
     return names
 
@@ -284,11 +285,18 @@ def column_of(params: Params) -> FluidColumn:
     )
 
 
+def spectrum_of(params: Params) -> Spectrum:
+    """The spectrum of the waves; one that makes none without wind where there are to be none."""
+    return SPECTRA[params.spectrum if params.waves else LEVEL_SPECTRUM]
+
+
 def conditions_of(params: Params) -> Conditions:
     """The conditions under which the spectrum is evaluated."""
-    wind_speed = params.wind_speed if params.waves else 0.0
-    wind = {"wind_speed": wind_speed, "wind_direction": math.radians(params.wind_direction)}
-    return SPECTRA[params.spectrum].conditions_from(wind | spectrum_values(params))
+    spectrum = spectrum_of(params)
+    values = spectrum_values(params) | {"wind_direction": math.radians(params.wind_direction)}
+    if params.waves:
+        return spectrum.conditions_from(values | {"wind_speed": spectrum.wind_speed(params.wind_speed)})
+    return spectrum.conditions_from(values | {"wind_speed": 0.0, "second_height": 0.0})
 
 
 def spectrum_values(params: Params) -> dict[str, Any]:

@@ -8,14 +8,13 @@ from app.messages import Snapshot
 from app.render.html import Html, bold, faint, fill, join, table
 from app.scenes.radial_sea.frame import RadialReadings
 from app.scenes.radial_sea.materials import LAB_SPECULAR
-from app.scenes.radial_sea.parameters import conditions_of
+from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
 from app.scenes.radial_sea.well_blowout import OilBudget
 from sim.formatting import fixed, metres, number, percent, seconds
 from sim.ocean.dispersion import viscous_root
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import diffuse_reflectance, normal_reflectance
 from sim.ocean.gerstner import peak_wavenumber
-from sim.ocean.spectra import SPECTRA
 from sim.parameters import parameters_of
 
 SAMPLE_WAVE = 10.0  # [m] length of the wave in statements about the speed of waves
@@ -264,7 +263,7 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
         marks["mixture_law"] = f"{number(viscosity * 1e3)} mPa·s, {fixed(density, 0)} kg/m³"
     if column.kind != "water":
         p = snapshot.frame.params
-        k = np.array([peak_wavenumber(SPECTRA[p.spectrum], conditions_of(p))])
+        k = np.array([peak_wavenumber(spectrum_of(p), conditions_of(p))])
         remaining = math.exp(-float(column.roots(k)[1][0]) * readings.age)
         marks["exposure"] = f"after {seconds(readings.age)} the peak wave keeps {percent(remaining, 3)} of its height"
     return marks

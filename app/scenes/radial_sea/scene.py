@@ -1,6 +1,7 @@
 """The radial sea: buoys and a box on water, on oil, or on both mixed, near a rig that may burn."""
 
 import collections
+import dataclasses
 import math
 import time
 from collections.abc import Iterator
@@ -25,7 +26,7 @@ from app.scenes.radial_sea.parameters import (
     exposure_of,
     hidden,
     own_densities_of,
-    spectrum_values,
+    spectrum_of,
 )
 from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
 from sim.floating import MotionCoefficients, Shape, shape_from_file
@@ -93,7 +94,7 @@ class WaveChoice(NamedTuple):
 
 def wave_choice_of(params: Params) -> WaveChoice:
     """What the parameters say of the waves."""
-    return WaveChoice(params.spectrum, conditions_of(params), params.wave_count)
+    return WaveChoice(spectrum_of(params).name, conditions_of(params), params.wave_count)
 
 
 def draw(choice: WaveChoice) -> Waves:
@@ -170,16 +171,14 @@ class RadialSeaScene:
     def make_tile(self) -> TileSea:
         """The square sea under the same wind, on the same fluids."""
         p, column = self.params, self.column
-        c = conditions_of(p)
+        conditions = conditions_of(p)
         sea = Sea(
             TILE_SIZE,
             TILE_LENGTH,
-            p.spectrum,
+            spectrum_of(p).name,
             choppiness=p.choppiness,
             frequency=lambda k: column.roots(k)[0],
-            wind_speed=c.wind_speed,
-            wind_direction=c.wind_direction,
-            **spectrum_values(p),
+            **{field.name: getattr(conditions, field.name) for field in dataclasses.fields(conditions)},
         )
         return TileSea(sea, column, self.age)
 

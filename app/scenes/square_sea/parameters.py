@@ -16,7 +16,6 @@ SPECTRUM_TITLES = {
 }
 SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
 SURFACE_TENSION = 0.0728  # [N/m] of water against air
-MIN_WIND_SPEED = 0.05  # [m/s] below which there are no waves: the spectra square it, and smaller squares underflow
 
 
 @dataclasses.dataclass(frozen=True)
@@ -29,7 +28,7 @@ class Params:
         0.0,
         60.0,
         "m/s",
-        "Wind speed 10 m above the sea; with the spectrum of Pierson and Moskowitz 19.5 m above it",
+        "Wind speed 10 m above the sea",
         group="Main",
     )
     rain: float = parameter(0.0, 0.0, 200.0, "mm/h", "Rainfall; 0 is no rain", log_from=0.1, group="Main")
@@ -253,11 +252,11 @@ def gravity(params: Params) -> float:
 
 
 def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any]:
-    """The arguments of `Sea` and `Sea.change`. wind_speed: [m/s] in place of the one in `params`."""
+    """The arguments of `Sea` and `Sea.change`. wind_speed: U10 [m/s] in place of the one in `params`."""
     wind = params.wind_speed if wind_speed is None else wind_speed
     return {
         "spectrum": params.spectrum,
-        "wind_speed": wind if wind >= MIN_WIND_SPEED else 0.0,
+        "wind_speed": SPECTRA[params.spectrum].wind_speed(wind),
         "wind_direction": math.radians(params.wind_direction),
         "gravity": gravity(params),
         "depth": math.inf if params.deep else params.depth,

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.scenes.square_sea.parameters import Params
 from sim.ocean import Sea
-from sim.ocean.statistics import Statistics, expected, height_scatter, measured
+from sim.ocean.statistics import Statistics, expected, height_scatter, measured, open_sea_height
 
 PEAK_WIDTH = 0.08  # of the peak frequency: waves no farther from the peak are called dominant
 
@@ -17,7 +17,7 @@ class Theory(NamedTuple):
 
     statistics: Statistics  # as the tile resolves it
     scatter: float  # relative standard deviation of one sea's Hs
-    whole: float  # Hs [m] on an endless sea, nan where no closed form is known
+    whole: float  # Hs [m] on an endless sea
     wave: tuple[float, float]  # length [m] and speed [m/s] of the dominant wave
 
 
@@ -38,9 +38,7 @@ def scaled(s: Statistics, factor: float) -> Statistics:
 def theory(sea: Sea, t: float, params: Params) -> Theory:
     """Theory of the sea at time t [s] as drawn."""
     found = expected(sea, t)
-    c = sea.conditions
-    closed = sea.spectrum.significant_height
-    whole = closed(c) if closed is not None and c.wind_speed > 0.0 else math.nan
+    whole = open_sea_height(sea.spectrum, sea.conditions)
     wave = dominant(sea, t, found.peak_period)
     return Theory(scaled(found, params.amplitude), height_scatter(sea, t), params.amplitude * whole, wave)
 

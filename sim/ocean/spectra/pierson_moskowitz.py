@@ -5,6 +5,7 @@ import numpy as np
 from sim.ocean.spectra.record import Spectrum, SpreadConditions, from_frequency
 
 ALPHA, BETA = 0.0081, 0.74
+WIND_HEIGHT = 19.5  # [m]
 
 
 def frequency(w: np.ndarray, c: SpreadConditions) -> np.ndarray:
@@ -24,7 +25,7 @@ def peak(c: SpreadConditions) -> float:
 
 def density(kx: np.ndarray, ky: np.ndarray, c: SpreadConditions) -> np.ndarray:
     """S(kx, ky) [m4]."""
-    return from_frequency(frequency, peak, kx, ky, c)
+    return from_frequency(frequency, peak, kx, ky, c, WIND_HEIGHT)
 
 
 SPECTRUM = Spectrum(
@@ -34,4 +35,5 @@ SPECTRUM = Spectrum(
     significant_height,
     peak,
     SpreadConditions,
+    wind_height=WIND_HEIGHT,
 )

@@ -1,6 +1,7 @@
 """What a spectrum is, and the conditions that it is evaluated under."""
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable, Mapping
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -8,9 +9,13 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from sim.ocean.dispersion import group_speed, omega
-from sim.ocean.spectra.spreading import SPREADINGS, spread
+from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
 from sim.validation import check_finite, check_not_negative, check_positive
+
+WIND_HEIGHTS = {10.0: 1.0, 19.5: 1.026}  # [m] -> wind there over U10, drag coefficient 1.3e-3 (Stewart 2008, eq. 16.33)
+MIN_WIND_SPEED = 1e-3  # [m/s] below which a wind makes no waves: spectra take powers of it, which would underflow
+SECOND_EXPONENT = 25.0  # s of cos2s of the second system: swell that came a short way (Goda 2010, Sec. 2.3)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -21,13 +26,21 @@ class Conditions:
     `parameter(...)`: `Sea`, the panels of both seas, the command line and sweeps take them from there.
     """
 
-    wind_speed: float = 10.0  # [m/s] U10; U19.5 for pierson_moskowitz
+    wind_speed: float = 10.0  # [m/s] at the spectrum's `wind_height`: U10; U19.5 for pierson_moskowitz
     wind_direction: float = 0.0  # [rad] where the wind goes to, from +x towards +y
     gravity: float = 9.81  # [m/s2]
     depth: float = math.inf  # [m]
     tension: float = 0.0  # [N/m]
     density: float = 1000.0  # [kg/m3]
     low_pass: float = 0.0  # [m] l: S is multiplied by exp(-k^2 l^2); l = 2 sqrt(nu T) is fluid nu left for a time T
+    second_height: float = parameter(
+        0.0, 0.0, 20.0, "m", "Significant height of a second system of waves, as swell from afar; 0 is none",
+        title="Second system Hs",
+    )  # fmt: skip
+    second_period: float = parameter(12.0, 1.0, 30.0, "s", "Peak period of the second system", title="Second system Tp")
+    second_direction: float = parameter(
+        90.0, -180.0, 180.0, "°", "Where the second system goes to, from +x towards +y", title="Second system direction"
+    )
 
     def __post_init__(self) -> None:
         check_not_negative("wind_speed", self.wind_speed, "m/s")
@@ -64,7 +77,8 @@ C = TypeVar("C", bound=Conditions)
 
 
 class Spectrum(NamedTuple, Generic[C]):
-    """A named spectrum. Closed forms are of the spectrum alone: infinite depth for all but tma, no low-pass."""
+    """A named spectrum. Closed forms are of the spectrum alone: infinite depth for all but tma, no low-pass, no second
+    system."""
 
     name: str
     doc: str  # its authors and year, a colon, and what it is good for
@@ -72,15 +86,28 @@ class Spectrum(NamedTuple, Generic[C]):
     significant_height: Callable[[C], float] | None  # Hs [m] where a closed form exists
     peak: Callable[[C], float] | None  # peak angular frequency [rad/s] where a closed form exists
     conditions: type[C]  # what it is evaluated under
+    wind_height: float = 10.0  # [m] of the wind speed that it takes
+    by_wind: bool = True  # whether the wind makes its waves: without wind there are none
+    line: Callable[[C], tuple[float, float, float]] | None = None  # (kx, ky [rad/m], m0 [m2]) of one regular wave
 
     @property
     def title(self) -> str:
         """What a list of spectra calls it: the first words of `doc`."""
         return self.doc.partition(":")[0]
 
+    def wind_speed(self, u10: float) -> float:
+        """The wind speed [m/s] that it takes, from that 10 m above the sea."""
+        return WIND_HEIGHTS[self.wind_height] * u10
+
+    def is_level(self, conditions: C) -> bool:
+        """Whether there are no waves but those of the second system."""
+        return self.by_wind and conditions.wind_speed < MIN_WIND_SPEED
+
     def unused(self, values: Mapping[str, Any]) -> set[str]:
         """Which of these parameters of spectra, name -> value, have no effect on this one."""
         names = set(values) - set(parameters_of(self.conditions))
+        if values.get("second_height") == 0.0:
+            names |= {"second_period", "second_direction"} & set(values)
         return names if values.get("spreading") == "cos2s" else names | (set(values) & {"spread_exponent"})
 
     def conditions_from(self, values: Mapping[str, Any]) -> C:
@@ -92,14 +119,20 @@ class Spectrum(NamedTuple, Generic[C]):
         return self.conditions(**{name: value for name, value in values.items() if name in known})
 
     def __call__(self, kx: np.ndarray, ky: np.ndarray, conditions: C) -> np.ndarray:
-        """S(kx, ky) [m4] with the low-pass applied; 0 at k = 0 and without wind. kx, ky [rad/m] of one shape."""
+        """S(kx, ky) [m4] with the second system and the low-pass; 0 at k = 0. kx, ky [rad/m] of one shape.
+
+        The one wave of a `line` has no density and is not in it.
+        """
         kx, ky = np.broadcast_arrays(np.asarray(kx, np.float64), np.asarray(ky, np.float64))
         S = np.zeros(kx.shape)
         waves = (kx != 0.0) | (ky != 0.0)
-        if conditions.wind_speed == 0.0 or not waves.any():
+        if not waves.any():
             return S
         x, y = kx[waves], ky[waves]
-        S[waves] = self.density(x, y, conditions) * np.exp(-(x**2 + y**2) * conditions.low_pass**2)
+        found = np.zeros(x.shape) if self.is_level(conditions) else self.density(x, y, conditions)
+        if conditions.second_height > 0.0:
+            found = found + second_system(x, y, conditions)
+        S[waves] = found * np.exp(-(x**2 + y**2) * conditions.low_pass**2)
         return S
 
 
@@ -112,13 +145,64 @@ def from_frequency(
     kx: np.ndarray,
     ky: np.ndarray,
     c: SpreadC,
+    wind_height: float = 10.0,
 ) -> np.ndarray:
-    """S(kx, ky) = S(omega) D(omega, theta) (d omega/dk)/k, from S(omega) [m2 s] and its peak [rad/s]."""
+    """S(kx, ky) = S(omega) D(omega, theta) (d omega/dk)/k, from S(omega) [m2 s] and its peak [rad/s].
+
+    wind_height [m]: of the conditions' wind speed; the spreading takes U10.
+    """
     k = np.hypot(kx, ky)
     w = c.omega(k)
     theta = angle_from(np.arctan2(ky, kx), c.wind_direction)
-    D = spread(c.spreading, w / peak(c), theta, c.spread_exponent, c.swell, c.wind_speed * peak(c) / c.gravity)
+    u10 = c.wind_speed / WIND_HEIGHTS[wind_height]
+    D = spread(c.spreading, w / peak(c), theta, c.spread_exponent, c.swell, u10 * peak(c) / c.gravity)
     return frequency(w, c) * D * c.group_speed(k) / k
+
+
+def wavenumber_of(c: Conditions, frequency: float) -> float:
+    """The wavenumber [rad/m] of waves of an angular frequency [rad/s], by bisection of `Conditions.omega`."""
+    low, high = 1e-9, 1e6
+    for _ in range(200):
+        middle = math.sqrt(low * high)
+        if float(c.omega(np.asarray(middle))) < frequency:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def peaked(w: np.ndarray, height: float, peak: float, gamma: float) -> np.ndarray:
+    """S(omega) [m2 s] in the shape of JONSWAP, with this Hs [m], peak [rad/s] and peak factor gamma."""
+    x = np.asarray(w, np.float64) / peak
+    return height**2 / 16.0 / peak * _peaked_shape(x, gamma) / peaked_integral(gamma)
+
+
+def _peaked_shape(x: np.ndarray, gamma: float) -> np.ndarray:
+    """x^-5 exp(-5/4 x^-4) gamma^r of x = omega/omega_p."""
+    sigma = np.where(x <= 1.0, 0.07, 0.09)
+    return x**-5.0 * np.exp(-1.25 * x**-4.0) * gamma ** np.exp(-((x - 1.0) ** 2) / (2.0 * sigma**2))
+
+
+@functools.lru_cache(maxsize=256)
+def peaked_integral(gamma: float) -> float:
+    """Its integral over all x: by Simpson's rule in log x on both sides of the peak, where it has a kink."""
+    total = 0.0
+    for a, b in ((math.log(0.3), 0.0), (0.0, math.log(100.0))):
+        log_x, step = np.linspace(a, b, 4001, retstep=True)
+        weight = np.full(log_x.size, 2.0)
+        weight[1::2], weight[[0, -1]] = 4.0, 1.0
+        x = np.exp(log_x)
+        total += float(step / 3.0 * (weight * x * _peaked_shape(x, gamma)).sum())
+    return total + 0.25 * 100.0**-4.0
+
+
+def second_system(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
+    """S(kx, ky) [m4] of the second system: the shape of JONSWAP with gamma 3.3, spread as cos2s."""
+    k = np.hypot(kx, ky)
+    w = c.omega(k)
+    theta = angle_from(np.arctan2(ky, kx), math.radians(c.second_direction))
+    S = peaked(w, c.second_height, 2.0 * math.pi / c.second_period, 3.3)
+    return S * cos2s(SECOND_EXPONENT, theta) * c.group_speed(k) / k
 
 
 def angle_from(theta: np.ndarray, direction: float) -> np.ndarray:

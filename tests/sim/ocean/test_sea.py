@@ -444,3 +444,18 @@ def test_no_wind_is_a_flat_sea():
     surface = Sea(16, 50.0, wind_speed=0.0).surface(3.0)
     assert not surface.height.any()
     assert (surface.jacobian == 1.0).all()
+
+
+def test_a_regular_wave_on_a_tile_is_its_nearest_wave_as_high_as_given():
+    sea = Sea(64, 100.0, "regular", wave_height=1.0, wave_period=4.0, wind_speed=0.0, precision="double", seed=7)
+    height = sea.surface(3.0).height
+    # 24.98 m in 4 s fits four times into 100 m: 25 m.
+    assert height.max() - height.min() == pytest.approx(1.0, rel=0.02)
+    assert height.std() == pytest.approx(1.0 / math.sqrt(8.0), rel=1e-9)
+    spectrum = np.abs(np.fft.fft2(height))
+    assert np.unravel_index(spectrum.argmax(), spectrum.shape)[0] in (4, 60)
+    assert expected_of(sea).significant_height == pytest.approx(sea.significant_height) == pytest.approx(math.sqrt(2.0))
+    assert expected_of(sea).direction == pytest.approx(0.0)
+    assert Sea(64, 20.0, "regular", wave_height=1.0, wave_period=9.0).significant_height == 0.0
+    crossing = Sea(64, 100.0, "regular", wave_height=1.0, wave_period=4.0, second_height=0.5, second_period=3.0)
+    assert expected_of(crossing).significant_height == pytest.approx(math.hypot(math.sqrt(2.0), 0.5), rel=0.05)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions
+from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, jonswap
 from sim.ocean.spectra.spreading import SPREADINGS, spread
 from sim.ocean.statistics import theory
 from sim.parameters import parameters_of
@@ -21,18 +21,105 @@ def height(name: str, **values: float | str) -> float:
     return 4.0 * math.sqrt(plane_integral(SPECTRA[name], under(name, **values)))
 
 
-def test_the_five_are_there():
-    assert {"phillips", "pierson_moskowitz", "jonswap", "tma", "elfouhaily"} <= set(SPECTRA)
+def test_the_seven_are_there():
+    names = {"phillips", "pierson_moskowitz", "jonswap", "tma", "elfouhaily", "sea_state", "regular"}
+    assert names <= set(SPECTRA)
 
 
-@pytest.mark.parametrize("name", [name for name, s in SPECTRA.items() if s.significant_height])
+@pytest.mark.parametrize("name", [name for name, s in SPECTRA.items() if s.significant_height and not s.line])
 def test_declared_height_is_the_integral(name):
     spectrum = SPECTRA[name]
-    # The DNV factor of jonswap is 0.12 % off; the others are exact.
-    tolerance = 1.3e-3 if name == "jonswap" else 1e-5
     for wind in (5.0, 20.0):
         expected = spectrum.significant_height(under(name, wind_speed=wind))
-        assert height(name, wind_speed=wind) == pytest.approx(expected, rel=tolerance)
+        assert height(name, wind_speed=wind) == pytest.approx(expected, rel=2e-5)
+
+
+@pytest.mark.parametrize("gamma", [1.0, 3.3, 7.0, 10.0, 20.0])
+def test_the_height_of_jonswap_is_exact_at_any_peak_factor(gamma):
+    c = under("jonswap", peak_enhancement=gamma)
+    found = height("jonswap", peak_enhancement=gamma)
+    assert SPECTRA["jonswap"].significant_height(c) == pytest.approx(found, rel=1e-4)
+    if gamma <= 7.0:  # DNV-RP-C205, 3.5.5.5, which states it for gamma up to 7
+        dnv = 4.0 * math.sqrt(
+            0.076 * 9810.0**-0.22 * 9.81**2 / (5.0 * SPECTRA["jonswap"].peak(c) ** 4 * (1.0 - 0.287 * math.log(gamma)))
+        )
+        assert found == pytest.approx(dnv, rel=0.01)
+
+
+@pytest.mark.parametrize("gravity", [0.0981, 9.81, 45.5, 981.0])
+@pytest.mark.parametrize("wind", [0.5, 3.0, 7.0, 15.0, 30.0])
+def test_jonswap_stops_at_full_growth(gravity, wind):
+    """The sea of Pierson and Moskowitz at the same wind, given with its published height 0.20925 U^2/g and peak."""
+    full = (22.0 / 0.87716) ** 3 * wind**2 / gravity  # [m]
+
+    def of(fetch):
+        return under("jonswap", wind_speed=wind, gravity=gravity, fetch=fetch)
+
+    if not 100.0 <= full <= 5e6:  # the fetch that a parameter may have
+        full = 5e6 if full > 5e6 else 100.0
+    spectrum = SPECTRA["jonswap"]
+    grown, longer = (spectrum.significant_height(of(fetch)) for fetch in (full, 2.0 * full))
+    if full * gravity / wind**2 > 1.57e4:
+        own = 4.0 * math.sqrt(0.076 * 1.5777e4**-0.22 / 5.0) / 0.87716**2  # JONSWAP's constants there, gamma 1
+        assert grown == pytest.approx(own * wind**2 / gravity, rel=1e-3)
+        assert grown == pytest.approx(0.20925 * wind**2 / gravity, rel=0.07)
+        assert longer == pytest.approx(grown, rel=1e-3)
+        assert spectrum.peak(of(full)) == pytest.approx(0.87716 * gravity / wind, rel=1e-3)
+    else:
+        assert longer > grown
+    integral = plane_integral(spectrum, of(2.0 * full), k_max=2e3 * max(gravity / wind**2, 1.0))
+    assert 4.0 * math.sqrt(integral) == pytest.approx(longer, rel=2e-3)
+
+
+def test_the_peak_factor_falls_to_1_at_full_growth_and_is_as_given_before():
+    def factor(fetch):
+        c = under("jonswap", wind_speed=10.0, fetch=fetch)
+        w = np.array([SPECTRA["jonswap"].peak(c)])
+        x = c.gravity * fetch / 100.0
+        return float(jonswap.frequency(w, c)[0] / (0.076 * x**-0.22 * c.gravity**2 * w[0] ** -5.0 * math.exp(-1.25)))
+
+    full = 1.5777e4 * 100.0 / 9.81
+    assert [factor(share * full) for share in (0.01, 0.5, 0.855)] == pytest.approx([3.3] * 3, rel=1e-3)
+    assert 1.2 < factor(0.95 * full) < 3.0
+    assert factor(full) == pytest.approx(1.0, abs=5e-3)
+
+
+def test_a_sea_state_has_the_height_and_period_given():
+    for gamma in (1.0, 3.3, 10.0):
+        values = {"significant_height": 3.0, "peak_period": 9.0, "peak_enhancement": gamma}
+        assert height("sea_state", **values) == pytest.approx(3.0, rel=1e-4)
+        assert height("sea_state", **values, wind_speed=0.0, depth=30.0) == pytest.approx(3.0, rel=1e-4)
+        assert theory(SPECTRA["sea_state"], under("sea_state", **values)).peak_period == pytest.approx(9.0, rel=4e-3)
+    c = under("jonswap", wind_speed=12.0)
+    same = {"significant_height": height("jonswap", wind_speed=12.0), "peak_period": 2 * math.pi / jonswap.peak(c)}
+    k = np.geomspace(0.01, 5.0, 40)
+    one, other = SPECTRA["sea_state"](k, 0.2 * k, under("sea_state", **same)), SPECTRA["jonswap"](k, 0.2 * k, c)
+    assert one == pytest.approx(other, rel=1e-3)
+
+
+def test_a_second_system_adds_its_energy_and_runs_its_own_way():
+    second = {"second_height": 1.5, "second_period": 14.0, "second_direction": 120.0}
+    for name in SPECTRA:
+        spectrum, c, alone = SPECTRA[name], under(name, **second), under(name)
+        both, one = theory(spectrum, c).significant_height, theory(spectrum, alone).significant_height
+        assert both == pytest.approx(math.hypot(one, 1.5), rel=1e-3)
+    swell = theory(SPECTRA["jonswap"], under("jonswap", wind_speed=0.0, **second))
+    assert swell.significant_height == pytest.approx(1.5, rel=1e-3)
+    assert swell.peak_period == pytest.approx(14.0, rel=5e-3)
+    assert swell.direction == pytest.approx(math.radians(120.0), abs=1e-3)
+
+
+def test_each_spectrum_takes_the_wind_at_its_own_height():
+    assert {s.wind_height for s in SPECTRA.values()} == {10.0, 19.5}
+    for name, spectrum in SPECTRA.items():
+        assert spectrum.wind_speed(10.0) == (10.26 if name == "pierson_moskowitz" else 10.0)
+
+
+def test_no_wind_is_too_weak_to_be_evaluated():
+    for name, spectrum in SPECTRA.items():
+        for wind in (0.0, 1e-200, 1e-9):
+            S = spectrum(np.array([1e-3, 1.0]), np.zeros(2), under(name, wind_speed=wind))
+            assert (S > 0.0).any() == (name == "sea_state")
 
 
 @pytest.mark.parametrize("name", [name for name, s in SPECTRA.items() if s.peak])
@@ -49,6 +136,12 @@ def test_declared_peak_is_the_maximum(name):
 def test_declared_parameters_matter(name, parameter):
     declared = PARAMETERS[parameter]
     spectrum, others = SPECTRA[name], {"spreading": "cos2s"} if parameter == "spread_exponent" else {}
+    if parameter in {"second_period", "second_direction"}:
+        others = {"second_height": 1.0}
+    if spectrum.line is not None and parameter in {"wave_height", "wave_period"}:
+        one, other = (spectrum.line(under(name, **{parameter: end})) for end in (declared.low, declared.high))
+        assert one != other
+        return
     ends = declared.choices[:2] if declared.choices else (declared.low, declared.high)
     k = np.geomspace(1e-3, 10.0, 50)
     one, other = (spectrum(k, 0.3 * k, under(name, **{parameter: end}, **others)) for end in ends)
@@ -59,8 +152,10 @@ def test_declared_parameters_matter(name, parameter):
 def test_what_a_spectrum_does_not_read_is_said_to_have_no_effect(name):
     values = {parameter: declared.default for parameter, declared in PARAMETERS.items()}
     read = set(parameters_of(SPECTRA[name].conditions))
-    assert SPECTRA[name].unused(values) == PARAMETERS.keys() - read | {"spread_exponent"}
-    assert SPECTRA[name].unused(values | {"spreading": "cos2s"}) == PARAMETERS.keys() - read
+    second = {"second_period", "second_direction"}
+    assert SPECTRA[name].unused(values) == PARAMETERS.keys() - read | {"spread_exponent"} | second
+    assert SPECTRA[name].unused(values | {"spreading": "cos2s"}) == PARAMETERS.keys() - read | second
+    assert SPECTRA[name].unused(values | {"spreading": "cos2s", "second_height": 1.0}) == PARAMETERS.keys() - read
 
 
 @pytest.mark.parametrize("name", SPECTRA)
@@ -70,7 +165,9 @@ def test_spectra_are_finite_and_never_negative(name):
     assert np.isfinite(S).all()
     assert (S >= 0.0).all()
     assert S[0, 0] == 0.0
-    assert not SPECTRA[name](k[:, None], k[None, :], under(name, wind_speed=0.0)).any()
+    level = under(name, wind_speed=0.0)
+    assert SPECTRA[name](k[:, None], k[None, :], level).any() == (name == "sea_state")
+    assert SPECTRA[name].is_level(level) == (name not in {"sea_state", "regular"})
 
 
 @pytest.mark.parametrize("name", SPECTRA)

@@ -7,7 +7,8 @@ import pytest
 
 from sim.ocean import Sea
 from sim.ocean.spectra import SPECTRA, Conditions
-from sim.ocean.statistics import beaufort, drawn, expected, height_scatter, measured, theory
+from sim.ocean.statistics import beaufort, drawn, expected, height_scatter, measured, open_sea_height, theory
+from tests.naive_ocean import plane_integral
 
 
 def test_theory_of_pierson_moskowitz():
@@ -89,3 +90,16 @@ def test_fields_that_do_not_fit_are_refused():
         measured(np.zeros((4, 4)), 1.0, Conditions(), np.zeros((5, 5)))
     with pytest.raises(ValueError, match=r"^wind_speed: "):
         beaufort(-1.0)
+
+
+@pytest.mark.parametrize("name", SPECTRA)
+@pytest.mark.parametrize(
+    "values", [{}, {"depth": 6.0}, {"low_pass": 3.0}, {"second_height": 1.5}, {"wind_speed": 0.0, "second_height": 1.5}]
+)
+def test_the_height_of_an_open_sea_is_the_integral(name, values):
+    c = SPECTRA[name].conditions(**values)
+    expected = plane_integral(SPECTRA[name], c)
+    if SPECTRA[name].line is not None:
+        k = (2.0 * math.pi / 6.0) ** 2 / 9.81
+        expected += 1.0 / 8.0 * math.exp(-((k * c.low_pass) ** 2))
+    assert open_sea_height(SPECTRA[name], c) == pytest.approx(4.0 * math.sqrt(expected), rel=2e-3, abs=1e-12)

@@ -182,7 +182,8 @@ def with_hull(params: Any, path: Path) -> Any:
 def serve(arguments: argparse.Namespace) -> int:
     """`springtide`: the lab in a browser."""
     scene = scene_named(arguments.scene)
-    params = read_params(scene, arguments)
+    nothing_asked = arguments.preset is None and not arguments.set and arguments.hull is None
+    params = scene.opening_params() if nothing_asked else read_params(scene, arguments)
     from app.commands.serve import serve_lab
 
     return serve_lab(

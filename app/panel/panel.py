@@ -71,7 +71,8 @@ class Panel:
         with gui.add_folder("Lab"):
             self.add_chooser(scenes, open_scene)
             presets = tuple(kind.presets)
-            self.loaded = presets[0]  # name of the preset that was loaded last
+            # Name of the preset that was loaded last; at first the one that the parameters are those of.
+            self.loaded = next((name for name in presets if self.params_of(name) == params), presets[0])
             self.preset = gui.add_dropdown("Preset", presets, hint="Loads all settings and starts again from rest")
             self.preset.on_update(self.on_preset)
             self.running = True  # as the buttons show it

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from app.messages import BaseParams, Command, F, P, PlotRow, R, SceneCommand, Snapshot, Vector, WorkCounts
 from app.scenes.charts import Chart, Columns, CurveAxes, PlotAxes
-from sim.parameters import Value
+from sim.parameters import Value, check_record
 
 if TYPE_CHECKING:
     from viser import ClientHandle
@@ -195,6 +195,11 @@ class SceneKind(Generic[P, F, R]):
     )  # parameter that opens the chart -> its axes
     measures: Callable[..., dict[str, Measure]] | None = None  # of the scene, what a sweep records; None: the plot rows
     stability_map: StabilityMap | None = None
+    opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
+
+    def opening_params(self) -> P:
+        """The parameters that are shown first where none are asked for."""
+        return check_record(self.params, self.presets[self.opening] if self.opening else {})
 
 
 PostCommand: TypeAlias = Callable[[Command], None]  # takes a command for the simulation

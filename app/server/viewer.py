@@ -63,30 +63,33 @@ class Viewer:
         set_theme(gui, dark=False)
         gui.set_panel_label("Springtide")
 
-    def open(self, name: str, params: BaseParams | None = None, *, paused: bool = False) -> None:
+    def open(
+        self, name: str, params: BaseParams | None = None, *, paused: bool = False, first_look: bool = False
+    ) -> None:
         """Show a scene, in place of the one that is open.
 
-        params: None for those that the scene was first opened with, or the defaults. Whatever fails leaves a page that
-        says why and offers the scenes; the exception is raised.
+        params: None for those that the scene was first opened with. Where there are none: with `first_look` those of a
+        preset that keeps moving, otherwise the defaults. Whatever fails leaves a page that says why and offers the scenes;
+        the exception is raised.
         """
         with self.changing:
             if self.ended:
                 return
             self.close()
             try:
-                self.make(name, params, paused)
+                self.make(name, params, paused, first_look)
             except BaseException as error:
                 self.show_failure(name, error)
                 raise
 
-    def make(self, name: str, params: BaseParams | None, paused: bool) -> None:
+    def make(self, name: str, params: BaseParams | None, paused: bool, first_look: bool) -> None:
         """Make scene, view, panel and threads."""
         kind = scene_named(name)
         self.compile(name, kind.title)
         if self.ended:  # while it was compiled
             return
         if params is None:
-            params = self.first_params.get(name) or kind.params()
+            params = self.first_params.get(name) or (kind.opening_params() if first_look else kind.params())
         self.first_params.setdefault(name, params)
         make_view = view_named(name)
         self.clear()
@@ -156,7 +159,7 @@ class Viewer:
                 name = self.wanted.get()
             try:
                 if name in NAMES:
-                    self.open(name)
+                    self.open(name, first_look=True)
             except Exception:
                 traceback.print_exc()
             time.sleep(MIN_SCENE_TIME)

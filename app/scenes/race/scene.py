@@ -89,7 +89,7 @@ class RaceScene:
         """Move the roots, pull a point, or let go of it. Points are numbered through, rope after rope."""
         match command:
             case Place("root", position):
-                self.handles.root.target = position
+                self.handles.move_root(position)
             case Grab(index, target, client) if 0 <= index < self.params.points * self.params.ropes:
                 self.grab(index, target, client)
             case Release(client):
@@ -106,12 +106,12 @@ class RaceScene:
             position = vector_of(self.race.entrants[number].state.x[:, 0, point])
             self.handles.drag.move(client, index, position, target)
         elif self.handles.drag.may_move(client):
-            self.handles.root.target = target
+            self.handles.move_root(target)
 
     def advance(self, steps: int) -> None:
         """Take `steps` ticks of the race, whatever happens to its ropes."""
         race = self.race
-        self.net = self.handles.net_during(self.net, race.t, steps * race.tick, race.tick, self.params.pull)
+        self.net = self.handles.net_during(self.net, race.t, steps * race.tick, race.tick, self.params)
         evals, taken = race.advance(self.net, steps)
         self.counts.update(self.net, evals, taken, with_account=True)
         if self.handles.root.at_rest:
@@ -137,7 +137,7 @@ class RaceScene:
             references=None if references is None else (references + offsets).astype(np.float32),
             labels=tuple(rope_label(entrant, stiffness_differs) for entrant in race.entrants),
             failed=tuple(bool(entrant.failure) for entrant in race.entrants),
-            root=handles.root.target,
+            root=handles.home,
             floor=params.floor,
             grid=params.grid,
             handles=params.handles,
@@ -184,6 +184,7 @@ SCENE = SceneKind(
     "which stiffness Euler's method survives, and <b>3</b> for Runge-Kutta 4 at the same values.",
     params=Params,
     presets=PRESETS,
+    opening="Shaken at the root",
     make=RaceScene,
     hidden=hidden,
     warm_up=warm_up,

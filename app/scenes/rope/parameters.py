@@ -42,6 +42,10 @@ PRESETS: dict[str, dict[str, Any]] = {
         "points": 2, "length": 1.0, "stiffness": 1e6, "damping": 0.0, "drag": 0.0, "floor": False, "time_step": 1e-3,
     },
     "Over the sphere": {"units": "material", "points": 40, "length": 4.0, "time_step": 1 / 480, "sphere": True},
+    "Shaken at the root": {
+        "points": 30, "stiffness": 8000.0, "mass": 0.3, "damping": 1.0, "drag": 0.1, "time_step": 1 / 480,
+        "root_swing": 0.2, "swing_period": 1.05,
+    },
 }  # fmt: skip
 
 

@@ -164,11 +164,11 @@ class RopeScene:
         """Move root or sphere, pull a point, or let go of it."""
         match command:
             case Place("root", position):
-                self.handles.root.target = position
+                self.handles.move_root(position)
             case Place("sphere", position):
                 self.handles.sphere.target = position
             case Grab(0, target, client) if self.handles.drag.may_move(client):
-                self.handles.root.target = target
+                self.handles.move_root(target)
             case Grab(index, target, client) if 0 < index < self.params.points:
                 self.handles.drag.move(client, index, vector_of(self.state.x[:, 0, index]), target)
             case Release(client):
@@ -179,7 +179,7 @@ class RopeScene:
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where the rope leaves its bounds, and keeps the last good state."""
         good = self.state.copy()
-        net = self.handles.net_during(self.net, self.state.t, steps * self.step, self.step, self.params.pull)
+        net = self.handles.net_during(self.net, self.state.t, steps * self.step, self.step, self.params)
         advance(net, self.state, self.integrator, self.step, steps, with_account=True)
         self.counts.update(net, self.state.force_evals - good.force_evals, steps, with_account=True)
         found = extremes(self.state.x, self.state.v)
@@ -284,7 +284,7 @@ class RopeScene:
             points=np.ascontiguousarray(self.state.x[:, 0].T, dtype=np.float32),
             tension=self.tension().astype(np.float32),
             full_scale=max(1.25 * weight, 1e-3),
-            root=handles.root.target,
+            root=handles.home,
             sphere=(*handles.sphere.position, params.sphere_radius) if self.net.sphere else None,
             floor=params.floor,
             grid=params.grid,
@@ -312,6 +312,7 @@ SCENE = SceneKind(
     "reaches its limit, or press <b>3</b> to see Euler's method explode.",
     params=Params,
     presets=PRESETS,
+    opening="Shaken at the root",
     make=RopeScene,
     hidden=hidden,
     warm_up=warm_up,

@@ -1,13 +1,14 @@
 """What a user moves of a rope: its root, the sphere, and one dragged point."""
 
 import dataclasses
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.springs.drag import Drag, PullFrame
-from app.scenes.springs.rope_parameters import ROOT, SPHERE
+from app.scenes.springs.rope_parameters import ROOT, SPHERE, RopeParams
 from sim.springs import Grab, Net
 from sim.springs.tracking import CriticallyDampedTracker
 
@@ -24,9 +25,14 @@ class RopeHandles:
     """Smooth paths of root, sphere and dragged point, as a browser sends places that jump."""
 
     def __init__(self) -> None:
+        self.home = ROOT  # [m] where the root was put; it swings about it where the parameters ask for that
         self.root = CriticallyDampedTracker(ROOT)
         self.sphere = CriticallyDampedTracker(SPHERE)
         self.drag = Drag()
+
+    def move_root(self, position: Vector) -> None:
+        """Put the root there, or what it swings about."""
+        self.home = self.root.target = position
 
     @property
     def at_rest(self) -> bool:
@@ -35,15 +41,19 @@ class RopeHandles:
 
     def restart(self) -> None:
         """Root and sphere at rest where a new scene has them; nothing held."""
+        self.home = ROOT
         self.root.place_at(ROOT)
         self.sphere.place_at(SPHERE)
         self.drag.clear()
 
-    def net_during(self, net: Net, t: float, duration: float, step: float, max_force: float) -> Net:
+    def net_during(self, net: Net, t: float, duration: float, step: float, params: RopeParams) -> Net:
         """`net` with the motions of root, sphere and pull over the next `duration` [s] from time t [s].
 
-        step: [s]. max_force: [N] of the pull. The same object where nothing moves, as in most frames.
+        step: [s]. The same object where nothing moves, as in most frames.
         """
+        x, y, z = self.home
+        swing = params.root_swing * math.sin(2.0 * math.pi * (t + duration) / params.swing_period)
+        self.root.target = x + swing, y, z
         if self.at_rest and not (net.pin_paths or net.grab or any(net.sphere_velocity)):
             return net
         path = self.root.advance(t, duration)
@@ -56,7 +66,7 @@ class RopeHandles:
             hand.advance(t, duration)
             rate = pull_rate(step)
             point = index % net.shape[1]  # the points of several ropes are numbered through
-            pull = Grab(0, point, hand.position, net.mass * rate**2, 2.0 * net.mass * rate, max_force)
+            pull = Grab(0, point, hand.position, net.mass * rate**2, 2.0 * net.mass * rate, params.pull)
         return dataclasses.replace(
             net,
             pin_paths=() if path is None else (((0, 0), path),),

@@ -67,6 +67,10 @@ class RopeParams:
         doc="The lab's own law may also pull, and its friction is viscous",
         group="Surroundings",
     )
+    root_swing: float = parameter(
+        0.0, 0.0, 1.0, "m", "Amplitude of the root's motion to and fro; 0 is off", group="Surroundings"
+    )
+    swing_period: float = parameter(1.0, 0.2, 10.0, "s", "Period of the root's motion to and fro", group="Surroundings")
     pull: float = parameter(
         300.0,
         1.0,
@@ -97,6 +101,8 @@ def hidden_of_rope(params: RopeParams, *, sphere: bool) -> set[str]:
     names = set(MATERIAL_ONLY if params.units == "lab" else LAB_ONLY)
     if not (params.floor or sphere):
         names |= {"friction", "contact_stiffness", "contact_damping", "contact_law"}
+    if params.root_swing == 0.0:
+        names.add("swing_period")
     if params.contact_law == "lab":
         names.add("friction")
     return names

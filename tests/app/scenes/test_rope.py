@@ -320,3 +320,20 @@ def test_the_stiffest_rope_holds_with_every_implicit_method(name: str) -> None:
     if name == "implicit_euler":
         assert cost.numerical_dissipation > 0.1 * cost.damping_dissipation
     assert RopeScene(Params()).readings().cost is None
+
+
+def test_the_root_swings_about_where_it_was_put_and_comes_to_rest_again() -> None:
+    scene = RopeScene(Params(root_swing=0.3, swing_period=2.0, time_step=1 / 240))
+    places = []
+    for _ in range(240):
+        scene.advance(4)
+        places.append(scene.state.x[:, 0, 0].copy())
+    x, y, z = np.array(places[60:]).T
+    assert x.max() == pytest.approx(ROOT[0] + 0.3, rel=0.03)
+    assert x.min() == pytest.approx(ROOT[0] - 0.3, rel=0.03)
+    assert (np.ptp(y), np.ptp(z)) == (0.0, 0.0)
+    assert scene.frame().root == ROOT
+    scene.params = dataclasses.replace(scene.params, root_swing=0.0)
+    scene.advance(480)
+    assert scene.handles.at_rest
+    assert tuple(scene.state.x[:, 0, 0]) == ROOT

@@ -1,0 +1,37 @@
+"""What a scene shows where nothing is asked for: something that still moves after half a minute."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.scenes import NAMES, scene_named
+
+DURATION, LATER = 30.0, 0.5  # [s] of simulated time
+MIN_MOVE = 0.01  # [m]
+
+
+def drawn(frame: Any) -> np.ndarray:
+    """The points (n, 3) [m] that a scene draws."""
+    for name in ("points", "ropes", "vertices"):
+        if hasattr(frame, name):
+            return np.array(getattr(frame, name)).reshape(-1, 3)
+    return np.array(frame.positions)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_first_look_still_moves_after_half_a_minute(name: str) -> None:
+    kind = scene_named(name)
+    scene = kind.make(kind.opening_params())
+    while scene.time < DURATION:
+        scene.advance(max(1, round(1 / 60 / scene.step)))
+    before = drawn(scene.frame())
+    scene.advance(round(LATER / scene.step))
+    assert np.abs(drawn(scene.frame()) - before).max() > MIN_MOVE
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_first_look_is_a_preset_and_the_help_says_what_to_do_next(name: str) -> None:
+    kind = scene_named(name)
+    assert kind.opening in ("", *kind.presets)
+    assert "Next:" in kind.help

@@ -69,8 +69,8 @@ class Viewer:
         """Show a scene, in place of the one that is open.
 
         params: None for those that the scene was first opened with. Where there are none: with `first_look` those of a
-        preset that keeps moving, otherwise the defaults. Whatever fails leaves a page that says why and offers the scenes;
-        the exception is raised.
+        preset that keeps moving, otherwise the defaults. Whatever fails leaves a page that says why and offers the
+        scenes; the exception is raised.
         """
         with self.changing:
             if self.ended:

@@ -3,19 +3,40 @@
 import random
 
 import numpy as np
+import pytest
 
+from app.scenes import scene_named
 from app.server.viewer import Viewer
+from sim.parameters import check_record
 from tests.browser.conftest import Tab
 
 SCENE = "rope"
 DRAGS = 50
-# Keeps the lowest height [m] of the camera in any frame, and its lowest height above the mesh "/sea".
+# Keeps the lowest height [m] of the camera in any frame: above the water, where there is a sea.
 RECORD_HEIGHTS = """() => { const viewer = window.__viserMutable, scene = viewer.scene, earlier = scene.onBeforeRender;
     window.lowest = Infinity;
     scene.onBeforeRender = function (renderer, drawn, camera, target) {
         earlier.call(this, renderer, drawn, camera, target);
-        if (camera === viewer.camera) window.lowest = Math.min(window.lowest, camera.matrixWorld.elements[13]);
-    }; }"""
+        if (camera !== viewer.camera) return;
+        const height = camera.matrixWorld.elements[13];
+        window.lowest = Math.min(window.lowest, height - waterBelow(viewer, camera, height));
+    };
+    function waterBelow(viewer, camera, height) {
+        const sea = viewer.nodeRefFromName["/sea"], mesh = sea && sea.children.find((child) => child.isMesh);
+        if (!mesh || height > 60) return 0;
+        const place = mesh.worldToLocal(camera.position.clone().setFromMatrixPosition(camera.matrixWorld));
+        const numbers = mesh.geometry.attributes.position.array, last = numbers.length - 3;
+        const side = numbers[last] - numbers[0];
+        const tiled = side > 0 && Math.abs(numbers[last + 1] - numbers[1] - side) < 1e-3 * side;
+        // The distance to the nearest copy of a vertex, along one axis.
+        const apart = (a, b) => tiled ? Math.abs(a - b - side * Math.round((a - b) / side)) : Math.abs(a - b);
+        let nearest = Infinity, below = 0;
+        for (let k = 0; k <= last; k += 3) {
+            const distance = Math.hypot(apart(numbers[k], place.x), apart(numbers[k + 1], place.y));
+            if (distance < nearest) [nearest, below] = [distance, numbers[k + 2]];
+        }
+        return below;
+    } }"""
 
 
 def view_of(viewer: Viewer) -> np.ndarray:
@@ -54,4 +75,18 @@ def test_reset_view_after_random_drags_gives_the_first_view(shown: tuple[Viewer,
         tab.wait(lambda: np.abs(view_of(lab) - first).max() > 0.1)
         tab.page.keyboard.press(key)
         tab.wait(lambda: np.abs(view_of(lab) - first).max() < 1e-3)
+    assert not tab.errors
+
+
+@pytest.mark.parametrize("scene", ["square_sea", "radial_sea"])
+def test_the_camera_stays_above_the_waves_of_a_storm(shown: tuple[Viewer, Tab], scene: str) -> None:
+    lab, tab = shown
+    tab.follow(lab, scene, check_record(scene_named(scene).params, {"wind_speed": 17.0}))
+    tab.wait(lambda: lab.loop.scene.time > 1.0 and len(tab.vertices("/sea")) > 0)
+    first = view_of(lab)
+    tab.page.wait_for_timeout(500)
+    tab.page.evaluate(RECORD_HEIGHTS)
+    drag_at_random(tab, random.Random(2), 12)
+    tab.wait(lambda: np.abs(view_of(lab) - first).max() > 1.0)
+    assert tab.page.evaluate("window.lowest") > 0.0
     assert not tab.errors

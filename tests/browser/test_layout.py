@@ -1,0 +1,67 @@
+"""The layout of the page at several sizes, by measuring boxes; all presets under `-m stress`."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from app.scenes import NAMES, scene_named
+from app.server.viewer import Viewer
+from tests.browser.boxes import SIZES, faults, faults_after_change
+from tests.browser.conftest import Tab
+
+SCENE = "rope"
+ON_TOP = "([x, y]) => document.elementFromPoint(x, y)?.tagName ?? ''"
+
+
+@pytest.fixture
+def resized(shown: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
+    """A page that gets its size back."""
+    size = shown[1].page.viewport_size
+    yield shown
+    shown[1].page.set_viewport_size(size)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_nothing_covers_a_text_a_control_or_the_picture(resized: tuple[Viewer, Tab], size: tuple[int, int]) -> None:
+    lab, tab = resized
+    target = np.array(lab.view.first_view(lab.panel.params)[1])
+    for plots in (False, True):
+        assert not faults_after_change(tab, lab, size, plots=plots)
+        tab.wait(lambda: tab.page.evaluate(ON_TOP, tab.pixel(target)) == "CANVAS", 30)
+
+
+@pytest.mark.parametrize(
+    ("style", "fault"),
+    [
+        (".springtide-panel { transform: translateY(20px); }", "text over text: Running"),
+        ("[data-floating-window] { left: 700px !important; }", "out of reach: Reset"),
+        ("[data-floating-window] { left: 0 !important; width: 880px !important; }", "the picture shows in"),
+    ],
+)
+def test_the_measure_finds_what_is_wrong(shown: tuple[Viewer, Tab], style: str, fault: str) -> None:
+    _, tab = shown
+    tab.wait(lambda: not faults(tab.page), 20)
+    planted = tab.page.add_style_tag(content=style)
+    try:
+        tab.wait(lambda: any(words.startswith(fault) for words in faults(tab.page)), 20)
+    finally:
+        planted.evaluate("style => style.remove()")
+
+
+@pytest.mark.stress
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize(
+    ("scene", "preset"), [(name, preset) for name in NAMES for preset in scene_named(name).presets]
+)
+def test_nothing_is_covered_with_any_preset(resized: tuple[Viewer, Tab], scene: str, preset: str) -> None:
+    lab, tab = resized
+    tab.follow(lab, scene)
+    lab.panel.load(preset)
+    found = {
+        f"{width} x {height}, plots {'open' if plots else 'closed'}": faults
+        for width, height in SIZES
+        for plots in (False, True)
+        if (faults := faults_after_change(tab, lab, (width, height), plots=plots))
+    }
+    assert not found

@@ -78,7 +78,10 @@ def conform(value: Any, like: Any) -> Any:
             raise Wrong(f"it returns {form_of(value)}; expected is {form_of(like)}", "wrong shape")
         return tuple(conform(part, entry) for part, entry in zip(value, like, strict=True))
     try:
-        array = np.asarray(value, np.float64)
+        array = np.asarray(value)
+        if array.dtype.kind == "c":
+            raise Wrong("it returns complex numbers: look for the root of a negative number", "wrong type")
+        array = array.astype(np.float64)
     except (TypeError, ValueError):
         raise Wrong(f"it returns {form_of(value)}; expected is {form_of(like)}", "wrong type") from None
     if np.ndim(like) == 0:
@@ -162,8 +165,14 @@ def check_program(folder: Path, runner: Runner, task: Task) -> Verdict:
 def behave(student: Student) -> None:
     """Check the behaviour, where the task has such a check. Raises RunError or Wrong."""
     behaviour = getattr(student.task.check, "behaviour", None)
-    if behaviour is not None:
+    if behaviour is None:
+        return
+    try:
         behaviour(student)
+    except (ValueError, IndexError):
+        raise Wrong(
+            "for other numbers of points its results do not have the shape that they must have", "wrong shape"
+        ) from None
 
 
 def compare(student: Student) -> None:
@@ -185,14 +194,21 @@ def compare(student: Student) -> None:
         found.append(value)
     if all(same(a, b) for a, b in zip(found, expected, strict=True)):
         return
+    for other in getattr(task.check, "ALTERNATIVES", ()):
+        if all(same(a, normalise(call(other, s))) for a, s in zip(found, samples, strict=True)):
+            return
     for mistake in getattr(task.check, "MISTAKES", ()):
         if all(same(a, normalise(call(mistake.function, s))) for a, s in zip(found, samples, strict=True)):
             raise Wrong(mistake.hint, mistake.name)
     for a, b in zip(found, expected, strict=True):
+        if [(p.ndim, p.shape[1:]) for p in parts(a)] != [(p.ndim, p.shape[1:]) for p in parts(b)]:
+            raise Wrong(f"it returns {form_of(a)}; expected is {form_of(b)}", "wrong shape")
+    if all(same_shape(a, b) for a, b in zip(found, expected, strict=True)):
+        name_common_mistake(student, samples, found, expected)
+    behave(student)
+    for a, b in zip(found, expected, strict=True):
         if not same_shape(a, b):
             raise Wrong(f"it returns {form_of(a)}; expected is {form_of(b)}", "wrong shape")
-    name_common_mistake(student, samples, found, expected)
-    behave(student)
     first = next(i for i in range(SAMPLES) if not same(found[i], expected[i]))
     given = ", ".join(
         f"{name} = {number_text(value)}"

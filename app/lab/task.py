@@ -178,7 +178,10 @@ def load_check(path: Path) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:  # whatever a teacher's file does
+        raise argument_error("task", path.name, f"Python that runs ({type(error).__name__}: {error})") from None
     for part in (path.stem, "inputs"):
         if not callable(getattr(module, part, None)):
             raise argument_error("task", path.name, f"a function {part}")

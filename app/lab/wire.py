@@ -24,6 +24,8 @@ class Foreign(NamedTuple):
 
 def pack(value: Any, refer: Callable[[Any], int]) -> Any:
     """`value` as what MessagePack can hold. refer: gives the number of a function that stays here."""
+    if isinstance(value, np.generic) and value.dtype.kind in "biuf":
+        value = value.item()
     if value is None or isinstance(value, bool | str | float):
         return value
     if isinstance(value, int):
@@ -35,7 +37,7 @@ def pack(value: Any, refer: Callable[[Any], int]) -> Any:
         return {"array": [array.dtype.str, list(array.shape), np.ascontiguousarray(array).tobytes()]}
     if isinstance(value, complex):
         return pack(np.asarray(value), refer)
-    if isinstance(value, list):
+    if isinstance(value, list | set | frozenset):
         return [pack(entry, refer) for entry in value]
     if isinstance(value, tuple):
         return {"tuple": [pack(entry, refer) for entry in value]}

@@ -1,0 +1,64 @@
+"""The reference solution and the check of a task."""
+
+from app.lab.checking import Mistake, require
+
+
+def extra_draft(oil_thickness, oil_density, water_density):
+    """How much deeper [m] a box floats when a layer of oil comes onto the water: depth of its bottom below the surface.
+
+    The box reaches through the oil into the water. Then it sinks by d (1 - rho_oil/rho_water), whatever its own
+    density: oil of thickness d carries as much as water of thickness d rho_oil/rho_water.
+
+    oil_thickness: d [m]. oil_density, water_density: rho [kg/m3].
+    """
+    return oil_thickness * (1 - oil_density / water_density)
+
+
+def inputs(rng):
+    return rng.uniform(0.05, 0.6), rng.uniform(700.0, 990.0), rng.uniform(995.0, 1200.0)
+
+
+MISTAKES = (
+    Mistake(
+        "the whole thickness",
+        "This is d. The oil carries too: only the part 1 - rho_oil/rho_water of d is lost.",
+        lambda d, o, w: d,
+    ),
+    Mistake(
+        "the share that the oil carries",
+        "This is what the oil carries. Asked is the rest, d less that.",
+        lambda d, o, w: d * o / w,
+    ),
+    Mistake(
+        "densities swapped",
+        "The ratio is upside down: it is rho_oil/rho_water, below 1.",
+        lambda d, o, w: d * (1 - w / o),
+    ),
+    Mistake(
+        "relative to the oil",
+        "The difference of the densities is divided by that of the oil. The box ends in water: "
+        "divide by that of the water.",
+        lambda d, o, w: d * (w / o - 1),
+    ),
+    Mistake(
+        "sign reversed",
+        "The box comes up here. Oil carries less than water, so that it sinks.",
+        lambda d, o, w: d * (o / w - 1),
+    ),
+    Mistake(
+        "density of air",
+        "A layer of air would do that. Oil carries 700 times more than air.",
+        lambda d, o, w: d * (1 - 1.2 / w),
+    ),
+    Mistake(
+        "difference not divided",
+        "Divide the difference of the densities by that of the water.",
+        lambda d, o, w: d * (w - o),
+    ),
+)
+
+
+def behaviour(student):
+    """Oil as dense as water changes nothing; the reference drafts of two fluids."""
+    require(abs(student(0.5, 1000.0, 1000.0)) < 1e-6, "a layer as dense as water must change nothing")
+    require(abs(student(0.2, 850.0, 1025.0) - 0.034146) < 1e-4, "0.2 m of oil of 850 kg/m3 on sea water make 0.0341 m")

@@ -1,0 +1,90 @@
+"""The reference solution and the check of a task."""
+
+import numpy as np
+
+from app.lab.checking import Mistake, require
+from app.lab.oscillator import amplitude, oscillate, step_inputs
+
+
+def step_euler(x, v, h, acceleration):
+    """One step of explicit Euler: the new positions [m] and velocities [m/s], both of shape (n, 3).
+
+    x_new = x + h v, v_new = v + h a(x, v): both from the state at the start of the step.
+
+    x, v: positions [m] and velocities [m/s], shape (n, 3). h: time step [s]. acceleration: a function;
+    acceleration(x, v) gives the accelerations [m/s2], shape (n, 3).
+    """
+    x, v = np.asarray(x), np.asarray(v)
+    return x + h * v, v + h * acceleration(x, v)
+
+
+def inputs(rng):
+    return step_inputs(rng)
+
+
+def velocity_first(x, v, h, acceleration):
+    v = v + h * acceleration(x, v)
+    return x + h * v, v
+
+
+def position_first(x, v, h, acceleration):
+    x = x + h * v
+    return x, v + h * acceleration(x, v)
+
+
+def with_square(x, v, h, acceleration):
+    a = acceleration(x, v)
+    return x + h * v + 0.5 * h**2 * a, v + h * a
+
+
+def no_step_in_velocity(x, v, h, acceleration):
+    return x + h * v, v + acceleration(x, v)
+
+
+def no_step_in_position(x, v, h, acceleration):
+    return x + v, v + h * acceleration(x, v)
+
+
+def increments_only(x, v, h, acceleration):
+    return h * v, h * acceleration(x, v)
+
+
+def swapped(x, v, h, acceleration):
+    return v + h * acceleration(x, v), x + h * v
+
+
+def against(x, v, h, acceleration):
+    return x + h * v, v - h * acceleration(x, v)
+
+
+MISTAKES = (
+    Mistake(
+        "velocity before position",
+        "The position is moved with the new velocity. That is the symplectic Euler method, which is stable for longer; "
+        "explicit Euler uses the velocity at the start of the step.",
+        velocity_first,
+    ),
+    Mistake(
+        "position before velocity",
+        "The acceleration is taken at the new position. Explicit Euler takes it at the start of the step: compute it "
+        "before x changes.",
+        position_first,
+    ),
+    Mistake("a term of second order", "x also gets h^2 a/2. Explicit Euler moves x by h v only.", with_square),
+    Mistake("time step forgotten", "The velocity changes by a instead of h a.", no_step_in_velocity),
+    Mistake("time step forgotten", "The position changes by v instead of h v.", no_step_in_position),
+    Mistake("changes instead of new values", "It returns the changes h v and h a. Add x and v.", increments_only),
+    Mistake("results swapped", "It returns (v, x). Return the positions first.", swapped),
+    Mistake("sign of the acceleration reversed", "The velocity changes by -h a.", against),
+)
+
+
+def behaviour(student):
+    """The amplitude of an oscillator grows by sqrt(1 + z^2) in each step, with z = h omega."""
+    z, steps = 0.3, 20
+    size = amplitude(*oscillate(student, z, steps))
+    expected = (1.0 + z * z) ** (0.5 * np.arange(1, steps + 1))
+    require(
+        np.allclose(size, expected, rtol=1e-3),
+        "the amplitude of an oscillator must grow by the factor sqrt(1 + (h omega)^2) in each step of explicit Euler",
+    )

@@ -105,7 +105,7 @@ def task_section(entry: TaskResult) -> Html:
     table = Html()
     if entry.answers:
         table = fill(
-            "<table><tr><th>question</th><th>answer</th><th>check</th></tr>{}</table>",
+            "<table><tr><th></th><th>question</th><th>answer</th><th>check</th></tr>{}</table>",
             join(answer_row(verdict) for verdict in entry.answers),
         )
     return fill(
@@ -119,7 +119,8 @@ def answer_row(verdict: AnswerVerdict) -> Html:
     """One question with its answer and what the check says."""
     state = "kept for the teacher" if verdict.state == "given" else verdict.state
     return fill(
-        '<tr><td>{}</td><td>{}</td><td><span class="{}">{}</span> {}</td></tr>',
+        '<tr><td>{}</td><td>{}</td><td>{}</td><td><span class="{}">{}</span> {}</td></tr>',
+        verdict.question.key,
         verdict.question.ask, answer_text(verdict.answer, verdict.question.unit), state_class(verdict.state), state,
         verdict.text,
     )  # fmt: skip

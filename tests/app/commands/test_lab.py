@@ -1,0 +1,220 @@
+"""`springtide lab new` and `springtide lab check`: folders, tables, files, reports, exit status."""
+
+import csv
+import html.parser
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.__main__ import main
+from app.lab.answers import read_answers, write_answers
+from app.lab.task import load_tasks
+
+ROOT = Path(__file__).parents[3]
+TASKS = load_tasks()
+EVIL = "<img src=x onerror='alert(1)'></pre><script>alert(2)</script>"
+PIXEL = bytes.fromhex("89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000000049454e44ae426082")
+
+
+@pytest.fixture
+def finished(tmp_path: Path) -> Path:
+    folder = tmp_path / "anna"
+    assert main(["lab", "new", str(folder), "--solutions"]) == 0
+    return folder
+
+
+@pytest.fixture
+def empty(tmp_path: Path) -> Path:
+    folder = tmp_path / "bo"
+    assert main(["lab", "new", str(folder)]) == 0
+    return folder
+
+
+def error_of(capsys: pytest.CaptureFixture, *arguments: str) -> str:
+    """The one line of a bad argument."""
+    capsys.readouterr()
+    assert main(["lab", *arguments]) == 2
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert len(lines) == 1, lines
+    return lines[0]
+
+
+def test_a_new_folder_has_every_task_and_no_solution(empty: Path) -> None:
+    texts = {path.name: path.read_text("utf-8") for path in empty.iterdir() if path.is_file()}
+    assert set(texts) == {"rope.py", "cloth.py", "radial_sea.py", "square_sea.py", "answers.toml", "README.md"}
+    for task in TASKS:
+        assert f"### {task.item} {task.title}" in texts["README.md"]
+        if task.file:
+            assert f"def {task.name}({', '.join(task.arguments)}):" in texts[task.file]
+            assert (task.function.__doc__ or "").strip() in texts[task.file]
+    code = "".join(text for name, text in texts.items() if name.endswith(".py"))
+    assert not re.search(r"^\s*(return|for|if)\b", code, re.MULTILINE)
+    assert code.count("    ...\n") == sum(task.check is not None for task in TASKS)
+    for name in ("rope.py", "cloth.py", "radial_sea.py", "square_sea.py"):
+        compile(texts[name], name, "exec")
+
+
+def test_a_new_folder_is_not_begun_and_a_finished_one_is_right(empty: Path, finished: Path, capsys) -> None:
+    assert main(["lab", "check", str(empty), "--json"]) == 1
+    capsys.readouterr()
+    assert main(["lab", "check", str(empty), "--json"]) == 1
+    states = {entry["state"] for entry in json.loads(capsys.readouterr().out)[0]["tasks"]}
+    assert states == {"not begun"}
+    assert main(["lab", "check", str(finished)]) == 0
+    shown = capsys.readouterr().out
+    mandatory = sum(not task.optional for task in TASKS)
+    assert f"{mandatory} of {mandatory} tasks right" in shown
+
+
+def test_what_is_optional_need_not_be_done(finished: Path) -> None:
+    (finished / "cloth.py").unlink()
+    assert main(["lab", "check", str(finished)]) == 0
+    (finished / "rope.py").unlink()
+    assert main(["lab", "check", str(finished)]) == 1
+
+
+def test_a_wrong_function_and_a_wrong_answer_are_told(finished: Path, capsys) -> None:
+    path = finished / "rope.py"
+    path.write_text(path.read_text().replace("(length - rest_length) * r", "length * r", 1))
+    answers = read_answers(finished)
+    write_answers(finished, TASKS, answers._replace(values={**answers.values, ("top_fluid", "on_top"): "water"}))
+    capsys.readouterr()
+    assert main(["lab", "check", str(finished)]) == 1
+    shown = " ".join(re.sub(r"[│┃]", " ", capsys.readouterr().out).split())
+    for word in ("rest", "length", "forgotten", "densities"):
+        assert word in shown
+
+
+def test_a_folder_that_holds_something_is_left_alone(tmp_path: Path, capsys) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    assert "a new or empty folder" in error_of(capsys, "new", str(tmp_path))
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+    assert "a new or empty folder" in error_of(capsys, "new", str(tmp_path / "mine.txt"))
+    assert "lab new" in error_of(capsys, "check", str(tmp_path / "none"))
+    assert "--report" in error_of(capsys, "check", str(tmp_path), "--report", str(tmp_path / "no" / "r.html"))
+    assert "--tasks" in error_of(capsys, "new", str(tmp_path / "x"), "--tasks", str(tmp_path / "no"))
+    assert not (tmp_path / "x").exists()
+
+
+def test_lab_alone_says_what_there_is(capsys) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["lab"])
+    assert ended.value.code == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
+
+
+def test_a_class_makes_one_table_and_one_page(empty: Path, finished: Path, tmp_path: Path, capsys) -> None:
+    answers = read_answers(empty)
+    write_answers(empty, TASKS, answers._replace(name="=HYPERLINK(1)"))
+    table, page = tmp_path / "class.csv", tmp_path / "class.html"
+    assert main(["lab", "check", str(empty), str(finished), "--csv", str(table), "--report", str(page)]) == 1
+    rows = list(csv.DictReader(table.open(encoding="utf-8")))
+    assert [row["folder"] for row in rows] == ["bo", "anna"]
+    assert rows[0]["name"] == "'=HYPERLINK(1)"
+    assert (rows[0]["complete"], rows[1]["complete"]) == ("no", "yes")
+    assert {rows[1][task.name] for task in TASKS} == {"right"}
+    text = page.read_text("utf-8")
+    assert text.count("<!doctype html>") == 1
+    assert 'href="#student-1"' in text
+    assert 'id="student-1"' in text
+
+
+class Tags(html.parser.HTMLParser):
+    """Every tag, and whether all that opens is closed in order."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+        if tag not in ("meta", "img", "path", "line", "circle", "polyline"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag not in ("path", "line", "circle", "polyline"):
+            assert self.open.pop() == tag
+
+
+def test_the_report_is_one_page_that_runs_and_fetches_nothing(finished: Path, tmp_path: Path) -> None:
+    """Whatever a student writes into name, answers, code, file names and pictures."""
+    answers = read_answers(finished)
+    values = {key: EVIL if isinstance(value, str) else value for key, value in answers.values.items()}
+    write_answers(finished, TASKS, answers._replace(name=EVIL, values=values))
+    with (finished / "rope.py").open("a") as file:
+        file.write(f"# {EVIL}\ndef spring_force(*a):\n    raise ValueError({EVIL!r})\n")
+    (finished / "pictures" / "a <b> 'c'.png").write_bytes(PIXEL)
+    (finished / "pictures" / "page.png").write_text(EVIL)
+    (finished / "pictures" / "drawing.svg").write_text("<svg onload='alert(1)'/>")
+    report = tmp_path / "report.html"
+    assert main(["lab", "check", str(finished), "--report", str(report)]) == 1
+    text = report.read_text("utf-8")
+    tags = Tags()
+    tags.feed(text)
+    assert tags.open == []
+    assert not {"script", "iframe", "object", "embed", "link", "form"} & {tag for tag, _ in tags.found}
+    for tag, attributes in tags.found:
+        assert not any(name.startswith("on") for name in attributes), (tag, attributes)
+        for name in ("src", "href"):
+            assert (attributes.get(name) or "data:").startswith(("data:image/", "#", "data:")), (tag, attributes)
+    images = [attributes for tag, attributes in tags.found if tag == "img"]
+    assert len(images) == 1
+    assert "a &lt;b&gt;" in text
+    assert "onerror=&#x27;alert(1)" in text
+    assert "<img src=x" not in text
+
+
+def test_the_report_holds_predictions_answers_and_checks(finished: Path, tmp_path: Path) -> None:
+    report = tmp_path / "report.html"
+    assert main(["lab", "check", str(finished), "--report", str(report)]) == 0
+    text = report.read_text("utf-8")
+    for task in TASKS:
+        assert f"{task.item} " in text
+        for question in task.questions:
+            assert question.ask[:20].replace("'", "&#x27;") in text
+    assert "def spring_force" in text
+    assert "Reference solutions" in text
+
+
+def test_odd_folders_end_with_results_and_no_traceback(finished: Path, empty: Path, tmp_path: Path, capsys) -> None:
+    (finished / "answers.toml").write_bytes(b"\xff\xfe broken")
+    (finished / "rope.py").write_bytes(b"\xff\xfe\x00 = 1")
+    (finished / "cloth.py").write_text("def cloth_links(:")
+    (finished / "radial_sea.py").write_text("import os\nos._exit(7)\n")
+    (finished / "square_sea.py").unlink()
+    capsys.readouterr()
+    report = tmp_path / "report.html"
+    assert main(["lab", "check", str(finished), "--json", "--report", str(report)]) == 1
+    result = json.loads(capsys.readouterr().out)[0]
+    assert "answers.toml" in result["error"]
+    states = {entry["task"]: entry["program"] for entry in result["tasks"] if entry["program"]}
+    assert {program["state"] for program in states.values()} == {"failed"}
+    assert "exit status 7" in states["draft"]["text"]
+    assert "SyntaxError" in states["cloth_links"]["text"]
+    assert "no such file" in states["gravity"]["text"]
+
+
+def test_names_of_students_do_not_steer_the_terminal(finished: Path, capsys) -> None:
+    answers = read_answers(finished)
+    write_answers(finished, TASKS, answers._replace(name="[red]x[/red]\x1b[31m"))
+    other = finished.parent / "copy"
+    finished.rename(other)
+    capsys.readouterr()
+    main(["lab", "check", str(other), str(other)])
+    shown = capsys.readouterr().out
+    assert "\x1b" not in shown
+
+
+def test_a_check_imports_no_viewer(finished: Path) -> None:
+    code = (
+        "import sys; from app.__main__ import main;"
+        f"status = main(['lab', 'check', {str(finished)!r}]);"
+        "print(status, sorted(n for n in sys.modules if n.split('.')[0] in ('viser', 'numba')))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "0 []"

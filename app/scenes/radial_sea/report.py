@@ -28,7 +28,7 @@ def draft_text(value: float) -> str:
 
 
 def readout_of(snapshot: Snapshot) -> Html:
-    """Under the status line: a row for each body, then the waves and the oil of the jet."""
+    """Under the status line: the draft of each body, then the waves and the oil of the jet."""
     readings: RadialReadings = snapshot.readings
     if not readings.bodies:
         return Html("No bodies.")
@@ -39,11 +39,8 @@ def readout_of(snapshot: Snapshot) -> Html:
         drafts.append((
             body.title, fixed(body.draft, 3), fixed(body.mean_draft, 3), bold(draft_text(p.draft)), added,
         ))  # fmt: skip
-    periods = [(body.title, fixed(body.period, 2), fixed(body.prediction.period, 2)) for body in readings.bodies]
     parts = [
         table((("draft", ""), ("now", "m"), ("mean, 60 s", "m"), ("at rest", "m"), ("oil adds", "m")), drafts),
-        *weight_tables(readings),
-        table((("heave period", ""), ("measured", "s"), ("theory", "s")), periods),
         faint(
             "At rest: by Archimedes' principle in these fluids. Waves disturb it: switch them off to compare exactly."
             if snapshot.frame.params.waves
@@ -55,6 +52,15 @@ def readout_of(snapshot: Snapshot) -> Html:
     if readings.oil_budget.ejected > 0.0:
         parts.append(oil_budget_text(readings.oil_budget))
     return join(parts)
+
+
+def forces_html(readings: RadialReadings) -> Html:
+    """Weight, buoyancy and heave period of each body."""
+    periods = [(body.title, fixed(body.period, 2), fixed(body.prediction.period, 2)) for body in readings.bodies]
+    return join((
+        *weight_tables(readings),
+        table((("heave period", ""), ("measured", "s"), ("theory", "s")), periods),
+    ))  # fmt: skip
 
 
 def weight_tables(readings: RadialReadings) -> tuple[Html, Html]:
@@ -120,6 +126,7 @@ def archimedes(column: FluidColumn) -> Html:
 def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
     return {
+        "Weight, buoyancy, heave": forces_html(snapshot.readings),
         "Lab says, physics says": claims_html(snapshot),
         "Fluids": fluids_html(snapshot),
         "Radial or square": surfaces_html(snapshot),

@@ -7,7 +7,7 @@ import pytest
 
 from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import PRESETS, Params
-from app.scenes.radial_sea.report import readout_of
+from app.scenes.radial_sea.report import forces_html
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import JetTotal
 from app.server.loop import SimLoop
@@ -120,7 +120,7 @@ def test_the_edge_of_the_slick_is_no_step() -> None:
 def test_weights_and_forces_are_on_screen_and_in_sweeps() -> None:
     loop = SimLoop(scene_with(**CALM, spill="layer"))
     loop.tick(0.1)
-    text = readout_of(loop.latest)
+    text = forces_html(loop.latest.readings)
     box = loop.latest.readings.bodies[2]
     for shown in (f"{box.mass:,.0f}", "wet in oil", "in water", "weight gρV"):
         assert shown.replace(",", "") in text.replace("\u202f", "").replace(",", ""), shown

@@ -6,6 +6,9 @@ from typing import Any
 
 import numpy as np
 
+MAX_DISTANCE = 1e12  # [m] of a position: farther away, the cells of a grid can no longer be counted
+MAX_WAVENUMBER = 1e20  # [rad/m]: its powers are still finite
+
 
 def argument_error(name: str, value: object, allowed: str) -> ValueError:
     """The one form of an argument error: the name, the value given, and what is allowed."""
@@ -88,20 +91,38 @@ def check_vector(name: str, value: object, length: int = 3) -> tuple[float, ...]
     return numbers
 
 
+def as_array(name: str, value: Any, allowed: str) -> np.ndarray:
+    """`value` as a float64 array. Raises ValueError for what holds no real numbers, truth values and texts included, or
+    is no regular array."""
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise argument_error(name, value, allowed) from None
+    if array.size and array.dtype.kind not in "iuf":
+        raise argument_error(name, value, allowed)
+    return array.astype(np.float64)
+
+
 def check_positions(name: str, value: Any) -> np.ndarray:
-    """`value` as contiguous float64 of shape (n, 2). Raises ValueError for another shape or what is not finite."""
-    array = np.ascontiguousarray(value, np.float64)
+    """`value` as contiguous float64 of shape (n, 2).
+
+    Raises ValueError for another shape, or what is not finite or farther than MAX_DISTANCE.
+    """
+    allowed = f"positions of shape (n, 2), finite, at most {MAX_DISTANCE:g} m"
+    array = np.ascontiguousarray(as_array(name, value, allowed))
     if array.ndim != 2 or array.shape[1] != 2:
-        raise argument_error(name, array.shape, "positions of shape (n, 2) [m]")
-    if not np.isfinite(array).all():
-        raise argument_error(name, float(array[~np.isfinite(array)][0]), "finite positions [m]")
+        raise argument_error(name, array.shape, allowed)
+    bad = ~(np.abs(array) <= MAX_DISTANCE)
+    if bad.any():
+        raise argument_error(name, float(array[bad][0]), allowed)
     return array
 
 
 def check_wavenumbers(name: str, value: Any) -> np.ndarray:
-    """`value` as a float64 array. Raises ValueError unless every entry is finite and 0 or above."""
-    array = np.asarray(value, dtype=np.float64)
-    bad = ~((array >= 0.0) & np.isfinite(array))
+    """`value` as a float64 array. Raises ValueError unless every entry is from 0 to MAX_WAVENUMBER."""
+    allowed = f"numbers from 0 to {MAX_WAVENUMBER:g} rad/m"
+    array = as_array(name, value, allowed)
+    bad = ~((array >= 0.0) & (array <= MAX_WAVENUMBER))
     if bad.any():
-        raise argument_error(name, float(array[bad].flat[0]), "0 or above, finite rad/m")
+        raise argument_error(name, float(array[bad].flat[0]), allowed)
     return array

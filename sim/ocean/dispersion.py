@@ -17,6 +17,7 @@ from sim.validation import argument_error, check_not_negative, check_positive, c
 INF = math.inf
 CRITICAL = 1.3114687221932  # nu k^2/omega0 above which a wave no longer oscillates: the quartic's double root
 CRITICAL_FILM = 1.2703246811008881  # the same under a film
+LONG = 1e-6  # kd that stands for 0 in the ratios of modes
 EVANESCENT = 18.0  # kd beyond which the far mode is under 2e-8 of the near one and lost in rounding
 
 
@@ -34,23 +35,25 @@ def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.
 def phase_speed(
     k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0
 ) -> Any:
-    """Phase speed omega/k [m/s]; sqrt(g depth) at k = 0. Arguments and errors as for `omega`."""
+    """Phase speed omega/k [m/s]; at k = 0 sqrt(g depth), inf where depth is. Arguments and errors as for `omega`."""
     k, s = _checked(k, gravity, depth, tension, density)
-    k = np.maximum(k, _smallest(depth))
-    return np.sqrt((gravity / k + s * k) * _tanh(k, depth))[()]
+    endless, k = k == 0.0, np.maximum(k, _smallest(depth))
+    speed = np.sqrt((gravity / k + s * k) * _tanh(k, depth))
+    return np.where(endless & math.isinf(depth), INF, speed)[()]
 
 
 def group_speed(
     k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0
 ) -> Any:
-    """Group speed d omega/dk [m/s]; sqrt(g depth) at k = 0. Arguments and errors as for `omega`."""
+    """Group speed d omega/dk [m/s]; at k = 0 sqrt(g depth), inf where depth is. Arguments and errors as for `omega`."""
     k, s = _checked(k, gravity, depth, tension, density)
-    k = np.maximum(k, _smallest(depth))
+    endless, k = k == 0.0, np.maximum(k, _smallest(depth))
     th = _tanh(k, depth)
     w = np.sqrt((gravity * k + s * k**3) * th)
     # cg = [(g + 3 s k^2) tanh kh + (g + s k^2) kh sech^2 kh] / (2 omega), sech^2 = (1 - tanh)(1 + tanh)
     shallow = 0.0 if math.isinf(depth) else k * depth * (1.0 - th) * (1.0 + th)
-    return (((gravity + 3.0 * s * k**2) * th + (gravity + s * k**2) * shallow) / (2.0 * w))[()]
+    speed = ((gravity + 3.0 * s * k**2) * th + (gravity + s * k**2) * shallow) / (2.0 * w)
+    return np.where(endless & math.isinf(depth), INF, speed)[()]
 
 
 def two_layer(
@@ -92,7 +95,13 @@ def mode_ratios(
     surface_tension: float = 0.0,
     interface_tension: float = 0.0,
 ) -> ModeRatios:
-    """Amplitude ratios of the two modes; arguments and errors as for `two_layer`. 0 beyond k thickness = 18."""
+    """Amplitude ratios of the two modes; arguments and errors as for `two_layer`.
+
+    0 beyond k thickness = 18; at k = 0 the limit for long waves.
+    """
+    check_positive("thickness", thickness, "m", allow_infinite=True)
+    k = check_wavenumbers("k", k)
+    k = np.maximum(k, 0.0 if math.isinf(thickness) else LONG / min(thickness, depth))
     k, X_surface, X_interface, G1 = _two_layer_roots(
         k, upper_density, thickness, lower_density, gravity, depth, surface_tension, interface_tension
     )

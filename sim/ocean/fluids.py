@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.validation import argument_error, check_positive, check_within
+from sim.validation import argument_error, as_array, check_positive, check_within
 
 
 class Fluid(NamedTuple):
@@ -128,10 +128,16 @@ class Reflectance(NamedTuple):
 def fresnel(angle, index: float) -> Reflectance:
     """Exact reflectance of a surface of refractive index (1 or above) at an angle from its normal, 0 to pi/2 [rad].
 
-    Raises ValueError for an index under 1. Fresnel's equations: Hecht, Optics, eq. 4.34 and 4.40, squared.
+    Raises ValueError for an index under 1, or an angle that is not allowed.
+    Fresnel's equations: Hecht, Optics, eq. 4.34 and 4.40, squared.
     """
     check_within("index", index, 1.0, 10.0)
-    cosine = np.cos(np.asarray(angle, np.float64))
+    allowed = "0 to pi/2 rad"
+    angles = as_array("angle", angle, allowed)
+    bad = ~((angles >= 0.0) & (angles <= 0.5 * math.pi))
+    if bad.any():
+        raise argument_error("angle", float(angles[bad].flat[0]), allowed)
+    cosine = np.cos(angles)
     inner = np.sqrt(1.0 - (1.0 - cosine**2) / index**2)
     s = ((cosine - index * inner) / (cosine + index * inner)) ** 2
     p = ((index * cosine - inner) / (index * cosine + inner)) ** 2

@@ -8,7 +8,7 @@ import numpy as np
 
 from sim.ocean.dispersion import damped_root
 from sim.ocean.spectra import Conditions
-from sim.validation import argument_error, check_not_negative, check_positive
+from sim.validation import argument_error, check_number
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -23,8 +23,8 @@ class Medium:
     decay: Callable[[np.ndarray], np.ndarray] | None = None  # decay rate (k) [1/s] in place of the viscosity's
 
     def __post_init__(self) -> None:
-        check_not_negative("viscosity", self.viscosity, "m2/s")
-        check_not_negative("dispersion_scale", self.dispersion_scale, "")
+        check_number("viscosity", self.viscosity, 0.0, 1e6, "m2/s")
+        check_number("dispersion_scale", self.dispersion_scale, 0.0, 1e6, "")
         if not isinstance(self.film, bool):
             raise argument_error("film", self.film, "True or False")
         for name in ("frequency", "decay"):
@@ -32,7 +32,7 @@ class Medium:
             if given is not None and not callable(given):
                 raise argument_error(name, given, "a function of the wavenumber, or None")
         if self.loop_period is not None:
-            check_positive("loop_period", self.loop_period, "s")
+            check_number("loop_period", self.loop_period, 1e-6, 1e12, "s")
 
     def roots(self, k: np.ndarray, conditions: Conditions) -> tuple[np.ndarray, np.ndarray]:
         """omega [rad/s] and decay rate [1/s] of wavenumbers k [rad/m].

@@ -2,9 +2,10 @@
 
 from typing import NamedTuple
 
-from sim.validation import argument_error, check_positive
+from sim.validation import argument_error, check_number, check_positive
 
 G = 6.67430e-11  # [m3/(kg s2)] CODATA 2018
+MAX_MASS = 1e9  # [Earth masses] hundreds of suns: no planet
 EARTH_GRAVITY = 9.81  # [m/s2] at one Earth mass, whatever the rule
 
 # R ~ M^exponent. Rocky: the mass-radius relation of rocky planets, exponent 0.27 (Valencia, O'Connell, Sasselov 2006).
@@ -44,9 +45,9 @@ SOLAR_SYSTEM = {
 def gravity_of(mass: float, rule: str = "same_radius") -> float:
     """Surface gravity [m/s2] of a planet of `mass` Earth masses, above 0: g = G M/R^2, so g ~ M^(1 - 2 exponent).
 
-    rule: one of RADIUS_RULES. Raises ValueError for another rule or a mass not above 0.
+    rule: one of RADIUS_RULES. Raises ValueError for another rule or a mass not above 0, or above MAX_MASS.
     """
-    check_positive("mass", mass, "Earth masses")
+    check_number("mass", mass, 0.0, MAX_MASS, "Earth masses", above=True)
     if rule not in RADIUS_RULES:
         raise argument_error("rule", rule, "one of " + ", ".join(RADIUS_RULES))
     return EARTH_GRAVITY * mass ** (1.0 - 2.0 * RADIUS_RULES[rule])

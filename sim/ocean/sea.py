@@ -25,13 +25,14 @@ from sim.validation import (
     argument_error,
     check_finite,
     check_not_negative,
+    check_number,
     check_positions,
-    check_positive,
     is_whole_number,
 )
 
 SETTLED_SHARE = 1e-7  # share of a change still to come below which it counts as done
 SIZES = (8, 4096)
+LENGTHS = (1e-3, 1e8)  # [m]
 
 
 _CONDITIONS = frozenset(f.name for f in dataclasses.fields(Conditions)) | PARAMETERS.keys()
@@ -73,7 +74,7 @@ class Sea:
             raise argument_error("seed", seed, "a whole number")
         if precision not in PRECISIONS:
             raise argument_error("precision", precision, "one of " + ", ".join(PRECISIONS))
-        self.size, self.length, self.seed = int(size), check_positive("length", length, "m"), int(seed)
+        self.size, self.length, self.seed = int(size), check_number("length", length, *LENGTHS, "m"), int(seed)
         self.precision, self.amplitudes = precision, amplitudes
         self.choppiness = choppiness
         self._real = PRECISIONS[precision][0]

@@ -9,7 +9,7 @@ here with what has been spilt so far.
 
 import math
 
-from sim.validation import argument_error
+from sim.validation import argument_error, check_positive
 
 INERTIAL, VISCOUS = 1.14, 1.45
 
@@ -19,8 +19,11 @@ def slick_radius(
 ) -> float:
     """Radius [m] of `volume` [m3] of oil after `time` [s]; oil, water [kg/m3]; viscosity of the water [m2/s].
 
-    Raises ValueError for a negative volume or time, or an oil that is not lighter than the water.
+    Raises ValueError for a negative volume or time, an oil that is not lighter than the water, or a viscosity or
+    gravity that is not above 0.
     """
+    check_positive("viscosity", viscosity, "m2/s")
+    check_positive("gravity", gravity, "m/s2")
     if not 0.0 <= volume < math.inf:
         raise argument_error("volume", volume, "0 or above, finite m3")
     if not 0.0 <= time < math.inf:

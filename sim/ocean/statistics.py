@@ -106,11 +106,16 @@ def drawn(sea: "Sea", t: float | None = None) -> Statistics:
 
 
 def measured(
-    height: np.ndarray, length: float, conditions: Conditions, earlier: np.ndarray | None = None
+    height: np.ndarray,
+    length: float,
+    conditions: Conditions,
+    earlier: np.ndarray | None = None,
+    interval: float = 0.0,
 ) -> Statistics:
     """Statistics of a drawn field: height (n, n) [m] on a tile of length [m], by its FFT.
 
-    earlier: the field a little before (well under half a period of the shortest wave that counts); tells direction.
+    earlier: the field `interval` [s] before; tells the direction, of the waves that turn by less than a quarter of
+    their period in between. Where those about the peak turn farther, it is nan: the waves are not resolved in time.
     Raises ValueError where the fields do not fit.
     """
     if height.ndim != 2 or height.shape[0] != height.shape[1]:
@@ -126,19 +131,26 @@ def measured(
         twice[:, -1] = 1.0
     energy = twice * np.abs(h) ** 2
     energy[0, 0] = 0.0
-    direction = math.nan
+    direction, peak_period = math.nan, _peak_period(conditions.omega(k), energy)
     if earlier is not None:
         if earlier.shape != height.shape:
             raise argument_error("earlier", earlier.shape, f"a field of shape {height.shape}")
         # h = P e^(-i omega t) + Q e^(i omega t): the phase of h falls where the wave runs along k, rises against it.
         turned = twice * np.imag(np.fft.rfft2(np.asarray(earlier, np.float64)) / n**2 * np.conj(h))
-        direction = _direction(float((turned * kx).sum()), float((turned * ky).sum()))
+        turned *= conditions.omega(k) * interval < 0.5 * math.pi
+        if resolved_in_time(peak_period, interval):
+            direction = _direction(float((turned * kx).sum()), float((turned * ky).sum()))
     return Statistics(
         4.0 * math.sqrt(energy.sum()),
-        _peak_period(conditions.omega(k), energy),
+        peak_period,
         float((energy * k**2).sum()),
         direction,
     )
+
+
+def resolved_in_time(period: float, interval: float) -> bool:
+    """Whether two fields `interval` [s] apart tell which way waves of this period [s] run."""
+    return 4.0 * interval < period
 
 
 def height_scatter(sea: "Sea", t: float | None = None) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.particles.random import uniform
-from sim.validation import argument_error
+from sim.validation import argument_error, check_positive
 
 RISE = 23.3  # [m/s2] b
 DRAG_TIME = 1.2  # [s] tau
@@ -24,7 +24,12 @@ EDDY = 0.22  # swirl speed over rise
 
 
 def flame_height(power: float, diameter: float) -> float:
-    """L [m] = 0.235 Q^(2/5) - 1.02 D, Q in kW; power [W], diameter [m] of the fire; at least its radius."""
+    """L [m] = 0.235 Q^(2/5) - 1.02 D, Q in kW; power [W], diameter [m] of the fire; at least its radius.
+
+    Raises ValueError where either is not above 0.
+    """
+    check_positive("power", power, "W")
+    check_positive("diameter", diameter, "m")
     return max(0.235 * (power / 1e3) ** 0.4 - 1.02 * diameter, 0.5 * diameter)
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.jit import kernel
-from sim.validation import argument_error
+from sim.validation import argument_error, as_array, check_positive
 
 N0 = 8000.0 * 1e3  # [1/m4] Marshall-Palmer intercept, 8000 per m3 and mm
 SMALLEST, LARGEST = 0.5e-3, 6.0e-3  # [m] drops outside are not counted: mist below, broken up above
@@ -25,8 +25,17 @@ def slope_parameter(rate: float) -> float:
 
 
 def terminal_speed(diameter, gravity: float = EARTH):
-    """Fall speed [m/s] of drops of diameter [m], array or number: v = 9.65 - 10.3 exp(-0.6 D/mm), ~ sqrt(gravity)."""
-    atlas = 9.65 - 10.3 * np.exp(-600.0 * np.asarray(diameter, np.float64))
+    """Fall speed [m/s] of drops of diameter [m], array or number: v = 9.65 - 10.3 exp(-0.6 D/mm), ~ sqrt(gravity).
+
+    Raises ValueError for a negative or non-finite diameter, or gravity not above 0.
+    """
+    check_positive("gravity", gravity, "m/s2")
+    allowed = "0 or above, finite m"
+    D = as_array("diameter", diameter, allowed)
+    bad = ~((D >= 0.0) & np.isfinite(D))
+    if bad.any():
+        raise argument_error("diameter", float(D[bad].flat[0]), allowed)
+    atlas = 9.65 - 10.3 * np.exp(-600.0 * D)
     return (np.clip(atlas, 0.0, FASTEST) * math.sqrt(gravity / EARTH))[()]
 
 
@@ -41,7 +50,8 @@ class Rainfall(NamedTuple):
 
 
 def rainfall(rate: float, gravity: float = EARTH) -> Rainfall:
-    """Of Marshall and Palmer's drops at `rate` [mm/h], above 0."""
+    """Of Marshall and Palmer's drops at `rate` [mm/h]. Raises ValueError where rate or gravity is not above 0."""
+    check_positive("rate", rate, "mm/h")
     D, N, step = _sizes(rate)
     v = terminal_speed(D, gravity)
     mass = 1000.0 * math.pi / 6.0 * D**3

@@ -9,7 +9,7 @@ from app.scenes.square_sea.parameters import Params, gravity
 from app.scenes.square_sea.statistics import Report
 from sim.formatting import count, fixed, metres, number, percent, seconds
 from sim.ocean.planets import RADIUS_RULES, gravity_of
-from sim.ocean.statistics import beaufort
+from sim.ocean.statistics import beaufort, resolved_in_time
 
 if TYPE_CHECKING:
     from app.scenes.square_sea.scene import RainReadings
@@ -53,6 +53,9 @@ def statistics_table(r: Report) -> Html:
     band = BAND_WIDTH * r.theory.scatter * e.significant_height
     inside = abs(m.significant_height - e.significant_height) <= band + 1e-9
     height = number(m.significant_height)
+    direction = bold(fixed(math.degrees(m.direction), 0))
+    if e.peak_period > 0.0 and not resolved_in_time(e.peak_period, r.interval):
+        direction = coloured("not resolved in time", WARNING_COLOUR)
     measured = table(
         (("", ""), ("as drawn", ""), ("theory", "95 % band")),
         (
@@ -63,7 +66,7 @@ def statistics_table(r: Report) -> Html:
             ),
             (Html("period T<sub>p</sub> [s]"), bold(number(m.peak_period)), number(e.peak_period)),
             ("mean square slope", bold(number(m.mean_square_slope)), number(e.mean_square_slope)),
-            ("direction [°]", bold(fixed(math.degrees(m.direction), 0)), fixed(math.degrees(e.direction), 0)),
+            ("direction [°]", direction, fixed(math.degrees(e.direction), 0)),
         ),
     )
     if not endless > 0.0:

@@ -268,7 +268,7 @@ class SquareSeaScene:
         if row_is_due:
             self.plotted_at = t
             self.plot_rows.append((t, self.gauge.height))
-        self.update_statistics(height)
+        self.update_statistics(height, dt)
         self.update_spectrum()
         self.earlier_height = height if p.statistics else None
         self.counts["frames"] += 1
@@ -291,8 +291,9 @@ class SquareSeaScene:
         )  # fmt: skip
         return SeaFrame(p, self.time, vertices, slopes, self.foam, self.pace[0], None, None)
 
-    def update_statistics(self, height: NDArray[np.floating]) -> None:
-        """Compare the drawn sea with theory, where that is shown and out of date. height: (n, n) [m]."""
+    def update_statistics(self, height: NDArray[np.floating], dt: float) -> None:
+        """Compare the drawn sea with theory, where that is shown and out of date. height: (n, n) [m]; dt [s]: since the
+        frame before."""
         if not self.statistics_due:
             return
         p, t = self.params, self.time
@@ -300,7 +301,7 @@ class SquareSeaScene:
         changing = p.viscosity > 0.0 or t - self.changed_at < SETTLING_TRANSITIONS * self.transition
         if self.theory is None or changing:
             self.theory = theory(self.sea, t, p)
-        self.report = Report(measure(self.sea, height, self.earlier_height, p), self.theory)
+        self.report = Report(measure(self.sea, height, self.earlier_height, p, dt), self.theory, dt)
         self.counts["statistics"] += 1
 
     def update_spectrum(self) -> None:

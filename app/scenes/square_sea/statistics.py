@@ -26,6 +26,7 @@ class Report(NamedTuple):
 
     measured: Statistics
     theory: Theory
+    interval: float = 0.0  # [s] between the two frames that tell the direction
 
 
 def scaled(s: Statistics, factor: float) -> Statistics:
@@ -43,9 +44,11 @@ def theory(sea: Sea, t: float, params: Params) -> Theory:
     return Theory(scaled(found, params.amplitude), height_scatter(sea, t), params.amplitude * whole, wave)
 
 
-def measure(sea: Sea, height: np.ndarray, earlier: np.ndarray | None, params: Params) -> Statistics:
-    """Statistics of heights (n, n) [m]; earlier: those of the frame before."""
-    found = measured(height, sea.length, sea.conditions, earlier)
+def measure(
+    sea: Sea, height: np.ndarray, earlier: np.ndarray | None, params: Params, interval: float = 0.0
+) -> Statistics:
+    """Statistics of heights (n, n) [m]; earlier: those of the frame before, `interval` [s] ago."""
+    found = measured(height, sea.length, sea.conditions, earlier, interval * params.dispersion_scale)
     # A scale on the dispersion makes every period shorter by as much.
     period = found.peak_period / params.dispersion_scale if params.dispersion_scale > 0.0 else math.nan
     return scaled(found, params.amplitude)._replace(peak_period=period)

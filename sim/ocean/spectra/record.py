@@ -11,7 +11,7 @@ import numpy as np
 from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
-from sim.validation import check_finite, check_not_negative, check_positive
+from sim.validation import as_float, check_finite, check_number
 
 WIND_HEIGHTS = {10.0: 1.0, 19.5: 1.026}  # [m] -> wind there over U10, drag coefficient 1.3e-3 (Stewart 2008, eq. 16.33)
 MIN_WIND_SPEED = 1e-3  # [m/s] below which a wind makes no waves: spectra take powers of it, which would underflow
@@ -43,13 +43,15 @@ class Conditions:
     )
 
     def __post_init__(self) -> None:
-        check_not_negative("wind_speed", self.wind_speed, "m/s")
+        # Wide, but such that no power that a spectrum takes overflows or is lost in rounding.
+        check_number("wind_speed", self.wind_speed, 0.0, 1e3, "m/s")
         check_finite("wind_direction", self.wind_direction, "rad")
-        check_positive("gravity", self.gravity, "m/s2")
-        check_positive("depth", self.depth, "m", allow_infinite=True)
-        check_not_negative("tension", self.tension, "N/m")
-        check_positive("density", self.density, "kg/m3")
-        check_not_negative("low_pass", self.low_pass, "m")
+        check_number("gravity", self.gravity, 1e-6, 1e6, "m/s2")
+        if as_float(self.depth) != math.inf:
+            check_number("depth", self.depth, 1e-6, 1e9, "m, or inf")
+        check_number("tension", self.tension, 0.0, 1e3, "N/m")
+        check_number("density", self.density, 1e-3, 1e6, "kg/m3")
+        check_number("low_pass", self.low_pass, 0.0, 1e9, "m")
         for name, declared in parameters_of(self).items():
             check_value(name, declared, getattr(self, name))
 

@@ -58,8 +58,8 @@ def fixed(value: float, decimals: int, *, sign: bool = False) -> str:
 
 
 def percent(share: float, digits: int = 2) -> str:
-    """A share, 0 to 1, in percent, with `digits` significant digits."""
-    return f"{number(100.0 * share, digits)} %" if math.isfinite(share) else NO_NUMBER
+    """A share, 0 to 1, in percent, with `digits` significant digits; the space does not break."""
+    return f"{number(100.0 * share, digits)}\u00a0%" if math.isfinite(share) else NO_NUMBER
 
 
 def metres(value: float, digits: int = 3) -> str:

@@ -55,7 +55,7 @@ def test_large_counts_are_in_words() -> None:
 
 
 def test_shares_are_in_percent() -> None:
-    assert (percent(0.94914, 3), percent(0.0), percent(math.nan)) == ("94.9 %", "0 %", "–")
+    assert (percent(0.94914, 3), percent(0.0), percent(math.nan)) == ("94.9\u00a0%", "0\u00a0%", "–")
 
 
 def test_numbers_of_ranges_are_as_one_types_them() -> None:

@@ -38,7 +38,7 @@ def check(folders: Sequence[Path], tasks: Sequence[Path], out: dict[str, Path | 
             check_out_file(f"--{option}", path)
     found = load_tasks(*tasks)
     with ThreadPoolExecutor(min(PARALLEL, len(folders))) as pool:
-        results = list(pool.map(lambda folder: check_folder(folder, found), folders))
+        results = list(pool.map(lambda folder: check_folder(folder, found, curves=out["report"] is not None), folders))
     if out["json"] is not None and str(out["json"]) == "-":
         print(json_text(results))
     else:

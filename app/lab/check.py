@@ -7,7 +7,7 @@ from pathlib import Path
 
 from app.lab.answer_check import AnswerVerdict, check_answer
 from app.lab.answers import Answers, read_answers
-from app.lab.program_check import Verdict, check_program
+from app.lab.program_check import Points, Verdict, check_program, draw
 from app.lab.runner import Runner
 from app.lab.task import Task
 from sim.validation import argument_error
@@ -20,6 +20,7 @@ class TaskResult:
     task: Task
     program: Verdict | None  # None where nothing is to be programmed
     answers: tuple[AnswerVerdict, ...]
+    points: Points | None = None  # a curve of the function, where it was asked for
 
     @property
     def state(self) -> str:
@@ -66,8 +67,11 @@ class FolderResult:
         return sum(result.state == "right" for result in chosen), len(chosen)
 
 
-def check_folder(folder: Path, tasks: Sequence[Task]) -> FolderResult:
-    """Check all tasks of a student's folder. Raises ValueError where it is no folder."""
+def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool = False) -> FolderResult:
+    """Check all tasks of a student's folder; with what the report draws, if `curves`.
+
+    Raises ValueError where it is no folder.
+    """
     if not folder.is_dir():
         raise argument_error("DIR", str(folder), "a folder that `springtide lab new` has made")
     began = time.monotonic()
@@ -77,5 +81,6 @@ def check_folder(folder: Path, tasks: Sequence[Task]) -> FolderResult:
         for task in tasks:
             program = check_program(folder, runner, task) if task.check is not None else None
             judged = tuple(check_answer(question, answers.of(task, question)) for question in task.questions)
-            results.append(TaskResult(task, program, judged))
+            begun = program is not None and program.state in ("right", "wrong")
+            results.append(TaskResult(task, program, judged, draw(runner, task) if curves and begun else None))
     return FolderResult(folder, answers, tuple(results), time.monotonic() - began)

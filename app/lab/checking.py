@@ -5,10 +5,11 @@ Beside the reference solution, such a file has
 - `MISTAKES`, a tuple of `Mistake`: wrong solutions that are recognised by what they return.
 - `ALTERNATIVES`, a tuple of functions that are right as well, though they return something else.
 - `behaviour(student)`: calls the student's function and raises `Wrong` where it does not behave as it must.
+- `CURVE`, a `Curve` that the report draws.
 - `normalise(result)`: brings results that mean the same to one form, for example a list in any order.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +21,15 @@ class Mistake(NamedTuple):
     name: str
     hint: str
     function: Callable[..., Any]
+
+
+class Curve(NamedTuple):
+    """A curve for the report. values(function, x): the function's values over x, of the student's or the reference."""
+
+    x_label: str
+    y_label: str
+    x: Sequence[float] | np.ndarray
+    values: Callable[[Callable[..., Any], Any], Any]
 
 
 class Wrong(Exception):  # noqa: N818 - a judgement on a solution, not an error of the program

@@ -42,6 +42,11 @@ def oscillate(step: Callable[..., Any], z: float, steps: int) -> tuple[np.ndarra
     return positions, velocities
 
 
+def amplitudes(step: Callable[..., Any], z: Any) -> np.ndarray:
+    """The amplitude of the oscillator after 1, 2, ... steps of 0.5 rad, one for each entry of z."""
+    return amplitude(*oscillate(step, 0.5, len(z)))
+
+
 def oscillator(x: Any, v: Any) -> np.ndarray:
     """The acceleration [m/s2] of an oscillator of 1 rad/s without damping."""
     return -np.asarray(x, np.float64)

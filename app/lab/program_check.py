@@ -37,6 +37,17 @@ class Verdict:
     seconds: float = 0.0
 
 
+@dataclasses.dataclass(frozen=True)
+class Points:
+    """A curve of the student's function beside the reference. student: None where it has no result."""
+
+    x_label: str
+    y_label: str
+    x: np.ndarray
+    reference: np.ndarray
+    student: np.ndarray | None
+
+
 class Student:
     """A student's function, called with the types of the reference solution."""
 
@@ -160,6 +171,22 @@ def check_program(folder: Path, runner: Runner, task: Task) -> Verdict:
     except Wrong as error:
         return verdict("wrong", str(error), error.mistake)
     return verdict("right")
+
+
+def draw(runner: Runner, task: Task) -> Points | None:
+    """The curve of a task for the report; None where the task has none."""
+    curve = getattr(task.check, "CURVE", None)
+    if curve is None:
+        return None
+    x = np.asarray(curve.x, np.float64)
+    reference = np.asarray(curve.values(task.function, x), np.float64)
+    try:
+        found = np.asarray(curve.values(Student(runner, task), x), np.float64)
+    except (RunError, Wrong, ValueError, IndexError):  # its message stands above the curve
+        found = None
+    if found is not None and found.shape != x.shape:
+        found = None
+    return Points(curve.x_label, curve.y_label, x, reference, found)
 
 
 def behave(student: Student) -> None:

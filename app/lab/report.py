@@ -6,6 +6,7 @@ from pathlib import Path
 
 from app.lab.answer_check import AnswerVerdict
 from app.lab.answers import Value
+from app.lab.chart import chart
 from app.lab.check import FolderResult, TaskResult
 from app.lab.folder import PICTURES
 from app.render.html import Html, fill, join
@@ -19,7 +20,8 @@ STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #1b2a3a; max-width: 60em; margin: 2em auto; padding: 0 1em; }
 h1, h2, h3 { line-height: 1.25; } h3 { margin: 2em 0 0.3em; }
 table { border-collapse: collapse; margin: 0.5em 0; } td, th { border: 1px solid #ccd3da; padding: 0.25em 0.6em;
-text-align: left; vertical-align: top; overflow-wrap: anywhere; }
+text-align: left; vertical-align: top; overflow-wrap: break-word; }
+.answers { table-layout: fixed; width: 100%; } .answers :is(td, th):first-child { width: 6.5em; }
 pre { background: #f3f5f7; padding: 0.7em; overflow-x: auto; font-size: 13px; } img, svg { max-width: 100%; }
 .right { color: #1e6b2c; } .wrong, .failed { color: #b51d1d; } .incomplete { color: #9a4b00; }
 .faint { color: #4d5560; }
@@ -105,13 +107,13 @@ def task_section(entry: TaskResult) -> Html:
     table = Html()
     if entry.answers:
         table = fill(
-            "<table><tr><th></th><th>question</th><th>answer</th><th>check</th></tr>{}</table>",
+            '<table class="answers"><tr><th></th><th>question</th><th>answer</th><th>check</th></tr>{}</table>',
             join(answer_row(verdict) for verdict in entry.answers),
         )
     return fill(
-        '<h3>{} {}{}: <span class="{}">{}</span></h3><p class="faint">{}</p>{}{}',
+        '<h3>{} {}{}: <span class="{}">{}</span></h3><p class="faint">{}</p>{}{}{}',
         task.item, task.title, " (optional)" if task.optional else "", state_class(entry.state), entry.state,
-        task.statement, said, table,
+        task.statement, said, table, Html() if entry.points is None else chart(entry.points),
     )  # fmt: skip
 
 

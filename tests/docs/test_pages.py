@@ -3,6 +3,7 @@
 import argparse
 import itertools
 import re
+from collections.abc import Iterator
 
 import pytest
 
@@ -30,8 +31,15 @@ EXAMPLE_FOLDERS = {path.rpartition("/")[0] for path in EXAMPLES}
 def subcommands() -> dict[str, argparse.ArgumentParser]:
     """The parser of each sub-command; "" is serving."""
     parser = make_parser()
-    inner = next(a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
-    return {"": parser, **inner.choices}
+    return {"": parser, **dict(parsers_below(parser))}
+
+
+def parsers_below(parser: argparse.ArgumentParser, prefix: str = "") -> Iterator[tuple[str, argparse.ArgumentParser]]:
+    """The sub-commands of a parser, and theirs: `lab` and `lab new`."""
+    for action in parser._actions:
+        for name, inner in action.choices.items() if isinstance(action, argparse._SubParsersAction) else ():
+            yield prefix + name, inner
+            yield from parsers_below(inner, f"{prefix}{name} ")
 
 
 @pytest.mark.parametrize("link", links(), ids=str)
@@ -56,7 +64,7 @@ def test_a_test_is_there(named):
 def test_a_command_has_its_sub_command_and_options(named):
     parsers = subcommands()
     words = re.sub(r"[\[\]]", "", named.what.partition("#")[0]).split()[1:]
-    command = words[0] if words and words[0] in parsers else ""
+    command = next((name for name in (" ".join(words[:2]), *words[:1]) if name in parsers), "")
     if words and not words[0].startswith("-"):
         assert command, f"no sub-command {words[0]}"
     known = parsers[command]._option_string_actions

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def dispersion(k, calm, repeat_time, gravity):
@@ -60,6 +60,13 @@ MISTAKES = (
         "This counts the multiples of w0: multiply by w0 again.",
         lambda k, c, T, g: c * np.floor(np.sqrt(g * k) * T / (2 * np.pi)),
     ),
+)
+
+CURVE = Curve(
+    "wavenumber [rad/m]",
+    "frequency [rad/s]",
+    np.linspace(0.02, 2.0, 40),
+    lambda f, x: [f(k, 1.0, 20.0, 9.81) for k in x],
 )
 
 

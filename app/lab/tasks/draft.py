@@ -1,6 +1,8 @@
 """The reference solution and the check of a task."""
 
-from app.lab.checking import Mistake, require
+import numpy as np
+
+from app.lab.checking import Curve, Mistake, require
 
 
 def draft(body_density, height, oil_density, oil_thickness, water_density):
@@ -60,6 +62,13 @@ MISTAKES = (
         "The two cases are swapped: the oil alone carries the box where rho_body H <= rho_oil d.",
         lambda b, H, o, d, w: d + (b * H - o * d) / w if b * H <= o * d else b * H / o,
     ),
+)
+
+CURVE = Curve(
+    "thickness of the oil [m]",
+    "draft [m]",
+    np.linspace(0.0, 1.0, 21),
+    lambda f, x: [f(500.0, 1.0, 850.0, d, 1025.0) for d in x],
 )
 
 

@@ -1,6 +1,8 @@
 """The reference solution and the check of a task."""
 
-from app.lab.checking import Mistake, require
+import numpy as np
+
+from app.lab.checking import Curve, Mistake, require
 
 
 def gravity(mass_ratio):
@@ -40,6 +42,8 @@ MISTAKES = (
     Mistake("mass forgotten", "This is g for a planet of one mass but another radius.", lambda m: 9.81 * m ** (-2 / 3)),
     Mistake("upside down", "The heavier planet has the lower gravity here.", lambda m: 9.81 * m ** (-1 / 3)),
 )
+
+CURVE = Curve("mass [Earth masses]", "gravity [m/s2]", np.linspace(0.1, 10.0, 25), lambda f, x: [f(m) for m in x])
 
 
 def behaviour(student):

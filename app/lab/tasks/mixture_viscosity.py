@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def mixture_viscosity(oil_viscosity, water_viscosity, oil_fraction):
@@ -49,6 +49,8 @@ MISTAKES = (
     Mistake("harmonic mean", "This is the mean of the inverse values.", lambda o, w, f: 1 / (f / o + (1 - f) / w)),
     Mistake("weights do not sum to one", "The water counts in full. Its weight is 1 - phi.", lambda o, w, f: o**f * w),
 )
+
+CURVE = Curve("share of oil", "viscosity [Pa s]", np.linspace(0.0, 1.0, 21), lambda f, x: [f(0.1, 0.001, p) for p in x])
 
 
 def behaviour(student):

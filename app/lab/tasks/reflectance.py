@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def reflectance(angle, index):
@@ -73,6 +73,8 @@ MISTAKES = (
     ),
     Mistake("light that passes", "This is the share that passes into the fluid.", lambda a, n: 1 - reflectance(a, n)),
 )
+
+CURVE = Curve("angle [rad]", "reflectance of oil", np.linspace(0.02, 1.55, 30), lambda f, x: [f(a, 1.47) for a in x])
 
 
 def behaviour(student):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def spectrum(k, wind, amplitude, gravity):
@@ -65,6 +65,13 @@ MISTAKES = (
             0.0 if not k.any() else variant(cut=False)(k, w, A, g) * np.exp(-g / (np.linalg.norm(k) * (w @ w)))
         ),
     ),
+)
+
+CURVE = Curve(
+    "wavenumber along the wind [rad/m]",
+    "power [m4]",
+    np.linspace(0.1, 1.0, 40),
+    lambda f, x: [f(np.array([k, 0.0]), np.array([7.0, 0.0]), 0.01, 9.81) for k in x],
 )
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def sphere_force(x, v, centre, radius, stiffness, damping):
@@ -110,6 +110,13 @@ MISTAKES = (
         "The force grows with the distance from the centre. It grows with the depth R - |x - c|.",
         distance_for_depth,
     ),
+)
+
+CURVE = Curve(
+    "distance from the centre [m]",
+    "force outwards [N]",
+    np.linspace(0.1, 1.5, 29),
+    lambda f, x: [f(np.array([r, 0.0, 0.0]), np.zeros(3), np.zeros(3), 1.0, 10.0, 1.0)[0] for r in x],
 )
 
 

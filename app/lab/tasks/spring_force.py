@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, Wrong, require
+from app.lab.checking import Curve, Mistake, Wrong, require
 
 
 def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):
@@ -109,6 +109,13 @@ MISTAKES = (
         "The damping acts along the spring only. That is a good model, but this rope damps all of v1 - v2.",
         axial_damping,
     ),
+)
+
+CURVE = Curve(
+    "length [m]",
+    "force along the spring [N]",
+    np.linspace(0.2, 2.0, 19),
+    lambda f, x: [f(np.zeros(3), np.array([r, 0.0, 0.0]), np.zeros(3), np.zeros(3), 10.0, 1.0, 1.0)[0] for r in x],
 )
 
 

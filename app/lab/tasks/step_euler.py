@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
-from app.lab.oscillator import amplitude, oscillate, step_inputs
+from app.lab.checking import Curve, Mistake, require
+from app.lab.oscillator import amplitude, amplitudes, oscillate, step_inputs
 
 
 def step_euler(x, v, h, acceleration):
@@ -77,6 +77,8 @@ MISTAKES = (
     Mistake("results swapped", "It returns (v, x). Return the positions first.", swapped),
     Mistake("sign of the acceleration reversed", "The velocity changes by -h a.", against),
 )
+
+CURVE = Curve("steps of h omega = 0.5", "amplitude of an oscillator", np.arange(1.0, 31.0), amplitudes)
 
 
 def behaviour(student):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
-from app.lab.oscillator import amplitude, oscillate, step_inputs
+from app.lab.checking import Curve, Mistake, require
+from app.lab.oscillator import amplitude, amplitudes, oscillate, step_inputs
 
 
 def step_leapfrog(x, v, h, acceleration):
@@ -94,6 +94,8 @@ MISTAKES = (
         alternating,
     ),
 )
+
+CURVE = Curve("steps of h omega = 0.5", "amplitude of an oscillator", np.arange(1.0, 31.0), amplitudes)
 
 
 def behaviour(student):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.lab.checking import Counted, Mistake, require
-from app.lab.oscillator import oscillate, oscillator, step_inputs
+from app.lab.checking import Counted, Curve, Mistake, require
+from app.lab.oscillator import amplitudes, oscillate, oscillator, step_inputs
 
 
 def step_rk4(x, v, h, acceleration):
@@ -80,6 +80,8 @@ MISTAKES = (
         "midpoint method", "This is the midpoint method, of second order: only f2 counts.", variant((0, 1, 0, 0), 1.0)
     ),
 )
+
+CURVE = Curve("steps of h omega = 0.5", "amplitude of an oscillator", np.arange(1.0, 31.0), amplitudes)
 
 
 def behaviour(student):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def wave_decay(amplitude, wavenumber, viscosity, time):
@@ -50,6 +50,8 @@ MISTAKES = (
     ),
     Mistake("rate instead of amplitude", "This is the rate of decay.", lambda a, k, n, t: 2 * n * k**2),
 )
+
+CURVE = Curve("time [s]", "amplitude [m]", np.linspace(0.0, 60.0, 25), lambda f, x: [f(1.0, 2.0, 0.005, t) for t in x])
 
 
 def behaviour(student):

@@ -1,0 +1,58 @@
+"""Curves in the report."""
+
+import re
+
+import numpy as np
+import pytest
+
+from app.lab.chart import HEIGHT, TICKS, WIDTH, chart, ticks
+from app.lab.program_check import Points, draw
+from app.lab.runner import Runner
+from app.lab.task import load_tasks
+
+X = np.linspace(0.0, 3.0, 7)
+
+
+def coordinates(svg: str) -> list[float]:
+    """Every number of the drawn line and points."""
+    found = re.findall(r'points="([^"]*)"', svg)[0].replace(",", " ").split()
+    return [float(n) for n in (*found, *re.findall(r'c[xy]="([^"]+)"', svg))]
+
+
+@pytest.mark.parametrize(
+    "student",
+    [X**2, -X, 1e9 * X, np.full(7, np.nan), np.full(7, np.inf), np.zeros(7), None],
+    ids=["right", "wrong", "huge", "nan", "inf", "zero", "none"],
+)
+@pytest.mark.parametrize("reference", [X**2, np.ones(7), np.zeros(7)], ids=["rising", "constant", "zero"])
+def test_a_curve_stays_inside_its_chart(reference: np.ndarray, student: np.ndarray | None) -> None:
+    svg = chart(Points("x <i>", "y", X, reference, student))
+    assert "x &lt;i&gt;" in svg
+    for number in coordinates(svg):
+        assert 0.0 <= number <= max(WIDTH, HEIGHT)
+    assert "nan" not in svg
+    assert "inf" not in svg
+
+
+def test_a_curve_without_a_finite_value_is_left_out() -> None:
+    assert chart(Points("x", "y", X, np.full(7, np.nan), None)) == ""
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (-3.7, 12.0), (1e-9, 2e-9), (1e8, 1.1e8), (2.0, 2.0)])
+def test_ticks_are_round_and_few(low: float, high: float) -> None:
+    found = ticks(low, high)
+    assert 1 <= len(found) <= TICKS + 1
+    assert all(low <= tick <= high for tick in found)
+
+
+def test_every_curve_of_a_task_has_the_reference_and_the_student(tmp_path) -> None:
+    for task in load_tasks():
+        if not hasattr(task.check, "CURVE"):
+            continue
+        (tmp_path / task.file).write_text(f"import numpy as np\ndef {task.name}(*a):\n    return 1 / 0\n")
+        with Runner(tmp_path) as runner:
+            points = draw(runner, task)
+        assert points is not None
+        assert np.isfinite(points.reference).all()
+        assert np.ptp(points.reference) > 0.0 or task.name == "step_leapfrog"
+        assert points.student is None

@@ -1,0 +1,80 @@
+"""The page on the course lab: its table is that of the tasks, and the teacher's example works as it stands."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from app.__main__ import main
+from app.lab.task import QUESTION_KINDS, load_tasks
+from tests.docs.pages import ROOT, text_of
+
+PAGE = text_of(ROOT / "docs" / "lab.md")
+FILES = dict(re.findall(r"^File `([^`]+)`:\n\n```\w+\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL))
+COMMANDS = re.findall(r"^```sh\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+
+
+def test_the_table_names_scene_preset_and_functions_of_each_item() -> None:
+    rows = re.findall(r"^\| (\d\.\d-\d) \| .* \| `(\w+)` \| (.+?) \| (.*) \|$", PAGE, re.MULTILINE)
+    expected = []
+    tasks = load_tasks()
+    for item in dict.fromkeys(task.item for task in tasks):
+        own = [task for task in tasks if task.item == item]
+        setup = next(task.setup for task in own if task.setup)
+        functions = ", ".join(f"`{task.name}`" for task in own if task.file)
+        expected.append((item, setup.scene, setup.preset, functions))
+    assert [(item, scene, preset, functions.strip()) for item, scene, preset, functions in rows] == expected
+    assert len(rows) == 22
+
+
+@pytest.fixture
+def teacher(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    for name, text in FILES.items():
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_the_teacher_s_example_works(teacher: Path) -> None:
+    assert set(FILES) == {"my_tasks/pendulum_period.toml", "my_tasks/pendulum_period.py"}
+    new, check = (shlex.split(line)[1:] for line in COMMANDS[-1].splitlines())
+    assert main(new) == 0
+    stub = (teacher / "course" / "pendulum.py").read_text()
+    assert "def pendulum_period(length, gravity):" in stub
+    assert "np.sqrt" not in stub
+    assert main(check) == 1
+    assert main(["lab", "new", "solved", "--solutions", "--tasks", "my_tasks"]) == 0
+    assert main(["lab", "check", "solved", "--tasks", "my_tasks", "--report", "report.html"]) == 0
+    assert "The period of a pendulum" in (teacher / "report.html").read_text()
+    assert "period [s]" in (teacher / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ("2 * np.pi * np.sqrt(gravity / length)", "ratio upside down"),
+        ("2 * np.pi * length / gravity", "root forgotten"),
+        ("np.sqrt(length / gravity)", "constant factor"), ("2 * np.pi * np.sqrt(length / 9.81)", "gravity not used"),
+    ],
+)  # fmt: skip
+def test_the_mistakes_of_the_example_are_named(teacher: Path, capsys, body: str, said: str) -> None:
+    main(["lab", "new", "solved", "--solutions", "--tasks", "my_tasks"])
+    (teacher / "solved" / "pendulum.py").write_text(
+        f"import numpy as np\ndef pendulum_period(length, gravity):\n    return {body}\n"
+    )
+    capsys.readouterr()
+    assert main(["lab", "check", "solved", "--tasks", "my_tasks", "--json"]) == 1
+    assert f'"mistake": "{said}"' in capsys.readouterr().out
+
+
+def test_the_page_lists_every_entry_and_every_name_that_a_check_may_have() -> None:
+    for word in ("item", "title", "file", "optional", "order", "statement", "setup", "question", "typical_error"):
+        assert re.search(rf"`[\[]*(question\.)?{word}[\]]*`", PAGE), word
+    for kind in QUESTION_KINDS:
+        assert f'`"{kind}"`' in PAGE
+    sources = "".join(path.read_text() for path in (ROOT / "app" / "lab" / "tasks").glob("*.py"))
+    for name in {"inputs", *re.findall(r"^([A-Z]{5,}) = ", sources, re.MULTILINE)} - {"ALL"}:
+        assert f"`{name}" in PAGE, name

@@ -72,3 +72,19 @@ def test_a_pin_is_moved_by_its_arrow(shown: tuple[Viewer, Tab]) -> None:
     tab.wait(drag_up)  # again where a slow page had not yet noticed what the mouse was over
     tab.wait(lambda: lab.scene.state.x[2, 0, 0] > pin[2] + 0.1)
     assert tab.errors == []
+
+
+def test_the_sphere_moves_by_its_vertices_like_the_cloth(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    lab.panel.load("Trampoline")
+    tab.wait(lambda: lab.loop.latest.frame.sphere is not None and lab.scene.time > 0.3)
+    lab.loop.commands.put(Pause())
+    tab.wait(lambda: not lab.loop.running and lab.shown == lab.loop.latest.serial)
+    *centre, radius = lab.loop.latest.frame.sphere
+
+    def drawn() -> bool:
+        sphere = tab.vertices("/sphere/ball")
+        return len(sphere) > 0 and np.allclose(np.linalg.norm(sphere - centre, axis=1), radius, atol=1e-5)
+
+    tab.wait(drawn, 30)
+    assert np.array_equal(lab.view.ball.position, (0.0, 0.0, 0.0))

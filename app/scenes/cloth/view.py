@@ -21,6 +21,7 @@ from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 from sim.formatting import number
 
 CLOTH_COLOUR = (176, 58, 72)
+SPHERE_ROWS = 24  # of the drawn sphere, from pole to pole
 SPHERE_COLOUR = (92, 140, 190)
 PIN_COLOUR = (60, 66, 80)
 PIN_RADIUS = 0.018  # [m] of the balls that mark the pins
@@ -60,7 +61,10 @@ class View:
         self.drag = SurfaceDrag(post)
         scene = server.scene
         self.surroundings = Surroundings(server)
-        self.ball = scene.add_mesh_simple("/sphere/ball", *ball(48), color=SPHERE_COLOUR, visible=False)
+        # The sphere moves by its vertices, as the cloth does: a slow page applies positions of nodes at other times.
+        self.unit_ball, triangles = ball(SPHERE_ROWS)
+        self.ball = scene.add_mesh_simple("/sphere/ball", self.unit_ball, triangles, color=SPHERE_COLOUR, visible=False)
+        self.shown_sphere: tuple[float, float, float, float] | None = None
         self.pins = [Gizmo(server, post, name, PIN_ARROW_LENGTH, visible=False) for name in ("pin a", "pin b")]
         self.sphere = Gizmo(server, post, "sphere", SPHERE_ARROW_LENGTH, visible=False)
         self.pin_balls = [
@@ -128,9 +132,9 @@ class View:
             self.sphere.show(None)
         else:
             self.sphere.show(frame.sphere_home, -frame.sphere[3] - SPHERE_ARROW_GAP)
-        if frame.sphere is not None:
-            self.ball.position = frame.sphere[:3]
-            self.ball.scale = frame.sphere[3]
+        if frame.sphere is not None and frame.sphere != self.shown_sphere:
+            self.shown_sphere = frame.sphere
+            self.ball.vertices = (self.unit_ball * frame.sphere[3] + frame.sphere[:3]).astype(np.float32)
 
     def readout(self, snapshot: ClothSnapshot) -> str:
         """The stability bar, the cost of an implicit step and the colour scale, as HTML."""

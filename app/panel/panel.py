@@ -97,11 +97,12 @@ class Panel:
             with gui.add_folder("Stability map", expand_by_default=False):
                 self.map = stability_map.StabilityMapPanel(gui, kind.stability_map, read, self.set)
         self.controls: dict[str, Control] = {}
-        groups: dict[str, viser.GuiFolderHandle] = {}
+        self.folders: dict[str, viser.GuiFolderHandle] = {}
         for name, parameter in parameters_of(params).items():
-            if parameter.group not in groups:
-                groups[parameter.group] = gui.add_folder(parameter.group, expand_by_default=len(groups) < OPEN_GROUPS)
-            folder = groups[parameter.group]
+            if parameter.group not in self.folders:
+                is_open = len(self.folders) < OPEN_GROUPS
+                self.folders[parameter.group] = gui.add_folder(parameter.group, expand_by_default=is_open)
+            folder = self.folders[parameter.group]
             with folder:
                 self.controls[name] = Control(gui, folder, name, parameter, self.reader(name), self.on_change)
         self.display = Display(gui, view)
@@ -171,10 +172,16 @@ class Panel:
         self.show_preset()
 
     def hide(self) -> None:
-        """Hide the controls that mean nothing just now."""
+        """Hide the controls that mean nothing just now, and the folders in which nothing is left."""
         hidden = self.kind.hidden(self.params)
+        shown: set[str] = set()
         for name, control in self.controls.items():
             control.show(name not in hidden)
+            if name not in hidden:
+                shown.add(control.parameter.group)
+        for group, folder in self.folders.items():
+            if folder.visible != (group in shown):
+                folder.visible = group in shown
 
     async def on_preset(self, event: ViserEvent) -> None:
         """A browser has chosen a preset; viser also calls this where `show_preset` assigns it, without a client."""

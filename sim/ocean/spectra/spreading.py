@@ -8,7 +8,12 @@ import math
 
 import numpy as np
 
-SPREADINGS = ("cos2", "cos2s", "hasselmann", "donelan_banner")
+SPREADINGS = {  # name -> its title in a list
+    "cos2": "cos² θ",
+    "cos2s": "cos²ˢ θ/2",
+    "hasselmann": "Hasselmann",
+    "donelan_banner": "Donelan and Banner",
+}
 
 _log_gamma = np.vectorize(math.lgamma, otypes=[np.float64])
 

@@ -114,3 +114,23 @@ def test_what_the_panel_calls_things_is_typeset(scene: str) -> None:
         assert not any(re.search(r"_|\^|\b(deg|rad)\b", text) for text in texts), name
         assert parameter.doc[0].isupper() or parameter.doc[0].isdigit(), name
         assert not parameter.doc.endswith("."), name
+
+
+def test_a_folder_is_shown_where_it_has_a_control_and_a_line_with_its_control() -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        viewer.open("radial_sea", scene_named("radial_sea").params(spill="layer"))
+        panel = viewer.panel
+        panel.controls["exposure"].write("a line")
+        line = panel.controls["exposure"].line
+        assert line is not None
+        assert (panel.folders["Oil"].visible, line.visible) == (True, True)
+        panel.set("spill", "none")
+        assert (panel.folders["Oil"].visible, line.visible) == (False, False)
+        panel.controls["exposure"].write("another line")
+        assert not line.visible
+        assert panel.folders["Main"].visible
+        panel.set("spill", "mixed")
+        assert (panel.folders["Oil"].visible, line.visible) == (True, True)
+    finally:
+        viewer.shut()

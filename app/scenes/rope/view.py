@@ -150,6 +150,8 @@ class View:
             self.beads.batched_colors = colours
             self.shown_pull = held
         root = tuple(self.points[0].tolist())
+        # A slow page moves a node later than the vertices of the rope: while the root moves, the hook is not shown.
+        self.hook.visible = self.shown_hook in (None, root)
         if root != self.shown_hook:
             self.shown_hook = root
             self.hook.position = root

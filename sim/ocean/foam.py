@@ -1,4 +1,7 @@
-"""Foam where the displaced surface folds together: which Jacobian is foam, so that the sea is as white as measured.
+"""Foam where the displaced surface is most compressed: which Jacobian is foam, so that the sea is as white as measured.
+
+The law of the covered share was measured on the seas of the Earth. Where short waves were damped away, less breaks: the
+share is taken times what is left of the mean square slope (`Sea.slope_left`).
 
 The Jacobian J is 1 + Dxx + Dyy to first order, and Dxx + Dyy is Gaussian with variance choppiness^2 mss. A point below
 the threshold 1 - z sigma is breaking; it stays there for Rice's mean excursion, and its foam outlasts that.
@@ -32,7 +35,7 @@ def pace(sea: "Sea", t: float) -> tuple[float, float]:
 
 
 def threshold(coverage: float, spread: float, frequency: float, lasting: float) -> float:
-    """The Jacobian below which foam is made so that the share `coverage` of the sea is foam. 0 where there is none.
+    """The Jacobian below which foam is made so that the share `coverage` of the sea is foam. -inf where none is.
 
     spread: standard deviation of J, choppiness sqrt(mss); frequency [rad/s]: of `pace`; lasting [s]: for how long foam
     is seen after its crest has passed.
@@ -40,7 +43,7 @@ def threshold(coverage: float, spread: float, frequency: float, lasting: float) 
     of them a second (Rice 1944), so the covered share is Phi(-z) + rate lasting.
     """
     if not (spread > 0.0 and coverage > 0.0):
-        return 0.0
+        return -math.inf
     low, high, z = -4.0, 8.0, 0.0
     for _ in range(50):
         z = 0.5 * (low + high)

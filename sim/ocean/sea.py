@@ -109,6 +109,7 @@ class Sea:
         }
         self._given: dict[str, Any] = {}  # conditions as given, those of other spectra too
         self._lost = np.zeros_like(self._k)  # -ln of the share of each wave that is left of that time, a quarter plane
+        self._sloped_under: tuple[Conditions | None, np.ndarray] = None, self._lost  # for `slope_left`
         self._set_conditions(spectrum, given | more, Medium())
         self._start = self._target
         self._set_planes()
@@ -233,6 +234,22 @@ class Sea:
         """S(k) dk^2 of each wave at time t, relaxed and decayed, (size, size) [m2], 0 where the tile has no wave."""
         return self._magnitude(t) ** 2 * resolved(self.size)
 
+    def slope_left(self, t: float) -> float:
+        """Share of the mean square slope that low-pass and viscosity have left at time t [s]; 1 on a level sea.
+
+        It is that of the tile's waves under the present wind, whether or not they have grown yet.
+        """
+        lost = self._checked_lost(t)
+        c = dataclasses.replace(self.conditions, low_pass=0.0)
+        if c != self._sloped_under[0]:
+            S = self.spectrum(self.k[:, None], self.k[None, :], c)
+            folded = np.zeros_like(self._k)
+            np.add.at(folded, np.ix_(self._folded, self._folded), S * resolved(self.size))
+            self._sloped_under = c, folded * self._k**2
+        slope = self._sloped_under[1]
+        whole = float(slope.sum())
+        return float((slope * self._passed * np.exp(-2.0 * lost)).sum()) / whole if whole > 0.0 else 1.0
+
     @property
     def frequencies(self) -> np.ndarray:
         """omega(k) [rad/s] as propagated, (size, size), FFT order; 0 on the mean and the Nyquist lines."""
@@ -286,6 +303,7 @@ class Sea:
         self._fall = (-decay).astype(self._real)
         S = self.spectrum(self.k[:, None], self.k[None, :], conditions)
         dk = 2.0 * math.pi / self.length
+        self._passed = np.exp(-((self._k * conditions.low_pass) ** 2))
         if self.spectrum.line is not None:
             self._add_line(S, self.spectrum.line(conditions), dk)
         self._target = np.sqrt(S) * dk
@@ -309,6 +327,11 @@ class Sea:
             raise argument_error("t", t, f"{self._base:g} s or later: decaying and relaxing waves do not run back")
         return t
 
+    def _checked_lost(self, t: float) -> np.ndarray:
+        """-ln of the share of each wave that is left at time t [s], a quarter plane. Errors as for `_checked_time`."""
+        t = self._checked_time(t)
+        return self._lost + self._decay * (t - self._base) if self._decays else self._lost
+
     def _add_to_past(self, medium: Medium, conditions: Conditions, decay: np.ndarray, duration: float) -> None:
         """Book a time [s] in a medium, where waves have decayed at these rates (a quarter plane, [1/s])."""
         if duration == 0.0 or not decay.any():
@@ -324,8 +347,7 @@ class Sea:
 
     def _magnitude(self, t: float) -> np.ndarray:
         """sqrt(S dk^2) of each wave at time t, relaxed and decayed, (size, size) [m]."""
-        t = self._checked_time(t)
-        lost = self._lost + self._decay * (t - self._base) if self._decays else self._lost
+        lost = self._checked_lost(t)
         return self._undecayed(t) * self._full(np.exp(-lost)) if lost.any() else self._undecayed(t)
 
     def _share(self, t: float) -> float:

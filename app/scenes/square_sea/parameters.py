@@ -128,9 +128,11 @@ class Params:
         title="Lab's repeat period",
     )
 
-    foam: bool = parameter(True, doc="Foam where crests fold", group="Foam and rain")
+    foam: bool = parameter(True, doc="Foam where the surface is most compressed", group="Foam and rain")
     foam_by_wind: bool = parameter(
-        True, doc="As much foam as Monahan measured at this wind speed", group="Foam and rain"
+        True,
+        doc="As much foam as was measured at this wind speed; less on a damped sea",
+        group="Foam and rain",
     )
     foam_threshold: float = parameter(0.5, -1.0, 1.0, "", "Jacobian below which there is foam", group="Foam and rain")
     foam_fade: float = parameter(

@@ -3,20 +3,29 @@
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from app.messages import Snapshot
 from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, join, lines, table
-from app.scenes.square_sea.parameters import Params, gravity
+from app.scenes.square_sea.parameters import Params, conditions, gravity
 from app.scenes.square_sea.statistics import Report
 from sim.formatting import count, fixed, metres, number, percent, seconds
-from sim.ocean.planets import RADIUS_RULES, gravity_of
-from sim.ocean.statistics import beaufort, resolved_in_time
+from sim.ocean.dispersion import viscous_root
+from sim.ocean.gerstner import peak_wavenumber
+from sim.ocean.planets import EARTH_GRAVITY, RADIUS_RULES, gravity_of
+from sim.ocean.spectra import SPECTRA, Conditions, Spectrum
+from sim.ocean.spectra.jonswap import FetchConditions, fetch_of_full_growth
+from sim.ocean.spectra.regular import RegularConditions
+from sim.ocean.statistics import BREAKING_HEIGHT, beaufort, open_sea_height, resolved_in_time
 
 if TYPE_CHECKING:
-    from app.scenes.square_sea.scene import RainReadings
+    from app.scenes.square_sea.scene import RainReadings, SeaReadings
 
+MIN_SLOPE_LEFT = 0.98  # share of the mean square slope below which the sea counts as damped
 MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
 BAND_WIDTH = 2.0  # standard deviations to each side: 95 of 100 seas lie within
-WATER_VISCOSITY, HEAVY_OIL_VISCOSITY = 1e-6, 1e-3  # [m2/s] kinematic, to compare with
+WATER_VISCOSITY, HEAVY_OIL_VISCOSITY = 1e-6, 2e-2  # [m2/s] kinematic, to compare with
+SIMILAR = ("pierson_moskowitz", "phillips")  # spectra that know no other length than U^2/g
 HEADING = "Lab says, physics says"
 
 
@@ -27,15 +36,55 @@ def readout(snapshot: Snapshot) -> Html:
     if r.report is not None:
         texts.append(statistics_table(r.report))
     if frame.params.foam:
-        texts.append(
-            f"Foam covers {percent(r.foam_cover)} of the sea; by Monahan's law {percent(r.expected_foam_cover)}."
-        )
+        texts.append(foam_text(r, gravity(frame.params)))
+    breaking = breaking_text(frame.params)
+    if breaking:
+        texts.append(coloured(breaking, WARNING_COLOUR))
     if r.rain is not None:
         texts.append(rain_text(r.rain))
     if frame.gauge is not None:
         x, y, z = frame.gauge
         texts.append(f"Wave gauge at ({x:.1f}, {y:.1f}) m: {fixed(z, 2, sign=True)} m.")
     return lines(texts)
+
+
+def foam_text(r: "SeaReadings", g: float) -> str:
+    """How much of the sea is foam, and by what it is compared."""
+    covered = f"Foam covers {percent(r.foam_cover)} of the sea"
+    if r.slope_left < MIN_SLOPE_LEFT:
+        left = percent(r.slope_left)
+        return f"{covered}; expected {percent(r.expected_foam_cover)}: Monahan's law times the {left} of slope left."
+    if abs(g / EARTH_GRAVITY - 1.0) > 0.02:
+        return f"{covered}; Monahan's law, measured on the Earth, gives {percent(r.expected_foam_cover)}."
+    return f"{covered}; by Monahan's law {percent(r.expected_foam_cover)}."
+
+
+def breaking_text(params: Params) -> str:
+    """A warning where the waves are too high for the depth; "" where they are not."""
+    if params.deep:
+        return ""
+    spectrum = SPECTRA[params.spectrum]
+    height = open_sea_height(spectrum, spectrum_conditions(params, params.wind_speed, gravity(params)))
+    if height <= BREAKING_HEIGHT * params.depth:
+        return ""
+    other = "" if spectrum.name == "tma" else " Of the wind seas only TMA is limited by depth."
+    return (
+        f"Hs = {number(height)} m is {number(height / params.depth, 2)} times the depth. Above {BREAKING_HEIGHT:g} "
+        f"such waves break, which these do not.{other}"
+    )
+
+
+def depth_line(params: Params) -> str:
+    """Height over depth."""
+    return breaking_text(params) or "waves are lower than 0.6 of the depth"
+
+
+def fetch_line(c: FetchConditions) -> str:
+    """Where the sea is fully grown."""
+    full = fetch_of_full_growth(c)
+    if c.fetch >= full:
+        return f"fully grown, as from {metres(full)} on: a longer fetch adds nothing, and the peak factor is 1"
+    return f"fully grown at {metres(full)}"
 
 
 def rain_text(rain: "RainReadings") -> str:
@@ -86,17 +135,27 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     p: Params = snapshot.frame.params
     limit = snapshot.readings.foam_limit
     cell = p.length / int(p.size)
-    return {
+    c = spectrum_conditions(p, p.wind_speed, gravity(p))
+    found = {
         "wind_speed": wind_line(p),
         "planet": f"g = {number(gravity(p))} m/s²",
         "radius_rule": radius_line(p),
         "low_pass": low_pass_line(p),
-        "viscosity": viscosity_line(p, snapshot.readings.age),
+        "viscosity": viscosity_line(p, snapshot.readings.viscous_area),
         "loop_period": f"repeats every {seconds(p.loop_period, 2)}" if p.loop_period else "never repeats",
         "size": f"grid spacing {metres(cell)}, shortest wave {metres(2 * cell)}",
         "mesh": f"grid spacing {metres(p.length / len(snapshot.frame.vertices))}",
         "foam_by_wind": f"foam where the Jacobian is below {fixed(limit, 2)}" if math.isfinite(limit) else "no foam",
     }
+    if not p.deep:
+        found["depth"] = depth_line(p)
+    if isinstance(c, FetchConditions) and not SPECTRA[p.spectrum].is_level(c):
+        found["fetch"] = fetch_line(c)
+    if isinstance(c, RegularConditions) and snapshot.readings.report is not None:
+        length, _ = snapshot.readings.report.theory.wave
+        period = snapshot.readings.report.theory.statistics.peak_period
+        found["wave_period"] = f"the nearest wave that fits the tile: {metres(length)}, {seconds(period)}"
+    return found
 
 
 def notes(snapshot: Snapshot) -> dict[str, str]:
@@ -107,7 +166,11 @@ def notes(snapshot: Snapshot) -> dict[str, str]:
 def wind_line(params: Params) -> str:
     """The wind on Beaufort's scale."""
     force, name = beaufort(params.wind_speed)
-    return f"Beaufort {force}, {name}"
+    spectrum = SPECTRA[params.spectrum]
+    if spectrum.wind_height == 10.0:
+        return f"Beaufort {force}, {name}"
+    there = number(spectrum.wind_speed(params.wind_speed))
+    return f"Beaufort {force}, {name}; {there} m/s at {spectrum.wind_height:g} m, which this spectrum takes"
 
 
 def radius_line(params: Params) -> str:
@@ -119,50 +182,103 @@ def radius_line(params: Params) -> str:
 
 
 def low_pass_line(params: Params) -> str:
-    """How long a fluid at rest takes to lose the waves that the low pass l leaves out: T = l^2/(4 nu)."""
+    """How long fluids at rest take to lower a wave of wavenumber 1/l as the low pass l does: by e^(-1/2)."""
     if params.low_pass == 0.0:
         return "no wave is left out"
-    water, oil = (params.low_pass**2 / (4.0 * nu) for nu in (WATER_VISCOSITY, HEAVY_OIL_VISCOSITY))
-    return f"like {seconds(water, 2)} of decay in water, or {seconds(oil, 2)} in heavy oil (10⁻³ m²/s)"
+    k, g = 1.0 / params.low_pass, gravity(params)
+    water, oil = (0.5 / float(viscous_root(k, nu, g)[1]) for nu in (WATER_VISCOSITY, HEAVY_OIL_VISCOSITY))
+    return f"like {seconds(water, 2)} of decay in water, or {seconds(oil, 2)} in heavy oil (2×10⁻² m²/s)"
 
 
-def viscosity_line(params: Params, age: float) -> str:
-    """What viscosity has done after `age` [s], and how fast it damps a wave of 1 m."""
+def viscosity_line(params: Params, area: float) -> str:
+    """How fast viscosity damps a wave of 1 m, and the lab's length l for the decay so far; area [m2]: of nu T."""
+    length = 2.0 * math.sqrt(area)
+    so_far = ""
+    if length > 0.0 and is_weak(1.0 / length, params.viscosity, gravity(params)):
+        so_far = f"; the decay so far is that of the lab's l = 2√(νT) = {metres(length, 2)}"
     if params.viscosity == 0.0:
-        return "no decay"
-    length = 2.0 * math.sqrt(params.viscosity * age)
-    decay = 1.0 / (2.0 * params.viscosity * (2.0 * math.pi / 1.0) ** 2)
-    return (
-        f"after {seconds(age, 2)} the lab's l = 2√(νT) is {metres(length, 2)}; a wave of 1 m falls to 37 % in "
-        f"{seconds(decay, 2)}"
-    )
+        return f"no decay{so_far}; a reset gives the waves back" if so_far else "no decay"
+    omega, decay = viscous_root(2.0 * math.pi, params.viscosity, gravity(params))
+    how = "a wave of 1 m" if omega > 0.0 else "1 m is too short to swing: such a hump"
+    return f"{how} falls to 37 % in {seconds(1.0 / float(decay), 2)}{so_far}"
+
+
+def is_weak(k: float, viscosity: float, g: float) -> bool:
+    """Whether a wave of wavenumber k [rad/m] decays at 2 nu k^2 within 5 %."""
+    _, decay = viscous_root(k, viscosity, g)
+    return abs(float(decay) - 2.0 * viscosity * k**2) <= 0.05 * 2.0 * viscosity * k**2
+
+
+def spectrum_conditions(params: Params, wind_speed: float, g: float) -> Conditions:
+    """The conditions of the parameters' spectrum in another wind [m/s], 10 m above the sea, or gravity [m/s2]."""
+    values = conditions(params, wind_speed) | {"gravity": g}
+    return SPECTRA[params.spectrum].conditions_from(values)
+
+
+def peak_speed(spectrum: Spectrum, c: Conditions) -> float:
+    """Phase speed [m/s] of the waves at the spectrum's peak."""
+    k = peak_wavenumber(spectrum, c)
+    return float(c.omega(np.asarray(k))) / k
+
+
+def storm_html(params: Params) -> Html:
+    """Height and speed of the waves in this wind, and in twice this wind."""
+    spectrum = SPECTRA[params.spectrum]
+    if not spectrum.by_wind:
+        return fill("In a real storm both are true. Here the waves have the height and period given, in any wind.")
+    numbers = []
+    for wind in (params.wind_speed, 2.0 * params.wind_speed):
+        c = spectrum_conditions(params, wind, gravity(params))
+        if spectrum.is_level(c):
+            return fill("Both are true. Here the wind is too weak for waves.")
+        numbers += [number(wind), number(open_sea_height(spectrum, c)), number(peak_speed(spectrum, c))]
+    return fill(
+        "Both are true. By this spectrum a wind of {} m/s makes an open sea with H<sub>s</sub> = {} m, and its longest "
+        "strong waves run at {} m/s; twice that wind, {} m/s, makes {} m and {} m/s.",
+        *numbers,
+    )  # fmt: skip
+
+
+def planet_html(params: Params) -> Html:
+    """Height and speed of the waves in this wind, here and under the Earth's gravity."""
+    g, spectrum = gravity(params), SPECTRA[params.spectrum]
+    here, earth = (spectrum_conditions(params, params.wind_speed, x) for x in (g, EARTH_GRAVITY))
+    text = fill("That depends on its radius too, by g = GM/R²: here g = {} m/s².", number(g))
+    if spectrum.is_level(here):
+        return text
+    law = ""
+    if spectrum.name in SIMILAR and params.deep and params.low_pass == here.second_height == 0.0:
+        law = " In the same wind on deep water, heights and lengths are proportional to 1/g, and speeds stay the same."
+    elif spectrum.by_wind:
+        law = " This spectrum, or this depth, does not simply scale with 1/g."
+    return join((
+        text,
+        fill(
+            " In this wind an open sea has H<sub>s</sub> = {} m here and {} m under the Earth's g; waves at the peak "
+            "run at {} m/s here and {} m/s there.",
+            number(open_sea_height(spectrum, here)), number(open_sea_height(spectrum, earth)),
+            number(peak_speed(spectrum, here)), number(peak_speed(spectrum, earth)),
+        ),
+        law,
+    ))  # fmt: skip
 
 
 def lab_statements(params: Params, r: Report | None) -> Html:
     """Statements of the course lab beside the physics, with the numbers of this sea."""
-    g, U = gravity(params), params.wind_speed
-    storm = fill(
-        "Both are true. A fully developed sea has H<sub>s</sub> = 0.209 U²/g, and its crests run at c = U/0.877: "
-        "for U = {} m/s these are {} m and {} m/s.",
-        number(U), number(0.20925 * U * U / g), number(U / 0.877),
-    )  # fmt: skip
+    storm, planet = storm_html(params), planet_html(params)
     if r is not None and not math.isnan(r.theory.wave[0]):
         length, speed = r.theory.wave
         storm = join((storm, f" The dominant waves here are {number(length)} m long and run at {number(speed)} m/s."))
-    planet = fill(
-        "That depends on its radius too: here g = {} m/s². In the same wind, heights and lengths are proportional to "
-        "1/g, and speeds stay the same: H<sub>s</sub> g/U² is 0.209 on every planet.",
-        number(g),
-    )
     time = f": {low_pass_line(params)}" if params.low_pass else ""
     damping = (
         "It is a length l that cuts off short waves once, by exp(−k²l²). A fluid of viscosity ν does the same in a "
-        f"time T = l²/4ν{time}. Viscosity itself damps each wave at the rate 2νk²: it removes the short waves first, "
-        "lowers the sea last, and hardly changes any speed."
+        f"time T = l²/4ν{time}. Viscosity itself damps each wave at the rate 2νk², as long as that is small beside the "
+        "wave's frequency: it removes the short waves first, lowers the sea last, and hardly changes any speed."
     )
     height = ""
     if r is not None:
-        height = fill("H<sub>s</sub> stays {} m. ", number(r.measured.significant_height))
+        is_now = "is now" if params.viscosity > 0.0 else "stays"
+        height = fill("H<sub>s</sub> {} {} m. ", is_now, number(r.measured.significant_height))
     after_storm = fill(
         "The lab's dispersion rounds frequencies down so that the sea repeats after 200 s, and a factor slows it down. "
         "Neither lowers a wave. {}A calm sea needs less wind: load the preset Storm over.",

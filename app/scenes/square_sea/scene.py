@@ -74,9 +74,10 @@ class SeaReadings(NamedTuple):
     """The numbers of the sea for the panel."""
 
     foam_cover: float  # share of the drawn sea that is foam
-    expected_foam_cover: float  # by Monahan's law
+    expected_foam_cover: float  # by Monahan's law, times the share of the slope that is left
+    slope_left: float  # share of the mean square slope that damping and a small height factor leave
     foam_limit: float  # Jacobian below which there is foam; -inf without foam
-    age: float  # [s] since the last change of weather or water
+    viscous_area: float  # [m2] sum of viscosity times time, since the start
     gauge_residual: float | None  # [m] with which the height at the wave gauge was found; None while it is not shown
     rain: RainReadings | None
     report: Report | None
@@ -156,7 +157,7 @@ class SquareSeaScene:
         self.foam_cover_before = whitecaps(p.wind_speed if start_wind is None else start_wind)
         if start_wind is not None:
             self.sea.change(self.time, p.transition, **conditions(p))
-        self.changed_at, self.transition = self.time, p.transition
+        self.changed_at, self.transition, self.viscous_area = self.time, p.transition, 0.0
         self.report: Report | None = None
         self.theory: Theory | None = None
         self.clear_mesh()
@@ -176,6 +177,7 @@ class SquareSeaScene:
         self.foam = np.zeros((n, n), np.float32)
         self.drawn: SeaFrame | None = None
         self.drawn_at = self.time
+        self.slope_left = 1.0  # share of the mean square slope that damping and a small height factor leave
         self.pace = 0.0, 0.0  # mean square slope, and the frequency [rad/s] at which it changes
         self.paced_at = self.measured_at = -math.inf
         self.earlier_height: NDArray[np.floating] | None = None
@@ -184,7 +186,7 @@ class SquareSeaScene:
 
     def change_forces(self, params: Params) -> None:
         """Take new parameters: new weather grows out of the present sea, another grid shows the same sea."""
-        old, foam_cover = self.params, self.expected_foam_cover(self.time)
+        old, foam_cover = self.params, self.undamped_foam_cover(self.time)
         self.params = params
         self.theory = None
         if params.size != old.size:
@@ -194,6 +196,7 @@ class SquareSeaScene:
         if conditions(params) != conditions(old):
             self.foam_cover_before = foam_cover
             self.sea.change(self.time, params.transition, **conditions(params))
+            self.viscous_area += old.viscosity * (self.time - self.changed_at)
             self.changed_at, self.transition = self.time, params.transition
             self.counts["changes"] += 1
             self.paced_at = self.measured_at = -math.inf
@@ -314,7 +317,11 @@ class SquareSeaScene:
             self.counts["gauge spectra"] += 1
 
     def expected_foam_cover(self, t: float) -> float:
-        """Share of the sea that is foam by Monahan's law; it adapts to new weather as the waves do."""
+        """Share of the sea that is foam by Monahan's law, times the slope that damping leaves; it adapts as the waves do."""
+        return self.undamped_foam_cover(t) * self.slope_left
+
+    def undamped_foam_cover(self, t: float) -> float:
+        """The same as if no wave were damped."""
         cover = whitecaps(self.params.wind_speed)
         if self.transition == 0.0:
             return cover
@@ -326,6 +333,7 @@ class SquareSeaScene:
         if abs(t - self.paced_at) >= PACE_INTERVAL:
             self.paced_at = t
             self.pace = pace(self.sea, t)
+            self.slope_left = self.sea.slope_left(t) * min(p.amplitude, 1.0) ** 2
         slope, frequency = self.pace
         deviation = self.jacobian_deviation or max(self.sea.choppiness * math.sqrt(slope), 1e-6)
         self.foam_limit = p.foam_threshold
@@ -338,8 +346,7 @@ class SquareSeaScene:
             correction = self.foam_correction + FOAM_CORRECTION_RATE * dt * min(max(missing, -1.0), 1.0)
             self.foam_correction = min(max(correction, -1.0), 2.0)
             limit = threshold(cover, deviation, frequency, FOAM_VISIBLE_SHARE * p.foam_fade)
-            there_is_foam = cover > 0.0 and limit > 0.0
-            self.foam_limit = limit + self.foam_correction * deviation if there_is_foam else -math.inf
+            self.foam_limit = limit + self.foam_correction * deviation
         return self.foam_limit, FULL_FOAM_DEPTH * deviation
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
@@ -358,8 +365,9 @@ class SquareSeaScene:
         return SeaReadings(
             foam_cover=self.foam_cover,
             expected_foam_cover=self.expected_foam_cover(self.time),
+            slope_left=self.slope_left,
             foam_limit=self.foam_limit,
-            age=self.time - self.changed_at,
+            viscous_area=self.viscous_area + self.params.viscosity * (self.time - self.changed_at),
             gauge_residual=self.gauge.residual if self.drawn is not None and self.drawn.gauge is not None else None,
             rain=rain,
             report=self.report if self.params.statistics else None,

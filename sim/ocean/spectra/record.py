@@ -161,6 +161,7 @@ def from_frequency(
     return frequency(w, c) * D * c.group_speed(k) / k
 
 
+@functools.lru_cache(maxsize=256)
 def wavenumber_of(c: Conditions, frequency: float) -> float:
     """The wavenumber [rad/m] of waves of an angular frequency [rad/s], by bisection of `Conditions.omega`."""
     low, high = 1e-9, 1e6

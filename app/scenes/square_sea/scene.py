@@ -317,7 +317,7 @@ class SquareSeaScene:
             self.counts["gauge spectra"] += 1
 
     def expected_foam_cover(self, t: float) -> float:
-        """Share of the sea that is foam by Monahan's law, times the slope that damping leaves; it adapts as the waves do."""
+        """Share of the sea that is foam by Monahan's law, times the slope that damping left; adapts as the waves do."""
         return self.undamped_foam_cover(t) * self.slope_left
 
     def undamped_foam_cover(self, t: float) -> float:

@@ -85,16 +85,20 @@ def conform(value: Any, like: Any) -> Any:
         found = value.type_name if isinstance(value, Foreign) else "text"
         raise Wrong(f"it returns a value of type {found}; expected is {form_of(like)}", "wrong type")
     if isinstance(like, tuple):
-        if not isinstance(value, tuple | list | np.ndarray) or len(value) != len(like):
+        if isinstance(value, np.ndarray):
+            value = list(value) if value.ndim else [value]
+        if not isinstance(value, tuple | list) or len(value) != len(like):
             raise Wrong(f"it returns {form_of(value)}; expected is {form_of(like)}", "wrong shape")
         return tuple(conform(part, entry) for part, entry in zip(value, like, strict=True))
     try:
         array = np.asarray(value)
-        if array.dtype.kind == "c":
-            raise Wrong("it returns complex numbers: look for the root of a negative number", "wrong type")
-        array = array.astype(np.float64)
-    except (TypeError, ValueError):
-        raise Wrong(f"it returns {form_of(value)}; expected is {form_of(like)}", "wrong type") from None
+    except ValueError:  # rows of different lengths
+        array = np.array(None)
+    if array.dtype.kind == "c":
+        raise Wrong("it returns complex numbers: look for the root of a negative number", "wrong type")
+    if array.dtype.kind not in "biuf":
+        raise Wrong(f"it returns {form_of(value)}; expected is {form_of(like)}", "wrong type")
+    array = array.astype(np.float64)
     if np.ndim(like) == 0:
         if array.size != 1:
             raise Wrong(f"it returns {form_of(value)}; expected is {form_of(like)}", "wrong shape")

@@ -30,19 +30,19 @@ MEASURED = """
 from app.server.viewer import Viewer
 from sim.ocean import Sea
 
-sea = Sea(64, 1000.0, "bretschneider", wave_height=3.0, amplitudes="fixed")
+sea = Sea(64, 1000.0, "bretschneider", sea_height=3.0, amplitudes="fixed")
 assert 2.7 < sea.significant_height < 3.1, sea.significant_height
 viewer = Viewer("127.0.0.1", 0)
 for name, height in (("square_sea", lambda scene: scene.sea), ("radial_sea", lambda scene: scene.sum)):
     viewer.open(name)
     viewer.stop_threads()
     panel, loop = viewer.panel, viewer.loop
-    assert not panel.controls["wave_height"].visible
+    assert not panel.controls["sea_height"].visible
     panel.set("spectrum", "bretschneider")
-    assert panel.controls["wave_height"].visible
-    panel.set("wave_height", 4.0)
+    assert panel.controls["sea_height"].visible
+    panel.set("sea_height", 4.0)
     loop.tick(1 / 60)
-    low = height(viewer.scene).conditions.wave_height if name == "square_sea" else viewer.scene.readings().clean_height
+    low = height(viewer.scene).conditions.sea_height if name == "square_sea" else viewer.scene.readings().clean_height
     assert abs(low - 4.0) < 0.05, low
 viewer.shut()
 """
@@ -106,7 +106,7 @@ def test_a_spectrum_with_new_parameters_is_one_file(tmp_path):
     for line in headless:
         run_command(copy, line)
     for name in ("square", "radial"):
-        assert parameters_in(copy / f"{name}.npz")["wave_height"] == 3.0
+        assert parameters_in(copy / f"{name}.npz")["sea_height"] == 3.0
     run(copy, "-c", MEASURED)
 
 

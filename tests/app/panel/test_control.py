@@ -2,6 +2,7 @@
 
 import asyncio
 import re
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import pytest
@@ -87,7 +88,8 @@ def test_a_list_shows_titles_and_the_record_has_names(lab: Viewer) -> None:
     assert control.field.value == "Runge-Kutta 4 (RK4)"
     assert lab.panel.params.integrator == "rk4"
     event = SimpleNamespace(client_id=1, target=SimpleNamespace(value="Euler, implicit"))
-    asyncio.run(control.on_field(event))
+    with ThreadPoolExecutor() as pool:  # this thread may have a running event loop: that of a test's browser
+        pool.submit(asyncio.run, control.on_field(event)).result()
     assert lab.panel.params.integrator == "implicit_euler"
 
 

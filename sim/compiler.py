@@ -12,6 +12,7 @@ A part is compiled for the types of its arguments and never for the value of a c
 The names used here are numba's own. They are a reason for the upper bound of numba in pyproject.toml.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -142,14 +143,36 @@ def environments(module: Any) -> list[Any]:
     return [environment for environment in found if environment is not None]
 
 
-class Part(CPUDispatcher):
-    """A kernel as other kernels call it."""
+class Kernel(CPUDispatcher):
+    """What part and entry share: two processes never compile the same kernel into one cache at the same time."""
 
     _cache: Any
     _compiler: Any
 
+    def while_locked(self, sig: Any, compile: Callable[[Any], Any]) -> Any:
+        """`compile` a signature. Where it is not kept yet, others that want it wait, and load what was compiled.
+
+        Kernels lock their callees while they are locked themselves. No kernel calls its callers, so there is no circle
+        in which processes could wait for each other. A process that is killed gives its locks back.
+        """
+        args = tuple(sigutils.normalize_signature(sig)[0])
+        file = getattr(self._cache, "_cache_file", None)
+        context: Any = self.targetctx
+        if args in self.overloads or file is None or file.has(self._cache._index_key(sig, context.codegen())):
+            return compile(sig)
+        with file.locked():
+            return compile(sig)
+
+
+class Part(Kernel):
+    """A kernel as other kernels call it."""
+
     def compile(self, sig: Any) -> Any:
         """What stands for the part of these argument types among numba's functions; made where there is none yet."""
+        return self.while_locked(sig, self.load_or_compile)
+
+    def load_or_compile(self, sig: Any) -> Any:
+        """`compile`, once others cannot."""
         with global_compiler_lock:
             args, return_type = sigutils.normalize_signature(sig)
             known = self.overloads.get(tuple(args))
@@ -168,10 +191,14 @@ class Part(CPUDispatcher):
             return result.entry_point
 
 
-class Entry(CPUDispatcher):
+class Entry(Kernel):
     """A kernel as Python calls it; other kernels are given its part."""
 
     part: Any
+
+    def compile(self, sig: Any) -> Any:
+        """Called by Python with arguments of new types."""
+        return self.while_locked(sig, super().compile)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """numba asks for this as it types a call: constants count as any other value of their type."""

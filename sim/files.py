@@ -1,6 +1,7 @@
-"""Files that appear whole: each is written under another name in the same folder, and then renamed."""
+"""Files that appear whole: each is written under another name in the same folder, and then renamed. File locks."""
 
 import contextlib
+import errno
 import os
 import secrets
 from collections.abc import Iterator
@@ -28,3 +29,43 @@ def replacing(path: Path) -> Iterator[Path]:
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
+
+
+@contextlib.contextmanager
+def locked(path: Path) -> Iterator[None]:
+    """Hold the lock that this file stands for; waits while another process, or another thread, holds it.
+
+    The system gives back the locks of a process that ends, however it ends. Where the file cannot be made (a full disk,
+    a folder that nobody may write) nothing is locked.
+    """
+    try:
+        file = path.open("ab")
+    except OSError:
+        yield
+        return
+    with file:
+        lock(file.fileno())
+        yield
+
+
+try:
+    import fcntl
+
+    def lock(descriptor: int) -> None:
+        """Lock an open file until it is closed."""
+        with contextlib.suppress(OSError):  # a network folder without locks
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+
+except ImportError:  # Windows
+    import msvcrt
+
+    def lock(descriptor: int) -> None:
+        """Lock an open file until it is closed."""
+        while True:
+            try:
+                msvcrt.locking(descriptor, msvcrt.LK_LOCK, 1)  # type: ignore[attr-defined]
+            except OSError as error:
+                if error.errno != errno.EDEADLK:  # it has tried for ten seconds
+                    return
+            else:
+                return

@@ -26,6 +26,7 @@ from numba.core.options import TargetOptions
 from numba.core.registry import cpu_target
 
 from sim.compiler import Choice, Entry, EntryCompiler, KernelFlags, Part, PartCompiler, PartResult
+from sim.files import locked
 
 __all__ = ["CACHE", "MAX_THREADS", "chosen", "kernel", "prange", "set_threads"]
 
@@ -138,6 +139,17 @@ class KernelFile(IndexDataCacheFile):
             return super().load(key)
         except Exception:  # whatever unpickling leads to
             return None
+
+    def has(self, key: Any) -> bool:
+        """Whether it is kept, as far as the index says."""
+        try:
+            return key in self._load_index()
+        except Exception:  # whatever unpickling leads to
+            return False
+
+    def locked(self) -> contextlib.AbstractContextManager[None]:
+        """Inside, no other process compiles this kernel."""
+        return locked(Path(self._index_path).with_suffix(".lock"))
 
     def save(self, key: Any, data: Any) -> None:
         with contextlib.suppress(OSError):  # a full disk: kept another time

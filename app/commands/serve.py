@@ -40,7 +40,7 @@ def serve_lab(
     """
     check_address(host, port)
     try:
-        viewer = Viewer(host, port, plain=plain, developer=developer)
+        viewer = Viewer(host, port, plain=plain, developer=developer, compile_ahead=True, say=say)
     except OSError as error:
         print(f"springtide: cannot serve on {host}:{port}: {error.strerror or error}; try --port 0", file=sys.stderr)
         return 1

@@ -11,7 +11,7 @@ To add a scene, add one folder here, named as the scene is on the command line:
 The folder is found by being here: command line, panel, sweeps, benchmarks and tests take it up from there.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeAlias, TypeVar
 
@@ -33,6 +33,9 @@ FRAME_INTERVAL = 1 / 60  # [s] between ticks of the loop, and between two frames
 F_co = TypeVar("F_co", covariant=True)
 R_co = TypeVar("R_co", covariant=True)
 F_contra = TypeVar("F_contra", contravariant=True)
+
+
+Pieces: TypeAlias = Mapping[str, Callable[[], object]]  # name of what is compiled -> compiles it, by running it
 
 
 class Measure(NamedTuple):
@@ -187,7 +190,7 @@ class SceneKind(Generic[P, F, R]):
     presets: Mapping[str, Mapping[str, Value]]  # name -> the values that differ from the defaults
     make: Callable[[P], Scene[P, F, R]]
     hidden: Callable[[P], set[str]]  # the parameters that mean nothing with the others as they are
-    warm_up: Callable[[], Iterator[str]]  # compiles what the scene may call, piece by piece; yields what comes next
+    warm_up: Callable[[], Pieces]  # everything to compile that the scene may call
     series: tuple[str, ...]  # names of the columns of a plot row after its time
     plots: Mapping[str, PlotAxes]  # parameter that opens the plot -> what it shows
     curves: Mapping[str, CurveAxes] = field(
@@ -195,6 +198,7 @@ class SceneKind(Generic[P, F, R]):
     )  # parameter that opens the chart -> its axes
     measures: Callable[..., dict[str, Measure]] | None = None  # of the scene, what a sweep records; None: the plot rows
     stability_map: StabilityMap | None = None
+    needs: Callable[[P], tuple[str, ...]] | None = None  # pieces of `warm_up` to run with these parameters; None: all
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
 
     def opening_params(self) -> P:

@@ -1,53 +1,109 @@
-"""Compile a scene's kernels ahead, and remember which scenes are compiled."""
+"""What is compiled ahead: the pieces of each scene, and a file that stands for each piece that has been compiled."""
 
-from collections.abc import Callable, Iterator
+import contextlib
+import functools
+import gc
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from app.scenes import scene_named
+from app.messages import BaseParams
+from app.scenes import scene_named, view_module
+from app.scenes.contract import Pieces
 from sim.jit import CACHE, ROOT, reachable_hash
 
+EVERYTHING = "everything"  # stands for all pieces of a scene, so that a later start need not ask it for them
 
-def mark_of(name: str, drawn: bool) -> Path | None:
-    """The file that stands for a compiled scene, with its drawing or without; None where nothing can be kept."""
+
+@functools.cache
+def hash_of(name: str, drawn: bool) -> str:
+    """Hash of all sources that a scene's kernels, and its drawing's, can reach."""
+    folder = ROOT / "app" / "scenes" / name
+    return reachable_hash(folder / "scene.py", *([folder / "view.py"] if drawn else []))
+
+
+def mark_of(name: str, piece: str, *, drawn: bool) -> Path | None:
+    """The file that stands for a compiled piece; None where nothing can be kept. drawn: of the drawing."""
     if CACHE is None:
         return None
-    folder = ROOT / "app" / "scenes" / name
-    sources = [folder / "scene.py", *([folder / "view.py"] if drawn else [])]
-    return CACHE / f"{name}{'' if drawn else '-headless'}-{reachable_hash(*sources)}.warm"
+    kind = "drawn" if drawn else "headless"
+    return CACHE / f"{name}-{kind}-{piece.replace(' ', '_')}-{hash_of(name, drawn)}.warm"
 
 
-def is_compiled(name: str, *, drawn: bool = True) -> bool:
-    """Whether this version of a scene's kernels, and its drawing's, has been compiled before."""
-    marks = (mark_of(name, True), None if drawn else mark_of(name, False))
-    return any(mark is not None and mark.exists() for mark in marks)
+def is_marked(name: str, piece: str, *, drawn: bool) -> bool:
+    """Whether this version of a piece has been compiled before."""
+    mark = mark_of(name, piece, drawn=drawn)
+    return mark is not None and mark.exists()
 
 
-def parts(name: str, *, drawn: bool = True) -> Iterator[str]:
-    """Compile piece by piece; yields what comes next."""
-    yield from scene_named(name).warm_up()
-    if drawn:
-        from app.scenes import view_module
-
-        yield from view_module(name).warm_up()
+def scene_pieces(name: str) -> Pieces:
+    """The pieces of a scene without its drawing."""
+    return scene_named(name).warm_up()
 
 
-def compile_scene(name: str, *, drawn: bool = True, show: Callable[[str], None] = lambda part: None) -> None:
-    """Compile a scene's kernels. drawn: and its drawing's. show: told what comes next, beside the terminal."""
+def drawing_pieces(name: str) -> Pieces:
+    """The pieces of a scene's drawing; imports viser."""
+    return view_module(name).warm_up()
+
+
+def all_pieces(name: str) -> tuple[tuple[str, bool], ...]:
+    """(piece, whether it is of the drawing) of a scene, in the order of their need."""
+    drawing = [(piece, True) for piece in drawing_pieces(name)]
+    return *drawing, *((piece, False) for piece in scene_pieces(name))
+
+
+def missing(name: str, params: BaseParams | None = None) -> tuple[tuple[str, bool], ...]:
+    """What is still to be compiled of `all_pieces`. params: of what runs with these parameters; None: of everything."""
+    if is_marked(name, EVERYTHING, drawn=True):
+        return ()
+    needs = scene_named(name).needs
+    needed = None if params is None or needs is None else needs(params)
+    return tuple(
+        (piece, drawn)
+        for piece, drawn in all_pieces(name)
+        if (drawn or needed is None or piece in needed) and not is_marked(name, piece, drawn=drawn)
+    )
+
+
+def compile_piece(name: str, piece: str, *, drawn: bool) -> None:
+    """Compile one piece, and remember it."""
+    # A compiler makes many objects that stay: looking through all of them again and again takes a fifth of the time.
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        (drawing_pieces if drawn else scene_pieces)(name)[piece]()
+    finally:
+        if was_enabled:
+            gc.enable()
+    remember(name, piece, drawn=drawn)
+    if all(is_marked(name, other, drawn=of_drawing) for other, of_drawing in all_pieces(name)):
+        remember(name, EVERYTHING, drawn=True)
+
+
+def remember(name: str, piece: str, *, drawn: bool) -> None:
+    """Mark a piece as compiled."""
+    mark = mark_of(name, piece, drawn=drawn)
+    if mark is not None:
+        with contextlib.suppress(OSError):  # a full disk
+            mark.touch()
+
+
+def compile_here(name: str, pieces: Iterable[tuple[str, bool]], show: Callable[[str], None]) -> None:
+    """Compile pieces in this process. show: told which comes next, as text; on a terminal it is shown there too."""
     from rich import get_console
     from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
     columns = SpinnerColumn(), TextColumn("compiling {task.description} (once)"), TimeElapsedColumn()
     with Progress(*columns, transient=True, disable=not get_console().is_terminal) as progress:
         task = progress.add_task(name, total=None)
-        for part in parts(name, drawn=drawn):
-            progress.update(task, description=f"{name}: {part}")
-            show(part)
-    mark = mark_of(name, drawn)
-    if mark is not None:
-        mark.touch()
+        for piece, drawn in pieces:
+            progress.update(task, description=f"{name}: {piece}")
+            show(f"{name}: {piece}")
+            compile_piece(name, piece, drawn=drawn)
 
 
 def prepare(name: str, *, drawn: bool = True) -> None:
-    """Compile a scene's kernels unless that has been done before."""
-    if not is_compiled(name, drawn=drawn):
-        compile_scene(name, drawn=drawn)
+    """Compile what a scene may call and has not been compiled before. drawn: and what its drawing calls."""
+    pieces = all_pieces(name) if drawn else tuple((piece, False) for piece in scene_pieces(name))
+    todo = [(piece, of_drawing) for piece, of_drawing in pieces if not is_marked(name, piece, drawn=of_drawing)]
+    if todo:
+        compile_here(name, todo, lambda text: None)

@@ -18,7 +18,9 @@ from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_scene
 from app.render.viser_types import ViserConnection
 from app.scenes import NAMES, scene_named, view_named
-from app.scenes.warmup import compile_scene, is_compiled
+from app.scenes.compiling import Compiling, describe
+from app.scenes.contract import AnyKind
+from app.server.compile_gate import CompileGate
 from app.server.counters import Unwatched, gather, modules
 from app.server.guard import open_server
 from app.server.loop import SimLoop
@@ -27,17 +29,32 @@ from app.server.transport import TransportCounters
 HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
 SEND_WINDOW = 0.0  # [s] for which viser holds back what it sends, by default 17 ms: flushing each frame costs more
 MIN_SCENE_TIME = 0.3  # [s] for which a scene is shown before another is opened: long enough for its status line
+PROGRESS_INTERVAL = 0.25  # [s] between two updates of what is being compiled
 MAX_JOIN_TIME = 1.0  # [s] for which leaving a scene waits for each of its threads
 
 
 class Viewer:
     """The lab in a browser. Everything drawn is assigned on the viewer thread, everything simulated on the loop's."""
 
-    def __init__(self, host: str, port: int, *, plain: bool = False, developer: bool = False) -> None:
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        *,
+        plain: bool = False,
+        developer: bool = False,
+        compile_ahead: bool = False,
+        say: Callable[[str], None] = lambda text: None,
+    ) -> None:
         """plain: draw by viser's public API alone. developer: show the work counts in the panel.
+
+        compile_ahead: while a scene runs, compile what it and the other scenes may call later. say: prints a line.
 
         Raises OSError where the port cannot be bound.
         """
+        self.compiling = Compiling()
+        self.compile_ahead, self.say = compile_ahead, say
+        self.notice = ""  # what is compiled before something else can be shown
         self.developer = developer
         self.server, self.screen = open_server(host, port)
         if plain:
@@ -75,34 +92,37 @@ class Viewer:
         with self.changing:
             if self.ended:
                 return
-            self.close()
             try:
-                self.make(name, params, paused, first_look)
+                kind = scene_named(name)
+                if params is None:
+                    params = self.first_params.get(name) or (kind.opening_params() if first_look else kind.params())
+                if not self.compile(kind, params):
+                    return
+                self.close()
+                self.make(kind, params, paused)
             except BaseException as error:
                 self.show_failure(name, error)
                 raise
 
-    def make(self, name: str, params: BaseParams | None, paused: bool, first_look: bool) -> None:
+    def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
         """Make scene, view, panel and threads."""
-        kind = scene_named(name)
-        self.compile(name, kind.title)
-        if self.ended:  # while it was compiled
-            return
-        if params is None:
-            params = self.first_params.get(name) or (kind.opening_params() if first_look else kind.params())
+        name = kind.name
         self.first_params.setdefault(name, params)
         make_view = view_named(name)
         self.clear()
         self.scene = kind.make(params)
         commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
         self.commands = commands
+        self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
         self.view = make_view(self.server, commands.put)
         place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
+        self.gate = CompileGate(self.compiling, kind, commands.put, (params, 0))
         self.panel = Panel(
-            self.server, kind, self.view, params, commands.put, work=self.work, scenes=NAMES,
+            self.server, kind, self.view, params, self.gate.post, work=self.work, scenes=NAMES,
             open_scene=self.wanted.put, developer=self.developer,
         )  # fmt: skip
-        self.loop = SimLoop(self.scene, commands, self.panel.read, self.audience, paused=paused)
+        gate, read = self.gate, self.panel.read
+        self.loop = SimLoop(self.scene, commands, lambda: gate.read(read()), self.audience, paused=paused)
         self.is_open = True
         self.stop = threading.Event()
         self.threads = [
@@ -111,22 +131,48 @@ class Viewer:
         ]
         for thread in self.threads:
             thread.start()
+        if self.compile_ahead:
+            ahead = threading.Thread(target=self.compiling.go_on_with, args=(name,), name="compile ahead", daemon=True)
+            ahead.start()
 
-    def compile(self, name: str, title: str) -> None:
-        """Compile what a scene needs, with progress in the page and on the terminal."""
-        if is_compiled(name):
-            return
-        self.clear()
-        progress = self.server.gui.add_html("")
+    def compile(self, kind: AnyKind, params: BaseParams) -> bool:
+        """Have compiled what a scene needs, with progress in the page and in lines on the terminal.
+
+        An open scene goes on meanwhile. False where the lab ended before that, or another scene was asked for.
+        """
+        jobs = self.compiling.missing(kind.name, params)
+        if not jobs:
+            return not self.ended
         start = time.monotonic()
+        self.say(f"{kind.title}: compiling {', '.join(job.piece for job in jobs)}. This is done once.")
+        cover = None
+        if not self.is_open:
+            self.clear()
+            cover = self.server.gui.add_html("")
+        self.compiling.want(jobs)
+        try:
+            done = False
+            while not done:
+                left = [job.piece for job in jobs if job not in self.compiling.settled]
+                spent = time.monotonic() - start
+                self.notice = f"{kind.title}: compiling {', '.join(left)}, {spent:.0f} s. This is done once."
+                if cover is not None:
+                    cover.content = note(fill('<span class="springtide-progress">{}</span>', self.notice))
+                done = self.compiling.wait(jobs, PROGRESS_INTERVAL)
+                if self.ended or (self.is_open and not self.wanted.empty()):
+                    return False
+        finally:
+            self.notice = ""
+        self.say(f"{kind.title}: compiled in {time.monotonic() - start:.1f} s")
+        return True
 
-        def show(part: str) -> None:
-            spent = time.monotonic() - start
-            words = fill("{}: compiling {}, {:.0f} s. This is done once.", title, part, spent)
-            progress.content = note(fill('<span class="springtide-progress">{}</span>', words))
-
-        show("kernels")
-        compile_scene(name, show=show)
+    def show_compiling(self) -> None:
+        """What is compiled while the scene runs: for what was chosen, or ahead."""
+        text = self.notice or self.gate.notice or describe(*self.compiling.progress())
+        if text != self.compile_text:
+            self.compile_text = text
+            style = "padding:0 12px 4px;font-size:12px"
+            self.compile_line.content = str(fill('<div style="{}">{}</div>', style, text)) if text else ""
 
     def clear(self) -> None:
         """An empty panel and an empty scene."""
@@ -200,6 +246,7 @@ class Viewer:
                 if snapshot.status.starts != self.starts:  # after the picture: another scene size moves cameras too
                     self.starts = snapshot.status.starts
                     place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)
+            self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
@@ -249,4 +296,5 @@ class Viewer:
             finally:
                 self.changing.release()
         self.wanted.put("")
+        self.compiling.close()
         self.server.stop()

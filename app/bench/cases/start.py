@@ -1,11 +1,22 @@
-"""Time from a new interpreter to a moving rope, with compiled kernels in the cache and without."""
+"""Time from a command to what it shows, with compiled kernels in the cache and without."""
 
+import asyncio
 import os
 import statistics
 import subprocess
 import sys
 import tempfile
+import time
+import urllib.request
+from importlib.metadata import version
 from typing import Any
+
+import msgspec
+import websockets
+from websockets.asyncio.client import connect
+
+from app.bench.listener import CAMERA
+from app.scenes import NAMES
 
 STEPS = {
     "numpy and numba alone": "import numpy, numba",
@@ -17,29 +28,72 @@ STEPS = {
     ),
 }
 TIMED = "import time; start = time.perf_counter(); {}; print(time.perf_counter() - start)"
+MOVING = 20  # messages within a second: progress alone is four
+MAX_WAIT = 180.0  # [s]
+
+
+def environment(cache: str | None) -> dict[str, str]:
+    """The environment of a command. cache: a folder for kernels instead of the user's."""
+    return dict(os.environ) if cache is None else {**os.environ, "SPRINGTIDE_CACHE": cache}
 
 
 def measured(code: str, cache: str | None = None) -> float:
-    """Time of `code` in a new interpreter [s]. cache: a folder for kernels instead of the user's."""
-    environment = dict(os.environ) if cache is None else {**os.environ, "SPRINGTIDE_CACHE": cache}
+    """Time of `code` in a new interpreter [s]."""
     done = subprocess.run(
-        [sys.executable, "-c", TIMED.format(code)], env=environment, capture_output=True, text=True, check=True
+        [sys.executable, "-c", TIMED.format(code)], env=environment(cache), capture_output=True, text=True, check=True
     )
     return float(done.stdout.split()[-1])
 
 
-def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Times with a warm cache (the median of repeats, after one that fills it) and with an empty cache.
+async def until_moving(port: int) -> None:
+    """Wait until the lab sends pictures to a client, faster than it tells of progress."""
+    protocol = websockets.Subprotocol(f"viser-v{version('viser')}")
+    times: list[float] = []
+    async with connect(f"ws://127.0.0.1:{port}", subprotocols=[protocol], max_size=None) as client:
+        await client.send(msgspec.msgpack.encode(CAMERA))
+        async for _ in client:
+            now = time.perf_counter()
+            times = [t for t in times if t > now - 1.0] + [now]
+            if len(times) >= MOVING and now - times[0] > 0.5:
+                return
 
-    Quick: one run with the cache as it is.
-    """
-    table = []
-    for name, code in STEPS.items():
-        first = measured(code)
-        row: dict[str, Any] = {"what": name, "warm [s]": first}
-        if not quick:
-            row["warm [s]"] = statistics.median(measured(code) for _ in range(7))
-            with tempfile.TemporaryDirectory(prefix="springtide-") as folder:
-                row["cold [s]"] = measured(code, folder)
-        table.append(row)
+
+def start_times(scene: str, cache: str | None) -> tuple[float, float]:
+    """Seconds from the command to the first words in the page, and until the scene moves."""
+    start = time.perf_counter()
+    server = subprocess.Popen(
+        [sys.executable, "-m", "app", "--no-open", "--port", "0", "--scene", scene],
+        stdout=subprocess.PIPE,
+        text=True,
+        env=environment(cache),
+    )
+    assert server.stdout is not None
+    try:
+        words = (word for line in server.stdout for word in line.split())
+        address = next(word for word in words if word.startswith("http"))
+        urllib.request.urlopen(address, timeout=30).read()
+        first = time.perf_counter() - start
+        asyncio.run(asyncio.wait_for(until_moving(int(address.rpartition(":")[2])), MAX_WAIT))
+        return first, time.perf_counter() - start
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def both(name: str, timed: Any, quick: bool, repeats: int) -> dict[str, Any]:
+    """A row: with a warm cache, after a run that fills it, and with an empty one. Quick: once, with what there is."""
+    first = timed(None)
+    if quick:
+        return {"what": name, "warm [s]": first}
+    with tempfile.TemporaryDirectory(prefix="springtide-", ignore_cleanup_errors=True) as folder:
+        cold = timed(folder)
+    return {"what": name, "warm [s]": statistics.median(timed(None) for _ in range(repeats)), "cold [s]": cold}
+
+
+def rows(quick: bool = False) -> list[dict[str, Any]]:
+    """Imports and first frames of the library, and the lab from the command to each scene as it moves."""
+    table = [both(name, lambda cache, code=code: measured(code, cache), quick, 7) for name, code in STEPS.items()]
+    table.append(both("first words in the page", lambda cache: start_times("rope", cache)[0], quick, 3))
+    for scene in NAMES:
+        table.append(both(f"{scene} moving", lambda cache, scene=scene: start_times(scene, cache)[1], quick, 3))
     return table

@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -12,12 +11,12 @@ from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCo
 from app.scenes.charts import PlotAxes
 from app.scenes.cloth.parameters import MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
 from app.scenes.cloth.start import build, sphere_home
-from app.scenes.contract import FRAME_INTERVAL, SceneKind
+from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
 from app.scenes.springs.drag import Drag, PullFrame
 from app.scenes.springs.thread_tuner import ThreadTuner
-from app.scenes.springs.warmup import compile_integrators
+from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from app.scenes.springs.work_counts import SpringWorkCounts
 from sim.springs import Air, Net, cloth
 from sim.springs import Grab as Pull
@@ -83,12 +82,21 @@ def gusty_wind(params: Params, t: float) -> Vector:
     return c * along - s * across, s * along + c * across, params.wind * params.gust * 0.15 * math.sin(3.1 * t)
 
 
-def warm_up() -> Iterator[str]:
-    """Compile everything that the scene may call, piece by piece; yields what comes next."""
+def warm_up() -> Pieces:
+    """Everything to compile that the scene may call."""
     net = cloth(4, 4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2), thickness=0.1)
-    yield from compile_integrators(net, cloth(4, 4, damping=0.0))
-    yield "stability"
-    ClothScene(Params(rows=4, cols=4))
+    return {GAUGE: compile_gauge, **integrator_pieces(net, cloth(4, 4, damping=0.0))}
+
+
+def compile_gauge() -> None:
+    """All but the integrators."""
+    scene = ClothScene(Params(rows=4, cols=4))
+    extremes(scene.state.x, scene.state.v)
+
+
+def needs(params: Params) -> tuple[str, ...]:
+    """What a scene with these parameters runs."""
+    return integrator_or_fallback(params.integrator, build(params, sphere_home(params)))[0].name, GAUGE
 
 
 class ClothScene:
@@ -368,6 +376,7 @@ SCENE = SceneKind(
     make=ClothScene,
     hidden=hidden,
     warm_up=warm_up,
+    needs=needs,
     series=SERIES,
     plots=PLOTS,
 )

@@ -1,6 +1,5 @@
 """The cloth as a mesh coloured by strain, which can be dragged anywhere; pins and sphere with arrows."""
 
-from collections.abc import Iterator
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -16,7 +15,7 @@ from app.render.meshes import ball
 from app.render.surroundings import Surroundings, set_dark
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.scene import ClothFrame, ClothReadings
-from app.scenes.contract import PostCommand
+from app.scenes.contract import Pieces, PostCommand
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 from sim.formatting import number
 
@@ -165,6 +164,6 @@ class View:
         """Removing the nodes of the scene removes everything."""
 
 
-def warm_up() -> Iterator[str]:
+def warm_up() -> Pieces:
     """The drawing compiles nothing."""
-    yield from ()
+    return {}

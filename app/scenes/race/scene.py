@@ -1,6 +1,5 @@
 """The race: up to six ropes side by side, each with its own method, step or stiffness, against a reference run."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -8,20 +7,25 @@ from numpy.typing import NDArray
 
 from app.messages import Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts
 from app.scenes.charts import Chart
-from app.scenes.contract import FRAME_INTERVAL, SceneKind, StabilityMap
+from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.race.charts import CURVES, RaceCharts
 from app.scenes.race.entrants import Race, RaceReadings
 from app.scenes.race.measures import measures
 from app.scenes.race.names import rope_label
-from app.scenes.race.parameters import PRESETS, Params, hidden, offset_of
+from app.scenes.race.parameters import PRESETS, Params, hidden, method_of, offset_of
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles, vector_of
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
-from app.scenes.springs.warmup import compile_integrators
+from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from app.scenes.springs.work_counts import SpringWorkCounts
-from sim.springs import rope
+from sim.springs import INTEGRATORS, rope
+from sim.springs.analysis.extremes import extremes
+from sim.springs.analysis.reference_run import ReferenceRun
+from sim.springs.stability import gauge
+from sim.springs.state import State, energy
 
 ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
+REFERENCE = "reference run"  # name of the piece to compile
 
 
 class RaceFrame(NamedTuple):
@@ -39,13 +43,31 @@ class RaceFrame(NamedTuple):
     pull: PullFrame | None
 
 
-def warm_up() -> Iterator[str]:
-    """Compile everything that the scene may call, piece by piece; yields what comes next."""
-    yield from compile_integrators(rope(4, floor=-1.0), rope(4, damping=0.0, drag=0.0))
-    yield "race"
-    scene = RaceScene(Params(ropes=2))
-    scene.advance(2)
-    scene.frame()
+def warm_up() -> Pieces:
+    """Everything to compile that the scene may call."""
+    methods = integrator_pieces(rope(4, floor=-1.0), rope(4, damping=0.0, drag=0.0))
+    return {GAUGE: compile_gauge, REFERENCE: compile_reference, **methods}
+
+
+def compile_gauge() -> None:
+    """The gauge of a rope, and the energies."""
+    net = rope(4, floor=-1.0)
+    state = State.at_rest(net)
+    gauge(net, INTEGRATORS["leapfrog"], 1e-3, state)
+    energy(net, state)
+    extremes(state.x, state.v)
+
+
+def compile_reference() -> None:
+    """The reference run."""
+    net = rope(4, floor=-1.0)
+    ReferenceRun(net, 2.0, 1).advance(net, 0.0, 1e-3)
+
+
+def needs(params: Params) -> tuple[str, ...]:
+    """What a race with these parameters runs."""
+    methods = {method_of(params, number) for number in range(1, params.ropes + 1)}
+    return *sorted(methods), GAUGE, REFERENCE
 
 
 class RaceScene:
@@ -188,6 +210,7 @@ SCENE = SceneKind(
     make=RaceScene,
     hidden=hidden,
     warm_up=warm_up,
+    needs=needs,
     series=(),
     plots={},
     curves=CURVES,

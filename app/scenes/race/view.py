@@ -1,7 +1,7 @@
 """The race as drawn: a tube for each rope in its own colour, the reference runs translucent, a label on each root."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -13,7 +13,7 @@ from app.render.dragging import drag
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.render.surroundings import set_dark
 from app.scenes.charts import PALETTE
-from app.scenes.contract import PostCommand
+from app.scenes.contract import Pieces, PostCommand
 from app.scenes.race.entrants import RaceReadings
 from app.scenes.race.html import results_table
 from app.scenes.race.parameters import Params
@@ -207,7 +207,11 @@ class View:
         """Removing the nodes of the scene removes everything."""
 
 
-def warm_up() -> Iterator[str]:
-    """Compile what the drawing calls; yields what comes next."""
-    yield "drawing"
+def warm_up() -> Pieces:
+    """What the drawing calls."""
+    return {"drawing": compile_drawing}
+
+
+def compile_drawing() -> None:
+    """Draw a rope of two points."""
     tube_vertices(np.zeros((2, 3), np.float32), 2, TUBE_RADIUS)

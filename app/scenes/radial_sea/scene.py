@@ -2,9 +2,9 @@
 
 import collections
 import dataclasses
+import functools
 import math
 import time
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, WorkCount, WorkCounts
 from app.scenes.charts import PlotAxes
-from app.scenes.contract import SceneKind
+from app.scenes.contract import Pieces, SceneKind
 from app.scenes.radial_sea.bodies import FloatingBodies, kind_of
 from app.scenes.radial_sea.cutaway import Cutaway, cutaway_at, outline
 from app.scenes.radial_sea.frame import RadialFrame, RadialReadings, SurfaceReading
@@ -41,7 +41,7 @@ from sim.ocean.radiated_waves import RadiatedWaves
 from sim.ocean.spectra import SPECTRA, Conditions
 from sim.ocean.statistics import energy_by_wavenumber, expected
 from sim.ocean.tile_sea import TileSea
-from sim.parameters import check_record
+from sim.parameters import Value, check_record
 
 HELP = (
     "<b>Drag a buoy</b> under the water and let go. Next: press <b>2</b> for an oil spill, and compare the drafts "
@@ -69,19 +69,26 @@ FOAM_RADIUS = 80.0  # [m] within which the foam threshold is measured
 FOAM_GAIN = 0.05  # share of the new value in the running mean of the foam threshold
 FOAM_WIDTH = 0.07  # change of the Jacobian over which foam goes from none to full
 MAX_FOAM_JACOBIAN = 0.97  # threshold above which nothing is foam: the surface is not pressed together anywhere
-WARM_UP = {"bodies": {}, "fire": {"fire": True, "jet": True, "spill": "layer"}, "square sea": {"surface": "fft"}}
+WARM_UP: dict[str, dict[str, Value]] = {
+    "bodies": {},
+    "fire": {"fire": True, "jet": True, "spill": "layer"},
+    "square sea": {"surface": "fft"},
+}
 
 
-def warm_up() -> Iterator[str]:
-    """Compile everything the scene may call, piece by piece; yields what comes next."""
-    for name, changes in WARM_UP.items():
-        yield name
-        scene = RadialSeaScene(check_record(Params, changes))
-        scene.handle(Grab(0, (0.0, 0.0, 0.0)))
-        for _ in range(8):
-            scene.advance(1)
-        scene.frame()
-        scene.readings()
+def warm_up() -> Pieces:
+    """Everything to compile that the scene may call."""
+    return {name: functools.partial(compile_with, changes) for name, changes in WARM_UP.items()}
+
+
+def compile_with(changes: dict[str, Value]) -> None:
+    """What a scene calls with these parameters changed from their defaults."""
+    scene = RadialSeaScene(check_record(Params, changes))
+    scene.handle(Grab(0, (0.0, 0.0, 0.0)))
+    for _ in range(8):
+        scene.advance(1)
+    scene.frame()
+    scene.readings()
 
 
 class WaveChoice(NamedTuple):

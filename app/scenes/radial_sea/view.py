@@ -2,7 +2,7 @@
 
 import importlib.resources
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from app.render.material import Material
 from app.render.meshes import ball
 from app.render.skies import set_sky
 from app.render.water import Water
+from app.scenes.contract import Pieces
 from app.scenes.radial_sea.bodies import BODY_KINDS
 from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
@@ -279,6 +280,6 @@ def handle_scale(frame: RadialFrame, kind: str) -> float:
     return 0.5 * float(np.ptp(hull.extents, axis=1).mean()) / HANDLE_RADIUS
 
 
-def warm_up() -> Iterator[str]:
+def warm_up() -> Pieces:
     """Nothing here is compiled."""
-    yield from ()
+    return {}

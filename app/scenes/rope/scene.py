@@ -1,6 +1,5 @@
 """The rope of springs, part 2 of the lab: its root and its points can be dragged."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -8,7 +7,7 @@ from numpy.typing import NDArray
 
 from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts
 from app.scenes.charts import PlotAxes
-from app.scenes.contract import FRAME_INTERVAL, SceneKind, StabilityMap
+from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.plot_rows import PlotRows
 from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import PRESETS, Params, hidden
@@ -16,7 +15,7 @@ from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles, vector_of
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
-from app.scenes.springs.warmup import compile_integrators
+from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from app.scenes.springs.work_counts import SpringWorkCounts
 from sim.springs import Net, rope
 from sim.springs.analysis.energy_account import EnergyAccount
@@ -78,14 +77,22 @@ def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
     return build_rope(params, root, (*sphere, params.sphere_radius) if params.sphere else None)
 
 
-def warm_up() -> Iterator[str]:
-    """Compile everything that the scene may call, piece by piece; yields what comes next."""
+def warm_up() -> Pieces:
+    """Everything to compile that the scene may call."""
     net = rope(4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2))
-    yield from compile_integrators(net, rope(4, damping=0.0, drag=0.0))
-    yield "stability"
+    return {GAUGE: compile_gauge, **integrator_pieces(net, rope(4, damping=0.0, drag=0.0))}
+
+
+def compile_gauge() -> None:
+    """All but the integrators."""
     scene = RopeScene(Params())
-    scene.advance(2)
+    extremes(scene.state.x, scene.state.v)
     scene.frame()
+
+
+def needs(params: Params) -> tuple[str, ...]:
+    """What a scene with these parameters runs."""
+    return integrator_or_fallback(params.integrator, build(params))[0].name, GAUGE
 
 
 class RopeScene:
@@ -316,6 +323,7 @@ SCENE = SceneKind(
     make=RopeScene,
     hidden=hidden,
     warm_up=warm_up,
+    needs=needs,
     series=SERIES,
     plots=PLOTS,
     measures=measures,

@@ -1,6 +1,5 @@
 """The rope as a tube coloured by tension, its points as beads to be dragged, root and sphere with arrows."""
 
-from collections.abc import Iterator
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -14,7 +13,7 @@ from app.render.gizmo import Gizmo
 from app.render.html import Html, bold, fill
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
 from app.render.surroundings import set_dark
-from app.scenes.contract import PostCommand
+from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
@@ -207,9 +206,13 @@ def bead_radius(points: np.ndarray) -> float:
     return float(np.clip(0.4 * spacing, MIN_BEAD_RADIUS, MAX_BEAD_RADIUS))
 
 
-def warm_up() -> Iterator[str]:
-    """Compile what the drawing calls; yields what comes next."""
-    yield "drawing"
+def warm_up() -> Pieces:
+    """What the drawing calls."""
+    return {"drawing": compile_drawing}
+
+
+def compile_drawing() -> None:
+    """Draw a rope of two points."""
     line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
     smooth_line(np.zeros((2, 3), np.float32), 2, line)
     sweep(line, ROPE_RADIUS, SIDES, vertices)

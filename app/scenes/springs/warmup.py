@@ -1,16 +1,25 @@
 """Compile the kernels of the integrators ahead."""
 
-from collections.abc import Iterator
+import functools
 
+from app.scenes.contract import Pieces
 from sim.springs import INTEGRATORS, Net, simulate
 
 WARM_UP_STEP = 1e-4  # [s]
+GAUGE = "stability gauge"  # name of the piece that every scene of springs needs
 
 
-def compile_integrators(net: Net, undamped: Net) -> Iterator[str]:
-    """Run two steps of each method, with the energy account; yields the name of the next. undamped: for those that
-    accept no damping."""
-    for name, record in INTEGRATORS.items():
-        yield name
-        chosen = undamped if record.undamped_only else net
-        simulate(chosen, name, WARM_UP_STEP, 2 * WARM_UP_STEP, 2, with_account=True)
+def integrator_pieces(net: Net, undamped: Net) -> Pieces:
+    """Two steps of each method, with the energy account. undamped: for those that accept no damping."""
+    return {
+        name: functools.partial(
+            simulate,
+            undamped if record.undamped_only else net,
+            name,
+            WARM_UP_STEP,
+            2 * WARM_UP_STEP,
+            2,
+            with_account=True,
+        )
+        for name, record in INTEGRATORS.items()
+    }

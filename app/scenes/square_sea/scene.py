@@ -1,8 +1,8 @@
 """The square sea: wind waves on a tile that repeats to the horizon, on any planet, in calm, storm and rain."""
 
 import collections
+import functools
 import math
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from app.messages import PlotRow, Point, SceneCommand, Vector, WorkCount
 from app.scenes.charts import CurveAxes, PlotAxes
-from app.scenes.contract import SceneKind
+from app.scenes.contract import Pieces, SceneKind
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, Params, conditions, hidden, rain_settings
 from app.scenes.square_sea.rainfall import Rainfall, RainFrame
@@ -83,12 +83,14 @@ class SeaReadings(NamedTuple):
     report: Report | None
 
 
-def warm_up() -> Iterator[str]:
-    """Compile everything the scene may call, and plan its transforms; yields what comes next."""
-    for size in (64, 128, 256, 512):
-        yield f"waves on {size} x {size}"
-        Sea(size)
-    yield "the drawn sea"
+def warm_up() -> Pieces:
+    """Everything to compile that the scene may call, and its transforms to plan."""
+    waves = {f"waves on {size} x {size}": functools.partial(Sea, size) for size in (64, 128, 256, 512)}
+    return {**waves, "the drawn sea": compile_drawn_sea}
+
+
+def compile_drawn_sea() -> None:
+    """All that a small sea with rain calls."""
     small = Params(size="64", mesh="32", length=64.0, rain=50.0, plot_wave_spectrum=True)
     for params in (small, Params(**{**vars(small), "choppiness": 0.0})):
         scene = SquareSeaScene(params)

@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from app.render.cameras import all_cameras, place_cameras
 from app.render.material import Material
 from app.render.skies import CAMERA_RANGE, set_sky
 from app.render.water import Water
+from app.scenes.contract import Pieces
 from app.scenes.square_sea import report
 from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity
 from app.scenes.square_sea.rain_view import RainMesh
@@ -193,6 +194,6 @@ def add_gauge(server: viser.ViserServer) -> viser.FrameHandle:
     return frame
 
 
-def warm_up() -> Iterator[str]:
+def warm_up() -> Pieces:
     """The drawing compiles nothing."""
-    yield from ()
+    return {}

@@ -1,34 +1,57 @@
 """A scene is compiled ahead once, and again when a source that its kernels can reach has changed."""
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
-import app.scenes
 from app.scenes import warmup
 
 
-def test_a_scene_is_compiled_once_and_again_after_an_edit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    compiled: list[str] = []
+@pytest.fixture
+def compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """What the pieces of a scene of two pieces, and one of its drawing, have compiled."""
+    found: list[str] = []
 
-    def side(name: str) -> SimpleNamespace:
-        def warm_up() -> Iterator[str]:
-            compiled.append(name)
-            yield "everything"
-
-        return SimpleNamespace(warm_up=warm_up)
+    def side(*pieces: str) -> Callable[[str], SimpleNamespace]:
+        table = {piece: lambda piece=piece: found.append(piece) for piece in pieces}
+        return lambda name: SimpleNamespace(warm_up=lambda: table, needs=lambda params: params)
 
     monkeypatch.setattr(warmup, "CACHE", tmp_path)
-    monkeypatch.setattr(warmup, "scene_named", side)
-    monkeypatch.setattr(app.scenes, "view_module", side)
+    monkeypatch.setattr(warmup, "scene_named", side("gauge", "rk4"))
+    monkeypatch.setattr(warmup, "view_module", side("drawing"))
+    warmup.hash_of.cache_clear()
+    return found
+
+
+def test_a_scene_is_compiled_once_and_again_after_an_edit(compiled: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     warmup.prepare("rope", drawn=False)
     warmup.prepare("rope", drawn=False)
-    assert len(compiled) == 1
+    assert compiled == ["gauge", "rk4"]
     warmup.prepare("rope")
+    warmup.prepare("rope")
+    assert compiled == ["gauge", "rk4", "drawing"]
+    monkeypatch.setattr(warmup, "hash_of", lambda name, drawn: "hash after an edit")
     warmup.prepare("rope", drawn=False)
-    assert len(compiled) == 3  # the scene again, and its drawing
-    monkeypatch.setattr(warmup, "reachable_hash", lambda *_: "hash after an edit")
-    warmup.prepare("rope", drawn=False)
-    assert len(compiled) == 4
+    assert compiled == ["gauge", "rk4", "drawing", "gauge", "rk4"]
+
+
+def test_parameters_need_only_their_own_pieces(compiled: list[str]) -> None:
+    needed = ("rk4",)  # as parameters of this scene are its needs
+    assert warmup.missing("rope", needed) == (("drawing", True), ("rk4", False))  # type: ignore[arg-type]
+    warmup.compile_piece("rope", "rk4", drawn=False)
+    assert warmup.missing("rope", needed) == (("drawing", True),)  # type: ignore[arg-type]
+    assert warmup.missing("rope") == (("drawing", True), ("gauge", False))
+    warmup.prepare("rope")
+    assert not warmup.missing("rope")
+
+
+def test_what_fails_is_not_remembered(compiled: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails() -> None:
+        raise RuntimeError
+
+    monkeypatch.setattr(warmup, "scene_named", lambda name: SimpleNamespace(warm_up=lambda: {"rk4": fails}, needs=None))
+    with pytest.raises(RuntimeError):
+        warmup.compile_piece("rope", "rk4", drawn=False)
+    assert ("rk4", False) in warmup.missing("rope")

@@ -19,8 +19,8 @@ def signatures():
     return {(k.py_func.__module__, k.py_func.__name__, str(s)) for k in kernels.values() for s in k.signatures}
 
 name = sys.argv[1]
-for _ in warmup.parts(name):
-    pass
+for piece, drawn in warmup.all_pieces(name):
+    warmup.compile_piece(name, piece, drawn=drawn)
 before = signatures()
 viewer = Viewer("127.0.0.1", 0)
 viewer.open(name)

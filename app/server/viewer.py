@@ -96,7 +96,7 @@ class Viewer:
                 kind = scene_named(name)
                 if params is None:
                     params = self.first_params.get(name) or (kind.opening_params() if first_look else kind.params())
-                if not self.compile(kind, params):
+                if not self.compile(kind, params) or self.ended:
                     return
                 self.close()
                 self.make(kind, params, paused)
@@ -290,11 +290,11 @@ class Viewer:
         """End: stop the threads and the server. A scene that is being opened is not waited for."""
         self.ended = True
         self.stop.set()
+        self.compiling.close()
         if self.changing.acquire(timeout=MAX_JOIN_TIME):
             try:
                 self.close()
             finally:
                 self.changing.release()
         self.wanted.put("")
-        self.compiling.close()
         self.server.stop()

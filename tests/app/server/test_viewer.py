@@ -10,6 +10,7 @@ import pytest
 
 from app.messages import Grab, Reset, StepOnce
 from app.scenes import scene_named
+from app.scenes.compiling import Job
 from app.server.viewer import Viewer
 from tests.app.server.test_guard import talk
 
@@ -137,20 +138,44 @@ def test_ending_while_a_scene_is_opened_leaves_no_thread(monkeypatch: pytest.Mon
     assert viewer.threads == []
 
 
-def test_a_scene_that_must_be_compiled_says_so_on_the_page(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+def pretend_to_compile(viewer: Viewer, monkeypatch: pytest.MonkeyPatch, seen: list[str]) -> None:
+    """The cloth has one piece to compile; while it is, what the page says is noted."""
+
+    def wait(jobs: object, timeout: float) -> bool:
+        if viewer.is_open:
+            viewer.show_latest()
+        seen.append(panel_text(viewer))
+        return True
+
+    monkeypatch.setattr(viewer.compiling, "missing", lambda name, params: [Job("cloth", "the solver", False)])
+    monkeypatch.setattr(viewer.compiling, "want", lambda jobs: None)
+    monkeypatch.setattr(viewer.compiling, "wait", wait)
+
+
+def test_a_scene_goes_on_while_another_is_compiled_and_says_so(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[str] = []
-
-    def compile_scene(name: str, show: Any) -> None:
-        show("the solver")
-        seen.append(panel_text(lab))
-
-    monkeypatch.setattr("app.server.viewer.is_compiled", lambda name: False)
-    monkeypatch.setattr("app.server.viewer.compile_scene", compile_scene)
+    lab.stop_threads()
+    pretend_to_compile(lab, monkeypatch, seen)
     lab.open("cloth")
     assert len(seen) == 1
     assert "compiling the solver" in seen[0]
-    assert "springtide-panel" not in seen[0]  # nothing is left of the scene before
+    assert "springtide-panel" in seen[0]  # the scene before is still there
+    assert "springtide-progress" not in seen[0]
+    assert lab.panel.kind.name == "cloth"
     assert "compiling the solver" not in panel_text(lab)
+
+
+def test_the_first_scene_covers_the_page_until_it_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[str] = []
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        pretend_to_compile(viewer, monkeypatch, seen)
+        viewer.open("cloth")
+        assert "springtide-progress" in seen[0]
+        assert "springtide-panel" not in seen[0]
+        assert "springtide-progress" not in panel_text(viewer)
+    finally:
+        viewer.shut()
 
 
 def test_plot_rows_of_snapshots_that_were_never_shown_reach_the_charts(lab: Viewer) -> None:

@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -77,7 +78,7 @@ def right_answers(tasks: Sequence[Task]) -> Answers:
 
 def readme_text(name: str, tasks: Sequence[Task]) -> str:
     """The README of the student's folder: what to do, and every task."""
-    mandatory = sum(not task.optional for task in tasks)
+    mandatory, quoted = sum(not task.optional for task in tasks), shlex.quote(name)
     lines = [
         "# Springs and waves: the lab",
         "",
@@ -86,12 +87,12 @@ def readme_text(name: str, tasks: Sequence[Task]) -> str:
         "1. Read it below. Predict first: write your prediction into `answers.toml`.",
         "2. Write the function, where there is one. The docstring has the equation, the units and the shapes.",
         "3. Look at it in Springtide: the command below each task opens the right scene.",
-        f"4. Check your work in the folder above this one: `springtide lab check {name}`. It says what is right,",
+        f"4. Check your work in the folder above this one: `springtide lab check {quoted}`. It says what is right,",
         "   and what is wrong and why. Check as often as you like.",
         "5. Answer the questions in `answers.toml`.",
         "",
         f"Put pictures of your screen (PNG or JPEG) into `{PICTURES}`. At the end write the page that you hand in:",
-        f"`springtide lab check {name} --report report.html`.",
+        f"`springtide lab check {quoted} --report report.html`.",
         "",
         "Functions take and return numpy arrays and numbers. Loops are as right as array operations. You may write",
         "functions and files of your own beside those that are asked for.",

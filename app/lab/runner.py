@@ -75,14 +75,21 @@ class Runner:
         self._say(process, ["call", file, function, pack(list(arguments), refer)])
         while True:
             answer = self._next(deadline, file, function)
-            if answer[0] == "result":
-                return unpack(answer[1], lambda _: None)
-            if answer[0] == "failed":
-                _, kind, text, where, line = answer
-                if kind == "memory":
+            try:
+                if answer[0] == "result":
+                    return unpack(answer[1], lambda _: None)
+                if answer[0] == "failed":
+                    _, kind, text, where, line = answer
+                    raise RunError(str(kind), str(text), str(where), line if isinstance(line, int) else None)
+                reply = compute(functions, answer)
+            except RunError as error:
+                if error.kind == "memory":
                     self.close()  # what it holds is given back
-                raise RunError(str(kind), str(text), str(where), line if isinstance(line, int) else None)
-            self._say(process, compute(functions, answer))
+                raise
+            except (LookupError, TypeError, ValueError):
+                self.close()
+                raise RunError("ended", f"{function} wrote into the pipe of the lab", file) from None
+            self._say(process, reply)
 
     def close(self) -> None:
         """End the process, and all that it has started."""
@@ -166,8 +173,8 @@ def read_answers(process: subprocess.Popen[bytes], answers: "queue.SimpleQueue[l
 
 def compute(functions: list[Callable[..., Any]], answer: list[Any]) -> list[Any]:
     """The reply to a callback: the value, or why these arguments are refused."""
-    arguments = unpack(answer[2], lambda _: None)
+    function, arguments = functions[answer[1]], unpack(answer[2], lambda _: None)
     try:
-        return ["value", pack(functions[answer[1]](*arguments), lambda _: 0)]
-    except (TypeError, ValueError, IndexError, AttributeError) as error:
+        return ["value", pack(function(*arguments), lambda _: 0)]
+    except Exception as error:  # whatever the student's function handed over
         return ["refused", f"the function that was handed over cannot take these arguments: {error}"]

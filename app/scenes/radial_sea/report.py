@@ -11,7 +11,6 @@ from app.scenes.radial_sea.materials import LAB_SPECULAR
 from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
 from app.scenes.radial_sea.well_blowout import OilBudget
 from sim.formatting import fixed, metres, number, percent, seconds
-from sim.ocean.dispersion import viscous_root
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import diffuse_reflectance, normal_reflectance
 from sim.ocean.gerstner import peak_wavenumber
@@ -19,6 +18,7 @@ from sim.parameters import parameters_of
 
 SAMPLE_WAVE = 10.0  # [m] length of the wave in statements about the speed of waves
 SHORT_WAVE = 1.0  # [m] length of the wave in statements about viscosity
+MAX_DILUTE = 0.1  # share of drops up to which Taylor's law, of first order, holds
 SURFACES = (("sum", "radial sum"), ("fft", "square FFT"))
 
 
@@ -105,7 +105,8 @@ def archimedes(column: FluidColumn) -> Html:
     oil, water = column.oil.density, column.water.density
     if column.kind == "layer":
         return fill(
-            "<div>A body that reaches through the oil floats deeper by d (1 − ρ₁/ρ₂) = {:g} m × (1 − {:g}/{:g}) = "
+            "<div>A body with straight sides that reaches through the oil floats deeper by "
+            "d (1 − ρ₁/ρ₂) = {:g} m × (1 − {:g}/{:g}) = "
             "<b>{:.4f} m</b>.</div>",
             column.thickness, oil, water, column.thickness * (1.0 - oil / water),
         )  # fmt: skip
@@ -137,19 +138,21 @@ def claims_html(snapshot: Snapshot) -> Html:
     """The statements of the lab's section 1.1, each with what physics says and the present numbers."""
     readings: RadialReadings = snapshot.readings
     p, column = snapshot.frame.params, readings.column
-    surface, water = column.surface, column.water
+    water = column.water
     k = np.array([2.0 * math.pi / SAMPLE_WAVE])
     speed, clean_speed = float(column.roots(k)[0][0] / k[0]), float(FluidColumn(water=water).omega(k)[0] / k[0])
     height_loss = 1.0 - (readings.height / readings.clean_height if readings.clean_height > 0 else 1.0)
     slope_loss = 1.0 - (readings.slope / readings.clean_slope if readings.clean_slope > 0 else 1.0)
     short = 2.0 * math.pi / SHORT_WAVE
     decay = float(column.roots(np.array([short]))[1][0])
-    slowing = 1.0 - float(viscous_root(short, surface.kinematic_viscosity)[0] / math.sqrt(9.81 * short))
-    normal_oil, normal_water = normal_reflectance(surface.refractive_index), normal_reflectance(water.refractive_index)
-    sky_oil, sky_water = diffuse_reflectance(surface.refractive_index), diffuse_reflectance(water.refractive_index)
+    # Against the same fluids without viscosity, so that tension and layer do not count.
+    slowing = 1.0 - float(column.roots(np.array([short]))[0][0] / column.omega(np.array([short]))[0])
+    oil = column.oil
+    normal_oil, normal_water = normal_reflectance(oil.refractive_index), normal_reflectance(water.refractive_index)
+    sky_oil, sky_water = diffuse_reflectance(oil.refractive_index), diffuse_reflectance(water.refractive_index)
     prediction = readings.bodies[0].prediction if readings.bodies else None
     here = ""
-    if prediction is not None and not math.isinf(prediction.draft):
+    if prediction is not None and column.kind != "water" and not math.isinf(prediction.draft):
         added = fixed(prediction.draft - prediction.draft_in_water, 4, sign=True)
         here = f" The {readings.bodies[0].title.lower()} here: {added} m."
     shown = f"as in the lab, reflections times {LAB_SPECULAR:g}" if p.optics == "lab" else "physical"
@@ -165,20 +168,14 @@ def claims_html(snapshot: Snapshot) -> Html:
         (
             "2, 4. The bodies float deeper in oil.",
             fill(
-                "Yes: by d (1 − ρ₁/ρ₂) if they reach through the oil; if not, by their draft in oil less their draft "
-                "in water.{}",
+                "Yes: by d (1 − ρ₁/ρ₂) if they have straight sides and reach through the oil; if not, by their "
+                "draft in oil less their draft in water.{}",
                 here,
             ),
         ),
         (
             "5. The viscosity of the mixture.",
-            fill(
-                "{} mPa·s ({}); that of water is {} mPa·s. Oil and water do not dissolve in each other: Taylor's law "
-                "holds for the emulsion that forms, Arrhenius' law for a true solution, the lab's 'entirely mixed'.",
-                number(surface.viscosity * 1e3),
-                parameters_of(p)["mixture_law"].title_of(p.mixture_law) if column.kind == "mixed" else surface.name,
-                number(water.viscosity * 1e3),
-            ),
+            mixture_html(column, parameters_of(p)["mixture_law"].title_of(p.mixture_law)),
         ),
         (
             "6a. Viscosity changes the speed of waves.",
@@ -190,11 +187,14 @@ def claims_html(snapshot: Snapshot) -> Html:
         ),
         (
             "6b. Viscosity lowers the waves.",
-            fill(
-                "The short ones: after {} H<sub>s</sub> is {} lower and the mean square slope {} lower. A wave of {:g} "
-                "m falls to 37 % in {}.",
-                seconds(readings.age, 2), percent(height_loss), percent(slope_loss), SHORT_WAVE, seconds(1.0 / decay),
-            ),
+            join((
+                "The short ones. ",
+                "" if column.kind == "water" else fill(
+                    "After {} H<sub>s</sub> is {} lower and the mean square slope {} lower. ",
+                    seconds(readings.age, 2), percent(height_loss), percent(slope_loss),
+                ),
+                fill("A wave of {:g} m falls to 37 % in {} here.", SHORT_WAVE, seconds(1.0 / decay)),
+            )),
         ),
         (
             "7. Oil reflects less.",
@@ -203,11 +203,35 @@ def claims_html(snapshot: Snapshot) -> Html:
                 "(water {}), with n = {:.3f}. It looks darker because no light is scattered back from below, and "
                 "smoother because it damps the ripples. Rendering: {}.",
                 percent(normal_oil), percent(normal_water), percent(sky_oil), percent(sky_water),
-                surface.refractive_index, shown,
+                oil.refractive_index, shown,
             ),
         ),
     )  # fmt: skip
     return join(fill('<div style="margin-bottom:6px"><b>{}</b><br>{}</div>', *claim) for claim in claims)
+
+
+def mixture_html(column: FluidColumn, law: str) -> Html:
+    """The viscosity of the mixture, by which law, and whether that law holds for so much oil."""
+    water = number(column.water.viscosity * 1e3)
+    kinds = (
+        "Oil and water do not dissolve in each other: they form an emulsion, for which Taylor's law holds as long as "
+        f"drops are less than {MAX_DILUTE:.0%} of it. Arrhenius' law is that of a true solution, the lab's 'entirely "
+        "mixed'."
+    )
+    if column.kind != "mixed":
+        return fill("Nothing is mixed here; water has {} mPa·s. {}", water, kinds)
+    drops = min(column.fraction, 1.0 - column.fraction)
+    beyond = ""
+    if column.law == "taylor" and drops > MAX_DILUTE:
+        beyond = f" With {drops:.0%} of drops it is far too low."
+    return fill(
+        "{} mPa·s ({}); that of water is {} mPa·s. {}{}",
+        number(column.surface.viscosity * 1e3),
+        law,
+        water,
+        kinds,
+        beyond,
+    )
 
 
 def fluids_html(snapshot: Snapshot) -> Html:

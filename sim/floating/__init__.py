@@ -5,12 +5,13 @@ step(fleet, still_water(fleet, [(850.0, 0.2), (1025.0, math.inf)]), 1 / 60)
 """
 
 from sim.floating.body import Body, Fleet, lowest, make_fleet, pull, vertices
-from sim.floating.equilibrium import equilibrium_draft, heave_period, roll_period
+from sim.floating.equilibrium import equilibrium_draft
 from sim.floating.fluid_state import Water, make_water, still_water
 from sim.floating.heave_meter import HeaveMeter
 from sim.floating.hull import Hull, shape_from_file
 from sim.floating.hydrostatics import Submerged, pressure_force, submerged
 from sim.floating.motion import MotionCoefficients, step
+from sim.floating.periods import heave_period, roll_period
 from sim.floating.prediction import HydrostaticPrediction, predict
 from sim.floating.shapes import SHAPES, Shape
 

@@ -11,7 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.floating.closed_mesh import area_vectors
+from sim.floating.equilibrium import Layers
 from sim.floating.hull import Hull
+from sim.floating.hydrodynamics import POLES, SEA_WATER, afloat
 from sim.floating.rotation import rotation_matrix
 from sim.floating.shapes.record import COLLISION_FORMS
 from sim.validation import argument_error
@@ -43,13 +45,22 @@ class PackedHulls(NamedTuple):
     inertia: np.ndarray  # (q, 3, 3) [m5] at unit density
     wetted_area: np.ndarray  # (q, 3) [m2] across each axis, int |n_i| dA, of the hull wholly under water
     radius_of_gyration: np.ndarray  # (q, 3) [m] of the surface: root mean square of x_i over it
-    added_mass: np.ndarray  # (q, 3) [m3] along each axis at unit density, see added_mass.py
-    added_inertia: np.ndarray  # (q, 3) [m5] about each axis at unit density
     restoring_bound: np.ndarray  # (q, 3) [m4] bound of the moment about an axis per angle, over weight density
 
 
+class PackedLinear(NamedTuple):
+    """What linear theory knows of s hulls at their drafts, at unit density and gravity: see hydrodynamics.py."""
+
+    added_mass: np.ndarray  # (s, 6, 6) at infinite frequency, about the centre of mass
+    poles: np.ndarray  # (s, p) complex
+    residues: np.ndarray  # (s, p, 6, 6) complex
+    wet_area: np.ndarray  # (s, 3) [m2] wet at rest across each axis
+    added_bound: np.ndarray  # (s, 6) added mass along and about each axis that any coupling leaves
+    decay_length: np.ndarray  # (s,) [m] of depth over which a body under water ceases to make waves
+
+
 class Fleet(NamedTuple):
-    """n bodies. `step` changes the first seven arrays, `pull` the next three; the rest is fixed."""
+    """n bodies. `step` changes the first eight arrays, `pull` the next three; the rest is fixed."""
 
     position: np.ndarray  # (n, 3) [m]
     rotation: np.ndarray  # (n, 4) quaternion (w, x, y, z)
@@ -58,6 +69,7 @@ class Fleet(NamedTuple):
     wetted: np.ndarray  # (n, 3) [kg/m] wetted area across each body axis times density at the last step; -1 before it
     buoyancy: np.ndarray  # (n,) [N] upward force of the fluids' pressure at the last step
     wet_volume: np.ndarray  # (n, 2) [m3] in the upper and in the lower fluid at the last step
+    memory: np.ndarray  # (n, p, 6) complex: state of the radiated waves, one for each pole and motion
     pull_point: np.ndarray  # (n, 3) [m] where each is pulled, in body axes
     pull_target: np.ndarray  # (n, 3) [m] where to, in world axes
     pull_limit: np.ndarray  # (n,) [N] greatest pull; 0 for none
@@ -66,10 +78,16 @@ class Fleet(NamedTuple):
     mass: np.ndarray  # (n,) [kg]
     vertex_start: np.ndarray  # (n + 1,) int: where each body's vertices begin in arrays of all vertices
     hulls: PackedHulls
+    linear_hull: np.ndarray  # (n,) int, index in linear
+    linear: PackedLinear
 
 
-def make_fleet(bodies: Sequence[Body]) -> Fleet:
-    """The arrays of many bodies. Raises ValueError, naming the body, for what is not finite or has no mass."""
+def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
+    """The arrays of many bodies.
+
+    layers: (density [kg/m3], thickness [m]) from the top of the fluids at whose drafts the bodies take their linear
+    coefficients. Raises ValueError, naming the body, for what is not finite or has no mass.
+    """
     for i, body in enumerate(bodies):
         if not isinstance(body.density, int | float | np.number) or not 0 < body.density < math.inf:
             raise argument_error(f"bodies[{i}].density", body.density, "above 0 kg/m3, finite")
@@ -84,6 +102,7 @@ def make_fleet(bodies: Sequence[Body]) -> Fleet:
     number = {id(hull): i for i, hull in enumerate(hulls)}
     rotation = np.array([body.rotation for body in bodies], dtype=float).reshape(n, 4)
     counts = [len(body.hull.vertices) for body in bodies]
+    linear_hull, linear = pack_linear([body.hull for body in bodies], [body.density for body in bodies], layers)
     return Fleet(
         position=np.array([body.position for body in bodies], dtype=float).reshape(n, 3),
         rotation=rotation / np.linalg.norm(rotation, axis=1, keepdims=True),
@@ -92,6 +111,7 @@ def make_fleet(bodies: Sequence[Body]) -> Fleet:
         wetted=np.full((n, 3), -1.0),
         buoyancy=np.zeros(n),
         wet_volume=np.zeros((n, 2)),
+        memory=np.zeros((n, len(POLES), 6), dtype=complex),
         pull_point=np.zeros((n, 3)),
         pull_target=np.zeros((n, 3)),
         pull_limit=np.zeros(n),
@@ -100,6 +120,30 @@ def make_fleet(bodies: Sequence[Body]) -> Fleet:
         mass=np.array([body.density * body.hull.volume for body in bodies], dtype=float),
         vertex_start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
         hulls=pack(hulls),
+        linear_hull=linear_hull,
+        linear=linear,
+    )
+
+
+def pack_linear(
+    hulls: Sequence[Hull], densities: Sequence[float], layers: Layers = SEA_WATER
+) -> tuple[np.ndarray, PackedLinear]:
+    """Index (n,) of the linear coefficients of each hull of a density [kg/m3], and these, each of them once."""
+    fluids = tuple((float(density), float(thickness)) for density, thickness in layers)
+    found = [afloat(hull, float(density), fluids) for hull, density in zip(hulls, densities, strict=True)]
+    unique = list({id(one): one for one in found}.values())
+    number = {id(one): i for i, one in enumerate(unique)}
+    s = len(unique)
+    added = np.array([one.linear.infinite for one in unique]).reshape(s, 6, 6)
+    # The inverse of the inverse's diagonal is what is left of each entry where all other motions are free.
+    steady = np.array([1e-9 * np.trace(one) * np.eye(6) for one in added]).reshape(s, 6, 6)
+    return np.array([number[id(one)] for one in found], dtype=np.int64), PackedLinear(
+        added_mass=added,
+        poles=np.array([one.memory.poles for one in unique], dtype=complex).reshape(s, len(POLES)),
+        residues=np.array([one.memory.residues for one in unique], dtype=complex).reshape(s, len(POLES), 6, 6),
+        wet_area=np.array([one.wet_area for one in unique]).reshape(s, 3),
+        added_bound=1 / np.einsum("sii->si", np.linalg.inv(added + steady)) if s else np.zeros((0, 6)),
+        decay_length=np.array([one.linear.draft for one in unique], dtype=float),
     )
 
 
@@ -108,7 +152,6 @@ def pack(hulls: Sequence[Hull]) -> PackedHulls:
     q = len(hulls)
     vertex_start = np.concatenate([[0], np.cumsum([len(hull.vertices) for hull in hulls])]).astype(np.int64)
     face_start = np.concatenate([[0], np.cumsum([len(hull.faces) for hull in hulls])]).astype(np.int64)
-    added = [hull.added_mass() for hull in hulls]
     areas = [area_vectors(hull.vertices, hull.faces) for hull in hulls]
     surfaces = [surface_moments(hull, area) for hull, area in zip(hulls, areas, strict=True)]
     return PackedHulls(
@@ -124,8 +167,6 @@ def pack(hulls: Sequence[Hull]) -> PackedHulls:
         inertia=np.array([hull.inertia for hull in hulls]).reshape(q, 3, 3),
         wetted_area=np.array([np.abs(area).sum(axis=0) for area in areas]).reshape(q, 3),
         radius_of_gyration=np.array([radius for radius, _ in surfaces]).reshape(q, 3),
-        added_mass=np.array([mass for mass, _ in added]).reshape(q, 3),
-        added_inertia=np.array([inertia for _, inertia in added]).reshape(q, 3),
         restoring_bound=np.array([bound for _, bound in surfaces]).reshape(q, 3),
     )
 

@@ -1,4 +1,4 @@
-"""Where a hull floats upright in layered fluids, and its periods of heave and roll there.
+"""Where a hull floats upright in layered fluids.
 
 Archimedes through layers of densities rho_1, rho_2, ... with tops at depths D_1 = 0, D_2, ... is a sum over
 interfaces, since each one adds the pressure (rho_i - rho_{i-1}) g (depth below it):
@@ -14,9 +14,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.floating.closed_mesh import area_vectors
 from sim.floating.hull import Hull
-from sim.floating.hydrostatics import Submerged, add_pressure, submerged
+from sim.floating.hydrostatics import Submerged, submerged
 from sim.validation import argument_error, check_positive
 
 Layers = Sequence[tuple[float, float]]
@@ -51,47 +50,6 @@ def equilibrium_draft(hull: Hull, density: float, layers: Layers = OIL_ON_WATER,
             high = middle
 
 
-def heave_period(
-    hull: Hull, density: float, layers: Layers = OIL_ON_WATER, gravity: float = 9.81, added: float = 1.0
-) -> float:
-    """Period [s] of small heave of the upright hull about its equilibrium: 2 pi sqrt((m + A33)/C33).
-
-    C33 = g sum (rho_i - rho_{i-1}) A_i over the waterplanes at surface and interfaces, which are taken to stay level
-    (Newman 1977, section 6.16). added scales the added mass. inf where no force restores: the hull sinks, or is
-    wholly submerged in one fluid. Raises ValueError as `equilibrium_draft`.
-    """
-    draft = equilibrium_draft(hull, density, layers, gravity)
-    if math.isinf(draft):
-        return math.inf
-    cuts = [(change, upright(hull, draft - top)) for change, top in density_steps(layers)]
-    stiffness = gravity * sum(change * cut.area for change, cut in cuts)
-    along, _ = wet_added_mass(hull, draft, layers)
-    return period(density * hull.volume + added * along[2], stiffness)
-
-
-def roll_period(
-    hull: Hull, density: float, layers: Layers = OIL_ON_WATER, gravity: float = 9.81, added: float = 1.0, axis: int = 0
-) -> float:
-    """Period [s] of small roll (axis 0, about x) or pitch (axis 1, about y) of the upright hull.
-
-    2 pi sqrt((I + A44)/(rho g V GM)) with rho g V GM = g sum (rho_i - rho_{i-1}) (I_i + V_i (z_B - z_G)) over the
-    interfaces (Newman 1977, section 6.16). inf where the upright pose is not stable, or the hull sinks.
-    added scales the added inertia. Raises ValueError as `equilibrium_draft`, and for another axis.
-    """
-    if axis not in (0, 1):
-        raise argument_error("axis", axis, "0 (roll) or 1 (pitch)")
-    draft = equilibrium_draft(hull, density, layers, gravity)
-    if math.isinf(draft):
-        return math.inf
-    stiffness = 0.0
-    for change, top in density_steps(layers):
-        cut = upright(hull, draft - top)
-        if cut.volume > 0:
-            stiffness += gravity * change * (cut.second[1 - axis] + cut.volume * cut.centre[2])
-    _, about = wet_added_mass(hull, draft, layers)
-    return period(density * hull.inertia[axis, axis] + added * about[axis], stiffness)
-
-
 def upright(hull: Hull, height: float) -> Submerged:
     """What of the true shape, upright, lies up to `height` [m] above its lowest point, about its centre of mass."""
     bottom, top = hull.extents[2]
@@ -103,23 +61,6 @@ def upright(hull: Hull, height: float) -> Submerged:
     area, second = (part.area, part.second) if inside else (0.0, (0.0, 0.0))
     centre = np.array([0.0, 0.0, bottom + part.centroid]) if part.volume > 0 else np.full(3, np.nan)
     return Submerged(part.volume, centre, area, np.array([*second, 0.0]))
-
-
-def wet_added_mass(hull: Hull, draft: float, layers: Layers) -> tuple[np.ndarray, np.ndarray]:
-    """Added mass (3,) [kg] along and (3,) [kg m2] about the axes of the upright hull at a draft [m]."""
-    x, faces = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(hull.faces.T)
-    area = np.ascontiguousarray(area_vectors(hull.vertices, hull.faces).T)
-    wet = np.zeros(9)
-    for change, top in density_steps(layers):
-        add_pressure(x, faces, area, 0, len(hull.faces), hull.extents[2, 0] + draft - top - x[2], change, wet)
-    share = wet[6:9] / np.abs(area).sum(axis=1)
-    along, about = hull.added_mass()
-    return along * share, about * (np.roll(share, -1) + np.roll(share, -2)) / 2
-
-
-def period(inertia: float, stiffness: float) -> float:
-    """2 pi sqrt(inertia/stiffness) [s]; inf where no force restores."""
-    return 2 * math.pi * math.sqrt(inertia / stiffness) if stiffness > 0 else math.inf
 
 
 def density_steps(layers: Layers) -> list[tuple[float, float]]:

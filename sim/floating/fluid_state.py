@@ -30,6 +30,8 @@ class Water(NamedTuple):
     interface_rise: np.ndarray  # (n,) [m/s]
     relief: np.ndarray  # (0,), or per vertex of each body in turn [m]: surface above its body's plane
     interface_relief: np.ndarray  # (0,) or the same of the interface [m]
+    excitation: np.ndarray  # (0, 6), or (n, 6) [m3, m4 times m/s2]: what waves do beyond the pressure of the plane
+    lead: float  # [s] after the beginning of the step at which all these are the water's values
 
 
 def make_water(
@@ -45,13 +47,19 @@ def make_water(
     interface_rise: np.ndarray | None = None,
     relief: np.ndarray | None = None,
     interface_relief: np.ndarray | None = None,
+    excitation: np.ndarray | None = None,
+    lead: float = 0.0,
 ) -> Water:
     """The water around a fleet from its values at the bodies' positions, of the shapes and units of `Water`.
 
     layers: one or two (density, thickness) pairs as in `equilibrium_draft`. What is left out is still and level; an
     interface left out follows the surface at the thickness of the upper layer (its slope and rise too).
     acceleration is worth giving: with it a small hull rides a wave exactly, without it the frequency of the wave
-    over that of heave, squared, is lost. Raises ValueError for bad layers or shapes; values are checked by `step`.
+    over that of heave, squared, is lost. excitation: from `WaveExcitation`, where the surface is a sum of waves: what
+    diffraction, the decay of pressure with depth and the length of the hull add to the pressure of the plane. Without
+    it that is the added mass times the fluid's acceleration, as in waves that are long beside the hull. lead [s]: how
+    long after the beginning of the step the values hold; half of the step is best. Raises ValueError for bad layers or
+    shapes; values are checked by `step`.
     """
     n = len(fleet.mass)
     steps = density_steps(layers)
@@ -87,6 +95,8 @@ def make_water(
         interface_rise=field("interface_rise", interface_rise, (n,), rise if interface is None else 0.0),
         relief=field("relief", relief, bumps, 0.0),
         interface_relief=field("interface_relief", interface_relief, interface_bumps, 0.0),
+        excitation=field("excitation", excitation, (0, 6) if excitation is None else (n, 6), 0.0),
+        lead=float(lead),
     )
 
 

@@ -79,10 +79,6 @@ class Hull(ClosedMesh):
         mesh = checked_mesh(vertices, faces, name)
         return Hull.of(Shape("mesh", lambda: mesh, ()), mesh)
 
-    def added_mass(self) -> tuple[np.ndarray, np.ndarray]:
-        """Added mass (3,) [m3] along and (3,) [m5] about the body's axes, of the whole hull, at unit density."""
-        return self.shape.added_mass(self)
-
 
 def shape_from_file(path: str | Path) -> Shape:
     """The shape of the mesh in a file; its hulls have the size of the file, whatever size is asked for.

@@ -1,18 +1,20 @@
-"""Six degrees of freedom for many bodies: pressure of two fluids, added mass, drag, pulls and collisions.
+"""Six degrees of freedom for many bodies: pressure of two fluids, waves, radiation, drag, pulls and collisions.
 
 Of body i, where all but the drag and the fluid are in its own principal directions:
 
-  (m + A) dv/dt = F_p + m g + A a_f - drag(v - u) + pull,     (I + J) dw/dt = M_p - drag(w) + pull
+  (M + A) dV/dt = F_p + m g + F_e - F_r - drag(V - U) + pull,    V = (v, w)
 
-F_p, M_p are the exact integrals of the hydrostatic pressure over the wet hull (hydrostatics.py) under the surface
-of `Water`, in the gravity g + a that a particle riding the surface feels (a its upward acceleration). The fluid
-there accelerates at a_f = (-(g + a) slope, a), as linear waves do at their surface, so that a small hull that
-displaces its weight moves as the fluid does: its response to a long wave is 1. A, J are the added masses in the
-proportion in which the hull's surface is wet; drag per axis is rho S/2 (b v + C |v| v/2) with S the wetted area.
+F_p are the exact integrals of the hydrostatic pressure over the wet hull (hydrostatics.py) under the surface of
+`Water`, in the gravity g + a that a particle riding the surface feels (a its upward acceleration). A (6, 6) is the
+added mass at infinite frequency, F_r the memory of the waves that the body made (Cummins; hydrodynamics.py), F_e what
+waves do beyond F_p (excitation.py). Where the sea is no sum of waves, F_e is A times the fluid's acceleration at the
+surface, (-(g + a) slope, a), and F_r goes with the velocity against the fluid: so a small hull that displaces its
+weight moves as the fluid does in long waves. Small motions are those of linear theory. drag per axis is
+rho S/2 (b v + C |v| v/2) with S the wetted area.
 
-A hull that wets more of its surface shares its momentum with the fluid that it begins to carry,
-(m + A)(v - u) = const (von Karman 1929, NACA TN 321); a hull that leaves the water gets nothing back. So a change of
-A takes energy and never gives any.
+A hull that comes out of the water loses A, F_r and F_e with what of it is wet, below half of that at rest. As it
+enters again it shares its momentum with the fluid that it begins to carry, (m + A)(v - u) = const (von Karman 1929,
+NACA TN 321); a hull that leaves the water gets nothing back. So a change of A takes energy and never gives any.
 
 **Step.** Leapfrog, half a drift, the kick, half a drift: forces at the middle of the substep change the velocity.
 Buoyancy alone is explicit; drag is solved exactly over the step and the pull implicitly, so neither limits it. The
@@ -21,9 +23,8 @@ error stays bounded. Since F_p and A decrease together as a hull leaves the wate
 (`frequency_bound`), and `step` divides the frame until omega h <= MAX_PHASE, for each body on its own. Rotation sets
 no limit: each drift keeps the angular momentum of the solid, so that spin stays bounded.
 
-Not modelled: waves that a body made and that act back on it (the linear drag stands for their loss), the decay of the
-wave's pressure with depth beyond first order, coupling of added masses between axes and their moment at steady speed
-(Munk), air.
+Not modelled: waves from one body to another, coefficients that change with pose and draft, the moment of added mass at
+steady speed (Munk), air. A sphere has the axes of the world: its mesh has a pose, the sphere has none.
 """
 
 import math
@@ -35,11 +36,20 @@ from sim.floating.body import Fleet
 from sim.floating.body_collisions import collide
 from sim.floating.fluid_state import Water
 from sim.floating.hydrostatics import add_pressure
-from sim.floating.rigid import add_pull, after_drag, drift, make_scratch, set_inverse, set_rotation
+from sim.floating.rigid import (
+    add_pull,
+    after_drag,
+    drift,
+    factorise,
+    make_scratch,
+    set_rotation,
+    solve_factorised,
+)
 from sim.jit import kernel
 from sim.validation import argument_error
 
 MAX_PHASE = 0.4  # of omega h in a substep: periods are within 0.7 %, and waves may add to gravity
+ENTRY_SHARE = 0.5  # of what is wet at rest, up to which a hull that gets wetter counts as entering the water
 MAX_SUBSTEPS = 512  # of a body in one call of `step`
 
 
@@ -47,9 +57,10 @@ class MotionCoefficients(NamedTuple):
     """The coefficients of motion, one set for all bodies."""
 
     gravity: float = 9.81  # [m/s2]
-    linear_drag: float = 0.3  # b [m/s]: loss to waves; 0.24 for a hemisphere of 1 m at 1 rad/s (Capytaine: 379 kg/s)
+    linear_drag: float = 0.0  # b [m/s]
     quadratic_drag: float = 1.0  # C, of a bluff body
-    added_mass: float = 1.0  # factor on the values of added_mass.py
+    added_mass: float = 1.0  # factor on that at infinite frequency
+    radiation: float = 1.0  # factor on the memory of the waves that the body made
     restitution: float = 0.3  # of collisions
     pull_rate: float = 12.0  # [rad/s] of the critically damped pull
 
@@ -57,24 +68,25 @@ class MotionCoefficients(NamedTuple):
 STANDARD = MotionCoefficients()
 LIMITS = {
     "gravity": (1e-3, 1e4, "m/s2"), "linear_drag": (0.0, 1e6, "m/s"), "quadratic_drag": (0.0, 1e6, ""),
-    "added_mass": (0.0, 100.0, ""), "restitution": (0.0, 1.0, ""), "pull_rate": (0.0, 1e4, "rad/s"),
+    "added_mass": (0.0, 100.0, ""), "radiation": (0.0, 100.0, ""),
+    "restitution": (0.0, 1.0, ""), "pull_rate": (0.0, 1e4, "rad/s"),
 }  # fmt: skip
 
 
 def frequency_bound(fleet: Fleet, density: float, coefficients: MotionCoefficients) -> np.ndarray:
     """Upper bound (n,) [rad/s] of the frequencies of each body in fluid of at most `density` [kg/m3].
 
-    Along axis i the force changes with depth by at most rho g S_i/2, with S_i the wetted area of the whole hull, and
-    the added mass is at least in proportion to the area that is wet: omega^2 <= rho g S_i/2 / (m + rho a_i/2). About
-    the axis the same holds with the bound of the restoring moment, where the mean of two shares may be half the
-    greater one. The sum bounds any coupling of the two.
+    Along axis i the force changes with depth by at most rho g times the smaller of S_i/2 and what is wet, with S_i the
+    wetted area of the whole hull, and the added mass is in proportion to what is wet up to half of that at rest:
+    omega^2 <= rho g S_i/2 / (m + rho a_i). About the axis the same holds with the bound of the restoring moment, where
+    the mean of two shares may be half the greater one. The sum bounds any coupling of the two.
     """
     hulls, q = fleet.hulls, fleet.hull
+    added = coefficients.added_mass * density * fleet.linear.added_bound[fleet.linear_hull]
     weight = density * coefficients.gravity
-    carried = coefficients.added_mass * density / 2
-    heave = weight * hulls.wetted_area[q] / 2 / (fleet.mass[:, None] + carried * hulls.added_mass[q])
+    heave = weight * hulls.wetted_area[q] / 2 / (fleet.mass[:, None] + added[:, :3])
     inertia = fleet.density[:, None] * np.einsum("qii->qi", hulls.inertia)[q]
-    roll = weight * hulls.restoring_bound[q] / (inertia + carried * hulls.added_inertia[q] / 2)
+    roll = weight * hulls.restoring_bound[q] / (inertia + added[:, 3:] / 2)
     return np.sqrt(heave.max(axis=1, initial=0.0) + roll.max(axis=1, initial=0.0))
 
 
@@ -111,11 +123,11 @@ def step(
         counts = np.full(len(fleet.mass), int(substeps), dtype=np.int64)
     else:
         raise argument_error("substeps", substeps, "a whole number from 1")
-    state = fleet[:7]
+    state = fleet[:8]
     before = [array.copy() for array in state]
     advance(fleet, water, MotionCoefficients(*(float(value) for value in coefficients)), counts, float(duration))
     # Checked here and not in the kernel: its compiler may take x - x for 0, and with that a NaN for finite.
-    finite = np.isfinite(np.column_stack(state)).all(axis=1)
+    finite = np.isfinite(np.column_stack(state[:7])).all(axis=1)
     if not finite.all():
         failed = int(np.argmin(finite))
         place = before[0][failed].tolist()
@@ -129,15 +141,43 @@ def step(
 def advance(fleet, water, coefficients, counts, duration):
     """Advance every body by `duration` [s] on its own, each in as many substeps as counts (n,) says."""
     depth = np.empty((2, fleet.hulls.x.shape[1]))
-    scratch = make_scratch()
+    scratch = make_scratch(fleet.memory.shape[1])
     for i in range(fleet.mass.size):
         h = duration / counts[i]
+        set_memory_step(fleet, i, h, coefficients.gravity, scratch)
         for s in range(counts[i]):
             set_rotation(fleet.rotation, i, scratch.R)
             drift(fleet, i, h / 2.0, scratch)
+            set_axes(fleet, i, scratch)
             set_load(fleet, water, i, (s + 0.5) * h, coefficients.gravity, depth, scratch)
             kick(fleet, water, coefficients, i, h, scratch)
+            set_rotation(fleet.rotation, i, scratch.R)
             drift(fleet, i, h / 2.0, scratch)
+
+
+@kernel
+def set_memory_step(fleet, i, h, gravity, scratch):
+    """Set what a substep of h [s] makes of the memory of body i."""
+    s = fleet.linear_hull[i]
+    for p in range(fleet.memory.shape[1]):
+        pole = fleet.linear.poles[s, p] * np.sqrt(gravity)
+        scratch.decay[p] = np.exp(pole * h)
+        scratch.gain[p] = (scratch.decay[p] - 1.0) / pole
+
+
+@kernel
+def set_axes(fleet, i, scratch):
+    """Set the point of the pull, and R: the axes of body i, or those of the world for a sphere, which has none."""
+    R, p = scratch.R, fleet.pull_point[i]
+    if fleet.hulls.is_round[fleet.hull[i]]:
+        for c in range(3):
+            scratch.pull_point[c] = R[c, 0] * p[0] + R[c, 1] * p[1] + R[c, 2] * p[2]
+        for c in range(3):
+            for d in range(3):
+                R[c, d] = 1.0 if c == d else 0.0
+    else:
+        for c in range(3):
+            scratch.pull_point[c] = p[c]
 
 
 @kernel
@@ -150,7 +190,7 @@ def felt_gravity(water, i, gravity):
 def set_load(fleet, water, i, t, gravity, depth, scratch):
     """Set force, moment and wetted (3,) of the fluids' pressure on body i, in body axes.
 
-    t [s] is the time since the frame began: the surface rises meanwhile as the fluid does. depth (2, n) is scratch.
+    t [s] is the time since the step began: the surface rises meanwhile as the fluid does. depth (2, n) is scratch.
     """
     hulls, q, R, pressure = fleet.hulls, fleet.hull[i], scratch.R, scratch.pressure
     first, last = hulls.vertex_start[q], hulls.vertex_start[q + 1]
@@ -164,7 +204,8 @@ def set_load(fleet, water, i, t, gravity, depth, scratch):
     sx, sy = water.slope[i, 0], water.slope[i, 1]
     # kinematic condition at the surface: d eta/dt = w - u . slope
     rise = water.velocity[i, 2] - water.velocity[i, 0] * sx - water.velocity[i, 1] * sy
-    top = water.height[i] + sx * dx + sy * dy + rise * t - fleet.position[i, 2]
+    top = water.height[i] + sx * dx + sy * dy + rise * (t - water.lead) - fleet.position[i, 2]
+    set_share(fleet, i, top, scratch)
     level = water.relief.size == 0 and water.interface_relief.size == 0
     if level and top < -hulls.radius[q] * np.sqrt(1.0 + sx * sx + sy * sy):
         return  # the body is in the air
@@ -180,7 +221,7 @@ def set_load(fleet, water, i, t, gravity, depth, scratch):
     fleet.wet_volume[i, 0] = upper / water.upper
     if water.lower > water.upper:
         sx, sy = water.interface_slope[i, 0], water.interface_slope[i, 1]
-        top = water.interface[i] + sx * dx + sy * dy + water.interface_rise[i] * t - fleet.position[i, 2]
+        top = water.interface[i] + sx * dx + sy * dy + water.interface_rise[i] * (t - water.lead) - fleet.position[i, 2]
         set_depth(hulls.x, first, last, R, top, sx, sy, depth[1])
         if water.interface_relief.size > 0:
             for v in range(first, last):
@@ -213,13 +254,30 @@ def set_depth(x, first, last, R, top, sx, sy, depth):
 
 
 @kernel
+def set_share(fleet, i, top, scratch):
+    """Set share (6,) of body i below a surface `top` [m] above its centre, as far as depth reduces it."""
+    depth = top - fleet.hulls.half[fleet.hull[i], 2]  # [m] of water over the body
+    share = math.exp(-max(depth, 0.0) / fleet.linear.decay_length[fleet.linear_hull[i]])
+    for c in range(6):
+        scratch.share[c] = share
+
+
+@kernel
 def kick(fleet, water, coefficients, i, h, scratch):
     """Change velocity and spin of body i by the forces of one substep of h [s]."""
-    R, v, w = scratch.R, scratch.v, scratch.w
+    R, v, w, load = scratch.R, scratch.v, scratch.w, scratch.load
     force = scratch.force
     fleet.buoyancy[i] = R[2, 0] * force[0] + R[2, 1] * force[1] + R[2, 2] * force[2]
-    set_velocity(fleet, water, coefficients, i, h, scratch)
-    set_angular_velocity(fleet, coefficients, i, h, scratch)
+    set_mass(fleet, water, coefficients, i, scratch)
+    set_velocities(fleet, water, coefficients, i, scratch)
+    update_memory(fleet, water, i, scratch)
+    set_forces(fleet, water, coefficients, i, scratch)
+    factorise(scratch.mass, scratch.factor)
+    solve_factorised(scratch.factor, load)
+    for c in range(3):
+        v[c] += h * load[c]
+        w[c] += h * load[3 + c]
+    apply_drag(fleet, water, coefficients, i, h, scratch)
     if fleet.pull_limit[i] > 0.0:
         add_pull(fleet, i, h, coefficients.pull_rate, scratch)
     for c in range(3):
@@ -228,50 +286,117 @@ def kick(fleet, water, coefficients, i, h, scratch):
 
 
 @kernel
-def set_velocity(fleet, water, coefficients, i, h, scratch):
-    """Set mass (3,), and v (3,) after h [s] of forces and drag on body i; keep what is wet for the next substep."""
-    R, mass, v, force, wetted = scratch.R, scratch.mass, scratch.v, scratch.force, scratch.wetted
-    hulls, q, m = fleet.hulls, fleet.hull[i], fleet.mass[i]
-    g = felt_gravity(water, i, coefficients.gravity)
-    ax, ay, az = -g * water.slope[i, 0], -g * water.slope[i, 1], water.acceleration[i]
-    u0, u1, u2 = water.velocity[i, 0], water.velocity[i, 1], water.velocity[i, 2]
-    v0, v1, v2 = fleet.velocity[i, 0], fleet.velocity[i, 1], fleet.velocity[i, 2]
+def set_mass(fleet, water, coefficients, i, scratch):
+    """Set mass (6, 6), and share (6,): sqrt of how much of body i is wet, of half of what is wet at rest, at most 1.
+
+    The coefficients are those at rest while at least half of that is wet: a scale that followed each small motion
+    would push the body up or down on average, which linear theory does not know.
+    """
+    q, s, wet, density = fleet.hull[i], fleet.linear_hull[i], scratch.wet, fluid_density(fleet, water, i)
     for c in range(3):
-        added_per_wetted = coefficients.added_mass * hulls.added_mass[q, c] / hulls.wetted_area[q, c]
-        mass[c] = m + added_per_wetted * wetted[c]
-        wets_more = 0.0 <= fleet.wetted[i, c] < wetted[c]  # then momentum is shared with the fluid it begins to carry
-        momentum_share = (m + added_per_wetted * fleet.wetted[i, c]) / mass[c] if wets_more else 1.0
-        fleet.wetted[i, c] = wetted[c]
-        fluid_acceleration = R[0, c] * ax + R[1, c] * ay + R[2, c] * az
-        total = force[c] - m * coefficients.gravity * R[2, c] + (mass[c] - m) * fluid_acceleration
-        flow = R[0, c] * u0 + R[1, c] * u1 + R[2, c] * u2
-        relative = momentum_share * (R[0, c] * v0 + R[1, c] * v1 + R[2, c] * v2 - flow) + h * total / mass[c]
-        drag = wetted[c] / 2.0 / mass[c]
-        v[c] = flow + after_drag(relative, coefficients.linear_drag * drag, coefficients.quadratic_drag / 2.0 * drag, h)
+        full = ENTRY_SHARE * density * fleet.linear.wet_area[s, c]
+        wet[c] = np.sqrt(min(scratch.wetted[c] / full, 1.0)) if full > 0.0 else 0.0
+    for c in range(3):
+        wet[3 + c] = np.sqrt((wet[(c + 1) % 3] ** 2 + wet[(c + 2) % 3] ** 2) / 2.0)
+    for c in range(6):
+        scratch.share[c] *= wet[c]
+        for d in range(6):
+            added = coefficients.added_mass * density * fleet.linear.added_mass[s, c, d]
+            scratch.mass[c, d] = added * wet[c] * wet[d]
+    for c in range(3):
+        scratch.mass[c, c] += fleet.mass[i]
+        for d in range(3):
+            scratch.mass[3 + c, 3 + d] += fleet.density[i] * fleet.hulls.inertia[q, c, d]
 
 
 @kernel
-def set_angular_velocity(fleet, coefficients, i, h, scratch):
-    """Set inertia and inverse_inertia (3, 3), and w (3,) after h [s] of moments and drag on body i."""
-    R, w, moment, wetted = scratch.R, scratch.w, scratch.moment, scratch.wetted
-    inertia, inverse = scratch.inertia, scratch.inverse_inertia
-    hulls, q = fleet.hulls, fleet.hull[i]
-    for c in range(3):
-        a, b = (c + 1) % 3, (c + 2) % 3
-        share = (wetted[a] / hulls.wetted_area[q, a] + wetted[b] / hulls.wetted_area[q, b]) / 2.0
-        for d in range(3):
-            inertia[c, d] = fleet.density[i] * hulls.inertia[q, c, d]
-        inertia[c, c] += coefficients.added_mass * hulls.added_inertia[q, c] * share
-    set_inverse(inertia, inverse)
+def fluid_density(fleet, water, i):
+    """Mean density [kg/m3] of the fluids that body i displaces; 0 in the air."""
+    upper, lower = fleet.wet_volume[i, 0], fleet.wet_volume[i, 1]
+    return (water.upper * upper + water.lower * lower) / (upper + lower) if upper + lower > 0.0 else 0.0
+
+
+@kernel
+def set_velocities(fleet, water, coefficients, i, scratch):
+    """Set v and w (3,) of body i, which shares its momentum with the fluid that it begins to carry."""
+    R, v, w, wetted = scratch.R, scratch.v, scratch.w, scratch.wetted
+    s, m, density = fleet.linear_hull[i], fleet.mass[i], fluid_density(fleet, water, i)
+    u0, u1, u2 = water.velocity[i, 0], water.velocity[i, 1], water.velocity[i, 2]
+    v0, v1, v2 = fleet.velocity[i, 0], fleet.velocity[i, 1], fleet.velocity[i, 2]
     w0, w1, w2 = fleet.spin[i, 0], fleet.spin[i, 1], fleet.spin[i, 2]
     for c in range(3):
-        a, b = (c + 1) % 3, (c + 2) % 3
-        undragged = R[0, c] * w0 + R[1, c] * w1 + R[2, c] * w2
-        undragged += h * (inverse[c, 0] * moment[0] + inverse[c, 1] * moment[1] + inverse[c, 2] * moment[2])
+        flow = R[0, c] * u0 + R[1, c] * u1 + R[2, c] * u2
+        v[c] = R[0, c] * v0 + R[1, c] * v1 + R[2, c] * v2
+        w[c] = R[0, c] * w0 + R[1, c] * w1 + R[2, c] * w2
+        if 0.0 <= fleet.wetted[i, c] < wetted[c]:
+            full = ENTRY_SHARE * density * fleet.linear.wet_area[s, c]
+            carried = coefficients.added_mass * density * fleet.linear.added_mass[s, c, c]
+            before, now = min(fleet.wetted[i, c] / full, 1.0), min(wetted[c] / full, 1.0)
+            v[c] = flow + (v[c] - flow) * (m + carried * before) / (m + carried * now)
+        fleet.wetted[i, c] = wetted[c]
+
+
+@kernel
+def update_memory(fleet, water, i, scratch):
+    """Take the velocities of body i into its memory: s' = p s + v over a substep.
+
+    They are those against the fluid where no excitation is given, which would hold the fluid's part.
+    """
+    R = scratch.R
+    u0, u1, u2 = water.velocity[i, 0], water.velocity[i, 1], water.velocity[i, 2]
+    for c in range(6):
+        speed = scratch.v[c] if c < 3 else scratch.w[c - 3]
+        if c < 3 and water.excitation.shape[0] == 0:
+            speed -= R[0, c] * u0 + R[1, c] * u1 + R[2, c] * u2
+        speed *= scratch.share[c]
+        for p in range(fleet.memory.shape[1]):
+            fleet.memory[i, p, c] = scratch.decay[p] * fleet.memory[i, p, c] + scratch.gain[p] * speed
+
+
+@kernel
+def set_forces(fleet, water, coefficients, i, scratch):
+    """Set load (6,): all forces and moments on body i but the drag and the pull."""
+    R, load, share = scratch.R, scratch.load, scratch.share
+    s, m, density = fleet.linear_hull[i], fleet.mass[i], fluid_density(fleet, water, i)
+    for c in range(3):
+        load[c] = scratch.force[c] - m * coefficients.gravity * R[2, c]
+        load[3 + c] = scratch.moment[c]
+    if water.excitation.shape[0] > 0:
+        given = water.excitation[i]
+        for c in range(6):
+            first = 3 * (c // 3)
+            along = R[0, c - first] * given[first] + R[1, c - first] * given[first + 1]
+            along += R[2, c - first] * given[first + 2]
+            load[c] += density * share[c] * share[c] * along
+    else:
+        g = felt_gravity(water, i, coefficients.gravity)
+        ax, ay, az = -g * water.slope[i, 0], -g * water.slope[i, 1], water.acceleration[i]
+        for d in range(3):
+            along = R[0, d] * ax + R[1, d] * ay + R[2, d] * az
+            for c in range(6):
+                load[c] += scratch.mass[c, d] * along
+            load[d] -= m * along
+    scale = 2.0 * density * coefficients.gravity * coefficients.radiation
+    for p in range(fleet.memory.shape[1]):
+        for c in range(6):
+            total = 0.0
+            for d in range(6):
+                total += (fleet.linear.residues[s, p, c, d] * fleet.memory[i, p, d]).real
+            load[c] -= scale * share[c] * total
+
+
+@kernel
+def apply_drag(fleet, water, coefficients, i, h, scratch):
+    """Let drag slow v and w (3,) of body i for h [s], each axis on its own and exactly."""
+    R, v, w, wetted, mass = scratch.R, scratch.v, scratch.w, scratch.wetted, scratch.mass
+    q, b, C = fleet.hull[i], coefficients.linear_drag, coefficients.quadratic_drag / 2.0
+    for c in range(3):
+        flow = R[0, c] * water.velocity[i, 0] + R[1, c] * water.velocity[i, 1] + R[2, c] * water.velocity[i, 2]
+        drag = wetted[c] / 2.0 / mass[c, c]
+        v[c] = flow + after_drag(v[c] - flow, b * drag, C * drag, h)
         # a face wet over S that rotates about an axis at radius r: drag S r^2 w, S r^3 |w| w
-        ra, rb = hulls.radius_of_gyration[q, a], hulls.radius_of_gyration[q, b]
-        linear = (wetted[a] * rb * rb + wetted[b] * ra * ra) / 2.0 / inertia[c, c]
-        quadratic = (wetted[a] * rb**3 + wetted[b] * ra**3) / 2.0 / inertia[c, c]
-        w[c] = after_drag(
-            undragged, coefficients.linear_drag * linear, coefficients.quadratic_drag / 2.0 * quadratic, h
-        )
+        d, e = (c + 1) % 3, (c + 2) % 3
+        rd, re = fleet.hulls.radius_of_gyration[q, d], fleet.hulls.radius_of_gyration[q, e]
+        linear = (wetted[d] * re * re + wetted[e] * rd * rd) / 2.0 / mass[3 + c, 3 + c]
+        quadratic = (wetted[d] * re**3 + wetted[e] * rd**3) / 2.0 / mass[3 + c, 3 + c]
+        w[c] = after_drag(w[c], b * linear, C * quadratic, h)

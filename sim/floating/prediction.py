@@ -3,8 +3,9 @@
 import math
 from typing import NamedTuple
 
-from sim.floating.equilibrium import Layers, equilibrium_draft, heave_period
+from sim.floating.equilibrium import Layers, equilibrium_draft
 from sim.floating.hull import Hull
+from sim.floating.periods import heave_period
 
 
 class HydrostaticPrediction(NamedTuple):

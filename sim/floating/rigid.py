@@ -15,9 +15,15 @@ class Scratch(NamedTuple):
     """Arrays that the kernels of one body write before they read them; allocated once for all bodies."""
 
     R: np.ndarray  # (3, 3) rotation from body to world axes
-    inertia: np.ndarray  # (3, 3) [kg m2] inertia with added inertia
-    inverse_inertia: np.ndarray  # (3, 3) inverse of it, or of the inertia of the solid alone
-    mass: np.ndarray  # (3,) [kg] with added mass, along each body axis
+    inverse_inertia: np.ndarray  # (3, 3) inverse of the inertia of the solid
+    mass: np.ndarray  # (6, 6) [kg, kg m, kg m2] of the solid with added mass, in body axes
+    factor: np.ndarray  # (6, 6) lower Cholesky factor of it
+    wet: np.ndarray  # (6,) share of the body that is wet for each motion, its root: 1 as at rest, 0 in air
+    share: np.ndarray  # (6,) the same, less where the body is below the surface: what it feels and makes of waves
+    load: np.ndarray  # (6,) [N, N m] of all forces, and what they change
+    decay: np.ndarray  # (p,) complex: what a substep leaves of the memory
+    gain: np.ndarray  # (p,) [s] complex: what a substep adds of a unit velocity
+    pull_point: np.ndarray  # (3,) [m] where the body is pulled, in the axes in which its forces are
     v: np.ndarray  # (3,) [m/s] velocity in body axes
     w: np.ndarray  # (3,) [rad/s] angular velocity in body axes
     momentum: np.ndarray  # (3,) angular momentum of the solid at unit density, in world axes
@@ -28,12 +34,37 @@ class Scratch(NamedTuple):
 
 
 @kernel
-def make_scratch():
-    """Arrays for the kernels of one body, uninitialised."""
+def make_scratch(poles):
+    """Arrays for the kernels of one body with as many poles, uninitialised."""
     return Scratch(
-        np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty(3), np.empty(3), np.empty(3), np.empty(3),
-        np.empty(3), np.empty(3), np.empty(3), np.empty(9),
+        np.empty((3, 3)), np.empty((3, 3)), np.empty((6, 6)), np.empty((6, 6)), np.empty(6), np.empty(6), np.empty(6),
+        np.empty(poles, np.complex128), np.empty(poles, np.complex128), np.empty(3), np.empty(3), np.empty(3),
+        np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(9),
     )  # fmt: skip
+
+
+@kernel
+def factorise(a, out):
+    """Set out to the lower Cholesky factor of a (6, 6), symmetric and positive definite."""
+    for r in range(6):
+        for c in range(r + 1):
+            total = a[r, c]
+            for k in range(c):
+                total -= out[r, k] * out[c, k]
+            out[r, c] = np.sqrt(total) if r == c else total / out[c, c]
+
+
+@kernel
+def solve_factorised(factor, b):
+    """Replace b (6,) by x of A x = b, of the lower Cholesky factor of A."""
+    for r in range(6):
+        for k in range(r):
+            b[r] -= factor[r, k] * b[k]
+        b[r] /= factor[r, r]
+    for r in range(5, -1, -1):
+        for k in range(r + 1, 6):
+            b[r] -= factor[k, r] * b[k]
+        b[r] /= factor[r, r]
 
 
 @kernel
@@ -73,43 +104,42 @@ def after_drag(v, linear, quadratic, h):
 def add_pull(fleet, i, h, rate, scratch):
     """Add to v and w the impulse that draws the pulled point of body i to its target, critically damped.
 
-    With K = 1/m - [p] I^-1 [p] the inverse mass of the point, an implicit step of x'' = -rate^2 x - 2 rate x' is the
-    impulse P = -s/(1 + s) K^-1 (x' + x rate/(2 + h rate)), s = h rate (2 + h rate) (Catto, Soft Constraints, GDC 2011).
+    With K the mobility of the point, an implicit step of x'' = -rate^2 x - 2 rate x' is the impulse
+    P = -s/(1 + s) K^-1 (x' + x rate/(2 + h rate)), s = h rate (2 + h rate) (Catto, Soft Constraints, GDC 2011).
     """
-    R, inverse_inertia, mass, v, w = scratch.R, scratch.inverse_inertia, scratch.mass, scratch.v, scratch.w
-    p, K, K_inv = fleet.pull_point[i], np.empty((3, 3)), np.empty((3, 3))
-    cross = np.zeros((3, 3))  # [p]: cross @ a = p x a
-    cross[0, 1], cross[0, 2], cross[1, 2] = -p[2], p[1], -p[0]
-    cross[1, 0], cross[2, 0], cross[2, 1] = p[2], -p[1], p[0]
-    for a in range(3):
-        for b in range(3):
-            total = 1.0 / mass[a] if a == b else 0.0
-            for c in range(3):
-                for d in range(3):
-                    total -= cross[a, c] * inverse_inertia[c, d] * cross[d, b]
-            K[a, b] = total
+    R, v, w, p, change = scratch.R, scratch.v, scratch.w, scratch.pull_point, scratch.load
+    K, K_inv, impulse = np.empty((3, 3)), np.empty((3, 3)), np.empty(3)
+    for c in range(3):  # column c of K: the velocity of the point after a unit impulse along c
+        set_impulse(change, p, c == 0, c == 1, c == 2)
+        solve_factorised(scratch.factor, change)
+        for a in range(3):
+            K[a, c] = change[a] + change[3 + (a + 1) % 3] * p[(a + 2) % 3] - change[3 + (a + 2) % 3] * p[(a + 1) % 3]
     set_inverse(K, K_inv)
     s = h * rate * (2.0 + h * rate)
-    velocity_change = np.empty(3)  # of the pulled point, in body axes
+    impulse[:] = 0.0
     for c in range(3):
         offset = p[c]
         for a in range(3):
             offset += R[a, c] * (fleet.position[i, a] - fleet.pull_target[i, a])
         speed = v[c] + w[(c + 1) % 3] * p[(c + 2) % 3] - w[(c + 2) % 3] * p[(c + 1) % 3]
-        velocity_change[c] = -s / (1.0 + s) * (speed + offset * rate / (2.0 + h * rate))
-    px = K_inv[0, 0] * velocity_change[0] + K_inv[0, 1] * velocity_change[1] + K_inv[0, 2] * velocity_change[2]
-    py = K_inv[1, 0] * velocity_change[0] + K_inv[1, 1] * velocity_change[1] + K_inv[1, 2] * velocity_change[2]
-    pz = K_inv[2, 0] * velocity_change[0] + K_inv[2, 1] * velocity_change[1] + K_inv[2, 2] * velocity_change[2]
-    size = np.sqrt(px * px + py * py + pz * pz)
+        wanted = -s / (1.0 + s) * (speed + offset * rate / (2.0 + h * rate))
+        for a in range(3):
+            impulse[a] += K_inv[a, c] * wanted
+    size = np.sqrt(impulse[0] * impulse[0] + impulse[1] * impulse[1] + impulse[2] * impulse[2])
     limit = fleet.pull_limit[i] * h
-    if size > limit:
-        px, py, pz = px * limit / size, py * limit / size, pz * limit / size
-    tx, ty, tz = p[1] * pz - p[2] * py, p[2] * px - p[0] * pz, p[0] * py - p[1] * px
-    v[0] += px / mass[0]
-    v[1] += py / mass[1]
-    v[2] += pz / mass[2]
+    scale = limit / size if size > limit else 1.0
+    set_impulse(change, p, scale * impulse[0], scale * impulse[1], scale * impulse[2])
+    solve_factorised(scratch.factor, change)
     for c in range(3):
-        w[c] += inverse_inertia[c, 0] * tx + inverse_inertia[c, 1] * ty + inverse_inertia[c, 2] * tz
+        v[c] += change[c]
+        w[c] += change[3 + c]
+
+
+@kernel
+def set_impulse(out, p, x, y, z):
+    """Set out (6,) to the impulse (x, y, z) at the point p (3,) and its moment."""
+    out[0], out[1], out[2] = x, y, z
+    out[3], out[4], out[5] = p[1] * z - p[2] * y, p[2] * x - p[0] * z, p[0] * y - p[1] * x
 
 
 @kernel

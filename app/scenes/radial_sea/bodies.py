@@ -20,6 +20,8 @@ from sim.floating import (
     pull,
     step,
 )
+from sim.floating.body import pack_linear
+from sim.floating.excitation import WaveExcitation
 from sim.floating.rotation import body_z_axes
 from sim.floating.shapes import Appearance
 from sim.ocean.fluid_column import FluidColumn
@@ -140,12 +142,13 @@ class FloatingBodies:
             prediction, hull = self.prediction(i), self.hulls[kind.name]
             initial_draft = prediction.draft if math.isfinite(prediction.draft) else 0.5 * prediction.height
             bodies.append(Body(hull, self.densities[i], (x, y, -hull.extents[2, 0] - initial_draft)))
-        self.fleet: Fleet = make_fleet(bodies)
+        self.fleet: Fleet = make_fleet(bodies, column.layers)
         self.home = self.fleet.position[:, :2].copy()  # (n, 2) [m] where each is moored
         hulls = [self.hulls[kind.name] for kind in body_kinds]
         self.keel = np.array([hull.extents[2, 0] for hull in hulls])  # (n,) [m] height over the centre, negative
         self.is_round = np.array([kind.shape.is_round for kind in body_kinds], bool)
         self.widths = np.array([np.ptp(hull.extents[0]) for hull in hulls])  # (n,) [m]
+        self.excitation = self.make_excitation()
         self.heave_meter = HeaveMeter(self.count)
         self.holders: dict[int, int] = {}  # body -> the browser that drags it
         self.targets: dict[int, tuple[float, float, float]] = {}  # body -> where it is pulled [m]
@@ -182,7 +185,17 @@ class FloatingBodies:
         self.known_predictions.clear()
         self.fleet.mass[:] *= self.densities / self.fleet.density
         self.fleet.density[:] = self.densities
+        hulls = [self.hulls[kind.name] for kind in self.body_kinds]
+        linear_hull, linear = pack_linear(hulls, self.densities, column.layers)
+        self.fleet = self.fleet._replace(linear_hull=linear_hull, linear=linear)
+        self.excitation = self.make_excitation()
         self.heave_meter = HeaveMeter(self.count)
+
+    def make_excitation(self) -> WaveExcitation:
+        """What the waves do to these bodies in these fluids."""
+        hulls = [self.hulls[kind.name] for kind in self.body_kinds]
+        bodies = [Body(hull, density) for hull, density in zip(hulls, self.densities, strict=True)]
+        return WaveExcitation(bodies, self.widths, self.column.layers)
 
     def hold(self, index: int, target: tuple[float, float, float], limit: float, client: int = 0) -> None:
         """Pull body `index` towards a target [m] for a browser, with at most `limit` weights of the body.
@@ -230,10 +243,13 @@ class FloatingBodies:
         h: float,
         slick: np.ndarray,
         coefficients: MotionCoefficients,
+        waves: tuple[np.ndarray, ...] | None = None,
     ) -> None:
-        """One step of h [s] on the sea `at` the bodies; slick (n,) [m]: thickness of oil at each that is no layer.
+        """One step of h [s] on the sea `at` the bodies in the middle of the step.
 
-        Raises FloatingPointError where a body's state is no longer finite.
+        slick (n,) [m]: thickness of oil at each that is no layer. waves: (kx, ky, amplitude, omega, phase, ratio) that
+        the sea is a sum of, as `RadialSea.current` has them; None for a sea that is no sum. Raises FloatingPointError
+        where a body's state is no longer finite.
         """
         if self.count == 0:
             return
@@ -256,6 +272,8 @@ class FloatingBodies:
             slope=at.slope,
             velocity=at.velocity,
             acceleration=at.acceleration,
+            excitation=None if waves is None else self.forces_of(at.label, waves, coefficients.gravity),
+            lead=h / 2,
             **interface,
         )
         self.touches += step(self.fleet, water, h, coefficients)
@@ -266,9 +284,15 @@ class FloatingBodies:
         self.fleet.position[at_rest, 2] = -MAX_DEPTH
         self.fleet.velocity[at_rest] = 0.0
 
-    def measure(self, t: float, at: SurfaceAt, duration: float) -> None:
+    def forces_of(self, label: np.ndarray, waves: tuple[np.ndarray, ...], gravity: float) -> np.ndarray:
+        """Force and moment (n, 6) of waves on the bodies, which are at `label` (n, 2) [m] of the resting surface."""
+        kx, ky, amplitude, _, phase, _ = waves
+        return self.excitation.forces(self.fleet, label, kx, ky, amplitude, phase, gravity)
+
+    def measure(self, t: float, at: SurfaceAt, duration: float, lead: float = 0.0) -> None:
         """Measure drafts at time t [s]: the length of each body below the plane of the water, along its own axis.
 
+        lead [s]: how long after that time the sea is as it is `at` the bodies.
         That length, times the area of the cross-section, is the wet volume of a hull with straight sides, however it
         leans. Of a sphere every diameter is an axis; it is measured along the normal of the water.
         """
@@ -276,7 +300,8 @@ class FloatingBodies:
         normal /= np.sqrt((normal * normal).sum(axis=1, keepdims=True))
         up = np.where(self.is_round[:, None], normal, body_z_axes(self.fleet.rotation))
         keel = self.keel[:, None] * up  # from a body's centre
-        keel[:, 2] += self.fleet.position[:, 2] - at.height
+        rise = at.velocity[:, 2] - (at.velocity[:, :2] * at.slope).sum(axis=1)
+        keel[:, 2] += self.fleet.position[:, 2] - (at.height - lead * rise)
         lean = np.maximum((normal * up).sum(axis=1), MIN_COSINE)
         self.draft[:] = -(normal * keel).sum(axis=1) / lean
         self.heave_meter.update(t, self.draft, duration)

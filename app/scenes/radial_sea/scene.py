@@ -240,19 +240,21 @@ class RadialSeaScene:
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where a body's state is no longer finite."""
         bodies, sea, h = self.bodies, self.sea, self.step
-        coefficients = MotionCoefficients()
+        coefficients = MotionCoefficients(gravity=self.column.gravity)
         touches = bodies.touches
         for _ in range(steps):
             if bodies.count:
-                at = sea.at(bodies.fleet.position[:, :2], self.time, bodies.widths)
+                middle = self.time + h / 2
+                at = sea.at(bodies.fleet.position[:, :2], middle, bodies.widths)
                 slick = self.slick_at(bodies.fleet.position[:, :2])
-                bodies.measure(self.time, at, h)
+                bodies.measure(self.time, at, h, h / 2)
                 if self.params.mooring:
                     bodies.moor()
                 else:
                     bodies.unmoor()
+                waves = sea.current(middle) if isinstance(sea, RadialSea) else None
                 try:
-                    bodies.step(at, h, slick, coefficients)
+                    bodies.step(at, h, slick, coefficients, waves)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
                 if self.time - self.plotted_at >= PLOT_INTERVAL:

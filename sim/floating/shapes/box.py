@@ -1,8 +1,7 @@
-"""A box. Each of its faces carries the added mass of a rectangular plate (DNV-RP-C205, 2010, table D-2)."""
+"""A box."""
 
 import numpy as np
 
-from sim.floating.added_mass import ellipsoid, plate
 from sim.floating.closed_mesh import ClosedMesh, check_length, closed_mesh
 from sim.floating.shapes.record import Appearance, Immersed, Shape
 
@@ -14,12 +13,6 @@ def box(x: float, y: float, z: float) -> ClosedMesh:
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     faces = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
     return closed_mesh(corners, faces, np.stack([-edges / 2, edges / 2], axis=1))
-
-
-def added_mass(mesh: ClosedMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Plates along the axes (3,) [m3], and about them (3,) [m5] the ellipsoid of the half edges."""
-    x, y, z = mesh.size
-    return np.array([plate(y, z), plate(x, z), plate(x, y)]), ellipsoid(mesh.size / 2)[1]
 
 
 def immersed(mesh: ClosedMesh, height: float) -> Immersed:
@@ -34,7 +27,7 @@ SHAPE = Shape(
     lengths=(1.2, 1.2, 0.7),  # stable upright at any density
     appearances=(Appearance("crate", "Box", model="crate"),),
     order=2,
-    added_mass=added_mass,
+    linear="box",
     immersed=immersed,
     collision="box",
 )

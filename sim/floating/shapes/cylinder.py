@@ -1,14 +1,9 @@
-"""A cylinder with its axis along z, as a prism.
-
-Added mass: along an axis across it pi R^2 H, as in two dimensions (Lamb, Hydrodynamics, 1932, Art. 68); along its own
-8/3 R^3, that of a disc (Art. 102); about the axes that of the ellipsoid R, R, H/2.
-"""
+"""A cylinder with its axis along z, as a prism."""
 
 import math
 
 import numpy as np
 
-from sim.floating.added_mass import ellipsoid
 from sim.floating.closed_mesh import ClosedMesh, check_length, closed_mesh
 from sim.floating.shapes.record import Appearance, Immersed, Shape
 
@@ -34,13 +29,6 @@ def cylinder(radius: float, height: float) -> ClosedMesh:
     return closed_mesh(vertices, faces, np.stack([-half, half], axis=1))
 
 
-def added_mass(mesh: ClosedMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Along the axes (3,) [m3] and about them (3,) [m5]."""
-    x, _, z = mesh.size
-    side = math.pi * (x / 2) ** 2 * z
-    return np.array([side, side, 8 / 3 * (x / 2) ** 3]), ellipsoid(mesh.size / 2)[1]
-
-
 def immersed(mesh: ClosedMesh, height: float) -> Immersed:
     """The lowest `height` [m] of the cylinder: the integrals of its circle."""
     x = mesh.extents[0, 1] * 2
@@ -57,7 +45,7 @@ SHAPE = Shape(
         Appearance("buoy_yellow", "Yellow buoy", model="buoy_yellow"),
     ),
     order=1,
-    added_mass=added_mass,
+    linear="cylinder",
     immersed=immersed,
     collision="cylinder",
 )

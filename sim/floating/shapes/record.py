@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating.added_mass import of_equal_ellipsoid
 from sim.floating.closed_mesh import ClosedMesh
 from sim.validation import check_choice
 
@@ -32,9 +31,20 @@ class Appearance(NamedTuple):
     color: Color = (64, 132, 186)  # sRGB, of a hull without a model
 
 
-def added_mass_of_equal_ellipsoid(mesh: ClosedMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Added mass (3,) [m3] and inertia (3,) [m5] of the ellipsoid with the volume and proportions of a mesh."""
-    return of_equal_ellipsoid(mesh.volume, mesh.inertia)
+class LinearTable(NamedTuple):
+    """Linear coefficients of hulls by their sides and drafts: see `sim.floating.hydrodynamics`.
+
+    At unit density and gravity, in units of a length of the hull, about the waterline above its centre of mass.
+    """
+
+    aspect: np.ndarray  # (a,) length over width
+    draft: np.ndarray  # (d,)
+    direction: np.ndarray  # (m,) [rad] in which waves run
+    frequency: np.ndarray  # (n,)
+    added_mass: np.ndarray  # (a, d, n, 6, 6)
+    damping: np.ndarray  # (a, d, n, 6, 6)
+    infinite: np.ndarray  # (a, d, 6, 6) added mass at infinite frequency
+    excitation: np.ndarray  # (a, d, n, m, 6) complex
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,8 +59,9 @@ class Shape:
     lengths: tuple[float, ...]  # [m] at size 1, as bodies of a scene have them
     appearances: tuple[Appearance, ...] = ()  # () for one that is named as the shape, and has no model
     order: int = 100  # place in a scene's list of kinds of body; equal ones are sorted by name
-    # added mass (3,) [m3] along and (3,) [m5] about the axes, of the whole hull at unit density
-    added_mass: Callable[[ClosedMesh], tuple[np.ndarray, np.ndarray]] = added_mass_of_equal_ellipsoid
+    # the table of linear coefficients in assets/hydrodynamics that its wet part has; "": that of an equal box
+    linear: str = ""
+    own_table: LinearTable | None = None  # of this shape alone, in units of half the root of its length times width
     # the part of the upright hull up to a height [m] from 0 to its own; None: exact integrals over the mesh
     immersed: Callable[[ClosedMesh, float], Immersed] | None = None
     collision: str = "ellipsoid"  # the form, of the same extents, that other bodies collide with

@@ -1,7 +1,7 @@
 """A sphere as a subdivided icosahedron of the sphere's volume.
 
 A mesh of 1280 triangles floats within 1.5e-4 of its radius of where the true sphere does, in any pose; one of 500
-within 4e-4. Added mass: V/2 along every axis (Lamb, Hydrodynamics, 1932, Art. 92), none about them.
+within 4e-4.
 """
 
 import math
@@ -27,11 +27,6 @@ def sphere(radius: float, frequency: int = 8) -> ClosedMesh:
     true = 4 / 3 * math.pi
     vertices = vertices * radius * (true / solid(vertices, faces).volume) ** (1 / 3)
     return closed_mesh(vertices, faces, np.array([[-radius, radius]] * 3))
-
-
-def added_mass(mesh: ClosedMesh) -> tuple[np.ndarray, np.ndarray]:
-    """Half the volume along every axis (3,) [m3]; no fluid is carried by a turn (3,) [m5]."""
-    return np.full(3, mesh.volume / 2), np.zeros(3)
 
 
 def immersed(mesh: ClosedMesh, height: float) -> Immersed:
@@ -86,7 +81,7 @@ SHAPE = Shape(
     lengths=(0.5,),
     appearances=(Appearance("ball", "Ball", model="ball"),),
     order=3,
-    added_mass=added_mass,
+    linear="sphere",
     immersed=immersed,
     is_round=True,
 )

@@ -19,13 +19,22 @@ from sim.floating import (
     still_water,
     vertices,
 )
+from sim.floating.hydrodynamics import POLES
+from sim.floating.hydrodynamics import afloat as afloat_in
 from sim.floating.motion import frequency_bound
 from tests.naive_floating import lumpy, naive_step, quaternion
 
 FRAME_INTERVAL = 1 / 60
 WATER = [(1025.0, math.inf)]
 SPILL = [(850.0, 0.2), (1025.0, math.inf)]
-FREE = MotionCoefficients(linear_drag=0.0, quadratic_drag=0.0)
+FREE = MotionCoefficients(quadratic_drag=0.0)  # radiation alone takes energy
+UNDAMPED = FREE._replace(radiation=0.0)  # added mass is that of infinite frequency
+
+
+def undamped_frequency(hull, density):
+    """omega [rad/s] of heave with the added mass of infinite frequency, of a hull with straight sides."""
+    mass = density * hull.volume + 1025 * afloat_in(hull, density).linear.infinite[2, 2]
+    return math.sqrt(1025 * 9.81 * hull.size[0] * hull.size[1] / mass)
 
 
 def afloat(hull, density, layers, above=0.0, **more):
@@ -56,23 +65,16 @@ def test_what_is_dropped_settles_at_its_draft(layers):
         step(fleet, water, FRAME_INTERVAL)
     expected = [equilibrium_draft(body.hull, body.density, layers) for body in bodies]
     assert -lowest(fleet) == pytest.approx(expected, abs=1e-4)
-    assert np.abs(fleet.velocity).max() < 1e-6
+    assert np.abs(fleet.velocity[:, 2]).max() < 1e-5
+    assert np.abs(fleet.velocity).max() < 0.05  # only drag, which goes with the square, stops a drift
 
 
 @pytest.mark.parametrize(
-    ("hull", "density", "period"),
-    [
-        # m + A33 and C33 from the closed forms of ocean.md 3.8 and the plate of DNV-RP-C205
-        (Hull.sphere(0.5), 512.5, 1.419),
-        (Hull.cylinder(0.5, 4.0), 512.5, 2.984),
-        (
-            Hull.box(2.0, 2.0, 1.0),
-            410.0,
-            2 * math.pi * math.sqrt((0.4 * 4 + 0.579 * math.pi / 8 * 8) / (9.81 * 4)),
-        ),
-    ],
+    ("hull", "density"),
+    [(Hull.sphere(0.5), 512.5), (Hull.cylinder(0.5, 4.0), 512.5), (Hull.box(2.0, 2.0, 1.0), 410.0)],
 )
-def test_heave_period_is_that_of_theory(hull, density, period):
+def test_heave_period_is_that_of_theory(hull, density):
+    period = heave_period(hull, density, WATER)
     fleet = make_fleet([afloat(hull, density, WATER, above=0.01)])
     rest = afloat(hull, density, WATER).position[2]
     water = still_water(fleet, WATER)
@@ -81,20 +83,20 @@ def test_heave_period_is_that_of_theory(hull, density, period):
         step(fleet, water, FRAME_INTERVAL, FREE)
         z.append(fleet.position[0, 2] - rest)
     measured = period_of(FRAME_INTERVAL * np.arange(len(z)), np.array(z))
-    assert measured == pytest.approx(period, rel=0.01)
-    assert measured == pytest.approx(heave_period(hull, density, WATER), rel=0.01)
+    assert measured == pytest.approx(period, rel=0.015)  # damping alone makes it 0.4 % shorter or longer
 
 
 @pytest.mark.parametrize("layers", [WATER, SPILL])
 @pytest.mark.parametrize("axis", [0, 1])
-@pytest.mark.parametrize("added", [0.0, 1.0])
-def test_roll_period_is_that_of_the_metacentric_height(layers, axis, added):
+def test_roll_period_is_that_of_the_metacentric_height(layers, axis):
+    """Without added mass and radiation, where the formula is exact."""
+    added = 0.0
     hull, density = Hull.box(3.0, 2.0, 0.6), 400.0
     tilt = [math.cos(0.01), 0.0, 0.0, 0.0]
     tilt[1 + axis] = math.sin(0.01)
-    fleet = make_fleet([afloat(hull, density, layers, rotation=tuple(tilt))])
+    fleet = make_fleet([afloat(hull, density, layers, rotation=tuple(tilt))], layers)
     water = still_water(fleet, layers)
-    coefficients = FREE._replace(added_mass=added)
+    coefficients = UNDAMPED._replace(added_mass=added)
     expected = roll_period(hull, density, layers, added=added, axis=axis)
     angle = []
     for _ in range(round(6 * expected / FRAME_INTERVAL)):
@@ -178,10 +180,10 @@ def test_energy_of_undamped_heave_stays_bounded():
     fleet = make_fleet([afloat(hull, density, WATER, above=0.05)])
     rest = afloat(hull, density, WATER).position[2]
     water = still_water(fleet, WATER)
-    omega = 2 * math.pi / heave_period(hull, density, WATER)
+    omega = undamped_frequency(hull, density)
     energy = []
     for _ in range(round(1000 * 2 * math.pi / omega / 0.05)):
-        step(fleet, water, 0.05, FREE, substeps=1)
+        step(fleet, water, 0.05, UNDAMPED, substeps=1)
         energy.append(fleet.velocity[0, 2] ** 2 / 2 + omega**2 * (fleet.position[0, 2] - rest) ** 2 / 2)
     assert np.ptp(energy) < 1.1 * omega * 0.05 * energy[0]
     assert np.mean(energy[-1000:]) == pytest.approx(np.mean(energy[:1000]), rel=0.01)
@@ -196,7 +198,7 @@ def test_undamped_rocking_stays_bounded():
     water = still_water(fleet, WATER)
     speeds = []
     for _ in range(600 * 60):
-        step(fleet, water, FRAME_INTERVAL, FREE)
+        step(fleet, water, FRAME_INTERVAL, UNDAMPED)
         speeds.append(np.abs(fleet.velocity[:, 2]) + np.abs(fleet.spin).max(axis=1))
     speeds = np.array(speeds)
     assert (speeds[-3600:].max(axis=0) < 1.5 * speeds[:3600].max(axis=0)).all()
@@ -204,14 +206,14 @@ def test_undamped_rocking_stays_bounded():
 
 def test_the_step_is_stable_below_omega_h_of_two_and_not_above():
     hull, density = Hull.box(2.0, 2.0, 0.6), 500.0
-    omega = 2 * math.pi / heave_period(hull, density, WATER)
+    omega = undamped_frequency(hull, density)
     for ratio, stable in ((1.95, True), (2.05, False)):
         fleet = make_fleet([afloat(hull, density, WATER, above=1e-6)])
         rest = afloat(hull, density, WATER).position[2]
         water = still_water(fleet, WATER)
         reach = 0.0
         for _ in range(100):
-            step(fleet, water, ratio / omega, FREE, substeps=1)
+            step(fleet, water, ratio / omega, UNDAMPED, substeps=1)
             reach = max(reach, abs(fleet.position[0, 2] - rest))
         assert (reach < 1e-4) == stable
 
@@ -244,7 +246,8 @@ def test_two_steps_match_the_naive_ones(seed):
     position, rotation = np.append(rng.uniform(-2, 2, 2), rng.uniform(-0.2, 0.2)), quaternion(rng)
     velocity, spin, flow, lift = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3), rng.normal()
     slopes = rng.normal(0, 0.1, (2, 2))
-    coefficients = MotionCoefficients(9.0, 0.4, 0.9, 0.8)
+    given = rng.normal(size=6) if seed % 2 else None
+    coefficients = MotionCoefficients(9.0, 0.4, 0.9, 0.8, 0.7)
     body = Body(hull, 600.0, tuple(position), tuple(rotation), tuple(velocity), tuple(spin))
     fleet = make_fleet([body])
     water = make_water(
@@ -256,15 +259,16 @@ def test_two_steps_match_the_naive_ones(seed):
         acceleration=np.array([lift]),
         interface=np.array([position[:2] @ slopes[1] - 5.0 * (seed == 7) - 0.15]),
         interface_slope=slopes[1:],
+        excitation=None if given is None else given[None],
     )
     planes = (850.0, 0.2, slopes[0]), (1025.0, -5.0 * (seed == 7) - 0.15, slopes[1])
     step(fleet, water, 0.02, coefficients, substeps=2)
-    state = (position, rotation, velocity, spin, None)
+    state = (position, rotation, velocity, spin, None, np.zeros((len(POLES), 6), complex))
     for middle in (0.005, 0.015):
         rise = middle * np.array([flow[2] - flow[:2] @ slopes[0], 0.0])
         risen = [(rho, height + up, slope) for (rho, height, slope), up in zip(planes, rise, strict=True)]
-        state = naive_step(hull, 600.0, state, *risen, flow, lift, coefficients, 0.01)
-    for value, wanted in zip(fleet[:5], state, strict=True):
+        state = naive_step(hull, 600.0, state, *risen, flow, lift, coefficients, 0.01, given)
+    for value, wanted in zip((*fleet[:5], fleet.memory), state, strict=True):
         assert value[0] == pytest.approx(wanted, abs=1e-7)
 
 

@@ -1,0 +1,167 @@
+"""The force of a sum of waves on floating hulls, beyond the pressure of the plane that `step` puts under each of them.
+
+Linear theory gives a hull the force a Re(X exp(i (k.x - w t))) in a wave of height a, with X from boundary elements:
+the pressure of the undisturbed wave over the whole hull (Froude-Krylov) and the waves that the hull scatters. `step`
+applies the pressure under a plane, whose height is that of the wave averaged over the hull; to first order that is
+X_plane, found here from the hull itself. The difference D = X - X_plane is summed over the waves. So small motions are
+those of linear theory, whatever the length of the wave beside the hull, and large ones follow the surface.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from sim.floating.body import Body, Fleet
+from sim.floating.equilibrium import Layers
+from sim.floating.hull import Hull
+from sim.floating.hydrodynamics import DIRECTIONS, SEA_WATER, LinearHull, afloat, lagrange, wet_pressure
+from sim.jit import kernel
+from sim.ocean.gerstner import Waves, widened
+
+HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of waves on it are taken anew
+NUDGE = 1e-4  # share of the draft by which a plane is moved or tilted to find its force
+BEYOND = 1.0  # [lengths] of 1/k over which the force fades beyond the highest frequency of a table
+
+
+class PlaneForce(NamedTuple):
+    """Force and moment (6,) on an upright hull under a plane, at unit density and gravity."""
+
+    rest: np.ndarray  # under the level plane at rest [m3, m4]
+    rise: np.ndarray  # for each metre that it rises
+    slope: np.ndarray  # (2, 6) for each unit of slope along x, y
+
+
+def plane_force(hull: Hull, draft: float) -> PlaneForce:
+    """The force of a plane on a hull at a draft [m], by differences."""
+    nudge = NUDGE * draft
+    tilt = nudge / float(np.abs(hull.extents[:2]).max())
+
+    def force(rise: float, x: float, y: float) -> np.ndarray:
+        return -wet_pressure(hull, draft, rise, (x, y))[:6]
+
+    def change(rise: float, x: float, y: float, size: float) -> np.ndarray:
+        return (force(rise, x, y) - force(-rise, -x, -y)) / (2 * size)
+
+    slopes = np.stack([change(0.0, tilt, 0.0, tilt), change(0.0, 0.0, tilt, tilt)])
+    return PlaneForce(force(0.0, 0.0, 0.0), change(nudge, 0.0, 0.0, nudge), slopes)
+
+
+class HullExcitation:
+    """The difference D of one hull for given waves, by heading."""
+
+    def __init__(self, hull: Hull, linear: LinearHull, width: float) -> None:
+        """width [m]: diameter over which the plane's waves are averaged."""
+        self.linear, self.width = linear, width
+        self.plane = plane_force(hull, linear.draft)
+
+    def tabulate(self, k: np.ndarray) -> np.ndarray:
+        """X (waves, 36, 6) in directions against the hull, for wavenumbers k (waves,) [rad/m], over g."""
+        linear, found = self.linear, np.empty((len(k), len(DIRECTIONS), 6), complex)
+        still = np.broadcast_to(self.plane.rise, (1, len(DIRECTIONS), 6))
+        nodes = np.concatenate([[0.0], linear.frequency])
+        values = np.concatenate([still, linear.excitation])
+        last = float(nodes[-1])
+        for i, one in enumerate(k):
+            frequency = math.sqrt(one)
+            index, weights = lagrange(nodes, min(frequency, last))
+            fade = math.exp(-max(one - last**2, 0.0) * linear.length * BEYOND)
+            found[i] = fade * np.tensordot(weights, values[index], 1)
+        return found
+
+
+class WaveExcitation:
+    """The excitation of a fleet by a sum of waves."""
+
+    def __init__(self, bodies: Sequence[Body], widths: np.ndarray, layers: Layers = SEA_WATER) -> None:
+        """bodies as in `make_fleet`; widths (n,) [m]: over which the surface at each is averaged in `RadialSea.at`."""
+        fluids = tuple((float(density), float(thickness)) for density, thickness in layers)
+        keys = [(body.hull, float(body.density), float(width)) for body, width in zip(bodies, widths, strict=True)]
+        unique = list(dict.fromkeys(keys))
+        self.kinds = [HullExcitation(hull, afloat(hull, rho, fluids).linear, width) for hull, rho, width in unique]
+        self.kind = np.array([unique.index(key) for key in keys], dtype=np.int64)
+        self.is_round = np.array([kind.linear.is_round for kind in self.kinds], dtype=bool)
+        self.kx = self.ky = np.zeros(0)
+        self.heading = np.full(len(keys), np.inf)  # (n,) [rad] for which the weights were taken
+        self.weights = np.zeros((len(keys), 0, 12))
+
+    def forces(
+        self, fleet: Fleet, labels: np.ndarray, kx: np.ndarray, ky: np.ndarray, amplitude: np.ndarray,
+        phase: np.ndarray, gravity: float = 9.81,
+    ) -> np.ndarray:  # fmt: skip
+        """Force and moment (n, 6) on each body at unit density, in the axes of the world.
+
+        labels (n, 2) [m]: where the bodies are on the resting surface; kx, ky (waves,) [rad/m], amplitude (waves,) [m],
+        phase (waves,) [turns] at the origin.
+        """
+        if not (np.array_equal(kx, self.kx) and np.array_equal(ky, self.ky)):
+            self.kx, self.ky = kx.copy(), ky.copy()
+            k = np.hypot(kx, ky)
+            self.tables = np.array([kind.tabulate(k) for kind in self.kinds])
+            averaged = [widened(Waves(kx, ky, kx, kx), kind.width) for kind in self.kinds]
+            self.averaged = np.array(averaged).reshape(len(self.kinds), len(k))
+            self.heading[:] = np.inf
+            self.weights = np.zeros((len(self.kind), len(k), 12))
+        planes = np.array([np.vstack([kind.plane.rest, kind.plane.rise, kind.plane.slope]) for kind in self.kinds])
+        set_weights(
+            fleet.rotation, self.kind, self.is_round, self.heading, kx, ky, self.tables, self.averaged, planes,
+            self.weights,
+        )  # fmt: skip
+        out = np.zeros((len(self.kind), 6))
+        add_forces(labels, kx, ky, amplitude, phase, self.weights, gravity, out)
+        return out
+
+
+@kernel
+def set_weights(rotation, kind, is_round, heading, kx, ky, tables, averaged, planes, weights):
+    """Set weights (n, waves, 12), real and imaginary part of D in turn, of the bodies that have turned since.
+
+    tables (kinds, waves, 36, 6), averaged (kinds, waves), planes (kinds, 4, 6).
+    """
+    count = tables.shape[2]
+    spacing = 2.0 * math.pi / count
+    D = np.empty(6, np.complex128)
+    for b in range(kind.size):
+        w, x, y, z = rotation[b, 0], rotation[b, 1], rotation[b, 2], rotation[b, 3]
+        yaw = 0.0 if is_round[kind[b]] else math.atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
+        turned = yaw - heading[b]
+        if abs(math.atan2(math.sin(turned), math.cos(turned))) < HEADING_TOLERANCE and np.isfinite(heading[b]):
+            continue
+        heading[b] = yaw
+        c, s = math.cos(yaw), math.sin(yaw)
+        q = kind[b]
+        for i in range(kx.size):
+            k = np.sqrt(kx[i] * kx[i] + ky[i] * ky[i])
+            along, across = c * kx[i] + s * ky[i], c * ky[i] - s * kx[i]
+            u = math.atan2(across, along) / spacing
+            first = math.floor(u)
+            t = u - first
+            # the cubic through four directions
+            a0, a1 = -t * (t - 1.0) * (t - 2.0) / 6.0, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0
+            a2, a3 = -(t + 1.0) * t * (t - 2.0) / 2.0, (t + 1.0) * t * (t - 1.0) / 6.0
+            j = int(first)
+            j0, j1, j2, j3 = (j - 1) % count, j % count, (j + 1) % count, (j + 2) % count
+            for d in range(6):
+                X = a0 * tables[q, i, j0, d] + a1 * tables[q, i, j1, d]
+                X += a2 * tables[q, i, j2, d] + a3 * tables[q, i, j3, d]
+                plane = (
+                    planes[q, 1, d] - k * planes[q, 0, d] + 1j * (along * planes[q, 2, d] + across * planes[q, 3, d])
+                )
+                D[d] = X - averaged[q, i] * plane
+            for d in range(2):
+                first_part, second_part = D[3 * d], D[3 * d + 1]
+                D[3 * d], D[3 * d + 1] = c * first_part - s * second_part, s * first_part + c * second_part
+            for d in range(6):
+                weights[b, i, 2 * d], weights[b, i, 2 * d + 1] = D[d].real, D[d].imag
+
+
+@kernel
+def add_forces(labels, kx, ky, amplitude, phase, weights, gravity, out):
+    """Add gravity times the sum of a Re(D exp(i phase)) over the waves to out (n, 6)."""
+    for b in range(labels.shape[0]):
+        for i in range(kx.size):
+            angle = kx[i] * labels[b, 0] + ky[i] * labels[b, 1] + 2.0 * math.pi * phase[i]
+            c, s = gravity * amplitude[i] * math.cos(angle), gravity * amplitude[i] * math.sin(angle)
+            for d in range(6):
+                out[b, d] += c * weights[b, i, 2 * d] - s * weights[b, i, 2 * d + 1]

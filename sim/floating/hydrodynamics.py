@@ -1,0 +1,275 @@
+"""What linear theory knows of a floating hull: added mass, radiation damping, the force of waves, and their memory.
+
+The coefficients come from boundary elements (`boundary_elements.py`), committed as tables by draft in
+`assets/hydrodynamics`. A box, an upright cylinder and a sphere are in the tables at every size: to the water a hull is
+its wet part. Another hull has coefficients of its own in a file beside its mesh (`springtide hydrodynamics HULL`), or
+else, as an approximation, those of the box with its volume and the second moments of its waterplane.
+
+Cummins (1962): (M + A_inf) a + int K(t - s) v(s) ds + C x = F. The transform of K is B + i w (A - A_inf); here it is a
+sum over the same few poles for all entries, so that the memory is a small state: s' = p s + v, force -2 Re(R s). The
+residues R are fitted, best where the hull's own frequencies lie, under the condition that a steady motion is free.
+"""
+
+import functools
+import math
+from importlib.resources import files
+from typing import NamedTuple
+
+import numpy as np
+
+from sim.floating.closed_mesh import area_vectors
+from sim.floating.equilibrium import equilibrium_draft, upright
+from sim.floating.hull import Hull
+from sim.floating.hydrostatics import add_pressure
+from sim.floating.shapes.record import LinearTable
+
+SEA_WATER = ((1025.0, math.inf),)  # one fluid, as `layers`
+# Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
+POLES = np.array([-0.362 + 0.419j, -0.408 + 0.850j, -0.311 + 1.274j, -1.344 + 1.128j, -1.127 + 4.227j])
+DIRECTIONS = np.radians(np.arange(0.0, 360.0, 10.0))  # in which waves run, of the excitation
+FIT_WIDTH = 0.12  # share of a hull's own frequency about which the memory is fitted best
+FIT_FLOOR = 0.06  # weight of the other frequencies
+STEADY_WEIGHT = 30.0  # of the condition that a steady motion meets no force
+MAX_TURNS = 60  # of the search for a natural frequency
+# What changes sign under a mirror that turns x, or y
+MIRROR_X = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
+MIRROR_Y = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+
+
+class LinearHull(NamedTuple):
+    """Linear coefficients of one hull afloat, at unit density and gravity, about its centre of mass, in its own axes.
+
+    A motion is (3) along and (3) about the axes; frequencies are omega/sqrt(g).
+    """
+
+    frequency: np.ndarray  # (n,) [1/sqrt(m)]
+    added_mass: np.ndarray  # (n, 6, 6) [m3 to m5]
+    damping: np.ndarray  # (n, 6, 6) over sqrt(g)
+    infinite: np.ndarray  # (6, 6) added mass at infinite frequency
+    # (n, 36, 6) over g: force X of a wave a cos(k.x - wt) that runs in one of DIRECTIONS: a Re(X exp(i (k.x - wt)))
+    excitation: np.ndarray
+    length: float  # [m] of the hull, by which poles are scaled
+    draft: float  # [m]
+    volume: float  # [m3] displaced
+    is_round: bool  # seen from above: the excitation does not depend on the heading
+
+    def at(self, frequency: float) -> tuple[np.ndarray, np.ndarray]:
+        """Added mass and damping (6, 6) at a frequency [1/sqrt(m)]; beyond the table those of its end."""
+        x = min(max(frequency, float(self.frequency[0])), float(self.frequency[-1]))
+        nodes, weights = lagrange(self.frequency, x)
+        a = np.tensordot(weights, self.added_mass[nodes], 1)
+        return a, np.tensordot(weights, self.damping[nodes], 1)
+
+
+class Memory(NamedTuple):
+    """The memory of a hull's radiated waves, at unit density and gravity."""
+
+    poles: np.ndarray  # (p,) complex
+    residues: np.ndarray  # (p, 6, 6) complex
+
+
+@functools.cache
+def table_of(name: str) -> LinearTable:
+    """A committed table: "box", "cylinder" or "sphere"."""
+    with files("assets").joinpath(f"hydrodynamics/{name}.npz").open("rb") as file, np.load(file) as arrays:
+        return LinearTable(**{field: arrays[field] for field in LinearTable._fields})
+
+
+def linear_hull(hull: Hull, draft: float) -> LinearHull:
+    """The linear coefficients of a hull upright at a draft [m], which is bounded to what is tabulated."""
+    low, high = (float(value) for value in hull.extents[2])
+    height = high - low
+    draft = min(draft, 0.98 * height)
+    shape, is_round = hull.shape, False
+    x, y = (float(value) for value in hull.size[:2])
+    cut = upright(hull, draft)
+    if shape.own_table is not None:
+        table, length, aspect, depth = shape.own_table, math.sqrt(x * y) / 2, 1.0, draft
+    elif shape.linear in ("cylinder", "sphere"):
+        table, length, aspect, depth, is_round = table_of(shape.linear), x / 2, 1.0, draft, True
+    else:
+        table, depth = table_of("box"), draft
+        if shape.linear != "box":
+            x, y = (math.sqrt(12 * max(second, 1e-9) / max(cut.area, 1e-9)) for second in cut.second[:2])
+            depth = cut.volume / (x * y)
+        length, aspect = math.sqrt(x * y) / 2, x / y
+    turned = aspect < 1
+    found = interpolated(table, max(aspect, 1 / aspect), depth / length)
+    excitation = around(found.excitation, table.direction)
+    a, b, infinite = found.added_mass, found.damping, found.infinite
+    if turned:  # the tables have the long side along x: a quarter turn
+        quarter = np.zeros((6, 6))
+        quarter[0, 1], quarter[1, 0], quarter[2, 2] = -1.0, 1.0, 1.0
+        quarter[3:, 3:] = quarter[:3, :3]
+        a, b, infinite = quarter @ a @ quarter.T, quarter @ b @ quarter.T, quarter @ infinite @ quarter.T
+        excitation = np.roll(excitation, len(DIRECTIONS) // 4, axis=1) @ quarter.T
+    # into metres, and from the waterline to the centre of mass: v_waterline = S v, S = [[1, -[r]], [0, 1]]
+    unit = length ** np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
+    rise = low + draft  # [m] of the waterline over the centre of mass
+    S = np.eye(6)
+    S[0, 4], S[1, 3] = rise, -rise
+    scale = np.outer(unit, unit) * length
+    root = math.sqrt(length)
+    return LinearHull(
+        frequency=table.frequency / root,
+        added_mass=S.T @ (a * scale) @ S,
+        damping=S.T @ (b * scale / root) @ S,
+        infinite=S.T @ (infinite * scale) @ S,
+        excitation=(excitation * unit * length) @ S,
+        length=length,
+        draft=draft,
+        volume=cut.volume,
+        is_round=is_round,
+    )
+
+
+def interpolated(table: LinearTable, aspect: float, draft: float) -> LinearTable:
+    """One hull of a table: the arrays without their first two axes, by cubic polynomials in the logarithms.
+
+    What is interpolated is over the powers of the draft by which it grows, which are nearly the same at all drafts.
+    """
+    drafts, aspects = np.log(table.draft), np.log(table.aspect)
+    draft = min(max(draft, float(table.draft[0])), float(table.draft[-1]))
+    i, u = lagrange(drafts, math.log(draft))
+    j, v = lagrange(aspects, min(max(math.log(aspect), 0.0), float(aspects[-1])))
+    here, nodes = growth(np.array([draft]))[0], growth(table.draft[i])
+
+    def value(array: np.ndarray, powers: int) -> np.ndarray:
+        scale = nodes if powers == 1 else nodes[:, :, None] * nodes[:, None, :]
+        back = here if powers == 1 else np.outer(here, here)
+        found = np.tensordot(v, array[j], 1)[i]
+        return (
+            np.tensordot(u, found / scale.reshape(len(i), *[1] * (found.ndim - 1 - powers), *scale.shape[1:]), 1) * back
+        )
+
+    return table._replace(
+        added_mass=value(table.added_mass, 2), damping=not_negative(value(table.damping, 2)),
+        infinite=value(table.infinite, 2), excitation=value(table.excitation, 1),
+    )  # fmt: skip
+
+
+def growth(draft: np.ndarray) -> np.ndarray:
+    """Powers of the drafts (d,) by which the coefficients of each motion grow, (d, 6)."""
+    one, turning = np.ones_like(draft), (0.5 + draft) ** 1.5
+    return np.stack([draft, draft, one, turning, turning, draft], axis=1)
+
+
+def not_negative(damping: np.ndarray) -> np.ndarray:
+    """The nearest damping (n, 6, 6) that gives no energy to any motion; interpolation may miss that by a little."""
+    size = np.sqrt(np.abs(np.einsum("nii->ni", damping)).max(axis=0)) + 1e-12
+    values, vectors = np.linalg.eigh(damping / np.outer(size, size))
+    kept = np.einsum("nij,nj,nkj->nik", vectors, np.maximum(values, 0.0), vectors)
+    return kept * np.outer(size, size)
+
+
+def lagrange(nodes: np.ndarray, x: float) -> tuple[np.ndarray, np.ndarray]:
+    """Indices and weights of the polynomial through the four nodes about x, or through all where they are fewer."""
+    count = min(4, len(nodes))
+    first = min(max(int(np.searchsorted(nodes, x)) - 2, 0), len(nodes) - count)
+    index = np.arange(first, first + count)
+    points = nodes[index]
+    weights = np.ones(count)
+    for a in range(count):
+        for b in range(count):
+            if a != b:
+                weights[a] *= (x - points[b]) / (points[a] - points[b])
+    return index, weights
+
+
+def around(excitation: np.ndarray, direction: np.ndarray) -> np.ndarray:
+    """The excitation (n, 36, 6) over the full circle from that of a quarter, or of one direction of what is round."""
+    if len(direction) == len(DIRECTIONS):
+        return excitation
+    if len(direction) == 1:
+        ahead = excitation[:, 0]
+        cosine, sine = np.cos(DIRECTIONS)[:, None], np.sin(DIRECTIONS)[:, None]
+        parts = [
+            ahead[:, None, 0:1] * cosine, ahead[:, None, 0:1] * sine, ahead[:, None, 2:3] + 0 * cosine,
+            -ahead[:, None, 4:5] * sine, ahead[:, None, 4:5] * cosine, 0j * ahead[:, None, 5:6] * cosine,
+        ]  # fmt: skip
+        return np.concatenate(parts, axis=2)
+    half = np.concatenate([excitation, (excitation * MIRROR_X)[:, -2::-1]], axis=1)  # 0 to 180 degrees
+    return np.concatenate([half, (half * MIRROR_Y)[:, -2:0:-1]], axis=1)
+
+
+def natural_frequency(linear: LinearHull, axis: int, mass: float, stiffness: float, added: float = 1.0) -> float:
+    """omega/sqrt(g) [1/sqrt(m)] of a free oscillation along or about an axis (0 to 5).
+
+    mass [m3 or m5]: of the solid over the fluid's density; stiffness [m2 or m4]: over the weight density. Roll and
+    pitch carry the sway and surge that come with them. added scales the added mass. 0 where no force restores.
+    """
+    if stiffness <= 0.0:
+        return 0.0
+    partner = {3: 1, 4: 0}.get(axis)
+    frequency = math.sqrt(stiffness / (mass + added * linear.infinite[axis, axis]))
+    for _ in range(MAX_TURNS):
+        a, _ = linear.at(frequency)
+        inertia = mass + added * a[axis, axis]
+        if partner is not None:
+            inertia -= (added * a[axis, partner]) ** 2 / (linear.volume + added * a[partner, partner])
+        new = math.sqrt(stiffness / inertia)
+        if abs(new - frequency) < 1e-9 * new:
+            break
+        frequency = 0.5 * (frequency + new)
+    return frequency
+
+
+def memory_of(linear: LinearHull, own_frequencies: np.ndarray) -> Memory:
+    """The memory of a hull. own_frequencies (6,) [1/sqrt(m)] of free oscillations; 0 for none."""
+    poles = POLES / math.sqrt(linear.length)
+    s = 1j * linear.frequency[:, None]
+    parts = np.concatenate([1 / (s - poles) + 1 / (s - poles.conj()), 1j / (s - poles) - 1j / (s - poles.conj())], 1)
+    steady = np.concatenate([(-1 / poles - 1 / poles.conj()).real, (-1j / poles + 1j / poles.conj()).real])
+    K = linear.damping + s[:, :, None] * (linear.added_mass - linear.infinite)
+    residues = np.zeros((len(poles), 6, 6), complex)
+    for i in range(6):
+        for j in range(i, 6):
+            size = math.sqrt(np.abs(K[:, i, i]).max() * np.abs(K[:, j, j]).max())
+            if np.abs(K[:, i, j]).max() <= 1e-9 * size or size == 0.0:
+                continue
+            own = max(own_frequencies[i], own_frequencies[j])
+            weight = np.ones(len(s))
+            if own > 0.0:
+                weight = FIT_FLOOR + np.exp(-0.5 * ((linear.frequency / own - 1) / FIT_WIDTH) ** 2)
+            weight = weight[:, None]
+            matrix = np.concatenate([(parts * weight).real, (parts * weight).imag, STEADY_WEIGHT * steady[None]])
+            wanted = K[:, i, j, None] * weight
+            x = np.linalg.lstsq(matrix, np.concatenate([wanted.real, wanted.imag, np.zeros((1, 1))])[:, 0])[0]
+            residues[:, i, j] = residues[:, j, i] = x[: len(poles)] + 1j * x[len(poles) :]
+    return Memory(poles, residues)
+
+
+class Afloat(NamedTuple):
+    """A hull of a density in fluids, as linear theory has it."""
+
+    linear: LinearHull
+    memory: Memory
+    wet_area: np.ndarray  # (3,) [m2] wet at rest across each axis, int |n_i| dA
+
+
+@functools.lru_cache(maxsize=256)
+def afloat(hull: Hull, density: float, layers: tuple[tuple[float, float], ...] = SEA_WATER) -> Afloat:
+    """The linear coefficients of a hull of `density` [kg/m3] upright at its draft in these layers.
+
+    One that sinks has those of the deepest draft.
+    """
+    draft = min(equilibrium_draft(hull, density, layers), float(hull.size[2]))
+    linear = linear_hull(hull, draft)
+    cut = upright(hull, draft)
+    own = np.zeros(6)
+    own[2] = natural_frequency(linear, 2, cut.volume, cut.area)
+    for axis in (0, 1):
+        stiffness = cut.second[1 - axis] + cut.volume * cut.centre[2]
+        inertia = cut.volume / hull.volume * float(hull.inertia[axis, axis])
+        own[3 + axis] = natural_frequency(linear, 3 + axis, inertia, stiffness)
+    return Afloat(linear, memory_of(linear, own), wet_pressure(hull, draft, 0.0, (0.0, 0.0))[6:9])
+
+
+def wet_pressure(hull: Hull, draft: float, rise: float, slope: tuple[float, float]) -> np.ndarray:
+    """Integrals (9,) of `add_pressure` over an upright hull at a draft [m], in water `rise` [m] higher with a slope."""
+    x, faces = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(hull.faces.T)
+    area = np.ascontiguousarray(area_vectors(hull.vertices, hull.faces).T)
+    depth = hull.extents[2, 0] + draft + rise + slope[0] * x[0] + slope[1] * x[1] - x[2]
+    out = np.zeros(9)
+    add_pressure(x, faces, area, 0, len(hull.faces), depth, 1.0, out)
+    return out

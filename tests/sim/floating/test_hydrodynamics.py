@@ -1,0 +1,218 @@
+"""Bodies against the committed boundary-element coefficients: periods, decay, response in regular waves."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from sim.floating import (
+    Body,
+    Hull,
+    MotionCoefficients,
+    equilibrium_draft,
+    heave_period,
+    make_fleet,
+    make_water,
+    roll_period,
+    step,
+    still_water,
+)
+from sim.floating.excitation import WaveExcitation, plane_force
+from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange, table_of
+from sim.ocean.gerstner import Waves
+from sim.ocean.radial import RadialSea
+from tests.naive_floating import linear_decay, linear_response
+
+WATER = ((1025.0, math.inf),)
+FREE = MotionCoefficients(quadratic_drag=0.0)
+INTERVAL = 1 / 60
+
+
+def wedge() -> Hull:
+    """A hull of one's own: a boat with a flat stern, which has the coefficients of a box."""
+    deck = [(-3.0, -1.0, 0.8), (-3.0, 1.0, 0.8), (1.0, 1.0, 0.8), (3.0, 0.0, 0.8), (1.0, -1.0, 0.8)]
+    keel = [(x, y, 0.0) for x, y, _ in deck]
+    faces = [(0, 2, 1), (0, 3, 2), (0, 4, 3), (5, 6, 7), (5, 7, 8), (5, 8, 9)]
+    for i in range(5):
+        j = (i + 1) % 5
+        faces += [(i, j, i + 5), (j, j + 5, i + 5)]
+    return Hull.from_arrays(np.array(deck + keel), np.array(faces))
+
+
+HULLS = {
+    "box": (Hull.box(1.8, 1.8, 1.05), 450.0),
+    "drum": (Hull.cylinder(0.9, 1.05), 450.0),
+    "ball": (Hull.sphere(0.75), 450.0),
+    "barge": (Hull.box(2.0, 6.0, 1.0), 400.0),
+    "own": (wedge(), 400.0),
+}
+
+
+def solid(hull: Hull, density: float) -> np.ndarray:
+    mass = np.zeros((6, 6))
+    mass[:3, :3], mass[3:, 3:] = density * hull.volume * np.eye(3), density * hull.inertia
+    return mass
+
+
+def stiffness(hull: Hull, draft: float) -> np.ndarray:
+    """Of the mesh itself, which floats a little off its closed form where it is round."""
+    plane, C = plane_force(hull, draft), np.zeros((6, 6))
+    C[2, 2], C[3, 3], C[4, 4] = plane.rise[2], plane.slope[1, 3], -plane.slope[0, 4]
+    return 1025.0 * 9.81 * C
+
+
+def place(hull: Hull, density: float) -> tuple[float, float, float]:
+    return (0.0, 0.0, float(-hull.extents[2, 0]) - equilibrium_draft(hull, density, WATER))
+
+
+def swings(x: np.ndarray) -> tuple[float, float]:
+    """Period [steps] and ratio of successive extremes of a decaying oscillation, over its first swings."""
+    down = np.flatnonzero((x[:-1] > 0) & (x[1:] <= 0))[:3]
+    crossing = down + x[down] / (x[down] - x[down + 1])
+    peaks = [np.abs(x[a:b]).max() for a, b in itertools.pairwise(down)]
+    return float(np.diff(crossing).mean()), float(peaks[1] / peaks[0])
+
+
+@pytest.mark.parametrize("axis", [2, 3, 4])
+@pytest.mark.parametrize("name", ["box", "drum", "ball", "barge"])
+def test_free_decay_is_that_of_the_coefficients(name: str, axis: int) -> None:
+    hull, density = HULLS[name]
+    if name == "ball" and axis > 2:
+        return  # nothing rights a sphere of one density
+    size = 1e-3
+    angle = [1.0, 0.0, 0.0, 0.0]
+    x, y, z = place(hull, density)
+    if axis == 2:
+        z += size
+    else:
+        angle[axis - 2] = size / 2
+    fleet = make_fleet([Body(hull, density, (x, y, z), tuple(angle))], WATER)
+    water, found = still_water(fleet, WATER), []
+    rest = place(hull, density)[2]
+    for _ in range(20 * 60):
+        step(fleet, water, INTERVAL, FREE)
+        found.append(fleet.position[0, 2] - rest if axis == 2 else 2 * fleet.rotation[0, axis - 2])
+    linear = afloat(hull, density, WATER).linear
+    t = INTERVAL * np.arange(1, 20 * 60 + 1)
+    wanted = linear_decay(linear, solid(hull, density), stiffness(hull, linear.draft), axis, t) * size
+    period, ratio = swings(np.array(found))
+    wanted_period, wanted_ratio = swings(wanted)
+    assert period == pytest.approx(wanted_period, rel=0.01)
+    assert ratio == pytest.approx(wanted_ratio, rel=0.05)
+    undamped = heave_period(hull, density, WATER) if axis == 2 else roll_period(hull, density, WATER, axis=axis - 3)
+    if wanted_ratio > 0.6:  # stronger damping makes the period itself longer
+        assert period * INTERVAL == pytest.approx(undamped, rel=0.02)
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.6, 2.5])
+@pytest.mark.parametrize("name", list(HULLS))
+def test_response_in_regular_waves_is_that_of_the_coefficients(name: str, direction: float) -> None:
+    """Heave, and the motions that come with it, from 0.3 to 3 times resonance, begun in the steady state."""
+    hull, density = HULLS[name]
+    body = Body(hull, density, place(hull, density))
+    known = afloat(hull, density, WATER)
+    linear, width = known.linear, np.array([float(np.ptp(hull.extents[0]))])
+    C = stiffness(hull, linear.draft)
+    own = 2 * math.pi / heave_period(hull, density, WATER)
+    found, wanted = [], []
+    for ratio in (0.3, 0.7, 1.0, 1.4, 2.0, 3.0):
+        w, amplitude = own * ratio, 1e-3
+        k = w * w / 9.81
+        one = np.ones(1)
+        sea = RadialSea(Waves(k * math.cos(direction) * one, k * math.sin(direction) * one, amplitude * one, 0 * one))
+        excitation = WaveExcitation([body], width, WATER)
+        X = 1025.0 * 9.81 * at_direction(excitation.kinds[0].tabulate(k * one)[0], direction)
+        xi = linear_response(linear, solid(hull, density), C, X, w)
+        velocity = amplitude * -1j * w * xi
+        fleet = make_fleet([body], WATER)
+        fleet.position[0] += (amplitude * xi[:3]).real
+        fleet.rotation[0, 1:] = (amplitude * xi[3:]).real / 2
+        fleet.velocity[0], fleet.spin[0] = velocity[:3].real, velocity[3:].real
+        poles = known.memory.poles[:, None] * math.sqrt(9.81)
+        fleet.memory[0] = (velocity / (-1j * w - poles) + velocity.conj() / (1j * w - poles)) / 2
+        steps = round(5 * 2 * math.pi / w / INTERVAL)
+        rows = []
+        for i in range(steps):
+            middle = (i + 0.5) * INTERVAL
+            at = sea.at(fleet.position[:, :2], middle, width)
+            kx, ky, a, _, phase, _ = sea.current(middle)
+            forces = excitation.forces(fleet, at.label, kx, ky, a, phase)
+            water = make_water(
+                fleet, WATER, at.height, slope=at.slope, velocity=at.velocity, acceleration=at.acceleration,
+                excitation=forces, lead=INTERVAL / 2,
+            )  # fmt: skip
+            step(fleet, water, INTERVAL, FREE)
+            rows.append(np.append(fleet.position[0] - body.position, 2 * fleet.rotation[0, 1:]))
+        t = INTERVAL * np.arange(1, steps + 1)
+        fit = np.linalg.lstsq(np.column_stack([np.cos(w * t), np.sin(w * t), np.ones(steps), t]), np.array(rows))[0]
+        found.append((fit[0] + 1j * fit[1]) / amplitude)
+        wanted.append(xi)
+    heave = np.array(found)[:, 2], np.array(wanted)[:, 2]
+    np.testing.assert_allclose(np.abs(heave[0]), np.abs(heave[1]), rtol=0.02, atol=1e-3)
+    for axis in (0, 1) if name == "ball" else (0, 1, 3, 4):  # a ball hardly turns
+        result, linear_one = np.array(found)[:, axis], np.array(wanted)[:, axis]
+        np.testing.assert_allclose(result, linear_one, atol=0.02 * np.abs(linear_one).max() + 2e-3)
+
+
+def at_direction(table: np.ndarray, direction: float) -> np.ndarray:
+    index, weights = lagrange(np.append(DIRECTIONS, 2 * math.pi), direction)
+    return weights @ np.concatenate([table, table[:1]])[index]
+
+
+def test_the_hemisphere_has_the_added_mass_of_hulme() -> None:
+    """Hulme 1982, table 1: heave added mass over the displaced mass, by kR."""
+    linear = afloat(Hull.sphere(1.0), 512.5, WATER).linear
+    for kr, known in ((0.1, 0.8627), (0.4, 0.6452), (1.0, 0.4284)):
+        a, _ = linear.at(math.sqrt(kr))
+        assert a[2, 2] / linear.volume == pytest.approx(known, rel=0.03)
+    assert linear.infinite[2, 2] / linear.volume == pytest.approx(0.5, rel=0.03)
+
+
+@pytest.mark.parametrize("name", ["box", "cylinder", "sphere"])
+def test_tables_obey_haskind_and_take_energy(name: str) -> None:
+    """Damping follows from the excitation: B = k w/(4 pi) int |X|^2 db in these units (Newman 1977, section 6.18)."""
+    table = table_of(name)
+    hull, density = {"box": HULLS["box"], "cylinder": HULLS["drum"], "sphere": HULLS["ball"]}[name]
+    linear = afloat(hull, density, WATER).linear
+    for i, frequency in enumerate(linear.frequency[4:16], start=4):
+        k = frequency**2
+        expected = k * frequency / 2 * np.mean(np.abs(linear.excitation[i, :, 2]) ** 2)
+        scale = linear.damping[:, 2, 2].max()
+        assert linear.damping[i, 2, 2] == pytest.approx(expected, abs=0.03 * scale)
+    assert (np.einsum("adnii->adni", table.damping[:, 1:-1])[:, :, :14, :3] > -5e-3).all()
+
+
+def test_a_turned_hull_and_a_turned_wave_are_one() -> None:
+    barge, crosswise = Hull.box(6.0, 2.0, 1.0), Hull.box(2.0, 6.0, 1.0)
+    a, b = afloat(barge, 400.0, WATER).linear, afloat(crosswise, 400.0, WATER).linear
+    assert a.infinite[0, 0] == pytest.approx(b.infinite[1, 1])
+    assert a.infinite[4, 4] == pytest.approx(b.infinite[3, 3])
+    quarter = len(DIRECTIONS) // 4
+    np.testing.assert_allclose(a.excitation[:, 0, 2], b.excitation[:, quarter, 2], rtol=1e-9)
+    np.testing.assert_allclose(a.excitation[:, 0, 0], b.excitation[:, quarter, 1], rtol=1e-9)
+    np.testing.assert_allclose(a.excitation[:, 0, 4], -b.excitation[:, quarter, 3], rtol=1e-6, atol=1e-9)
+
+
+def test_size_and_gravity_scale_periods() -> None:
+    small, large = Hull.box(1.0, 1.0, 0.6), Hull.box(4.0, 4.0, 2.4)
+    assert heave_period(large, 450.0, WATER) == pytest.approx(2 * heave_period(small, 450.0, WATER), rel=1e-6)
+    assert heave_period(small, 450.0, WATER, 2.0) == pytest.approx(
+        heave_period(small, 450.0, WATER) * math.sqrt(9.81 / 2.0), rel=1e-9
+    )
+    for gravity in (1.6, 25.0):
+        fleet = make_fleet([Body(small, 450.0, (0.0, 0.0, place(small, 450.0)[2] + 1e-3))], WATER)
+        z, water, h = [], still_water(fleet, WATER), INTERVAL * math.sqrt(9.81 / gravity)
+        for _ in range(400):
+            step(fleet, water, h, FREE._replace(gravity=gravity))
+            z.append(fleet.position[0, 2] - place(small, 450.0)[2])
+        if gravity == 1.6:
+            first = z
+    np.testing.assert_allclose(z, first, atol=1e-9)
+
+
+def test_a_long_hull_does_not_feel_short_waves_along_it_and_feels_them_across() -> None:
+    linear = afloat(Hull.box(30.0, 5.0, 2.0), 500.0, WATER).linear
+    i = int(np.argmin(np.abs(linear.frequency - math.sqrt(2 * math.pi / 10))))
+    ahead, abeam = np.abs(linear.excitation[i, 0, 2]), np.abs(linear.excitation[i, 9, 2])
+    assert abeam > 5 * ahead

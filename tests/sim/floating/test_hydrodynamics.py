@@ -179,7 +179,7 @@ def test_tables_obey_haskind_and_take_energy(name: str) -> None:
         k = frequency**2
         expected = k * frequency / 2 * np.mean(np.abs(linear.excitation[i, :, 2]) ** 2)
         scale = linear.damping[:, 2, 2].max()
-        assert linear.damping[i, 2, 2] == pytest.approx(expected, abs=0.03 * scale)
+        assert linear.damping[i, 2, 2] == pytest.approx(expected, abs=0.05 * scale)
     assert (np.einsum("adnii->adni", table.damping[:, 1:-1])[:, :, :14, :3] > -5e-3).all()
 
 

@@ -19,6 +19,7 @@ from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import DIRECTIONS, SEA_WATER, LinearHull, afloat, lagrange, wet_pressure
 from sim.jit import kernel
 from sim.ocean.gerstner import Waves, widened
+from sim.ocean.wave_sum import fine_wave
 
 HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of waves on it are taken anew
 NUDGE = 1e-4  # share of the draft by which a plane is moved or tilted to find its force
@@ -82,6 +83,8 @@ class WaveExcitation:
         self.kinds = [HullExcitation(hull, afloat(hull, rho, fluids).linear, width) for hull, rho, width in unique]
         self.kind = np.array([unique.index(key) for key in keys], dtype=np.int64)
         self.is_round = np.array([kind.linear.is_round for kind in self.kinds], dtype=bool)
+        planes = [np.vstack([kind.plane.rest, kind.plane.rise, kind.plane.slope]) for kind in self.kinds]
+        self.planes = np.array(planes).reshape(len(self.kinds), 4, 6)
         self.kx = self.ky = np.zeros(0)
         self.heading = np.full(len(keys), np.inf)  # (n,) [rad] for which the weights were taken
         self.weights = np.zeros((len(keys), 0, 12))
@@ -103,9 +106,8 @@ class WaveExcitation:
             self.averaged = np.array(averaged).reshape(len(self.kinds), len(k))
             self.heading[:] = np.inf
             self.weights = np.zeros((len(self.kind), len(k), 12))
-        planes = np.array([np.vstack([kind.plane.rest, kind.plane.rise, kind.plane.slope]) for kind in self.kinds])
         set_weights(
-            fleet.rotation, self.kind, self.is_round, self.heading, kx, ky, self.tables, self.averaged, planes,
+            fleet.rotation, self.kind, self.is_round, self.heading, kx, ky, self.tables, self.averaged, self.planes,
             self.weights,
         )  # fmt: skip
         out = np.zeros((len(self.kind), 6))
@@ -161,7 +163,7 @@ def add_forces(labels, kx, ky, amplitude, phase, weights, gravity, out):
     """Add gravity times the sum of a Re(D exp(i phase)) over the waves to out (n, 6)."""
     for b in range(labels.shape[0]):
         for i in range(kx.size):
-            angle = kx[i] * labels[b, 0] + ky[i] * labels[b, 1] + 2.0 * math.pi * phase[i]
-            c, s = gravity * amplitude[i] * math.cos(angle), gravity * amplitude[i] * math.sin(angle)
+            turns = (kx[i] * labels[b, 0] + ky[i] * labels[b, 1]) / (2.0 * math.pi) + phase[i]
+            c, s = fine_wave(turns, gravity * amplitude[i])
             for d in range(6):
                 out[b, d] += c * weights[b, i, 2 * d] - s * weights[b, i, 2 * d + 1]

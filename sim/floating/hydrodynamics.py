@@ -2,8 +2,8 @@
 
 The coefficients come from boundary elements (`boundary_elements.py`), committed as tables by draft in
 `assets/hydrodynamics`. A box, an upright cylinder and a sphere are in the tables at every size: to the water a hull is
-its wet part. Another hull has coefficients of its own in a file beside its mesh (`springtide hydrodynamics HULL`), or
-else, as an approximation, those of the box with its volume and the second moments of its waterplane.
+its wet part. Any other hull has, as an approximation, those of the box with its volume and the second moments of its
+waterplane.
 
 Cummins (1962): (M + A_inf) a + int K(t - s) v(s) ds + C x = F. The transform of K is B + i w (A - A_inf); here it is a
 sum over the same few poles for all entries, so that the memory is a small state: s' = p s + v, force -2 Re(R s). The
@@ -21,7 +21,6 @@ from sim.floating.closed_mesh import area_vectors
 from sim.floating.equilibrium import equilibrium_draft, upright
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import add_pressure
-from sim.floating.shapes.record import LinearTable
 
 SEA_WATER = ((1025.0, math.inf),)  # one fluid, as `layers`
 # Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
@@ -68,6 +67,22 @@ class Memory(NamedTuple):
     residues: np.ndarray  # (p, 6, 6) complex
 
 
+class LinearTable(NamedTuple):
+    """Linear coefficients of hulls by their sides and drafts.
+
+    At unit density and gravity, in units of a length of the hull, about the waterline above its centre of mass.
+    """
+
+    aspect: np.ndarray  # (a,) length over width
+    draft: np.ndarray  # (d,)
+    direction: np.ndarray  # (m,) [rad] in which waves run
+    frequency: np.ndarray  # (n,)
+    added_mass: np.ndarray  # (a, d, n, 6, 6)
+    damping: np.ndarray  # (a, d, n, 6, 6)
+    infinite: np.ndarray  # (a, d, 6, 6) added mass at infinite frequency
+    excitation: np.ndarray  # (a, d, n, m, 6) complex
+
+
 @functools.cache
 def table_of(name: str) -> LinearTable:
     """A committed table: "box", "cylinder" or "sphere"."""
@@ -83,9 +98,7 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
     shape, is_round = hull.shape, False
     x, y = (float(value) for value in hull.size[:2])
     cut = upright(hull, draft)
-    if shape.own_table is not None:
-        table, length, aspect, depth = shape.own_table, math.sqrt(x * y) / 2, 1.0, draft
-    elif shape.linear in ("cylinder", "sphere"):
+    if shape.linear in ("cylinder", "sphere"):
         table, length, aspect, depth, is_round = table_of(shape.linear), x / 2, 1.0, draft, True
     else:
         table, depth = table_of("box"), draft

@@ -4,8 +4,6 @@ import dataclasses
 from collections.abc import Callable
 from typing import NamedTuple
 
-import numpy as np
-
 from sim.floating.closed_mesh import ClosedMesh
 from sim.validation import check_choice
 
@@ -31,22 +29,6 @@ class Appearance(NamedTuple):
     color: Color = (64, 132, 186)  # sRGB, of a hull without a model
 
 
-class LinearTable(NamedTuple):
-    """Linear coefficients of hulls by their sides and drafts: see `sim.floating.hydrodynamics`.
-
-    At unit density and gravity, in units of a length of the hull, about the waterline above its centre of mass.
-    """
-
-    aspect: np.ndarray  # (a,) length over width
-    draft: np.ndarray  # (d,)
-    direction: np.ndarray  # (m,) [rad] in which waves run
-    frequency: np.ndarray  # (n,)
-    added_mass: np.ndarray  # (a, d, n, 6, 6)
-    damping: np.ndarray  # (a, d, n, 6, 6)
-    infinite: np.ndarray  # (a, d, 6, 6) added mass at infinite frequency
-    excitation: np.ndarray  # (a, d, n, m, 6) complex
-
-
 @dataclasses.dataclass(frozen=True)
 class Shape:
     """A shape of floating bodies. Raises ValueError for a collision form that does not exist.
@@ -61,7 +43,6 @@ class Shape:
     order: int = 100  # place in a scene's list of kinds of body; equal ones are sorted by name
     # the table of linear coefficients in assets/hydrodynamics that its wet part has; "": that of an equal box
     linear: str = ""
-    own_table: LinearTable | None = None  # of this shape alone, in units of half the root of its length times width
     # the part of the upright hull up to a height [m] from 0 to its own; None: exact integrals over the mesh
     immersed: Callable[[ClosedMesh, float], Immersed] | None = None
     collision: str = "ellipsoid"  # the form, of the same extents, that other bodies collide with

@@ -14,9 +14,9 @@ SCENE = "rope"
 def field(lab: Viewer, tab: Tab, name: str):
     """The text field of a parameter on the page; its folder is opened."""
     parameter = parameters_of(lab.panel.params)[name]
-    found = tab.page.get_by_label(title(name, parameter), exact=True)
+    found = tab.page.get_by_role("textbox", name=title(name, parameter), exact=True)
     if not found.is_visible():
-        tab.page.get_by_text(parameter.group, exact=True).click()
+        tab.page.get_by_role("button", name=parameter.group, exact=True).click()
         tab.wait(found.is_visible, 10)
         tab.page.wait_for_timeout(300)  # the folder unfolds
     return found

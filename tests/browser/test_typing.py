@@ -81,9 +81,9 @@ def test_every_number_that_is_typed_is_taken_or_refused(scene: str, one_page: tu
     declared = {n: p for n, p in parameters_of(panel.params).items() if p.kind in (int, float)}
     for group in dict.fromkeys(parameter.group for parameter in declared.values()):
         inside = [title(name, p) for name, p in declared.items() if p.group == group]
-        visible = [tab.page.get_by_label(label, exact=True).is_visible() for label in inside]
+        visible = [tab.page.get_by_role("textbox", name=label, exact=True).is_visible() for label in inside]
         if not any(visible):
-            tab.page.get_by_text(group, exact=True).first.click()
+            tab.page.get_by_role("button", name=group, exact=True).click()
             tab.page.wait_for_timeout(400)
     change = panel.on_change
     for control in panel.controls.values():
@@ -104,7 +104,7 @@ def check_one(
     lab: Viewer, tab: Tab, name: str, parameter: Parameter, text: str, said: float, taken: list[Any], delay: int
 ) -> None:
     """Type a text: it is taken as it is, or refused with the range, and nothing else is ever set."""
-    field = tab.page.get_by_label(title(name, parameter), exact=True)
+    field = tab.page.get_by_role("textbox", name=title(name, parameter), exact=True)
     field.click()
     tab.page.keyboard.press("Control+A")
     tab.page.keyboard.press("Delete")

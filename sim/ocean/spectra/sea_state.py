@@ -14,27 +14,25 @@ from sim.parameters import parameter
 class HeightConditions(PeakConditions):
     """What a sea of given height and period is evaluated under."""
 
-    significant_height: float = parameter(
+    hs: float = parameter(
         2.0, 0.0, 20.0, "m", "Mean height of the highest third of the waves", title="Significant height Hs"
     )
-    peak_period: float = parameter(
-        8.0, 0.5, 30.0, "s", "Period of the waves with the most energy", title="Peak period Tp"
-    )
+    tp: float = parameter(8.0, 0.5, 30.0, "s", "Period of the waves with the most energy", title="Peak period Tp")
 
 
 def frequency(w: np.ndarray, c: HeightConditions) -> np.ndarray:
     """S(omega) [m2 s]: omega^-5 exp(-5/4 (omega_p/omega)^4) gamma^r, scaled to m0 = Hs^2/16."""
-    return peaked(w, c.significant_height, peak(c), c.peak_enhancement)
+    return peaked(w, c.hs, peak(c), c.peak_enhancement)
 
 
 def significant_height(c: HeightConditions) -> float:
     """Hs [m], as given."""
-    return c.significant_height
+    return c.hs
 
 
 def peak(c: HeightConditions) -> float:
     """omega_p = 2 pi/Tp [rad/s]."""
-    return 2.0 * math.pi / c.peak_period
+    return 2.0 * math.pi / c.tp
 
 
 def density(kx: np.ndarray, ky: np.ndarray, c: HeightConditions) -> np.ndarray:

@@ -27,7 +27,7 @@ def run(out: Path | str, *more: str) -> int:
         (("--seconds", "1e6", "--rate", "1e5", "--set", "time_step=1e-5"), "GB"),
         (("--seconds", "1", "--set", "mass=inf"), "mass"),
         (("--seconds", "1", "--set", "mass=1e999"), "mass"),
-        (("--seconds", "1", "--set", "mass=1,5"), "mass"),
+        (("--seconds", "1", "--set", "mass=1,500"), "mass"),
         (("--seconds", "1", "--set", "mass="), "mass"),
         (("--seconds", "1", "--set", "=1"), "no such parameter"),
         (("--seconds", "1", "--set", "points=" + "9" * 400), "points"),

@@ -12,7 +12,14 @@ from app.server.viewer import Viewer
 
 ROOT = Path(__file__).parents[3]
 OWN = {"_replace", "_asdict", "_fields", "_exit", "_HAS_NOALIAS"}  # of named tuples and of the os module
-NAMES = {"_websock_server", "_connected_clients", "_gui_input_handle_from_uuid", "_handle_incoming_message", "_impl"}
+NAMES = {
+    "_websock_server",
+    "_websock_connection",
+    "_connected_clients",
+    "_gui_input_handle_from_uuid",
+    "_handle_incoming_message",
+    "_impl",
+}
 
 
 def used(path: Path) -> set[str]:

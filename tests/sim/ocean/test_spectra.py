@@ -86,12 +86,12 @@ def test_the_peak_factor_falls_to_1_at_full_growth_and_is_as_given_before():
 
 def test_a_sea_state_has_the_height_and_period_given():
     for gamma in (1.0, 3.3, 10.0):
-        values = {"significant_height": 3.0, "peak_period": 9.0, "peak_enhancement": gamma}
+        values = {"hs": 3.0, "tp": 9.0, "peak_enhancement": gamma}
         assert height("sea_state", **values) == pytest.approx(3.0, rel=1e-4)
         assert height("sea_state", **values, wind_speed=0.0, depth=30.0) == pytest.approx(3.0, rel=1e-4)
         assert theory(SPECTRA["sea_state"], under("sea_state", **values)).peak_period == pytest.approx(9.0, rel=4e-3)
     c = under("jonswap", wind_speed=12.0)
-    same = {"significant_height": height("jonswap", wind_speed=12.0), "peak_period": 2 * math.pi / jonswap.peak(c)}
+    same = {"hs": height("jonswap", wind_speed=12.0), "tp": 2 * math.pi / jonswap.peak(c)}
     k = np.geomspace(0.01, 5.0, 40)
     one, other = SPECTRA["sea_state"](k, 0.2 * k, under("sea_state", **same)), SPECTRA["jonswap"](k, 0.2 * k, c)
     assert one == pytest.approx(other, rel=1e-3)

@@ -137,14 +137,24 @@ class Compiling:
             process = self.processes.get(number)
             if process is None or process.poll() is not None:
                 process = self.processes[number] = start_process(ahead=number == AHEAD)
-            assert process.stdin is not None
-            assert process.stdout is not None
+        except OSError as error:
+            return str(error)
+        assert process.stdin is not None
+        assert process.stdout is not None
+        problem = "the process ended"
+        try:
             process.stdin.write(f"{job.scene}\t{job.piece}\t{int(job.drawn)}\n")
             process.stdin.flush()
             answer = process.stdout.readline()
         except OSError as error:
-            return str(error)
-        return answer.strip() if answer else "the process ended"
+            answer, problem = "", str(error)
+        if answer:
+            return answer.strip()
+        # A process that is about to end may still look alive: the next job must not be given to it.
+        self.processes.pop(number, None)
+        process.kill()
+        process.wait()
+        return problem
 
 
 def start_process(*, ahead: bool) -> "subprocess.Popen[str]":

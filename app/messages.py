@@ -153,7 +153,6 @@ class Status(NamedTuple):
     speed: float  # target real-time factor
     actual_speed: float  # real-time factor over the last second
     capped: bool  # time that could not be made up is being dropped
-    solve_time: float  # [s] per frame spent solving
     frame_rate: float  # frames per second published
     halted: str  # why the run stopped by itself, or ""
     starts: int = 0  # how often it was begun again, by a reset or a preset

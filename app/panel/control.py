@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import viser
 
+from app.panel.round_step import round_step
 from app.render.html import fill
 from app.render.viser_types import GuiHandle, ViserEvent
 from sim.parameters import Parameter, Value, clamp_value, in_words, parse_value
@@ -25,13 +26,6 @@ def hint_of(name: str, parameter: Parameter) -> str:
     return f"{parameter.doc}.{allowed} Command line: {name}"
 
 
-def nice_step(low: float, high: float) -> float:
-    """A linear slider's step: a round number, some 150 to 400 of them over the range."""
-    rough = (high - low) / SLIDER_STEPS
-    decade = 10.0 ** math.floor(math.log10(rough))
-    return next(m * decade for m in (1, 2, 5, 10) if m * decade >= rough * 0.999)
-
-
 class SliderScale:
     """Where a slider stands for a number, and the number that it stands for: linear, or by decades."""
 
@@ -42,7 +36,7 @@ class SliderScale:
             self.step = (self.high - self.low) / SLIDER_STEPS
         else:
             self.low, self.high = float(p.low), float(p.high)
-            step = nice_step(self.low, self.high)
+            step = round_step((self.high - self.low) / SLIDER_STEPS)
             self.step = max(1.0, round(step)) if p.kind is int else step
 
     def position(self, value: Value) -> float:

@@ -28,17 +28,13 @@ class Display:
         self.dark: GuiHandle = gui.add_button("Dark", visible=False)
         self.light: GuiHandle = gui.add_button("Light", visible=False)
 
-        @self.dark.on_click
-        async def _(event: ViserEvent) -> None:
-            if event.client is not None:
-                set_theme(event.client.gui, dark=True)
-                view.set_dark(event.client, True)
+        for button, is_dark in ((self.dark, True), (self.light, False)):
 
-        @self.light.on_click
-        async def _(event: ViserEvent) -> None:
-            if event.client is not None:
-                set_theme(event.client.gui, dark=False)
-                view.set_dark(event.client, False)
+            @button.on_click
+            async def _(event: ViserEvent, dark: bool = is_dark) -> None:
+                if event.client is not None:
+                    set_theme(event.client.gui, dark=dark)
+                    view.set_dark(event.client, dark)
 
         switches = fill(
             '<div class="springtide-switches" data-springtide-dark="{}" data-springtide-light="{}">'

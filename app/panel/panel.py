@@ -58,10 +58,8 @@ class Panel:
         """
         self.server, self.kind, self.view, self.post, self.work = server, kind, view, post, work
         self.gui = gui = server.gui
-        self.state: tuple[BaseParams, int] = (
-            params,
-            0,
-        )  # parameters as set now, and how many presets were loaded: read by another thread
+        # Parameters as set now, and how many presets were loaded: read by another thread.
+        self.state: tuple[BaseParams, int] = params, 0
         self.status_at = self.marks_at = self.work_at = 0.0
         self.halted: str = ""
         self.visitors = 0
@@ -140,9 +138,8 @@ class Panel:
             ("Undo", "U", self.undo),
         ]
         for number, preset in enumerate(self.kind.presets, 1):
-            key = (
-                DIGITS[number - 1] if number <= len(DIGITS) else None
-            )  # the rest in the command palette and the list only
+            # The presets after the ninth are in the command palette and the list only.
+            key = DIGITS[number - 1] if number <= len(DIGITS) else None
             actions.append((f"Preset: {preset}", key, lambda preset=preset: self.load(preset)))
         for label, key, action in actions:
             command = self.gui.add_command(label, hotkey=key)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from viser import uplot
 
 from app.messages import PlotRow, WorkCount
+from app.panel.round_step import round_step
 from app.render.viser_types import GuiHandle
 from app.scenes.charts import Chart, Columns, CurveAxes, Line
 from app.scenes.contract import AnyKind, AnySnapshot
@@ -63,8 +64,7 @@ def scale_of(low: float, high: float) -> Scale:
     """A scale for data from low to high."""
     size = max(abs(low), abs(high))
     rough = max(high - low, MIN_SPAN * size) / TICKS if size else 1.0 / TICKS
-    decade = 10.0 ** math.floor(math.log10(rough))
-    step = next(m * decade for m in (1, 2, 5, 10) if m * decade >= rough * 0.999)
+    step = round_step(rough)
     first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
     return Scale(first * step, max(last, first + 1) * step, step)
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from app.messages import BaseParams, Command, Load
-from app.scenes.compiling import Compiling
+from app.scenes.compiling import Compiling, Job
 from app.scenes.contract import AnyKind
 
 
@@ -21,15 +21,20 @@ class CompileGate:
         self.compiling, self.kind, self.pass_on = compiling, kind, post
         self.passed = state
         self.held: Load | None = None
+        self.asked: BaseParams | None = None  # parameters that `jobs` are of
+        self.jobs: list[Job] = []  # still to be compiled for them
         self.notice = ""  # what is waited for, in words
 
     def is_ready(self, params: BaseParams) -> bool:
         """Whether all is compiled that these parameters run; if not, it is compiled next."""
-        jobs = self.compiling.missing(self.kind.name, params)
-        if jobs:
-            self.compiling.want(jobs)
-            self.notice = f"Compiling {', '.join(job.piece for job in jobs)}: starts by itself when it is ready."
-        return not jobs
+        if params is not self.asked:  # what they need is asked for once, and not in each tick
+            self.asked, self.jobs = params, self.compiling.missing(self.kind.name, params)
+            if self.jobs:
+                self.compiling.want(self.jobs)
+                names = ", ".join(job.piece for job in self.jobs)
+                self.notice = f"Compiling {names}: starts by itself when it is ready."
+        self.jobs = [job for job in self.jobs if job not in self.compiling.settled]
+        return not self.jobs
 
     def post(self, command: Command) -> None:
         """A command of the panel; called on viser's event loop."""

@@ -119,7 +119,7 @@ class SimLoop:
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
         self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
         self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
-        self.latest: AnySnapshot = self.snapshot(0.0)
+        self.latest: AnySnapshot = self.snapshot()
 
     @property
     def frame_interval(self) -> float:
@@ -134,19 +134,18 @@ class SimLoop:
         # Parameters first: a reset starts from them. A record of a `Load` that is still on the way comes with it.
         changed = loads == self.loaded and params is not self.scene.params and self.take(params)
         changed |= self.handle_waiting()
-        solve = 0.0
         if self.running and self.audience() and self.replay is not None:
             changed |= self.play_replay(self.replay, wall)
         elif self.running and self.audience():
             n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame_interval)
             if n:
-                solve = self.advance_within_budget(n) if self.cost_unknown else self.advance(n)
+                (self.advance_within_budget if self.cost_unknown else self.advance)(n)
                 changed = True
         else:
             self.counts["idle ticks"] += 1
         self.counts["ticks"] += 1
         if changed:
-            self.publish(solve)
+            self.publish()
         self.busy_since = None
 
     def take(self, params: BaseParams) -> bool:
@@ -169,8 +168,8 @@ class SimLoop:
             self.reset()
         return True
 
-    def advance_within_budget(self, n: int) -> float:
-        """Take up to n steps in growing parts while the frame's budget lasts; returns what they took [s].
+    def advance_within_budget(self, n: int) -> None:
+        """Take up to n steps in growing parts while the frame's budget lasts.
 
         Another method or more points may make a step a thousand times as expensive as the last one was.
         """
@@ -185,7 +184,6 @@ class SimLoop:
         if n > 0 and self.running:
             self.capped, self.pacer.debt = True, 0.0
             self.pacer.dropped += n
-        return spent
 
     def work(self) -> dict[str, WorkCount]:
         """What ran against what had no need to, paused or unwatched, or no time to."""
@@ -294,18 +292,18 @@ class SimLoop:
         self.replay = None
         self.guarded(self.scene.reset)
 
-    def publish(self, solve: float) -> None:
+    def publish(self) -> None:
         """Hand the viewer what there is now."""
-        self.latest = self.snapshot(solve)
+        self.latest = self.snapshot()
         self.fresh.set()
 
-    def snapshot(self, solve: float) -> AnySnapshot:
+    def snapshot(self) -> AnySnapshot:
         """What there is to show now; the last good frame where the scene has none."""
         self.counts["snapshots"] += 1
         serial = self.counts["snapshots"]
         last: AnySnapshot | None = getattr(self, "latest", None)
         try:
-            return self.collect(serial, solve)
+            return self.collect(serial)
         except Exception as error:
             if last is None:
                 raise  # nothing to show instead: the scene cannot be opened
@@ -313,9 +311,9 @@ class SimLoop:
                 traceback.print_exc()
                 error = DivergenceError(f"The scene stopped with {type(error).__name__}: {error}")
             self.halt(str(error))
-            return last._replace(serial=serial, status=self.status(solve))
+            return last._replace(serial=serial, status=self.status())
 
-    def collect(self, serial: int, solve: float) -> AnySnapshot:
+    def collect(self, serial: int) -> AnySnapshot:
         """The scene's frame, readings, work, parameters and curves; hands its plot rows over.
 
         While the last moments before a divergence are shown again, the frame is of one of them.
@@ -328,9 +326,9 @@ class SimLoop:
             raise DivergenceError(f"What is to be drawn is not finite ({where}). Reset, or take a smaller step.")
         readings, work, curves = scene.readings(), scene.work(), scene.curves()
         self.plot_rows.extend(scene.take_plot_rows())
-        return Snapshot(serial, frame, self.status(solve), readings, work, scene.params, curves)
+        return Snapshot(serial, frame, self.status(), readings, work, scene.params, curves)
 
-    def status(self, solve: float) -> Status:
+    def status(self) -> Status:
         """The clock and the rates."""
         moment = None if self.replay is None else self.replay.moment
         simulated = self.scene.time if moment is None else moment.time
@@ -345,7 +343,6 @@ class SimLoop:
             speed=self.scene.params.speed,
             actual_speed=max(0.0, (simulated - self.history[0][1]) / elapsed) if elapsed > 0 and self.running else 0.0,
             capped=self.capped and self.running,
-            solve_time=solve,
             frame_rate=(len(self.history) - 1) / elapsed if elapsed > 0 else 0.0,
             halted=self.halted,
             starts=self.counts["starts"],
@@ -364,7 +361,7 @@ class SimLoop:
                 traceback.print_exc()
                 self.halt(f"The scene stopped with {type(error).__name__}: {error}")
                 with contextlib.suppress(Exception):  # said once, and where even the clock fails not at all
-                    self.publish(0.0)
+                    self.publish()
                 self.busy_since = None
             last = now
             rest = (self.frame_interval if busy else IDLE_INTERVAL) - (self.clock() - now)

@@ -31,8 +31,7 @@ def with_cover(request: Request, response: Response | None) -> Response | None:
     if response is None or response.status_code != HTTPStatus.OK or path not in ("/", "/index.html"):
         return response
     body = bytes(response.body or b"")
-    zipped = response.headers.get("Content-Encoding") == "gzip"
-    page = covered(gzip.decompress(body) if zipped else body, zipped)
+    page = covered(body, response.headers.get("Content-Encoding") == "gzip")
     headers = Headers(response.headers)
     del headers["Content-Length"]
     headers["Content-Length"] = str(len(page))
@@ -40,8 +39,9 @@ def with_cover(request: Request, response: Response | None) -> Response | None:
 
 
 @functools.cache
-def covered(page: bytes, zipped: bool) -> bytes:
+def covered(sent: bytes, zipped: bool) -> bytes:
     """viser's page with ours around it, compressed again where it was."""
+    page = gzip.decompress(sent) if zipped else sent
     folder = resources.files("app.render") / "js"
     style = (folder / "page.css").read_text("utf-8")
     script = "".join((folder / name).read_text("utf-8") for name in SCRIPTS)

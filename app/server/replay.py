@@ -6,7 +6,7 @@ MOMENT_INTERVAL = 1 / 12  # [s] of wall time for which each moment is shown
 
 
 class Replay:
-    """Plays the moments of one divergence, of which there is at least one, once."""
+    """Plays the moments of one divergence once; there is at least one moment."""
 
     def __init__(self, moments: tuple[Moment, ...], reason: str) -> None:
         """reason: why the run diverged."""

@@ -171,8 +171,7 @@ class Viewer:
         text = self.notice or self.gate.notice or describe(*self.compiling.progress())
         if text != self.compile_text:
             self.compile_text = text
-            style = "padding:0 12px 4px;font-size:12px"
-            self.compile_line.content = str(fill('<div style="{}">{}</div>', style, text)) if text else ""
+            self.compile_line.content = note(text) if text else ""
 
     def clear(self) -> None:
         """An empty panel and an empty scene."""
@@ -186,16 +185,11 @@ class Viewer:
         """A page that says why a scene could not be opened, and offers the scenes."""
         self.close()
         self.clear()
-        add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.choose)
+        add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.wanted.put)
         reason = f"{type(error).__name__}: {error}"
         self.server.gui.add_html(
             note(fill('<b class="springtide-panel">{} could not be opened.</b><br>{}', name, reason))
         )
-
-    def choose(self, name: str) -> None:
-        """A scene was chosen on the page that says why another could not be opened."""
-        if name in NAMES:
-            self.wanted.put(name)
 
     def open_wanted(self) -> None:
         """Open the scenes that browsers ask for; of several waiting only the last."""

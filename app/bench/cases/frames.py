@@ -28,7 +28,7 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
             start = time.thread_time()
             loop.advance(steps)
             solved = time.thread_time()
-            loop.latest = loop.snapshot(0.0)
+            loop.latest = loop.snapshot()
             taken = time.thread_time()
             with viewer.transport.counted():
                 viewer.show_latest()

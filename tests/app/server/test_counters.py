@@ -168,7 +168,7 @@ def test_closed_charts_are_not_drawn(still: Any):
     scene.params = type(scene.params)(plot_tip=True)
     for _ in range(3):
         scene.advance(3)
-    snapshot: Snapshot = still.loop.snapshot(0.0)
+    snapshot: Snapshot = still.loop.snapshot()
     rows = list(still.loop.plot_rows)
     assert len(rows) >= 2
     for new in (rows, []):  # the second time there is nothing new

@@ -87,7 +87,7 @@ def test_a_scene_that_cannot_be_opened_leaves_a_page_that_says_why_and_offers_th
     assert "cloth could not be opened" in panel_text(lab)
     assert "no room for a cloth" in panel_text(lab)
     monkeypatch.undo()
-    lab.choose("rope")
+    lab.wanted.put("rope")
     wait_for(lambda: lab.is_open and lab.panel.kind.name == "rope" and lab.shown > 0)
 
 

@@ -11,7 +11,7 @@ from app.scenes.radial_sea.report import forces_html
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import JetTotal
 from app.server.loop import SimLoop
-from sim.floating import equilibrium_draft
+from sim.floating import equilibrium_draft, submerged
 from sim.floating.heave_meter import HeaveMeter
 from sim.parameters import check_record
 
@@ -61,8 +61,6 @@ def test_a_leaning_box_has_the_draft_of_its_wet_volume() -> None:
     scene.bodies.measure(0.0, at, 1 / 60)
     leaning = scene.bodies.draft[2]
     hull = scene.bodies.hulls["crate"]
-    from sim.floating import submerged
-
     found = submerged(hull, scene.bodies.fleet.position[2], scene.bodies.fleet.rotation[2])
     assert leaning == pytest.approx(found.volume / (1.2 * 1.5) ** 2, rel=1e-6)
 

@@ -74,12 +74,13 @@ def swings(x: np.ndarray) -> tuple[float, float]:
     return float(np.diff(crossing).mean()), float(peaks[1] / peaks[0])
 
 
-@pytest.mark.parametrize("axis", [2, 3, 4])
-@pytest.mark.parametrize("name", ["box", "drum", "ball", "barge"])
+# Nothing rights a sphere of one density.
+@pytest.mark.parametrize(
+    ("name", "axis"),
+    [(name, axis) for name in ("box", "drum", "ball", "barge") for axis in (2, 3, 4) if name != "ball" or axis == 2],
+)
 def test_free_decay_is_that_of_the_coefficients(name: str, axis: int) -> None:
     hull, density = HULLS[name]
-    if name == "ball" and axis > 2:
-        return  # nothing rights a sphere of one density
     size = 1e-3
     angle = [1.0, 0.0, 0.0, 0.0]
     x, y, z = place(hull, density)

@@ -6,6 +6,7 @@ from dataclasses import Field
 from typing import ClassVar, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 Vector = tuple[float, float, float]
 
@@ -31,6 +32,11 @@ class BaseParams(Protocol):
 P = TypeVar("P", bound=BaseParams)
 F = TypeVar("F")
 R = TypeVar("R")
+
+
+def vector_of(x: NDArray[np.floating]) -> Vector:
+    """(3,) [m] as a tuple."""
+    return float(x[0]), float(x[1]), float(x[2])
 
 
 def finite_vector(values: Iterable[object], max_distance: float = MAX_DISTANCE) -> Vector | None:

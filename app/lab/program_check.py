@@ -34,7 +34,6 @@ class Verdict:
     state: str
     text: str = ""
     mistake: str = ""
-    seconds: float = 0.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -159,22 +158,17 @@ def is_empty(line: ast.stmt) -> bool:
 
 def check_program(folder: Path, runner: Runner, task: Task) -> Verdict:
     """Judge the student's function of a programming task."""
-    began = time.monotonic()
-
-    def verdict(state: str, text: str = "", mistake: str = "") -> Verdict:
-        return Verdict(state, text, mistake, time.monotonic() - began)
-
     if (folder / task.file).is_file() and not is_begun(folder, task):
-        return verdict("not begun")
+        return Verdict("not begun")
     student = Student(runner, task)
     try:
         compare(student)
         behave(student)
     except RunError as error:
-        return verdict("failed", str(error), error.kind)
+        return Verdict("failed", str(error), error.kind)
     except Wrong as error:
-        return verdict("wrong", str(error), error.mistake)
-    return verdict("right")
+        return Verdict("wrong", str(error), error.mistake)
+    return Verdict("right")
 
 
 def draw(runner: Runner, task: Task) -> Points | None:

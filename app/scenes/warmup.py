@@ -75,7 +75,9 @@ def compile_piece(name: str, piece: str, *, drawn: bool) -> None:
         if was_enabled:
             gc.enable()
     remember(name, piece, drawn=drawn)
-    if all(is_marked(name, other, drawn=of_drawing) for other, of_drawing in all_pieces(name)):
+    # The drawing, and with it viser, is asked only where all else is compiled.
+    done = all(is_marked(name, other, drawn=False) for other in scene_pieces(name))
+    if done and all(is_marked(name, other, drawn=True) for other in drawing_pieces(name)):
         remember(name, EVERYTHING, drawn=True)
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.validation import argument_error
+from sim.validation import argument_error, check_within
 
 MIN_LENGTH, MAX_LENGTH = 1e-3, 1e4  # [m] of an edge, a radius or an extent
 
@@ -81,10 +81,7 @@ def checked_mesh(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -
 
 def check_length(name: str, value: float) -> float:
     """`value` if it is a length that a hull may have. Raises ValueError otherwise."""
-    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    if not number or not MIN_LENGTH <= value <= MAX_LENGTH:
-        raise argument_error(name, value, f"{MIN_LENGTH:g} to {MAX_LENGTH:g} m")
-    return float(value)
+    return check_within(name, value, MIN_LENGTH, MAX_LENGTH, "m")
 
 
 def open_edges(faces: np.ndarray) -> int:

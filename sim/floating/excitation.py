@@ -2,7 +2,7 @@
 
 Linear theory gives a hull the force a Re(X exp(i (k.x - w t))) in a wave of height a, with X from boundary elements:
 the pressure of the undisturbed wave over the whole hull (Froude-Krylov) and the waves that the hull scatters. `step`
-applies the pressure under a plane, whose height is that of the wave averaged over the hull; to first order that is
+applies the pressure under a plane at the height of the wave, averaged over the hull; to first order that is
 X_plane, found here from the hull itself. The difference D = X - X_plane is summed over the waves. So small motions are
 those of linear theory, whatever the length of the wave beside the hull, and large ones follow the surface.
 """

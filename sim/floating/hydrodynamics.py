@@ -191,8 +191,6 @@ def lagrange(nodes: np.ndarray, x: float) -> tuple[np.ndarray, np.ndarray]:
 
 def around(excitation: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """The excitation (n, 36, 6) over the full circle from that of a quarter, or of one direction of what is round."""
-    if len(direction) == len(DIRECTIONS):
-        return excitation
     if len(direction) == 1:
         ahead = excitation[:, 0]
         cosine, sine = np.cos(DIRECTIONS)[:, None], np.sin(DIRECTIONS)[:, None]

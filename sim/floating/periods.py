@@ -17,7 +17,13 @@ def heave_period(
     interfaces, which are taken to stay level (Newman 1977, section 6.16). added scales the added mass. inf where no
     force restores: the hull sinks, or is wholly submerged in one fluid. Raises ValueError as `equilibrium_draft`.
     """
-    draft = equilibrium_draft(hull, density, layers, gravity)
+    return heave_period_at(hull, density, layers, equilibrium_draft(hull, density, layers, gravity), gravity, added)
+
+
+def heave_period_at(
+    hull: Hull, density: float, layers: Layers, draft: float, gravity: float = 9.81, added: float = 1.0
+) -> float:
+    """`heave_period` of a hull whose equilibrium draft [m] is known."""
     if math.isinf(draft):
         return math.inf
     cuts = [(change, upright(hull, draft - top)) for change, top in density_steps(layers)]

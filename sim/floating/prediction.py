@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from sim.floating.equilibrium import Layers, equilibrium_draft
 from sim.floating.hull import Hull
-from sim.floating.periods import heave_period
+from sim.floating.periods import heave_period_at
 
 
 class HydrostaticPrediction(NamedTuple):
@@ -22,9 +22,10 @@ def predict(hull: Hull, density: float, layers: Layers, water_density: float) ->
 
     water_density [kg/m3]: of clean water, for comparison. Raises ValueError as `equilibrium_draft`.
     """
+    draft = equilibrium_draft(hull, density, layers)
     return HydrostaticPrediction(
-        draft=equilibrium_draft(hull, density, layers),
+        draft=draft,
         draft_in_water=equilibrium_draft(hull, density, ((water_density, math.inf),)),
         height=float(hull.extents[2, 1] - hull.extents[2, 0]),
-        period=heave_period(hull, density, layers),
+        period=heave_period_at(hull, density, layers, draft),
     )

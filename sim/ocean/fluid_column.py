@@ -72,12 +72,10 @@ class FluidColumn:
         k = np.asarray(k, np.float64)
         if self.kind != "layer":
             return damped_root(self.omega(k), self.surface.kinematic_viscosity * k**2, self.film)
-        oil, water = self.oil, self.water
-        tensions = (oil.surface_tension or 0.0, oil.interface_tension or 0.0)
+        upper, thickness, lower, gravity, _, *tensions = self._two()
         return viscous_two_layer(
-            k, oil.density, oil.viscosity, self.thickness, water.density, water.viscosity, self.gravity, *tensions,
-            film=self.film,
-        )  # fmt: skip
+            k, upper, self.oil.viscosity, thickness, lower, self.water.viscosity, gravity, *tensions, film=self.film
+        )
 
     def _two(self) -> tuple[float, float, float, float, float, float, float]:
         o = self.oil

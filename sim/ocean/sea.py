@@ -109,6 +109,8 @@ class Sea:
         }
         self._given: dict[str, Any] = {}  # conditions as given, those of other spectra too
         self._lost = np.zeros_like(self._k)  # -ln of the share of each wave that is left of that time, a quarter plane
+        # ((medium, conditions), decay rates) that were last asked for by `expose`
+        self._other_decay: tuple[tuple[Medium, Conditions], np.ndarray] | None = None
         self._sloped_under: tuple[Conditions | None, np.ndarray] = None, self._lost  # for `slope_left`
         self._set_conditions(spectrum, given | more, Medium())
         self._start = self._target
@@ -173,11 +175,20 @@ class Sea:
         negative or not finite.
         """
         duration = check_not_negative("duration", duration, "s")
+        if duration == 0.0:
+            return
         chosen = self.medium if medium is None else medium
-        decay = self._decay if medium is None else medium.roots(self._k, self.conditions)[1]
+        decay = self._decay if medium is None else self._decay_in(medium)
         self._add_to_past(chosen, self.conditions, decay, duration)
         self.version += 1
         self._set_planes()
+
+    def _decay_in(self, medium: Medium) -> np.ndarray:
+        """Decay rates [1/s] in another medium, solved once for the same medium and conditions."""
+        asked = medium, self.conditions
+        if self._other_decay is None or self._other_decay[0] != asked:
+            self._other_decay = asked, medium.roots(self._k, self.conditions)[1]
+        return self._other_decay[1]
 
     def resized(self, size: int) -> "Sea":
         """The same sea on a grid of another size: shared waves and rings go on as they are.

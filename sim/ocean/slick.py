@@ -9,7 +9,7 @@ here with what has been spilt so far.
 
 import math
 
-from sim.validation import argument_error, check_positive
+from sim.validation import argument_error, check_not_negative, check_positive
 
 INERTIAL, VISCOUS = 1.14, 1.45
 
@@ -24,10 +24,8 @@ def slick_radius(
     """
     check_positive("viscosity", viscosity, "m2/s")
     check_positive("gravity", gravity, "m/s2")
-    if not 0.0 <= volume < math.inf:
-        raise argument_error("volume", volume, "0 or above, finite m3")
-    if not 0.0 <= time < math.inf:
-        raise argument_error("time", time, "0 or above, finite s")
+    check_not_negative("volume", volume, "m3")
+    check_not_negative("time", time, "s")
     if not 0.0 < oil < water:
         raise argument_error("oil", oil, f"above 0 and below the water's {water:g} kg/m3")
     lift = (1.0 - oil / water) * gravity

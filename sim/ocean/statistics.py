@@ -16,8 +16,8 @@ from sim.validation import argument_error, check_not_negative
 if TYPE_CHECKING:
     from sim.ocean.sea import Sea
 
-# Lower bounds of forces 1 to 12 [m/s] (WMO No. 306) and the names of 0 to 12.
 BREAKING_HEIGHT = 0.6  # Hs over the depth above which the waves of a sea break on the bottom
+# Lower bounds of forces 1 to 12 [m/s] (WMO No. 306) and the names of 0 to 12.
 BEAUFORT_FROM = (0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7)
 BEAUFORT_NAMES = (
     "calm", "light air", "light breeze", "gentle breeze", "moderate breeze", "fresh breeze", "strong breeze",

@@ -25,7 +25,6 @@ class WaveGauge:
     def __init__(self) -> None:
         self.at = (0.0, 0.0)  # [m]
         self.height = 0.0  # [m]
-        self.residual = 0.0  # [m]
         self.trace: collections.deque[tuple[float, float]] = collections.deque()
 
     def put(self, at: tuple[float, float]) -> None:
@@ -35,8 +34,8 @@ class WaveGauge:
 
     def read(self, sea: Sea, t: float, scale: float) -> None:
         """Take the height at time t [s]; scale: factor on the height as drawn."""
-        height, residual = sea.height_at([self.at], t)
-        self.height, self.residual = scale * float(height[0]), float(residual[0])
+        height, _ = sea.height_at([self.at], t)
+        self.height = scale * float(height[0])
         if self.trace and t <= self.trace[-1][0]:
             return
         self.trace.append((t, self.height))

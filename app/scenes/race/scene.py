@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts
+from app.messages import Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts, vector_of
 from app.scenes.charts import Chart
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.race.charts import CURVES, RaceCharts
@@ -14,7 +14,7 @@ from app.scenes.race.measures import measures
 from app.scenes.race.names import rope_label
 from app.scenes.race.parameters import PRESETS, Params, hidden, method_of, offset_of
 from app.scenes.springs.drag import PullFrame
-from app.scenes.springs.rope_handles import RopeHandles, vector_of
+from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from app.scenes.springs.work_counts import SpringWorkCounts

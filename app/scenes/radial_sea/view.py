@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.messages import Command, Place, Snapshot, Vector, finite_vector
+from app.messages import Command, Place, Snapshot, Vector, finite_vector, vector_of
 from app.render.cameras import place_cameras
 from app.render.dragging import PullLine, drag
 from app.render.follow_camera import FollowCamera
@@ -265,11 +265,6 @@ class View:
 def offset_of_view(params: Params) -> np.ndarray:
     """(2, 3) [m] from the followed body to a camera that has not been moved, and to its target."""
     return np.array(CUTAWAY_VIEW if params.follow == "cutaway" else BODY_VIEW) * params.size / VIEW_SIZE
-
-
-def vector_of(x: np.ndarray) -> Vector:
-    """(3,) [m] as a tuple."""
-    return float(x[0]), float(x[1]), float(x[2])
 
 
 def handle_scale(frame: RadialFrame, kind: str) -> float:

@@ -44,7 +44,6 @@ class OilBudget(NamedTuple):
     hits: int  # parcels that have
     radius: float  # [m] of the slick
     thickness: float  # [m] of the slick
-    parcels: int  # of fire that burn
 
 
 class JetTotal(NamedTuple):
@@ -161,7 +160,6 @@ class WellBlowout:
             hits=closed.hits + (jet.hits if jet is not None else 0),
             radius=slick.radius if slick is not None else 0.0,
             thickness=slick.thickness if slick is not None else 0.0,
-            parcels=int(self.fire.burning.sum()) if self.fire is not None else 0,
         )
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts
+from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts, vector_of
 from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.plot_rows import PlotRows
@@ -13,7 +13,7 @@ from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import PRESETS, Params, hidden
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.drag import PullFrame
-from app.scenes.springs.rope_handles import RopeHandles, vector_of
+from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from app.scenes.springs.work_counts import SpringWorkCounts
@@ -207,7 +207,7 @@ class RopeScene:
 
     def repeat_to_divergence(self, net: Net, good: State, steps: int) -> None:
         """Take the steps that left the bounds once more, keep a frame of each, and go back to the last good state."""
-        self.state, reach = good.copy(), 0.0
+        self.state = good.copy()
         for _ in range(steps):
             advance(net, self.state, self.integrator, self.step, 1, with_account=True)
             reach = extremes(self.state.x, self.state.v).reach

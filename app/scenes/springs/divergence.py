@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Moment, Vector
+from app.messages import Moment, vector_of
 from app.scenes.springs.methods import method_name
 from sim.formatting import number, seconds
 from sim.springs.integrators import Integrator
@@ -21,25 +21,21 @@ class LastMoments:
     """The last frames of a run."""
 
     def __init__(self) -> None:
-        self.moments: collections.deque[Moment] = collections.deque(maxlen=MOMENTS)
+        # (time [s], frame, points (n, 3) [m])
+        self.frames: collections.deque[tuple[float, object, NDArray[np.float32]]] = collections.deque(maxlen=MOMENTS)
 
     def add(self, t: float, frame: object, points: NDArray[np.float32]) -> None:
         """Keep the frame of time t [s], unless it is kept already. points: (..., 3) [m] of what moves."""
-        if not self.moments or self.moments[-1].time < t:
-            flat = points.reshape(-1, 3)
-            self.moments.append(Moment(t, frame, vector_of(flat.min(axis=0)), vector_of(flat.max(axis=0))))
+        if not self.frames or self.frames[-1][0] < t:
+            self.frames.append((t, frame, points.reshape(-1, 3)))
 
     def clear(self) -> None:
         """The run begins again."""
-        self.moments.clear()
+        self.frames.clear()
 
     def __iter__(self) -> Iterator[Moment]:
-        return iter(self.moments)
-
-
-def vector_of(x: NDArray[np.floating]) -> Vector:
-    """(3,) [m] as a tuple."""
-    return float(x[0]), float(x[1]), float(x[2])
+        """The moments, with the box about their points: only a divergence asks for it."""
+        return (Moment(t, frame, vector_of(x.min(axis=0)), vector_of(x.max(axis=0))) for t, frame, x in self.frames)
 
 
 def stability_number(value: float) -> str:

@@ -90,8 +90,3 @@ class RopeHandles:
         distance = float(np.linalg.norm(np.asarray(hand.position) - position))
         load = min(1.0, distance * mass * pull_rate(step) ** 2 / max_force)
         return PullFrame(index, (x, y + offset, z), load)
-
-
-def vector_of(x: NDArray[np.float64]) -> Vector:
-    """(3,) [m] as a tuple."""
-    return float(x[0]), float(x[1]), float(x[2])

@@ -64,9 +64,7 @@ class RainReadings(NamedTuple):
     rate: float  # [mm/h]
     drawn: int  # drops in the air that are drawn
     weight: float  # real drops that each of them stands for
-    hits: int  # drawn drops that have reached the water so far
     fallen: float  # real drops that have fallen on the window so far
-    span: float  # [m] side of the window
     drops_per_ring: float  # real drops, all at one place, that would make a ring as drawn; 0 where no rings are drawn
 
 
@@ -78,7 +76,6 @@ class SeaReadings(NamedTuple):
     slope_left: float  # share of the mean square slope that damping and a small height factor leave
     foam_limit: float  # Jacobian below which there is foam; -inf without foam
     viscous_area: float  # [m2] sum of viscosity times time, since the start
-    gauge_residual: float | None  # [m] with which the height at the wave gauge was found; None while it is not shown
     rain: RainReadings | None
     report: Report | None
 
@@ -361,16 +358,13 @@ class SquareSeaScene:
         rain = None
         if self.rainfall is not None:
             fall, drops = self.rainfall, self.rainfall.rain
-            rain = RainReadings(
-                drops.rate, drops.diameter.size, drops.weight, drops.hits, drops.fallen, fall.span, fall.drops_per_ring
-            )
+            rain = RainReadings(drops.rate, drops.diameter.size, drops.weight, drops.fallen, fall.drops_per_ring)
         return SeaReadings(
             foam_cover=self.foam_cover,
             expected_foam_cover=self.expected_foam_cover(self.time),
             slope_left=self.slope_left,
             foam_limit=self.foam_limit,
             viscous_area=self.viscous_area + self.params.viscosity * (self.time - self.changed_at),
-            gauge_residual=self.gauge.residual if self.drawn is not None and self.drawn.gauge is not None else None,
             rain=rain,
             report=self.report if self.params.statistics else None,
         )

@@ -225,7 +225,7 @@ def similar(word: object, names: Iterable[str]) -> list[str]:
 
 
 def choice_error(name: str, parameter: Parameter, value: object) -> ValueError:
-    """The error for a value that is none of the choices: those that it resembles come first."""
+    """The error for a value that is not one of the choices; similar choices come first."""
     close = similar(value, parameter.choices)
     hint = f"; did you mean {' or '.join(close)}?" if close else ""
     return ValueError(f"{argument_error(name, value, parameter.allowed)}{hint}")

@@ -218,7 +218,7 @@ class Table:
         return float(value)
 
     def flag(self, key: str) -> bool:
-        """true or false, false where there is no such entry. Raises ValueError for another value."""
+        """true or false; false where the entry is missing. Raises ValueError for another value."""
         value = self.value(key, False)
         if not isinstance(value, bool):
             raise argument_error(f"{self.file}: {key}", value, "true or false")

@@ -85,8 +85,8 @@ class Fleet(NamedTuple):
 def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
     """The arrays of many bodies.
 
-    layers: (density [kg/m3], thickness [m]) from the top of the fluids at whose drafts the bodies take their linear
-    coefficients. Raises ValueError, naming the body, for what is not finite or has no mass.
+    layers: (density [kg/m3], thickness [m]) from the top. The bodies take their linear coefficients at the
+    drafts that they have in these fluids. Raises ValueError, naming the body, for what is not finite or has no mass.
     """
     for i, body in enumerate(bodies):
         if not isinstance(body.density, int | float | np.number) or not 0 < body.density < math.inf:

@@ -137,7 +137,7 @@ class WideArrays(NamedTuple):
     thickness: float  # [m] at which particles of the net push each other, 0: never
     pairs: NDArray[np.int64]  # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
-    bands: int  # of rows, whose forces a cloth's threads work out at once
+    bands: int  # number of bands of rows; each thread computes the forces of one band
 
 
 # A net of any families of links, and one of those of CLOTH. A kernel is compiled for each of the three classes of
@@ -215,7 +215,7 @@ class Net:
 
     @property
     def bands(self) -> int:
-        """Bands of rows, whose forces threads compute at once."""
+        """Number of bands of rows; each thread computes the forces of one band."""
         return max(1, min(self.threads, MAX_THREADS, self.shape[0] // LEAST_BAND))
 
     def kernel_view(self, h: float) -> Any:

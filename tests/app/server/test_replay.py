@@ -16,7 +16,7 @@ MOMENTS = tuple(Moment(0.1 * k, k, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)) for k in ra
 
 
 def diverged(**changes: object) -> SimLoop:
-    """A loop whose rope has just diverged."""
+    """A loop in which the rope has just diverged."""
     loop = SimLoop(RopeScene(check_record(Params, {**PRESETS["Euler explodes"], **changes})))
     for _ in range(1000):
         loop.tick(FRAME_INTERVAL)

@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 
 from app.scenes import NAMES, scene_named
 
+LIVE = "live"  # the command of the lab that need not be named
 MAX_HULL_FACES = 20_000  # of a hull from a file: pressure is summed over all of them at each step
 
 
@@ -21,7 +22,7 @@ def main(argv: list[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A file name that the terminal cannot show is printed with replacements.
         sys.stdout.reconfigure(errors="backslashreplace")
-    arguments = make_parser().parse_args(argv)
+    arguments = make_parser().parse_args(with_live(sys.argv[1:] if argv is None else argv))
     try:
         with cleaning_up_at_sigterm():
             return arguments.command(arguments)
@@ -33,6 +34,13 @@ def main(argv: list[str] | None = None) -> int:
         return print_error(f"not enough memory ({error})", 1)
     except KeyboardInterrupt:
         return 128 + signal.SIGINT
+
+
+def with_live(words: list[str]) -> list[str]:
+    """The words of the command line with the command that `springtide lab DIR` leaves out."""
+    if words[:1] == ["lab"] and not {*words[1:2]} <= {"new", "check", LIVE, "-h", "--help"}:
+        return ["lab", LIVE, *words[1:]]
+    return words
 
 
 def print_error(text: str, status: int) -> int:
@@ -108,6 +116,15 @@ def make_parser() -> argparse.ArgumentParser:
     sweep.add_argument("--fresh", action="store_true", help="start over, and replace earlier results")
     sweep.set_defaults(command=run_sweep)
 
+    coefficients = commands.add_parser(
+        "hydrodynamics", help="added mass, damping and wave forces of a hull of your own (needs the extra `bem`)"
+    )
+    coefficients.add_argument("hull", type=Path, nargs="?", metavar="HULL", help="a closed mesh, as of --hull")
+    default = "where to write the table (default: HULL.hydrodynamics.npz, where --hull finds it)"
+    coefficients.add_argument("--out", type=Path, metavar="FILE.npz", help=default)
+    coefficients.add_argument("--compare", action="store_true", help="set the shipped shapes beside Capytaine, live")
+    coefficients.set_defaults(command=run_hydrodynamics)
+
     add_lab(commands.add_parser("lab", help="the course lab: make a folder of exercises, check it"))
 
     warmup = commands.add_parser("warmup", help="compile all kernels and plan all transforms, once")
@@ -117,7 +134,11 @@ def make_parser() -> argparse.ArgumentParser:
 
 def add_lab(lab: argparse.ArgumentParser) -> None:
     """The commands of `springtide lab`."""
-    commands = lab.add_subparsers(metavar="new or check", required=True)
+    commands = lab.add_subparsers(metavar="DIR, new or check", required=True)
+    live = commands.add_parser(LIVE, help="springtide lab DIR: the scenes with the functions in this folder, live")
+    live.add_argument("folder", type=Path, metavar="DIR", help="a folder that `springtide lab new` has made")
+    add_serving(live)
+    live.set_defaults(command=serve_folder)
     new = commands.add_parser("new", help="write a folder with the exercises")
     new.add_argument("folder", type=Path, metavar="DIR", help="a new or empty folder")
     new.add_argument("--solutions", action="store_true", help="for teachers: with the reference solutions")
@@ -129,7 +150,7 @@ def add_lab(lab: argparse.ArgumentParser) -> None:
     check.add_argument("--csv", type=Path, metavar="FILE.csv", help="write a table, one row a folder")
     check.add_argument("--report", type=Path, metavar="FILE.html", help="write the page to hand in")
     check.set_defaults(command=check_lab)
-    for command in (new, check):
+    for command in (live, new, check):
         more = "a folder with tasks of your own, beside those of the course; see docs/lab.md"
         command.add_argument("--tasks", type=Path, action="append", default=[], metavar="FOLDER", help=more)
 
@@ -155,10 +176,10 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
 
 def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
     """The scene's parameters from --preset and --set; raises ValueError for what is not allowed."""
-    from app.scenes.preset_files import read_preset
+    from app.scenes.setups import preset_values
     from sim.parameters import check_record, parse_assignments
 
-    values = {} if arguments.preset is None else read_preset("--preset", arguments.preset, scene)
+    values = {} if arguments.preset is None else preset_values("--preset", arguments.preset, scene)
     params = check_record(scene.params, {**values, **parse_assignments(scene.params, arguments.set)})
     return params if arguments.hull is None else with_hull(params, arguments.hull)
 
@@ -179,12 +200,13 @@ def with_hull(params: Any, path: Path) -> Any:
     return dataclasses.replace(params, hull=str(path))
 
 
-def serve(arguments: argparse.Namespace) -> int:
-    """`springtide`: the lab in a browser."""
+def serve(arguments: argparse.Namespace, session: Any = None) -> int:
+    """`springtide`: the lab in a browser. session: of a student's folder."""
     scene = scene_named(arguments.scene)
     nothing_asked = arguments.preset is None and not arguments.set and arguments.hull is None
     params = scene.opening_params() if nothing_asked else read_params(scene, arguments)
     from app.commands.serve import serve_lab
+    from app.lab.workbook import Workbook
 
     return serve_lab(
         arguments.scene,
@@ -195,6 +217,8 @@ def serve(arguments: argparse.Namespace) -> int:
         paused=arguments.paused,
         plain=arguments.plain_water,
         developer=arguments.developer,
+        workbook=None if session is None else Workbook(session.tasks, session.folder),
+        session=session,
     )
 
 
@@ -228,6 +252,21 @@ def run_sweep(arguments: argparse.Namespace) -> int:
     return sweep(arguments.spec, arguments.out, arguments.scheduler, fresh=arguments.fresh)
 
 
+def serve_folder(arguments: argparse.Namespace) -> int:
+    """`springtide lab DIR`."""
+    from app.lab.session import Session
+    from app.lab.task import load_tasks
+
+    if arguments.scene == "rope" and arguments.preset is None and not arguments.set:
+        # Of this method the program's rope and a student's right one are the same to rounding.
+        arguments.set = ["integrator=rk4"]
+    session = Session(arguments.folder, load_tasks(*arguments.tasks), arguments.tasks)
+    try:
+        return serve(arguments, session)
+    finally:
+        session.close()
+
+
 def make_lab(arguments: argparse.Namespace) -> int:
     """`springtide lab new`."""
     from app.commands.lab import new
@@ -241,6 +280,16 @@ def check_lab(arguments: argparse.Namespace) -> int:
 
     out = {"json": arguments.json, "csv": arguments.csv, "report": arguments.report}
     return check(arguments.folders, arguments.tasks, out)
+
+
+def run_hydrodynamics(arguments: argparse.Namespace) -> int:
+    """`springtide hydrodynamics`."""
+    from app.commands.hydrodynamics import compare, make
+    from sim.validation import argument_error
+
+    if arguments.compare == (arguments.hull is not None):
+        raise argument_error("HULL", str(arguments.hull), "a mesh file, or --compare without one")
+    return compare() if arguments.compare else make(arguments.hull, arguments.out)
 
 
 def run_warmup(arguments: argparse.Namespace) -> int:

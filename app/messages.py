@@ -129,7 +129,11 @@ class Point(NamedTuple):
     direction: Vector
 
 
-SceneCommand = Place | Grab | Release | Point  # what a scene handles; the rest is the loop's
+class StudentAnswer(NamedTuple):
+    """The process that runs a student's functions has come to a result, which the scene may take."""
+
+
+SceneCommand = Place | Grab | Release | Point | StudentAnswer  # what a scene handles; the rest is the loop's
 Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Load | SceneCommand
 
 

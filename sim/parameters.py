@@ -16,7 +16,7 @@ from typing import Any, Literal, NamedTuple, TypeVar
 
 from sim.formatting import plain
 from sim.quantities import read_number
-from sim.validation import argument_error
+from sim.validation import argument_error, as_float
 
 P = TypeVar("P")
 T = TypeVar("T")
@@ -27,6 +27,7 @@ EFFECTS: tuple[Effect, ...] = ("look", "forces", "start")  # from the least to t
 
 TRUE = ("true", "yes", "on", "1")
 FALSE = ("false", "no", "off", "0")
+MAX_SHOWN_NAME = 60  # characters of an unknown name that an error repeats
 
 
 class Parameter(NamedTuple):
@@ -179,7 +180,9 @@ def clamp_value(parameter: Parameter, value: object) -> Value:
     if value != value:  # NaN; a whole number may be too long for math.isnan
         return parameter.default
     bounded = min(max(value, parameter.low), parameter.high)
-    return round(bounded) if parameter.kind is int else float(bounded)
+    if parameter.kind is int:
+        return round(bounded) if math.isfinite(as_float(bounded)) else parameter.default
+    return as_float(bounded)
 
 
 def clamp(record: P) -> P:
@@ -192,28 +195,30 @@ def check_value(name: str, parameter: Parameter, value: object) -> Any:
     """`value` as the parameter's kind. Raises ValueError where `clamp_value` would have changed it."""
     if parameter.choices or parameter.kind is bool:
         good = clamp_value(parameter, value)
-        if good is not value and good != value:
+        if good is not value and (parameter.kind is bool or good != value):
             raise (
                 choice_error(name, parameter, value)
                 if parameter.choices
                 else argument_error(name, value, parameter.allowed)
             )
         return good
-    if isinstance(value, bool) or not isinstance(value, int | float) or not parameter.low <= value <= parameter.high:
+    number = as_float(value)  # inf for a whole number that is too long for a float
+    if not isinstance(value, int | float) or not parameter.low <= number <= parameter.high:
         raise argument_error(name, value, parameter.allowed)
     if parameter.kind is not int:
-        return float(value)
-    if value != int(value):
+        return number
+    if not number.is_integer():
         raise argument_error(name, value, parameter.allowed)
     return int(value)
 
 
 def unknown_parameter(name: str, known: Mapping[str, Parameter]) -> ValueError:
     """The error for a name that is no parameter: those that it resembles, or all that there are."""
+    shown = name if name.isidentifier() and len(name) <= MAX_SHOWN_NAME else repr(name[:MAX_SHOWN_NAME])
     close = similar(name, known)
     if close:
-        return ValueError(f"{name}: no such parameter; did you mean {' or '.join(close)}?")
-    return ValueError(f"{name}: no such parameter; the parameters are {', '.join(known)}")
+        return ValueError(f"{shown}: no such parameter; did you mean {' or '.join(close)}?")
+    return ValueError(f"{shown}: no such parameter; the parameters are {', '.join(known)}")
 
 
 def similar(word: object, names: Iterable[str]) -> list[str]:

@@ -1,5 +1,6 @@
 """Slow, obvious references: the forces of a net, particle by particle and link by link, straight from the formulas."""
 
+import itertools
 import math
 
 import numpy as np
@@ -59,6 +60,19 @@ def grab_force(grab, x, v):
     return (spring / distance) * pull - grab.damping * v if distance > 0.0 else -grab.damping * v
 
 
+def own_contacts(net, xs, vs):
+    """(a, b, force on b) of particles nearer than the thickness; those up to two rows and columns apart never push."""
+    rows, cols = net.shape
+    particles = [(i, j) for i in range(rows) for j in range(cols)]
+    for a, b in itertools.combinations(particles, 2):
+        r = xs[b] - xs[a]
+        distance = math.sqrt(r @ r)
+        if (abs(a[0] - b[0]) > 2 or abs(a[1] - b[1]) > 2) and distance < net.thickness:
+            n = r / distance
+            depth, opening = net.thickness - distance, (vs[b] - vs[a]) @ n
+            yield a, b, max(0.0, net.contact.stiffness * depth - net.contact.damping * opening) * n
+
+
 def acceleration(net, x, v, t=0.0, h=1.0):
     """Accelerations (3, rows, cols) [m/s^2]; h [s] is the step that regularises friction."""
     rows, cols = net.shape
@@ -68,6 +82,9 @@ def acceleration(net, x, v, t=0.0, h=1.0):
         f = link_force(net, family, xs[b] - xs[a], vs[b] - vs[a])
         force[a] += f
         force[b] -= f
+    for a, b, f in own_contacts(net, xs, vs):
+        force[a] -= f
+        force[b] += f
     for i in range(rows):
         for j in range(cols):
             force[i, j] += net.mass * np.array(net.gravity) - net.drag * vs[i, j]

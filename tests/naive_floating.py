@@ -87,7 +87,7 @@ def lumpy(rng: np.random.Generator, vertices: np.ndarray) -> np.ndarray:
 def naive_step(
     hull: Hull, density: float, state, upper, lower, flow, lift, law: MotionCoefficients, h: float, given=None
 ):
-    """One leapfrog step of one body from motion.py's equations, in matrices and the body's axes.
+    """One leapfrog step of one body from motion.py's equations, in matrices and the axes of the body's heading.
 
     state: position, rotation, velocity, spin, the wet skin of the last step or None, and the memory (p, 6); upper and
     lower: (density, height at the origin, slope) of the planes z = height + slope . (x, y); flow (3,) and lift:
@@ -98,16 +98,21 @@ def naive_step(
     position, rotation, spin = naive_drift(hull, position, rotation, velocity, spin, h / 2)
     true = rotation_matrix(rotation)
     turn = np.eye(3) if hull.shape.is_round else true
+    heading = np.eye(3)
+    if not hull.shape.is_round:
+        angle = 2 * math.atan2(rotation[3], rotation[0])
+        cosine, sine = math.cos(angle), math.sin(angle)
+        heading = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    tilt = heading.T @ turn
     pose = (1.0, 0.0, 0.0, 0.0) if hull.shape.is_round else rotation
     place = hull.vertices @ turn.T + position
-    g = law.gravity + lift
     linear = afloat(hull, density)
     force, moment, wet, displaced, volume = np.zeros(3), np.zeros(3), np.zeros(3), 0.0, 0.0
     step = 0.0
     areas = [np.cross(b - a, c - a) / 2 for a, b, c in hull.vertices[hull.faces]]
     for rho, height, slope in (upper, lower):
         heights = height + place[:, :2] @ slope
-        f, m = pressure_force(hull, position, pose, heights, rho - step, g)
+        f, m = pressure_force(hull, position, pose, heights, rho - step, law.gravity)
         force, moment = force + f, moment + m
         below = submerged(hull, position, pose, heights).volume
         displaced, volume = displaced + (rho - step) * below, max(volume, below)
@@ -116,33 +121,40 @@ def naive_step(
         step = rho
     fluid = displaced / volume if volume > 0 else 0.0
     full = 0.5 * fluid * linear.wet_area
-    share = np.minimum(wet / full, 1.0) if volume > 0 else np.zeros(3)
+    wetter = np.minimum(wet / full, 1.0) if volume > 0 else np.zeros(3)
+    share = tilt**2 @ wetter
     scale = np.sqrt(np.append(share, (np.roll(share, -1) + np.roll(share, -2)) / 2))
     infinite = law.added_mass * fluid * linear.linear.infinite
     added = np.outer(scale, scale) * infinite
     solid = np.zeros((6, 6))
-    solid[:3, :3], solid[3:, 3:] = hull.volume * density * np.eye(3), density * hull.inertia
-    v, w, u = turn.T @ velocity, turn.T @ spin, turn.T @ flow
+    solid[:3, :3], solid[3:, 3:] = hull.volume * density * np.eye(3), density * tilt @ hull.inertia @ tilt.T
+    v, w, u = heading.T @ velocity, heading.T @ spin, heading.T @ flow
     if before is not None and volume > 0:
         carried = np.diag(infinite)[:3]
         early = np.minimum(before / full, 1.0)
-        entering = np.where(wet > before, (solid[0, 0] + carried * early) / (solid[0, 0] + carried * share), 1.0)
-        v = u + (v - u) * entering
+        entering = np.where(wet > before, (solid[0, 0] + carried * early) / (solid[0, 0] + carried * wetter), 1.0)
+        for c in range(3):
+            v = v + tilt[:, c] * (tilt[:, c] @ (v - u)) * (entering[c] - 1.0)
     level = upper[1] + position[:2] @ upper[2] - position[2]
     felt = scale * math.exp(-max(level - np.abs(hull.extents[2]).max(), 0.0) / linear.linear.draft)
     poles = linear.memory.poles * math.sqrt(law.gravity)
     moving = felt * np.append(v - (u if given is None else 0.0), w)
     memory = np.exp(poles * h)[:, None] * memory + ((np.exp(poles * h) - 1) / poles)[:, None] * moving
-    load = np.append(turn.T @ (force - [0, 0, hull.volume * density * law.gravity]), turn.T @ moment)
+    load = np.append(heading.T @ (force - [0, 0, hull.volume * density * law.gravity]), heading.T @ moment)
+    carried = hull.volume * min(density, fluid) * felt[2] ** 2
     if given is None:
-        load = load + added @ np.append(turn.T @ np.array([*(-g * upper[2]), lift]), np.zeros(3))
+        load = load + np.append(carried * lift * heading.T @ np.array([*-upper[2], 1.0]), np.zeros(3))
+        riding = np.array([*(-(law.gravity + lift) * upper[2]), lift])
+        load = load + added @ np.append(heading.T @ riding, np.zeros(3))
     else:
-        load = load + fluid * felt**2 * np.append(turn.T @ given[:3], turn.T @ given[3:])
+        load = load + np.append(carried * lift * heading.T @ np.array([*-upper[2], 0.0]), np.zeros(3))
+        load = load + fluid * felt**2 * np.append(heading.T @ given[:3], heading.T @ given[3:])
     past = 2 * np.einsum("pcd,pd->c", linear.memory.residues, memory).real
     load = load - law.radiation * fluid * law.gravity * felt * past
     change = h * np.linalg.solve(solid + added, load)
-    v, w = v + change[:3] - u, w + change[3:]
-    mass = np.diag(solid + added)
+    v, w = tilt.T @ (v + change[:3] - u), tilt.T @ (w + change[3:])
+    total = solid + added
+    mass = np.append(np.diag(tilt.T @ total[:3, :3] @ tilt), np.diag(tilt.T @ total[3:, 3:] @ tilt))
 
     size = np.linalg.norm(areas, axis=1)
     middles = (hull.vertices[hull.faces] + np.roll(hull.vertices[hull.faces], 1, axis=1)) / 2
@@ -193,30 +205,3 @@ def hamilton(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Product of two quaternions (w, x, y, z)."""
     scalar = a[0] * b[0] - a[1:] @ b[1:]
     return np.append(scalar, a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:]))
-
-
-def linear_response(linear, mass: np.ndarray, stiffness: np.ndarray, X: np.ndarray, w: float) -> np.ndarray:
-    """Motion (6,) in a wave of unit height at w [rad/s], of water of 1025 kg/m3 and 9.81 m/s2: x = Re(xi e^(-iwt))."""
-    a, b = linear.at(w / math.sqrt(9.81))
-    a, b = 1025 * a, 1025 * math.sqrt(9.81) * b
-    return np.linalg.solve(stiffness - w * w * (mass + a) - 1j * w * b + 1e-9 * np.eye(6), X)
-
-
-def linear_decay(linear, mass: np.ndarray, stiffness: np.ndarray, axis: int, t: np.ndarray) -> np.ndarray:
-    """Course at t of a body let go at rest from a unit offset, from the response to a force that ends.
-
-    With H = 1/(C - w^2 (M + A) + i w B) of the motion, x(t) = C int_t^inf h(s) ds and h(t) = 2/pi int Re H cos(wt) dw.
-    So x(t) = 2 C/pi int -Re(H) sin(wt)/w dw + C H(0), which is 1.
-    """
-    w = np.linspace(1e-3, 60.0, 30000)
-    last = float(linear.frequency[-1]) * math.sqrt(9.81)
-    H = np.empty(len(w))
-    partner = {3: 1, 4: 0}.get(axis, axis)
-    rows = [axis] if partner == axis else [partner, axis]
-    pick = np.ix_(rows, rows)
-    for i, one in enumerate(w):
-        a, b = linear.at(one / math.sqrt(9.81)) if one <= last else (linear.infinite, 0 * linear.infinite)
-        D = stiffness - one * one * (mass + 1025 * a) + 1j * one * 1025 * math.sqrt(9.81) * b
-        H[i] = np.linalg.inv(D[pick])[-1, -1].real
-    C, dw = stiffness[axis, axis], w[1] - w[0]
-    return np.array([1 - 2 / math.pi * C * float((H * np.sin(w * one) / w).sum() * dw) for one in t])

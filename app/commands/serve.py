@@ -6,11 +6,16 @@ import socket
 import sys
 import threading
 import webbrowser
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
 from app.server.guard import is_loopback
 from app.server.viewer import Viewer
 from sim.validation import argument_error
+
+if TYPE_CHECKING:
+    from app.lab.session import Session
 
 WAIT_INTERVAL = 0.5  # [s] between two looks for Ctrl-C, which on Windows does not interrupt a wait
 
@@ -30,30 +35,45 @@ def check_address(host: str, port: int) -> None:
 
 
 def serve_lab(
-    name: str, params: Any, host: str, port: int, *, browser: bool, paused: bool, plain: bool, developer: bool
+    name: str,
+    params: Any,
+    host: str,
+    port: int,
+    *,
+    browser: bool,
+    paused: bool,
+    plain: bool,
+    developer: bool,
+    workbook: Workbook | None = None,
+    session: "Session | None" = None,
 ) -> int:
-    """Print the address that is bound, open the scene, and wait. Returns the exit status.
+    """Print the address that is bound, open the scene, and wait. Returns the exit status. session: a student's folder.
 
-    The page is there before the scene is, and shows what is compiled.
+    The page is there before the scene is, and shows what is compiled. workbook: None for the guide of the course lab.
 
     Raises ValueError for what is no address.
     """
     check_address(host, port)
     try:
-        viewer = Viewer(host, port, plain=plain, developer=developer, compile_ahead=True, say=say)
+        viewer = Viewer(
+            host, port, plain=plain, developer=developer, compile_ahead=True, say=say, session=session,
+            workbook=workbook or Workbook(load_tasks(with_checks=False)),
+        )  # fmt: skip
     except OSError as error:
         print(f"springtide: cannot serve on {host}:{port}: {error.strerror or error}; try --port 0", file=sys.stderr)
         return 1
     done = threading.Event()
-    signal.signal(signal.SIGTERM, lambda *_: done.set())
     before = signal.getsignal(signal.SIGINT)
+
+    def end(*_: object) -> None:
+        """Raises nothing, as it may come in the middle of an import. A second Ctrl-C does."""
+        done.set()
+        viewer.stop_opening()
+        signal.signal(signal.SIGINT, before)
+
+    signal.signal(signal.SIGTERM, end)
     if before is signal.default_int_handler:  # not in a background job of a shell, which ignores it
-
-        def interrupt(*_: object) -> None:
-            done.set()  # the compiler's callbacks lose the exception
-            raise KeyboardInterrupt
-
-        signal.signal(signal.SIGINT, interrupt)
+        signal.signal(signal.SIGINT, end)
     try:
         shown = "localhost" if is_loopback(host) or host == "0.0.0.0" else f"[{host}]" if ":" in host else host
         address = f"http://{shown}:{viewer.port}"

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,6 +13,7 @@ from sim.files import replacing
 
 FILE = "answers.toml"
 MAX_SIZE = 2**20  # [bytes] of a file that is read
+ENCODING = "utf-8-sig"  # for reading: some editors begin a file with a byte order mark
 LINE = 100  # characters of a comment's line
 
 Value = str | float
@@ -50,10 +52,10 @@ def read_answers(folder: Path) -> Answers:
     try:
         if path.stat().st_size > MAX_SIZE:
             return Answers("", {}, f"{FILE} is larger than {MAX_SIZE // 2**20} MiB")
-        table = tomllib.loads(path.read_text("utf-8"))
+        table = tomllib.loads(path.read_text(ENCODING))
     except OSError as error:
         return Answers("", {}, f"{FILE}: {error.strerror}")
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # no TOML, no UTF-8, or a number of more digits than Python reads
         return Answers("", {}, f"{FILE}: {error}")
     values: dict[tuple[str, str], Value] = {}
     for task, entries in table.items():
@@ -73,17 +75,55 @@ def as_number(value: int | float) -> float:
         return math.inf
 
 
-def write_answers(folder: Path, tasks: Sequence[Task], answers: Answers) -> None:
-    """Write answers.toml, with the questions as comments. Raises OSError where that cannot be done.
+def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: str, key: str, value: Value) -> None:
+    """Change one value of answers.toml. answers: those in the file. Raises OSError where that cannot be done.
 
-    The file is whole at every moment. Answers to questions that no task asks are kept.
+    The file is whole at every moment. All the rest stays as it is, comments too, unless the file is written in a way
+    that leaves no place for the value; then it is written anew.
     """
-    with replacing(folder / FILE) as draft:
-        draft.write_text(answers_text(tasks, answers), "utf-8")
+    path = folder / FILE
+    text = path.read_text(ENCODING) if path.exists() else ""
+    changed = with_value(text, task, key, value)
+    if changed is None:
+        changed = answers_text(tasks, Answers(answers.name, {**answers.values, (task, key): value}))
+    with replacing(path) as draft:
+        draft.write_text(changed, "utf-8")
+
+
+def with_value(text: str, task: str, key: str, value: Value) -> str | None:
+    """The text of answers.toml with one value changed and no other line; None where there is no plain place for it."""
+    lines = text.split("\n")
+    heads = [i for i, line in enumerate(lines) if line.strip() == f"[{task}]"]
+    if len(heads) != 1:
+        return None
+    begin = heads[0] + 1
+    end = next((i for i in range(begin, len(lines)) if lines[i].startswith("[")), len(lines))
+    assigns = re.compile(rf'\s*"?{re.escape(key)}"?\s*=')
+    first = next((i for i in range(begin, end) if assigns.match(lines[i])), None)
+    if first is None:
+        first = after = next(i for i in range(end, begin - 1, -1) if i == begin or lines[i - 1].strip())
+    else:
+        quotes = next((mark for mark in ('"""', "'''") if mark in lines[first]), "")
+        ends = (i for i in range(first + 1, end + 1) if quotes in lines[i - 1])
+        after = next((i for i in ends if not quotes or is_toml("\n".join(lines[first:i]))), first)
+    changed = "\n".join([*lines[:first], f"{key} = {quoted(value)}", *lines[after:]])
+    table = tomllib.loads(text)
+    expected = {**table, task: {**table.get(task, {}), key: value}}
+    # A line within a text may look like a heading or like an assignment: then the file does not say what it should.
+    return changed if is_toml(changed) and tomllib.loads(changed) == expected else None
+
+
+def is_toml(text: str) -> bool:
+    """Whether a text is TOML."""
+    try:
+        tomllib.loads(text)
+    except (ValueError, RecursionError):
+        return False
+    return True
 
 
 def answers_text(tasks: Sequence[Task], answers: Answers) -> str:
-    """The text of answers.toml."""
+    """The text of answers.toml, with the questions as comments. Answers that no task asks for are kept."""
     left = dict(answers.values)
     lines = [
         "# Your answers. Write between the quotation marks; a number needs none.",
@@ -102,6 +142,8 @@ def answers_text(tasks: Sequence[Task], answers: Answers) -> str:
             elif question.kind == "number":
                 lines += [f"# A number{f' in {question.unit}' if question.unit else ''}"]
             lines += [f"{question.key} = {quoted(left.pop((task.name, question.key), ''))}"]
+        rest = [key for owner, key in left if owner == task.name]  # what the workbook keeps, and former questions
+        lines += ["", *(f"{quoted(key)} = {quoted(left.pop((task.name, key)))}" for key in rest)] if rest else []
     for name in sorted({name for name, _ in left}):
         lines += ["", "", f"[{quoted(name)}]"]
         lines += [f"{quoted(key)} = {quoted(value)}" for (owner, key), value in left.items() if owner == name]

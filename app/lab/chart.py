@@ -1,16 +1,15 @@
 """A chart for the report: the reference as a line, the student's function as points. SVG, without a script."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from app.lab.program_check import Points
 from app.render.html import Html, fill, join
+from app.render.line_chart import ticks
 
 WIDTH, HEIGHT = 520, 240  # [px]
 LEFT, RIGHT, TOP, BOTTOM = 70, 12, 10, 42  # [px] margins
-TICKS = 5  # at most, on each axis
 SPACE = 0.05  # of the range of y, above and below
 
 
@@ -61,14 +60,3 @@ def chart(points: Points) -> Html:
         middle=(LEFT + WIDTH - RIGHT) // 2, last=HEIGHT - 8, centre=(TOP + HEIGHT - BOTTOM) // 2,
         x_label=points.x_label, y_label=points.y_label, line=line, dots=dots,
     )  # fmt: skip
-
-
-def ticks(low: float, high: float) -> Sequence[float]:
-    """Round numbers from `low` to `high`, at most `TICKS` of them."""
-    if not high > low:
-        return (low,)
-    rough = (high - low) / TICKS
-    power = 10.0 ** math.floor(math.log10(rough))
-    step = next(power * factor for factor in (1.0, 2.0, 5.0, 10.0) if power * factor >= rough)
-    first = math.ceil(low / step)
-    return [round(step * i, 12) for i in range(first, math.floor(high / step) + 1)]

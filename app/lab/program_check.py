@@ -142,8 +142,8 @@ def same(found: Any, expected: Any) -> bool:
 def is_begun(folder: Path, task: Task) -> bool:
     """Whether the function in the student's file has a body: more than a docstring, `...` and `pass`."""
     try:
-        tree = ast.parse((folder / task.file).read_text("utf-8"))
-    except (OSError, SyntaxError, UnicodeDecodeError, ValueError):
+        tree = ast.parse((folder / task.file).read_bytes())
+    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):  # the last two where it nests too deeply
         return True  # running it says what is wrong
     for node in tree.body:
         if isinstance(node, ast.FunctionDef) and node.name == task.name:

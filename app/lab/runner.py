@@ -7,19 +7,29 @@ A call that takes more than 2 s is ended with its process, and the next call get
 import contextlib
 import os
 import queue
+import re
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
+import numpy as np
+
+from app.lab.process import COMPILES, TRACE_SIGNAL
+from app.lab.rope_march import FILE, March, Segment, packed
 from app.lab.wire import pack, receive, send, unpack
 
 TIME_LIMIT = 2.0  # [s] of one call
 LOAD_LIMIT = 10.0  # [s] until a new process answers its first call, which imports numpy
+COMPILE_LIMIT = 60.0  # [s] for compiling
+TRACE_TIME = 0.2  # [s] for which a process that does not answer may take to say where it is
+MAX_TRACE = 2**16  # [bytes] of what it says
+FRAME = re.compile(r'File "(.+)", line (\d+) in (.+)')  # as faulthandler writes it
 ROOT = Path(__file__).resolve().parents[2]  # the folder that holds `app`
 START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.worker import main; main()"
 
@@ -27,7 +37,8 @@ START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.worker import
 class RunError(Exception):
     """A student's function did not come to a result.
 
-    kind: "missing", "syntax", "raised", "endless", "ended", "memory" or "printed". file, line: in the student's folder.
+    kind: "missing", "syntax", "raised", "endless", "ended", "memory", "printed", or of a march those of
+    `rope_march.Unfit`. file, line: in the student's folder.
     """
 
     def __init__(self, kind: str, text: str, file: str, line: int | None = None) -> None:
@@ -44,11 +55,15 @@ class RunError(Exception):
 class Runner:
     """The functions in the Python files of one folder. Use it in a `with` block, which ends its process."""
 
-    def __init__(self, folder: Path, time_limit: float = TIME_LIMIT) -> None:
+    def __init__(self, folder: Path, time_limit: float = TIME_LIMIT, *, compiles: bool = False) -> None:
+        """time_limit: [s] of one call. compiles: the process has numba, and a low priority."""
         self.folder = folder.resolve()
         self.time_limit = time_limit
+        self.compiles = compiles
         self.starts = 0  # processes started
         self._process: subprocess.Popen[bytes] | None = None
+        self._aborted = False
+        self._trace: IO[bytes] | None = None  # where the process writes, when it is asked, where it is
         self._answers: queue.SimpleQueue[list[Any] | None] = queue.SimpleQueue()
 
     def __enter__(self) -> "Runner":
@@ -62,6 +77,40 @@ class Runner:
 
         Functions among the arguments are computed here when the student's function calls them. Raises RunError.
         """
+        return self._ask("call", file, function, list(arguments))
+
+    def march(
+        self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment]
+    ) -> March:
+        """Advance a rope by the student's functions (`rope_march.py`). Raises RunError.
+
+        own: names of the functions that the student has begun. step: name of the method's function. x, v: (n, 3).
+        """
+        arguments = [sorted(own), step, x, v, [packed(segment) for segment in segments]]
+        return March(*self._ask("march", FILE, step, arguments))
+
+    def compile(self, own: Collection[str]) -> tuple[list[str], str]:
+        """Compile the functions that move a rope, for later marches; which could be, and why others could not.
+
+        Raises RunError.
+        """
+        names, why = self._ask("compile", FILE, "numba", [sorted(own)], COMPILE_LIMIT)
+        return names, why
+
+    def abort(self) -> None:
+        """End the process from another thread: a call that is under way fails at once, and so does each later one."""
+        self._aborted = True
+        process = self._process
+        if process is not None:
+            with contextlib.suppress(OSError):  # it has ended already
+                process.kill()
+
+    def start(self) -> None:
+        """Start the process, so that the next call does not wait for that. Raises RunError where it does not start."""
+        self._ready()
+
+    def _ask(self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float | None = None) -> Any:
+        """What the process answers to a message. function: the name that an error tells. time_limit: [s], or None."""
         if not (self.folder / file).is_file():
             raise RunError("missing", "there is no such file", file)
         functions: list[Callable[..., Any]] = []
@@ -71,10 +120,11 @@ class Runner:
             return len(functions) - 1
 
         process = self._ready()
-        deadline = time.monotonic() + self.time_limit
-        self._say(process, ["call", file, function, pack(list(arguments), refer)])
+        time_limit = time_limit or self.time_limit
+        deadline = time.monotonic() + time_limit
+        self._say(process, [kind, file, function, pack(arguments, refer)])
         while True:
-            answer = self._next(deadline, file, function)
+            answer = self._next(deadline, time_limit, file, function)
             try:
                 if answer[0] == "result":
                     return unpack(answer[1], lambda _: None)
@@ -106,6 +156,8 @@ class Runner:
                 if stream is not None:
                     stream.close()
         process.wait()
+        if self._trace is not None:
+            self._trace.close()
 
     def _ready(self) -> subprocess.Popen[bytes]:
         """The process, started unless it runs already. Raises RunError where it does not start."""
@@ -120,8 +172,19 @@ class Runner:
             "OMP_NUM_THREADS": "1",
             "PYTHONDONTWRITEBYTECODE": "1",
         }
+        trace = self._trace = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
         process = subprocess.Popen(
-            [sys.executable, "-P", "-c", START, str(ROOT), str(self.folder)],
+            [
+                sys.executable,
+                "-P",
+                "-c",
+                START,
+                str(ROOT),
+                str(self.folder),
+                str(trace.fileno()),
+                COMPILES if self.compiles else "",
+            ],
+            pass_fds=(trace.fileno(),) if TRACE_SIGNAL is not None else (),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -130,10 +193,28 @@ class Runner:
             start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle
         )
         self._process = process
+        if self._aborted:
+            process.kill()
         self._answers = queue.SimpleQueue()
         threading.Thread(target=read_answers, args=(process, self._answers), daemon=True).start()
-        self._next(time.monotonic() + LOAD_LIMIT, "Python", "the start of the process")
+        self._next(time.monotonic() + LOAD_LIMIT, LOAD_LIMIT, "Python", "the start of the process")
         return process
+
+    def _where(self) -> tuple[str, int, str] | None:
+        """File, line and function of the student's at which the process is; None where that cannot be found out."""
+        process, trace = self._process, self._trace
+        if process is None or trace is None or TRACE_SIGNAL is None:
+            return None
+        before = os.fstat(trace.fileno()).st_size
+        with contextlib.suppress(OSError):  # it has ended
+            process.send_signal(TRACE_SIGNAL)
+        end = time.monotonic() + TRACE_TIME
+        found: list[tuple[str, str, str]] = []
+        while not found and time.monotonic() < end:
+            time.sleep(0.01)
+            text = os.pread(trace.fileno(), MAX_TRACE, before).decode("utf-8", "replace")
+            found = [f for f in FRAME.findall(text) if Path(f[0]).parent == self.folder]
+        return (Path(found[0][0]).name, int(found[0][1]), found[0][2]) if found else None
 
     def _say(self, process: subprocess.Popen[bytes], message: list[Any]) -> None:
         """Send a message; a process that has ended is noticed at the next answer."""
@@ -141,14 +222,19 @@ class Runner:
         with contextlib.suppress(OSError):
             send(process.stdin, message)
 
-    def _next(self, deadline: float, file: str, function: str) -> list[Any]:
-        """The next message of the process. Raises RunError where none comes in time, or the process has ended."""
+    def _next(self, deadline: float, time_limit: float, file: str, function: str) -> list[Any]:
+        """The next message of the process. Raises RunError where none comes in time, or the process has ended.
+
+        deadline: [s] of the monotonic clock. time_limit: [s] that led to it, which the error tells.
+        """
         try:
             answer = self._answers.get(timeout=max(deadline - time.monotonic(), 0.0))
         except queue.Empty:
+            place = self._where()
             self.close()
-            text = f"{function} does not come to an end within {self.time_limit:g} s: is there an endless loop?"
-            raise RunError("endless", text, file) from None
+            where, line, inner = place or (file, None, function)
+            text = f"{inner} does not come to an end within {time_limit:g} s: is there an endless loop?"
+            raise RunError("endless", text, where, line) from None
         if answer is None:
             process = self._process
             status = process.wait() if process is not None else None

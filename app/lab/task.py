@@ -15,6 +15,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from app.lab.live_values import Condition, names_in, read_conditions
+from sim.parameters import Value
 from sim.validation import argument_error, as_float
 
 TASKS = Path(__file__).parent / "tasks"  # those of the course
@@ -42,6 +44,7 @@ class Question:
     right: str | float | None = None  # None: any answer counts
     tolerance: float = 0.05  # of a number, relative to the right one
     why: str = ""  # the explanation that the check gives
+    read_off: str = ""  # name of the live value that answers it, or ""
     typical_errors: tuple[TypicalError, ...] = ()
 
     def is_near(self, answer: float, value: float) -> bool:
@@ -56,6 +59,26 @@ class Setup:
     scene: str
     preset: str
     look: str  # what to do and to look at
+    parameters: Mapping[str, Value] = dataclasses.field(default_factory=dict[str, Value])  # beside the preset
+    show: tuple[str, ...] = ()  # names of the live values to keep in sight
+
+
+@dataclasses.dataclass(frozen=True)
+class Step:
+    """Something to do in the scene. The workbook ticks it off once all conditions hold at the same moment."""
+
+    text: str
+    when: tuple[Condition, ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class Guide:
+    """An item of the course lab for those who look only: its question and its answer."""
+
+    question: str  # in our own words
+    law: tuple[str, ...]  # formulas, as `app/render/formula.py` reads them
+    answer: str  # with the names of live values in braces
+    needs: tuple[Condition, ...]  # for which the answer holds
 
 
 @dataclasses.dataclass(frozen=True)
@@ -70,8 +93,10 @@ class Task:
     file: str  # the student's file of a programming task, or ""
     order: int  # among the tasks of one item
     setup: Setup | None
+    guide: Guide | None  # of the first task of an item
+    steps: tuple[Step, ...]
     questions: tuple[Question, ...]
-    check: ModuleType | None  # of a programming task
+    check: ModuleType | None  # of a programming task; None where checks were not asked for
 
     @property
     def function(self) -> Any:
@@ -84,8 +109,10 @@ class Task:
         return tuple(inspect.signature(self.function).parameters)
 
 
-def load_tasks(*folders: Path) -> tuple[Task, ...]:
+def load_tasks(*folders: Path, with_checks: bool = True) -> tuple[Task, ...]:
     """The tasks of the course and of these folders, in the order of the lab; a later one replaces one of its name.
+
+    with_checks: run the Python files too, which takes much longer than reading the texts.
 
     Raises ValueError for a file that is no task, with the file's name and what is wrong.
     """
@@ -94,7 +121,7 @@ def load_tasks(*folders: Path) -> tuple[Task, ...]:
         if not folder.is_dir():
             raise argument_error("--tasks", str(folder), "a folder with tasks in TOML files")
         for path in sorted(folder.glob("*.toml")):
-            found[path.stem] = read_task(path)
+            found[path.stem] = read_task(path, with_checks=with_checks)
     return tuple(sorted(found.values(), key=position))
 
 
@@ -103,7 +130,7 @@ def position(task: Task) -> tuple[tuple[int, ...], int, str]:
     return tuple(int(number) for number in re.findall(r"\d+", task.item)), task.order, task.name
 
 
-def read_task(path: Path) -> Task:
+def read_task(path: Path, *, with_checks: bool = True) -> Task:
     """The task in a TOML file. Raises ValueError for one that is not complete."""
     try:
         table = tomllib.loads(path.read_text("utf-8"))
@@ -113,7 +140,7 @@ def read_task(path: Path) -> Task:
         raise argument_error("task", path.name, "a file name of small letters, digits and underscores")
     rest = Table(path.name, table)
     code = path.with_suffix(".py")
-    setup = rest.sub("setup")
+    setup, guide = rest.sub("setup"), rest.sub("guide")
     task = Task(
         name=path.stem,
         item=rest.text("item"),
@@ -122,13 +149,13 @@ def read_task(path: Path) -> Task:
         optional=rest.flag("optional"),
         file=rest.text("file") if code.exists() else "",
         order=int(rest.number("order", 0)),
-        setup=None if setup is None else Setup(setup.text("scene"), setup.text("preset", ""), setup.text("look")),
+        setup=None if setup is None else read_setup(setup),
+        guide=None if guide is None else read_guide(guide),
+        steps=tuple(read_step(entry) for entry in rest.subs("do")),
         questions=tuple(read_question(entry) for entry in rest.subs("question")),
-        check=load_check(code) if code.exists() else None,
+        check=load_check(code) if with_checks and code.exists() else None,
     )
     rest.end()
-    if setup is not None:
-        setup.end()
     if not re.fullmatch(r"\d+\.\d+-\d+", task.item):
         raise argument_error(f"{path.name}: item", task.item, "a section, a hyphen and a number, as in 3.2-1")
     if task.file and not (task.file.endswith(".py") and NAME.fullmatch(task.file[:-3])):
@@ -139,6 +166,40 @@ def read_task(path: Path) -> Task:
     if len(set(keys)) < len(keys):
         raise argument_error(f"{path.name}: question", ", ".join(keys), "a key of its own for each question")
     return task
+
+
+def read_setup(table: "Table") -> Setup:
+    """The set-up of a TOML file. Raises ValueError for one that is not complete."""
+    setup = Setup(
+        scene=table.text("scene"),
+        preset=table.text("preset", ""),
+        look=table.text("look"),
+        parameters=table.mapping("parameters", {}),
+        show=table.texts("show"),
+    )
+    table.end()
+    return setup
+
+
+def read_guide(table: "Table") -> Guide:
+    """The guide of a TOML file. Raises ValueError for one that is not complete."""
+    needs = read_conditions(table.file, table.mapping("needs", {}))
+    guide = Guide(table.text("question"), table.texts("law"), table.text("answer"), needs)
+    table.end()
+    try:
+        names_in(guide.answer)
+    except ValueError as error:
+        raise argument_error(f"{table.file}: answer", guide.answer, f"names in braces ({error})") from None
+    return guide
+
+
+def read_step(table: "Table") -> Step:
+    """Something to do, of a TOML file. Raises ValueError for one that is not complete."""
+    step = Step(table.text("text"), read_conditions(table.file, table.mapping("when")))
+    table.end()
+    if not step.when:
+        raise argument_error(f"{table.file}: when", "none", "at least one condition")
+    return step
 
 
 def read_question(table: "Table") -> Question:
@@ -155,6 +216,7 @@ def read_question(table: "Table") -> Question:
         right=right if kind != "number" or right is None else as_float(right),
         tolerance=table.number("tolerance", 0.05),
         why=table.text("why", ""),
+        read_off=table.text("read_off", ""),
         typical_errors=errors,
     )
     table.end()
@@ -210,6 +272,14 @@ class Table:
             raise argument_error(f"{self.file}: {key}", value, "a text")
         return value.strip()
 
+    def texts(self, key: str) -> tuple[str, ...]:
+        """A list of texts, or one text; empty where the entry is missing. Raises ValueError for another value."""
+        value = self.value(key, [])
+        found = [value] if isinstance(value, str) else value
+        if not isinstance(found, list) or not all(isinstance(text, str) for text in found):
+            raise argument_error(f"{self.file}: {key}", value, "texts")
+        return tuple(found)
+
     def number(self, key: str, default: float) -> float:
         """A finite number. Raises ValueError for another value."""
         value = self.value(key, default)
@@ -222,6 +292,13 @@ class Table:
         value = self.value(key, False)
         if not isinstance(value, bool):
             raise argument_error(f"{self.file}: {key}", value, "true or false")
+        return value
+
+    def mapping(self, key: str, *default: dict[str, Any]) -> dict[str, Any]:
+        """A table of values. Raises ValueError for another value."""
+        value = self.value(key, *default)
+        if not isinstance(value, dict):
+            raise argument_error(f"{self.file}: {key}", value, "a table")
         return value
 
     def sub(self, key: str) -> "Table | None":

@@ -2,10 +2,14 @@
 
 It says `["ready"]` once. It takes `["call", file, function, arguments]` and answers with `["result", value]`,
 `["callback", number, arguments]` (a function among the arguments is called: the other side computes it), or
-`["failed", kind, text, file, line]`. What a student prints is counted and dropped: the pipes are the lab's own.
+`["failed", kind, text, file, line]`. With `["march", file, function, arguments]` it advances a rope by the student's
+functions (`rope_march.py`), and with `["compile", file, "", [names]]` it compiles them for that. What a student prints
+is counted and dropped: the pipes are the lab's own.
 """
 
 import contextlib
+import faulthandler
+import importlib
 import importlib.util
 import io
 import os
@@ -13,13 +17,16 @@ import sys
 import threading
 import time
 import traceback
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
+from app.lab.process import COMPILES, NICENESS, TRACE_SIGNAL
+from app.lab.rope_march import Unfit, march, unpacked
 from app.lab.wire import pack, receive, send, unpack
 
-MAX_LINES = 10_000  # printed in one call
+MAX_LINES = 10_000  # printed in one call or march
 MEMORY = 768 * 2**20  # [bytes] that a call may ask for, where the system can limit it
 LOOK_AT_PARENT = 1.0  # [s] between two looks whether the lab still runs
 
@@ -60,32 +67,44 @@ class Worker:
         sys.stdout = sys.stderr = self.output
         sys.path.insert(0, str(folder))
         self.modules: dict[str, ModuleType] = {}
+        self.compiled: dict[str, Callable[..., Any]] = {}
 
     def serve(self) -> None:
         """Say that the process is ready, then answer until the lab closes the pipe."""
         send(self.outgoing, ["ready"])
         while (message := receive(self.incoming)) is not None:
-            _, file, function, arguments = message
+            kind, file, function, arguments = message
             self.output.lines = 0
             try:
-                answer = self.answer(file, function, arguments)
+                answer = self.answer(kind, file, function, arguments)
                 send(self.outgoing, answer)
             except BrokenPipeError:
                 return
             except ValueError as error:  # the result is too long to send
                 send(self.outgoing, ["failed", "raised", f"the result has {error}", file, None])
 
-    def answer(self, file: str, function: str, arguments: Any) -> list[Any]:
-        """The message that tells what a call came to."""
+    def answer(self, kind: str, file: str, function: str, arguments: Any) -> list[Any]:
+        """The message that tells what a call or a march came to."""
         try:
+            if kind == "compile":
+                from app.lab.compiled import compile_functions  # numba, which takes a second to import
+
+                self.compiled, why = compile_functions(self.folder / file, *unpack(arguments, self.remote))
+                return ["result", pack([sorted(self.compiled), why], lambda _: 0)]
             module = self.load(file)
+            if kind == "march":
+                own, step, x, v, segments = unpack(arguments, self.remote)
+                done = march(module, own, step, x, v, [unpacked(segment) for segment in segments], self.compiled)
+                return ["result", pack(tuple(done), lambda _: 0)]
             target = getattr(module, function, None)
             if not callable(target):
                 return ["failed", "missing", f"there is no function {function}", file, None]
             value = target(*unpack(arguments, self.remote))
             return ["result", pack(value, lambda _: 0)]
+        except Unfit as error:
+            return ["failed", error.kind, error.text, file, error.line]
         except PrintedTooMuchError:
-            return ["failed", "printed", f"prints more than {MAX_LINES} lines in one call", *self.place(file)]
+            return ["failed", "printed", f"prints more than {MAX_LINES} lines at a time", *self.place(file)]
         except MemoryError:
             text = f"asks for more memory than the {MEMORY // 2**20} MiB that a call may take"
             return ["failed", "memory", text, *self.place(file)]
@@ -159,6 +178,12 @@ def end_with_parent(parent: int) -> None:
 def main() -> None:
     """Serve the folder that the command line names."""
     end_with_parent(os.getppid())
+    if TRACE_SIGNAL is not None:
+        faulthandler.register(TRACE_SIGNAL, file=int(sys.argv[3]), all_threads=False)
     worker = Worker(Path(sys.argv[2]))
+    if sys.argv[4] == COMPILES:
+        if hasattr(os, "nice"):
+            os.nice(NICENESS)  # compiling takes seconds, in which the scenes go on
+        importlib.import_module("app.lab.compiled")  # before the memory is limited
     limit_memory()
     worker.serve()

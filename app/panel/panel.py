@@ -6,25 +6,35 @@ cannot lose each other.
 
 import dataclasses
 import time
-from collections.abc import Callable
-from typing import TYPE_CHECKING, cast
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import viser
 from viser._messages import HotkeyKey  # viser names no public type of its keys
 
+from app.lab import task
+from app.lab.workbook import Workbook
 from app.messages import BaseParams, Command, Load, Pause, Play, PlotRow, Reset, StepOnce, TogglePlay, WorkCounts
 from app.panel.control import Control
 from app.panel.display import Display
+from app.panel.guide import Guide
 from app.panel.history import History, Settings
 from app.panel.plots import Plots
+from app.panel.recorder import Recorder
+from app.panel.share import MakeReplay, Share
 from app.panel.work_table import work_table
-from app.render.cameras import place_camera
+from app.render.cameras import ClientCamera, place_camera
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, note
 from app.render.viser_types import ViserEvent
+from app.scenes import scene_named
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
+from app.scenes.setups import Setup
 from sim.parameters import Value, changed_names, check_record, in_words, parameters_of
+from sim.validation import argument_error
 
 if TYPE_CHECKING:
+    from app.lab.session import Session
+    from app.panel.code_panel import CodePanel
     from app.panel.stability_map import StabilityMapPanel
 
 STATUS_INTERVAL = 0.25  # [s]
@@ -34,6 +44,10 @@ BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line s
 DIGITS: tuple[HotkeyKey, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
 OPEN_GROUPS = 1  # the first groups of parameters start open
 BUTTONS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce(), "Reset": Reset()}
+
+
+# Takes a scene to show, its parameters if any, and a camera for one browser if any.
+OpenScene: TypeAlias = Callable[[str, BaseParams | None, ClientCamera | None], None]
 
 
 class Panel:
@@ -49,14 +63,21 @@ class Panel:
         *,
         work: Callable[[], WorkCounts],
         scenes: tuple[str, ...] = (),
-        open_scene: Callable[[str], None] = lambda name: None,
+        open_scene: OpenScene = lambda name, params, camera: None,
+        workbook: Workbook | None = None,
         developer: bool = False,
+        wake: Callable[[], None],
+        make_replay: MakeReplay,
+        session: "Session | None" = None,
     ) -> None:
-        """post: takes commands for the simulation. open_scene: takes the name of a scene to show instead; both at once.
+        """post: takes commands for the simulation. open_scene: takes a scene to show instead; both at once.
 
-        work: the work counts of the open scene. developer: show them.
+        workbook: the tasks of the lab, shown above the parameters. work: the work counts of the open scene. developer:
+        show them. session: of a student's folder. wake: has the recording looked at once more. make_replay: makes the
+        page of a replay.
         """
         self.server, self.kind, self.view, self.post, self.work = server, kind, view, post, work
+        self.open_scene = open_scene
         self.gui = gui = server.gui
         # Parameters as set now, and how many presets were loaded: read by another thread.
         self.state: tuple[BaseParams, int] = params, 0
@@ -66,11 +87,11 @@ class Panel:
         self.history = History()
         self.plots = Plots(server, kind)
         # The block stays in sight while the rest is scrolled (page.css): what says "springtide-panel" is in it.
-        with gui.add_folder("Lab"):
-            self.add_chooser(scenes, open_scene)
+        with gui.add_folder("Lab") as self.lab:
+            self.add_chooser(scenes)
             presets = tuple(kind.presets)
-            # Name of the preset that was loaded last; at first the one that the parameters are those of.
-            self.loaded = next((name for name in presets if self.params_of(name) == params), presets[0])
+            # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
+            self.loaded = min(presets, key=lambda name: len(changed_names(self.params_of(name), params)))
             self.preset = gui.add_dropdown("Preset", presets, hint="Loads all settings and starts again from rest")
             self.preset.on_update(self.on_preset)
             self.running = True  # as the buttons show it
@@ -79,7 +100,14 @@ class Panel:
             self.tools = gui.add_button_group("", ("Reset view", "Plots", "Undo"))
             self.tools.on_click(self.on_tool)
             self.status = gui.add_html("")
+            self.code_line = None if session is None else gui.add_html("")
             self.readout = gui.add_html("")
+        self.guide = None if workbook is None else Guide(gui, kind, workbook, self.set_up)
+        self.code: CodePanel | None = None
+        if session is not None:
+            from app.panel import code_panel  # only `springtide lab DIR` pays for it
+
+            self.code = code_panel.CodePanel(gui, session, kind.name)
         help_text = fill(
             '<div class="springtide-note">{}<br>'
             "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset view · <b>P</b> plots · "
@@ -103,6 +131,9 @@ class Panel:
             folder = self.folders[parameter.group]
             with folder:
                 self.controls[name] = Control(gui, folder, name, parameter, self.reader(name), self.on_change)
+        self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
+        self.recorder = Recorder()
+        self.share = Share(server, self.lab, self, self.recorder, post, wake, make_replay)
         self.display = Display(gui, view)
         self.notes: dict[str, viser.GuiHtmlHandle] = {}
         self.work_counts: viser.GuiHtmlHandle | None = None
@@ -122,10 +153,10 @@ class Panel:
         """What reads one parameter as set now."""
         return lambda: getattr(self.params, name)
 
-    def add_chooser(self, scenes: tuple[str, ...], open_scene: Callable[[str], None]) -> None:
+    def add_chooser(self, scenes: tuple[str, ...]) -> None:
         """The list of scenes, where there is more than one."""
         if len(scenes) > 1:
-            add_scene_chooser(self.gui, scenes, self.kind.name, open_scene)
+            add_scene_chooser(self.gui, scenes, self.kind.name, lambda name: self.open_scene(name, None, None))
 
     def add_keys(self) -> None:
         """Keyboard and command palette. W A S D Q E and the arrows already move the camera."""
@@ -187,13 +218,36 @@ class Panel:
 
     def params_of(self, preset: str) -> BaseParams:
         """The parameters that a preset sets. What is no parameter (a hull from a file) stays as it is."""
-        params = self.params
-        kept = {f.name: getattr(params, f.name) for f in dataclasses.fields(params) if "parameter" not in f.metadata}
-        return dataclasses.replace(check_record(type(params), self.kind.presets[preset]), **kept)
+        return with_fields_of(self.params, check_record(type(self.params), self.kind.presets[preset]))
 
     def load(self, preset: str) -> None:
         """Every parameter as the preset has it, and the scene from its start: one command."""
-        params, number = self.params_of(preset), self.state[1] + 1
+        self.load_params(self.params_of(preset), preset)
+
+    def set_up(self, setup: task.Setup) -> None:
+        """Show what a task of the lab needs. Raises ValueError where there is no such scene, preset or parameter."""
+        _, params, preset = params_of_setup(setup)
+        if setup.scene == self.kind.name:
+            self.load_params(with_fields_of(self.params, params), preset)
+        else:
+            self.open_scene(setup.scene, params, None)
+
+    def show_setup(self, setup: Setup, client: int | None) -> None:
+        """Show a set-up from a link or a file, with its camera for one browser."""
+        camera = None if setup.camera is None or client is None else ClientCamera(client, *setup.camera)
+        if setup.scene != self.kind.name:
+            self.open_scene(setup.scene, setup.params, camera)
+            return
+        self.camera = camera
+        self.load_params(with_fields_of(self.params, setup.params), setup.preset or next(iter(self.kind.presets)))
+
+    def plot_rows(self) -> Sequence[PlotRow]:
+        """The rows of the plots that are kept."""
+        return tuple(self.plots.rows)
+
+    def load_params(self, params: BaseParams, preset: str) -> None:
+        """Take parameters, and the scene from its start: one command. preset: that they come from."""
+        number = self.state[1] + 1
         self.history.note(Settings(self.params, self.loaded), preset)
         self.take(params, preset, number)
         self.post(Load(params, number))
@@ -277,6 +331,10 @@ class Panel:
             self.status.content = str(status_line(snapshot, busy, visitors))
             readout = self.view.readout(snapshot)
             self.readout.content = note(Html(readout))
+            if self.code is not None:
+                self.code.update({} if self.guide is None else self.guide.values)
+            if self.code_line is not None and self.code is not None:
+                self.code_line.content = note(self.code.headline())
         if now - self.marks_at >= MARKS_INTERVAL:
             self.marks_at = now
             for name, text in self.view.marks(snapshot).items():
@@ -284,6 +342,9 @@ class Panel:
             self.write_notes(self.view.notes(snapshot))
             if self.map is not None:
                 self.map.draw()
+        if self.guide is not None:
+            self.guide.update(snapshot)
+        self.share.update(snapshot)
         if self.work_counts is not None and now - self.work_at >= WORK_INTERVAL:
             self.work_at = now
             self.work_counts.content = note(work_table(self.work()))
@@ -302,9 +363,29 @@ class Panel:
             client.add_notification("Paused", text, color="red", auto_close_seconds=10.0)
 
     def close(self) -> None:
-        """Stop what runs for this panel."""
+        """Stop what runs for this panel, and keep what is being typed."""
+        if self.guide is not None:
+            self.guide.flush()
         if self.map is not None:
             self.map.close()
+
+
+def params_of_setup(setup: task.Setup) -> tuple[AnyKind, BaseParams, str]:
+    """The scene of a task of the lab, its parameters, and the preset that they come from.
+
+    Raises ValueError where there is no such scene, preset or parameter.
+    """
+    kind = scene_named(setup.scene)
+    preset = setup.preset or next(iter(kind.presets))
+    if preset not in kind.presets:
+        raise argument_error("preset", preset, "one of " + ", ".join(kind.presets))
+    return kind, check_record(kind.params, {**kind.presets[preset], **setup.parameters}), preset
+
+
+def with_fields_of(old: BaseParams, new: BaseParams) -> BaseParams:
+    """`new`, with what is no parameter (a hull from a file) as in `old`."""
+    kept = {f.name: getattr(old, f.name) for f in dataclasses.fields(old) if "parameter" not in f.metadata}
+    return dataclasses.replace(new, **kept)
 
 
 def button_names(running: bool) -> tuple[str, str, str]:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import viser
 
@@ -9,6 +10,14 @@ from app.messages import Vector
 
 FIT_MARGIN = 1.1  # room around what a camera shows
 Camera = viser.CameraHandle | viser.InitialCameraConfig
+
+
+class ClientCamera(NamedTuple):
+    """Where the camera of one browser is to be."""
+
+    client: int
+    position: Vector  # [m]
+    target: Vector  # [m]
 
 
 def all_cameras(server: viser.ViserServer) -> Iterator[Camera]:
@@ -47,3 +56,10 @@ def place_camera(camera: Camera, position: Vector, target: Vector, field_of_view
     camera.position, camera.look_at = position, target
     if field_of_view is not None:
         camera.fov = field_of_view
+
+
+def place_client_camera(server: viser.ViserServer, camera: ClientCamera | None) -> None:
+    """Place the camera of one browser, if there is one to place and the browser is still there."""
+    client = None if camera is None else server.get_clients().get(camera.client)
+    if camera is not None and client is not None:
+        place_camera(client.camera, camera.position, camera.target)

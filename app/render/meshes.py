@@ -66,7 +66,8 @@ def smooth_line(points, samples, line):
                     2.0 * p1
                     + t * (p2 - p0 + t * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 + t * (3.0 * (p1 - p2) + p3 - p0)))
                 )
-    line[(n - 1) * samples] = points[n - 1]
+    for e in range(3):
+        line[(n - 1) * samples, e] = points[n - 1, e]
 
 
 @kernel

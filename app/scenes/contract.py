@@ -25,6 +25,7 @@ from sim.parameters import Value, check_record
 if TYPE_CHECKING:
     from viser import ClientHandle
 
+    from app.lab.live_rope import LiveRope
     from sim.springs.net import Net
 
 FRAME_INTERVAL = 1 / 60  # [s] between ticks of the loop, and between two frames of a scene that asks for nothing else
@@ -197,8 +198,11 @@ class SceneKind(Generic[P, F, R]):
         default_factory=dict[str, CurveAxes]
     )  # parameter that opens the chart -> its axes
     measures: Callable[..., dict[str, Measure]] | None = None  # of the scene, what a sweep records; None: the plot rows
+    live_values: Callable[..., dict[str, Measure]] | None = None  # of a snapshot, what the tasks of the lab use
     stability_map: StabilityMap | None = None
     needs: Callable[[P], tuple[str, ...]] | None = None  # pieces of `warm_up` to run with these parameters; None: all
+    # Makes the simulation with a student's functions running beside it; None: this scene has no use for them.
+    make_with_student: Callable[[P, "LiveRope"], Scene[P, F, R]] | None = None
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
 
     def opening_params(self) -> P:

@@ -33,6 +33,7 @@ from app.server.page import own_answer, with_cover
 MAX_NUMBER = 1e6  # any number in a message beyond this is refused
 MAX_LENGTH = 1000  # of a text, or of a list
 MAX_FIELD_LENGTH = 64  # of what is typed into a field
+MAX_TEXT_LENGTH = 5000  # of what is typed into a field of several lines
 INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
 MAX_WAITING = 64  # messages of one browser that wait for their turn
 
@@ -161,6 +162,8 @@ def allowed_value(handle: GuiHandle, value: object) -> object:
     if issubclass(kind, CHOICES):
         return value if isinstance(value, str) and value in handle.options else None
     if issubclass(kind, viser.GuiTextHandle):
+        if handle.multiline:  # what is in it is judged where it is kept, which can say so
+            return value[:MAX_TEXT_LENGTH] if isinstance(value, str) else None
         return value if isinstance(value, str) and len(value) <= MAX_FIELD_LENGTH and value.isprintable() else None
     return None
 

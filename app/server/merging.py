@@ -16,6 +16,7 @@ from app.messages import (
     Reset,
     SceneCommand,
     StepOnce,
+    StudentAnswer,
     TogglePlay,
 )
 
@@ -62,6 +63,8 @@ def merged(commands: Iterable[Command]) -> list[Command]:
                 put_last(scene, ("drag", command.client), command)
             case Point():
                 put_last(scene, ("point", ""), command)
+            case StudentAnswer():
+                put_last(scene, ("student", ""), command)
     found: list[Command] = [halt] if halt else []
     if start is not None:
         found.append(start)

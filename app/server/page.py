@@ -14,7 +14,7 @@ from websockets.http11 import Request, Response
 
 ALIVE_PATH = "/springtide-alive"  # what the page asks for, to see whether the server is still there
 TITLE = "<title>Springtide</title>"
-SCRIPTS = ("page.js", "fields.js", "camera.js", "charts.js", "display.js", "access.js")
+SCRIPTS = ("page.js", "fields.js", "camera.js", "charts.js", "share.js", "display.js", "access.js")
 COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'
 
 

@@ -7,25 +7,33 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import viser
 
-from app.messages import BaseParams, Command, Halt, Release, WorkCount
+from app.lab.workbook import Workbook
+from app.messages import BaseParams, Command, Halt, Release, Reset, StudentAnswer, WorkCount
 from app.panel.display import set_theme
 from app.panel.panel import Panel, add_scene_chooser
-from app.render.cameras import fit_cameras, place_cameras
+from app.panel.recorder import Kept
+from app.render.cameras import ClientCamera, fit_cameras, place_cameras, place_client_camera
 from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_scene
 from app.render.viser_types import ViserConnection
 from app.scenes import NAMES, scene_named, view_named
 from app.scenes.compiling import Compiling, describe
-from app.scenes.contract import AnyKind
+from app.scenes.contract import AnyKind, AnyScene, PostCommand
 from app.server.compile_gate import CompileGate
 from app.server.counters import Unwatched, gather, modules
 from app.server.guard import open_server
 from app.server.loop import SimLoop
+from app.server.replay_file import replay_html
 from app.server.transport import TransportCounters
 
+if TYPE_CHECKING:
+    from app.lab.session import Session
+
+PLAYED_INTERVAL = 1 / 30  # [s] between two frames of a recording that is played
 HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
 SEND_WINDOW = 0.0  # [s] for which viser holds back what it sends, by default 17 ms: flushing each frame costs more
 MIN_SCENE_TIME = 0.3  # [s] for which a scene is shown before another is opened: long enough for its status line
@@ -44,16 +52,20 @@ class Viewer:
         plain: bool = False,
         developer: bool = False,
         compile_ahead: bool = False,
+        workbook: Workbook | None = None,
+        session: "Session | None" = None,
         say: Callable[[str], None] = lambda text: None,
     ) -> None:
         """plain: draw by viser's public API alone. developer: show the work counts in the panel.
 
-        compile_ahead: while a scene runs, compile what it and the other scenes may call later. say: prints a line.
+        compile_ahead: while a scene runs, compile what it and the other scenes may call later. workbook: the tasks of
+        the lab, which the panel of each scene shows. session: of a student's folder, with functions that the scenes
+        run. say: prints a line.
 
         Raises OSError where the port cannot be bound.
         """
         self.compiling = Compiling()
-        self.compile_ahead, self.say = compile_ahead, say
+        self.compile_ahead, self.workbook, self.session, self.say = compile_ahead, workbook, session, say
         self.notice = ""  # what is compiled before something else can be shown
         self.developer = developer
         self.server, self.screen = open_server(host, port)
@@ -68,13 +80,15 @@ class Viewer:
         self.stop = threading.Event()
         self.ended = False
         self.threads: list[threading.Thread] = []
+        self.recorded: Kept | None = None  # the frame of the recording that is shown
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
         self.starts = 0  # how often the shown run was begun again
         self.unwatched = Unwatched()
         self.is_open = False  # whether scene, view, panel and loop are those of an open scene
-        self.first_params: dict[str, BaseParams] = {}  # scene -> the parameters that it was first opened with
+        self.first_params: dict[str, BaseParams] = {}  # scene -> the parameters that it was first given
         self.changing = threading.Lock()
-        self.wanted: queue.SimpleQueue[str] = queue.SimpleQueue()  # scenes that browsers ask for
+        # Scenes that browsers ask for, with parameters where a task or a link has them, and a link's camera.
+        self.wanted: queue.SimpleQueue[tuple[str, BaseParams | None, ClientCamera | None]] = queue.SimpleQueue()
         threading.Thread(target=self.open_wanted, name="scene changes", daemon=True).start()
         gui = self.server.gui
         set_theme(gui, dark=False)
@@ -85,9 +99,9 @@ class Viewer:
     ) -> None:
         """Show a scene, in place of the one that is open.
 
-        params: None for those that the scene was first opened with. Where there are none: with `first_look` those of a
-        preset that keeps moving, otherwise the defaults. Whatever fails leaves a page that says why and offers the
-        scenes; the exception is raised.
+        params: None for those that the scene was first given. Where there are none: with `first_look` those of a preset
+        that keeps moving, otherwise the defaults. first_look: a browser asked for it; parameters of a task of the lab
+        are not kept. Whatever fails leaves a page that says why and offers the scenes; the exception is raised.
         """
         with self.changing:
             if self.ended:
@@ -96,6 +110,8 @@ class Viewer:
                 kind = scene_named(name)
                 if params is None:
                     params = self.first_params.get(name) or (kind.opening_params() if first_look else kind.params())
+                elif not first_look:
+                    self.first_params.setdefault(name, params)
                 if not self.compile(kind, params) or self.ended:
                     return
                 self.close()
@@ -107,19 +123,19 @@ class Viewer:
     def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
         """Make scene, view, panel and threads."""
         name = kind.name
-        self.first_params.setdefault(name, params)
         make_view = view_named(name)
         self.clear()
-        self.scene = kind.make(params)
         commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
         self.commands = commands
+        self.scene = self.make_scene(kind, params, commands.put)
         self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
         self.view = make_view(self.server, commands.put)
         place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
         self.gate = CompileGate(self.compiling, kind, commands.put, (params, 0))
         self.panel = Panel(
             self.server, kind, self.view, params, self.gate.post, work=self.work, scenes=NAMES,
-            open_scene=self.wanted.put, developer=self.developer,
+            open_scene=self.want, workbook=self.workbook, developer=self.developer, session=self.session,
+            wake=lambda: self.loop.fresh.set(), make_replay=replay_html,
         )  # fmt: skip
         gate, read = self.gate, self.panel.read
         self.loop = SimLoop(self.scene, commands, lambda: gate.read(read()), self.audience, paused=paused)
@@ -134,6 +150,16 @@ class Viewer:
         if self.compile_ahead:
             ahead = threading.Thread(target=self.compiling.go_on_with, args=(name,), name="compile ahead", daemon=True)
             ahead.start()
+
+    def make_scene(self, kind: AnyKind, params: BaseParams, post: PostCommand) -> AnyScene:
+        """The simulation, with a student's functions beside it where there are any that it has a use for."""
+        if self.session is None:
+            return kind.make(params)
+        if kind.make_with_student is None:
+            self.session.rope.connect(lambda: None, lambda: None)
+            return kind.make(params)
+        self.session.rope.connect(lambda: post(StudentAnswer()), lambda: post(Reset()))
+        return kind.make_with_student(params, self.session.rope)
 
     def compile(self, kind: AnyKind, params: BaseParams) -> bool:
         """Have compiled what a scene needs, with progress in the page and in lines on the terminal.
@@ -185,21 +211,26 @@ class Viewer:
         """A page that says why a scene could not be opened, and offers the scenes."""
         self.close()
         self.clear()
-        add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.wanted.put)
+        add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.want)
         reason = f"{type(error).__name__}: {error}"
         self.server.gui.add_html(
             note(fill('<b class="springtide-panel">{} could not be opened.</b><br>{}', name, reason))
         )
 
+    def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:
+        """Ask for a scene; it is opened on a thread of its own."""
+        self.wanted.put((name, params, camera))
+
     def open_wanted(self) -> None:
         """Open the scenes that browsers ask for; of several waiting only the last."""
         while not self.ended:
-            name = self.wanted.get()
+            name, params, camera = self.wanted.get()
             while not self.wanted.empty():
-                name = self.wanted.get()
+                name, params, camera = self.wanted.get()
             try:
                 if name in NAMES:
-                    self.open(name, first_look=True)
+                    self.open(name, params, first_look=True)
+                    place_client_camera(self.server, camera)
             except Exception:
                 traceback.print_exc()
             time.sleep(MIN_SCENE_TIME)
@@ -214,8 +245,9 @@ class Viewer:
 
     def show_snapshots(self, loop: SimLoop, stop: threading.Event) -> None:
         """Show each new snapshot once, as soon as it is there, and keep the panel's status up to date."""
+        recorder = self.panel.recorder
         while not stop.is_set():
-            loop.fresh.wait(HEARTBEAT)
+            loop.fresh.wait(PLAYED_INTERVAL if recorder.playing else HEARTBEAT)
             loop.fresh.clear()
             self.unwatched.note(self.audience())
             if not stop.is_set():
@@ -228,8 +260,18 @@ class Viewer:
         since = loop.busy_since
         busy = 0.0 if since is None else loop.clock() - since
         # All of it in one message: each wakes a thread of viser's, which costs as much as drawing the rope.
+        recorder = self.panel.recorder
+        now = time.monotonic()
+        recorder.note(snapshot, now)
+        recorder.advance(now)
+        recorded = recorder.shown
         with self.transport.counted(), self.server.atomic():
-            if snapshot.serial != self.shown:
+            if recorded is not None:
+                if recorded is not self.recorded:
+                    self.drawn += 1
+                    self.attempt("picture", lambda: self.view.show(recorded.frame))
+                self.shown = 0  # the present is drawn anew after it
+            elif snapshot.serial != self.shown:
                 self.shown = snapshot.serial
                 self.drawn += 1
                 self.attempt("picture", lambda: self.view.show(snapshot.frame))
@@ -240,6 +282,9 @@ class Viewer:
                 if snapshot.status.starts != self.starts:  # after the picture: another scene size moves cameras too
                     self.starts = snapshot.status.starts
                     place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)
+                    place_client_camera(self.server, self.panel.camera)
+                    self.panel.camera = None
+            self.recorded = recorded
             self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
 
@@ -257,7 +302,7 @@ class Viewer:
         latest = self.loop.latest
         return gather(
             self.loop.work(),
-            {"pictures handed over": WorkCount(self.drawn, self.shown - self.drawn)},
+            {"pictures handed over": WorkCount(self.drawn, max(self.shown - self.drawn, 0))},
             self.transport.work(),
             self.panel.plots.work(),
             latest.work,
@@ -280,6 +325,10 @@ class Viewer:
             self.panel.close()
             self.view.close()
 
+    def stop_opening(self) -> None:
+        """Give up a scene that is waiting to be compiled, as the lab ends; `shut` does the rest."""
+        self.ended = True
+
     def shut(self) -> None:
         """End: stop the threads and the server. A scene that is being opened is not waited for."""
         self.ended = True
@@ -290,5 +339,5 @@ class Viewer:
                 self.close()
             finally:
                 self.changing.release()
-        self.wanted.put("")
+        self.want("")
         self.server.stop()

@@ -13,7 +13,7 @@ import numpy as np
 
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import SceneKind
-from app.scenes.preset_files import read_preset
+from app.scenes.setups import preset_values
 from app.sweep.design import MAX_CASES, Axis, Listed, Range, grid, grid_values, hypercube, size
 from sim.parameters import Parameter, check_record, check_value, parameters_of, unknown_parameter
 from sim.validation import argument_error, check_choice, check_number, is_whole_number
@@ -128,7 +128,7 @@ def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any], f
     preset = content.get("preset")
     if preset is not None and not isinstance(preset, str):
         raise argument_error("preset", preset, "one of " + ", ".join(scene.presets) + "; or a file FILE.json")
-    from_preset = {} if preset is None else read_preset("preset", preset, scene, folder)
+    from_preset = {} if preset is None else preset_values("preset", preset, scene, folder)
     given = {**dict.fromkeys(scene.plots, True), **from_preset, **table(content, "set")}
     params = check_record(scene.params, given)
     return {name: getattr(params, name) for name in given}

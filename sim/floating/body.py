@@ -4,19 +4,18 @@
 (motion.py) advances in place. A hull used by several bodies is packed once.
 """
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating.closed_mesh import area_vectors
-from sim.floating.equilibrium import Layers
+from sim.floating.closed_mesh import area_vectors, check_hull
+from sim.floating.equilibrium import Layers, check_layers
 from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import POLES, SEA_WATER, afloat
 from sim.floating.rotation import rotation_matrix
 from sim.floating.shapes.record import COLLISION_FORMS
-from sim.validation import argument_error
+from sim.validation import argument_error, as_array, check_not_negative, check_positive, is_whole_number
 
 
 class Body(NamedTuple):
@@ -43,7 +42,8 @@ class PackedHulls(NamedTuple):
     half: np.ndarray  # (q, 3) [m] half extents of the true shape
     radius: np.ndarray  # (q,) [m] of the sphere about the centre of mass that holds the mesh
     inertia: np.ndarray  # (q, 3, 3) [m5] at unit density
-    wetted_area: np.ndarray  # (q, 3) [m2] across each axis, int |n_i| dA, of the hull wholly under water
+    inverse_inertia: np.ndarray  # (q, 3, 3) [1/m5] its inverse
+    waterplane_bound: np.ndarray  # (q,) [m2] of the area of any level cut
     radius_of_gyration: np.ndarray  # (q, 3) [m] of the surface: root mean square of x_i over it
     restoring_bound: np.ndarray  # (q, 3) [m4] bound of the moment about an axis per angle, over weight density
 
@@ -53,26 +53,32 @@ class PackedLinear(NamedTuple):
 
     added_mass: np.ndarray  # (s, 6, 6) at infinite frequency, about the centre of mass
     poles: np.ndarray  # (s, p) complex
-    residues: np.ndarray  # (s, p, 6, 6) complex
+    coupled: np.ndarray  # (s, 36, 2) int: motions c, d that the memory couples, the first coupled_count[s] of them
+    coupled_count: np.ndarray  # (s,) int
+    residues: np.ndarray  # (s, 36, p) complex, of these
     wet_area: np.ndarray  # (s, 3) [m2] wet at rest across each axis
     added_bound: np.ndarray  # (s, 6) added mass along and about each axis that any coupling leaves
     decay_length: np.ndarray  # (s,) [m] of depth over which a body under water ceases to make waves
 
 
 class Fleet(NamedTuple):
-    """n bodies. `step` changes the first eight arrays, `pull` the next three; the rest is fixed."""
+    """n bodies. `step` changes the first nine arrays, `pull` the next three; the rest is fixed."""
 
     position: np.ndarray  # (n, 3) [m]
     rotation: np.ndarray  # (n, 4) quaternion (w, x, y, z)
     velocity: np.ndarray  # (n, 3) [m/s]
     spin: np.ndarray  # (n, 3) [rad/s] in world axes
     wetted: np.ndarray  # (n, 3) [kg/m] wetted area across each body axis times density at the last step; -1 before it
-    buoyancy: np.ndarray  # (n,) [N] upward force of the fluids' pressure at the last step
+    buoyancy: np.ndarray  # (n,) [N] weight of the displaced fluids at the last step
+    # (n, 4) [N] upward, mean over the last step: buoyancy, waves, drag, and what the motion through the water meets:
+    # added mass, the waves that the body made, a pull. With the weight they are mass times acceleration.
+    lift: np.ndarray
     wet_volume: np.ndarray  # (n, 2) [m3] in the upper and in the lower fluid at the last step
     memory: np.ndarray  # (n, p, 6) complex: state of the radiated waves, one for each pole and motion
     pull_point: np.ndarray  # (n, 3) [m] where each is pulled, in body axes
     pull_target: np.ndarray  # (n, 3) [m] where to, in world axes
     pull_limit: np.ndarray  # (n,) [N] greatest pull; 0 for none
+    mooring: np.ndarray  # (n, 2) [N] level force on the centre of mass
     hull: np.ndarray  # (n,) int, index in hulls
     density: np.ndarray  # (n,) [kg/m3]
     mass: np.ndarray  # (n,) [kg]
@@ -89,10 +95,10 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
     drafts that they have in these fluids. Raises ValueError, naming the body, for what is not finite or has no mass.
     """
     for i, body in enumerate(bodies):
-        if not isinstance(body.density, int | float | np.number) or not 0 < body.density < math.inf:
-            raise argument_error(f"bodies[{i}].density", body.density, "above 0 kg/m3, finite")
+        check_hull(f"bodies[{i}].hull", body.hull)
+        check_positive(f"bodies[{i}].density", body.density, "kg/m3")
         for name, length in (("position", 3), ("rotation", 4), ("velocity", 3), ("spin", 3)):
-            value = np.asarray(getattr(body, name), dtype=float)
+            value = as_array(f"bodies[{i}].{name}", getattr(body, name), f"{length} finite numbers")
             if value.shape != (length,) or not np.isfinite(value).all():
                 raise argument_error(f"bodies[{i}].{name}", getattr(body, name), f"{length} finite numbers")
         if not np.linalg.norm(body.rotation) > 0:
@@ -110,11 +116,13 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
         spin=np.array([body.spin for body in bodies], dtype=float).reshape(n, 3),
         wetted=np.full((n, 3), -1.0),
         buoyancy=np.zeros(n),
+        lift=np.zeros((n, 4)),
         wet_volume=np.zeros((n, 2)),
         memory=np.zeros((n, len(POLES), 6), dtype=complex),
         pull_point=np.zeros((n, 3)),
         pull_target=np.zeros((n, 3)),
         pull_limit=np.zeros(n),
+        mooring=np.zeros((n, 2)),
         hull=np.array([number[id(body.hull)] for body in bodies], dtype=np.int64),
         density=np.array([body.density for body in bodies], dtype=float),
         mass=np.array([body.density * body.hull.volume for body in bodies], dtype=float),
@@ -129,7 +137,7 @@ def pack_linear(
     hulls: Sequence[Hull], densities: Sequence[float], layers: Layers = SEA_WATER
 ) -> tuple[np.ndarray, PackedLinear]:
     """Index (n,) of the linear coefficients of each hull of a density [kg/m3], and these, each of them once."""
-    fluids = tuple((float(density), float(thickness)) for density, thickness in layers)
+    fluids = check_layers(layers)
     found = [afloat(hull, float(density), fluids) for hull, density in zip(hulls, densities, strict=True)]
     unique = list({id(one): one for one in found}.values())
     number = {id(one): i for i, one in enumerate(unique)}
@@ -137,10 +145,19 @@ def pack_linear(
     added = np.array([one.linear.infinite for one in unique]).reshape(s, 6, 6)
     # The inverse of the inverse's diagonal is what is left of each entry where all other motions are free.
     steady = np.array([1e-9 * np.trace(one) * np.eye(6) for one in added]).reshape(s, 6, 6)
+    coupled, coupled_count = np.zeros((s, 36, 2), np.int64), np.zeros(s, np.int64)
+    residues = np.zeros((s, 36, len(POLES)), complex)
+    for i, one in enumerate(unique):
+        pairs = np.argwhere(one.memory.residues.any(axis=0))
+        coupled_count[i] = len(pairs)
+        coupled[i, : len(pairs)] = pairs
+        residues[i, : len(pairs)] = one.memory.residues[:, pairs[:, 0], pairs[:, 1]].T
     return np.array([number[id(one)] for one in found], dtype=np.int64), PackedLinear(
         added_mass=added,
         poles=np.array([one.memory.poles for one in unique], dtype=complex).reshape(s, len(POLES)),
-        residues=np.array([one.memory.residues for one in unique], dtype=complex).reshape(s, len(POLES), 6, 6),
+        coupled=coupled,
+        coupled_count=coupled_count,
+        residues=residues,
         wet_area=np.array([one.wet_area for one in unique]).reshape(s, 3),
         added_bound=1 / np.einsum("sii->si", np.linalg.inv(added + steady)) if s else np.zeros((0, 6)),
         decay_length=np.array([one.linear.draft for one in unique], dtype=float),
@@ -165,7 +182,8 @@ def pack(hulls: Sequence[Hull]) -> PackedHulls:
         half=np.array([np.abs(hull.extents).max(axis=1) for hull in hulls]).reshape(q, 3),
         radius=np.array([np.linalg.norm(hull.vertices, axis=1).max() for hull in hulls], dtype=float),
         inertia=np.array([hull.inertia for hull in hulls]).reshape(q, 3, 3),
-        wetted_area=np.array([np.abs(area).sum(axis=0) for area in areas]).reshape(q, 3),
+        inverse_inertia=np.array([np.linalg.inv(hull.inertia) for hull in hulls]).reshape(q, 3, 3),
+        waterplane_bound=np.array([np.linalg.norm(np.abs(area).sum(axis=0)) / 2 for area in areas], dtype=float),
         radius_of_gyration=np.array([radius for radius, _ in surfaces]).reshape(q, 3),
         restoring_bound=np.array([bound for _, bound in surfaces]).reshape(q, 3),
     )
@@ -218,14 +236,13 @@ def pull(fleet: Fleet, body: int, point: Sequence[float], target: Sequence[float
 
     Raises ValueError for a body that is not there and for what is not finite.
     """
-    if not 0 <= body < len(fleet.mass):
+    if not is_whole_number(body) or not 0 <= body < len(fleet.mass):
         raise argument_error("body", body, f"0 to {len(fleet.mass) - 1}")
     for name, value in (("point", point), ("target", target)):
-        array = np.asarray(value, dtype=float)
+        array = as_array(name, value, "three finite numbers [m]")
         if array.shape != (3,) or not np.isfinite(array).all():
             raise argument_error(name, value, "three finite numbers [m]")
-    if not 0 <= limit < math.inf:
-        raise argument_error("limit", limit, "0 N or more, finite")
+    check_not_negative("limit", limit, "N")
     fleet.pull_point[body] = point
     fleet.pull_target[body] = target
     fleet.pull_limit[body] = limit

@@ -6,10 +6,16 @@ Capytaine: Ancellin and Dias 2019, J. Open Source Software 4(36):1341.
 """
 
 import importlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from sim.floating.hull import Hull
+from sim.floating.hydrodynamics import DIRECTIONS, table_length
+from sim.floating.linear_table import LinearTable
+from sim.floating.panels import WANTED_PANELS, wet_panels
+from sim.floating.shape_panels import PANELS
 
 # Frequencies omega sqrt(length/g): densest about resonance, up to three times it
 FREQUENCIES = (
@@ -77,3 +83,28 @@ def solve(
         progress()
     infinite, _ = radiate(np.inf)
     return Solution(np.array(added), np.array(damping), infinite, np.array(excitation))
+
+
+def make_table(
+    hull: Hull, drafts: Sequence[float], wanted_panels: int = WANTED_PANELS, progress: Callable[[], None] = lambda: None
+) -> LinearTable:
+    """The table of a hull at drafts (d,) [m], each less than its height; `progress` is called after each frequency.
+
+    A shipped shape has the panels of its committed table. Raises ValueError for a mesh of too many triangles,
+    ModuleNotFoundError without Capytaine.
+    """
+    length = table_length(hull)
+    found = []
+    for draft in drafts:
+        if hull.shape.linear:
+            vertices, faces = PANELS[hull.shape.linear](float(hull.size[0] / hull.size[1]), draft / length)
+        else:
+            panels = wet_panels(hull, draft, wanted_panels) / length
+            corner = np.arange(3 * len(panels)).reshape(-1, 3)
+            vertices, faces = panels.reshape(-1, 3), np.column_stack([corner, corner[:, 2]])
+        found.append(solve(vertices, faces, DIRECTIONS, progress=progress))
+    stacked = {field: np.array([[getattr(one, field) for one in found]]) for field in Solution._fields}
+    return LinearTable(
+        aspect=np.ones(1), draft=np.array(drafts, float) / length, direction=DIRECTIONS,
+        frequency=np.array(FREQUENCIES), **stacked,
+    )  # fmt: skip

@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.validation import argument_error, check_within
+from sim.validation import argument_error, as_array, check_within
 
+MAX_SAMPLES = 400  # places on a mesh of several parts where it is checked that they do not overlap
 MIN_LENGTH, MAX_LENGTH = 1e-3, 1e4  # [m] of an edge, a radius or an extent
 
 
@@ -56,7 +57,11 @@ def checked_mesh(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -
 
     Raises ValueError, which begins with `name`, where the mesh is not closed, oriented and finite.
     """
-    vertices, faces = np.array(vertices, dtype=float), np.array(faces, dtype=np.int64)
+    allowed = "vertices (n, 3) [m], faces (m, 3) of whole numbers, m at least 4"
+    vertices, corners = as_array(name, vertices, allowed), as_array(name, faces, allowed)
+    if not (corners == np.rint(corners)).all():
+        raise argument_error(name, float(corners[corners != np.rint(corners)][0]), allowed)
+    faces = corners.astype(np.int64)
     if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3 or len(faces) < 4:
         raise argument_error(name, f"{vertices.shape} vertices, {faces.shape} faces", "(n, 3), (m, 3), m at least 4")
     if faces.min() < 0 or faces.max() >= len(vertices):
@@ -76,7 +81,66 @@ def checked_mesh(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -
         raise argument_error(name, f"volume {volume:g} m3", "a mesh that encloses a volume")
     if volume < 0:
         faces = faces[:, ::-1]
-    return closed_mesh(vertices, np.ascontiguousarray(faces))
+    faces = np.ascontiguousarray(faces)
+    check_parts(vertices, faces, name)
+    return closed_mesh(vertices, faces)
+
+
+def check_hull(name: str, hull: object) -> None:
+    """Raises ValueError for what is no hull."""
+    if not isinstance(hull, ClosedMesh):
+        raise argument_error(name, hull, "a Hull")
+
+
+def check_parts(vertices: np.ndarray, faces: np.ndarray, name: str) -> None:
+    """Raises ValueError where a part of a mesh is inside out or overlaps another one, which would count twice.
+
+    Close to each face inside it the mesh encloses a point once, outside not at all, or once where another part
+    touches. Looked at are up to MAX_SAMPLES places on the faces of a mesh of several parts, but for faces without area,
+    which have no two sides.
+    """
+    part = parts_of(faces, len(vertices))
+    if len(np.unique(part)) < 2:
+        return
+    triangles = vertices[faces]
+    centre = triangles.mean(axis=1)
+    places = np.concatenate([centre, *(0.05 * centre + 0.95 * triangles[:, i] for i in range(3))])
+    normal, size = np.tile(area_vectors(vertices, faces), (4, 1)), np.ptp(vertices, axis=0).max()
+    area = np.linalg.norm(normal, axis=1)
+    sided = np.flatnonzero(area > 1e-12 * size**2)
+    chosen = sided[np.unique(np.linspace(0, len(sided) - 1, MAX_SAMPLES).astype(int))]
+    steps = 1e-6 * size * normal[chosen] / area[chosen, None]
+    for place, step in zip(places[chosen], steps, strict=True):
+        inside, outside = enclosed(triangles, place - step), enclosed(triangles, place + step)
+        if inside != 1 or outside not in (0, 1):
+            where = tuple(round(float(x), 6) for x in place)
+            raise argument_error(name, f"parts that overlap, or one inside out, at {where}", "parts apart, all outward")
+
+
+def parts_of(faces: np.ndarray, count: int) -> np.ndarray:
+    """For each of `count` vertices the least vertex that faces (m, 3) join it with."""
+    label = np.arange(count)
+    while True:
+        least = label[faces].min(axis=1)
+        new = label.copy()
+        for corner in range(3):
+            np.minimum.at(new, faces[:, corner], least)
+        new = new[new]
+        if (new == label).all():
+            return label
+        label = new
+
+
+def enclosed(triangles: np.ndarray, point: np.ndarray) -> int:
+    """How often triangles (m, 3, 3), outward, enclose a point: the sum of their solid angles over 4 pi.
+
+    Van Oosterom and Strackee 1983, IEEE Trans. Biomed. Eng. 30:125, eq. 8.
+    """
+    a, b, c = (triangles[:, i] - point for i in range(3))
+    la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+    det = np.einsum("ij,ij->i", a, np.cross(b, c))
+    dots = [np.einsum("ij,ij->i", x, y) * length for x, y, length in ((a, b, lc), (b, c, la), (c, a, lb))]
+    return round(float(2 * np.arctan2(det, la * lb * lc + sum(dots)).sum()) / (4 * np.pi))
 
 
 def check_length(name: str, value: float) -> float:

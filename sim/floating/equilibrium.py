@@ -14,9 +14,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sim.floating.closed_mesh import check_hull
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import Submerged, submerged
-from sim.validation import argument_error, check_positive
+from sim.validation import argument_error, as_float, check_positive
 
 Layers = Sequence[tuple[float, float]]
 OIL_ON_WATER: Layers = ((850.0, 0.2), (1025.0, math.inf))
@@ -29,8 +30,10 @@ def equilibrium_draft(hull: Hull, density: float, layers: Layers = OIL_ON_WATER,
     denser than the last layer, which sinks without end, and the smallest depth where several are in equilibrium.
     Gravity does not change the result and is only checked. Raises ValueError for a bad density, layers or gravity.
     """
+    check_hull("hull", hull)
     check_positive("density", density, "kg/m3")
     check_positive("gravity", gravity, "m/s2")
+    layers = check_layers(layers)
     steps = density_steps(layers)
     if density > layers[-1][0]:
         return math.inf
@@ -65,19 +68,28 @@ def upright(hull: Hull, height: float) -> Submerged:
 
 def density_steps(layers: Layers) -> list[tuple[float, float]]:
     """(rho_i - rho_{i-1}, depth of the top of layer i) of each layer. Raises ValueError for bad layers."""
+    steps, above, top = [], 0.0, 0.0
+    for density, thickness in check_layers(layers):
+        steps.append((density - above, top))
+        above, top = density, top + thickness
+    return steps
+
+
+def check_layers(layers: Layers) -> tuple[tuple[float, float], ...]:
+    """`layers`, whatever holds them, as pairs of floats. Raises ValueError for bad ones."""
     wanted = "(density, thickness) pairs from the top, densities not falling, the last thickness inf and only that"
     try:
-        pairs = [(float(density), float(thickness)) for density, thickness in layers]
+        given = list(layers)
+        pairs = tuple((as_float(density), as_float(thickness)) for density, thickness in given)
     except (TypeError, ValueError):
         raise argument_error("layers", layers, wanted) from None
     good = bool(pairs) and math.isinf(pairs[-1][1])
-    steps, above, top = [], 0.0, 0.0
+    above = 0.0
     for i, (density, thickness) in enumerate(pairs):
         last = i == len(pairs) - 1
         good = good and 0 < density < math.inf and density >= above
         good = good and thickness >= 0 and (last or thickness < math.inf)
-        steps.append((density - above, top))
-        above, top = density, top + thickness
+        above = density
     if not good:
-        raise argument_error("layers", layers, wanted)
-    return steps
+        raise argument_error("layers", given, wanted)
+    return pairs

@@ -14,22 +14,24 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.floating.body import Body, Fleet
-from sim.floating.equilibrium import Layers
+from sim.floating.equilibrium import Layers, check_layers
 from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import DIRECTIONS, SEA_WATER, LinearHull, afloat, lagrange, wet_pressure
+from sim.floating.rigid import heading_of
 from sim.jit import kernel
 from sim.ocean.gerstner import Waves, widened
 from sim.ocean.wave_sum import fine_wave
 
-HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of waves on it are taken anew
+HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of waves on it are taken again
 NUDGE = 1e-4  # share of the draft by which a plane is moved or tilted to find its force
+LAST_RATES = (15 / 8, -10 / 8, 3 / 8)  # weights of the last three rates of change, for that half a step after them
+CREEPING = 0.1  # of sqrt(g k), below which a wave in viscous fluids only sinks away, and does nothing upward here
 BEYOND = 1.0  # [lengths] of 1/k over which the force fades beyond the highest frequency of a table
 
 
 class PlaneForce(NamedTuple):
     """Force and moment (6,) on an upright hull under a plane, at unit density and gravity."""
 
-    rest: np.ndarray  # under the level plane at rest [m3, m4]
     rise: np.ndarray  # for each metre that it rises
     slope: np.ndarray  # (2, 6) for each unit of slope along x, y
 
@@ -46,7 +48,7 @@ def plane_force(hull: Hull, draft: float) -> PlaneForce:
         return (force(rise, x, y) - force(-rise, -x, -y)) / (2 * size)
 
     slopes = np.stack([change(0.0, tilt, 0.0, tilt), change(0.0, 0.0, tilt, tilt)])
-    return PlaneForce(force(0.0, 0.0, 0.0), change(nudge, 0.0, 0.0, nudge), slopes)
+    return PlaneForce(change(nudge, 0.0, 0.0, nudge), slopes)
 
 
 class HullExcitation:
@@ -77,56 +79,80 @@ class WaveExcitation:
 
     def __init__(self, bodies: Sequence[Body], widths: np.ndarray, layers: Layers = SEA_WATER) -> None:
         """bodies as in `make_fleet`; widths (n,) [m]: over which the surface at each is averaged in `RadialSea.at`."""
-        fluids = tuple((float(density), float(thickness)) for density, thickness in layers)
+        fluids = check_layers(layers)
         keys = [(body.hull, float(body.density), float(width)) for body, width in zip(bodies, widths, strict=True)]
         unique = list(dict.fromkeys(keys))
         self.kinds = [HullExcitation(hull, afloat(hull, rho, fluids).linear, width) for hull, rho, width in unique]
         self.kind = np.array([unique.index(key) for key in keys], dtype=np.int64)
         self.is_round = np.array([kind.linear.is_round for kind in self.kinds], dtype=bool)
-        planes = [np.vstack([kind.plane.rest, kind.plane.rise, kind.plane.slope]) for kind in self.kinds]
-        self.planes = np.array(planes).reshape(len(self.kinds), 4, 6)
+        planes = [np.vstack([kind.plane.rise, kind.plane.slope]) for kind in self.kinds]
+        self.planes = np.array(planes).reshape(len(self.kinds), 3, 6)
         self.kx = self.ky = np.zeros(0)
         self.heading = np.full(len(keys), np.inf)  # (n,) [rad] for which the weights were taken
-        self.weights = np.zeros((len(keys), 0, 12))
+        self.weights = np.zeros((len(keys), 12, 0))
+        self.impulses: tuple[np.ndarray, ...] = ()  # (n,) [m3 times m/s] upward at the last calls, the newest first
 
     def forces(
         self, fleet: Fleet, labels: np.ndarray, kx: np.ndarray, ky: np.ndarray, amplitude: np.ndarray,
-        phase: np.ndarray, gravity: float = 9.81,
+        omega: np.ndarray, phase: np.ndarray, h: float, gravity: float = 9.81,
     ) -> np.ndarray:  # fmt: skip
-        """Force and moment (n, 6) on each body at unit density, in the axes of the world.
+        """Force and moment (n, 6) on each body at unit density, in the axes of the world, for the next step of h [s].
 
-        labels (n, 2) [m]: where the bodies are on the resting surface; kx, ky (waves,) [rad/m], amplitude (waves,) [m],
-        phase (waves,) [turns] at the origin.
+        labels (n, 2) [m]: where the bodies are on the resting surface in the middle of the step; kx, ky (waves,)
+        [rad/m], amplitude (waves,) [m], omega (waves,) [rad/s], phase (waves,) [turns] at the origin.
+
+        The upward force is the change of the impulse sum a Re(i D/w exp(i phase)) along the body's way, and so has no
+        mean. Linear theory knows no mean force: the force at a fixed place has none. At a place that moves with the
+        waves it gets one, of second order, which for a small body that follows the water is not there.
         """
         if not (np.array_equal(kx, self.kx) and np.array_equal(ky, self.ky)):
-            self.kx, self.ky = kx.copy(), ky.copy()
+            self.kx, self.ky, self.impulses = kx.copy(), ky.copy(), ()
             k = np.hypot(kx, ky)
             self.tables = np.array([kind.tabulate(k) for kind in self.kinds])
             averaged = [widened(Waves(kx, ky, kx, kx), kind.width) for kind in self.kinds]
             self.averaged = np.array(averaged).reshape(len(self.kinds), len(k))
             self.heading[:] = np.inf
-            self.weights = np.zeros((len(self.kind), len(k), 12))
+            self.weights = np.zeros((len(self.kind), 12, len(k)))
         set_weights(
             fleet.rotation, self.kind, self.is_round, self.heading, kx, ky, self.tables, self.averaged, self.planes,
             self.weights,
         )  # fmt: skip
         out = np.zeros((len(self.kind), 6))
-        add_forces(labels, kx, ky, amplitude, phase, self.weights, gravity, out)
+        runs = omega > CREEPING * np.sqrt(gravity * np.hypot(kx, ky))
+        inverse = np.divide(1.0, omega, out=np.zeros_like(omega), where=runs)
+        add_forces(labels, kx, ky, amplitude, inverse, phase, self.weights, gravity, out)
+        if not self.impulses:  # as if the bodies had been here
+            earlier = [np.zeros_like(out) for _ in LAST_RATES]
+            for step, one in enumerate(earlier, start=1):
+                then = phase + omega * (step * h / (2.0 * math.pi))
+                add_forces(labels, kx, ky, amplitude, inverse, then, self.weights, gravity, one)
+            self.impulses = tuple(one[:, 2] for one in earlier)
+        self.impulses = (out[:, 2].copy(), *self.impulses[: len(LAST_RATES)])
+        out[:, 2] = rate_of_change(self.impulses, h)
         return out
+
+
+def rate_of_change(values: Sequence[np.ndarray], h: float) -> np.ndarray:
+    """Rate of change at the first of values (n,), each of them h [s] older than the one before.
+
+    Its sum over many steps is the change of the value itself. Needs one value more than LAST_RATES.
+    """
+    changes = zip(LAST_RATES, values[:-1], values[1:], strict=True)
+    return np.sum([weight * (new - old) for weight, new, old in changes], axis=0) / h
 
 
 @kernel
 def set_weights(rotation, kind, is_round, heading, kx, ky, tables, averaged, planes, weights):
-    """Set weights (n, waves, 12), real and imaginary part of D in turn, of the bodies that have turned since.
+    """Set weights (n, 12, waves), real and imaginary part of D in turn, of the bodies that have turned since.
 
-    tables (kinds, waves, 36, 6), averaged (kinds, waves), planes (kinds, 4, 6).
+    tables (kinds, waves, 36, 6), averaged (kinds, waves), planes (kinds, 3, 6).
     """
     count = tables.shape[2]
     spacing = 2.0 * math.pi / count
     D = np.empty(6, np.complex128)
     for b in range(kind.size):
-        w, x, y, z = rotation[b, 0], rotation[b, 1], rotation[b, 2], rotation[b, 3]
-        yaw = 0.0 if is_round[kind[b]] else math.atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))
+        c, s = heading_of(rotation, b)
+        yaw = 0.0 if is_round[kind[b]] else math.atan2(s, c)
         turned = yaw - heading[b]
         if abs(math.atan2(math.sin(turned), math.cos(turned))) < HEADING_TOLERANCE and np.isfinite(heading[b]):
             continue
@@ -134,7 +160,6 @@ def set_weights(rotation, kind, is_round, heading, kx, ky, tables, averaged, pla
         c, s = math.cos(yaw), math.sin(yaw)
         q = kind[b]
         for i in range(kx.size):
-            k = np.sqrt(kx[i] * kx[i] + ky[i] * ky[i])
             along, across = c * kx[i] + s * ky[i], c * ky[i] - s * kx[i]
             u = math.atan2(across, along) / spacing
             first = math.floor(u)
@@ -147,23 +172,35 @@ def set_weights(rotation, kind, is_round, heading, kx, ky, tables, averaged, pla
             for d in range(6):
                 X = a0 * tables[q, i, j0, d] + a1 * tables[q, i, j1, d]
                 X += a2 * tables[q, i, j2, d] + a3 * tables[q, i, j3, d]
-                plane = (
-                    planes[q, 1, d] - k * planes[q, 0, d] + 1j * (along * planes[q, 2, d] + across * planes[q, 3, d])
-                )
+                plane = planes[q, 0, d] + 1j * (along * planes[q, 1, d] + across * planes[q, 2, d])
                 D[d] = X - averaged[q, i] * plane
             for d in range(2):
                 first_part, second_part = D[3 * d], D[3 * d + 1]
                 D[3 * d], D[3 * d + 1] = c * first_part - s * second_part, s * first_part + c * second_part
             for d in range(6):
-                weights[b, i, 2 * d], weights[b, i, 2 * d + 1] = D[d].real, D[d].imag
+                weights[b, 2 * d, i], weights[b, 2 * d + 1, i] = D[d].real, D[d].imag
 
 
-@kernel
-def add_forces(labels, kx, ky, amplitude, phase, weights, gravity, out):
-    """Add gravity times the sum of a Re(D exp(i phase)) over the waves to out (n, 6)."""
+@kernel(noalias=True)
+def add_forces(labels, kx, ky, amplitude, inverse, phase, weights, gravity, out):
+    """Add gravity times the sum of a Re(D exp(i phase)) over the waves to out (n, 6), of a Re(i D/w exp()) upward.
+
+    inverse (waves,) [s]: 1/w, 0 for waves that creep.
+    """
     for b in range(labels.shape[0]):
+        x, y, weight = labels[b, 0] / (2.0 * math.pi), labels[b, 1] / (2.0 * math.pi), weights[b]
+        f0 = f1 = f2 = f3 = f4 = f5 = 0.0
         for i in range(kx.size):
-            turns = (kx[i] * labels[b, 0] + ky[i] * labels[b, 1]) / (2.0 * math.pi) + phase[i]
-            c, s = fine_wave(turns, gravity * amplitude[i])
-            for d in range(6):
-                out[b, d] += c * weights[b, i, 2 * d] - s * weights[b, i, 2 * d + 1]
+            c, s = fine_wave(kx[i] * x + ky[i] * y + phase[i], gravity * amplitude[i])
+            f0 += c * weight[0, i] - s * weight[1, i]
+            f1 += c * weight[2, i] - s * weight[3, i]
+            f2 -= (s * weight[4, i] + c * weight[5, i]) * inverse[i]
+            f3 += c * weight[6, i] - s * weight[7, i]
+            f4 += c * weight[8, i] - s * weight[9, i]
+            f5 += c * weight[10, i] - s * weight[11, i]
+        out[b, 0] += f0
+        out[b, 1] += f1
+        out[b, 2] += f2
+        out[b, 3] += f3
+        out[b, 4] += f4
+        out[b, 5] += f5

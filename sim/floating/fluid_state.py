@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.floating.body import Fleet
-from sim.floating.equilibrium import density_steps
-from sim.validation import argument_error
+from sim.floating.equilibrium import check_layers, density_steps
+from sim.validation import argument_error, as_array, check_finite
 
 
 class Water(NamedTuple):
@@ -57,11 +57,12 @@ def make_water(
     acceleration is worth giving: with it a small hull rides a wave exactly, without it the frequency of the wave
     over that of heave, squared, is lost. excitation: from `WaveExcitation`, where the surface is a sum of waves: what
     diffraction, the decay of pressure with depth and the length of the hull add to the pressure of the plane. Without
-    it that is the added mass times the fluid's acceleration, as in waves that are long beside the hull. lead [s]: how
-    long after the beginning of the step the values hold; half of the step is best. Raises ValueError for bad layers or
-    shapes; values are checked by `step`.
+    it that is the mass displaced and the added mass times the fluid's acceleration, as in waves long beside the hull.
+    lead [s]: how long after the beginning of the step the values hold; half of the step is best. Raises ValueError for
+    bad layers or shapes; values are checked by `step`.
     """
     n = len(fleet.mass)
+    layers = check_layers(layers)
     steps = density_steps(layers)
     if len(steps) > 2:
         raise argument_error("layers", layers, "one or two layers")
@@ -70,7 +71,7 @@ def make_water(
     def field(name: str, value: np.ndarray | None, shape: tuple[int, ...], otherwise: np.ndarray | float) -> np.ndarray:
         if value is None:
             return np.full(shape, otherwise, dtype=float)
-        array = np.array(value, dtype=float, order="C")
+        array = np.ascontiguousarray(as_array(name, value, f"numbers of shape {shape}"))
         if array.shape != shape:
             raise argument_error(name, array.shape, f"an array of shape {shape}")
         return array
@@ -96,10 +97,10 @@ def make_water(
         relief=field("relief", relief, bumps, 0.0),
         interface_relief=field("interface_relief", interface_relief, interface_bumps, 0.0),
         excitation=field("excitation", excitation, (0, 6) if excitation is None else (n, 6), 0.0),
-        lead=float(lead),
+        lead=check_finite("lead", lead, "s"),
     )
 
 
 def still_water(fleet: Fleet, layers: Sequence[tuple[float, float]], level: float = 0.0) -> Water:
     """Level water at rest, its surface at `level` [m]. Raises ValueError for bad layers."""
-    return make_water(fleet, layers, np.full(len(fleet.mass), float(level)))
+    return make_water(fleet, layers, np.full(len(fleet.mass), check_finite("level", level, "m")))

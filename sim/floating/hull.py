@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from sim.floating.closed_mesh import ClosedMesh, checked_mesh
+from sim.floating.linear_table import place_of_table, read_table
 from sim.floating.shapes.box import SHAPE as BOX
 from sim.floating.shapes.box import box
 from sim.floating.shapes.cylinder import SHAPE as CYLINDER
@@ -19,7 +20,7 @@ from sim.floating.shapes.cylinder import cylinder
 from sim.floating.shapes.record import Appearance, Shape
 from sim.floating.shapes.sphere import SHAPE as SPHERE
 from sim.floating.shapes.sphere import sphere
-from sim.validation import argument_error
+from sim.validation import argument_error, check_positive
 
 FILE_SHAPE = "hull"  # name of the shape that is made of a mesh file, and of its one appearance
 FILE_TITLE = "From file"
@@ -42,6 +43,7 @@ class Hull(ClosedMesh):
 
         Raises ValueError for a size that makes a length that is not allowed.
         """
+        check_positive("size", size, "")
         return Hull.of(shape, shape.build(*(length * size for length in shape.lengths)))
 
     @staticmethod
@@ -63,12 +65,13 @@ class Hull(ClosedMesh):
         return Hull.of(CYLINDER, cylinder(radius, height))
 
     @staticmethod
-    def load(path: str | Path) -> "Hull":
+    def load(path: str | Path, own_table: bool = True) -> "Hull":
         """A hull from a mesh file (STL, OBJ, PLY, GLB...), all of its parts in one, units read as metres.
 
-        Raises ValueError where the file cannot be read, or its mesh is not closed, oriented and finite.
+        own_table: with the table of linear coefficients that lies beside the file, if there is one. Raises ValueError
+        where the file cannot be read, its mesh is not closed, oriented and finite, or its table is that of another one.
         """
-        return Hull.of_shape(shape_from_file(path))
+        return Hull.of_shape(shape_from_file(path, own_table))
 
     @staticmethod
     def from_arrays(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -> "Hull":
@@ -80,8 +83,10 @@ class Hull(ClosedMesh):
         return Hull.of(Shape("mesh", lambda: mesh, ()), mesh)
 
 
-def shape_from_file(path: str | Path) -> Shape:
+def shape_from_file(path: str | Path, own_table: bool = True) -> Shape:
     """The shape of the mesh in a file; its hulls have the size of the file, whatever size is asked for.
+
+    own_table: with the table of linear coefficients that lies beside the file, if there is one (linear_table.py).
 
     Raises ValueError as `Hull.load`.
     """
@@ -94,4 +99,6 @@ def shape_from_file(path: str | Path) -> Shape:
     except Exception as error:  # trimesh's readers raise errors of many types
         raise argument_error("path", str(path), f"a mesh file that can be read ({error})") from error
     mesh = checked_mesh(vertices, faces, str(path))
-    return Shape(FILE_SHAPE, lambda: mesh, (), (Appearance(FILE_SHAPE, FILE_TITLE),))
+    place = place_of_table(path)
+    table = read_table(place, mesh) if own_table and place.is_file() else None
+    return Shape(FILE_SHAPE, lambda: mesh, (), (Appearance(FILE_SHAPE, FILE_TITLE),), table=table)

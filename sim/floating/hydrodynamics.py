@@ -2,8 +2,8 @@
 
 The coefficients come from boundary elements (`boundary_elements.py`), committed as tables by draft in
 `assets/hydrodynamics`. A box, an upright cylinder and a sphere are in the tables at every size: to the water a hull is
-its wet part. Any other hull has, as an approximation, those of the box with its volume and the second moments of its
-waterplane.
+its wet part. A hull from a file may have a table of its own (`springtide hydrodynamics`). Any other has, as an
+approximation, those of the box with its volume and the second moments of its waterplane.
 
 Cummins (1962): (M + A_inf) a + int K(t - s) v(s) ds + C x = F. The transform of K is B + i w (A - A_inf); here it is a
 sum over the same few poles for all entries, so that the memory is a small state: s' = p s + v, force -2 Re(R s). The
@@ -12,15 +12,15 @@ residues R are fitted, best where the hull's own frequencies lie, under the cond
 
 import functools
 import math
-from importlib.resources import files
 from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating.closed_mesh import area_vectors
+from sim.floating.closed_mesh import ClosedMesh, area_vectors
 from sim.floating.equilibrium import equilibrium_draft, upright
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import add_pressure
+from sim.floating.linear_table import LinearTable, table_of
 
 SEA_WATER = ((1025.0, math.inf),)  # one fluid, as `layers`
 # Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
@@ -67,29 +67,6 @@ class Memory(NamedTuple):
     residues: np.ndarray  # (p, 6, 6) complex
 
 
-class LinearTable(NamedTuple):
-    """Linear coefficients of hulls by their sides and drafts.
-
-    At unit density and gravity, in units of a length of the hull, about the waterline above its centre of mass.
-    """
-
-    aspect: np.ndarray  # (a,) length over width
-    draft: np.ndarray  # (d,)
-    direction: np.ndarray  # (m,) [rad] in which waves run
-    frequency: np.ndarray  # (n,)
-    added_mass: np.ndarray  # (a, d, n, 6, 6)
-    damping: np.ndarray  # (a, d, n, 6, 6)
-    infinite: np.ndarray  # (a, d, 6, 6) added mass at infinite frequency
-    excitation: np.ndarray  # (a, d, n, m, 6) complex
-
-
-@functools.cache
-def table_of(name: str) -> LinearTable:
-    """A committed table: "box", "cylinder" or "sphere"."""
-    with files("assets").joinpath(f"hydrodynamics/{name}.npz").open("rb") as file, np.load(file) as arrays:
-        return LinearTable(**{field: arrays[field] for field in LinearTable._fields})
-
-
 def linear_hull(hull: Hull, draft: float) -> LinearHull:
     """The linear coefficients of a hull upright at a draft [m], which is bounded to what is tabulated."""
     low, high = (float(value) for value in hull.extents[2])
@@ -98,7 +75,9 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
     shape, is_round = hull.shape, False
     x, y = (float(value) for value in hull.size[:2])
     cut = upright(hull, draft)
-    if shape.linear in ("cylinder", "sphere"):
+    if shape.table is not None:
+        table, length, aspect, depth = shape.table, table_length(hull), 1.0, draft
+    elif shape.linear in ("cylinder", "sphere"):
         table, length, aspect, depth, is_round = table_of(shape.linear), x / 2, 1.0, draft, True
     else:
         table, depth = table_of("box"), draft
@@ -106,7 +85,7 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
             x, y = (math.sqrt(12 * max(second, 1e-9) / max(cut.area, 1e-9)) for second in cut.second[:2])
             depth = cut.volume / (x * y)
         length, aspect = math.sqrt(x * y) / 2, x / y
-    turned = aspect < 1
+    turned = shape.table is None and aspect < 1
     found = interpolated(table, max(aspect, 1 / aspect), depth / length)
     excitation = around(found.excitation, table.direction)
     a, b, infinite = found.added_mass, found.damping, found.infinite
@@ -134,6 +113,11 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
         volume=cut.volume,
         is_round=is_round,
     )
+
+
+def table_length(hull: ClosedMesh) -> float:
+    """The length [m] that the table of a hull of one's own is in units of."""
+    return math.sqrt(float(hull.size[0] * hull.size[1])) / 2
 
 
 def interpolated(table: LinearTable, aspect: float, draft: float) -> LinearTable:
@@ -191,6 +175,8 @@ def lagrange(nodes: np.ndarray, x: float) -> tuple[np.ndarray, np.ndarray]:
 
 def around(excitation: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """The excitation (n, 36, 6) over the full circle from that of a quarter, or of one direction of what is round."""
+    if len(direction) == len(DIRECTIONS):
+        return excitation
     if len(direction) == 1:
         ahead = excitation[:, 0]
         cosine, sine = np.cos(DIRECTIONS)[:, None], np.sin(DIRECTIONS)[:, None]

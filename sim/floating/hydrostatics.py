@@ -17,10 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating.closed_mesh import ClosedMesh, area_vectors
+from sim.floating.closed_mesh import ClosedMesh, area_vectors, check_hull
 from sim.floating.rotation import rotation_matrix
 from sim.jit import kernel
-from sim.validation import argument_error
+from sim.validation import argument_error, as_array, check_not_negative
 
 
 @kernel(noalias=True)
@@ -153,16 +153,17 @@ class Submerged(NamedTuple):
 
 def check_pose(hull: ClosedMesh, position, rotation, surface) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Position (3,), rotation matrix and surface height per vertex as arrays. Raises ValueError for bad ones."""
-    position, rotation = np.asarray(position, dtype=float), np.asarray(rotation, dtype=float)
+    check_hull("hull", hull)
+    position = as_array("position", position, "three finite numbers [m]")
+    rotation = as_array("rotation", rotation, "a quaternion (w, x, y, z) that is not zero")
     if position.shape != (3,) or not np.isfinite(position).all():
         raise argument_error("position", position.tolist(), "three finite numbers [m]")
     if rotation.shape != (4,) or not np.isfinite(rotation).all() or not np.linalg.norm(rotation) > 0:
         raise argument_error("rotation", rotation.tolist(), "a quaternion (w, x, y, z) that is not zero")
-    heights = np.asarray(surface, dtype=float)
+    allowed = f"a finite height [m], or one for each of {len(hull.vertices)} vertices"
+    heights = as_array("surface", surface, allowed)
     if heights.shape not in ((), (len(hull.vertices),)) or not np.isfinite(heights).all():
-        raise argument_error(
-            "surface", surface, f"a finite height [m], or one for each of {len(hull.vertices)} vertices"
-        )
+        raise argument_error("surface", surface, allowed)
     return position, rotation_matrix(rotation), np.broadcast_to(heights, len(hull.vertices))
 
 
@@ -190,6 +191,7 @@ def pressure_force(
     the interface. Arguments as in `submerged`. Raises ValueError for bad arguments.
     """
     position, turn, heights = check_pose(hull, position, rotation, surface)
+    density, gravity = check_not_negative("density", density, "kg/m3"), check_not_negative("gravity", gravity, "m/s2")
     x = np.ascontiguousarray(turn @ hull.vertices.T)
     area = np.ascontiguousarray(area_vectors(x.T, hull.faces).T)
     out = np.zeros(9)

@@ -1,16 +1,23 @@
 """Six degrees of freedom for many bodies: pressure of two fluids, waves, radiation, drag, pulls and collisions.
 
-Of body i, where all but the drag and the fluid are in its own principal directions:
+Of body i, in level axes that turn with its heading:
 
   (M + A) dV/dt = F_p + m g + F_e - F_r - drag(V - U) + pull,    V = (v, w)
 
 F_p are the exact integrals of the hydrostatic pressure over the wet hull (hydrostatics.py) under the surface of
-`Water`, in the gravity g + a that a particle riding the surface feels (a its upward acceleration). A (6, 6) is the
-added mass at infinite frequency, F_r the memory of the waves that the body made (Cummins; hydrodynamics.py), F_e what
-waves do beyond F_p (excitation.py). Where the sea is no sum of waves, F_e is A times the fluid's acceleration at the
-surface, (-(g + a) slope, a), and F_r goes with the velocity against the fluid: so a small hull that displaces its
-weight moves as the fluid does in long waves. Small motions are those of linear theory. drag per axis is
-rho S/2 (b v + C |v| v/2) with S the wetted area.
+`Water`: in any wave, upwards, the weight of what is displaced. A (6, 6) is the added mass at infinite frequency, F_r
+the memory of the waves that the body made (Cummins; hydrodynamics.py), F_e what waves do beyond F_p (excitation.py).
+Where the sea is no sum of waves, F_e is the added mass and what is displaced at rest, each times the fluid's
+acceleration at the surface, and F_r goes with the velocity against the fluid: so a small hull that displaces its weight
+moves as the fluid does in long waves. Small motions are those of linear theory. The drag is along and about the body's
+own axes, rho S/2 (b v + C |v| v/2) with S the wetted area.
+
+**Means.** A, F_r and F_e are linear and have no mean. They must not get one from what is of second order: in axes that
+lean with the body A dV/dt would (A differs along them, and lean and acceleration go together), and so would an
+acceleration times what is displaced just then, or a wave force taken at a place that moves with the wave. So the axes
+are level, what is displaced is that at rest, and the upward F_e is a change of impulse. A body then floats in waves
+where Archimedes says, but for the mean of the drag. Mean forces of second order, which would need the potential of that
+order (Pinkster 1980), are left out.
 
 A hull that comes out of the water loses A, F_r and F_e with what of it is wet, below half of that at rest. As it
 enters again it shares its momentum with the fluid that it begins to carry, (m + A)(v - u) = const (von Karman 1929,
@@ -41,13 +48,16 @@ from sim.floating.rigid import (
     after_drag,
     drift,
     factorise,
+    heading_of,
     make_scratch,
     set_rotation,
     solve_factorised,
 )
 from sim.jit import kernel
-from sim.validation import argument_error
+from sim.validation import argument_error, check_positive, check_within, is_whole_number
 
+# The kernels of one substep are inlined: a call that is none copies some hundred fields of the records, which took
+# more than half of the time.
 MAX_PHASE = 0.4  # of omega h in a substep: periods are within 0.7 %, and waves may add to gravity
 ENTRY_SHARE = 0.5  # of what is wet at rest, up to which a hull that gets wetter counts as entering the water
 MAX_SUBSTEPS = 512  # of a body in one call of `step`
@@ -76,18 +86,21 @@ LIMITS = {
 def frequency_bound(fleet: Fleet, density: float, coefficients: MotionCoefficients) -> np.ndarray:
     """Upper bound (n,) [rad/s] of the frequencies of each body in fluid of at most `density` [kg/m3].
 
-    Along axis i the force changes with depth by at most rho g times the smaller of S_i/2 and what is wet, with S_i the
-    wetted area of the whole hull, and the added mass is in proportion to what is wet up to half of that at rest:
-    omega^2 <= rho g S_i/2 / (m + rho a_i). About the axis the same holds with the bound of the restoring moment, where
-    the mean of two shares may be half the greater one. The sum bounds any coupling of the two.
+    In any pose the force changes with depth by at most rho g times the smaller of |S|/2, with S_i the wetted area
+    across each axis of the whole hull, and what is wet. The added mass is in proportion to what is wet up to half of
+    that at rest: omega^2 <= rho g |S|/2 / (m + rho a). About each axis the same holds with the bound of the restoring
+    moment, where the mean of two shares may be half the greater one. The sum bounds any coupling of the two.
     """
-    hulls, q = fleet.hulls, fleet.hull
-    added = coefficients.added_mass * density * fleet.linear.added_bound[fleet.linear_hull]
+    hulls, q, s = fleet.hulls, fleet.hull, fleet.linear_hull
+    added = (coefficients.added_mass * density) * fleet.linear.added_bound
     weight = density * coefficients.gravity
-    heave = weight * hulls.wetted_area[q] / 2 / (fleet.mass[:, None] + added[:, :3])
-    inertia = fleet.density[:, None] * np.einsum("qii->qi", hulls.inertia)[q]
-    roll = weight * hulls.restoring_bound[q] / (inertia + added[:, 3:] / 2)
-    return np.sqrt(heave.max(axis=1, initial=0.0) + roll.max(axis=1, initial=0.0))
+    heave = weight * hulls.waterplane_bound[q] / (fleet.mass + added[s, 2])
+    roll_added = (np.minimum(added[:, 3], added[:, 4]) / 2)[s]
+    roll = np.zeros(len(q))
+    for axis in range(3):
+        inertia = fleet.density * hulls.inertia[q, axis, axis] + roll_added
+        np.maximum(roll, weight * hulls.restoring_bound[q, axis] / inertia, out=roll)
+    return np.sqrt(heave + roll)
 
 
 def step(
@@ -103,10 +116,8 @@ def step(
     and FloatingPointError, naming the body, where a state is no longer finite; the fleet is then as it was.
     """
     for name, (low, high, unit) in LIMITS.items():
-        if not low <= getattr(coefficients, name) <= high:
-            raise argument_error(name, getattr(coefficients, name), f"{low:g} to {high:g} {unit}".rstrip())
-    if not 0 < duration < math.inf:
-        raise argument_error("duration", duration, "above 0 s, finite")
+        check_within(name, getattr(coefficients, name), low, high, unit)
+    duration = check_positive("duration", duration, "s")
     if len(water.height) != len(fleet.mass):
         raise argument_error("water", f"{len(water.height)} samples", f"one for each of {len(fleet.mass)} bodies")
     if not 0 < water.upper <= water.lower < math.inf:
@@ -119,15 +130,15 @@ def step(
             longest = duration * MAX_SUBSTEPS / greatest
             raise argument_error("duration", duration, f"at most {longest:.3g} s for bodies this stiff")
         counts = count.astype(np.int64)
-    elif substeps >= 1:
+    elif is_whole_number(substeps) and substeps >= 1:
         counts = np.full(len(fleet.mass), int(substeps), dtype=np.int64)
     else:
         raise argument_error("substeps", substeps, "a whole number from 1")
-    state = fleet[:8]
+    state = fleet[:9]
     before = [array.copy() for array in state]
     advance(fleet, water, MotionCoefficients(*(float(value) for value in coefficients)), counts, float(duration))
     # Checked here and not in the kernel: its compiler may take x - x for 0, and with that a NaN for finite.
-    finite = np.isfinite(np.column_stack(state[:7])).all(axis=1)
+    finite = np.isfinite(np.column_stack(state[:8])).all(axis=1)
     if not finite.all():
         failed = int(np.argmin(finite))
         place = before[0][failed].tolist()
@@ -141,54 +152,64 @@ def step(
 def advance(fleet, water, coefficients, counts, duration):
     """Advance every body by `duration` [s] on its own, each in as many substeps as counts (n,) says."""
     depth = np.empty((2, fleet.hulls.x.shape[1]))
-    scratch = make_scratch(fleet.memory.shape[1])
+    scratch = make_scratch(fleet.linear.poles.shape[0], fleet.memory.shape[1])
     for i in range(fleet.mass.size):
         h = duration / counts[i]
         set_memory_step(fleet, i, h, coefficients.gravity, scratch)
+        fleet.lift[i] = 0.0
         for s in range(counts[i]):
             set_rotation(fleet.rotation, i, scratch.R)
             drift(fleet, i, h / 2.0, scratch)
             set_axes(fleet, i, scratch)
             set_load(fleet, water, i, (s + 0.5) * h, coefficients.gravity, depth, scratch)
-            kick(fleet, water, coefficients, i, h, scratch)
+            kick(fleet, water, coefficients, i, h, 1.0 / counts[i], scratch)
             set_rotation(fleet.rotation, i, scratch.R)
             drift(fleet, i, h / 2.0, scratch)
 
 
-@kernel
+@kernel(inline=True)
 def set_memory_step(fleet, i, h, gravity, scratch):
-    """Set what a substep of h [s] makes of the memory of body i."""
+    """Set what a substep of h [s] makes of the memory of body i, if another one was set."""
     s = fleet.linear_hull[i]
+    if scratch.substep[s] == h:
+        return
+    scratch.substep[s] = h
     for p in range(fleet.memory.shape[1]):
         pole = fleet.linear.poles[s, p] * np.sqrt(gravity)
-        scratch.decay[p] = np.exp(pole * h)
-        scratch.gain[p] = (scratch.decay[p] - 1.0) / pole
+        scratch.decay[s, p] = np.exp(pole * h)
+        scratch.gain[s, p] = (scratch.decay[s, p] - 1.0) / pole
 
 
-@kernel
+@kernel(inline=True)
 def set_axes(fleet, i, scratch):
-    """Set the point of the pull, and R: the axes of body i, or those of the world for a sphere, which has none."""
-    R, p = scratch.R, fleet.pull_point[i]
+    """Set the axes of body i: R from its own to the world, T from its own to its heading's, H from those to the world.
+
+    A sphere has the axes of the world.
+    """
+    R, T, H, p = scratch.R, scratch.T, scratch.H, fleet.pull_point[i]
+    for c in range(3):
+        scratch.pull_point[c] = R[c, 0] * p[0] + R[c, 1] * p[1] + R[c, 2] * p[2]
+    cosine, sine = 1.0, 0.0
     if fleet.hulls.is_round[fleet.hull[i]]:
-        for c in range(3):
-            scratch.pull_point[c] = R[c, 0] * p[0] + R[c, 1] * p[1] + R[c, 2] * p[2]
         for c in range(3):
             for d in range(3):
                 R[c, d] = 1.0 if c == d else 0.0
     else:
-        for c in range(3):
-            scratch.pull_point[c] = p[c]
+        cosine, sine = heading_of(fleet.rotation, i)
+    for c in range(3):
+        T[0, c] = cosine * R[0, c] + sine * R[1, c]
+        T[1, c] = cosine * R[1, c] - sine * R[0, c]
+        T[2, c] = R[2, c]
+        for d in range(3):
+            H[c, d] = 0.0
+    H[0, 0], H[0, 1], H[1, 0], H[1, 1], H[2, 2] = cosine, -sine, sine, cosine, 1.0
+    x, y = scratch.pull_point[0], scratch.pull_point[1]
+    scratch.pull_point[0], scratch.pull_point[1] = cosine * x + sine * y, cosine * y - sine * x
 
 
-@kernel
-def felt_gravity(water, i, gravity):
-    """g + a [m/s2] that a particle riding the surface feels; a surface in free fall presses on nothing."""
-    return max(gravity + water.acceleration[i], 0.0)
-
-
-@kernel
+@kernel(inline=True)
 def set_load(fleet, water, i, t, gravity, depth, scratch):
-    """Set force, moment and wetted (3,) of the fluids' pressure on body i, in body axes.
+    """Set force and moment (3,) of the fluids' pressure on body i, in the axes of its heading, and wetted (3,).
 
     t [s] is the time since the step began: the surface rises meanwhile as the fluid does. depth (2, n) is scratch.
     """
@@ -214,7 +235,6 @@ def set_load(fleet, water, i, t, gravity, depth, scratch):
     if water.relief.size > 0:
         for v in range(first, last):
             depth[0, v] += water.relief[start + v]
-    g = felt_gravity(water, i, gravity)
     add_pressure(hulls.x, hulls.faces, hulls.area, first_face, last_face, depth[0], water.upper, pressure)
     # int d n_z dA over the wet surface is the volume below the surface, with the sign of the outward normal
     upper = -(R[2, 0] * pressure[0] + R[2, 1] * pressure[1] + R[2, 2] * pressure[2])
@@ -233,9 +253,10 @@ def set_load(fleet, water, i, t, gravity, depth, scratch):
         both = -(R[2, 0] * pressure[0] + R[2, 1] * pressure[1] + R[2, 2] * pressure[2])
         fleet.wet_volume[i, 1] = (both - upper) / difference
         fleet.wet_volume[i, 0] -= fleet.wet_volume[i, 1]
+    T = scratch.T
     for c in range(3):
-        scratch.force[c] = -g * pressure[c]
-        scratch.moment[c] = -g * pressure[3 + c]
+        scratch.force[c] = -gravity * (T[c, 0] * pressure[0] + T[c, 1] * pressure[1] + T[c, 2] * pressure[2])
+        scratch.moment[c] = -gravity * (T[c, 0] * pressure[3] + T[c, 1] * pressure[4] + T[c, 2] * pressure[5])
         scratch.wetted[c] = pressure[6 + c]
 
 
@@ -253,7 +274,7 @@ def set_depth(x, first, last, R, top, sx, sy, depth):
         depth[v] = top + gx * x[0, v] + gy * x[1, v] + gz * x[2, v]
 
 
-@kernel
+@kernel(inline=True)
 def set_share(fleet, i, top, scratch):
     """Set share (6,) of body i below a surface `top` [m] above its centre, as far as depth reduces it."""
     depth = top - fleet.hulls.half[fleet.hull[i], 2]  # [m] of water over the body
@@ -262,42 +283,53 @@ def set_share(fleet, i, top, scratch):
         scratch.share[c] = share
 
 
-@kernel
-def kick(fleet, water, coefficients, i, h, scratch):
-    """Change velocity and spin of body i by the forces of one substep of h [s]."""
-    R, v, w, load = scratch.R, scratch.v, scratch.w, scratch.load
-    force = scratch.force
-    fleet.buoyancy[i] = R[2, 0] * force[0] + R[2, 1] * force[1] + R[2, 2] * force[2]
-    set_mass(fleet, water, coefficients, i, scratch)
-    set_velocities(fleet, water, coefficients, i, scratch)
+@kernel(inline=True)
+def kick(fleet, water, coefficients, i, h, share_of_step, scratch):
+    """Change velocity and spin of body i by the forces of one substep of h [s], that share of the whole step."""
+    H, v, w, load = scratch.H, scratch.v, scratch.w, scratch.load
+    before, mass = fleet.velocity[i, 2], fleet.mass[i]
+    buoyancy, density = scratch.force[2], fluid_density(fleet, water, i)
+    set_mass(fleet, water, coefficients, i, density, scratch)
+    set_velocities(fleet, water, coefficients, i, density, scratch)
     update_memory(fleet, water, i, scratch)
-    set_forces(fleet, water, coefficients, i, scratch)
+    waves = set_forces(fleet, water, coefficients, i, density, scratch)
     factorise(scratch.mass, scratch.factor)
     solve_factorised(scratch.factor, load)
     for c in range(3):
         v[c] += h * load[c]
         w[c] += h * load[3 + c]
-    apply_drag(fleet, water, coefficients, i, h, scratch)
+    drag = apply_drag(fleet, water, coefficients, i, h, scratch)
     if fleet.pull_limit[i] > 0.0:
         add_pull(fleet, i, h, coefficients.pull_rate, scratch)
     for c in range(3):
-        fleet.velocity[i, c] = R[c, 0] * v[0] + R[c, 1] * v[1] + R[c, 2] * v[2]
-        fleet.spin[i, c] = R[c, 0] * w[0] + R[c, 1] * w[1] + R[c, 2] * w[2]
+        fleet.velocity[i, c] = H[c, 0] * v[0] + H[c, 1] * v[1] + H[c, 2] * v[2]
+        fleet.spin[i, c] = H[c, 0] * w[0] + H[c, 1] * w[1] + H[c, 2] * w[2]
+    change = mass * ((fleet.velocity[i, 2] - before) / h + coefficients.gravity)
+    fleet.buoyancy[i] = buoyancy
+    fleet.lift[i, 0] += share_of_step * buoyancy
+    fleet.lift[i, 1] += share_of_step * waves
+    fleet.lift[i, 2] += share_of_step * drag
+    fleet.lift[i, 3] += share_of_step * (change - buoyancy - waves - drag)
 
 
-@kernel
-def set_mass(fleet, water, coefficients, i, scratch):
+@kernel(inline=True)
+def set_mass(fleet, water, coefficients, i, density, scratch):
     """Set mass (6, 6), and share (6,): sqrt of how much of body i is wet, of half of what is wet at rest, at most 1.
 
     The coefficients are those at rest while at least half of that is wet: a scale that followed each small motion
     would push the body up or down on average, which linear theory does not know.
     """
-    q, s, wet, density = fleet.hull[i], fleet.linear_hull[i], scratch.wet, fluid_density(fleet, water, i)
+    s, wet = fleet.linear_hull[i], scratch.wet
+    T, own, inertia = scratch.T, scratch.inertia, fleet.hulls.inertia[fleet.hull[i]]
     for c in range(3):
-        full = ENTRY_SHARE * density * fleet.linear.wet_area[s, c]
-        wet[c] = np.sqrt(min(scratch.wetted[c] / full, 1.0)) if full > 0.0 else 0.0
+        wet[c] = 0.0
+        for d in range(3):
+            full = ENTRY_SHARE * density * fleet.linear.wet_area[s, d]
+            wet[c] += T[c, d] * T[c, d] * (min(scratch.wetted[d] / full, 1.0) if full > 0.0 else 0.0)
     for c in range(3):
-        wet[3 + c] = np.sqrt((wet[(c + 1) % 3] ** 2 + wet[(c + 2) % 3] ** 2) / 2.0)
+        wet[3 + c] = np.sqrt((wet[(c + 1) % 3] + wet[(c + 2) % 3]) / 2.0)
+    for c in range(3):
+        wet[c] = np.sqrt(wet[c])
     for c in range(6):
         scratch.share[c] *= wet[c]
         for d in range(6):
@@ -306,97 +338,139 @@ def set_mass(fleet, water, coefficients, i, scratch):
     for c in range(3):
         scratch.mass[c, c] += fleet.mass[i]
         for d in range(3):
-            scratch.mass[3 + c, 3 + d] += fleet.density[i] * fleet.hulls.inertia[q, c, d]
+            own[c, d] = inertia[c, 0] * T[d, 0] + inertia[c, 1] * T[d, 1] + inertia[c, 2] * T[d, 2]
+    for c in range(3):
+        for d in range(3):
+            turned = T[c, 0] * own[0, d] + T[c, 1] * own[1, d] + T[c, 2] * own[2, d]
+            scratch.mass[3 + c, 3 + d] += fleet.density[i] * turned
 
 
-@kernel
+@kernel(inline=True)
 def fluid_density(fleet, water, i):
     """Mean density [kg/m3] of the fluids that body i displaces; 0 in the air."""
     upper, lower = fleet.wet_volume[i, 0], fleet.wet_volume[i, 1]
     return (water.upper * upper + water.lower * lower) / (upper + lower) if upper + lower > 0.0 else 0.0
 
 
-@kernel
-def set_velocities(fleet, water, coefficients, i, scratch):
+@kernel(inline=True)
+def set_velocities(fleet, water, coefficients, i, density, scratch):
     """Set v and w (3,) of body i, which shares its momentum with the fluid that it begins to carry."""
-    R, v, w, wetted = scratch.R, scratch.v, scratch.w, scratch.wetted
-    s, m, density = fleet.linear_hull[i], fleet.mass[i], fluid_density(fleet, water, i)
-    u0, u1, u2 = water.velocity[i, 0], water.velocity[i, 1], water.velocity[i, 2]
-    v0, v1, v2 = fleet.velocity[i, 0], fleet.velocity[i, 1], fleet.velocity[i, 2]
-    w0, w1, w2 = fleet.spin[i, 0], fleet.spin[i, 1], fleet.spin[i, 2]
+    H, T, v, w, flow, wetted = scratch.H, scratch.T, scratch.v, scratch.w, scratch.flow, scratch.wetted
+    s, m = fleet.linear_hull[i], fleet.mass[i]
     for c in range(3):
-        flow = R[0, c] * u0 + R[1, c] * u1 + R[2, c] * u2
-        v[c] = R[0, c] * v0 + R[1, c] * v1 + R[2, c] * v2
-        w[c] = R[0, c] * w0 + R[1, c] * w1 + R[2, c] * w2
+        flow[c] = v[c] = w[c] = 0.0
+        for d in range(3):
+            flow[c] += H[d, c] * water.velocity[i, d]
+            v[c] += H[d, c] * fleet.velocity[i, d]
+            w[c] += H[d, c] * fleet.spin[i, d]
+    for c in range(3):
         if 0.0 <= fleet.wetted[i, c] < wetted[c]:
             full = ENTRY_SHARE * density * fleet.linear.wet_area[s, c]
             carried = coefficients.added_mass * density * fleet.linear.added_mass[s, c, c]
             before, now = min(fleet.wetted[i, c] / full, 1.0), min(wetted[c] / full, 1.0)
-            v[c] = flow + (v[c] - flow) * (m + carried * before) / (m + carried * now)
+            speed = T[0, c] * (v[0] - flow[0]) + T[1, c] * (v[1] - flow[1]) + T[2, c] * (v[2] - flow[2])
+            change = speed * carried * (before - now) / (m + carried * now)
+            for d in range(3):
+                v[d] += T[d, c] * change
         fleet.wetted[i, c] = wetted[c]
 
 
-@kernel
+@kernel(inline=True)
 def update_memory(fleet, water, i, scratch):
     """Take the velocities of body i into its memory: s' = p s + v over a substep.
 
     They are those against the fluid where no excitation is given, which would hold the fluid's part.
     """
-    R = scratch.R
-    u0, u1, u2 = water.velocity[i, 0], water.velocity[i, 1], water.velocity[i, 2]
+    s = fleet.linear_hull[i]
     for c in range(6):
         speed = scratch.v[c] if c < 3 else scratch.w[c - 3]
         if c < 3 and water.excitation.shape[0] == 0:
-            speed -= R[0, c] * u0 + R[1, c] * u1 + R[2, c] * u2
+            speed -= scratch.flow[c]
         speed *= scratch.share[c]
         for p in range(fleet.memory.shape[1]):
-            fleet.memory[i, p, c] = scratch.decay[p] * fleet.memory[i, p, c] + scratch.gain[p] * speed
+            fleet.memory[i, p, c] = scratch.decay[s, p] * fleet.memory[i, p, c] + scratch.gain[s, p] * speed
 
 
-@kernel
-def set_forces(fleet, water, coefficients, i, scratch):
-    """Set load (6,): all forces and moments on body i but the drag and the pull."""
-    R, load, share = scratch.R, scratch.load, scratch.share
-    s, m, density = fleet.linear_hull[i], fleet.mass[i], fluid_density(fleet, water, i)
-    for c in range(3):
-        load[c] = scratch.force[c] - m * coefficients.gravity * R[2, c]
-        load[3 + c] = scratch.moment[c]
+@kernel(inline=True)
+def set_forces(fleet, water, coefficients, i, density, scratch):
+    """Set load (6,): all forces and moments on body i but the drag and the pull.
+
+    Returns the upward force [N] of the waves.
+    """
+    H, load, share = scratch.H, scratch.load, scratch.share
+    s, m = fleet.linear_hull[i], fleet.mass[i]
+    a, sx, sy = max(water.acceleration[i], -coefficients.gravity), water.slope[i, 0], water.slope[i, 1]
+    for c in range(6):
+        load[c] = 0.0
+    # Of the volume at rest: what a wave adds to it is of second order, and would lift the body on average.
+    carried = min(m, density * m / fleet.density[i]) * share[2] * share[2]
+    for c in range(2):
+        load[c] = (
+            fleet.mooring[i, 0] * H[0, c] + fleet.mooring[i, 1] * H[1, c] - carried * a * (H[0, c] * sx + H[1, c] * sy)
+        )
     if water.excitation.shape[0] > 0:
         given = water.excitation[i]
         for c in range(6):
             first = 3 * (c // 3)
-            along = R[0, c - first] * given[first] + R[1, c - first] * given[first + 1]
-            along += R[2, c - first] * given[first + 2]
+            along = H[0, c - first] * given[first] + H[1, c - first] * given[first + 1]
+            along += H[2, c - first] * given[first + 2]
             load[c] += density * share[c] * share[c] * along
     else:
-        g = felt_gravity(water, i, coefficients.gravity)
-        ax, ay, az = -g * water.slope[i, 0], -g * water.slope[i, 1], water.acceleration[i]
+        load[2] = carried * a
+        g = coefficients.gravity + a
         for d in range(3):
-            along = R[0, d] * ax + R[1, d] * ay + R[2, d] * az
+            along = H[2, d] * a - g * (H[0, d] * sx + H[1, d] * sy)
             for c in range(6):
                 load[c] += scratch.mass[c, d] * along
             load[d] -= m * along
-    scale = 2.0 * density * coefficients.gravity * coefficients.radiation
-    for p in range(fleet.memory.shape[1]):
-        for c in range(6):
-            total = 0.0
-            for d in range(6):
-                total += (fleet.linear.residues[s, p, c, d] * fleet.memory[i, p, d]).real
-            load[c] -= scale * share[c] * total
-
-
-@kernel
-def apply_drag(fleet, water, coefficients, i, h, scratch):
-    """Let drag slow v and w (3,) of body i for h [s], each axis on its own and exactly."""
-    R, v, w, wetted, mass = scratch.R, scratch.v, scratch.w, scratch.wetted, scratch.mass
-    q, b, C = fleet.hull[i], coefficients.linear_drag, coefficients.quadratic_drag / 2.0
+    waves = load[2]
     for c in range(3):
-        flow = R[0, c] * water.velocity[i, 0] + R[1, c] * water.velocity[i, 1] + R[2, c] * water.velocity[i, 2]
-        drag = wetted[c] / 2.0 / mass[c, c]
-        v[c] = flow + after_drag(v[c] - flow, b * drag, C * drag, h)
+        load[c] += scratch.force[c] - m * coefficients.gravity * H[2, c]
+        load[3 + c] += scratch.moment[c]
+    scale = 2.0 * density * coefficients.gravity * coefficients.radiation
+    for n in range(fleet.linear.coupled_count[s]):
+        c, d = fleet.linear.coupled[s, n, 0], fleet.linear.coupled[s, n, 1]
+        total = 0.0
+        for p in range(fleet.memory.shape[1]):
+            residue, state = fleet.linear.residues[s, n, p], fleet.memory[i, p, d]
+            total += residue.real * state.real - residue.imag * state.imag
+        load[c] -= scale * share[c] * total
+    return waves
+
+
+@kernel(inline=True)
+def apply_drag(fleet, water, coefficients, i, h, scratch):
+    """Let drag slow v and w (3,) of body i for h [s], each of its own axes alone and exactly.
+
+    Returns the upward force [N] of that.
+    """
+    T, v, w, flow, wetted, mass = scratch.T, scratch.v, scratch.w, scratch.flow, scratch.wetted, scratch.mass
+    q, b, C = fleet.hull[i], coefficients.linear_drag, coefficients.quadratic_drag / 2.0
+    lift = 0.0
+    for c in range(3):
+        inertia, turning = along_axis(mass, 0, T, c), along_axis(mass, 3, T, c)
+        drag = wetted[c] / 2.0 / inertia
+        speed = T[0, c] * (v[0] - flow[0]) + T[1, c] * (v[1] - flow[1]) + T[2, c] * (v[2] - flow[2])
+        change = after_drag(speed, b * drag, C * drag, h) - speed
+        lift += T[2, c] * inertia * change / h
         # a face wet over S that rotates about an axis at radius r: drag S r^2 w, S r^3 |w| w
         d, e = (c + 1) % 3, (c + 2) % 3
         rd, re = fleet.hulls.radius_of_gyration[q, d], fleet.hulls.radius_of_gyration[q, e]
-        linear = (wetted[d] * re * re + wetted[e] * rd * rd) / 2.0 / mass[3 + c, 3 + c]
-        quadratic = (wetted[d] * re**3 + wetted[e] * rd**3) / 2.0 / mass[3 + c, 3 + c]
-        w[c] = after_drag(w[c], b * linear, C * quadratic, h)
+        linear = (wetted[d] * re * re + wetted[e] * rd * rd) / 2.0 / turning
+        quadratic = (wetted[d] * re**3 + wetted[e] * rd**3) / 2.0 / turning
+        spin = T[0, c] * w[0] + T[1, c] * w[1] + T[2, c] * w[2]
+        spin_change = after_drag(spin, b * linear, C * quadratic, h) - spin
+        for a in range(3):
+            v[a] += T[a, c] * change
+            w[a] += T[a, c] * spin_change
+    return lift
+
+
+@kernel(inline=True)
+def along_axis(mass, first, T, c):
+    """The inertia along column c of T (3, 3), of the three rows and columns of mass (6, 6) from `first`."""
+    total = 0.0
+    for a in range(3):
+        for b in range(3):
+            total += T[a, c] * mass[first + a, first + b] * T[b, c]
+    return total

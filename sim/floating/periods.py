@@ -2,10 +2,10 @@
 
 import math
 
-from sim.floating.equilibrium import OIL_ON_WATER, Layers, density_steps, equilibrium_draft, upright
+from sim.floating.equilibrium import OIL_ON_WATER, Layers, check_layers, density_steps, equilibrium_draft, upright
 from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import linear_hull, natural_frequency
-from sim.validation import argument_error
+from sim.validation import argument_error, check_not_negative, is_whole_number
 
 
 def heave_period(
@@ -17,13 +17,15 @@ def heave_period(
     interfaces, which are taken to stay level (Newman 1977, section 6.16). added scales the added mass. inf where no
     force restores: the hull sinks, or is wholly submerged in one fluid. Raises ValueError as `equilibrium_draft`.
     """
+    check_not_negative("added", added, "")
+    layers = check_layers(layers)
     return heave_period_at(hull, density, layers, equilibrium_draft(hull, density, layers, gravity), gravity, added)
 
 
 def heave_period_at(
     hull: Hull, density: float, layers: Layers, draft: float, gravity: float = 9.81, added: float = 1.0
 ) -> float:
-    """`heave_period` of a hull whose equilibrium draft [m] is known."""
+    """`heave_period` of a hull with a known equilibrium draft [m]."""
     if math.isinf(draft):
         return math.inf
     cuts = [(change, upright(hull, draft - top)) for change, top in density_steps(layers)]
@@ -42,8 +44,10 @@ def roll_period(
     it. inf where the upright pose is not stable, or the hull sinks. added scales the added inertia. Raises ValueError
     as `equilibrium_draft`, and for another axis.
     """
-    if isinstance(axis, bool) or axis not in (0, 1):
+    if not is_whole_number(axis) or axis not in (0, 1):
         raise argument_error("axis", axis, "0 (roll) or 1 (pitch)")
+    check_not_negative("added", added, "")
+    layers = check_layers(layers)
     draft = equilibrium_draft(hull, density, layers, gravity)
     if math.isinf(draft):
         return math.inf

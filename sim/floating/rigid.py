@@ -1,6 +1,7 @@
 """The motion of one rigid body over a substep, given its forces: rotation, translation, drag and pulls.
 
-Vectors named v (velocity) and w (angular velocity) are in body axes. R (3, 3) is the rotation from body to world axes.
+R (3, 3) is the rotation from body to world axes. The scratch's v (velocity) and w (angular velocity), and what acts on
+them, are in the axes of the body's heading: x and y level, turned about z, which is up.
 """
 
 import math
@@ -15,31 +16,37 @@ class Scratch(NamedTuple):
     """Arrays that the kernels of one body write before they read them; allocated once for all bodies."""
 
     R: np.ndarray  # (3, 3) rotation from body to world axes
-    inverse_inertia: np.ndarray  # (3, 3) inverse of the inertia of the solid
-    mass: np.ndarray  # (6, 6) [kg, kg m, kg m2] of the solid with added mass, in body axes
+    T: np.ndarray  # (3, 3) rotation from body axes to those of its heading, with z up
+    H: np.ndarray  # (3, 3) rotation from the axes of the heading to those of the world
+    inertia: np.ndarray  # (3, 3) [m5] of the solid about its own axes, half turned to those of the heading
+    mass: np.ndarray  # (6, 6) [kg, kg m, kg m2] of the solid with added mass, in the axes of the heading
     factor: np.ndarray  # (6, 6) lower Cholesky factor of it
     wet: np.ndarray  # (6,) share of the body that is wet for each motion, its root: 1 as at rest, 0 in air
     share: np.ndarray  # (6,) the same, less where the body is below the surface: what it feels and makes of waves
     load: np.ndarray  # (6,) [N, N m] of all forces, and what they change
-    decay: np.ndarray  # (p,) complex: what a substep leaves of the memory
-    gain: np.ndarray  # (p,) [s] complex: what a substep adds of a unit velocity
+    substep: np.ndarray  # (s,) [s] for which decay and gain hold, of each linear hull
+    decay: np.ndarray  # (s, p) complex: what a substep leaves of the memory
+    gain: np.ndarray  # (s, p) [s] complex: what a substep adds of a unit velocity
     pull_point: np.ndarray  # (3,) [m] where the body is pulled, in the axes in which its forces are
-    v: np.ndarray  # (3,) [m/s] velocity in body axes
-    w: np.ndarray  # (3,) [rad/s] angular velocity in body axes
+    v: np.ndarray  # (3,) [m/s] velocity
+    w: np.ndarray  # (3,) [rad/s] angular velocity
+    flow: np.ndarray  # (3,) [m/s] velocity of the fluid
     momentum: np.ndarray  # (3,) angular momentum of the solid at unit density, in world axes
-    force: np.ndarray  # (3,) [N] of the fluids, in body axes
-    moment: np.ndarray  # (3,) [N m] of the fluids, in body axes
+    force: np.ndarray  # (3,) [N] of the fluids at rest
+    moment: np.ndarray  # (3,) [N m] of the fluids at rest
     wetted: np.ndarray  # (3,) [kg/m] wetted area across each body axis times density
     pressure: np.ndarray  # (9,) what `add_pressure` adds to
 
 
 @kernel
-def make_scratch(poles):
-    """Arrays for the kernels of one body with as many poles, uninitialised."""
+def make_scratch(hulls, poles):
+    """Arrays for the kernels of one body, of so many linear hulls with so many poles; all but substep uninitialised."""
     return Scratch(
-        np.empty((3, 3)), np.empty((3, 3)), np.empty((6, 6)), np.empty((6, 6)), np.empty(6), np.empty(6), np.empty(6),
-        np.empty(poles, np.complex128), np.empty(poles, np.complex128), np.empty(3), np.empty(3), np.empty(3),
-        np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(9),
+        np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((6, 6)), np.empty((6, 6)),
+        np.empty(6), np.empty(6), np.empty(6), np.zeros(hulls),
+        np.empty((hulls, poles), np.complex128), np.empty((hulls, poles), np.complex128),
+        np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3),
+        np.empty(9),
     )  # fmt: skip
 
 
@@ -77,6 +84,14 @@ def set_rotation(rotation, i, R):
 
 
 @kernel
+def heading_of(rotation, i):
+    """Cosine and sine of the turn about the vertical in the quaternion rotation[i] of (n, 4)."""
+    w, z = rotation[i, 0], rotation[i, 3]
+    size = w * w + z * z
+    return ((w * w - z * z) / size, 2.0 * w * z / size) if size > 1e-12 else (1.0, 0.0)
+
+
+@kernel
 def set_inverse(a, out):
     """out = a^-1 of (3, 3), by cofactors."""
     for r in range(3):
@@ -95,6 +110,8 @@ def after_drag(v, linear, quadratic, h):
 
     With e = exp(-linear h). v is a number; linear [1/s], quadratic [1/m].
     """
+    if linear <= 0.0:
+        return v / (1.0 + quadratic * abs(v) * h)
     decay = math.exp(-linear * h)
     integral = -math.expm1(-linear * h) / linear if linear * h > 1e-9 else h
     return v * decay / (1.0 + quadratic * abs(v) * integral)
@@ -107,7 +124,7 @@ def add_pull(fleet, i, h, rate, scratch):
     With K the mobility of the point, an implicit step of x'' = -rate^2 x - 2 rate x' is the impulse
     P = -s/(1 + s) K^-1 (x' + x rate/(2 + h rate)), s = h rate (2 + h rate) (Catto, Soft Constraints, GDC 2011).
     """
-    R, v, w, p, change = scratch.R, scratch.v, scratch.w, scratch.pull_point, scratch.load
+    H, v, w, p, change = scratch.H, scratch.v, scratch.w, scratch.pull_point, scratch.load
     K, K_inv, impulse = np.empty((3, 3)), np.empty((3, 3)), np.empty(3)
     for c in range(3):  # column c of K: the velocity of the point after a unit impulse along c
         set_impulse(change, p, c == 0, c == 1, c == 2)
@@ -120,7 +137,7 @@ def add_pull(fleet, i, h, rate, scratch):
     for c in range(3):
         offset = p[c]
         for a in range(3):
-            offset += R[a, c] * (fleet.position[i, a] - fleet.pull_target[i, a])
+            offset += H[a, c] * (fleet.position[i, a] - fleet.pull_target[i, a])
         speed = v[c] + w[(c + 1) % 3] * p[(c + 2) % 3] - w[(c + 2) % 3] * p[(c + 1) % 3]
         wanted = -s / (1.0 + s) * (speed + offset * rate / (2.0 + h * rate))
         for a in range(3):
@@ -142,14 +159,14 @@ def set_impulse(out, p, x, y, z):
     out[3], out[4], out[5] = p[1] * z - p[2] * y, p[2] * x - p[0] * z, p[0] * y - p[1] * x
 
 
-@kernel
+@kernel(inline=True)
 def drift(fleet, i, h, scratch):
     """Move and rotate body i for h [s] without forces; R becomes the new rotation.
 
     The solid keeps its angular momentum L: w = R I^-1 R^T L at the middle of the rotation, and again at its end.
     """
-    R, inverse_inertia, momentum, body_spin = scratch.R, scratch.inverse_inertia, scratch.momentum, scratch.w
-    solid_inertia = fleet.hulls.inertia[fleet.hull[i]]
+    R, momentum, body_spin, hull = scratch.R, scratch.momentum, scratch.w, fleet.hull[i]
+    solid_inertia, inverse_inertia = fleet.hulls.inertia[hull], fleet.hulls.inverse_inertia[hull]
     spin, q = fleet.spin[i], fleet.rotation[i]
     for c in range(3):
         fleet.position[i, c] += h * fleet.velocity[i, c]
@@ -159,7 +176,6 @@ def drift(fleet, i, h, scratch):
         for d in range(3):
             for e in range(3):
                 momentum[c] += R[c, d] * solid_inertia[d, e] * body_spin[e]
-    set_inverse(solid_inertia, inverse_inertia)
     q0, q1, q2, q3 = q[0], q[1], q[2], q[3]
     rotate(q, spin, h / 2.0)
     set_rotation(fleet.rotation, i, R)

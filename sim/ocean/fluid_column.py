@@ -10,8 +10,11 @@ import math
 import numpy as np
 
 from sim.ocean.dispersion import damped_root, mode_ratios, omega, two_layer, viscous_two_layer
-from sim.ocean.fluids import MIXTURE_LAWS, Fluid, fluids, mixed
-from sim.validation import argument_error, check_not_negative, check_positive, check_within
+from sim.ocean.emulsions import MIXTURE_LAWS
+from sim.ocean.fluids import Fluid, fluids, mixed
+from sim.validation import argument_error, check_choice, check_not_negative, check_positive, check_within
+
+CONTINUOUS = ("plentiful", "oil", "water")
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -22,7 +25,8 @@ class FluidColumn:
     water: Fluid = fluids()["sea water"]
     thickness: float = 0.0  # [m] of the layer; 0: clean water
     fraction: float = 0.0  # of oil by volume, entirely mixed; above 0 there is no layer
-    law: str = "taylor"  # of the mixture's viscosity
+    law: str = "pal_rhodes"  # of the mixture's viscosity
+    continuous: str = "plentiful"  # fluid that an emulsion's drops are in: "plentiful", "oil" or "water"
     film: bool = False  # an inextensible film on top
     gravity: float = 9.81  # [m/s2]
 
@@ -32,6 +36,9 @@ class FluidColumn:
         check_positive("gravity", self.gravity, "m/s2")
         if self.law not in MIXTURE_LAWS:
             raise argument_error("law", self.law, "one of " + ", ".join(MIXTURE_LAWS))
+        check_choice("continuous", self.continuous, CONTINUOUS)
+        if self.kind == "mixed":
+            mixed(self.oil, self.water, self.fraction, self.law, self.continuous_fluid)  # refuses too many drops
         if self.oil.density > self.water.density:
             raise argument_error("oil", self.oil.name, f"an oil lighter than the water, {self.water.density:g} kg/m3")
 
@@ -41,10 +48,21 @@ class FluidColumn:
         return "mixed" if self.fraction > 0.0 else "layer" if self.thickness > 0.0 else "water"
 
     @property
+    def continuous_fluid(self) -> Fluid:
+        """The fluid that the drops of an emulsion are in."""
+        is_oil = self.continuous == "oil" or (self.continuous == "plentiful" and self.fraction > 0.5)
+        return self.oil if is_oil else self.water
+
+    @property
+    def drops(self) -> float:
+        """Share of the drops in an emulsion, by volume."""
+        return 1.0 - self.fraction if self.continuous_fluid is self.oil else self.fraction
+
+    @property
     def surface(self) -> Fluid:
         """The fluid on top."""
         if self.kind == "mixed":
-            return mixed(self.oil, self.water, self.fraction, self.law)
+            return mixed(self.oil, self.water, self.fraction, self.law, self.continuous_fluid)
         return self.oil if self.kind == "layer" else self.water
 
     @property

@@ -1,7 +1,6 @@
 """Fluids: water, oils, what a mixture of two amounts to, and how much light they reflect.
 
-Choose `taylor` for oil and water, which do not dissolve in each other; the other laws are for oils among themselves
-and for the lab's reading of "entirely mixed". Oil data and their source: assets/oils.csv.
+How viscous a mixture is: `sim.ocean.emulsions`. Oil data and their source: assets/oils.csv.
 """
 
 import csv
@@ -12,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.validation import argument_error, as_array, check_positive, check_within
 
 
@@ -62,55 +62,28 @@ def mixed_density(first: float, second: float, fraction: float) -> float:
     return phi * check_positive("first", first, "kg/m3") + (1.0 - phi) * check_positive("second", second, "kg/m3")
 
 
-def arrhenius(first: float, second: float, fraction: float) -> float:
-    """ln mu = phi ln mu1 + (1 - phi) ln mu2; viscosities in any one unit. Raises ValueError unless above 0."""
-    return grunberg_nissan(first, second, fraction, 0.0)
+def mixed(
+    first: Fluid, second: Fluid, fraction: float, law: str = "pal_rhodes", continuous: Fluid | None = None
+) -> Fluid:
+    """The two entirely mixed, `fraction` by volume of the first; index and colour of the more plentiful one.
 
-
-def grunberg_nissan(first: float, second: float, fraction: float, interaction: float) -> float:
-    """Arrhenius's law with phi (1 - phi) G12 added (Grunberg and Nissan 1949, Nature 164:799)."""
-    phi = _checked(first, second, fraction)
-    return math.exp(phi * math.log(first) + (1.0 - phi) * math.log(second) + phi * (1.0 - phi) * interaction)
-
-
-def kendall_monroe(first: float, second: float, fraction: float) -> float:
-    """mu^(1/3) = phi mu1^(1/3) + (1 - phi) mu2^(1/3) (Kendall and Monroe 1917)."""
-    phi = _checked(first, second, fraction)
-    return (phi * first ** (1.0 / 3.0) + (1.0 - phi) * second ** (1.0 / 3.0)) ** 3
-
-
-def taylor(dispersed: float, continuous: float, fraction: float) -> float:
-    """An emulsion of drops, fraction phi by volume, in the continuous fluid (Taylor 1932, Proc. R. Soc. A 138:41).
-
-    mu = mu_c [1 + 2.5 phi (l + 0.4)/(l + 1)], l = mu_d/mu_c; of first order in phi. Einstein's 1 + 2.5 phi for solids.
-    """
-    phi = _checked(dispersed, continuous, fraction)
-    ratio = dispersed / continuous
-    return continuous * (1.0 + 2.5 * phi * (ratio + 0.4) / (ratio + 1.0))
-
-
-def emulsion(first: float, second: float, fraction: float) -> float:
-    """Taylor's law with the more plentiful fluid as the continuous one: what "mixed" oil and water become."""
-    if fraction <= 0.5:
-        return taylor(first, second, fraction)
-    return taylor(second, first, 1.0 - fraction)
-
-
-MIXTURE_LAWS = {"arrhenius": arrhenius, "kendall_monroe": kendall_monroe, "taylor": emulsion}
-
-
-def mixed(first: Fluid, second: Fluid, fraction: float, law: str = "taylor") -> Fluid:
-    """The two entirely mixed, `fraction` by volume of the first; tensions, index and colour of the more plentiful one.
-
-    law: one of MIXTURE_LAWS. Raises ValueError for another, or a fraction outside 0 to 1.
+    law: one of MIXTURE_LAWS. continuous: the fluid that an emulsion's drops are in, which has its tensions; by default
+    the more plentiful one. Raises ValueError for another law or fluid, a fraction outside 0 to 1, or more drops than
+    the law has numbers for.
     """
     if law not in MIXTURE_LAWS:
         raise argument_error("law", law, "one of " + ", ".join(MIXTURE_LAWS))
+    if continuous not in (None, first, second):
+        raise argument_error("continuous", continuous.name, f"{first.name} or {second.name}")
     more = first if fraction > 0.5 else second
+    outside = continuous or more
+    inside, drops = (second, 1.0 - fraction) if outside is first else (first, fraction)
     return more._replace(
         name=f"{fraction:.0%} {first.name} in {second.name}",
         density=mixed_density(first.density, second.density, fraction),
-        viscosity=MIXTURE_LAWS[law](first.viscosity, second.viscosity, fraction),
+        viscosity=MIXTURE_LAWS[law].viscosity(inside.viscosity, outside.viscosity, drops),
+        surface_tension=outside.surface_tension,
+        interface_tension=outside.interface_tension,
     )
 
 
@@ -159,9 +132,3 @@ def diffuse_reflectance(index: float) -> float:
 def brewster_angle(index: float) -> float:
     """Angle [rad] at which p-polarised light is not reflected: arctan n."""
     return math.atan(check_within("index", index, 1.0, 10.0))
-
-
-def _checked(first: float, second: float, fraction: float) -> float:
-    check_positive("first", first, "")
-    check_positive("second", second, "")
-    return check_within("fraction", fraction, 0.0, 1.0)

@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.gerstner import Waves, widened
 from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.wave_sum import add_waves, find_labels, set_mesh, set_motion
+from sim.ocean.slick import SlickCover
+from sim.ocean.wave_sum import add_waves, calm_waves, find_labels, set_mesh, set_motion
 from sim.validation import check_finite, check_not_negative, check_positions
 
 CLEAN = FluidColumn()
@@ -59,6 +60,8 @@ class RadialSea:
         self._base, self._fade = 0.0, 0.0
         self._old: tuple[np.ndarray, ...] | None = None
         self._grid: RadialGrid | None = None
+        self.slick: SlickCover | None = None  # what calms the waves under it
+        self._loss: tuple[FluidColumn, np.ndarray, np.ndarray] | None = None  # of the fluids in the slick, k [1/m]
         self._set(waves, column, check_not_negative("exposure", exposure, "s"), waves.phase)
 
     def change(
@@ -95,7 +98,7 @@ class RadialSea:
         self.rate, self.decay, self.ratio = omega, decay, column.interface_ratio(k)
         self.amplitude = waves.amplitude * np.exp(-decay * exposure)
         self._phase = phase
-        self._grid = None
+        self._grid = self._loss = None
         self._weights: dict[bytes, np.ndarray] = {}
 
     def age(self, exposure: float) -> None:
@@ -139,12 +142,21 @@ class RadialSea:
             np.concatenate([ratio, self.ratio]),
         )
 
+    def losses(self, k: np.ndarray) -> np.ndarray:
+        """Loss [1/m] of waves of wavenumber k [rad/m] under the slick; kept while slick and waves stay the same."""
+        assert self.slick is not None
+        inside = self.slick.column
+        if self._loss is None or self._loss[0] != inside or not np.array_equal(self._loss[1], k):
+            self._loss = inside, k, self.slick.attenuation(k, self.column)
+        return self._loss[2]
+
     def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
         """The sea on a grid about `centre` (x, y) [m] at time t [s]."""
         kx, ky, amplitude, _, phase, _ = self.current(check_finite("t", t, "s"))
         if self._grid is not grid:
             self._plan(grid, np.hypot(kx, ky))
         order, weight, active = self._order, self._weight, self._active
+        loss = np.zeros(len(kx)) if self.slick is None else self.losses(np.hypot(kx, ky))
         kx, ky, a = kx[order], ky[order], amplitude[order]
         k = np.maximum(np.hypot(kx, ky), 1e-30)
         ex, ey = self.choppiness * kx / k, self.choppiness * ky / k
@@ -159,6 +171,13 @@ class RadialSea:
         rows = [sums[i] for i in range(8)]
         add_waves(grid.x, grid.y, grid.start, active, weight.reshape(-1), np.uint64(weight.shape[1]), wave.reshape(-1),
                   *rows)  # fmt: skip
+        if self.slick is not None:
+            (x, y), count = self.slick.centre, weight.shape[1]
+            place = np.zeros((3, count), np.float32)
+            place[:, : len(k)] = kx / k, ky / k, loss[order]
+            calm_waves(grid.x, grid.y, grid.start, active, weight.reshape(-1), np.uint64(count), wave.reshape(-1),
+                       place[0], place[1], place[2], np.float32(x - centre[0]), np.float32(y - centre[1]),
+                       np.float32(self.slick.radius), *rows)  # fmt: skip
         self.evaluated += self._pairs
         self.skipped += n * len(a) - self._pairs
         vertices, slope = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32)
@@ -191,6 +210,9 @@ class RadialSea:
         n = len(where)
         kx, ky, amplitude, rate, phase, ratio = self.current(check_finite("t", t, "s"))
         weight = self._footprint(np.broadcast_to(np.asarray(size, np.float64), (n,)), kx, ky)
+        if self.slick is not None:
+            k = np.hypot(kx, ky)
+            weight = weight * np.exp(-self.losses(k) * self.slick.paths(where, kx, ky))
         chop = self.choppiness
         label, found, residual = np.zeros((n, 2)), np.zeros((n, 8)), np.zeros(n)
         find_labels(where, kx, ky, phase, amplitude, chop, weight, label, found, residual)

@@ -19,15 +19,20 @@ class RadiatedWaves:
         self.sea.ripples.leak = LEAK
         self.pressed = 0
 
-    def press(self, t: float, points: np.ndarray, widths: np.ndarray, impulses: np.ndarray) -> None:
-        """At time t [s], bodies at points (n, 2) [m] of widths (n,) [m] have pressed with impulses (n,) [N s]."""
+    def press(self, t: float, points: np.ndarray, widths: np.ndarray, impulses: np.ndarray, density: float) -> None:
+        """At time t [s], bodies at points (n, 2) [m] of widths (n,) [m] have pressed with impulses (n,) [N s].
+
+        density [kg/m3]: of the fluid that they pressed on.
+        """
         inside = np.abs(points).max(axis=1) < WIDEST * LENGTH
         if not inside.any():
             return
         cell = LENGTH / SIZE
         self.pressed += int(inside.sum())
         spread = np.maximum(0.5 * widths[inside], 1.6 * cell)
-        self.sea.ripples.add(t, points[inside] + 0.5 * LENGTH, spread, impulse=impulses[inside])
+        self.sea.ripples.add(
+            t, points[inside] + 0.5 * LENGTH, spread, impulse=impulses[inside] * self.sea.conditions.density / density
+        )
 
     def lay(self, t: float, vertices: np.ndarray, slopes: np.ndarray, count: int) -> None:
         """Add the rings at time t [s] to the first `count` vertices (m, 3) [m] and slopes (m, 2)."""

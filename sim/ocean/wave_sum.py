@@ -97,6 +97,46 @@ def add_waves(x, y, start, active, weight, waves, wave, z, X, Y, hx, hy, xx, yy,
 
 
 @kernel(noalias=True, allocates=False)
+def calm_waves(x, y, start, active, weight, waves, wave, ex, ey, loss, cx, cy, radius, z, X, Y, hx, hy, xx, yy, xy):
+    """Take from the sums of `add_waves` what waves have lost under a round slick before they reach a vertex.
+
+    ex, ey (waves,): direction of each wave; loss (waves,) [1/m]; cx, cy, radius [m] of the slick, single precision.
+    """
+    zero, one, two = np.float32(0.0), np.float32(1.0), np.float32(2.0)
+    for band in range(np.uint64(0), np.uint64(active.size)):
+        row = band * waves
+        for w in range(np.uint64(0), active[band]):
+            scale = weight[row + w]
+            if loss[w] * radius < np.float32(1e-3) or scale == zero:
+                continue
+            q = np.uint64(11) * w
+            for i in range(start[band], start[band + np.uint64(1)]):
+                u, v = x[i] - cx, y[i] - cy
+                across = u * ey[w] - v * ex[w]
+                square = radius * radius - across * across
+                if square <= zero:
+                    continue
+                half = math.sqrt(square)
+                path = min(max(u * ex[w] + v * ey[w] + half, zero), two * half)
+                if path == zero:
+                    continue
+                lost = scale * (one - math.exp(-loss[w] * path))
+                t = wave[q] * x[i] + wave[q + np.uint64(1)] * y[i] + wave[q + np.uint64(2)]
+                t -= np.rint(t)
+                turn = abs(t) - QUARTER
+                cos = -sine(turn) * lost
+                sin = math.copysign(sine(QUARTER - abs(turn)), t) * lost
+                z[i] -= wave[q + np.uint64(3)] * cos
+                X[i] -= wave[q + np.uint64(4)] * sin
+                Y[i] -= wave[q + np.uint64(5)] * sin
+                hx[i] -= wave[q + np.uint64(6)] * sin
+                hy[i] -= wave[q + np.uint64(7)] * sin
+                xx[i] -= wave[q + np.uint64(8)] * cos
+                yy[i] -= wave[q + np.uint64(9)] * cos
+                xy[i] -= wave[q + np.uint64(10)] * cos
+
+
+@kernel(noalias=True, allocates=False)
 def set_mesh(x, y, z, X, Y, hx, hy, xx, yy, xy, vertices, slopes, jacobian):
     """vertices (flat n x 3) [m], slopes (flat n x 2) of the displaced surface, and the Jacobian J (n,).
 

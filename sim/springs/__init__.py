@@ -8,10 +8,12 @@ from sim.springs.integrators import Integrator, discover
 from sim.springs.net import Air, Contact, Grab, Net, PinPath
 from sim.springs.rope import lab_units, rope
 from sim.springs.simulate import Run, simulate
+from sim.springs.stability import critical_step
+from sim.springs.state import State, advance
 
 INTEGRATORS: dict[str, Integrator] = discover()
 
 __all__ = [
-    "INTEGRATORS", "Air", "Contact", "Grab", "Integrator", "Net", "PinPath", "Run", "cloth", "lab_units", "rope",
-    "simulate",
+    "INTEGRATORS", "Air", "Contact", "Grab", "Integrator", "Net", "PinPath", "Run", "State", "advance", "cloth",
+    "critical_step", "lab_units", "rope", "simulate",
 ]  # fmt: skip

@@ -6,8 +6,21 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from sim.springs.net import CLOTH, DAMPING_MODELS, Air, Contact, Family, Net, Vector, check_surroundings
-from sim.validation import argument_error, check_choice, check_number, check_vector
+from sim.springs.net import (
+    CLOTH,
+    DAMPING_MODELS,
+    FARTHEST,
+    Air,
+    Contact,
+    Family,
+    Net,
+    Vector,
+    check_air,
+    check_particle,
+    check_place,
+    check_surroundings,
+)
+from sim.validation import argument_error, check_choice, check_number, is_whole_number
 
 PIN_CHOICES = ("corners", "edge", "all corners", "rim", "free")
 MAX_ROWS = 1024  # and columns
@@ -58,10 +71,10 @@ def cloth(
     Raises ValueError, naming the argument, its value and what is allowed.
     """
     for name, count in (("rows", rows), ("cols", cols)):
-        if not isinstance(count, int | np.integer) or isinstance(count, bool) or not 2 <= count <= MAX_ROWS:
+        if not is_whole_number(count) or not 2 <= count <= MAX_ROWS:
             raise argument_error(name, count, f"a whole number from 2 to {MAX_ROWS}")
-    check_number("width", width, 0, math.inf, "m", above=True)
-    check_number("length", length, 0, math.inf, "m", above=True)
+    check_number("width", width, 0, FARTHEST, "m", above=True)
+    check_number("length", length, 0, FARTHEST, "m", above=True)
     check_number("density", density, 0, math.inf, "kg/m^2", above=True)
     for name, value in (("stiffness", stiffness), ("shear", shear), ("bend", bend)):
         check_number(name, value, 0, math.inf, "N/m")
@@ -70,15 +83,11 @@ def cloth(
     check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
     check_number("radius", radius, 0, math.inf, "m")
     check_number("thickness", thickness, 0, math.inf, "m")
-    check_vector("origin", origin)
+    check_place("origin", origin)
     check_choice("damping_model", damping_model, DAMPING_MODELS)
     contact = check_surroundings(contact, floor, sphere)
     if air is not None:
-        if not isinstance(air, Air):
-            raise argument_error("air", air, "an Air, or None")
-        check_vector("air.wind", air.wind)
-        for name in ("density", "drag", "lift"):
-            check_number(f"air.{name}", getattr(air, name), 0, math.inf, "")
+        check_air(air)
 
     dx, dy = width / (cols - 1), length / (rows - 1)
     rests = (dx, dy, math.hypot(dx, dy), math.hypot(dx, dy), 2.0 * dx, 2.0 * dy)
@@ -109,16 +118,9 @@ def pinned_particles(pinned: object, rows: int, cols: int) -> frozenset[tuple[in
     """`cloth`'s pinned as (row, column) pairs; raises ValueError for one that is none of its particles."""
     if isinstance(pinned, str):
         return held(pinned, rows, cols)
-    try:
-        pairs = frozenset((int(i), int(j)) for i, j in pinned)  # type: ignore[attr-defined]
-    except (TypeError, ValueError):
-        raise argument_error(
-            "pinned", pinned, "one of " + ", ".join(PIN_CHOICES) + ", or (row, column) pairs"
-        ) from None
-    for i, j in pairs:
-        if not (0 <= i < rows and 0 <= j < cols):
-            raise argument_error("pinned", (i, j), f"a row from 0 to {rows - 1} and a column from 0 to {cols - 1}")
-    return pairs
+    if not isinstance(pinned, Iterable):
+        raise argument_error("pinned", pinned, "one of " + ", ".join(PIN_CHOICES) + ", or (row, column) pairs")
+    return frozenset(check_particle("pinned", pair, rows, cols) for pair in pinned)
 
 
 def vertical_cloth(net: Net) -> Net:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import MAX_THREADS, chosen
-from sim.validation import argument_error, check_choice, check_number, check_vector
+from sim.validation import argument_error, check_choice, check_number, check_vector, is_whole_number
 
 Vector = tuple[float, float, float]
 
@@ -22,7 +22,8 @@ DAMPING_MODELS = ("isotropic", "axial")
 CONTACT_LAWS = ("clipped", "lab")
 CLOTH = [(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)]  # structural, shear, bend: a kernel of their own
 LEAST_BAND = 8  # rows that are worth a thread
-PAIRS = 24  # most pairs within reach, for each particle
+PAIRS = 24  # most pairs within reach, for each particle, on average; what is beyond them is not pushed
+FARTHEST = 1e9  # [m] from the origin: a net that is farther counts as diverged
 SKIN = 0.5  # of the thickness: how far pairs are looked for beyond it, so that the list of them lasts
 
 
@@ -174,6 +175,44 @@ class Net:
     thickness: float = 0.0  # [m]: particles nearer to each other than this push, 0: they pass
     threads: int = 1  # that a cloth's forces are worked out on
 
+    def __post_init__(self) -> None:
+        """Raises ValueError, naming the field, for what the kernels cannot take: they check no index."""
+        object.__setattr__(self, "x0", start_positions(self.x0))
+        rows, cols = self.shape
+        for family in self.families:
+            check_family(family)
+        check_number("mass", self.mass, 0, math.inf, "kg", above=True)
+        check_number("drag", self.drag, 0, math.inf, "N s/m")
+        check_vector("gravity", self.gravity)
+        check_choice("damping_model", self.damping_model, DAMPING_MODELS)
+        check_surroundings(self.contact, self.floor, self.sphere)
+        check_vector("sphere_velocity", self.sphere_velocity)
+        check_number("epoch", self.epoch, -math.inf, math.inf, "s")
+        check_number("radius", self.radius, 0, math.inf, "m")
+        check_number("thickness", self.thickness, 0, math.inf, "m")
+        if not is_whole_number(self.threads) or self.threads < 1:
+            raise argument_error("threads", self.threads, "a whole number from 1")
+        for pinned in self.pinned:
+            check_particle("pinned", pinned, rows, cols)
+        for pin, path in self.pin_paths:
+            check_particle("pin_paths", pin, rows, cols)
+            if pin not in self.pinned:
+                raise argument_error("pin_paths", pin, "paths of pinned particles")
+            check_number("pin_paths start", path.start, -math.inf, math.inf, "s")
+            if len(path.coefficients) != 4:
+                raise argument_error("pin_paths coefficients", path.coefficients, "four vectors")
+            for coefficient in path.coefficients:
+                check_vector("pin_paths coefficients", coefficient)
+        if self.grab is not None:
+            check_particle("grab", self.grab[:2], rows, cols)
+            check_vector("grab.target", self.grab.target)
+            for name in ("stiffness", "damping", "max_force"):
+                check_number(f"grab.{name}", getattr(self.grab, name), 0, math.inf, "")
+        if self.air is not None:
+            check_air(self.air)
+            if min(rows, cols) < 2:
+                raise argument_error("air", self.air, "None, as a net one particle wide has no cells that catch air")
+
     @property
     def shape(self) -> tuple[int, int]:
         """(rows, cols)."""
@@ -291,6 +330,58 @@ class Net:
             bands=self.bands,
         )
         return (ClothArrays if [f[:2] for f in self.families] == CLOTH else GridArrays)(*view, *wide)
+
+
+def start_positions(x0: Any) -> NDArray[np.float64]:
+    """`x0` as a contiguous float64 array (3, rows, cols); raises ValueError for another shape, or what is too far away.
+
+    A NaN passes: a run of it diverges with its first step.
+    """
+    allowed = f"real numbers of shape (3, rows, cols), nearer to the origin than {FARTHEST:g} m"
+    if not isinstance(x0, np.ndarray) or x0.dtype.kind not in "iuf":
+        raise argument_error("x0", getattr(x0, "dtype", type(x0)), allowed)
+    if x0.ndim != 3 or x0.shape[0] != 3 or x0.size == 0:
+        raise argument_error("x0", x0.shape, allowed)
+    x0 = np.ascontiguousarray(x0, dtype=np.float64)
+    largest = float(np.abs(x0).max())
+    if largest >= FARTHEST:
+        raise argument_error("x0", largest, allowed)
+    return x0
+
+
+def check_place(name: str, value: object) -> Vector:
+    """`value` as three numbers nearer to the origin than FARTHEST. Raises ValueError otherwise."""
+    x, y, z = check_vector(name, value)
+    if not max(abs(x), abs(y), abs(z)) < FARTHEST:
+        raise argument_error(name, value, f"3 numbers [m], nearer to the origin than {FARTHEST:g} m")
+    return x, y, z
+
+
+def check_family(family: Family) -> None:
+    """Raises ValueError for links that are not from a particle to one after it, or numbers that no spring has."""
+    di, dj = family[:2]
+    if not (is_whole_number(di) and is_whole_number(dj) and (di > 0 or (di == 0 and dj > 0))):
+        raise argument_error("families", (di, dj), "links to a later row, or to a later particle of the same row")
+    check_number("families rest", family.rest, 0, math.inf, "m")
+    check_number("families stiffness", family.stiffness, 0, math.inf, "N/m")
+    check_number("families damping", family.damping, 0, math.inf, "N s/m")
+
+
+def check_particle(name: str, value: Any, rows: int, cols: int) -> tuple[int, int]:
+    """`value` as the (row, column) of a particle. Raises ValueError where there is none."""
+    pair = tuple(value) if isinstance(value, tuple | list | np.ndarray) else ()
+    if len(pair) == 2 and all(map(is_whole_number, pair)) and 0 <= pair[0] < rows and 0 <= pair[1] < cols:
+        return int(pair[0]), int(pair[1])
+    raise argument_error(name, value, f"a row from 0 to {rows - 1} and a column from 0 to {cols - 1}")
+
+
+def check_air(air: Air) -> None:
+    """Raises ValueError, naming what of the air cannot be."""
+    if not isinstance(air, Air):
+        raise argument_error("air", air, "an Air, or None")
+    check_vector("air.wind", air.wind)
+    for name in ("density", "drag", "lift"):
+        check_number(f"air.{name}", getattr(air, name), 0, math.inf, "")
 
 
 def check_surroundings(

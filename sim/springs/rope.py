@@ -4,8 +4,10 @@ import math
 
 import numpy as np
 
-from sim.springs.net import DAMPING_MODELS, Contact, Family, Net, Vector, check_surroundings
-from sim.validation import argument_error, check_choice, check_number, check_vector
+from sim.springs.net import DAMPING_MODELS, FARTHEST, Contact, Family, Net, Vector, check_place, check_surroundings
+from sim.validation import argument_error, check_choice, check_number, is_whole_number
+
+MAX_POINTS = 1_000_000
 
 
 def rope(
@@ -35,23 +37,26 @@ def rope(
 
     Raises ValueError, naming the argument, its value and what is allowed.
     """
-    if not isinstance(points, int | np.integer) or isinstance(points, bool) or not 1 <= points <= 1_000_000:
-        raise argument_error("points", points, "a whole number from 1 to 1000000")
-    check_number("length", length, 0, math.inf, "m", above=True)
+    check_points(points)
+    check_number("length", length, 0, FARTHEST, "m", above=True)
     check_number("mass", mass, 0, math.inf, "kg", above=True)
     check_number("stiffness", stiffness, 0, math.inf, "N/m")
     check_number("damping", damping, 0, math.inf, "N s/m")
     check_number("drag", drag, 0, math.inf, "N s/m")
     check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
     check_number("radius", radius, 0, math.inf, "m")
-    check_vector("root", root)
+    check_place("root", root)
+    if end is not None:
+        check_place("end", end)
+        if points == 1:
+            raise argument_error("end", end, "None, as a rope of one point has no other end")
     check_choice("damping_model", damping_model, DAMPING_MODELS)
     contact = check_surroundings(contact, floor, sphere)
 
     n = int(points)
     rest = length / max(n - 1, 1)
     start = np.asarray(root, dtype=np.float64)
-    stop = start - (length, 0.0, 0.0) if end is None else np.asarray(check_vector("end", end), dtype=np.float64)
+    stop = start - (length, 0.0, 0.0) if end is None else np.asarray(end, dtype=np.float64)
     along = np.linspace(0.0, 1.0, n)
     x0 = start[:, None] + (stop - start)[:, None] * along
     return Net(
@@ -69,6 +74,12 @@ def rope(
     )
 
 
+def check_points(points: object) -> None:
+    """Raises ValueError unless `points` is a number of points that a rope can have."""
+    if not is_whole_number(points) or not 1 <= points <= MAX_POINTS:  # type: ignore[operator]
+        raise argument_error("points", points, f"a whole number from 1 to {MAX_POINTS}")
+
+
 def lab_units(
     points: int,
     length: float,
@@ -80,8 +91,17 @@ def lab_units(
     """`rope`'s per-link and per-point numbers of a rope given in material units, so that points only refine it.
 
     axial_stiffness EA [N], mass_per_length [kg/m], axial_viscosity [N s], drag_per_length [N s/m^2].
-    With n links: k = EA n / L, m = mu L / n, b = eta n / L, c = drag L / n.
+    With n links: k = EA n / L, m = mu L / n, b = eta n / L, c = drag L / n. Of first order in 1/n only, where the last
+    point is free: it has the mass of a whole link, and stands for half of one.
+
+    Raises ValueError, naming the argument, its value and what is allowed.
     """
+    check_points(points)
+    check_number("length", length, 0, FARTHEST, "m", above=True)
+    check_number("axial_stiffness", axial_stiffness, 0, math.inf, "N")
+    check_number("mass_per_length", mass_per_length, 0, math.inf, "kg/m", above=True)
+    check_number("axial_viscosity", axial_viscosity, 0, math.inf, "N s")
+    check_number("drag_per_length", drag_per_length, 0, math.inf, "N s/m^2")
     spacing = length / max(points - 1, 1)
     return {
         "mass": mass_per_length * spacing,

@@ -11,12 +11,17 @@ from sim.springs.analysis.energy import energies
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
-from sim.springs.state import State, advance, check_damping, energy, steps_for, velocities
-from sim.validation import argument_error, check_number
+from sim.springs.stability import critical_step, gershgorin
+from sim.springs.state import State, advance, check_damping, check_net, energy, steps_for, velocities
+from sim.validation import argument_error, check_number, is_whole_number
 
 CALM = 1e-3 * DIVERGENCE_BOUND  # [m]: a net within this has not yet been out of the sane bound
-STEP = 1 / 1200  # [s]
+STEP = 1 / 1200  # [s], or SAFETY of the critical step where that is shorter
+SAFETY = 0.5
 RTOL, ATOL = 1e-6, 1e-9  # of adaptive methods
+LEAST_RTOL, LEAST_ATOL = 1e-14, 1e-18  # below, round-off asks for ever shorter steps
+MOST_STEPS = 1e10  # of a run: hours of a rope
+POINT_STEPS = 5e7  # in one call of a kernel, which nothing interrupts: some seconds
 FRICTION_STEP = 1e-3  # [s] that regularises friction where the step varies
 MOST_FRAMES = 10_000_000  # what memory may hold, of a small net
 
@@ -32,6 +37,7 @@ class Run(NamedTuple):
     energy: NDArray[np.float64]  # (frames, 6) [J]: kinetic, elastic, gravity, contact, dissipated, work
     force_evals: int
     diverged_at: float | None  # [s]
+    step: float | None  # [s] that was taken; None where the method chose its own
 
 
 def simulate(
@@ -48,33 +54,55 @@ def simulate(
 ) -> Run:
     """Integrate `net` from rest and sample it at `frames` equal times from 0 to `duration` [s].
 
-    step: [s], 1/1200 by default; shortened equally where it does not divide a frame interval. rtol, atol: adaptive
-    methods choose steps with an error within atol + rtol |value| of each position [m] and velocity [m/s], 1e-6 and
-    1e-9 by default; given a step instead they take that. with_account: also integrate what damping takes and pins
-    put in; the stored energies are always there. progress: called with (frames done, frames).
-    A run that diverges ends there: `diverged_at` is the time of the first step that left any sane bound, and later
-    frames are NaN.
+    step: [s], 1/1200 by default, or half the critical step at the start where that is shorter; shortened equally where
+    it does not divide a frame interval, and `step` of the run is the one taken. A step that is given is taken, however
+    long: see `sim.springs.stability.critical_step`. rtol, atol: adaptive methods choose steps with an error within
+    atol + rtol |value| of each position [m] and velocity [m/s], 1e-6 and 1e-9 by default; given a step instead they
+    take that. with_account: also integrate what damping takes and pins put in; the stored energies are always there.
+    progress: called with (frames done, frames).
+    A run that diverges ends there: `diverged_at` is the time of the first step that left any sane bound, or of an
+    adaptive method's that found none short enough, and later frames are NaN.
 
     Raises ValueError, naming the argument, its value and what is allowed.
     """
+    check_net(net)
     record = integrator_named(integrator)
     if step is not None:
         check_number("step", step, 0, math.inf, "s", above=True)
-    for name, value in (("rtol", rtol), ("atol", atol)):
+    for name, value, least in (("rtol", rtol, LEAST_RTOL), ("atol", atol, LEAST_ATOL)):
         if value is not None:
-            check_number(name, value, 0, 1, "", above=True)
+            check_number(name, value, least, 1, "")
             if not record.adaptive or step is not None:
                 raise argument_error(
                     name, value, "None, as the step is given" if record.adaptive else "adaptive methods only"
                 )
     check_number("duration", duration, 0, math.inf, "s", above=True)
-    if not isinstance(frames, int | np.integer) or isinstance(frames, bool) or not 2 <= frames <= MOST_FRAMES:
+    if not is_whole_number(frames) or not 2 <= frames <= MOST_FRAMES:
         raise argument_error("frames", frames, f"a whole number from 2 to {MOST_FRAMES}")
+    if not isinstance(with_account, bool | np.bool_):
+        raise argument_error("with_account", with_account, "True or False")
     check_damping(net, record)
+    if record.undamped_only and net.grab is not None and net.grab.damping > 0.0:
+        raise argument_error("grab.damping", net.grab.damping, f"0, as {record.name} takes no damping")
     t = np.linspace(0.0, duration, int(frames))
     if record.adaptive and step is None:
         return marched(net, record, t, rtol or RTOL, atol or ATOL, with_account, progress)
-    return stepped(net, record, t, step or STEP, with_account, progress)
+    if step is not None and duration / step > MOST_STEPS:
+        raise argument_error("step", step, f"at least duration / {MOST_STEPS:g} = {duration / MOST_STEPS:g} s")
+    step = step or default_step(net, record)
+    if duration / step > MOST_STEPS:
+        raise argument_error("duration", duration, f"up to {MOST_STEPS:g} steps of {step:g} s")
+    return stepped(net, record, t, step, with_account, progress)
+
+
+def default_step(net: Net, record: Integrator) -> float:
+    """STEP [s], or shorter where the net asks for it."""
+    fastest, strongest = gershgorin(net)
+    # The bounds are quick, and enough for most nets: a method that holds undamped holds in such short steps.
+    if record.limit(0.0) > 0.0 and STEP * max(fastest, strongest) < 0.1:
+        return STEP
+    longest = critical_step(net, record)
+    return min(STEP, SAFETY * longest) if longest > 0.0 else STEP
 
 
 def stepped(
@@ -91,9 +119,11 @@ def stepped(
     vs = np.full_like(xs, np.nan)
     ledger = np.full((len(t), 6), np.nan)
     diverged_at = None
+    most = max(1, round(POINT_STEPS / net.x0[0].size))
     for frame in range(len(t)):
         if frame:
-            advance(net, state, record, h, steps, with_account=with_account)
+            for done in range(0, steps, most):
+                advance(net, state, record, h, min(most, steps - done), with_account=with_account)
             if not state.is_bounded:
                 diverged_at = first_insane_time(net, calm, record, h, steps * (frame - calm_frame))
                 # What blows up may have passed the bound between frames, and come back for one.
@@ -106,7 +136,7 @@ def stepped(
         ledger[frame] = *energy(net, state), state.dissipated, state.work
         if progress:
             progress(frame + 1, len(t))
-    return Run(t, per_point(net, xs), per_point(net, vs), ledger, state.force_evals, diverged_at)
+    return Run(t, per_point(net, xs), per_point(net, vs), ledger, state.force_evals, diverged_at, h)
 
 
 def marched(
@@ -134,7 +164,9 @@ def marched(
         if progress:
             progress(frame + 1, len(t))
     diverged_at = None if filled == len(t) else float(stopped_at)
-    return Run(t, per_point(net, xs.reshape(shape)), per_point(net, vs.reshape(shape)), ledger, evals, diverged_at)
+    return Run(
+        t, per_point(net, xs.reshape(shape)), per_point(net, vs.reshape(shape)), ledger, evals, diverged_at, None
+    )
 
 
 def first_insane_time(net: Net, state: State, integrator: Integrator, h: float, steps: int) -> float:

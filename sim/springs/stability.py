@@ -16,14 +16,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.springs.forces.self_contact import refresh_pairs
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos
 from sim.springs.net import Net
-from sim.springs.state import State
+from sim.springs.state import State, check_net, check_state
 from sim.validation import check_number
 
 VECTORS = 32  # of Lanczos: the stiffest frequency to 0.1 % on nets of any size
 MOST_DAMPED = 1000.0  # zeta above which only the rate matters, not the frequency
+TOUCHING = 12  # equal spheres that can touch one of them
+LEAST_SLIDING = 1e-6  # below, friction does not count
+SECANTS = 8  # most of them, to 1e-4 of a step
 NEARLY = 1e-7  # relative width at which the search for a stiffness ends
 
 
@@ -33,6 +37,7 @@ class Mode(NamedTuple):
     stiffness: float  # u K u / u M u = omega^2 [1/s^2]
     links: float  # the links' part of it [1/s^2]
     rate: float  # gamma = u D u / u M u = 2 zeta omega [1/s]
+    sliding: float = 0.0  # share of u M u that slides on floor or sphere, which friction damps at up to 1/h
 
     @property
     def omega(self) -> float:
@@ -41,11 +46,16 @@ class Mode(NamedTuple):
 
     @property
     def zeta(self) -> float:
+        """Without friction."""
         return 0.5 * self.rate / self.omega if self.omega > 0.0 else 0.0
+
+    def zeta_at(self, h: float) -> float:
+        """With the strongest damping that friction has in steps of h [s]."""
+        return self.zeta + 0.5 * self.sliding / (h * self.omega) if self.omega > 0.0 else 0.0
 
     def with_links(self, scale: float) -> "Mode":
         """The same vibration with every link `scale` times as stiff."""
-        return Mode(self.stiffness + (scale - 1.0) * self.links, scale * self.links, self.rate)
+        return self._replace(stiffness=self.stiffness + (scale - 1.0) * self.links, links=scale * self.links)
 
 
 class Gauge(NamedTuple):
@@ -58,11 +68,23 @@ class Gauge(NamedTuple):
     critical_step: float  # [s]
 
 
-def gershgorin(net: Net) -> tuple[float, float]:
+def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
+    """Most others that one particle touches at x (3, rows, cols) [m]; None: as many as equal spheres can touch."""
+    if x is None:
+        return TOUCHING
+    p, flat = net.kernel_view(1.0), np.ascontiguousarray(x).reshape(-1)
+    pairs = p.pairs[: refresh_pairs(flat, p)]
+    place = flat.reshape(3, -1)
+    touching = pairs[np.linalg.norm(place[:, pairs[:, 0]] - place[:, pairs[:, 1]], axis=0) < net.thickness]
+    return int(np.bincount(touching.ravel(), minlength=1).max())
+
+
+def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, float]:
     """Upper bounds of frequency [rad/s] and damping rate [1/s] in any state, from Gershgorin's discs.
 
     omega^2 <= max_i (2 sum_j k_ij + contact + grab)/m and gamma <= max_i (2 sum_j b_ij + drag + contact + grab)/m,
-    the first tight for a long uniform rope, 4 k/m.
+    the first tight for a long uniform rope, 4 k/m. Of a net's contact with itself as many others push a particle as
+    touch one at x (3, rows, cols) [m] or, without x, as equal spheres can. Air and friction are left out.
     """
     rows, cols = net.shape
     stiffness, damping = np.zeros((2, rows, cols))
@@ -77,6 +99,10 @@ def gershgorin(net: Net) -> tuple[float, float]:
     touched = (net.floor is not None) + (net.sphere is not None) * depth
     damping += net.drag + touched * net.contact.damping
     stiffness += ((net.floor is not None) + (net.sphere is not None)) * net.contact.stiffness
+    if net.thickness > 0.0:
+        touching = most_touching(net, x)
+        damping += 2.0 * touching * net.contact.damping
+        stiffness += 2.0 * touching * net.contact.stiffness
     if net.grab is not None:
         stiffness[net.grab.row, net.grab.col] += net.grab.stiffness
         damping[net.grab.row, net.grab.col] += net.grab.damping
@@ -119,23 +145,61 @@ def across(net: Net, x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:
     return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
 
 
-def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int):
-    """The unit vector (3 rows cols,) of the largest eigenvalue of `part` of the tangent about x."""
+def along_surfaces(x: NDArray[np.float64], u: NDArray[np.float64], t: float, p: Any) -> NDArray[np.float64]:
+    """The part of vectors u (..., 3 rows cols) that slides on floor or sphere; 0 where nothing touches them."""
+    place, moved = x.reshape(3, -1), u.reshape(*u.shape[:-1], 3, -1)
+    normal = np.zeros_like(place)
+    if p.has_floor:
+        normal[2, place[2] < p.floor] = 1.0
+    if p.has_sphere:
+        centre = np.array((p.sx, p.sy, p.sz)) + (t - p.epoch) * np.array((p.svx, p.svy, p.svz))
+        outwards = place - centre[:, None]
+        distance = np.sqrt((outwards * outwards).sum(axis=0))
+        touches = (distance < p.sr) & (distance > 0.0)
+        normal[:, touches] = outwards[:, touches] / distance[touches]
+    along = moved - normal * (normal * moved).sum(axis=-2, keepdims=True)
+    return (along * normal.any(axis=0)).reshape(u.shape)
+
+
+def ritz(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int):
+    """Lanczos from `start`: rising eigenvalues (m,) of `part` of the tangent about x; their vectors are the columns of
+    the second (m, m), in terms of the rows of the third (m, 3 rows cols)."""
     basis = np.zeros((min(VECTORS, x.size), x.size))
     basis[0] = start
     diagonal, beside = np.zeros((2, len(basis)))
     filled = set_lanczos(x, t, p, part, basis, diagonal, beside)
     across = np.diag(beside[: filled - 1], 1)
-    _, vectors = np.linalg.eigh(np.diag(diagonal[:filled]) + across + across.T)
-    return vectors[:, -1] @ basis[:filled]
+    values, vectors = np.linalg.eigh(np.diag(diagonal[:filled]) + across + across.T)
+    return values, vectors, basis[:filled]
+
+
+def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int):
+    """The unit vector (3 rows cols,) of the largest eigenvalue of `part` of the tangent about x."""
+    _, vectors, basis = ritz(x, start, t, p, part)
+    return vectors[:, -1] @ basis
+
+
+def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any) -> NDArray[np.float64] | None:
+    """The unit vector (3 rows cols,) of the stiffest mode that slides on floor or sphere; None where none does.
+
+    The stiffest of all may stand upright on the surface, where friction does not reach it.
+    """
+    begin = along_surfaces(x, start, t, p)
+    if not begin.any():
+        return None
+    values, vectors, basis = ritz(x, begin / np.linalg.norm(begin), t, p, STIFFNESS)
+    modes = vectors.T @ basis
+    share = (along_surfaces(x, modes, t, p) ** 2).sum(axis=1)
+    return modes[int((values * share).argmax())]
 
 
 def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) -> list[Mode]:
     """The stiffest mode about positions x (3, rows, cols) [m] (None: x0) at time t [s], then the most damped one and,
-    across the links, the most damped one again or, of axially damped nets, the stiffest.
+    across the links, the most damped one again or, of axially damped nets, the stiffest. Where friction acts, the
+    last one is the stiffest that slides.
 
-    Points that touch floor or sphere, and the grab, count; friction does not (see
-    `sim.springs.integrators.implicit.tangent`).
+    Points that touch floor, sphere or each other, and the grab, count; how much of each mode slides is its `sliding`.
+    Air does not count.
     Empty where nothing is free to move.
     """
     x = net.x0 if x is None else x
@@ -147,19 +211,46 @@ def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) ->
     if not start.any():
         return []
     parts = [(STIFFNESS, start)]
-    if p.damped or p.has_floor or p.has_sphere or p.grabbed >= 0:
+    if p.damped or p.has_floor or p.has_sphere or p.grabbed >= 0 or net.thickness > 0.0:
         parts.append((DAMPING, start))
     if p.damped:
         parts.append((TRANSVERSE, start) if p.axial else (DAMPING, across(net, x, p)))
-    found = [quotients(flat, top_vector(flat, begin, t, p, part), t, p) for part, begin in parts]
+    vectors = [top_vector(flat, begin, t, p, part) for part, begin in parts]
+    if p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere):
+        slides = sliding_vector(flat, start, t, p)
+        if slides is not None:
+            vectors.append(slides)
+    found = [quotients(flat, u, t, p) for u in vectors]
     # Slack links are not stiff across by more than round-off: no frequency is better than a wrong one.
     floor = 1e-12 * abs(found[0][0])
-    return [Mode(stiffness if stiffness > floor else 0.0, links, rate) for stiffness, links, rate in found]
+    return [
+        Mode(stiffness if stiffness > floor else 0.0, links, rate, sliding) for stiffness, links, rate, sliding in found
+    ]
 
 
 def step_limit(mode: Mode, integrator: Integrator) -> float:
     """Largest stable step [s] of one mode; inf where nothing moves it."""
-    return integrator.limit(mode.zeta) / mode.omega if mode.omega > 0.0 else math.inf
+    if mode.omega == 0.0:
+        return math.inf
+    free = integrator.limit(mode.zeta) / mode.omega
+    if mode.sliding < LEAST_SLIDING or free == 0.0 or math.isinf(free):
+        return free
+    # Friction damps by anything up to its strongest, which is more the shorter the step is: the limit is where a step
+    # is that of its damping. By secants, as `limit` of the methods of high order is a search of its own.
+    h, before, missed_before = free, 0.0, 0.0
+    for _ in range(SECANTS):
+        limit = integrator.limit(mode.zeta_at(h))
+        if limit == 0.0:
+            return 0.0
+        missed = limit / mode.omega - h
+        if missed >= 0.0 and h == free:
+            return free
+        if abs(missed) <= 1e-4 * h:
+            break
+        slope = (missed - missed_before) / (h - before) if before else -1.0
+        before, missed_before = h, missed
+        h = min(max(h - missed / slope if slope < 0.0 else h + missed, 0.25 * h), 4.0 * h)
+    return min(h, free)
 
 
 def chosen(integrator: str | Integrator) -> Integrator:
@@ -167,6 +258,11 @@ def chosen(integrator: str | Integrator) -> Integrator:
 
 
 def modes_at(net: Net, state: State | None) -> list[Mode]:
+    """The `top_modes` of a state, None: of the start. Raises ValueError for a state of another net."""
+    if state is None:
+        check_net(net)
+    else:
+        check_state(net, state)
     return top_modes(net) if state is None else top_modes(net, state.x, state.t)
 
 
@@ -252,4 +348,8 @@ def gauge(net: Net, integrator: str | Integrator, h: float, state: State, modes:
     if not modes:
         return Gauge(0.0, 0.0, 0.0, math.inf, math.inf)
     mode = min(modes, key=lambda mode: step_limit(mode, record))
-    return Gauge(mode.omega, mode.zeta, h * mode.omega, record.limit(mode.zeta), step_limit(mode, record))
+    longest = step_limit(mode, record)
+    # Of a mode that slides the damping depends on the step, so that the limit is that of the longest step.
+    is_sliding = mode.omega > 0.0 and mode.sliding >= LEAST_SLIDING
+    limit = longest * mode.omega if is_sliding else record.limit(mode.zeta)
+    return Gauge(mode.omega, mode.zeta, h * mode.omega, limit, longest)

@@ -43,6 +43,24 @@ class State:
         return extremes(self.x, self.v).max_coordinate < DIVERGENCE_BOUND
 
 
+def check_net(net: object) -> None:
+    """Raises ValueError for what is no net."""
+    if not isinstance(net, Net):
+        raise argument_error("net", net, "a Net, as `rope` and `cloth` make them")
+
+
+def check_state(net: Net, state: State) -> None:
+    """Raises ValueError unless `state` is one of `net`: kernels check no index, and write into its arrays."""
+    check_net(net)
+    if not isinstance(state, State):
+        raise argument_error("state", type(state), "a State")
+    for name, array in (("state.x", state.x), ("state.v", state.v)):
+        if array.shape != net.x0.shape:
+            raise argument_error(name, array.shape, f"the net's shape {net.x0.shape}")
+        if array.dtype != np.float64 or not array.flags.c_contiguous:
+            raise argument_error(name, f"{array.dtype}, {array.strides}", "a contiguous array of float64")
+
+
 def acceleration(net: Net, state: State, lag: float) -> NDArray[np.float64]:
     """Accelerations (3, rows, cols) [m/s^2] of the state as stored; its velocities may trail by half a step."""
     a = np.empty_like(state.x)
@@ -59,7 +77,11 @@ def set_lag(net: Net, state: State, lag: float) -> None:
 
 
 def velocities(net: Net, state: State) -> NDArray[np.float64]:
-    """Velocities at time t (3, rows, cols) [m/s], whether or not the integrator's trail by half a step."""
+    """Velocities at time t (3, rows, cols) [m/s], whether or not the integrator's trail by half a step.
+
+    Raises ValueError for a state of another net.
+    """
+    check_state(net, state)
     if state.lag == 0.0:
         return state.v
     return state.v + state.lag * acceleration(net, state, state.lag)
@@ -74,7 +96,11 @@ def check_damping(net: Net, integrator: Integrator) -> None:
 def advance(
     net: Net, state: State, integrator: Integrator, h: float, steps: int, *, with_account: bool = False
 ) -> None:
-    """Advance `state` in place by `steps` steps of h [s]. Raises ValueError for a net the integrator refuses."""
+    """Advance `state` in place by `steps` steps of h [s].
+
+    Raises ValueError for a net the integrator refuses, and for a state of another net.
+    """
+    check_state(net, state)
     check_damping(net, integrator)
     set_lag(net, state, integrator.lag * h)
     # The sums go on from where they are, so that they do not depend on how the steps are shared out among the calls.

@@ -5,6 +5,8 @@ from typing import Any
 
 import pytest
 
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
 from app.messages import Pause
 from app.scenes import NAMES
 from app.server.viewer import Viewer
@@ -63,6 +65,9 @@ def opened(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> Iter
     viewer, tab = one_page
     size = tab.page.viewport_size
     tab.page.set_viewport_size({"width": 1100, "height": 2600})
+    viewer.workbook = Workbook(load_tasks(with_checks=False))  # the guide is part of what everyone gets
+    viewer.workbook.go_to_scene(request.param)
+    viewer.workbook.show_answer(viewer.workbook.task)
     tab.follow(viewer, request.param)
     tab.wait(lambda: tab.page.locator(".springtide-panel").count())
     viewer.loop.commands.put(Pause())
@@ -75,6 +80,7 @@ def opened(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> Iter
 
     tab.wait(unfold)
     yield viewer, tab
+    viewer.workbook = None
     tab.page.set_viewport_size(size)
 
 

@@ -8,9 +8,11 @@ from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
 SCENE = "rope"
-# Of the first line of each chart: how many columns of pixels between two times [s] have something of its colour.
+# Of the first line of each chart: how many columns of pixels between two times [s] have something of its colour; -1
+# before the chart has a scale.
 DRAWN = """([first, last]) => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ chart }) => {
     const from = Math.round(chart.valToPos(first, "x", true)), to = Math.round(chart.valToPos(last, "x", true));
+    if (!Number.isFinite(from) || !Number.isFinite(to)) return -1;
     const { top, height } = chart.bbox;
     const { data, width } = chart.ctx.getImageData(from, top, Math.max(to - from, 1), height);
     let columns = 0;

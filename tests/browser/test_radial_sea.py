@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import pytest
 
 from app.messages import Pause, Play, Reset
 from app.scenes.radial_sea.parameters import PRESETS
@@ -23,6 +24,7 @@ def load(lab: Viewer, **changes: Any) -> None:
         lab.panel.set(name, value)
 
 
+@pytest.mark.stress  # half a minute of drawing in software
 def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
     lab.panel.load("Burning rig")
     tab = open_tab(lab.port, width=420, height=260, shaded=True)

@@ -3,7 +3,7 @@ import math
 
 import pytest
 
-from sim.parameters import check_record, clamp, clamp_value, parameter, parameters_of, parse_assignments
+from sim.parameters import check_record, clamp, clamp_value, parameter, parameters_of, parse_assignments, similar
 from sim.validation import argument_error
 
 
@@ -147,3 +147,34 @@ def test_a_parameter_that_contradicts_itself_cannot_be_declared(declare):
 
 def test_a_refusal_has_one_form():
     assert str(argument_error("h", -1, "above 0 s")) == "h: -1 is not allowed; allowed: above 0 s"
+
+
+@dataclasses.dataclass(frozen=True)
+class Free:
+    size: float = parameter(1.0)
+    count: int = parameter(1)
+
+
+def test_a_parameter_without_a_range_takes_any_number_of_its_kind():
+    found = check_record(Free, {"size": -1e300, "count": -7})
+    assert (found.size, found.count) == (-1e300, -7)
+    assert check_record(Free, {"count": 10**30}).count == 10**30
+    for bad in (math.nan, math.inf, 10**400):
+        with pytest.raises(ValueError, match=r"^count: "):
+            check_record(Free, {"count": bad})
+    assert clamp_value(parameters_of(Free)["count"], math.inf) == 1
+    assert clamp_value(parameters_of(Free)["size"], 10**400) == math.inf
+
+
+@pytest.mark.parametrize("value", [1, 0, 1.0, "True", None])
+def test_only_true_and_false_are_truth_values(value):
+    with pytest.raises(ValueError, match=r"^floor: "):
+        check_record(Params, {"floor": value})
+
+
+def test_a_name_resembles_those_that_it_is_a_part_of_and_those_that_are_written_alike():
+    names = ("wind_speed", "wind_direction", "gust", "width")
+    assert similar("wind", names) == ["wind_speed", "wind_direction"]
+    assert similar("wi", names) == []
+    assert similar("gus", names) == ["gust"]
+    assert similar("gsut", names) == ["gust"]

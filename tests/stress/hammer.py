@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
 from app.messages import Grab, Pause, Place, Play, Point, Release, Reset, StepOnce
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.warmup import prepare
@@ -50,7 +52,10 @@ class Hammer:
     def __init__(self, name: str, tally: Tally) -> None:
         prepare(name)
         self.name, self.tally = name, tally
-        self.viewer = Viewer("127.0.0.1", 0)
+        workbook = Workbook(load_tasks(with_checks=False))
+        workbook.go_to_scene(name)
+        workbook.show_answer(workbook.task)
+        self.viewer = Viewer("127.0.0.1", 0, workbook=workbook)
         self.server = self.viewer.server._websock_server
         self.poison: list[str] = []
         self.queue = self.server.queue_message

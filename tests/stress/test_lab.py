@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from app.lab.answers import Answers, read_answers, write_answers
+from app.lab.answers import Answers, read_answers
 from app.lab.program_check import check_program
 from app.lab.runner import Runner
 from app.lab.task import load_tasks
-from tests.app.lab.test_answers import ROOT, WRITER
+from tests.app.lab.answers_file import write_answers
+from tests.app.lab.test_answers import ROOT
 
 TASKS = load_tasks()
 FUNCTIONS = [task for task in TASKS if task.check is not None]
@@ -29,7 +30,7 @@ ACCIDENTS = {
     "return None": "returns nothing",
     "return {}": "wrong type",
 }
-# Pieces of which odd results are made.
+# What odd results are made of.
 VALUES = (
     "None", "1", "-1.5", "float('nan')", "float('inf')", "'text'", "b'x'", "{}", "set()", "1j", "True", "10**400",
     "object()", "len", "np.zeros(0)", "np.ones(3)", "np.ones((3, 3), 'f4')", "np.array(['a'])", "np.array([None, 1])",
@@ -53,18 +54,51 @@ def test_every_accident_in_every_function_is_named_within_three_seconds(tmp_path
     assert taken < 3.0
 
 
+# What the page does: one value after the other, each told once it is kept.
+PAGE_WRITER = """
+import sys
+from pathlib import Path
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
+book = Workbook(load_tasks(with_checks=False), Path(sys.argv[1]))
+task = next(task for task in book.tasks if task.name == "extra_draft")
+measure, explain = task.questions[1:]
+number = 0
+while True:
+    number += 1
+    book.answer(task, measure, str(number))
+    book.answer(task, explain, f"Sentence {number}.\\n" * 100)
+    book.keep(task.name, "done", str(number))
+    print(number, flush=True)
+"""
+
+
 @pytest.mark.parametrize("seed", range(50))
-def test_a_kill_at_fifty_moments_loses_nothing(tmp_path: Path, seed: int) -> None:
-    write_answers(tmp_path, TASKS, Answers("0", {("filler", str(i)): "x" * 1000 for i in range(100)}))
-    writer = subprocess.Popen([sys.executable, "-c", WRITER, str(tmp_path)], cwd=ROOT, stdout=subprocess.PIPE)
+def test_a_kill_at_fifty_moments_loses_only_what_the_page_was_just_writing(tmp_path: Path, seed: int) -> None:
+    write_answers(tmp_path, TASKS, Answers("Ada", {("filler", str(i)): "x" * 1000 for i in range(100)}))
+    path = tmp_path / "answers.toml"
+    path.write_text(path.read_text("utf-8").replace("[extra_draft]", "# my note\n[extra_draft]"), "utf-8")
+    writer = subprocess.Popen([sys.executable, "-c", PAGE_WRITER, str(tmp_path)], cwd=ROOT, stdout=subprocess.PIPE)
     assert writer.stdout is not None
     writer.stdout.readline()
-    time.sleep(random.Random(seed).uniform(0.0, 0.05))
+    time.sleep(random.Random(seed).uniform(0.0, 0.1))
     writer.kill()
+    told = 1 + len(writer.stdout.read().splitlines())
     writer.wait()
     back = read_answers(tmp_path)
     assert back.error == ""
+    assert back.name == "Ada"
     assert len([key for key in back.values if key[0] == "filler"]) == 100
+    assert "# my note\n[extra_draft]" in path.read_text("utf-8")
+    kept = (
+        back.values["extra_draft", "measure"],
+        back.values["extra_draft", "explain"],
+        back.values["extra_draft", "done"],
+    )
+    numbers = int(kept[0]), int(str(kept[1]).split()[1].rstrip(".")), int(kept[2])
+    # In this order they are written, so that each is as new as the one before it, or older by one.
+    assert told + 1 >= numbers[0] >= numbers[1] >= numbers[2] >= told
+    assert str(kept[1]).strip() == "\n".join([f"Sentence {numbers[1]}."] * 100)
 
 
 @pytest.mark.parametrize("task", FUNCTIONS, ids=lambda task: task.name)

@@ -14,12 +14,16 @@ import numpy as np
 
 from app.commands.lab import check
 from app.lab.folder import make_folder
+from app.lab.rope_march import Segment
 from app.lab.runner import Runner
 from app.lab.task import load_tasks
+from app.scenes.rope.student_rope import forces_of
+from sim.springs import rope
 
 REPEATS = 7
 CLASS = 20  # folders
 CALLS = 2000
+STEP = 1 / 60  # [s] of a student's rope: what takes less is faster than real time
 HERE: dict[str, Path | None] = {"json": None, "csv": None, "report": None}
 
 
@@ -62,4 +66,26 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
             for _ in range(CALLS):
                 runner.call("rope.py", "spring_force", x, x + 1.0, x, x, 800.0, 7.0, 0.2)
             table.append({"what": "one call of spring_force", "time [s]": (time.perf_counter() - start) / CALLS})
+            table += rope_rows(runner, quick)
+    return table
+
+
+def rope_rows(runner: Runner, quick: bool) -> list[dict[str, Any]]:
+    """Time of a step of a rope by a student's functions, plain and compiled, with all that a job of a scene costs."""
+    net = rope(points=10)
+    x, v = np.ascontiguousarray(net.x0[:, 0].T), np.zeros((10, 3))
+    segments = [Segment(1, STEP, forces_of(net, 0.0), np.zeros((0, 6)))] * (60 if quick else 600)
+    table = []
+    for own in (["spring_force"], ["rope_acceleration"], ["spring_force", "step_rk4"]):
+        for how in ("plain Python", "compiled"):
+            with Runner(runner.folder, compiles=how == "compiled") as each:
+                if how == "compiled" and not each.compile(own)[0]:
+                    continue
+                each.march(own, "step_rk4", x, v, segments[:1])
+                start = time.perf_counter()
+                for segment in segments:
+                    each.march(own, "step_rk4", x, v, [segment])
+                seconds = (time.perf_counter() - start) / len(segments)
+            what = f"RK4 step of 10 points by {' and '.join(own)}, {how}"
+            table.append({"what": what, "time [s]": seconds})
     return table

@@ -7,6 +7,7 @@
 (() => {
   "use strict";
   const FIELD = "input.mantine-TextInput-input";
+  const NAMED = `${FIELD}, textarea, .mantine-Slider-thumb, .mantine-NumberInput-input`; // what viser gives no name
   const setText = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
   const before = new WeakMap(); // field -> its text when it was entered
   const drafts = new WeakMap(); // field -> what was typed since
@@ -98,8 +99,8 @@
   // Assistive software finds a field by its name: viser's labels refer to an identifier that its text fields lack.
   function nameFields() {
     for (const label of document.querySelectorAll("label[for]")) {
-      const field = label.closest(".mantine-Flex-root")?.querySelector(FIELD);
-      if (field && !field.hasAttribute("aria-label")) field.setAttribute("aria-label", label.textContent);
+      const fields = label.closest(".mantine-Flex-root")?.querySelectorAll(NAMED) ?? [];
+      for (const field of fields) if (!field.getAttribute("aria-label")) field.setAttribute("aria-label", label.textContent);
     }
   }
 

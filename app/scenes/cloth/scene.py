@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts
 from app.scenes.charts import PlotAxes
+from app.scenes.cloth.live_values import live_values
 from app.scenes.cloth.parameters import MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
@@ -297,7 +298,7 @@ class ClothScene:
         if exact:
             stability = gauge(self.net, record, self.step, self.state)
         else:
-            omega, rate = gershgorin(self.net)
+            omega, rate = gershgorin(self.net, self.state.x)
             zeta = 0.5 * rate / omega if omega > 0.0 else 0.0
             limit = record.limit(zeta)
             stability = Gauge(omega, zeta, self.step * omega, limit, limit / omega if omega > 0.0 else math.inf)
@@ -379,4 +380,5 @@ SCENE = SceneKind(
     needs=needs,
     series=SERIES,
     plots=PLOTS,
+    live_values=live_values,
 )

@@ -10,6 +10,7 @@ from app.scenes.charts import Chart
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.race.charts import CURVES, RaceCharts
 from app.scenes.race.entrants import Race, RaceReadings
+from app.scenes.race.live_values import live_values
 from app.scenes.race.measures import measures
 from app.scenes.race.names import rope_label
 from app.scenes.race.parameters import PRESETS, Params, hidden, method_of, offset_of
@@ -216,4 +217,5 @@ SCENE = SceneKind(
     curves=CURVES,
     measures=measures,
     stability_map=StabilityMap(stiffness_parameter, build_rope),
+    live_values=live_values,
 )

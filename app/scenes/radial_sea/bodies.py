@@ -21,7 +21,8 @@ from sim.floating import (
     step,
 )
 from sim.floating.body import pack_linear
-from sim.floating.excitation import WaveExcitation
+from sim.floating.excitation import LAST_RATES, WaveExcitation, rate_of_change
+from sim.floating.heave_meter import WindowMean
 from sim.floating.rotation import body_z_axes
 from sim.floating.shapes import Appearance
 from sim.ocean.fluid_column import FluidColumn
@@ -35,9 +36,11 @@ SPIRAL_SPACING = 4.2  # [m] at size 1 between the turns of the spiral of the oth
 MAX_DEPTH = 60.0  # [m] at which a sinking body comes to rest
 MOORING_SLACK = 1.5  # [m] at size 1 that a body drifts before its mooring line pulls
 MOORING_STIFFNESS = 0.06  # weights of the body per metre of pull-out at size 1: slower than the waves
+MOORING_DAMPING = 0.15  # of the critical damping, while the line is taut
 MAX_MOORING_PULL = 0.6  # weights of the body
 MAX_READINGS = 6  # bodies of the scene's own in the table
 MIN_COSINE = 0.2  # of the angle between a body's axis and the normal of the water, where drafts still mean something
+MAX_ACCELERATION = 2.0  # of gravity, of the water; where the sea is exchanged it jumps
 SLICK_RESOLUTION = 1e-4  # [m] of a slick's thickness in predictions
 
 
@@ -98,12 +101,15 @@ class BodyReading(NamedTuple):
     density: float  # [kg/m3]
     volume: float  # [m3]
     mass: float  # [kg]
-    buoyancy: float  # [N] upward force of the fluids' pressure
+    buoyancy: float  # [N] weight of the displaced fluids
+    # [N] upward over the last minute: buoyancy, waves, drag, and what the motion through the water meets
+    mean_lift: tuple[float, ...]
     wet_volume: tuple[float, float]  # [m3] in oil, or the fluid of both mixed, and in the water below it
     draft: float  # [m] of the body below the surface, along its own axis
     mean_draft: float  # [m] over the last minute
     period: float  # [s] of heave, measured; NaN until it is known
     prediction: HydrostaticPrediction
+    has_own_coefficients: bool  # of linear theory; otherwise those of a box are taken
 
 
 class FloatingBodies:
@@ -149,7 +155,8 @@ class FloatingBodies:
         self.is_round = np.array([kind.shape.is_round for kind in body_kinds], bool)
         self.widths = np.array([np.ptp(hull.extents[0]) for hull in hulls])  # (n,) [m]
         self.excitation = self.make_excitation()
-        self.heave_meter = HeaveMeter(self.count)
+        self.rises: tuple[np.ndarray, ...] = ()  # (n,) [m/s] of the water at the bodies, the newest first
+        self.heave_meter, self.lift = self.make_meters()
         self.holders: dict[int, int] = {}  # body -> the browser that drags it
         self.targets: dict[int, tuple[float, float, float]] = {}  # body -> where it is pulled [m]
         self.draft = np.zeros(self.count)  # [m]
@@ -189,7 +196,11 @@ class FloatingBodies:
         linear_hull, linear = pack_linear(hulls, self.densities, column.layers)
         self.fleet = self.fleet._replace(linear_hull=linear_hull, linear=linear)
         self.excitation = self.make_excitation()
-        self.heave_meter = HeaveMeter(self.count)
+        self.heave_meter, self.lift = self.make_meters()
+
+    def make_meters(self) -> tuple[HeaveMeter, WindowMean]:
+        """New meters of heave and of the upward forces."""
+        return HeaveMeter(self.count), WindowMean(self.count, 4)
 
     def make_excitation(self) -> WaveExcitation:
         """What the waves do to these bodies in these fluids."""
@@ -214,28 +225,26 @@ class FloatingBodies:
         for index in [index for index, holder in self.holders.items() if holder == client]:
             self.fleet.pull_limit[index] = 0.0
             self.heave_meter.restart(index)
+            self.lift.restart(index)
             del self.holders[index], self.targets[index]
 
     def moor(self) -> None:
         """Pull each body that is out of its mooring's slack back, weakly and level; the held ones are left alone."""
-        offset = self.home - self.fleet.position[:, :2]
-        stretch = np.maximum(np.hypot(offset[:, 0], offset[:, 1]) - MOORING_SLACK * self.size, 0.0)
-        for i in np.flatnonzero(stretch > 0.0):
-            if i not in self.holders:
-                x, y = self.home[i]
-                weight = GRAVITY * float(self.fleet.mass[i])
-                target = (float(x), float(y), float(self.fleet.position[i, 2]))
-                limit = min(MOORING_STIFFNESS * float(stretch[i]) / self.size, MAX_MOORING_PULL) * weight
-                pull(self.fleet, int(i), (0.0, 0.0, 0.0), target, limit)
-        for i in np.flatnonzero(stretch == 0.0):
-            if i not in self.holders:
-                self.fleet.pull_limit[i] = 0.0
+        fleet = self.fleet
+        offset = self.home - fleet.position[:, :2]
+        distance = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), 1e-9)
+        direction = offset / distance[:, None]
+        stretch = distance - MOORING_SLACK * self.size
+        rate = math.sqrt(MOORING_STIFFNESS * GRAVITY / self.size)  # [rad/s] of the body on its line, without added mass
+        lengthening = -(fleet.velocity[:, :2] * direction).sum(axis=1)
+        tension = rate * rate * stretch + 2.0 * MOORING_DAMPING * rate * lengthening  # [m/s2], of the mass
+        tension = np.where(stretch > 0.0, np.clip(tension, 0.0, MAX_MOORING_PULL * GRAVITY), 0.0)
+        fleet.mooring[:] = (tension * fleet.mass)[:, None] * direction
+        fleet.mooring[list(self.holders)] = 0.0
 
     def unmoor(self) -> None:
-        """End the pull of all mooring lines; held bodies stay held."""
-        free = np.ones(self.count, bool)
-        free[list(self.holders)] = False
-        self.fleet.pull_limit[free] = 0.0
+        """End the pull of all mooring lines."""
+        self.fleet.mooring[:] = 0.0
 
     def step(
         self,
@@ -271,23 +280,35 @@ class FloatingBodies:
             at.height,
             slope=at.slope,
             velocity=at.velocity,
-            acceleration=at.acceleration,
-            excitation=None if waves is None else self.forces_of(at.label, waves, coefficients.gravity),
+            acceleration=at.acceleration if waves is not None else self.acceleration_of(at, h, coefficients.gravity),
+            excitation=None if waves is None else self.forces_of(at.label, waves, coefficients.gravity, h),
             lead=h / 2,
             **interface,
         )
         self.touches += step(self.fleet, water, h, coefficients)
+        self.lift.update(self.fleet.lift, h)
         # A body that presses on the water with more or less than the weight it carries makes waves.
-        carried = self.fleet.mass * np.maximum(coefficients.gravity + at.acceleration, 0.0)
+        carried = self.fleet.mass * coefficients.gravity
         self.impulse += np.where(self.fleet.buoyancy > 0.0, self.fleet.buoyancy - carried, 0.0) * h
         at_rest = self.fleet.position[:, 2] < -MAX_DEPTH
         self.fleet.position[at_rest, 2] = -MAX_DEPTH
         self.fleet.velocity[at_rest] = 0.0
 
-    def forces_of(self, label: np.ndarray, waves: tuple[np.ndarray, ...], gravity: float) -> np.ndarray:
-        """Force and moment (n, 6) of waves on the bodies, which are at `label` (n, 2) [m] of the resting surface."""
-        kx, ky, amplitude, _, phase, _ = waves
-        return self.excitation.forces(self.fleet, label, kx, ky, amplitude, phase, gravity)
+    def acceleration_of(self, at: SurfaceAt, h: float, gravity: float) -> np.ndarray:
+        """Upward acceleration (n,) [m/s2] of the water that the bodies meet along their way.
+
+        So it has no mean, as that at places that move with the waves would have (sim/floating/excitation.py).
+        """
+        self.rises = (at.velocity[:, 2].copy(), *self.rises[: len(LAST_RATES)])
+        if len(self.rises) <= len(LAST_RATES):
+            return at.acceleration
+        return np.clip(rate_of_change(self.rises, h), -MAX_ACCELERATION * gravity, MAX_ACCELERATION * gravity)
+
+    def forces_of(self, label: np.ndarray, waves: tuple[np.ndarray, ...], gravity: float, h: float) -> np.ndarray:
+        """Force and moment (n, 6) of waves on the bodies, which are at `label` (n, 2) [m] of the resting surface for
+        the next h [s]."""
+        kx, ky, amplitude, omega, phase, _ = waves
+        return self.excitation.forces(self.fleet, label, kx, ky, amplitude, omega, phase, h, gravity)
 
     def measure(self, t: float, at: SurfaceAt, duration: float, lead: float = 0.0) -> None:
         """Measure drafts at time t [s]: the length of each body below the plane of the water, along its own axis.
@@ -316,11 +337,13 @@ class FloatingBodies:
                 volume=self.hulls[kind.name].volume,
                 mass=float(self.fleet.mass[i]),
                 buoyancy=float(self.fleet.buoyancy[i]),
+                mean_lift=tuple(self.lift.of(i).tolist()),
                 wet_volume=(float(self.fleet.wet_volume[i, 0]), float(self.fleet.wet_volume[i, 1])),
                 draft=float(self.draft[i]),
-                mean_draft=float(self.heave_meter.mean[i]),
+                mean_draft=float(self.heave_meter.mean.of(i)[0]),
                 period=self.heave_meter.period(i, t),
                 prediction=self.prediction(i),
+                has_own_coefficients=bool(kind.shape.linear) or kind.shape.table is not None,
             )
             for i, kind in enumerate(self.body_kinds)
             if i < count or i >= self.count_asked

@@ -15,6 +15,7 @@ from sim.floating import Hull
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import RadialSurface
 from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.weathering import Weathering
 
 
 class RadialFrame(NamedTuple):
@@ -59,7 +60,8 @@ class RadialReadings(NamedTuple):
     clean_height: float  # [m] without the oil
     slope: float  # mean square slope as it is
     clean_slope: float  # without the oil
-    middle_period: float  # [s] of the wave in the middle of the energy
+    middle_period: float  # [s] above which half of the energy of the waves is
     oil_budget: OilBudget
     surfaces: dict[str, SurfaceReading]  # radial and square sea side by side; empty unless asked for
     age: float  # [s] for which the waves have run under the oil
+    weathering: Weathering | None  # the spill over five days; None where there is none to follow

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.render.material import RGB, Cutout, Material, SlickRegion
 from app.scenes.radial_sea.frame import RadialFrame
-from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.parameters import OPAQUE_THICKNESS, Params
 from app.scenes.radial_sea.well_blowout import Slick
 from sim.ocean.fluid_column import FluidColumn
 
@@ -23,7 +23,6 @@ MIXTURE_BASE_SHARE = 0.35  # share of oil's colours in a mixture with hardly any
 OIL_FOAM: RGB = (0.45, 0.36, 0.26)
 OIL_ROUGHNESS = 0.02
 OIL_SCATTER = 1.3  # factor on the oil's colour in what it scatters
-OPAQUE_THICKNESS = 0.004  # [m] of crude over which light falls to 1/e
 MIN_SLICK_THICKNESS = 0.05  # [m] that a slick is drawn with
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from app.scenes.contract import Measure
 from app.scenes.measures import slug
 from app.scenes.radial_sea.bodies import BODY_KINDS
+from app.scenes.radial_sea.parameters import weathered_oil
 
 if TYPE_CHECKING:
     from app.scenes.radial_sea.scene import RadialSeaScene
@@ -28,7 +29,8 @@ def measures(scene: "RadialSeaScene") -> dict[str, Measure]:
             ("density", "kg/m3", "density", body and body.density),
             ("mass", "kg", "mass", body and body.mass),
             ("volume", "m3", "volume", body and body.volume),
-            ("buoyancy", "N", "upward force of the fluids' pressure", body and body.buoyancy),
+            ("buoyancy", "N", "weight of the displaced fluids", body and body.buoyancy),
+            ("mean_buoyancy", "N", "mean buoyancy over the last minute", body and body.mean_lift[0]),
             ("wet_volume_above", "m3", "wet volume in the upper fluid", body and body.wet_volume[0]),
             ("wet_volume_below", "m3", "wet volume in the lower fluid", body and body.wet_volume[1]),
             ("heave_period", "s", "heave period as measured", body and body.period),
@@ -36,10 +38,20 @@ def measures(scene: "RadialSeaScene") -> dict[str, Measure]:
         ):
             number = math.nan if value is None else value
             found[f"{slug(kind.title)}_{name}"] = Measure(number, unit, f"{kind.title}: {meaning}")
+    spill = weathered_oil(scene.params)
+    for name, unit, meaning, value in (
+        ("evaporated", "1", "Share of the spill that has evaporated", spill and spill.evaporated),
+        ("dispersed", "1", "Share of the spill in drops in the water", spill and spill.dispersed),
+        ("water_content", "1", "Share of water in the emulsion", spill and spill.water_content),
+        ("slick_area", "m2", "Area of the spill", spill and spill.area),
+        ("oil_viscosity", "Pa s", "Viscosity of the oil that floats", scene.column.oil.viscosity),
+        ("oil_density", "kg/m3", "Density of the oil that floats", scene.column.oil.density),
+    ):
+        found[name] = Measure(math.nan if value is None else value, unit, meaning)
     return found | {
         "significant_height": Measure(readings.height, "m", "Significant height of the waves"),
         "clean_height": Measure(readings.clean_height, "m", "Significant height of the waves without the oil"),
         "mean_square_slope": Measure(readings.slope, "1", "Mean square slope of the waves"),
         "clean_slope": Measure(readings.clean_slope, "1", "Mean square slope of the waves without the oil"),
-        "middle_period": Measure(readings.middle_period, "s", "Period of the wave in the middle of the energy"),
+        "middle_period": Measure(readings.middle_period, "s", "Period above which half of the energy is"),
     }

@@ -4,10 +4,12 @@ import dataclasses
 import math
 from typing import Any
 
+from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import fluids
+from sim.ocean.fluids import Fluid, fluids
 from sim.ocean.radial_grid import LAWS
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, Spectrum
+from sim.ocean.weathering import Spill, WeatheredOil, can_weather, oil_at, weather
 from sim.parameters import parameter, with_parameters
 
 OILS = tuple(name for name in fluids() if "water" not in name)
@@ -15,8 +17,11 @@ CAMERA_TARGETS = ("free", "first buoy", "second buoy", "box", "cutaway", "from a
 SPECTRUM_TITLES = {
     name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
 }
+WATER = "sea water"
+MIN_FILM = 1e-6  # [m] of oil that counts as a layer: thinner, the spill is gone
 OWN_DENSITIES = ("density_1", "density_2", "density_3")  # parameters: densities of the first bodies
 LEVEL_SPECTRUM = "pierson_moskowitz"  # makes no waves without wind
+OPAQUE_THICKNESS = 7e-5  # [m] of crude over which light falls to 1/e: 0.2 mm show its true colour (Bonn Agreement)
 SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
 
 
@@ -42,7 +47,7 @@ class Params:
     )
     oil: str = parameter("Alaska North Slope 2002", choices=OILS, doc="Kind of oil, from NOAA's records", group="Main")
     thickness: float = parameter(
-        0.2, 0.0, 2.0, "m", "Thickness d of the layer of oil", group="Main", title="Layer thickness"
+        0.2, 0.0, 2.0, "m", "Thickness d of the layer of oil", log_from=1e-5, group="Main", title="Layer thickness"
     )
     fraction: float = parameter(
         0.5, 0.01, 0.99, "", "Share of oil in the mixture, by volume", group="Main", title="Share of oil"
@@ -79,15 +84,24 @@ class Params:
     )
 
     mixture_law: str = parameter(
-        "taylor",
+        "pal_rhodes",
         choices={
-            "taylor": "Taylor (emulsion)",
+            "pal_rhodes": "Pal-Rhodes (emulsion)",
+            "mooney": "Mooney (emulsion)",
+            "taylor": "Taylor (thin emulsion)",
             "arrhenius": "Arrhenius (solution)",
             "kendall_monroe": "Kendall-Monroe (solution)",
         },
         doc="Viscosity of the mixture",
         group="Oil",
         title="Mixture law",
+    )
+    continuous: str = parameter(
+        "plentiful",
+        choices={"plentiful": "The more plentiful", "water": "Water: oil in water", "oil": "Oil: water in oil"},
+        doc="Fluid of an emulsion that the drops of the other are in. Spills at sea become water in oil (mousse)",
+        group="Oil",
+        title="Continuous fluid",
     )
     film: bool = parameter(
         False, doc="A surface film that cannot be stretched, which damps ripples", group="Oil", title="Surface film"
@@ -110,6 +124,30 @@ class Params:
         group="Oil",
         affects="look",
         title="Reflections",
+    )
+
+    spill_volume: float = parameter(
+        100.0, 1.0, 1e5, "m³", "Oil that was spilled, all at once", log_from=1.0, group="Spill over hours",
+        title="Volume spilled",
+    )  # fmt: skip
+    temperature: float = parameter(
+        15.0, 0.0, 30.0, "°C", "Temperature of the oil; the water's density stays that of 15 °C",
+        group="Spill over hours",
+    )  # fmt: skip
+    spill_hours: float = parameter(
+        0.0,
+        0.0,
+        120.0,
+        "h",
+        "Time since the spill: the oil evaporates, takes up water and thickens, and floats here as it is by then",
+        group="Spill over hours",
+        title="Time since the spill",
+    )
+    spread: bool = parameter(
+        False,
+        doc="The layer is as thin as the oil has spread by then, instead of as thick as set",
+        group="Spill over hours",
+        title="Thickness as spread",
     )
 
     bodies: int = parameter(
@@ -206,6 +244,13 @@ class Params:
         affects="look",
         title="Buoy and sea",
     )
+    plot_budget: bool = parameter(
+        False,
+        doc="Where the oil of the spill is, over five days",
+        group="Plots",
+        affects="look",
+        title="Oil budget",
+    )
 
     hull: str = ""  # a mesh file that floats too; it is named on the command line only, never by a browser
 
@@ -230,6 +275,15 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Entirely mixed": {"spill": "mixed", "oil": "Arabian Light", "fraction": 0.4, "follow": "from above"},
     "Storm with buoys": {"wind_speed": 17.0, "bodies": 12, "wave_count": 160, "size": 2.0, "follow": "from above"},
     "Burning rig": {"fire": True, "jet": True, "follow": "rig", "sky": "dawn", "wind_speed": 6.0},
+    "A day after a spill": {
+        "spill": "layer",
+        "oil": "Arabian Light",
+        "spill_hours": 24.0,
+        "spread": True,
+        "exposure": 3600.0,
+        "plot_budget": True,
+        "follow": "from above",
+    },
 }
 
 
@@ -238,8 +292,16 @@ def hidden(params: Params) -> set[str]:
     names = SPECTRA[params.spectrum].unused(spectrum_values(params))
     if params.spill != "layer":
         names.add("thickness")
+    if spill_of(params) is None:
+        names |= {"spill_volume", "spill_hours", "spread", "plot_budget"}
+    elif params.spread:
+        names.add("thickness")
+    if params.spill != "layer":
+        names.add("temperature")
     if params.spill != "mixed":
-        names |= {"fraction", "mixture_law"}
+        names |= {"fraction", "mixture_law", "continuous"}
+    elif not MIXTURE_LAWS[params.mixture_law].is_emulsion:
+        names.add("continuous")
     if params.spill == "none":
         names |= {"film", "exposure", "ageing", "optics"}
         if not (params.rig and params.jet):
@@ -247,7 +309,7 @@ def hidden(params: Params) -> set[str]:
     if not params.waves:
         names |= {"spectrum", *PARAMETERS, "wave_count", "choppiness", "exposure", "ageing", "film"}
         if not (params.rig and params.fire):  # the wind still blows the smoke
-            names |= {"wind_speed", "wind_direction"}
+            names |= {"wind_direction"} | ({"wind_speed"} if spill_of(params) is None else set())
     if params.bodies == 0:
         names |= {"density", "own_densities", "size", "ripples", "mooring", "pull"}
     names |= {name for i, name in enumerate(OWN_DENSITIES) if not params.own_densities or i >= params.bodies}
@@ -274,13 +336,54 @@ def densities_of(params: Params) -> tuple[float, ...]:
     return (params.density, *own_densities_of(params))
 
 
+def spill_of(params: Params) -> Spill | None:
+    """The spill that floats on the sea.
+
+    None without a layer of oil, or where the oil's record does not tell how it evaporates.
+    """
+    if params.spill != "layer" or not can_weather(params.oil):
+        return None
+    return Spill(
+        oil=params.oil,
+        volume=params.spill_volume,
+        wind_speed=params.wind_speed,
+        temperature=params.temperature,
+        water=WATER,
+    )
+
+
+def weathered_oil(params: Params) -> WeatheredOil | None:
+    """The oil of the spill as it is by then; None where there is no spill to follow."""
+    spill = spill_of(params)
+    return None if spill is None else weather(spill).at(params.spill_hours)
+
+
+def oil_of(params: Params) -> Fluid:
+    """The oil in force: of a layer as warm and as old as set, else at 15 degrees and fresh."""
+    if params.spill != "layer":
+        return fluids()[params.oil]
+    weathered = weathered_oil(params) if params.spill_hours > 0.0 else None
+    return oil_at(params.oil, params.temperature) if weathered is None else weathered.fluid(params.oil)
+
+
+def thickness_of(params: Params) -> float:
+    """Thickness [m] of the layer of oil: as set, or as thin as it has spread."""
+    if params.spill != "layer":
+        return 0.0
+    weathered = weathered_oil(params) if params.spread else None
+    if weathered is None:
+        return params.thickness
+    return weathered.thickness if weathered.thickness >= MIN_FILM else 0.0
+
+
 def column_of(params: Params) -> FluidColumn:
     """The fluids that the parameters describe."""
     return FluidColumn(
-        oil=fluids()[params.oil],
-        thickness=params.thickness if params.spill == "layer" else 0.0,
+        oil=oil_of(params),
+        thickness=thickness_of(params),
         fraction=params.fraction if params.spill == "mixed" else 0.0,
         law=params.mixture_law,
+        continuous=params.continuous,
         film=params.film and params.spill != "none",
     )
 

@@ -6,19 +6,20 @@ import numpy as np
 
 from app.messages import Snapshot
 from app.render.html import Html, bold, faint, fill, join, table
+from app.scenes.radial_sea.budget import budget_html, budget_marks
 from app.scenes.radial_sea.frame import RadialReadings
-from app.scenes.radial_sea.materials import LAB_SPECULAR
 from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
-from app.scenes.radial_sea.well_blowout import OilBudget
+from app.scenes.radial_sea.well_blowout import CROSSING_WAVE, OilBudget
 from sim.formatting import fixed, metres, number, percent, seconds
+from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import diffuse_reflectance, normal_reflectance
 from sim.ocean.gerstner import peak_wavenumber
+from sim.ocean.weathering.components import WARM
 from sim.parameters import parameters_of
 
 SAMPLE_WAVE = 10.0  # [m] length of the wave in statements about the speed of waves
 SHORT_WAVE = 1.0  # [m] length of the wave in statements about viscosity
-MAX_DILUTE = 0.1  # share of drops up to which Taylor's law, of first order, holds
+LEAST_LEFT = 1e-3  # share of a wave below which nothing is said of how much it is
 SURFACES = (("sum", "radial sum"), ("fft", "square FFT"))
 
 
@@ -30,8 +31,16 @@ def draft_text(value: float) -> str:
 def readout_of(snapshot: Snapshot) -> Html:
     """Under the status line: the draft of each body, then the waves and the oil of the jet."""
     readings: RadialReadings = snapshot.readings
+    parts = [drafts_html(readings, snapshot.frame.params.waves), waves_text(readings)]
+    if readings.oil_budget.ejected > 0.0:
+        parts.append(oil_budget_text(readings.oil_budget))
+    return join(parts)
+
+
+def drafts_html(readings: RadialReadings, waves: bool) -> Html:
+    """The draft of each body; waves: whether there are any."""
     if not readings.bodies:
-        return Html("No bodies.")
+        return Html("<div>No bodies.</div>")
     drafts = []
     for body in readings.bodies:
         p = body.prediction
@@ -39,32 +48,33 @@ def readout_of(snapshot: Snapshot) -> Html:
         drafts.append((
             body.title, fixed(body.draft, 3), fixed(body.mean_draft, 3), bold(draft_text(p.draft)), added,
         ))  # fmt: skip
-    parts = [
+    return join((
         table((("draft", ""), ("now", "m"), ("mean, 60 s", "m"), ("at rest", "m"), ("oil adds", "m")), drafts),
         faint(
             "At rest: by Archimedes' principle in these fluids. Waves disturb it: switch them off to compare exactly."
-            if snapshot.frame.params.waves
+            if waves
             else "At rest: by Archimedes' principle in these fluids."
         ),
-        archimedes(readings.column),
-        waves_text(readings),
-    ]
-    if readings.oil_budget.ejected > 0.0:
-        parts.append(oil_budget_text(readings.oil_budget))
-    return join(parts)
+    ))  # fmt: skip
 
 
 def forces_html(readings: RadialReadings) -> Html:
     """Weight, buoyancy and heave period of each body."""
     periods = [(body.title, fixed(body.period, 2), fixed(body.prediction.period, 2)) for body in readings.bodies]
+    approximated = [body.title for body in readings.bodies if not body.has_own_coefficients]
+    note = faint(
+        f"{', '.join(approximated)}: added mass, damping and wave forces are those of the box with its volume and "
+        "waterplane. The command springtide hydrodynamics HULL computes its own."
+    )
     return join((
         *weight_tables(readings),
         table((("heave period", ""), ("measured", "s"), ("theory", "s")), periods),
+        *([note] if approximated else []),
     ))  # fmt: skip
 
 
-def weight_tables(readings: RadialReadings) -> tuple[Html, Html]:
-    """Weights and the buoyancy that carries them, with all that Archimedes' sum is made of."""
+def weight_tables(readings: RadialReadings) -> tuple[Html, ...]:
+    """Weights and the buoyancy that carries them, with all that Archimedes' sum is made of, and mean upward forces."""
     gravity = readings.column.gravity
     weights = [
         (body.title, fixed(body.density, 0), number(body.volume, 4), number(body.mass, 4),
@@ -75,16 +85,26 @@ def weight_tables(readings: RadialReadings) -> tuple[Html, Html]:
         (body.title, *(number(v, 4) for v in (body.wet_volume if layered else body.wet_volume[:1])),
          number(body.buoyancy, 4)) for body in readings.bodies
     ]  # fmt: skip
+    means = [
+        (body.title, number(body.mass * gravity, 4), *(number(force, 4) for force in body.mean_lift))
+        for body in readings.bodies
+    ]  # fmt: skip
     wet = (("wet in oil", "m³"), ("in water", "m³")) if layered else (("wet volume", "m³"),)
     return (
         table((("weight", ""), ("density", "kg/m³"), ("volume V", "m³"), ("mass ρV", "kg"), ("weight gρV", "N")),
               weights),
         table((("buoyancy now", ""), *wet, ("buoyancy", "N")), forces),
+        table((("mean upward force, 60 s", ""), ("weight", "N"), ("buoyancy", "N"), ("waves", "N"), ("drag", "N"),
+               ("own motion", "N")), means),
+        faint("On average buoyancy carries the weight. Waves, drag and what the motion meets (added mass, radiated "
+              "waves, a pull) push up and down; over a minute little of them remains."),
     )  # fmt: skip
 
 
 def waves_text(readings: RadialReadings) -> Html:
     """Height and slope of the waves, with the height without oil where oil has lowered it."""
+    if readings.clean_height == 0.0:
+        return Html("<div>No waves.</div>")
     height, clean = number(readings.height), number(readings.clean_height)
     lowered = f" ({clean} m without oil)" if clean != height else ""
     slope = number(math.sqrt(readings.slope), 2)
@@ -92,159 +112,79 @@ def waves_text(readings: RadialReadings) -> Html:
 
 
 def oil_budget_text(budget: OilBudget) -> Html:
-    """Where the oil of the jet is."""
-    return fill(
-        "<div>Oil released: {} m³; {} m³ in the air, {} m³ on the sea. Slick: radius {} m, thickness {}.</div>",
-        number(budget.ejected), number(budget.in_flight), number(budget.fed), number(budget.radius),
-        metres(budget.thickness, 2),
-    )  # fmt: skip
-
-
-def archimedes(column: FluidColumn) -> Html:
-    """How the fluids change the draft, in symbols and in numbers."""
-    oil, water = column.oil.density, column.water.density
-    if column.kind == "layer":
-        return fill(
-            "<div>A body with straight sides that reaches through the oil floats deeper by "
-            "d (1 − ρ₁/ρ₂) = {:g} m × (1 − {:g}/{:g}) = "
-            "<b>{:.4f} m</b>.</div>",
-            column.thickness, oil, water, column.thickness * (1.0 - oil / water),
-        )  # fmt: skip
-    if column.kind == "mixed":
-        mixed = column.surface.density
-        return fill(
-            "<div>Density of the mixture {:.1f} kg/m³, of water {:g} kg/m³: a body with straight sides floats {:.4f} "
-            "times as deep.</div>",
-            mixed, water, water / mixed,
-        )  # fmt: skip
-    return fill(
-        "<div>Archimedes' principle: ρV = {:g} kg/m³ × V<sub>wet</sub>. The displaced water weighs as much as the "
-        "body.</div>",
-        water,
+    """Where the oil of the jet is, and what its slick leaves of a wave."""
+    left = percent(budget.wave_left, 3) if budget.wave_left >= LEAST_LEFT else f"less than {percent(LEAST_LEFT)}"
+    calmed = (
+        "" if math.isnan(budget.wave_left) else f" A wave of {CROSSING_WAVE:g} m keeps {left} of its height across it."
     )
+    return fill(
+        "<div>Oil released: {} m³; {} m³ in the air, {} m³ on the sea. Slick: radius {} m, thickness {}.{}</div>",
+        number(budget.ejected), number(budget.in_flight), number(budget.fed), number(budget.radius),
+        metres(budget.thickness, 2), calmed,
+    )  # fmt: skip
 
 
 def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
     return {
         "Weight, buoyancy, heave": forces_html(snapshot.readings),
-        "Lab says, physics says": claims_html(snapshot),
         "Fluids": fluids_html(snapshot),
+        "Spill budget": budget_html(snapshot.frame.params, snapshot.readings.weathering),
         "Radial or square": surfaces_html(snapshot),
     }
 
 
-def claims_html(snapshot: Snapshot) -> Html:
-    """The statements of the lab's section 1.1, each with what physics says and the present numbers."""
-    readings: RadialReadings = snapshot.readings
-    p, column = snapshot.frame.params, readings.column
-    water = column.water
-    k = np.array([2.0 * math.pi / SAMPLE_WAVE])
-    speed, clean_speed = float(column.roots(k)[0][0] / k[0]), float(FluidColumn(water=water).omega(k)[0] / k[0])
-    height_loss = 1.0 - (readings.height / readings.clean_height if readings.clean_height > 0 else 1.0)
-    slope_loss = 1.0 - (readings.slope / readings.clean_slope if readings.clean_slope > 0 else 1.0)
-    short = 2.0 * math.pi / SHORT_WAVE
-    decay = float(column.roots(np.array([short]))[1][0])
-    # Against the same fluids without viscosity, so that tension and layer do not count.
-    slowing = 1.0 - float(column.roots(np.array([short]))[0][0] / column.omega(np.array([short]))[0])
-    oil = column.oil
-    normal_oil, normal_water = normal_reflectance(oil.refractive_index), normal_reflectance(water.refractive_index)
-    sky_oil, sky_water = diffuse_reflectance(oil.refractive_index), diffuse_reflectance(water.refractive_index)
-    prediction = readings.bodies[0].prediction if readings.bodies else None
-    here = ""
-    if prediction is not None and column.kind != "water" and not math.isinf(prediction.draft):
-        added = fixed(prediction.draft - prediction.draft_in_water, 4, sign=True)
-        here = f" The {readings.bodies[0].title.lower()} here: {added} m."
-    shown = f"as in the lab, reflections times {LAB_SPECULAR:g}" if p.optics == "lab" else "physical"
-    claims: tuple[tuple[str, Html], ...] = (
-        (
-            "1. Which fluid is on top?",
-            fill(
-                "The lighter one: {:g} kg/m³ is less than {:g} kg/m³. Oil below water would rise, because that lowers "
-                "the centre of mass.",
-                column.oil.density, water.density,
-            ),
-        ),
-        (
-            "2, 4. The bodies float deeper in oil.",
-            fill(
-                "Yes: by d (1 − ρ₁/ρ₂) if they have straight sides and reach through the oil; if not, by their "
-                "draft in oil less their draft in water.{}",
-                here,
-            ),
-        ),
-        (
-            "5. The viscosity of the mixture.",
-            mixture_html(column, parameters_of(p)["mixture_law"].title_of(p.mixture_law)),
-        ),
-        (
-            "6a. Viscosity changes the speed of waves.",
-            fill(
-                "Hardly: a wave of {:g} m runs at {:.3f} m/s here and at {:.3f} m/s on clean water, because ω² = gk "
-                "does not contain the density. Viscosity slows a wave of {:g} m by {}.",
-                SAMPLE_WAVE, speed, clean_speed, SHORT_WAVE, percent(slowing),
-            ),
-        ),
-        (
-            "6b. Viscosity lowers the waves.",
-            join((
-                "The short ones. ",
-                "" if column.kind == "water" else fill(
-                    "After {} H<sub>s</sub> is {} lower and the mean square slope {} lower. ",
-                    seconds(readings.age, 2), percent(height_loss), percent(slope_loss),
-                ),
-                fill("A wave of {:g} m falls to 37 % in {} here.", SHORT_WAVE, seconds(1.0 / decay)),
-            )),
-        ),
-        (
-            "7. Oil reflects less.",
-            fill(
-                "It reflects more, at every angle: {} straight down (water {}), {} of the light of a whole sky "
-                "(water {}), with n = {:.3f}. It looks darker because no light is scattered back from below, and "
-                "smoother because it damps the ripples. Rendering: {}.",
-                percent(normal_oil), percent(normal_water), percent(sky_oil), percent(sky_water),
-                oil.refractive_index, shown,
-            ),
-        ),
-    )  # fmt: skip
-    return join(fill('<div style="margin-bottom:6px"><b>{}</b><br>{}</div>', *claim) for claim in claims)
-
-
 def mixture_html(column: FluidColumn, law: str) -> Html:
-    """The viscosity of the mixture, by which law, and whether that law holds for so much oil."""
+    """The viscosity of the mixture, by which law, of what drops in what, and whether that law holds for so many."""
     water = number(column.water.viscosity * 1e3)
     kinds = (
-        "Oil and water do not dissolve in each other: they form an emulsion, for which Taylor's law holds as long as "
-        f"drops are less than {MAX_DILUTE:.0%} of it. Arrhenius' law is that of a true solution, the lab's 'entirely "
-        "mixed'."
+        "Oil and water do not dissolve in each other: they form an emulsion, oil in water or, in most spills at sea, "
+        "water in oil (mousse). Arrhenius' law is that of a true solution, the lab's 'entirely mixed'."
     )
-    if column.kind != "mixed":
-        return fill("Nothing is mixed here; water has {} mPa·s. {}", water, kinds)
-    drops = min(column.fraction, 1.0 - column.fraction)
-    beyond = ""
-    if column.law == "taylor" and drops > MAX_DILUTE:
-        beyond = f" With {drops:.0%} of drops it is far too low."
     return fill(
-        "{} mPa·s ({}); that of water is {} mPa·s. {}{}",
+        "{} mPa·s ({}); that of water is {} mPa·s, of the oil {} mPa·s. {}{}",
         number(column.surface.viscosity * 1e3),
         law,
         water,
+        number(column.oil.viscosity * 1e3),
+        f"{drops_text(column)} " if MIXTURE_LAWS[column.law].is_emulsion else "",
         kinds,
-        beyond,
     )
+
+
+def drops_text(column: FluidColumn) -> str:
+    """What the drops of an emulsion are in, how many there are, and whether the law holds for so many."""
+    kind = "water in oil" if drops_of(column) == "water" else "oil in water"
+    ratio = column.surface.viscosity / column.continuous_fluid.viscosity
+    times = f"{number(ratio)} times as viscous as the {kind.split()[-1]} alone"
+    text = f"It is {kind}: {percent(column.drops)} drops, {times}."
+    limit = MIXTURE_LAWS[column.law].max_drops
+    if column.drops <= limit:
+        return text
+    much = "far too low" if column.law == "taylor" else "outside what was measured"
+    return f"{text} This law holds up to {limit:.0%} of drops; here it is {much}."
+
+
+def drops_of(column: FluidColumn) -> str:
+    """The fluid that an emulsion's drops are of."""
+    return "water" if column.continuous_fluid is column.oil else "oil"
 
 
 def fluids_html(snapshot: Snapshot) -> Html:
     """The fluids in use."""
     column: FluidColumn = snapshot.readings.column
-    head = (("at 15 °C", ""), ("ρ", "kg/m³"), ("μ", "mPa·s"), ("ν", "m²/s"), ("n", ""))
+    p = snapshot.frame.params
+    warmth = p.temperature if p.spill == "layer" else WARM
+    head = (("", ""), ("ρ", "kg/m³"), ("μ", "mPa·s"), ("ν", "m²/s"), ("n", ""))
     fluids = [column.water, column.oil, *([column.surface] if column.kind == "mixed" else [])]
     rows = [
-        (f.name, fixed(f.density, 1), number(f.viscosity * 1e3), number(f.kinematic_viscosity),
-         fixed(f.refractive_index, 3)) for f in fluids
+        (f"{f.name}, {warmth if f is column.oil else WARM:g} °C", fixed(f.density, 1), number(f.viscosity * 1e3),
+         number(f.kinematic_viscosity), fixed(f.refractive_index, 3)) for f in fluids
     ]  # fmt: skip
+    law = parameters_of(snapshot.frame.params)["mixture_law"].title_of(column.law)
     return join((
         table(head, rows),
+        mixture_html(column, law) if column.kind == "mixed" else "",
         faint("ρ density, μ dynamic and ν kinematic viscosity, n refractive index. Oils: NOAA's records."),
     ))  # fmt: skip
 
@@ -280,7 +220,10 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
     column, grid = readings.column, snapshot.frame.grid
     oil = column.oil
     marks = {
-        "wind_speed": f"Hs = {number(readings.clean_height)} m, mean period {number(readings.middle_period, 2)} s",
+        "wind_speed": f"Hs = {number(readings.clean_height)} m, half of the energy above "
+        f"{seconds(readings.middle_period, 2)}"
+        if readings.clean_height > 0.0
+        else "no waves",
         "oil": f"{number(oil.density, 4)} kg/m³, {number(oil.viscosity * 1e3)} mPa·s, n = {oil.refractive_index:.3f}",
         "rings": f"{number(len(grid))} points, spacing {metres(grid.spacing[0], 2)} in the middle, "
         f"{metres(grid.spacing[-2], 2)} at the rim",
@@ -291,10 +234,14 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
         marks["density"] = f"{readings.bodies[0].title}, {fixed(prediction.height, 2)} m high: {rest}"
     if column.kind == "mixed":
         density, viscosity = column.surface.density, column.surface.viscosity
+        law = MIXTURE_LAWS[column.law]
         marks["mixture_law"] = f"{number(viscosity * 1e3)} mPa·s, {fixed(density, 0)} kg/m³"
+        if law.is_emulsion:
+            beyond = "" if column.drops <= law.max_drops else f"; the law holds up to {law.max_drops:.0%}"
+            marks["continuous"] = f"{percent(column.drops)} drops of {drops_of(column)}{beyond}"
     if column.kind != "water":
         p = snapshot.frame.params
         k = np.array([peak_wavenumber(spectrum_of(p), conditions_of(p))])
         remaining = math.exp(-float(column.roots(k)[1][0]) * readings.age)
         marks["exposure"] = f"after {seconds(readings.age)} the peak wave keeps {percent(remaining, 3)} of its height"
-    return marks
+    return marks | budget_marks(snapshot.frame.params, readings.weathering)

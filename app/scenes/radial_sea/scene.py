@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, WorkCount, WorkCounts
-from app.scenes.charts import PlotAxes
+from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
 from app.scenes.radial_sea.bodies import FloatingBodies, kind_of
+from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.cutaway import Cutaway, cutaway_at, outline
 from app.scenes.radial_sea.frame import RadialFrame, RadialReadings, SurfaceReading
+from app.scenes.radial_sea.live_values import live_values
 from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import (
     PRESETS,
@@ -27,20 +29,23 @@ from app.scenes.radial_sea.parameters import (
     hidden,
     own_densities_of,
     spectrum_of,
+    spill_of,
 )
-from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
+from app.scenes.radial_sea.well_blowout import CROSSING_WAVE, WellBlowout, slick_reach
 from sim.floating import MotionCoefficients, Shape, shape_from_file
 from sim.ocean import Sea
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.foam import whitecaps
 from sim.ocean.gerstner import Waves, draw_waves
-from sim.ocean.radial import RadialSea, RadialSurface
+from sim.ocean.radial import CLEAN, RadialSea, RadialSurface
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.radiated_waves import LENGTH as RADIATED_WAVES_LENGTH
 from sim.ocean.radiated_waves import RadiatedWaves
+from sim.ocean.slick import SlickCover
 from sim.ocean.spectra import SPECTRA, Conditions
 from sim.ocean.statistics import energy_by_wavenumber, expected
 from sim.ocean.tile_sea import TileSea
+from sim.ocean.weathering import Weathering, weather
 from sim.parameters import Value, check_record
 
 HELP = (
@@ -55,6 +60,9 @@ PLOTS = {
     "plot_draft": PlotAxes("Draft", "m", BODY_SERIES),
     "plot_surface": PlotAxes(f"Surface and {BODY_SERIES[0]}", "m", HEIGHT_SERIES),
 }
+CURVES = {
+    "plot_budget": CurveAxes("Oil budget [% of the oil spilled]", "t [h]", tuple(line.label for line in BUDGET_LINES))
+}
 FRAME_INTERVAL = 1 / 30  # [s] between frames
 GRID_RADIUS = 5000.0  # [m] of the last ring
 FIRST_RING = 0.35  # [m] radius of the first ring
@@ -65,14 +73,18 @@ NEGLIGIBLE_ENERGY = 1e-4  # of the largest of all parts of the spectrum: a part 
 COMPARE_INTERVAL = 2.0  # [s] of wall time between two timings of the other surface
 COST_MEMORY = 0.9  # share of the old value in the running mean of a surface's cost
 SLICK_EDGE = 3.0  # [m] over which the slick of the jet grows to its thickness: a step would kick the bodies
+CALMING_STEP = 1.05  # ratio of two thicknesses of the slick for which the decay of waves is found
 FOAM_RADIUS = 80.0  # [m] within which the foam threshold is measured
 FOAM_GAIN = 0.05  # share of the new value in the running mean of the foam threshold
 FOAM_WIDTH = 0.07  # change of the Jacobian over which foam goes from none to full
 MAX_FOAM_JACOBIAN = 0.97  # threshold above which nothing is foam: the surface is not pressed together anywhere
+WAVES, BODIES, FIRE, TILE = "waves", "bodies", "fire", "square sea"
+# Piece to compile -> the parameters that call all of it. Waves and bodies are two, for two processes to compile.
 WARM_UP: dict[str, dict[str, Value]] = {
-    "bodies": {},
-    "fire": {"fire": True, "jet": True, "spill": "layer"},
-    "square sea": {"surface": "fft"},
+    WAVES: {"bodies": 0},
+    BODIES: {},
+    FIRE: {"fire": True, "jet": True, "spill": "layer"},
+    TILE: {"surface": "fft"},
 }
 
 
@@ -81,12 +93,22 @@ def warm_up() -> Pieces:
     return {name: functools.partial(compile_with, changes) for name, changes in WARM_UP.items()}
 
 
+def needs(params: Params) -> tuple[str, ...]:
+    """What a scene with these parameters runs."""
+    fire = (FIRE,) if params.fire or params.jet else ()
+    tile = (TILE,) if params.surface == "fft" or params.compare else ()
+    return WAVES, BODIES, *fire, *tile
+
+
 def compile_with(changes: dict[str, Value]) -> None:
     """What a scene calls with these parameters changed from their defaults."""
     scene = RadialSeaScene(check_record(Params, changes))
-    scene.handle(Grab(0, (0.0, 0.0, 0.0)))
+    if scene.params.bodies:
+        scene.handle(Grab(0, (0.0, 0.0, 0.0)))
     for _ in range(8):
         scene.advance(1)
+    if scene.params.jet:
+        scene.sum.slick = SlickCover((0.0, 0.0), 1.0, scene.column)
     scene.frame()
     scene.readings()
 
@@ -241,6 +263,7 @@ class RadialSeaScene:
         """Take steps. Raises DivergenceError where a body's state is no longer finite."""
         bodies, sea, h = self.bodies, self.sea, self.step
         coefficients = MotionCoefficients(gravity=self.column.gravity)
+        self.calm_waves()
         touches = bodies.touches
         for _ in range(steps):
             if bodies.count:
@@ -266,9 +289,28 @@ class RadialSeaScene:
         done = {"body steps": steps * n, "pairs": steps * n * (n - 1) // 2, "touches": bodies.touches - touches}
         self.counts.update(done)
         if self.params.ripples and bodies.count:
-            self.radiated_waves.press(self.time, bodies.fleet.position[:, :2], bodies.widths, bodies.impulse)
+            density = self.column.layers[-1][0]  # of the deep fluid, which the waves move
+            self.radiated_waves.press(self.time, bodies.fleet.position[:, :2], bodies.widths, bodies.impulse, density)
         bodies.impulse[:] = 0.0
         self.well_blowout.step(sea, self.time, steps * h)
+
+    def calm_waves(self) -> None:
+        """Let the slick of the jet calm the waves of the sum under it."""
+        slick = self.well_blowout.slick(self.column)
+        self.sum.slick = None
+        if slick is not None and self.column.kind != "mixed":
+            # Rounded, as the decay of all waves is found again with each thickness.
+            steps = round(math.log(slick.thickness) / math.log(CALMING_STEP))
+            thickness = self.column.thickness + CALMING_STEP**steps
+            column = dataclasses.replace(self.column, thickness=thickness)
+            self.sum.slick = SlickCover(slick.centre, slick.radius, column)
+
+    def wave_left(self) -> float:
+        """Share of its height that a wave of `CROSSING_WAVE` keeps across the slick; NaN where none calms this sea."""
+        slick = self.sum.slick
+        if slick is None or self.params.surface != "sum":
+            return math.nan
+        return math.exp(-2.0 * slick.radius * crossing_loss(slick.column, self.column))
 
     def age_waves(self, duration: float) -> None:
         """Let the waves decay under the oil for `duration` [s] more."""
@@ -418,10 +460,11 @@ class RadialSeaScene:
             clean_height=s.waves.significant_height,
             slope=s.mean_square_slope,
             clean_slope=mean_square_slope(s.waves),
-            middle_period=2 * math.pi / float(s.rate[len(s.rate) // 2]),
-            oil_budget=self.well_blowout.oil_budget(self.column),
+            middle_period=middle_period(s),
+            oil_budget=self.well_blowout.oil_budget(self.column)._replace(wave_left=self.wave_left()),
             surfaces=self.compared_surfaces() if self.params.compare else {},
             age=self.age,
+            weathering=self.weathering,
         )
 
     def compared_surfaces(self) -> dict[str, SurfaceReading]:
@@ -468,9 +511,16 @@ class RadialSeaScene:
             self.decayed_height = key, 4.0 * math.sqrt(float((energy[some] * kept).sum()))
         return self.decayed_height[1]
 
-    def curves(self) -> None:
-        """No charts but courses in time."""
-        return
+    @property
+    def weathering(self) -> Weathering | None:
+        """The spill over five days; None where there is none to follow."""
+        spill = spill_of(self.params)
+        return None if spill is None else weather(spill)
+
+    def curves(self) -> dict[str, Chart] | None:
+        """The chart of the oil budget, where it is open; the same one until spill or time change."""
+        spill = spill_of(self.params) if self.params.plot_budget else None
+        return None if spill is None else {"plot_budget": budget_chart(spill, self.params.spill_hours)}
 
     def work(self) -> WorkCounts:
         """Each wave at each vertex, each pair of bodies, and what may be added to every surface."""
@@ -495,6 +545,22 @@ class RadialSeaScene:
         }
 
 
+@functools.lru_cache(maxsize=4)
+def crossing_loss(inside: FluidColumn, outside: FluidColumn) -> float:
+    """Loss [1/m] of a wave of `CROSSING_WAVE` under a slick; kept, as over thin oil it takes 30 ms to find."""
+    k = np.array([2.0 * math.pi / CROSSING_WAVE])
+    return float(SlickCover((0.0, 0.0), 0.0, inside).attenuation(k, outside)[0])
+
+
+def middle_period(sea: RadialSea) -> float:
+    """Period [s] on clean water above which half of the energy of the waves is; the longest waves come first.
+
+    In thick oil waves may creep, and have no period.
+    """
+    energy = np.cumsum(np.square(sea.waves.amplitude))
+    return 2.0 * math.pi / float(CLEAN.omega(sea.waves.k[np.searchsorted(energy, 0.5 * energy[-1])]))
+
+
 def mean_square_slope(waves: Waves) -> float:
     """Mean square slope of waves on clean water."""
     return 0.5 * float(np.square(waves.k * waves.amplitude).sum())
@@ -511,5 +577,8 @@ SCENE = SceneKind(
     warm_up=warm_up,
     series=SERIES,
     plots=PLOTS,
+    curves=CURVES,
     measures=measures,
+    live_values=live_values,
+    needs=needs,
 )

@@ -8,8 +8,9 @@ import numpy as np
 from app.scenes.radial_sea.parameters import Params
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import RadialSea
-from sim.ocean.slick import slick_radius, slick_thickness
+from sim.ocean.slick import slick_radius, slick_thickness, spreading_coefficient
 from sim.ocean.tile_sea import TileSea
+from sim.ocean.weathering.laws import DRIFT
 from sim.particles.fire import Fire
 from sim.particles.jet import Jet
 
@@ -18,12 +19,16 @@ FIRE = (RIG[0] + 3.0, RIG[1] + 3.0, 26.5)  # [m] at the foot of the derrick
 FIRE_WIDTH = 9.0  # [m]
 NOZZLE = (RIG[0] - 12.0, RIG[1] - 17.0, 20.0)  # [m] on the edge of the deck towards the buoys
 JET_VELOCITY = (-9.0, -7.0, 9.5)  # [m/s] at the nozzle
+# A drop flies freely, until its height is that of the level sea.
+FALL_TIME = (JET_VELOCITY[2] + math.sqrt(JET_VELOCITY[2] ** 2 + 2 * 9.81 * NOZZLE[2])) / 9.81  # [s]
+LANDING = NOZZLE[0] + JET_VELOCITY[0] * FALL_TIME, NOZZLE[1] + JET_VELOCITY[1] * FALL_TIME  # [m]
 PARCEL_RADIUS = 0.05  # [m] of the oil
 MAX_FLIGHT_TIME = 4.0  # [s] that a parcel of oil is in the air, about
 MIN_JET_PARCELS = 50
 UPDRAFT = 3.0  # [m/s] of the air that the fire draws up
 SMOKE_LIFE = 24.0  # [s] of a parcel of fire and smoke
 BURN_IN_STEP = 0.1  # [s] of the steps by which the fire burns before the scene begins
+CROSSING_WAVE = 1.0  # [m] length of the wave in what is said of how the slick calms waves
 SAMPLE_GRID, SAMPLE_SPACING = 16, 3.0  # points a side and their distance [m], of the sea that parcels fall into
 
 
@@ -44,6 +49,8 @@ class OilBudget(NamedTuple):
     hits: int  # parcels that have
     radius: float  # [m] of the slick
     thickness: float  # [m] of the slick
+    # share of its height that a wave of `CROSSING_WAVE` keeps across the slick; NaN where none calms the sea
+    wave_left: float = math.nan
 
 
 class JetTotal(NamedTuple):
@@ -92,12 +99,11 @@ class WellBlowout:
         self.fire_settings: FireSettings | None = None
         self.jet_settings: JetSettings | None = None
         self.slick_age = 0.0  # [s] for which oil has been on the sea
+        self.drifted = 0.0  # [m3] of oil that has drifted so far
+        self.drift = (0.0, 0.0)  # [m] of the middle of its volume from where the jet lands
         self.closed_jets_total = JetTotal()
-        up, height = JET_VELOCITY[2], NOZZLE[2]
-        fall_time = (up + math.sqrt(up**2 + 2 * 9.81 * height)) / 9.81
-        self.landing = (NOZZLE[0] + JET_VELOCITY[0] * fall_time, NOZZLE[1] + JET_VELOCITY[1] * fall_time)
         half = 0.5 * (SAMPLE_GRID - 1) * SAMPLE_SPACING
-        self.origin = (self.landing[0] - half, self.landing[1] - half)
+        self.origin = (LANDING[0] - half, LANDING[1] - half)
         i, j = np.meshgrid(np.arange(SAMPLE_GRID), np.arange(SAMPLE_GRID), indexing="ij")
         self.points = np.column_stack([i.ravel(), j.ravel()]) * SAMPLE_SPACING + self.origin
         self.change(params)
@@ -107,6 +113,7 @@ class WellBlowout:
 
     def change(self, params: Params) -> None:
         """Light or put out the fire, open or shut the jet, as the parameters say; oil on the sea stays."""
+        self.wind = wind_of(params)
         fire, jet = fire_settings(params), jet_settings(params)
         if fire != self.fire_settings:
             self.fire_settings = fire
@@ -136,6 +143,10 @@ class WellBlowout:
             self.jet.step(duration, height, self.origin, SAMPLE_SPACING)
         if self.volume > 0.0:
             self.slick_age += duration
+            # What has just fallen is where the jet lands, and pulls the middle of the volume back.
+            share = self.drifted / self.volume
+            x, y = (d + DRIFT * u * duration for d, u in zip(self.drift, self.wind, strict=True))
+            self.drift, self.drifted = (share * x, share * y), self.volume
 
     @property
     def volume(self) -> float:
@@ -143,12 +154,21 @@ class WellBlowout:
         return self.closed_jets_total.fed + (self.jet.fed if self.jet is not None else 0.0)
 
     def slick(self, column: FluidColumn) -> Slick | None:
-        """The slick, spread by Fay's law, or None where there is none."""
+        """The slick, spread by Fay's laws and drifting with the wind, or None where there is none."""
         if self.volume <= 0.0 or self.slick_age <= 0.0:
             return None
         viscosity = column.water.kinematic_viscosity
-        radius = slick_radius(self.volume, self.slick_age, column.oil.density, column.water.density, viscosity)
-        return Slick(self.landing, radius, slick_thickness(self.volume, radius))
+        radius = slick_radius(
+            self.volume,
+            self.slick_age,
+            column.oil.density,
+            column.water.density,
+            viscosity,
+            column.gravity,
+            spreading_coefficient(column.oil, column.water),
+        )
+        x, y = LANDING[0] + self.drift[0], LANDING[1] + self.drift[1]
+        return Slick((x, y), radius, slick_thickness(self.volume, radius))
 
     def oil_budget(self, column: FluidColumn) -> OilBudget:
         """Where the oil is."""

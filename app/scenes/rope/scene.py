@@ -1,14 +1,26 @@
 """The rope of springs, part 2 of the lab: its root and its points can be dragged."""
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts, vector_of
+from app.messages import (
+    DivergenceError,
+    Grab,
+    Place,
+    PlotRow,
+    Release,
+    SceneCommand,
+    StudentAnswer,
+    Vector,
+    WorkCounts,
+    vector_of,
+)
 from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.plot_rows import PlotRows
+from app.scenes.rope.live_values import live_values
 from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import PRESETS, Params, hidden
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text, leapfrog_alternative
@@ -26,6 +38,10 @@ from sim.springs.resampling import resample
 from sim.springs.stability import Gauge, critical_stiffness, gauge, top_modes
 from sim.springs.state import State, advance, energy, velocities
 
+if TYPE_CHECKING:
+    from app.lab.live_rope import LiveRope
+    from app.scenes.rope.student_rope import StudentRope
+
 ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
 MIN_MOVE_TO_ASSESS = 1e-3  # of a link: a rope that has moved by less since the last assessment is as stable as it was
 FULL_RATE_SPEED = 0.6  # [m/s] on screen: 10 mm, about two pixels, between frames at the highest rate
@@ -39,9 +55,10 @@ PLOTS = {
 
 
 class RopeFrame(NamedTuple):
-    """What the view draws of a rope."""
+    """What the view draws of a rope: the student's where there is one, and then the program's beside it."""
 
     points: NDArray[np.float32]  # (n, 3) [m], C-contiguous
+    reference: NDArray[np.float32] | None  # (n, 3) [m] the program's rope beside the student's
     tension: NDArray[np.float32]  # (n - 1,) [N]
     full_scale: float  # [N] tension at the end of the colour scale
     root: Vector  # [m] where the root is going to
@@ -95,11 +112,27 @@ def needs(params: Params) -> tuple[str, ...]:
     return integrator_or_fallback(params.integrator, build(params))[0].name, GAUGE
 
 
+def rows_of(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Positions or velocities (3, 1, n) of a rope's state as (n, 3)."""
+    return np.ascontiguousarray(x[:, 0].T)
+
+
+def state_of(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (n, 3) as a rope's state has them, (3, 1, n)."""
+    return np.ascontiguousarray(points.T[:, None])
+
+
 class RopeScene:
     """The rope on the simulation thread."""
 
-    def __init__(self, params: Params) -> None:
+    def __init__(self, params: Params, live: "LiveRope | None" = None) -> None:
+        """live: runs a student's functions, where there are any."""
         self.params = params
+        self.student: StudentRope | None = None
+        if live is not None:
+            from app.scenes.rope import student_rope  # only `springtide lab DIR` pays for it
+
+            self.student = student_rope.StudentRope(live)
         self.handles = RopeHandles()
         self.plot_rows = PlotRows(len(SERIES))
         self.last_moments = LastMoments()
@@ -119,7 +152,8 @@ class RopeScene:
     @property
     def frame_interval(self) -> float:
         """Time [s] between frames: two or four times the shortest where nothing moves fast enough to be seen."""
-        speed_on_screen = self.max_speed * self.params.speed
+        fastest = max(self.max_speed, 0.0 if self.student is None else self.student.max_speed)
+        speed_on_screen = fastest * self.params.speed
         if speed_on_screen > FULL_RATE_SPEED or not self.handles.at_rest:
             return FRAME_INTERVAL
         is_plotted = self.params.plot_energy or self.params.plot_tip  # which takes a row each `ROW_INTERVAL`
@@ -142,6 +176,8 @@ class RopeScene:
         self.last_moments.clear()
         self.set_bounds()
         self.assess_stability()
+        if self.student is not None:
+            self.student.restart(rows_of(self.state.x), rows_of(self.state.v))
 
     def set_bounds(self) -> None:
         """How far a rope of these parameters may get; how fast it is going to be is not known."""
@@ -166,6 +202,8 @@ class RopeScene:
             self.account.start_method(self.net, self.state)
         self.set_bounds()
         self.assess_stability()
+        if self.student is not None and (params.points, params.integrator) != (old.points, old.integrator):
+            self.student.begin(rows_of(self.state.x), rows_of(self.state.v), self.state.t)
 
     def handle(self, command: SceneCommand) -> None:
         """Move root or sphere, pull a point, or let go of it."""
@@ -180,6 +218,8 @@ class RopeScene:
                 self.handles.drag.move(client, index, vector_of(self.state.x[:, 0, index]), target)
             case Release(client):
                 self.handles.drag.release(client)
+            case StudentAnswer() if self.student is not None:
+                self.student.collect(self.max_reach)
             case _:
                 pass
 
@@ -198,6 +238,9 @@ class RopeScene:
             self.state.x[:, 0, 0] = self.handles.root.position
             self.state.v[:, 0, 0] = 0.0
         self.net = net
+        if self.student is not None:
+            x, v = rows_of(self.state.x), rows_of(self.state.v)
+            self.student.follow(net, good.t, steps, self.step, self.params.integrator, x, v)
         is_due = self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL and self.has_news()
         self.counts.add("stability checks", 1, is_due)
         if is_due:
@@ -286,10 +329,13 @@ class RopeScene:
         """What to draw; kept for a while, to be shown again if the run diverges."""
         params, handles = self.params, self.handles
         weight = self.net.mass * abs(self.net.gravity[2]) * (params.points - 1)
-        held = self.state.x[:, 0, handles.drag.hold.particle if handles.drag.hold else 0]
+        both = None if self.student is None else self.student.drawn(rows_of(self.state.x))
+        x = self.state.x if both is None else state_of(both[0])
+        held = x[:, 0, handles.drag.hold.particle if handles.drag.hold else 0]
         frame = RopeFrame(
-            points=np.ascontiguousarray(self.state.x[:, 0].T, dtype=np.float32),
-            tension=self.tension().astype(np.float32),
+            points=np.ascontiguousarray(x[:, 0].T, dtype=np.float32),
+            reference=None if both is None else both[1].astype(np.float32),
+            tension=rope_tension(self.net, x).astype(np.float32),
             full_scale=max(1.25 * weight, 1e-3),
             root=handles.home,
             sphere=(*handles.sphere.position, params.sphere_radius) if self.net.sphere else None,
@@ -321,6 +367,7 @@ SCENE = SceneKind(
     presets=PRESETS,
     opening="Shaken at the root",
     make=RopeScene,
+    make_with_student=RopeScene,
     hidden=hidden,
     warm_up=warm_up,
     needs=needs,
@@ -328,4 +375,5 @@ SCENE = SceneKind(
     plots=PLOTS,
     measures=measures,
     stability_map=StabilityMap(stiffness_parameter, build),
+    live_values=live_values,
 )

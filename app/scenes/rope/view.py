@@ -22,6 +22,9 @@ from app.scenes.springs.view import RopeSurroundings
 from sim.formatting import number
 
 ROPE_COLOUR = (196, 154, 92)
+REFERENCE_COLOUR = (60, 110, 190)
+REFERENCE_OPACITY = 0.35
+REFERENCE_RADIUS = 1.35 * ROPE_RADIUS  # [m]: seen around the student's rope where both are in one place
 BEAD_COLOUR = (58, 68, 86)
 HOOK_COLOUR = (60, 66, 80)
 SPHERE_COLOUR = (92, 140, 190)
@@ -47,6 +50,7 @@ class View:
         self.post = post
         self.tube: ColouredMesh | None = None
         self.beads: viser.BatchedMeshHandle | None = None
+        self.reference: viser.MeshHandle | None = None  # the program's rope beside the student's, once there was one
         self.count = 0  # points that tube and beads are made for
         self.tube_drag = SurfaceDrag(post)
         self.shown_sphere: tuple[float, float, float, float] | None = None
@@ -69,6 +73,9 @@ class View:
             self.tube.remove()
         if self.beads is not None:
             self.beads.remove()
+        if self.reference is not None:
+            self.reference.remove()
+            self.reference = None
         self.tube = ColouredMesh(
             self.server,
             "/rope",
@@ -157,6 +164,23 @@ class View:
         root = frame.root if frame.handles else None
         self.surroundings.show(frame.floor, frame.grid, root, frame.pull, frame.points)
         self.show_sphere(frame)
+        self.show_reference(frame.reference)
+
+    def show_reference(self, points: np.ndarray | None) -> None:
+        """Assign the program's rope, points (n, 3) [m], as a translucent tube; None hides it."""
+        if points is not None:
+            line, vertices = np.empty_like(self.line), np.empty_like(self.vertices)
+            smooth_line(points, self.samples, line)
+            sweep(line, REFERENCE_RADIUS, SIDES, vertices)
+            if self.reference is None:
+                self.reference = self.server.scene.add_mesh_simple(
+                    "/reference", vertices, tube_faces(len(line)), color=REFERENCE_COLOUR, opacity=REFERENCE_OPACITY,
+                    cast_shadow=False, receive_shadow=False,
+                )  # fmt: skip
+            else:
+                self.reference.vertices = vertices
+        if self.reference is not None:
+            self.reference.visible = points is not None
 
     def show_sphere(self, frame: RopeFrame) -> None:
         """Assign the sphere and its arrows."""

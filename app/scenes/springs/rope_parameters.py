@@ -113,9 +113,11 @@ def stiffness_parameter(params: RopeParams) -> str:
     return "stiffness" if params.units == "lab" else "axial_stiffness"
 
 
-def build_rope(params: RopeParams, root: Vector = ROOT, sphere: tuple[float, float, float, float] | None = None) -> Net:
-    """The net that the parameters describe, with its root at `root` [m]. sphere: (x, y, z, radius) [m], or None."""
-    lab = lab_units(
+def link_and_point(params: RopeParams) -> dict[str, float]:
+    """Stiffness [N/m] and damping [N s/m] of a link, mass [kg] and air drag [N s/m] of a point."""
+    if params.units == "lab":
+        return {name: getattr(params, name) for name in LAB_ONLY}
+    return lab_units(
         params.points,
         params.length,
         params.axial_stiffness,
@@ -123,8 +125,11 @@ def build_rope(params: RopeParams, root: Vector = ROOT, sphere: tuple[float, flo
         params.axial_viscosity,
         params.drag_per_length,
     )
-    if params.units == "lab":
-        lab = {name: getattr(params, name) for name in LAB_ONLY}
+
+
+def build_rope(params: RopeParams, root: Vector = ROOT, sphere: tuple[float, float, float, float] | None = None) -> Net:
+    """The net that the parameters describe, with its root at `root` [m]. sphere: (x, y, z, radius) [m], or None."""
+    lab = link_and_point(params)
     contact = Contact(params.contact_stiffness, params.contact_damping, params.friction, params.contact_law)
     return rope(
         params.points,

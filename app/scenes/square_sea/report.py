@@ -3,17 +3,15 @@
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from app.messages import Snapshot
 from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, join, lines, table
-from app.scenes.square_sea.parameters import Params, conditions, gravity
+from app.scenes.square_sea.live_values import spectrum_conditions
+from app.scenes.square_sea.parameters import Params, gravity
 from app.scenes.square_sea.statistics import Report
 from sim.formatting import count, fixed, metres, number, percent, seconds
 from sim.ocean.dispersion import viscous_root
-from sim.ocean.gerstner import peak_wavenumber
 from sim.ocean.planets import EARTH_GRAVITY, RADIUS_RULES, gravity_of
-from sim.ocean.spectra import SPECTRA, Conditions, Spectrum
+from sim.ocean.spectra import SPECTRA
 from sim.ocean.spectra.jonswap import FetchConditions, fetch_of_full_growth
 from sim.ocean.spectra.regular import RegularConditions
 from sim.ocean.statistics import BREAKING_HEIGHT, beaufort, open_sea_height, resolved_in_time
@@ -25,8 +23,6 @@ MIN_SLOPE_LEFT = 0.98  # share of the mean square slope below which the sea coun
 MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
 BAND_WIDTH = 2.0  # standard deviations to each side: 95 of 100 seas lie within
 WATER_VISCOSITY, HEAVY_OIL_VISCOSITY = 1e-6, 2e-2  # [m2/s] kinematic, to compare with
-SIMILAR = ("pierson_moskowitz", "phillips")  # spectra that know no other length than U^2/g
-HEADING = "Lab says, physics says"
 
 
 def readout(snapshot: Snapshot) -> Html:
@@ -51,6 +47,8 @@ def readout(snapshot: Snapshot) -> Html:
 def foam_text(r: "SeaReadings", g: float) -> str:
     """How much of the sea is foam, and by what it is compared."""
     covered = f"Foam covers {percent(r.foam_cover)} of the sea"
+    if not r.is_choppy:
+        return "No foam: without choppiness the surface is not pressed together anywhere."
     if r.slope_left < MIN_SLOPE_LEFT:
         left = percent(r.slope_left)
         return f"{covered}; expected {percent(r.expected_foam_cover)}: Monahan's law times the {left} of slope left."
@@ -158,11 +156,6 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     return found
 
 
-def notes(snapshot: Snapshot) -> dict[str, str]:
-    """Heading -> text of the folders below the controls."""
-    return {HEADING: lab_statements(snapshot.frame.params, snapshot.readings.report)}
-
-
 def wind_line(params: Params) -> str:
     """The wind on Beaufort's scale."""
     force, name = beaufort(params.wind_speed)
@@ -207,100 +200,3 @@ def is_weak(k: float, viscosity: float, g: float) -> bool:
     """Whether a wave of wavenumber k [rad/m] decays at 2 nu k^2 within 5 %."""
     _, decay = viscous_root(k, viscosity, g)
     return abs(float(decay) - 2.0 * viscosity * k**2) <= 0.05 * 2.0 * viscosity * k**2
-
-
-def spectrum_conditions(params: Params, wind_speed: float, g: float) -> Conditions:
-    """The conditions of the parameters' spectrum in another wind [m/s], 10 m above the sea, or gravity [m/s2]."""
-    values = conditions(params, wind_speed) | {"gravity": g}
-    return SPECTRA[params.spectrum].conditions_from(values)
-
-
-def peak_speed(spectrum: Spectrum, c: Conditions) -> float:
-    """Phase speed [m/s] of the waves at the spectrum's peak."""
-    k = peak_wavenumber(spectrum, c)
-    return float(c.omega(np.asarray(k))) / k
-
-
-def storm_html(params: Params) -> Html:
-    """Height and speed of the waves in this wind, and in twice this wind."""
-    spectrum = SPECTRA[params.spectrum]
-    if not spectrum.by_wind:
-        return fill("In a real storm both are true. Here the waves have the height and period given, in any wind.")
-    numbers = []
-    for wind in (params.wind_speed, 2.0 * params.wind_speed):
-        c = spectrum_conditions(params, wind, gravity(params))
-        if spectrum.is_level(c):
-            return fill("Both are true. Here the wind is too weak for waves.")
-        numbers += [number(wind), number(open_sea_height(spectrum, c)), number(peak_speed(spectrum, c))]
-    return fill(
-        "Both are true. By this spectrum a wind of {} m/s makes an open sea with H<sub>s</sub> = {} m, and its longest "
-        "strong waves run at {} m/s; twice that wind, {} m/s, makes {} m and {} m/s.",
-        *numbers,
-    )  # fmt: skip
-
-
-def planet_html(params: Params) -> Html:
-    """Height and speed of the waves in this wind, here and under the Earth's gravity."""
-    g, spectrum = gravity(params), SPECTRA[params.spectrum]
-    here, earth = (spectrum_conditions(params, params.wind_speed, x) for x in (g, EARTH_GRAVITY))
-    text = fill("That depends on its radius too, by g = GM/R²: here g = {} m/s².", number(g))
-    if spectrum.is_level(here):
-        return text
-    law = ""
-    if spectrum.name in SIMILAR and params.deep and params.low_pass == here.second_height == 0.0:
-        law = " In the same wind on deep water, heights and lengths are proportional to 1/g, and speeds stay the same."
-    elif spectrum.by_wind:
-        law = " This spectrum, or this depth, does not simply scale with 1/g."
-    return join((
-        text,
-        fill(
-            " In this wind an open sea has H<sub>s</sub> = {} m here and {} m under the Earth's g; waves at the peak "
-            "run at {} m/s here and {} m/s there.",
-            number(open_sea_height(spectrum, here)), number(open_sea_height(spectrum, earth)),
-            number(peak_speed(spectrum, here)), number(peak_speed(spectrum, earth)),
-        ),
-        law,
-    ))  # fmt: skip
-
-
-def lab_statements(params: Params, r: Report | None) -> Html:
-    """Statements of the course lab beside the physics, with the numbers of this sea."""
-    storm, planet = storm_html(params), planet_html(params)
-    if r is not None and not math.isnan(r.theory.wave[0]):
-        length, speed = r.theory.wave
-        storm = join((storm, f" The dominant waves here are {number(length)} m long and run at {number(speed)} m/s."))
-    time = f": {low_pass_line(params)}" if params.low_pass else ""
-    damping = (
-        "It is a length l that cuts off short waves once, by exp(−k²l²). A fluid of viscosity ν does the same in a "
-        f"time T = l²/4ν{time}. Viscosity itself damps each wave at the rate 2νk², as long as that is small beside the "
-        "wave's frequency: it removes the short waves first, lowers the sea last, and hardly changes any speed."
-    )
-    height = ""
-    if r is not None:
-        is_now = "is now" if params.viscosity > 0.0 else "stays"
-        height = fill("H<sub>s</sub> {} {} m. ", is_now, number(r.measured.significant_height))
-    after_storm = fill(
-        "The lab's dispersion rounds frequencies down so that the sea repeats after 200 s, and a factor slows it down. "
-        "Neither lowers a wave. {}A calm sea needs less wind: load the preset Storm over.",
-        height,
-    )
-    pairs: list[tuple[str, object]] = [
-        ("In a storm waves are higher and move faster.", storm),
-        ("On a planet of 100 times the mass waves are different.", planet),
-        ("The damping parameter is viscosity.", damping),
-        ("When the storm is over, change the dispersion.", after_storm),
-        (
-            "Which grid is more realistic, which scales better?",
-            "The cost of this square grid grows as N² log N. It carries every wave of its tile exactly, and repeats. "
-            "The radial grid has most of its points near the camera and never repeats; its cost is the number of "
-            "points times the number of waves.",
-        ),
-    ]
-    return join(
-        fill(
-            '<div style="margin-bottom:8px"><div class="springtide-faint"><b>Lab:</b> {}</div>'
-            "<div><b>Physics:</b> {}</div></div>",
-            statement, physics,
-        )
-        for statement, physics in pairs
-    )  # fmt: skip

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from app.messages import PlotRow, Point, SceneCommand, Vector, WorkCount
 from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
+from app.scenes.square_sea.live_values import live_values
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, Params, conditions, hidden, rain_settings
 from app.scenes.square_sea.rainfall import Rainfall, RainFrame
@@ -75,6 +76,7 @@ class SeaReadings(NamedTuple):
     expected_foam_cover: float  # by Monahan's law, times the share of the slope that is left
     slope_left: float  # share of the mean square slope that damping and a small height factor leave
     foam_limit: float  # Jacobian below which there is foam; -inf without foam
+    is_choppy: bool  # whether water moves level at all, which presses the surface together
     viscous_area: float  # [m2] sum of viscosity times time, since the start
     rain: RainReadings | None
     report: Report | None
@@ -364,6 +366,7 @@ class SquareSeaScene:
             expected_foam_cover=self.expected_foam_cover(self.time),
             slope_left=self.slope_left,
             foam_limit=self.foam_limit,
+            is_choppy=self.sea.choppiness > 0.0,
             viscous_area=self.viscous_area + self.params.viscosity * (self.time - self.changed_at),
             rain=rain,
             report=self.report if self.params.statistics else None,
@@ -410,4 +413,5 @@ SCENE = SceneKind(
     plots=PLOTS,
     curves=CURVES,
     measures=measures,
+    live_values=live_values,
 )

@@ -174,7 +174,7 @@ class View:
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
-        return dict(report.notes(snapshot))
+        return {}
 
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Nothing to do: the light of a sea is that of its sky, a parameter."""

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from sim.floating.closed_mesh import ClosedMesh
+from sim.floating.linear_table import LinearTable
 from sim.validation import check_choice
 
 COLLISION_FORMS = ("ellipsoid", "box", "cylinder")
@@ -43,6 +44,7 @@ class Shape:
     order: int = 100  # place in a scene's list of kinds of body; equal ones are sorted by name
     # the table of linear coefficients in assets/hydrodynamics that its wet part has; "": that of an equal box
     linear: str = ""
+    table: LinearTable | None = None  # linear coefficients of its own, of a hull from a file
     # the part of the upright hull up to a height [m] from 0 to its own; None: exact integrals over the mesh
     immersed: Callable[[ClosedMesh, float], Immersed] | None = None
     collision: str = "ellipsoid"  # the form, of the same extents, that other bodies collide with

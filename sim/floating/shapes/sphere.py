@@ -10,7 +10,7 @@ import numpy as np
 
 from sim.floating.closed_mesh import ClosedMesh, check_length, closed_mesh, solid
 from sim.floating.shapes.record import Appearance, Immersed, Shape
-from sim.validation import argument_error
+from sim.validation import argument_error, is_whole_number
 
 BODY_FREQUENCY = 5  # of a scene's bodies: 500 triangles
 
@@ -21,9 +21,9 @@ def sphere(radius: float, frequency: int = 8) -> ClosedMesh:
     Raises ValueError for a radius that is not 0.001 to 10000 m or a frequency that is not 1 to 64.
     """
     radius = check_length("radius", radius)
-    if not isinstance(frequency, int) or not 1 <= frequency <= 64:
+    if not is_whole_number(frequency) or not 1 <= frequency <= 64:
         raise argument_error("frequency", frequency, "a whole number from 1 to 64")
-    vertices, faces = geodesic(frequency)
+    vertices, faces = geodesic(int(frequency))
     true = 4 / 3 * math.pi
     vertices = vertices * radius * (true / solid(vertices, faces).volume) ** (1 / 3)
     return closed_mesh(vertices, faces, np.array([[-radius, radius]] * 3))

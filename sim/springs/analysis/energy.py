@@ -1,4 +1,4 @@
-"""The energy ledger: kinetic, elastic, gravity, contact; what damping took; what pins, pull and sphere put in.
+"""The energy ledger: kinetic, elastic, gravity, contact; what damping took; what pins, pull, sphere and wind put in.
 
 energy - initial + dissipated - work is numerical error: the exact motion keeps it at 0.
 Potential of gravity and kinetic energy are those of the free particles; pins trade through `work`.
@@ -11,7 +11,7 @@ from sim.jit import kernel
 from sim.springs.forces.acceleration import grab_secant
 from sim.springs.forces.contact import contact_force, surface_velocity, touches, touching
 from sim.springs.forces.links import TINY
-from sim.springs.forces.self_contact import self_contact_energy
+from sim.springs.forces.self_contact import self_contact_energy, self_contact_power
 from sim.springs.forces.wind import wind_power
 from sim.springs.net import by_net
 
@@ -139,16 +139,41 @@ def contact_power(x, v, t, p, with_damping):
 
 
 @kernel(inline=True)
-def no_wind_power(x, v, p):
-    return 0.0
+def no_wide_power(x, v, p, with_damping):
+    return 0.0, 0.0
 
 
 @kernel
-def wide_wind_power(x, v, p):
-    return wind_power(x, v, p) if p.has_air else 0.0
+def wide_power(x, v, p, with_damping):
+    """(dissipated, put in) [W] by air, and through the net's contact with itself."""
+    dissipated = 0.0
+    work = 0.0
+    if p.has_air and with_damping:
+        lost, done = wind_power(x, v, p)
+        dissipated += lost
+        work += done
+    if p.thickness > 0.0:
+        lost, done = self_contact_power(x, v, p, with_damping)
+        dissipated += lost
+        work += done
+    return dissipated, work
 
 
-power_of_air = by_net(rope=no_wind_power, grid=wide_wind_power)
+power_of_width = by_net(rope=no_wide_power, grid=wide_power)
+
+
+@kernel(inline=True)
+def is_rope_driven(p):
+    """Whether a pin, or the air, moves that damping forces do work on."""
+    return p.pins.shape[0] > 0
+
+
+@kernel(inline=True)
+def is_wide_driven(p):
+    return p.has_air or p.pins.shape[0] > 0
+
+
+is_driven = by_net(rope=is_rope_driven, grid=is_wide_driven)
 
 
 @kernel(inline=True)
@@ -170,8 +195,9 @@ def power(x, v, t, p, with_damping):
     dissipated, work = link_power(x, v, p, with_damping)
     if with_damping and p.drag > 0.0:
         dissipated += 2.0 * p.drag / p.mass * kinetic_energy(v, p)
-    if with_damping:
-        work += power_of_air(x, v, p)
+    lost, done = power_of_width(x, v, p, with_damping)
+    dissipated += lost
+    work += done
     if p.has_floor or p.has_sphere:
         lost, done = contact_power(x, v, t, p, with_damping)
         dissipated += lost
@@ -191,6 +217,38 @@ def add_power(x, v, t, p, with_damping, weight, ledger):
     dissipated, work = power(x, v, t, p, with_damping)
     ledger[0] += weight * dissipated
     ledger[1] += weight * work
+
+
+@kernel(inline=True)
+def account_size(x, with_account):
+    """Numbers in the scratch of `open_damping`."""
+    return x.shape[0] if with_account else 0
+
+
+@kernel(allocates=False)
+def open_damping(v, p, before):
+    """Remember the velocities before damping is taken apart from other forces; returns their kinetic energy [J]."""
+    for j in range(v.shape[0]):
+        before[j] = v[j]
+    return kinetic_energy(v, p)
+
+
+@kernel(allocates=False)
+def close_damping(x, v, p, s, kinetic, by_sphere, before, ledger):
+    """Book what damping did in a time s [s] since `open_damping`, which returned `kinetic`.
+
+    The particles' loss is exact, and so is the work of a moving sphere, `by_sphere` [J]. What pins and wind put in
+    through damping forces is that at the mean velocity. All that is put in so is dissipated too.
+    """
+    put_in = by_sphere
+    if is_driven(p):
+        for j in range(v.shape[0]):
+            before[j] = 0.5 * (before[j] + v[j])
+        through_links = link_power(x, before, p, True)[1] - link_power(x, before, p, False)[1]
+        through_width = power_of_width(x, before, p, True)[1] - power_of_width(x, before, p, False)[1]
+        put_in += s * (through_links + through_width)
+    ledger[0] += kinetic - kinetic_energy(v, p) + put_in
+    ledger[1] += put_in
 
 
 @kernel(allocates=False)

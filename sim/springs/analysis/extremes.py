@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
+from sim.springs.net import FARTHEST
 
-DIVERGENCE_BOUND = 1e9  # [m]: a net that has left this bound has diverged, long before its numbers overflow
+DIVERGENCE_BOUND = FARTHEST  # [m]: a net that has left this bound has diverged, long before its numbers overflow
 
 
 class Extremes(NamedTuple):

@@ -1,7 +1,7 @@
 """The reference of a race: the same rope by an adaptive method, and how far it can be trusted.
 
-Two runs of Dormand-Prince 5(4): the ghost at a relative tolerance of 1e-10, and a shadow at a tenth of that which
-starts 1e-10 m away. Their separation holds what the ghost's own steps err by and what the motion makes of a
+Two runs of Dormand-Prince 5(4): the reference at a relative tolerance of 1e-10, and one at a tenth of that which
+starts 1e-10 m away. Their separation holds what the reference's own steps err by and what the motion makes of a
 disturbance, so an error is worth reading only well above it; once it is a visible part of the rope, chaos has taken
 the reference.
 """
@@ -63,7 +63,7 @@ class ReferenceRun:
 
     def update(self, net: Net) -> None:
         """Other parameters, which may be too expensive to follow."""
-        self.failure = self.failure or too_dear(net, self.count)
+        self.failure = self.failure or too_costly(net, self.count)
 
     def advance(self, net: Net, t: float, duration: float) -> None:
         """Follow the motion for `duration` [s] from time t [s]."""
@@ -92,13 +92,13 @@ class ReferenceRun:
             v.reshape(3, -1)[:, 0] = 0.0
 
     def distance(self, x: NDArray[np.float64]) -> float:
-        """Largest distance [m] of a point of x (3, 1, points) from the ghost's; NaN where there is none."""
+        """Largest distance [m] of a point of x (3, 1, points) from the reference's; NaN where there is none."""
         if not self.is_available:
             return math.nan
         return float(np.linalg.norm(x[:, 0] - self.x, axis=0).max())
 
 
-def too_dear(net: Net, count: int) -> str:
+def too_costly(net: Net, count: int) -> str:
     """Why `count` references of about this net cannot be followed in real time, or ""."""
     # The shortest steps are about 0.7/omega, and stay below 3.3/rate where damping is strong; six evaluations each, in
     # two runs.

@@ -28,7 +28,7 @@ def set_from_differences(f, v, w, a, o, of, n, load, c):
 
 @kernel(noalias=True, inline=True)
 def accelerate_rope(x, v, p, b, c, f, a):
-    """One row of links: forces into f (3 (cols + 1),), whose ends stay zero, then differences into a."""
+    """One row of links: forces into f (3 (cols + 1),) with ends that stay zero, then differences into a."""
     one = np.uint64(1)
     n = np.uint64(p.cols)
     m = n + one

@@ -120,12 +120,18 @@ def scale_free(v, w, o, n, keep):
 
 
 @kernel(allocates=False)
-def damp_contact(x, v, t, s, p, on_sphere):
-    """Contact damping and friction of every touching point, exact or capped at standstill."""
+def damp_contact(x, v, t, s, p, on_sphere, reverse):
+    """Contact damping and friction of every touching point, exact or capped at standstill.
+
+    Friction takes the normal force of the velocity before the normal damping, in reverse of the one after it: the two
+    together are then symmetric, and of second order. Returns the work [J] that a moving sphere did by it.
+    """
+    work = 0.0
     if not touches(x, t, p, on_sphere):
-        return
+        return work
     n = p.rows * p.cols
     su, sv, sw = surface_velocity(p, on_sphere)
+    moves = su != 0.0 or sv != 0.0 or sw != 0.0
     for j in range(n):
         w = p.inverse_masses[j]
         depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
@@ -141,12 +147,15 @@ def damp_contact(x, v, t, s, p, on_sphere):
             tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
             # The whole normal force, k depth - b v_n, never pulls: separating, damping takes at most k depth.
             after = max(vn * math.exp(-b * w * s), vn - p.contact_k * depth * w * s)
-            normal = max(0.0, p.contact_k * depth - b * vn)
+            normal = max(0.0, p.contact_k * depth - b * (after if reverse else vn))
             speed = math.sqrt(tx * tx + ty * ty + tz * tz)
             slow = p.friction * normal * w * s
             keep = 1.0 - slow / speed if slow < speed else 0.0
             ru, rv, rw = keep * tx + after * nx, keep * ty + after * ny, keep * tz + after * nz
+        if moves:
+            work += p.mass * ((ru + su - v[j]) * su + (rv + sv - v[n + j]) * sv + (rw + sw - v[2 * n + j]) * sw)
         v[j], v[n + j], v[2 * n + j] = ru + su, rv + sv, rw + sw
+    return work
 
 
 @kernel(allocates=False)
@@ -277,17 +286,19 @@ damp_own_contacts = by_net(rope=damp_no_self_contacts, grid=damp_self_contacts)
 
 @kernel(allocates=False)
 def damp_surfaces(x, v, t, s, p, reverse):
-    """Itself, floor, sphere, pull, or in reverse."""
+    """Itself, floor, sphere, pull, or in reverse. Returns the work [J] that a moving sphere did."""
+    work = 0.0
     for step in range(4):
         part = 2 - step if reverse else step - 1
         if part == -1 and pushes_itself(p):
             damp_own_contacts(x, v, s, p, reverse)
         if part == 0 and p.has_floor:
-            damp_contact(x, v, t, s, p, False)
+            work += damp_contact(x, v, t, s, p, False, reverse)
         elif part == 1 and p.has_sphere:
-            damp_contact(x, v, t, s, p, True)
+            work += damp_contact(x, v, t, s, p, True, reverse)
         elif part == 2 and p.grabbed >= 0:
             damp_grab(v, s, p)
+    return work
 
 
 @kernel(inline=True)
@@ -298,10 +309,15 @@ def is_odd(t, h, s):
 
 @kernel(inline=True)
 def damp(x, v, t, s, decay, p, reverse):
-    """All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards."""
+    """All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards.
+
+    Returns the work [J] that a moving sphere did.
+    """
+    work = 0.0
     outside = p.has_floor or p.has_sphere or p.grabbed >= 0 or pushes_itself(p)
     if outside and reverse:
-        damp_surfaces(x, v, t, s, p, reverse)
+        work += damp_surfaces(x, v, t, s, p, reverse)
     damp_motion(x, v, decay, p, reverse)
     if outside and not reverse:
-        damp_surfaces(x, v, t, s, p, reverse)
+        work += damp_surfaces(x, v, t, s, p, reverse)
+    return work

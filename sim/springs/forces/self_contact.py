@@ -157,6 +157,28 @@ def damp_self_contacts(x, v, s, p, reverse):
 
 
 @kernel(allocates=False)
+def self_contact_power(x, v, p, with_damping):
+    """(dissipated, put in by moving pins) [W] through the touching pairs."""
+    n = p.rows * p.cols
+    dissipated = 0.0
+    work = 0.0
+    for s in range(refresh_pairs(x, p)):
+        i, j = p.pairs[s, 0], p.pairs[s, 1]
+        dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
+        rr = dx * dx + dy * dy + dz * dz
+        if rr >= p.thickness * p.thickness or rr == 0.0:
+            continue
+        r = math.sqrt(rr)
+        of_i = (v[i] * dx + v[n + i] * dy + v[2 * n + i] * dz) / r
+        of_j = (v[j] * dx + v[n + j] * dy + v[2 * n + j] * dz) / r
+        spring = p.contact_k * (p.thickness - r)
+        push = max(0.0, spring - p.contact_b * (of_j - of_i)) if with_damping else spring
+        dissipated -= (push - spring) * (of_j - of_i)
+        work += push * ((of_i if p.inverse_masses[i] == 0.0 else 0.0) - (of_j if p.inverse_masses[j] == 0.0 else 0.0))
+    return dissipated, work
+
+
+@kernel(allocates=False)
 def self_contact_energy(x, p):
     """1/2 k depth^2 over the touching pairs [J]."""
     n = p.rows * p.cols

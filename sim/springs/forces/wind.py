@@ -19,6 +19,16 @@ def wind_scratch_size(cols):
     return 3 * (cols + 1)
 
 
+@kernel(inline=True)
+def cell_areas(x, a, c, n):
+    """Area vector [m^2] of the cell that begins with the particles a and, a row on, c."""
+    one = np.uint64(1)
+    b, d = a + one, c + one
+    px, py, pz = x[d] - x[a], x[n + d] - x[n + a], x[n + n + d] - x[n + n + a]
+    qx, qy, qz = x[c] - x[b], x[n + c] - x[n + b], x[n + n + c] - x[n + n + b]
+    return 0.5 * (py * qz - pz * qy), 0.5 * (pz * qx - px * qz), 0.5 * (px * qy - py * qx)
+
+
 @kernel(noalias=True, inline=True)
 def set_cell_forces(x, v, ia, ic, count, n, m, wind_x, wind_y, wind_z, drag, lift, f, of):
     """Force [N] on the cells between two rows: rho/2 A s [C_D u + C_L (|u| n - s u/|u|)], with s = |u . n|.
@@ -29,9 +39,7 @@ def set_cell_forces(x, v, ia, ic, count, n, m, wind_x, wind_y, wind_z, drag, lif
     for j in range(count):
         a, c = ia + j, ic + j
         b, d = a + one, c + one
-        px, py, pz = x[d] - x[a], x[n + d] - x[n + a], x[n + n + d] - x[n + n + a]
-        qx, qy, qz = x[c] - x[b], x[n + c] - x[n + b], x[n + n + c] - x[n + n + b]
-        ax, ay, az = 0.5 * (py * qz - pz * qy), 0.5 * (pz * qx - px * qz), 0.5 * (px * qy - py * qx)
+        ax, ay, az = cell_areas(x, a, c, n)
         ux = wind_x - 0.25 * (v[a] + v[b] + v[c] + v[d])
         uy = wind_y - 0.25 * (v[n + a] + v[n + b] + v[n + c] + v[n + d])
         uz = wind_z - 0.25 * (v[n + n + a] + v[n + n + b] + v[n + n + c] + v[n + n + d])
@@ -54,7 +62,7 @@ def add_quarter(f, of, count, w, ow, a, o):
 
 @kernel(noalias=True, allocates=False)
 def add_wind(x, v, p, f, a):
-    """Add the accelerations by the air; f: scratch whose last (wind_scratch_size,) are free."""
+    """Add the accelerations by the air; f: scratch; its last (wind_scratch_size,) are free."""
     n, m, cols = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1), np.uint64(p.cols)
     count = np.uint64(p.cols - 1)
     start = np.uint64(f.shape[0] - wind_scratch_size(p.cols))
@@ -72,10 +80,16 @@ def add_wind(x, v, p, f, a):
 
 @kernel
 def wind_power(x, v, p):
-    """What the air puts into the free particles [W]; negative where it takes."""
+    """(dissipated, put in) [W] by the air on the free particles: the wind does the work of its force at its own speed.
+
+    The difference is what the particles get. In still air all is dissipated.
+    """
+    n = p.rows * p.cols
     a = np.zeros(v.shape[0])
     add_wind(x, v, p, np.zeros(wind_scratch_size(p.cols)), a)
-    total = 0.0
-    for j in range(v.shape[0]):
-        total += p.mass * a[j] * v[j]
-    return total
+    work = 0.0
+    gained = 0.0
+    for j in range(n):
+        work += p.mass * (a[j] * p.wind_x + a[n + j] * p.wind_y + a[2 * n + j] * p.wind_z)
+        gained += p.mass * (a[j] * v[j] + a[n + j] * v[n + j] + a[2 * n + j] * v[2 * n + j])
+    return work - gained, work

@@ -39,8 +39,9 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
             now = t + (s + done / FINEST) * h
             set_pins(x, v, now, p)
             # vm = v + part/2 a(x + part/2 vm, vm)
-            vm[:] = v
-            taken, settled = solve_stage(x, v, 0.5 * part, now + 0.5 * part, p, xm, vm, work, PATIENCE)
+            for j in range(v.shape[0]):
+                vm[j] = v[j]
+            taken, settled, _ = solve_stage(x, v, 0.5 * part, now + 0.5 * part, p, xm, vm, work, PATIENCE)
             evals += taken
             if not settled and size > 1:
                 size //= 2

@@ -9,7 +9,7 @@ step, as the force at the end of a step opens the next.
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.analysis.energy import add_power, kinetic_energy
+from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping
 from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.forces.damping import air_scratch_size, blow, damp, is_odd, make_decay
 from sim.springs.integrators import Integrator
@@ -28,6 +28,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     decay = make_decay(p, 0.5 * h)
     spare = np.empty(air_scratch_size(x, p))
     middle = np.empty_like(spare)
+    before = np.empty(account_size(x, with_account))
     kinetic = 0.0
     set_pins(x, v, t, p)
     accelerate(x, v, t, p, False, f, a)
@@ -35,22 +36,22 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
         now, odd = t + s * h, is_odd(t, h, s)
         if with_account:
             add_power(x, v, now, p, False, 0.5 * h, ledger)
-            kinetic = kinetic_energy(v, p)
+            kinetic = open_damping(v, p, before)
         blow(x, v, 0.5 * h, p, f, spare, middle)
-        damp(x, v, now, 0.5 * h, decay, p, odd)
+        by_sphere = damp(x, v, now, 0.5 * h, decay, p, odd)
         if with_account:
-            ledger[0] += kinetic - kinetic_energy(v, p)
+            close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, before, ledger)
         add_scaled(v, 0.5 * h, a)
         add_scaled(x, h, v)
         set_pins(x, v, now + h, p)
         accelerate(x, v, now + h, p, False, f, a)
         add_scaled(v, 0.5 * h, a)
         if with_account:
-            kinetic = kinetic_energy(v, p)
-        damp(x, v, now + h, 0.5 * h, decay, p, not odd)
+            kinetic = open_damping(v, p, before)
+        by_sphere = damp(x, v, now + h, 0.5 * h, decay, p, not odd)
         blow(x, v, 0.5 * h, p, f, spare, middle)
         if with_account:
-            ledger[0] += kinetic - kinetic_energy(v, p)
+            close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, before, ledger)
             add_power(x, v, now + h, p, False, 0.5 * h, ledger)
     return steps + 1
 

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.analysis.energy import add_power, kinetic_energy
+from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping
 from sim.springs.forces.acceleration import make_scratch, set_pins
 from sim.springs.forces.damping import blow, damp, is_odd, make_decay
 from sim.springs.integrators import Integrator
@@ -49,28 +49,30 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     before = np.empty_like(x)
     f, spare, middle = make_scratch(p), np.empty_like(x), np.empty_like(x)
     decay = make_decay(p, 0.5 * h)
+    undamped = np.empty(account_size(x, with_account))
     kinetic = 0.0
     set_pins(x, v, t, p)
     for s in range(steps):
         now, after, odd = t + s * h, t + (s + 1) * h, is_odd(t, h, s)
         if with_account:
             add_power(x, v, now, p, False, h, ledger)
-            kinetic = kinetic_energy(v, p)
+            kinetic = open_damping(v, p, undamped)
         # Damping in halves before and after, as the leapfrog has it, keeps a fall's terminal speed to second order.
-        damp(x, v, now, 0.5 * h, decay, p, odd)
+        by_sphere = damp(x, v, now, 0.5 * h, decay, p, odd)
         if with_account:
-            ledger[0] += kinetic - kinetic_energy(v, p)
-        before[:] = x
+            close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, undamped, ledger)
+        for j in range(x.shape[0]):
+            before[j] = x[j]
         predict(x, v, h, p)
         set_pins(x, v, after, p)
         sweep(x, after, h, p)
         set_velocities(x, before, h, p, v)
         if with_account:
-            kinetic = kinetic_energy(v, p)
+            kinetic = open_damping(v, p, undamped)
         blow(x, v, h, p, f, spare, middle)
-        damp(x, v, after, 0.5 * h, decay, p, not odd)
+        by_sphere = damp(x, v, after, 0.5 * h, decay, p, not odd)
         if with_account:
-            ledger[0] += kinetic - kinetic_energy(v, p)
+            close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, undamped, ledger)
     return steps
 
 

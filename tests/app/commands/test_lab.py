@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from app.__main__ import main
-from app.lab.answers import read_answers, write_answers
+from app.lab.answers import read_answers
 from app.lab.task import load_tasks
+from tests.app.lab.answers_file import write_answers
 
 ROOT = Path(__file__).parents[3]
 TASKS = load_tasks()
@@ -217,3 +218,18 @@ def test_a_check_imports_no_viewer(finished: Path) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "0 []"
+
+
+def test_a_folder_to_work_on_needs_no_command_before_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    served = []
+    monkeypatch.setattr("app.commands.serve.serve_lab", lambda *a, **k: served.append((a, k)) or 0)
+    folder = tmp_path / "mine"
+    assert main(["lab", "new", str(folder)]) == 0
+    assert main(["lab", "--no-open", str(folder), "--port", "0"]) == 0
+    (scene, params, *_), options = served[0]
+    assert (scene, params.integrator) == ("rope", "rk4")
+    assert options["session"].folder == options["workbook"].folder == folder
+    assert not options["session"].copies.exists()  # it was closed
+    assert "made" in error_of(capsys, str(tmp_path / "nothing"))

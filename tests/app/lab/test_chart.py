@@ -5,10 +5,11 @@ import re
 import numpy as np
 import pytest
 
-from app.lab.chart import HEIGHT, TICKS, WIDTH, chart, ticks
+from app.lab.chart import HEIGHT, WIDTH, chart
 from app.lab.program_check import Points, draw
 from app.lab.runner import Runner
 from app.lab.task import load_tasks
+from app.render.line_chart import MAX_TICKS, ticks
 
 X = np.linspace(0.0, 3.0, 7)
 
@@ -41,7 +42,7 @@ def test_a_curve_without_a_finite_value_is_left_out() -> None:
 @pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (-3.7, 12.0), (1e-9, 2e-9), (1e8, 1.1e8), (2.0, 2.0)])
 def test_ticks_are_round_and_few(low: float, high: float) -> None:
     found = ticks(low, high)
-    assert 1 <= len(found) <= TICKS + 1
+    assert 1 <= len(found) <= MAX_TICKS + 1
     assert all(low <= tick <= high for tick in found)
 
 

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from app.lab.folder import stub
-from app.lab.program_check import SAMPLES, SEED, Verdict, call, check_program, same
+from app.lab.program_check import SAMPLES, SEED, Verdict, call, check_program, is_begun, same
 from app.lab.runner import Runner
+from app.lab.saved import is_there
 from app.lab.task import Task, load_tasks
 from tests.app.lab.right_solutions import RIGHT
 from tests.app.lab.wrong_solutions import WRONG
@@ -133,6 +134,19 @@ def test_every_listed_mistake_is_one(name: str) -> None:
 @pytest.mark.parametrize("name", TASKS)
 def test_a_function_without_body_is_not_begun(desk: Desk, name: str) -> None:
     assert verdict_of(desk, TASKS[name], stub(TASKS[name])).state == "not begun"
+
+
+def test_a_byte_order_mark_begins_no_function(tmp_path: Path) -> None:
+    (tmp_path / TASKS["gravity"].file).write_bytes(b"\xef\xbb\xbf" + stub(TASKS["gravity"]).encode())
+    assert not is_begun(tmp_path, TASKS["gravity"])
+
+
+@pytest.mark.parametrize("deep", ["-" * 100_000 + "1", "a" + ".a" * 100_000])
+def test_a_file_that_nests_too_deeply_has_failed(desk: Desk, deep: str) -> None:
+    task = TASKS["gravity"]
+    source = f"def gravity(mass):\n    return {deep}\n"
+    assert verdict_of(desk, task, source).state == "failed"
+    assert is_there(task, {task.file: source.encode()})
 
 
 def test_the_sign_reversed_is_named_in_every_task(desk: Desk) -> None:

@@ -49,6 +49,24 @@ def test_what_goes_wrong_is_named_and_the_next_call_works(tmp_path: Path, body: 
         assert runner.call("mine.py", "right", 3.0) == 6.0
 
 
+def test_the_limit_that_is_told_is_the_one_that_was_passed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write(tmp_path, "while True: pass")
+    with Runner(tmp_path, time_limit=0.5) as runner, pytest.raises(RunError, match=r"within 0\.5 s"):
+        runner.call("mine.py", "f", 1.0)
+    monkeypatch.setattr("app.lab.runner.LOAD_LIMIT", 1e-3)
+    with Runner(tmp_path, time_limit=5.0) as runner, pytest.raises(RunError, match=r"within 0\.001 s"):
+        runner.start()
+
+
+def test_an_abort_before_the_process_runs_is_not_lost(tmp_path: Path) -> None:
+    write(tmp_path, "while True: pass")
+    with Runner(tmp_path, time_limit=20.0) as runner:
+        runner.abort()
+        with pytest.raises(RunError) as caught:
+            runner.call("mine.py", "f", 1.0)
+        assert caught.value.kind == "ended"
+
+
 def test_an_error_names_file_and_line(tmp_path: Path) -> None:
     write(tmp_path, "import own\n    return own.g(x)")
     (tmp_path / "own.py").write_text("def g(x):\n    y = 1\n    return x + 'a'\n")

@@ -10,7 +10,8 @@ from app.lab.task import Task, load_tasks, read_task
 from app.scenes import scene_named
 from sim.floating import Hull, equilibrium_draft
 from sim.ocean.dispersion import viscous_root
-from sim.ocean.fluids import arrhenius, fresnel
+from sim.ocean.emulsions import arrhenius
+from sim.ocean.fluids import fresnel
 from sim.ocean.planets import gravity_of
 from sim.ocean.spectra.phillips import PhillipsConditions, density
 from sim.springs import rope, simulate
@@ -170,6 +171,15 @@ BROKEN = {
     GOOD + GOOD[GOOD.index("[[question]]") :]: ("say, say", "a key of its own"),
     GOOD[: GOOD.index("[[question]]")]: ("bad.toml", "or questions"),
     GOOD.replace("[[question]]", "[question]"): ("question", "tables"),
+    GOOD + "[guide]\nquestion = 'What?'\nanswer = 'It is {x'": ("answer", "names in braces"),
+    GOOD + "[guide]\nquestion = 'What?'\nanswer = 'It is {x:long}'": ("answer", "names in braces"),
+    GOOD + "[guide]\nquestion = 'What?'\nanswer = 'a'\nlaw = 3": ("law", "texts"),
+    GOOD + "[guide]\nquestion = 'What?'\nanswer = 'a'\nneeds = {x = '> y'}": ("x", "a relation"),
+    GOOD + "[guide]\nquestion = 'What?'\nanswer = 'a'\nneeds = 3": ("needs", "a table"),
+    GOOD + "[guide]\nanswer = 'a'": ("bad.toml", "an entry question"),
+    GOOD + "[[do]]\ntext = 'Go'": ("bad.toml", "an entry when"),
+    GOOD + "[[do]]\ntext = 'Go'\nwhen = {}": ("when", "at least one"),
+    GOOD + "[setup]\nscene = 'rope'\nlook = 'a'\nparameters = 3": ("parameters", "a table"),
 }
 
 

@@ -17,7 +17,7 @@ from app.messages import Grab, Place, Release
 from app.scenes.radial_sea.bodies import BODY_KINDS, kind_of, place_of
 from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden
 from app.scenes.radial_sea.scene import RadialSeaScene
-from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach
+from app.scenes.radial_sea.well_blowout import LANDING, WellBlowout, slick_reach
 from sim.floating import Hull, equilibrium_draft, heave_period
 from sim.ocean.fluids import fluids
 from sim.ocean.radial import RadialSea
@@ -146,11 +146,11 @@ def test_a_mooring_that_is_taken_off_pulls_no_longer() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
     scene.bodies.fleet.position[0, 0] += 20.0
     scene.advance(2)
-    assert scene.bodies.fleet.pull_limit[0] > 0.0
+    assert scene.bodies.fleet.mooring[0, 0] < 0.0
     scene.handle(Grab(1, (2.0, 0.0, 0.0), client=1))
     scene.change_forces(dataclasses.replace(scene.params, mooring=False))
     scene.advance(2)
-    assert scene.bodies.fleet.pull_limit[0] == 0.0
+    assert not scene.bodies.fleet.mooring.any()
     assert scene.bodies.fleet.pull_limit[1] > 0.0
 
 
@@ -228,6 +228,7 @@ def test_each_preset_runs_and_its_frame_is_finite(name: str) -> None:
 def test_presets_are_those_that_were_asked_for() -> None:
     assert list(PRESETS) == [
         "Clear water", "Light crude spill 0.2 m", "Heavy fuel oil", "Entirely mixed", "Storm with buoys", "Burning rig",
+        "A day after a spill",
     ]  # fmt: skip
     assert PRESETS["Clear water"] == {}
 
@@ -252,9 +253,10 @@ def test_hostile_values_are_clamped_to_what_runs() -> None:
 def test_parameters_change_under_way_without_a_jump_of_the_bodies() -> None:
     scene = run(RadialSeaScene(Params()), 2.0)
     changes = [
-        {"wind_speed": 12.0}, {"spill": "layer"}, {"oil": "Maya"}, {"surface": "fft"}, {"surface": "sum"},
-        {"density": 700.0}, {"fire": True, "jet": True}, {"fire_power": 50.0}, {"rings": 60}, {"choppiness": 0.3},
-        {"film": True}, {"jet": False}, {"spill": "mixed"}, {"waves": False}, {"centre": "camera"},
+        {"wind_speed": 12.0}, {"spill": "layer"}, {"spill_hours": 6.0, "spread": True}, {"oil": "Maya"},
+        {"surface": "fft"}, {"surface": "sum"}, {"density": 700.0}, {"fire": True, "jet": True}, {"fire_power": 50.0},
+        {"rings": 60}, {"choppiness": 0.3}, {"film": True}, {"jet": False}, {"spill": "mixed"}, {"waves": False},
+        {"centre": "camera"},
     ]  # fmt: skip
     params = Params()
     for change in changes:
@@ -306,6 +308,62 @@ def test_oil_from_the_jet_makes_a_slick_that_grows() -> None:
     x, y = slick.centre
     rim = np.array([x, x + slick.radius, x + 2 * slick.radius])
     np.testing.assert_allclose(slick_reach(slick, rim, np.full(3, y)), [slick.radius, 0.0, -slick.radius], atol=1e-9)
+
+
+def test_the_slick_drifts_downwind_with_the_middle_of_its_oil_and_calms_the_waves_under_it() -> None:
+    rough = {"wind_speed": 8.0, "wind_direction": 90.0, "bodies": 0, "ripples": False}
+    params = with_parameters(**rough, jet=True, jet_flow=20.0, oil="IFO 180")
+    scene = RadialSeaScene(params)
+    fed, middle = 0.0, 0.0  # [m3], [m] of the middle of the oil downwind of where it lands, from what fell when
+    for _ in range(150):
+        before = scene.well_blowout.volume
+        scene.advance(6)
+        fed = scene.well_blowout.volume
+        if fed > 0.0:
+            middle = (middle + 0.03 * 8.0 * 0.1) * before / fed
+    slick = scene.frame().slick
+    assert slick is not None
+    assert slick.centre == pytest.approx((LANDING[0], LANDING[1] + middle), abs=1e-9)
+    assert middle > 0.5
+    scene.change_forces(dataclasses.replace(params, jet=False))
+    scene.advance(60)
+    shut = scene.well_blowout.slick(scene.column)
+    assert shut is not None
+    share = fed / scene.well_blowout.volume  # what was in the air counts as fallen
+    assert shut.centre[1] - LANDING[1] == pytest.approx(share * (middle + 0.03 * 8.0), rel=1e-6)
+
+    scene.advance(1)
+    cover = scene.sum.slick
+    assert cover is not None
+    assert (cover.centre, cover.radius) == (pytest.approx(shut.centre, abs=0.3), pytest.approx(shut.radius, rel=0.02))
+    assert cover.column.thickness == pytest.approx(shut.thickness, rel=0.1)
+    end = np.array([[cover.centre[0], cover.centre[1] + cover.radius]])  # where waves leave it that run downwind
+    short = np.array([2.0 * math.pi / 2.0])
+    path = cover.paths(end, np.zeros(1), short)[0, 0]
+    assert path == pytest.approx(2.0 * cover.radius, rel=1e-6)
+    assert scene.readings().oil_budget.wave_left == pytest.approx(
+        math.exp(-2.0 * cover.radius * cover.attenuation(np.array([2.0 * math.pi]), scene.column)[0]), rel=1e-9
+    )
+    clean = RadialSeaScene(with_parameters(**rough))
+    clean.advance(6)
+    assert clean.sum.slick is None
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"spill": "mixed", "oil": "Bunker C Zalinski", "fraction": 0.02, "continuous": "oil", "wind_speed": 1.0},
+        {"spill": "layer", "oil": "Maya", "thickness": 2.0, "temperature": 0.0, "spill_hours": 120.0},
+    ],
+)
+def test_bodies_float_where_waves_creep_in_thick_oil(changes: dict[str, Any]) -> None:
+    """Such a wave has no frequency: nothing may be divided by it."""
+    scene = RadialSeaScene(with_parameters(**changes, exposure=0.0, ageing=False))
+    assert (scene.sum.rate == 0.0).any()
+    clean = RadialSeaScene(with_parameters(wind_speed=scene.params.wind_speed))
+    run(scene, 1.0)
+    assert np.isfinite(scene.bodies.fleet.lift).all()
+    assert scene.readings().middle_period == clean.readings().middle_period
 
 
 @pytest.mark.parametrize("surface", ["sum", "fft"])

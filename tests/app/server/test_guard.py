@@ -16,7 +16,7 @@ import viser
 import websockets
 from websockets.asyncio.client import connect
 
-from app.server.guard import allowed_value, is_bounded, is_own_origin, open_server
+from app.server.guard import MAX_TEXT_LENGTH, allowed_value, is_bounded, is_own_origin, open_server
 from app.server.viewer import Viewer
 
 
@@ -184,6 +184,10 @@ def test_gui_values_are_clamped_or_refused(lab: Viewer) -> None:
     assert allowed_value(controls["gravity"].field, "9" * 65) is None
     assert allowed_value(controls["gravity"].field, "9\n8") is None
     assert allowed_value(controls["gravity"].field, 9.81) is None
+    text = lab.server.gui.add_text("", "", multiline=True)
+    assert allowed_value(text, "two\nlines\x07") == "two\nlines\x07"  # the workbook keeps it, or says why not
+    assert allowed_value(text, "x" * 100_000) == "x" * MAX_TEXT_LENGTH
+    assert allowed_value(text, 1) is None
     assert allowed_value(controls["gravity"].slider, [1e5]) == (100.0,)
     assert allowed_value(controls["gravity"].slider, [-5]) == (0.0,)
     assert allowed_value(controls["integrator"].field, "Leapfrog") == "Leapfrog"

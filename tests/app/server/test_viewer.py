@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from app.messages import Grab, Reset, StepOnce
+from app.panel.recorder import MAX_RATE
 from app.scenes import scene_named
 from app.scenes.compiling import Job
 from app.server.viewer import Viewer
@@ -35,6 +36,25 @@ def test_a_picture_that_cannot_be_drawn_halts_the_run_once_and_the_threads_live(
     wait_for(lambda: lab.shown == lab.loop.latest.serial)
     assert all(thread.is_alive() for thread in lab.threads)
     assert capsys.readouterr().err.count("Traceback") == 1
+
+
+def test_a_frame_of_the_recording_is_shown_and_then_the_present_again(
+    lab: Viewer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    frames: list[object] = []
+    show = lab.view.show
+    monkeypatch.setattr(lab.view, "show", lambda frame: (frames.append(frame), show(frame)))
+    recorder = lab.panel.recorder
+    for _ in range(3):
+        kept = len(recorder.frames)
+        time.sleep(1 / MAX_RATE)
+        lab.commands.put(StepOnce())
+        wait_for(lambda kept=kept: len(recorder.frames) > kept)
+    recorder.step(-2)
+    wait_for(lambda: frames and frames[-1] is recorder.frames[-3].frame)
+    assert lab.work()["pictures handed over"].skipped >= 0
+    recorder.show_present()
+    wait_for(lambda: frames[-1] is lab.loop.latest.frame)
 
 
 def test_what_is_handed_over_is_not_held_back(lab: Viewer) -> None:
@@ -87,7 +107,7 @@ def test_a_scene_that_cannot_be_opened_leaves_a_page_that_says_why_and_offers_th
     assert "cloth could not be opened" in panel_text(lab)
     assert "no room for a cloth" in panel_text(lab)
     monkeypatch.undo()
-    lab.wanted.put("rope")
+    lab.want("rope")
     wait_for(lambda: lab.is_open and lab.panel.kind.name == "rope" and lab.shown > 0)
 
 
@@ -105,7 +125,7 @@ def test_of_several_scenes_asked_for_only_the_last_is_opened(lab: Viewer, monkey
     monkeypatch.setattr(lab, "make", lambda name, *rest: (opened.append(name), make(name, *rest)))
     with lab.changing:  # whatever is asked for while a scene is being opened
         for name in ("cloth", "square_sea", "rope") * 100 + ("cloth",):
-            lab.wanted.put(name)
+            lab.want(name)
         time.sleep(0.05)
     wait_for(lambda: lab.is_open and lab.panel.kind.name == "cloth" and lab.wanted.empty())
     assert len(opened) <= 2

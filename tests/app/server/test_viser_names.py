@@ -13,6 +13,7 @@ from app.server.viewer import Viewer
 ROOT = Path(__file__).parents[3]
 OWN = {"_replace", "_asdict", "_fields", "_exit", "_HAS_NOALIAS"}  # of named tuples and of the os module
 NAMES = {
+    "_binary_buffers",
     "_websock_server",
     "_websock_connection",
     "_connected_clients",
@@ -47,6 +48,7 @@ def test_viser_has_the_inner_names(lab: Viewer) -> None:
     assert isinstance(connection._incoming_handlers, dict)
     assert isinstance(connection.get_message_buffer().window_duration_sec, float)
     assert isinstance(server._connected_clients, dict)
+    assert isinstance(server.get_scene_serializer()._binary_buffers, list)
     uuid, handle = next(iter(server.gui._gui_input_handle_from_uuid.items()))
     assert handle._impl.uuid == uuid
     assert _messages.HotkeyKey

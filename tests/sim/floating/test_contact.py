@@ -39,7 +39,7 @@ def test_a_pull_at_a_corner_turns_the_body_and_never_exceeds_its_limit():
     limit = 0.2 * fleet.mass[0] * 9.81
     pull(fleet, 0, (0.5, 0.5, 0.2), (0.5, 0.5, 50.0), limit)
     water = still_water(fleet, WATER)
-    for _ in range(600):
+    for _ in range(1200):
         step(fleet, water, FRAME_INTERVAL)
         assert fleet.position[0, 2] < 1.0
     assert abs(fleet.rotation[0, 0]) < 0.999

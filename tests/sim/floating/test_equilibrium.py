@@ -8,6 +8,8 @@ from scipy.optimize import brentq
 
 from sim.floating import Hull, equilibrium_draft, heave_period, roll_period
 from sim.floating.equilibrium import upright
+from sim.floating.periods import heave_period_at
+from sim.floating.prediction import predict
 
 WATER = [(1025.0, math.inf)]
 SPILL = [(850.0, 0.2), (1025.0, math.inf)]
@@ -167,3 +169,12 @@ def test_closed_forms_of_the_primitives_match_their_fine_meshes(height):
 def test_bad_arguments_are_refused_by_name(name, arguments):
     with pytest.raises(ValueError, match=f"{name}: .* is not allowed; allowed: "):
         equilibrium_draft(Hull.box(1.0, 1.0, 1.0), **arguments)
+
+
+def test_the_prediction_of_a_scene_is_that_of_the_functions():
+    box = Hull.box(2.0, 1.5, 0.8)
+    found = predict(box, 500.0, SPILL, 1000.0)
+    assert found.height == pytest.approx(0.8, rel=1e-12)
+    assert found.draft == pytest.approx(prism_draft(500.0, 0.8, 850.0, 0.2, 1025.0), rel=1e-6)
+    assert found.draft_in_water == pytest.approx(0.4, rel=1e-6)
+    assert found.period == heave_period_at(box, 500.0, SPILL, found.draft)

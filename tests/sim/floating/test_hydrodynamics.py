@@ -1,6 +1,5 @@
 """Bodies against the committed boundary-element coefficients: periods, decay, response in regular waves."""
 
-import itertools
 import math
 
 import numpy as np
@@ -19,10 +18,11 @@ from sim.floating import (
     still_water,
 )
 from sim.floating.excitation import WaveExcitation, plane_force
-from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange, table_of
+from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange
+from sim.floating.linear_motion import first_swings, linear_decay, linear_response
+from sim.floating.linear_table import table_of
 from sim.ocean.gerstner import Waves
 from sim.ocean.radial import RadialSea
-from tests.naive_floating import linear_decay, linear_response
 
 WATER = ((1025.0, math.inf),)
 FREE = MotionCoefficients(quadratic_drag=0.0)
@@ -66,14 +66,6 @@ def place(hull: Hull, density: float) -> tuple[float, float, float]:
     return (0.0, 0.0, float(-hull.extents[2, 0]) - equilibrium_draft(hull, density, WATER))
 
 
-def swings(x: np.ndarray) -> tuple[float, float]:
-    """Period [steps] and ratio of successive extremes of a decaying oscillation, over its first swings."""
-    down = np.flatnonzero((x[:-1] > 0) & (x[1:] <= 0))[:3]
-    crossing = down + x[down] / (x[down] - x[down + 1])
-    peaks = [np.abs(x[a:b]).max() for a, b in itertools.pairwise(down)]
-    return float(np.diff(crossing).mean()), float(peaks[1] / peaks[0])
-
-
 # Nothing rights a sphere of one density.
 @pytest.mark.parametrize(
     ("name", "axis"),
@@ -97,8 +89,8 @@ def test_free_decay_is_that_of_the_coefficients(name: str, axis: int) -> None:
     linear = afloat(hull, density, WATER).linear
     t = INTERVAL * np.arange(1, 20 * 60 + 1)
     wanted = linear_decay(linear, solid(hull, density), stiffness(hull, linear.draft), axis, t) * size
-    period, ratio = swings(np.array(found))
-    wanted_period, wanted_ratio = swings(wanted)
+    period, ratio = first_swings(np.array(found))
+    wanted_period, wanted_ratio = first_swings(wanted)
     assert period == pytest.approx(wanted_period, rel=0.01)
     assert ratio == pytest.approx(wanted_ratio, rel=0.05)
     undamped = heave_period(hull, density, WATER) if axis == 2 else roll_period(hull, density, WATER, axis=axis - 3)
@@ -137,8 +129,8 @@ def test_response_in_regular_waves_is_that_of_the_coefficients(name: str, direct
         for i in range(steps):
             middle = (i + 0.5) * INTERVAL
             at = sea.at(fleet.position[:, :2], middle, width)
-            kx, ky, a, _, phase, _ = sea.current(middle)
-            forces = excitation.forces(fleet, at.label, kx, ky, a, phase)
+            kx, ky, a, omega, phase, _ = sea.current(middle)
+            forces = excitation.forces(fleet, at.label, kx, ky, a, omega, phase, INTERVAL)
             water = make_water(
                 fleet, WATER, at.height, slope=at.slope, velocity=at.velocity, acceleration=at.acceleration,
                 excitation=forces, lead=INTERVAL / 2,

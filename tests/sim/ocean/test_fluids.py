@@ -5,21 +5,26 @@ import math
 import numpy as np
 import pytest
 
-from sim.ocean.fluids import (
+from sim.ocean.emulsions import (
     MIXTURE_LAWS,
     arrhenius,
-    brewster_angle,
-    diffuse_reflectance,
-    emulsion,
-    fluids,
-    fresnel,
     grunberg_nissan,
     kendall_monroe,
+    mooney,
+    pal_rhodes,
+    pal_rhodes_factor,
+    taylor,
+)
+from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.fluids import (
+    brewster_angle,
+    diffuse_reflectance,
+    fluids,
+    fresnel,
     mixed,
     mixed_density,
     normal_reflectance,
     oil_index,
-    taylor,
 )
 
 
@@ -59,9 +64,39 @@ def test_einstein_is_taylors_limit_of_stiff_drops():
     assert taylor(1e9, 1.0, 0.1) == pytest.approx(1.25, rel=1e-8)
 
 
-def test_emulsion_inverts_at_half():
-    assert emulsion(50.0, 1.0, 0.3) == taylor(50.0, 1.0, 0.3)
-    assert emulsion(50.0, 1.0, 0.7) == pytest.approx(taylor(1.0, 50.0, 0.3))
+def test_thick_emulsions_of_the_table():
+    # Mousse of 75 % water: exp(1.875/0.5125) = 38.8; Pal and Rhodes: x = 0.892857, (4.03545)^2.49.
+    assert mooney(1.0, 12.0, 0.75) == pytest.approx(12.0 * 38.80, rel=1e-3)
+    assert pal_rhodes(1.0, 12.0, 0.75) == pytest.approx(12.0 * 32.26, rel=1e-3)
+    assert pal_rhodes_factor(0.84) == pytest.approx(100.0, rel=0.01)  # by the definition of phi_100
+    # The audit's figure: Alaska North Slope crude with 70 % of water is about 245 mPa s by PyGNOME's form.
+    assert pal_rhodes(1.2, 12.0, 0.70) == pytest.approx(245.0, rel=0.02)
+
+
+@pytest.mark.parametrize(("law", "slope"), [(mooney, 2.5), (pal_rhodes, 2.49 / (1.187 * 0.84))])
+def test_few_stiff_drops_resist_as_einstein_s_spheres(law, slope):
+    # Pal and Rhodes's slope is 2.497: Einstein's 2.5 within 0.2 %.
+    assert (law(1.0, 3.0, 1e-7) / 3.0 - 1.0) / 1e-7 == pytest.approx(slope, rel=1e-5)
+    assert slope == pytest.approx(2.5, rel=2e-3)
+
+
+@pytest.mark.parametrize("law", [name for name, law in MIXTURE_LAWS.items() if law.is_emulsion])
+@pytest.mark.parametrize("fraction", [0.05, 0.49, 0.51, 0.95])
+def test_the_continuous_fluid_is_the_one_chosen(law, fraction):
+    water, oil = fluids()["sea water"], fluids()["Maya"]
+    formula = MIXTURE_LAWS[law].viscosity
+    oil_in_water = formula(oil.viscosity, water.viscosity, fraction)
+    water_in_oil = formula(water.viscosity, oil.viscosity, 1.0 - fraction)
+    for continuous, expected in (
+        ("water", oil_in_water),
+        ("oil", water_in_oil),
+        ("plentiful", water_in_oil if fraction > 0.5 else oil_in_water),
+    ):
+        column = FluidColumn(oil=oil, water=water, fraction=fraction, law=law, continuous=continuous)
+        assert column.surface.viscosity == pytest.approx(expected, rel=1e-12)
+        assert column.drops == pytest.approx(fraction if expected == oil_in_water else 1.0 - fraction)
+        tension = oil.surface_tension if expected == water_in_oil else water.surface_tension
+        assert column.surface.surface_tension == tension
 
 
 def test_optics_of_the_table():
@@ -96,6 +131,10 @@ def test_index_of_oils_by_the_one_third_rule():
         (lambda: arrhenius(1.0, 1.0, 1.5), "fraction"),
         (lambda: arrhenius(0.0, 1.0, 0.5), "first"),
         (lambda: mixed(fluids()["Maya"], fluids()["Mars"], 0.5, "stirred"), "law"),
+        (lambda: mixed(fluids()["Maya"], fluids()["Mars"], 0.5, continuous=fluids()["Brent"]), "continuous"),
+        (lambda: pal_rhodes(1.0, 1.0, 0.998), "fraction"),
+        (lambda: FluidColumn(fraction=0.001, continuous="oil"), "fraction"),
+        (lambda: FluidColumn(continuous="air"), "continuous"),
         (lambda: fresnel(0.0, 0.9), "index"),
         (lambda: oil_index(math.nan), "density"),
     ],

@@ -206,6 +206,10 @@ def test_other_waves_take_over_smoothly_and_wholly() -> None:
     before = sea.at([[0.0, 0.0]], 50.0).height
     sea.change(50.0, waves=storm, fade=2.0)
     np.testing.assert_allclose(sea.at([[0.0, 0.0]], 50.0 + 1e-9).height, before, atol=1e-3)
+    old, new = sea_of().amplitude, storm.amplitude
+    for t, share in ((50.5, 0.25), (51.0, 0.5), (51.5, 0.75)):  # of the energy
+        amplitude = np.concatenate([old * math.sqrt(1.0 - share), new * math.sqrt(share)])
+        np.testing.assert_allclose(sea.current(t)[2], amplitude, rtol=1e-12)
     grid = RadialGrid(32, 32)
     sea.on(grid, 51.0)
     sea.change(51.5, column=FluidColumn(thickness=0.3))

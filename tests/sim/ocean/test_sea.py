@@ -459,3 +459,23 @@ def test_a_regular_wave_on_a_tile_is_its_nearest_wave_as_high_as_given():
     assert Sea(64, 20.0, "regular", wave_height=1.0, wave_period=9.0).significant_height == 0.0
     crossing = Sea(64, 100.0, "regular", wave_height=1.0, wave_period=4.0, second_height=0.5, second_period=3.0)
     assert expected_of(crossing).significant_height == pytest.approx(math.hypot(math.sqrt(2.0), 0.5), rel=0.05)
+
+
+def test_the_low_pass_leaves_its_share_of_the_slopes():
+    """Energy by exp(-(k l)^2), so that of sum k^2 S that share is left."""
+    sharp, soft = (Sea(32, 40.0, wind_speed=6.0, low_pass=length, amplitudes="fixed") for length in (0.0, 0.7))
+    kk = np.add.outer(sharp.k**2, sharp.k**2)
+    energy = sharp.energy_at(0.0)
+    left = energy * np.exp(-kk * 0.7**2)
+    assert soft.energy_at(0.0) == pytest.approx(left, rel=1e-5, abs=1e-12)
+    assert soft.slope_left(0.0) == pytest.approx((kk * left).sum() / (kk * energy).sum(), rel=1e-3)
+    assert sharp.slope_left(0.0) == 1.0
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.5 * math.pi, 4.0])
+def test_the_exact_height_of_waves_in_any_direction_is_the_grid_s(direction):
+    sea = Sea(16, 30.0, wind_speed=6.0, wind_direction=direction, choppiness=0.0)
+    x = np.arange(16) * 30.0 / 16
+    points = np.stack(np.meshgrid(x, x, indexing="ij"), -1).reshape(-1, 2)
+    height, _ = sea.height_at(points, 2.0, exact=True)
+    assert height.reshape(16, 16) == pytest.approx(sea.surface(2.0).height, abs=1e-5)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, jonswap
+from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, elfouhaily, jonswap
 from sim.ocean.spectra.spreading import SPREADINGS, spread
 from sim.ocean.statistics import theory
 from sim.parameters import parameters_of
@@ -258,3 +258,22 @@ def test_low_pass_is_fluid_left_alone_for_a_time():
 def test_conditions_refuse(name, value, spectrum):
     with pytest.raises(ValueError, match=rf"^{name}: .* is not allowed; allowed: "):
         under(spectrum, **{name: value})
+
+
+@pytest.mark.parametrize("k", [0.02, 1.0, 60.0, 370.0, 2000.0])
+def test_elfouhaily_s_spreading_is_that_of_its_waves_speed(k):
+    """Eq. 57: Delta = tanh(a0 + ap (c/cp)^2.5 + am (cm/c)^2.5), seen in the ratio of two directions."""
+    c = under("elfouhaily", wind_speed=9.0)
+    along, aside = (
+        float(SPECTRA["elfouhaily"](np.array([k * math.cos(a)]), np.array([k * math.sin(a)]), c)[0])
+        for a in (0.0, math.pi / 3)
+    )
+    found = (along / aside - 1.0) / (1.0 + 0.5 * along / aside)
+    speed, slowest, fastest = math.sqrt(9.81 / k + 9.81 * k / 370.0**2), math.sqrt(2 * 9.81 / 370.0), 9.0 / 0.84
+    wind = 0.13 * elfouhaily.friction_velocity(c) / slowest
+    Delta = math.tanh(0.25 * math.log(2.0) + 4.0 * (speed / fastest) ** 2.5 + wind * (slowest / speed) ** 2.5)
+    assert found == pytest.approx(Delta, rel=1e-9)
+
+
+def test_the_title_of_a_spectrum_is_what_its_docstring_says_first():
+    assert {s.doc.split(":")[0] for s in SPECTRA.values()} == {s.title for s in SPECTRA.values()}

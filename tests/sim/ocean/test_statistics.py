@@ -7,7 +7,16 @@ import pytest
 
 from sim.ocean import Sea
 from sim.ocean.spectra import SPECTRA, Conditions
-from sim.ocean.statistics import beaufort, drawn, expected, height_scatter, measured, open_sea_height, theory
+from sim.ocean.statistics import (
+    _peak_period,
+    beaufort,
+    drawn,
+    expected,
+    height_scatter,
+    measured,
+    open_sea_height,
+    theory,
+)
 from tests.naive_ocean import plane_integral
 
 
@@ -103,3 +112,11 @@ def test_the_height_of_an_open_sea_is_the_integral(name, values):
         k = (2.0 * math.pi / 6.0) ** 2 / 9.81
         expected += 1.0 / 8.0 * math.exp(-((k * c.low_pass) ** 2))
     assert open_sea_height(SPECTRA[name], c) == pytest.approx(4.0 * math.sqrt(expected), rel=2e-3, abs=1e-12)
+
+
+def test_the_peak_period_weighs_frequencies_by_the_fourth_power_of_their_energy():
+    """Young 1995: omega_p = sum omega S^4 / sum S^4, which is 5/4 of S = omega exp(-omega)."""
+    omega = np.linspace(0.05, 12.0, 200_001)
+    found = _peak_period(omega, omega * np.exp(-omega))
+    assert found == pytest.approx(2.0 * math.pi / 1.25, rel=5e-3)
+    assert math.isnan(_peak_period(omega, 0.0 * omega))

@@ -1,6 +1,7 @@
 """The square sea asked as the radial one is: where its water moves, and where it is pressed together."""
 
 import numpy as np
+import pytest
 
 from sim.ocean import Sea
 from sim.ocean.radial_grid import RadialGrid
@@ -45,3 +46,18 @@ def test_the_jacobian_is_that_of_the_mesh() -> None:
     assert np.corrcoef(near, surface.vertices[: 40 * grid.spokes, 2])[0, 1] < -0.5
     level = TileSea(Sea(size=64, length=128.0, wind_speed=0.0)).on(grid, 0.0)
     np.testing.assert_array_equal(level.jacobian, 1.0)
+
+
+def test_the_mean_square_slope_is_that_of_the_surface() -> None:
+    sea = tile(0.0)
+    slopes = [np.square(sea.sea.surface(t).slope).sum(axis=-1).mean() for t in np.arange(0.0, 40.0, 5.0)]
+    assert sea.mean_square_slope == pytest.approx(np.mean(slopes), rel=0.1)
+
+
+def test_a_grid_about_a_neighbouring_tile_shows_the_same_sea_there() -> None:
+    sea, grid = tile(), RadialGrid(24, 24, 0.5, 60.0)
+    here, there = sea.on(grid, 3.0), sea.on(grid, 3.0, (2.0 * 128.0, -128.0))
+    np.testing.assert_allclose(there.vertices - here.vertices, np.tile([256.0, -128.0, 0.0], (len(grid), 1)), atol=1e-3)
+    aside = sea.on(grid, 3.0, (10.0, -7.0))
+    height, _ = sea.sea.height_at(aside.vertices[:1, :2].astype(float), 3.0)
+    assert aside.vertices[0, 2] == pytest.approx(height[0], abs=0.02)

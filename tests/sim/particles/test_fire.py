@@ -28,6 +28,10 @@ def test_a_parcel_rises_by_the_closed_form_at_any_step(steps: int) -> None:
     assert fire.velocity[2, 0] == pytest.approx(speed, rel=1e-4)
     assert fire.position[2, 0] == pytest.approx(height, rel=1e-4)
     assert fire.velocity[0, 0] == pytest.approx(4.0 * (1 - math.exp(-t / tau)), rel=1e-4)
+    drift = t - tau * (1 - math.exp(-t / tau))
+    way = fire.position[:2, 0] - one_parcel(0, t).position[:2, 0]  # from where it started
+    assert way == pytest.approx([4.0 * drift, -1.0 * drift], rel=1e-3)
+    assert fire.velocity[1, 0] == pytest.approx(-1.0 * (1 - math.exp(-t / tau)), rel=1e-4)
     assert fire.heat[0] == pytest.approx(math.exp(-t / c), rel=1e-4)
 
 
@@ -72,3 +76,16 @@ def test_what_is_not_allowed_is_refused_by_name(bad: dict) -> None:
 
 def test_cold_smoke_rises_with_the_air() -> None:
     np.testing.assert_allclose(one_parcel(60, 60.0, updraft=2.5).velocity[:, 0], [0.0, 0.0, 2.5], atol=1e-3)
+
+
+def test_parcels_start_evenly_over_the_pool() -> None:
+    fire = Fire((5.0, -3.0, 1.0), count=4000, life=1000.0)
+    fire.age[:] = 0.0
+    fire.step(0.0)
+    x, y, z = fire.position
+    r, radius = np.hypot(x - 5.0, y + 3.0), 0.5 * fire.diameter
+    assert r.max() <= radius * (1.0 + 1e-6)
+    assert np.square(r).mean() == pytest.approx(0.5 * radius**2, rel=0.05)
+    assert x.mean() == pytest.approx(5.0, abs=0.05 * radius)
+    assert y.mean() == pytest.approx(-3.0, abs=0.05 * radius)
+    assert (z == 1.0).all()

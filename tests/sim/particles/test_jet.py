@@ -79,3 +79,19 @@ def test_fay_spreads_by_inertia_first_and_by_viscosity_then() -> None:
 def test_what_is_not_allowed_is_refused_by_name(bad: dict) -> None:
     with pytest.raises(ValueError, match=next(iter(bad))):
         Jet((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), **bad)
+
+
+def test_drag_and_wind_carry_a_parcel_along_the_closed_form() -> None:
+    """v = v_end + (v0 - v_end) exp(-t/tau) and its integral, in one step or many."""
+    wind, tau, t = (3.0, -2.0), 0.8, 1.5
+    ends = np.array([3.0, -2.0, -9.81 * tau])
+    for steps in (1, 30):
+        jet = Jet((0.0, 0.0, 1e4), (5.0, 1.0, 12.0), spread=0.0, count=1, flight=0.1, drag_time=tau, wind=wind)
+        while not jet.flying[0]:
+            jet.step(0.01, FLAT, (-1e4, -1e4), 1e4)
+        x, v = jet.position[:, 0].copy(), jet.velocity[:, 0].copy()
+        for _ in range(steps):
+            jet.step(t / steps, FLAT, (-1e4, -1e4), 1e4)
+        left = math.exp(-t / tau)
+        np.testing.assert_allclose(jet.velocity[:, 0], ends + (v - ends) * left, rtol=1e-9)
+        np.testing.assert_allclose(jet.position[:, 0], x + ends * t + (v - ends) * tau * (1.0 - left), rtol=1e-9)

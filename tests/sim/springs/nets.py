@@ -41,15 +41,25 @@ def patch(model="axial", contact=None, *, rows=3, cols=4, seed=0, floor=None, sp
     )
 
 
-def touching_patch(model="axial", contact=None, **more) -> Net:
+def touching_patch(model="axial", contact=None, *, rows=3, cols=4, **more) -> Net:
     """The same on the floor and a moving sphere, pulled at one particle."""
     return patch(
         model,
         contact,
+        rows=rows,
+        cols=cols,
         floor=0.01,
         sphere=(0.3, 0.4, -0.95, 1.0),
         sphere_velocity=(0.3, -0.2, 0.1),
         epoch=-0.1,
-        grab=Grab(2, 2, (1.0, 1.0, 1.0), 200.0, 5.0, 30.0),
+        grab=Grab(min(2, rows - 1), min(2, cols - 1), (1.0, 1.0, 1.0), 200.0, 5.0, 30.0),
         **more,
     )
+
+
+def hairpin(contact_damping, damping=0.0, drag=0.0, moving=()) -> Net:
+    """A rope folded back over itself, nearer than its thickness."""
+    x = np.zeros((3, 1, 8))
+    x[0, 0], x[2, 0, 4:] = [0.0, -0.25, -0.5, -0.75, -0.75, -0.5, -0.25, 0.0], 0.08
+    net = rope(8, 1.75, 1.0, 400.0, damping, drag, 10.0, contact=Contact(300.0, contact_damping))
+    return dataclasses.replace(net, x0=x, thickness=0.1, pin_paths=moving)

@@ -7,6 +7,7 @@ import pytest
 from sim.springs import INTEGRATORS, Contact, Grab, PinPath, rope
 from sim.springs.state import State, advance, velocities
 from tests.sim.springs.nets import DAMPABLE
+from tests.sim.springs.reference import exact, integrated
 
 POINT = rope(2, stiffness=0.0, damping=0.0, drag=0.0, gravity=0.0, root=(0.0, 0.0, 5.0), floor=0.0)
 
@@ -201,3 +202,19 @@ def test_a_moving_sphere_carries_what_it_touches():
     advance(net, state, INTEGRATORS["rk4"], 1e-4, 50_000)
     assert state.v[2, 0, 1] == pytest.approx(0.7, abs=1e-9)
     assert state.x[2, 0, 1] == pytest.approx(0.7 * 5.0 + 0.5 - 0.0125, abs=1e-9)
+
+
+@pytest.mark.parametrize("damping", [0.0, 5.0, 20.0])
+def test_leapfrog_is_of_second_order_where_a_point_slides_and_bobs(damping):
+    """Friction follows the normal force, which damping is a part of: the two are taken symmetrically."""
+    net = lone(Contact(800.0, damping, 0.3), gravity=(0.0, 0.0, -10.0))
+    start = net.x0.copy()
+    start[:, 0, 1] = 0.0, 0.0, -0.0165
+    net = dataclasses.replace(net, x0=start)
+    v0 = np.zeros_like(start)
+    v0[0, 0, 1] = 2.0
+    x, _ = exact(net, 0.12, v0)
+    errors = [np.abs(integrated(net, "leapfrog", 0.12, steps, v0).x - x).max() for steps in (60, 120, 240)]
+    assert errors[1] < 0.3 * errors[0]
+    assert errors[2] < 0.3 * errors[1]
+    assert errors[2] < 2e-7

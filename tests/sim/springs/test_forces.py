@@ -1,14 +1,16 @@
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
 
 from sim.jit import kernel
-from sim.springs import Contact, Grab, rope
+from sim.springs import INTEGRATORS, Contact, Grab, PinPath, State, advance, rope
 from sim.springs.forces.acceleration import accelerate, make_scratch, set_acceleration
 from sim.springs.forces.damping import damp, make_decay
+from sim.springs.state import energy
 from tests import naive
-from tests.sim.springs.nets import patch, touching_patch
+from tests.sim.springs.nets import hairpin, patch, touching_patch
 
 
 @kernel
@@ -125,3 +127,92 @@ def test_split_damping_keeps_momentum_of_a_free_net():
     w = v.reshape(-1).copy()
     damp_for(x.reshape(-1), w, 0.0, 0.02, net.kernel_view(1.0), False)
     assert w.reshape(3, -1).sum(axis=1) == pytest.approx(v.reshape(3, -1).sum(axis=1), abs=1e-13)
+
+
+def own_power(net, x, v, t, h):
+    """(dissipated, put in) [W] by the formulas of `tests.naive`, of pins that move as v says."""
+    xs, vs = np.moveaxis(x, 0, -1), np.moveaxis(v, 0, -1)
+    dissipated = work = 0.0
+
+    def pair(a, b, on_b, spring):
+        nonlocal dissipated, work
+        dissipated -= (on_b - spring) @ (vs[b] - vs[a])
+        for end, force in ((a, -on_b), (b, on_b)):
+            if end in net.pinned:
+                work -= force @ vs[end]
+
+    for a, b, family in naive.neighbours(net):
+        r = xs[b] - xs[a]
+        pair(a, b, -naive.link_force(net, family, r, vs[b] - vs[a]), -naive.link_force(net, family, r, np.zeros(3)))
+    for (a, b, force), (_, _, spring) in zip(
+        naive.own_contacts(net, xs, vs), naive.own_contacts(net, xs, 0.0 * vs), strict=True
+    ):
+        pair(a, b, force, spring)
+    for i, j in itertools.product(*map(range, net.shape)):
+        if (i, j) in net.pinned:
+            continue
+        dissipated += net.drag * vs[i, j] @ vs[i, j]
+        for depth, normal, velocity, on_sphere in naive.surfaces(net, xs[i, j], t):
+            slip = vs[i, j] - velocity
+            force = naive.contact_force(net, depth, normal, slip, on_sphere, h)
+            dissipated -= (force - net.contact.stiffness * depth * normal) @ slip
+            work += force @ velocity
+        if net.grab is not None and (i, j) == (net.grab.row, net.grab.col):
+            work += naive.grab_force(net.grab, xs[i, j], np.zeros(3)) @ vs[i, j]
+            dissipated += net.grab.damping * vs[i, j] @ vs[i, j]
+    return dissipated, work
+
+
+PATH = PinPath(0.0, ((0.0, 0.0, 0.0), (0.5, -0.2, 0.7), (0.0,) * 3, (0.0,) * 3))
+SHAKEN = hairpin(3.0, 3.0, 0.5, (((0, 0), PATH),))  # its root moves
+POWERED = {
+    **{
+        f"patch, {model}, {law}": touching_patch(model, Contact(900.0, 6.0, 0.3 if law == "clipped" else 0.0, law))
+        for model in ("isotropic", "axial")
+        for law in ("clipped", "lab")
+    },
+    "hairpin": SHAKEN,
+    "hairpin, axial": dataclasses.replace(SHAKEN, damping_model="axial"),
+}
+
+
+@pytest.mark.parametrize("case", POWERED)
+@pytest.mark.parametrize("name", ["rk4", "leapfrog"])
+def test_a_short_step_books_the_powers_of_the_formulas(name, case):
+    """Stored energy changes by what was put in less what was dissipated, and each is its own formula."""
+    net, h = POWERED[case], 1e-6
+    state = State.at_rest(net)
+    state.v[:] = 0.5 * np.random.default_rng(4).standard_normal(state.v.shape)
+    for i, j in net.pinned:
+        state.v[:, i, j] = net.pin_paths[0][1].coefficients[1] if net.pin_paths else 0.0
+    dissipated, work = own_power(net, state.x, state.v, 0.0, h)
+    before = energy(net, state)
+    advance(net, state, INTEGRATORS[name], h, 1, with_account=True)
+    after = energy(net, state)
+    assert state.dissipated / h == pytest.approx(dissipated, rel=3e-3, abs=1e-6)
+    assert state.work / h == pytest.approx(work, rel=3e-3, abs=1e-6)
+    assert (after.total - before.total) / h == pytest.approx(work - dissipated, rel=3e-3, abs=1e-3)
+    moved = [after[part] - before[part] for part in range(4)]
+    assert min(abs(change) for change in moved) > 0.0
+
+
+def test_the_stored_energies_are_the_formulas():
+    for net in POWERED.values():
+        xs = np.moveaxis(net.x0, 0, -1)
+        state = State.at_rest(net)
+        state.v[:] = np.random.default_rng(4).standard_normal(state.v.shape)
+        vs = np.moveaxis(state.v, 0, -1)
+        free = [p for p in itertools.product(*map(range, net.shape)) if p not in net.pinned]
+        elastic = sum(
+            0.5 * family.stiffness * (np.linalg.norm(xs[b] - xs[a]) - family.rest) ** 2
+            for a, b, family in naive.neighbours(net)
+        )
+        contact = sum(
+            0.5 * net.contact.stiffness * depth**2 for p in free for depth, *_ in naive.surfaces(net, xs[p], 0.0)
+        )
+        contact += sum(
+            0.5 * (force @ force) / net.contact.stiffness for _, _, force in naive.own_contacts(net, xs, 0.0 * xs)
+        )
+        kinetic = sum(0.5 * net.mass * vs[p] @ vs[p] for p in free)
+        gravity = sum(-net.mass * np.array(net.gravity) @ xs[p] for p in free)
+        assert energy(net, state) == pytest.approx((kinetic, elastic, gravity, contact), rel=1e-12)

@@ -6,6 +6,7 @@ import pytest
 
 from sim.springs import INTEGRATORS, PinPath, rope
 from sim.springs.net import Net
+from sim.springs.state import State, advance
 from tests.sim.springs.nets import patch
 from tests.sim.springs.reference import exact, integrated, slope
 
@@ -113,3 +114,32 @@ def test_the_lab_s_own_figures_of_error_come_out():
     assert rk4 == pytest.approx(2.0e-6, rel=0.1)
     assert leapfrog < 0.02 * euler
     assert euler == pytest.approx(8.4e-3, rel=0.1)
+
+
+def step_matrix(net, name, h):
+    """Derivatives of a step by positions and velocities of the free points, by central differences."""
+    free = np.repeat(net.inverse_masses()[None] > 0.0, 3, axis=0).ravel()
+    rng = np.random.default_rng(3)
+    x, v = net.x0.ravel() + 0.1 * rng.standard_normal(free.size) * free, rng.standard_normal(free.size) * free
+    at = np.concatenate([np.flatnonzero(free), free.size + np.flatnonzero(free)])
+    columns = []
+    for j in at:
+        ends = []
+        for sign in (1.0, -1.0):
+            y = np.concatenate([x, v])
+            y[j] += sign * 1e-5
+            state = State(*y.reshape(2, *net.x0.shape).copy(), lag=INTEGRATORS[name].lag * h)
+            advance(net, state, INTEGRATORS[name], h, 1)
+            ends.append(np.concatenate([state.x.ravel(), state.v.ravel()])[at])
+        columns.append((ends[0] - ends[1]) / 2e-5)
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("name", [name for name, record in INTEGRATORS.items() if record.order < 5])
+def test_a_step_is_symplectic_where_it_is_declared_to_be(name):
+    """M^T J M = J of the step's derivative M."""
+    matrix = step_matrix(rope(4, damping=0.0, drag=0.0), name, 0.03)
+    half = len(matrix) // 2
+    J = np.block([[np.zeros((half, half)), np.eye(half)], [-np.eye(half), np.zeros((half, half))]])
+    off = np.abs(matrix.T @ J @ matrix - J).max()
+    assert off < 1e-7 if INTEGRATORS[name].symplectic else off > 1e-5

@@ -66,9 +66,9 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
     t, last = times[0], times[-1]
     set_pins(x, v, t, p)
     accelerate(x, v, t, p, True, stages.f, stages.a)
-    a[:] = stages.a
+    for j in range(size):
+        a[j], xs[0, j], vs[0, j] = stages.a[j], x[j], v[j]
     evals, steps, frame = 1, 0, 1
-    xs[0], vs[0] = x, v
     lands = method.order > 5 or with_account
     h = first_step(x, v, a, rtol, atol)
     power, before = -1.0 / method.order, 1.0
@@ -77,7 +77,7 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
         goal = times[frame] if lands else last
         landing = t + 1.01 * h >= goal
         step = goal - t if landing else h
-        spent[:] = 0.0
+        spent[0] = spent[1] = 0.0
         take_step(method, x, v, t, step, p, stages, xn, vn, spent, with_account)
         error = error_of(method, x, v, step, stages, xn, vn, rtol, atol)
         evals += method.stages
@@ -85,18 +85,21 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
             # Written so that a NaN shrinks the step as well.
             h = step * max(SHRINK, SAFETY * error**power) if error < 1e9 else SHRINK * step
             grow = 1.0
-            if h < SMALLEST * last:
+            # Written so that a NaN ends it too.
+            if not h >= SMALLEST * last:
                 break
             continue
         after = goal if landing else t + step
-        ledger += spent
+        ledger[0] += spent[0]
+        ledger[1] += spent[1]
         while frame < len(times) and times[frame] <= after:
             if times[frame] == after:
-                xs[frame], vs[frame] = xn, vn
+                for j in range(size):
+                    xs[frame, j], vs[frame, j] = xn[j], vn[j]
             else:
                 fill_frame(x, v, a, xn, vn, an, step, (times[frame] - t) / step, xs[frame], vs[frame])
                 set_pins(xs[frame], vs[frame], times[frame], p)
-            ledgers[frame] = ledger
+            ledgers[frame, 0], ledgers[frame, 1] = ledger[0], ledger[1]
             frame += 1
         accept(method, x, v, stages, xn, vn)
         t = after

@@ -28,7 +28,7 @@ class Tableau(NamedTuple):
 
     c: NDArray[np.float64]  # (rows,) times of the stages
     counts: NDArray[np.int64]  # (rows,) terms of each, even
-    terms: NDArray[np.uint64]  # (rows, WIDEST) whose accelerations
+    terms: NDArray[np.uint64]  # (rows, WIDEST) the stages that are summed
     a: NDArray[np.float64]  # (rows, WIDEST) their weights in the velocity
     g: NDArray[np.float64]  # (rows, WIDEST) and in the position
     stages: int  # s

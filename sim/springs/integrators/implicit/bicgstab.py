@@ -1,4 +1,4 @@
-"""BiCGSTAB for a net's implicit step whose matrix is not symmetric (van der Vorst 1992), with block Jacobi."""
+"""BiCGSTAB for an implicit step of a net with a nonsymmetric matrix (van der Vorst 1992), with block Jacobi."""
 
 import math
 
@@ -18,7 +18,7 @@ def set_turned(d, beta, omega, q, r):
 
 
 @kernel(noalias=True, allocates=False)
-def solve_stabilised_gradients(points, links, factors, r, reduction, p, f, z, d, q, s, shadow, u):
+def solve_stabilised_gradients(points, links, own, air, factors, r, reduction, p, f, z, d, q, s, shadow, u):
     """Solve A u = r until r has shrunk to `reduction` of itself; r is overwritten.
 
     factors: `factorise` of the symmetric part of A's diagonal; from f to shadow: scratch.
@@ -34,14 +34,14 @@ def solve_stabilised_gradients(points, links, factors, r, reduction, p, f, z, d,
             return count
         set_turned(d, rho / before * alpha / omega, omega, q, r)
         precondition(factors, d, n, z)
-        set_general_product(points, links, z, p, f, q)
+        set_general_product(points, links, own, air, z, p, f, q)
         alpha = rho / dot(shadow, q)
         add_scaled(u, alpha, z)
         add_scaled(r, -alpha, q)
         if not math.sqrt(dot(r, r)) > goal:
             return count
         precondition(factors, r, n, z)
-        set_general_product(points, links, z, p, f, s)
+        set_general_product(points, links, own, air, z, p, f, s)
         omega = dot(s, r) / dot(s, s)
         add_scaled(u, omega, z)
         add_scaled(r, -omega, s)

@@ -4,7 +4,7 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.forces.acceleration import add_row
-from sim.springs.integrators.implicit.blocks import GENERAL, SYMMETRIC
+from sim.springs.integrators.implicit.blocks import GENERAL, SYMMETRIC, add_air_products, add_pair_products
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.vector_ops import add_scaled
 
@@ -44,7 +44,7 @@ def hold_pinned(w, u, o, n):
 
 
 @kernel(noalias=True, inline=True)
-def set_matrix_product(points, links, numbers, u, p, f, q):
+def set_matrix_product(points, links, own, air, numbers, u, p, f, q):
     """q = (M + g D + g^2 K) u of `sim.springs.integrators.implicit.blocks`, 0 where pinned; u is 0 there."""
     n, m = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1)
     set_products(points, np.uint64(0), u, n, q)
@@ -61,20 +61,22 @@ def set_matrix_product(points, links, numbers, u, p, f, q):
                 of, o = np.uint64(e) * m, np.uint64(e) * n
                 add_row(f, of, count, 1.0, q, o + ia)
                 add_row(f, of, count, -1.0, q, o + ib)
+    add_pair_products(p, own, u, q)
+    add_air_products(p, air, u, q)
     for e in range(3):
         hold_pinned(p.inverse_masses, q, np.uint64(e) * n, n)
 
 
 @kernel(noalias=True, allocates=False)
-def set_symmetric_product(points, links, u, p, f, q):
+def set_symmetric_product(points, links, own, air, u, p, f, q):
     """`set_matrix_product` of a symmetric matrix: a constant number of a link's block saves a fourth of the loads."""
-    set_matrix_product(points, links, SYMMETRIC, u, p, f, q)
+    set_matrix_product(points, links, own, air, SYMMETRIC, u, p, f, q)
 
 
 @kernel(noalias=True, allocates=False)
-def set_general_product(points, links, u, p, f, q):
+def set_general_product(points, links, own, air, u, p, f, q):
     """`set_matrix_product` of a matrix that is not symmetric."""
-    set_matrix_product(points, links, GENERAL, u, p, f, q)
+    set_matrix_product(points, links, own, air, GENERAL, u, p, f, q)
 
 
 @kernel(noalias=True, allocates=False)
@@ -119,7 +121,7 @@ def set_direction(d, beta, z):
 
 
 @kernel(noalias=True, allocates=False)
-def solve_conjugate_gradients(points, links, factors, r, reduction, p, f, z, d, q, u):
+def solve_conjugate_gradients(points, links, own, air, factors, r, reduction, p, f, z, d, q, u):
     """Solve A u = r until r has shrunk to `reduction` of itself in the preconditioner's norm; r is overwritten.
 
     factors: `factorise` of A's diagonal. f, z, d, q: scratch.
@@ -133,7 +135,7 @@ def solve_conjugate_gradients(points, links, factors, r, reduction, p, f, z, d, 
     for count in range(MOST):
         if rho <= goal:
             return count
-        set_symmetric_product(points, links, d, p, f, q)
+        set_symmetric_product(points, links, own, air, d, p, f, q)
         alpha = rho / dot(d, q)
         add_scaled(u, alpha, d)
         add_scaled(r, -alpha, q)

@@ -17,8 +17,14 @@ from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridi
 from sim.springs.integrators.implicit.blocks import (
     GENERAL,
     SYMMETRIC,
+    add_air_to_points,
     add_links_to_points,
+    add_pairs_to_points,
+    air_numbers,
+    pair_numbers,
+    set_air_blocks,
     set_link_blocks,
+    set_pair_blocks,
     set_point_blocks,
 )
 from sim.springs.integrators.implicit.conjugate_gradients import factorise, solve_conjugate_gradients
@@ -29,7 +35,8 @@ from sim.springs.vector_ops import set_sum
 
 MOST = 25  # corrections a stage: a stage that has not settled by then is taken as it is
 SETTLED = 1e-11  # what corrections not taken would add, relative to the fastest velocity
-SETTLED_NET = 1e-9  # of a net, whose corrections cost so much more
+SETTLED_NET = 1e-9  # of a net: its corrections cost so much more
+USABLE = 1e-3  # the last correction, relative to the fastest velocity, of a stage that may be taken unsettled
 LOOSEST, TIGHTEST = 0.1, 1e-4  # reductions of the residual by conjugate gradients
 ROUND_OFF = 4e-15  # and to the farthest position over g, below which corrections are noise
 
@@ -43,6 +50,8 @@ class WorkCount(NamedTuple):
     f: NDArray[np.float64]  # scratch of `accelerate`
     points: NDArray[np.float64]  # (6 rows cols,) blocks of the particles
     links: NDArray[np.float64]  # (families numbers rows cols,) blocks of the links
+    own: NDArray[np.float64]  # (3 pairs,) blocks of the pairs of a net that may touch
+    air: NDArray[np.float64]  # (6 rows cols,) blocks of the cells of a net in air
     diagonal: NDArray[np.float64]  # (cols, 9) of a rope
     beside: NDArray[np.float64]  # (cols, 9) of a rope
     factors: NDArray[np.float64]  # (6 rows cols,) of a net
@@ -82,6 +91,8 @@ def make_work(p, mean):
         make_scratch(p),
         np.zeros(6 * size),
         np.zeros(numbers * size * p.offsets.shape[0]),
+        np.zeros(pair_numbers(p)),
+        np.zeros(air_numbers(p)),
         np.zeros((n, 9)),
         np.zeros((n, 9)),
         np.zeros(2 * m),
@@ -156,15 +167,18 @@ def correct_net(before, p, work):
     for j in range(6 * n):
         work.factors[j] = work.points[j]
     add_links_to_points(p, work.links, work.numbers, work.factors)
+    add_pairs_to_points(p, work.own, work.factors)
+    add_air_to_points(p, work.air, work.factors)
     factorise(work.factors, n)
     if work.mean:
         solve_stabilised_gradients(
-            work.points, work.links, work.factors, work.r, reduction, p, work.f, work.z, work.d, work.q, work.s,
-            work.shadow, work.u,
+            work.points, work.links, work.own, work.air, work.factors, work.r, reduction, p, work.f, work.z, work.d,
+            work.q, work.s, work.shadow, work.u,
         )  # fmt: skip
     else:
         solve_conjugate_gradients(
-            work.points, work.links, work.factors, work.r, reduction, p, work.f, work.z, work.d, work.q, work.u
+            work.points, work.links, work.own, work.air, work.factors, work.r, reduction, p, work.f, work.z, work.d,
+            work.q, work.u,
         )  # fmt: skip
     # The scratch of forces is zero at its ends for whoever relies on it.
     for j in range(work.f.shape[0]):
@@ -203,7 +217,8 @@ def largest(u):
 def solve_stage(x0, v0, g, t, p, x, v, work, most):
     """Solve for v, from the guess in v, with x = x0 + g v.
 
-    Returns the corrections taken, at most `most`, each one force evaluation, and whether they settled.
+    Returns the corrections taken, at most `most`, each one force evaluation, whether they settled, and whether what
+    they came to may be used although they did not.
     """
     n = p.rows * p.cols
     taken, settled, found, size = 0, False, 0.0, np.inf
@@ -218,6 +233,8 @@ def solve_stage(x0, v0, g, t, p, x, v, work, most):
                 i = e * n + j
                 work.r[i] = p.mass * (v0[i] + g * work.a[i] - v[i]) if p.inverse_masses[j] > 0.0 else 0.0
         set_point_blocks(x, v, t, g, p, work.points)
+        set_pair_blocks(x, v, g, p, work.own)
+        set_air_blocks(x, v, g, p, work.air)
         if work.mean:
             set_mean_blocks(x0, x, g, p, work.links)
         else:
@@ -236,4 +253,4 @@ def solve_stage(x0, v0, g, t, p, x, v, work, most):
             break
     set_sum(x, x0, g, v)
     set_pins(x, v, t, p)
-    return taken, settled
+    return taken, settled, settled or size <= USABLE * largest(v)

@@ -10,10 +10,13 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.forces.contact import touching
+from sim.springs.forces.self_contact import refresh_pairs
+from sim.springs.net import by_net
 
 STIFFNESS = 0  # K
 DAMPING = 1  # D
 TRANSVERSE = 2  # the part of K across the links, which axial damping does not reach
+FRICTION = 3  # M over what slides along floor or sphere: friction's strongest damping, times h
 
 
 @kernel(noalias=True, allocates=False)
@@ -63,6 +66,8 @@ def add_surface(x, u, t, p, part, on_sphere, out):
             if p.lab_contact and on_sphere:
                 along *= depth
             across = along if p.lab_contact else 0.0
+        elif part == FRICTION:
+            along, across = 0.0, p.mass
         un = (along - across) * (u[j] * nx + u[n + j] * ny + u[2 * n + j] * nz)
         out[j] += across * u[j] + un * nx
         out[n + j] += across * u[n + j] + un * ny
@@ -86,22 +91,59 @@ def add_pull(x, u, p, part, out):
     out[2 * n + g] += across * u[2 * n + g] - inward * dz
 
 
+@kernel(noalias=True, inline=True)
+def add_no_pairs(x, u, p, part, out):
+    """A rope does not push itself."""
+
+
+@kernel(noalias=True, allocates=False)
+def add_pairs(x, u, p, part, out):
+    """The net's touching pairs: K = k [n n^T - depth/r (I - n n^T)] between the two, D = b n n^T."""
+    n = p.rows * p.cols
+    if p.thickness == 0.0:
+        return
+    for s in range(refresh_pairs(x, p)):
+        i, j = p.pairs[s, 0], p.pairs[s, 1]
+        rx, ry, rz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
+        rr = rx * rx + ry * ry + rz * rz
+        if rr >= p.thickness * p.thickness or rr == 0.0:
+            continue
+        along, across = p.contact_b, 0.0
+        if part != DAMPING:
+            along, across = p.contact_k, p.contact_k * max(-1.0, 1.0 - p.thickness / math.sqrt(rr))
+        du, dv, dw = u[j] - u[i], u[n + j] - u[n + i], u[2 * n + j] - u[2 * n + i]
+        q = (along - across) * (rx * du + ry * dv + rz * dw) / rr
+        fx, fy, fz = across * du + q * rx, across * dv + q * ry, across * dw + q * rz
+        out[i] -= fx
+        out[n + i] -= fy
+        out[2 * n + i] -= fz
+        out[j] += fx
+        out[n + j] += fy
+        out[2 * n + j] += fz
+
+
+add_own_contacts = by_net(rope=add_no_pairs, grid=add_pairs)
+
+
 @kernel(noalias=True, allocates=False)
 def set_tangent(x, u, t, p, part, out):
     """out = M^-1 K u, or M^-1 D u (part DAMPING), about x at time t; all flat (3 rows cols,).
 
-    Friction is left out: its strongest damping is 1/h by construction, inside every integrator's limit.
+    Friction is apart, as its strongest damping is 1/h by construction: h D of it is part FRICTION. Air is left out.
     """
     n = p.rows * p.cols
     for j in range(3 * n):
         out[j] = p.drag * u[j] if part == DAMPING else 0.0
-    add_links(x, u, p, part, out)
+    if part != FRICTION:
+        add_links(x, u, p, part, out)
+        if part != TRANSVERSE:
+            add_own_contacts(x, u, p, part, out)
     if part != TRANSVERSE:
         if p.has_floor:
             add_surface(x, u, t, p, part, False, out)
         if p.has_sphere:
             add_surface(x, u, t, p, part, True, out)
-        if p.grabbed >= 0:
+        if p.grabbed >= 0 and part != FRICTION:
             add_pull(x, u, p, part, out)
     for e in range(3):
         for j in range(n):
@@ -149,7 +191,10 @@ def set_lanczos(x, t, p, part, basis, diagonal, beside):
 
 @kernel(noalias=True)
 def quotients(x, u, t, p):
-    """(u K u, u K u of the links alone, u D u) over u M u [1/s^2, 1/s^2, 1/s], of a unit vector u, 0 where pinned."""
+    """(u K u, u K u of the links alone, u D u) over u M u [1/s^2, 1/s^2, 1/s], of a unit vector u, 0 where pinned.
+
+    The fourth is the share of u M u that slides on floor or sphere, 0 without friction.
+    """
     w = np.empty_like(x)
     set_tangent(x, u, t, p, STIFFNESS, w)
     stiffness = dot(u, w)
@@ -157,4 +202,9 @@ def quotients(x, u, t, p):
     add_links(x, u, p, STIFFNESS, w)
     links = dot(u, w) / p.mass
     set_tangent(x, u, t, p, DAMPING, w)
-    return stiffness, links, dot(u, w)
+    rate = dot(u, w)
+    sliding = 0.0
+    if p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere):
+        set_tangent(x, u, t, p, FRICTION, w)
+        sliding = dot(u, w)
+    return stiffness, links, rate, sliding

@@ -1,0 +1,132 @@
+"""Checks in a process of low priority what a student has saved, as `springtide lab check` does, while the scenes run.
+
+The process takes requests as lines of JSON, `{"number", "folder", "names"}`, and answers each function with a line
+`{"number", "name", "state", "text", "mistake"}`. A new request ends the one before it.
+"""
+
+import contextlib
+import json
+import os
+import queue
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+
+from app.lab.process import NICENESS
+from app.lab.program_check import Verdict, check_program
+from app.lab.runner import ROOT, Runner
+from app.lab.task import load_tasks
+
+START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.background_check import main; main()"
+ENDED = Verdict("failed", "The check ended without a result. Save the file again.")
+
+
+class BackgroundCheck:
+    """The process, as the lab sees it. `verdicts` and `waiting` are replaced, never changed."""
+
+    def __init__(self, folders: Iterable[Path] = ()) -> None:
+        """folders: with a teacher's own tasks."""
+        self.folders = tuple(folders)
+        self.verdicts: Mapping[str, Verdict] = {}  # function -> what its check came to
+        self.waiting: frozenset[str] = frozenset()  # functions that are being checked
+        self.number = 0  # of the last request
+        self.process: subprocess.Popen[str] | None = None
+        self.lock = threading.Lock()  # requests come from one thread, verdicts from another
+
+    def request(self, folder: Path, names: Sequence[str], begun: frozenset[str]) -> None:
+        """Check these functions of a folder; those that are not begun need no check."""
+        with self.lock:
+            to_check = [name for name in {**dict.fromkeys(self.waiting), **dict.fromkeys(names)} if name in begun]
+            done = {name: verdict for name, verdict in self.verdicts.items() if name not in names}
+            self.verdicts = {**done, **{name: Verdict("not begun") for name in names if name not in begun}}
+            self.waiting = frozenset(to_check)
+            self.number += 1
+        if not to_check:
+            return
+        line = json.dumps({"number": self.number, "folder": str(folder), "names": to_check}) + "\n"
+        for _ in range(2):  # once more, where the process has ended
+            process = self.ready()
+            assert process.stdin is not None
+            with contextlib.suppress(OSError):
+                process.stdin.write(line)
+                process.stdin.flush()
+                return
+            self.close()
+
+    def ready(self) -> "subprocess.Popen[str]":
+        """The process, started unless it runs."""
+        if self.process is None or self.process.poll() is not None:
+            self.process = subprocess.Popen(
+                [sys.executable, "-P", "-c", START, str(ROOT), *map(str, self.folders)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                text=True,
+                start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle
+            )
+            threading.Thread(target=self.read, args=(self.process,), name="verdicts", daemon=True).start()
+        return self.process
+
+    def read(self, process: "subprocess.Popen[str]") -> None:
+        """Take verdicts until the process ends. Where it ends by itself, what was not checked has failed."""
+        assert process.stdout is not None
+        with contextlib.suppress(ValueError, OSError):  # closed from here
+            for line in process.stdout:
+                found = json.loads(line)
+                with self.lock:
+                    if found["number"] == self.number:
+                        verdict = Verdict(found["state"], found["text"], found["mistake"])
+                        self.verdicts = {**self.verdicts, found["name"]: verdict}
+                        self.waiting = self.waiting - {found["name"]}
+        with self.lock:
+            if process is self.process:
+                self.verdicts = {**self.verdicts, **dict.fromkeys(self.waiting, ENDED)}
+                self.waiting = frozenset()
+
+    def close(self) -> None:
+        """End the process; it ends what it has started."""
+        process, self.process = self.process, None
+        if process is not None:
+            process.terminate()
+            process.wait()
+            for stream in (process.stdin, process.stdout):
+                with contextlib.suppress(OSError):  # what was not yet sent is dropped
+                    if stream is not None:
+                        stream.close()
+
+
+def serve(requests: "queue.SimpleQueue[dict[str, object] | None]", say: Callable[[dict[str, object]], None]) -> None:
+    """Check what is asked for, until None comes."""
+    tasks = {task.name: task for task in load_tasks(*map(Path, sys.argv[2:]))}
+    while (request := requests.get()) is not None:
+        folder, names = Path(str(request["folder"])), request["names"]
+        assert isinstance(names, list)
+        with Runner(folder) as runner:
+            for name in names:
+                if not requests.empty():
+                    break
+                verdict = check_program(folder, runner, tasks[name])
+                found = {"state": verdict.state, "text": verdict.text, "mistake": verdict.mistake}
+                say({"number": request["number"], "name": name, **found})
+
+
+def main() -> None:
+    """The process."""
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
+    requests: queue.SimpleQueue[dict[str, object] | None] = queue.SimpleQueue()
+
+    def read() -> None:
+        for line in sys.stdin:
+            requests.put(json.loads(line))
+        requests.put(None)  # the lab has ended
+
+    threading.Thread(target=read, daemon=True).start()
+
+    def say(found: dict[str, object]) -> None:
+        print(json.dumps(found), flush=True)
+
+    with contextlib.suppress(BrokenPipeError):
+        serve(requests, say)

@@ -1,0 +1,197 @@
+"""The rope that a student's functions move: a thread that has it computed, in a process of its own.
+
+A scene hands jobs over and takes answers; it never waits. Of the versions of the student's files the newest one runs
+that works; which one fails, and why, is kept until the next one is saved.
+"""
+
+import itertools
+import math
+import queue
+import threading
+from collections.abc import Callable, Collection, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.lab.rope_march import REFERENCE, Forces, Segment
+from app.lab.runner import RunError, Runner
+from app.lab.saved import Saved
+
+STEPS = {  # method of the scene -> the task with its step
+    "explicit_euler": "step_euler",
+    "rk4": "step_rk4",
+    "leapfrog": "step_leapfrog",
+    "leapfrog_lagged": "step_leapfrog",
+}
+OTHER_STEP = "step_rk4"  # for the methods that no task asks for
+ROPE_FUNCTIONS = tuple(REFERENCE)
+
+
+class Job(NamedTuple):
+    """Steps that a scene asks for."""
+
+    run: int  # number of the run that they belong to, from `LiveRope.runs`
+    method: str  # name in INTEGRATORS
+    x: np.ndarray  # (n, 3) [m]
+    v: np.ndarray  # (n, 3) [m/s]
+    segments: Sequence[Segment]
+
+
+class Answer(NamedTuple):
+    """What a job came to."""
+
+    run: int
+    x: np.ndarray  # (segments, n, 3) [m] at the end of each segment
+    v: np.ndarray  # (n, 3) [m/s]
+    seconds: float  # for each step
+    left: bool  # the rope has left all bounds
+    version: int  # of the files; 0: none works, and nothing was computed
+    compiled: tuple[str, ...] = ()
+
+
+class Loaded(NamedTuple):
+    """A version with its process, in which its rope has been tried."""
+
+    saved: Saved
+    runner: Runner
+    compiled: tuple[str, ...] = ()  # the functions that are compiled in this process
+
+
+class StudentReport(NamedTuple):
+    """What a scene says of the student's rope, for the panel. It is replaced, never changed."""
+
+    version: int = 0  # of the files; 0: no function of the student's moves a rope
+    compiled: tuple[str, ...] = ()  # functions that run compiled
+    method: str = ""
+    sphere: bool = False
+    seconds: float = 0.0  # for each step, lately
+    step: float = 0.0  # h [s]
+    behind: float = 0.0  # [s] of simulated time
+    restarts: int = 0  # how often it was too late and started again from the program's rope
+    left_at: float = math.nan  # [s] when it left its bounds
+    difference: float = math.nan  # [m] largest distance between the same points of both ropes
+    times: NDArray[np.float64] = np.zeros(0)  # (rows,) [s]
+    differences: NDArray[np.float64] = np.zeros(0)  # (rows,) [m]
+
+
+def step_of(method: str) -> str:
+    """The function that takes the steps of a method."""
+    return STEPS.get(method, OTHER_STEP)
+
+
+def own_of(saved: Saved, method: str, *, sphere: bool) -> frozenset[str]:
+    """The student's functions that move a rope by this method."""
+    unused = {"step_euler", "step_rk4", "step_leapfrog"} - {step_of(method)}
+    if not sphere:
+        unused.add("sphere_force")
+    if "rope_acceleration" in saved.begun:
+        unused.add("spring_force")  # it calls that itself, if it does
+    return saved.begun & set(ROPE_FUNCTIONS) - unused
+
+
+def try_rope(runner: Runner, saved: Saved, method: str, *, sphere: bool) -> None:
+    """Take a few steps from a bent rope. Raises RunError."""
+    n = 6
+    x = np.zeros((n, 3))
+    x[:, 0], x[:, 2] = -0.2 * np.arange(n), 3.0 - 0.02 * np.arange(n) ** 2
+    v = np.linspace(0.0, 1.0, n)[:, None] * np.array([0.3, 0.2, -0.5])
+    near = (-0.6, 0.0, 2.5), 0.4 if sphere else 0.0
+    forces = Forces(
+        1.0, 800.0, 7.0, 1.0, 0.2, 10.0, 0.0, near[1], near[0], (0.0, 0.0, 0.0), 800.0, 5.0, 0.3, False, -1,
+        (0.0, 0.0, 0.0), 0.0, 0.0, 1.0,
+    )  # fmt: skip
+    own = own_of(saved, method, sphere=sphere)
+    runner.march(own, step_of(method), x, v, [Segment(3, 1 / 480, forces, np.zeros((0, 6)))])
+
+
+class LiveRope:
+    """Runs jobs in a thread. `submit` and `answers` are for the simulation thread; `adopt` for who loads versions."""
+
+    def __init__(self, fail: Callable[[Saved, RunError], None]) -> None:
+        """fail: is told of a version that fails while it runs; on this object's thread."""
+        self.answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
+        self.runs = itertools.count(1)  # for all scenes: an answer may come when the scene that asked is closed
+        self.connect(lambda: None, lambda: None)
+        self.method, self.sphere = "rk4", False  # of the last job: what a new version is tried with
+        self.fail = fail
+        self.inbox: queue.SimpleQueue[Job | Loaded | None] = queue.SimpleQueue()
+        # The one that is preferred last: the last version before the newest, the newest, the newest compiled.
+        self.versions: list[Loaded] = []
+        self.taken = 0  # number of the version that was taken last
+        self.failed: set[tuple[int, bool, frozenset[str]]] = set()  # version, whether compiled, functions in use
+        self.thread = threading.Thread(target=self.run, name="student's rope", daemon=True)
+        self.thread.start()
+
+    def connect(self, wake: Callable[[], None], begin_again: Callable[[], None]) -> None:
+        """Serve another scene. wake: called when there is an answer. begin_again: when another version is taken."""
+        self.wake, self.begin_again = wake, begin_again
+        self.report = StudentReport()  # replaced by the simulation thread
+
+    def submit(self, job: Job) -> None:
+        """Have steps taken; the answer comes through `answers`."""
+        self.inbox.put(job)
+
+    def adopt(self, loaded: Loaded) -> None:
+        """Take a version that has been tried, in place of those before it."""
+        self.inbox.put(loaded)
+
+    def close(self) -> None:
+        """End the thread, and the processes that it holds."""
+        self.inbox.put(None)
+        self.thread.join()
+
+    def run(self) -> None:
+        """Do what comes."""
+        while (item := self.inbox.get()) is not None:
+            if isinstance(item, Loaded):
+                self.take(item)
+            else:
+                self.answers.put(self.advance(item))
+                self.wake()
+        for loaded in self.versions:
+            loaded.runner.close()
+
+    def take(self, loaded: Loaded) -> None:
+        """Keep a new version and the last one that worked before it; or the newest in a process that compiled it."""
+        if loaded.compiled and loaded.saved.number != self.taken:
+            loaded.runner.close()
+            return
+        for old in self.versions:
+            old.runner.close()  # it starts again where it is needed
+        plain = [old for old in self.versions if not old.compiled]
+        self.versions = [*plain[-2 if loaded.compiled else -1 :], loaded]
+        if loaded.compiled:
+            return
+        self.begin_again()
+        self.taken = loaded.saved.number
+
+    def advance(self, job: Job) -> Answer:
+        """The steps of a job by the newest version that works."""
+        self.method = job.method
+        self.sphere = any(segment.forces.radius > 0.0 for segment in job.segments)
+        for saved, runner, compiled in reversed(self.versions):
+            own = own_of(saved, job.method, sphere=self.sphere)
+            if not own:
+                break  # the student has written nothing that moves this rope
+            attempt = saved.number, bool(compiled), own
+            if attempt in self.failed:
+                continue
+            try:
+                done = runner.march(own, step_of(job.method), job.x, job.v, job.segments)
+            except RunError as error:
+                self.failed.add(attempt)
+                runner.close()
+                if not compiled:  # plain Python is tried next, and says where it was
+                    self.fail(saved, error)
+                continue
+            each = done.seconds / max(done.steps, 1)
+            return Answer(job.run, done.x, done.v, each, done.left, saved.number, compiled)
+        return Answer(job.run, job.x[None][:0], job.v, 0.0, False, 0)
+
+
+def functions_in_use(begun: Collection[str], method: str, *, sphere: bool) -> dict[str, bool]:
+    """The functions that move a rope by this method, and whether each is the student's own."""
+    names = ["rope_acceleration" if "rope_acceleration" in begun else "spring_force"]
+    names += ["sphere_force"] if sphere else []
+    return {name: name in begun for name in (*names, step_of(method))}

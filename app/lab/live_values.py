@@ -1,0 +1,107 @@
+"""Values of a running scene, as tasks use them: in answers, in what is watched for, in what is read off."""
+
+import math
+import operator
+import string
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from sim.formatting import count, fixed, metres, number, percent, seconds
+from sim.validation import argument_error
+
+EASY = {"m": metres, "s": seconds}  # unit -> what writes a number in an easily read multiple of it
+MAX_SMALL = 0.1  # below which a length [m] or time [s] is written in such a multiple
+UNKNOWN = "…"  # where the scene has no such value
+
+
+class LiveNumber(NamedTuple):
+    """A number that a scene has now."""
+
+    value: float
+    unit: str = ""
+    meaning: str = ""
+
+    def __format__(self, spec: str) -> str:
+        """The number with its unit. spec: how many significant digits, 3 by default, or one of these.
+
+        "%" percent; "n" a rounded number of things; ".2" two fixed decimals; "3u" three digits in an easy unit (mm).
+        """
+        if spec == "%":
+            return percent(self.value, 3)
+        if spec == "n":
+            return count(self.value)
+        is_small = not spec and 0.0 < abs(self.value) < MAX_SMALL
+        if spec.endswith("u") or is_small:
+            spec = spec[:-1]
+            if self.unit in EASY:
+                return EASY[self.unit](self.value, int(spec or 3))
+        text = fixed(self.value, int(spec[1:])) if spec.startswith(".") else number(self.value, int(spec or 3))
+        return f"{text}\u00a0{self.unit}" if self.unit not in ("", "1") else text
+
+
+LiveValue = bool | str | LiveNumber
+LiveValues = Mapping[str, LiveValue]
+
+RELATIONS: dict[str, Callable[[float, float], bool]] = {
+    ">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt,
+}  # fmt: skip
+
+
+class Condition(NamedTuple):
+    """A condition on one live value: that it equals `value`, or the relation to a number."""
+
+    name: str
+    relation: str  # one of RELATIONS, or "="
+    value: bool | str | float
+
+    def holds(self, values: LiveValues) -> bool:
+        """Whether it holds; a value that the scene does not have fulfils no condition."""
+        found = values.get(self.name)
+        if isinstance(found, LiveNumber) and isinstance(self.value, float):
+            if self.relation == "=":
+                return math.isclose(found.value, self.value, rel_tol=1e-6, abs_tol=1e-12)
+            return RELATIONS[self.relation](found.value, self.value)
+        return type(found) is type(self.value) and found == self.value
+
+
+def read_conditions(where: str, table: Mapping[str, Any]) -> tuple[Condition, ...]:
+    """The conditions of a TOML table: name = value, or name = "> 5". Raises ValueError for another form."""
+    found = []
+    for name, value in table.items():
+        relation = next((r for r in RELATIONS if isinstance(value, str) and value.startswith(r)), "=")
+        if relation != "=":
+            try:
+                value = float(value[len(relation) :])
+            except ValueError:
+                raise argument_error(f"{where}: {name}", value, 'a relation to a number, as in "> 5"') from None
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            value = float(value)
+        if not isinstance(value, bool | str | float):
+            raise argument_error(f"{where}: {name}", value, "a number, a text, true or false")
+        found.append(Condition(name, relation, value))
+    return tuple(found)
+
+
+class NamesOnly(string.Formatter):
+    """Formats live values by name; a field is never more than a name."""
+
+    def get_field(self, field_name: str, args: Any, kwargs: Any) -> tuple[Any, str]:
+        """The value of a field, or that there is none."""
+        return kwargs.get(field_name, UNKNOWN), field_name
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        """A number as `LiveNumber` writes it, anything else as it is."""
+        return format(value, format_spec) if isinstance(value, LiveNumber) else str(value)
+
+
+def names_in(template: str) -> set[str]:
+    """The names of the live values that a text uses. Raises ValueError for what `fill_in` could not fill in."""
+    fields = [(name, spec) for _, name, spec, _ in string.Formatter().parse(template) if name is not None]
+    for _, spec in fields:
+        format(LiveNumber(1.0), spec or "")
+    return {name for name, _ in fields}
+
+
+def fill_in(template: str, values: LiveValues) -> str:
+    """A text with the live values in place of their names in braces."""
+    return NamesOnly().vformat(template, (), values)

@@ -1,0 +1,7 @@
+"""What both sides of the process that runs a student's functions must agree on."""
+
+import signal
+
+COMPILES = "compiles"  # argument of a process that compiles, too
+NICENESS = 10  # of processes that may wait: those that compile, and those that check
+TRACE_SIGNAL = getattr(signal, "SIGUSR1", None)  # asks a process where it is; None on Windows, which has no such signal

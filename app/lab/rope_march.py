@@ -1,0 +1,295 @@
+"""Advances a rope with a student's functions, in the process that runs them.
+
+What the student has not written yet, the reference solutions do. Floor, friction and the pull of the mouse, which are
+no task, are the program's laws (`sim/springs/forces`), in numpy. Only numpy is imported here, so that the process
+starts fast.
+"""
+
+import time
+from collections.abc import Callable, Collection, Mapping
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from app.lab.tasks.rope_acceleration import rope_acceleration
+from app.lab.tasks.sphere_force import sphere_force
+from app.lab.tasks.spring_force import spring_force
+from app.lab.tasks.step_euler import step_euler
+from app.lab.tasks.step_leapfrog import step_leapfrog
+from app.lab.tasks.step_rk4 import step_rk4
+
+FILE = "rope.py"  # where the tasks have these functions
+REFERENCE: dict[str, Callable[..., Any]] = {
+    "spring_force": spring_force, "rope_acceleration": rope_acceleration, "sphere_force": sphere_force,
+    "step_euler": step_euler, "step_rk4": step_rk4, "step_leapfrog": step_leapfrog,
+}  # fmt: skip
+LINKS = "links"  # among the compiled functions, the loop over the links of a rope, which is ours
+MAX_COORDINATE = 1e6  # [m], [m/s] beyond which a rope is not advanced
+
+
+class Forces(NamedTuple):
+    """Material and surroundings of a rope, per point and link."""
+
+    mass: float  # [kg]
+    stiffness: float  # [N/m]
+    damping: float  # [N s/m]
+    drag: float  # [N s/m]
+    rest_length: float  # [m]
+    gravity: float  # [m/s2], downwards
+    floor: float  # [m] where points meet it; -inf: none
+    radius: float  # [m] at which points meet the sphere; 0: none
+    centre: tuple[float, float, float]  # [m] of the sphere at the start
+    velocity: tuple[float, float, float]  # [m/s] of the sphere
+    contact_stiffness: float  # [N/m]
+    contact_damping: float  # [N s/m]
+    friction: float  # Coulomb coefficient
+    lab_contact: bool  # the lab's law of contact instead of the clipped one
+    held: int  # point that the mouse pulls, -1: none
+    hand: tuple[float, float, float]  # [m]
+    pull_stiffness: float  # [N/m]
+    pull_damping: float  # [N s/m]
+    max_pull: float  # [N]
+
+
+class Segment(NamedTuple):
+    """Some steps during which the forces stay the same."""
+
+    steps: int
+    h: float  # [s]
+    forces: Forces
+    root: np.ndarray  # (steps, 6) position [m] and velocity [m/s] of the root after each step; (0, 6) where it rests
+
+
+class March(NamedTuple):
+    """What advancing came to."""
+
+    x: np.ndarray  # (segments, n, 3) [m] at the end of each segment that was finished
+    v: np.ndarray  # (n, 3) [m/s] at the end of the last of these
+    steps: int  # taken in all
+    seconds: float  # that they took
+    left: bool  # the rope left all bounds; the rest of the segments was not taken
+
+
+class Unfit(Exception):  # noqa: N818 - a judgement on a result, not an error of the program
+    """A student's function returned what cannot be used. kind: "wrong shape", "wrong type", "NaN", "returns nothing".
+
+    function: the one that did.
+    """
+
+    def __init__(self, kind: str, text: str, function: Callable[..., Any]) -> None:
+        super().__init__(text)
+        self.kind = kind
+        self.text = text
+        code = getattr(function, "__code__", None)
+        self.line = None if code is None else int(code.co_firstlineno)
+
+
+class Functions:
+    """The functions that advance a rope: the student's, and the reference solutions in place of those not written."""
+
+    def __init__(
+        self, module: ModuleType, own: Collection[str], step: str, compiled: Mapping[str, Callable[..., Any]]
+    ) -> None:
+        """own: names of the functions that the student has begun. step: name of the method's function.
+
+        compiled: functions to use instead (`compiled.py`).
+        """
+        found = {name: compiled.get(name) or getattr(module, name, None) for name in own if name in REFERENCE}
+        self.own = {name: function for name, function in found.items() if callable(function)}
+        self.links = compiled.get(LINKS)
+        self.step = step
+        self.forces: Forces
+        self.now = 0.0  # [s] since the start of the segment, in the middle of the step
+
+    def get(self, name: str) -> Callable[..., Any]:
+        """The student's function, or the reference solution."""
+        return self.own.get(name) or REFERENCE[name]
+
+    def fit(self, name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
+        """A result as an array of this shape. Raises Unfit."""
+        if type(value) is np.ndarray and value.dtype == np.float64 and value.shape == shape:
+            return value
+        function, expected = self.get(name), f"expected is an array of shape {shape}"
+        if value is None:
+            raise Unfit("returns nothing", f"{name} returns nothing: the last line must be return ...", function)
+        try:
+            array = np.asarray(value)
+        except ValueError:  # rows of different lengths
+            array = np.array(None)
+        if array.dtype.kind not in "biuf":
+            text = f"{name} returns a value of type {type(value).__name__}; {expected}"
+            raise Unfit("wrong type", text, function)
+        if array.shape != shape:
+            form = f"an array of shape {array.shape}" if array.shape else "a number"
+            raise Unfit("wrong shape", f"{name} returns {form}; {expected}", function)
+        return array.astype(np.float64)
+
+    def acceleration(self, x: Any, v: Any) -> np.ndarray:
+        """The accelerations [m/s2], shape (n, 3), that a step asks for."""
+        x, v = np.asarray(x, np.float64), np.asarray(v, np.float64)
+        if x.ndim != 2 or x.shape[1] != 3 or x.shape != v.shape:
+            text = f"{self.step} calls acceleration(x, v) with shapes {x.shape} and {v.shape}; both must be (n, 3)"
+            raise Unfit("wrong shape", text, self.get(self.step))
+        a = self.rope(x, v)
+        self.add_surroundings(x, v, a)
+        if np.isnan(a.sum()) and np.isfinite(x).all() and np.isfinite(v).all() and np.isnan(a).any():
+            self.name_nan(x, v)
+        return a
+
+    def rope(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Springs, air and gravity: by `rope_acceleration`, or by `spring_force` at each link."""
+        f = self.forces
+        numbers = f.mass, f.stiffness, f.damping, f.drag, f.rest_length, f.gravity
+        if "rope_acceleration" in self.own or "spring_force" not in self.own:
+            value = self.get("rope_acceleration")(x.copy(), v.copy(), *numbers)
+            a = self.fit("rope_acceleration", value, x.shape)
+            return a.copy() if a is value else a
+        if self.links is not None:
+            return self.links(np.ascontiguousarray(x), np.ascontiguousarray(v), *numbers)
+        a = -f.drag * v
+        for i in range(len(x) - 1):
+            pull = self.link(x, v, i)
+            a[i] += pull
+            a[i + 1] -= pull
+        a /= f.mass
+        a[:, 2] -= f.gravity
+        a[0] = 0.0
+        return a
+
+    def link(self, x: np.ndarray, v: np.ndarray, i: int) -> np.ndarray:
+        """The student's force [N], shape (3,), on the first point of link i. It may change its arguments."""
+        f, j = self.forces, i + 1
+        ends = x[i].copy(), x[j].copy(), v[i].copy(), v[j].copy()
+        return self.fit("spring_force", self.own["spring_force"](*ends, f.stiffness, f.damping, f.rest_length), (3,))
+
+    def add_surroundings(self, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> None:
+        """Add floor, sphere and the pull of the mouse on all points but the root."""
+        f = self.forces
+        for i in np.flatnonzero(x[1:, 2] < f.floor) + 1 if x[:, 2].min() < f.floor else ():
+            up = np.array([0.0, 0.0, 1.0])
+            a[i] += self.contact(f.floor - x[i, 2], up, v[i], 1.0) / f.mass
+        if f.radius > 0.0:
+            centre, velocity = self.sphere_now()
+            distance = np.linalg.norm(x - centre, axis=1)
+            for i in range(1, len(x)) if "sphere_force" in self.own else np.flatnonzero(distance[1:] < f.radius) + 1:
+                a[i] += self.sphere(x[i], v[i] - velocity, centre, float(distance[i])) / f.mass
+        if f.held > 0:
+            gap = np.array(f.hand) - x[f.held]
+            distance = float(np.linalg.norm(gap))
+            k = f.max_pull / distance if f.pull_stiffness * distance > f.max_pull else f.pull_stiffness
+            a[f.held] += (k * gap - f.pull_damping * v[f.held]) / f.mass
+
+    def sphere_now(self) -> tuple[np.ndarray, np.ndarray]:
+        """Centre [m] and velocity [m/s] of the sphere in the middle of the step."""
+        velocity = np.array(self.forces.velocity)
+        return np.array(self.forces.centre) + self.now * velocity, velocity
+
+    def sphere(self, x: np.ndarray, v: np.ndarray, centre: np.ndarray, distance: float) -> np.ndarray:
+        """The force [N], shape (3,), of the sphere on a point; the student's is without friction."""
+        f = self.forces
+        if "sphere_force" not in self.own:
+            normal = (x - centre) / distance if distance else np.array([0.0, 0.0, 1.0])
+            return self.contact(f.radius - distance, normal, v, f.radius - distance)
+        numbers = f.radius, f.contact_stiffness, f.contact_damping
+        value = self.own["sphere_force"](x.copy(), v.copy(), centre.copy(), *numbers)
+        return self.fit("sphere_force", value, (3,))
+
+    def contact(self, depth: float, normal: np.ndarray, v: np.ndarray, lab_scale: float) -> np.ndarray:
+        """The program's law of contact (`sim/springs/forces/contact.py`): force [N], shape (3,).
+
+        lab_scale: what the lab's law multiplies the damping by.
+        """
+        f = self.forces
+        if f.lab_contact:
+            return f.contact_stiffness * depth * normal - f.contact_damping * lab_scale * v
+        leaving = float(v @ normal)
+        push = max(0.0, f.contact_stiffness * depth - f.contact_damping * leaving)
+        sliding = v - leaving * normal
+        speed = float(np.linalg.norm(sliding))
+        grip = f.mass / self.h
+        if f.friction * push < grip * speed:
+            grip = f.friction * push / speed
+        return push * normal - (grip if f.friction else 0.0) * sliding
+
+    def name_nan(self, x: np.ndarray, v: np.ndarray) -> None:
+        """Raises Unfit for the function that returns NaN at this state."""
+        f = self.forces
+        numbers = f.mass, f.stiffness, f.damping, f.drag, f.rest_length, f.gravity
+        for name in ("rope_acceleration", "spring_force", "sphere_force"):
+            if name not in self.own:
+                continue
+            if name == "rope_acceleration":
+                values = [self.own[name](x.copy(), v.copy(), *numbers)]
+            elif name == "spring_force":
+                values = [self.link(x, v, i) for i in range(len(x) - 1)]
+            else:
+                centre, velocity = self.sphere_now()
+                distance = np.linalg.norm(x - centre, axis=1)
+                values = [self.sphere(x[i], v[i] - velocity, centre, float(distance[i])) for i in range(1, len(x))]
+            if any(np.isnan(value).any() for value in values):
+                text = f"{name} returns NaN (not a number): look for a division by 0 or the root of a negative number"
+                raise Unfit("NaN", text, self.own[name])
+
+    def advance(self, x: np.ndarray, v: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
+        """One step. Raises Unfit."""
+        self.h = h
+        value = self.get(self.step)(x.copy(), v.copy(), h, self.acceleration)
+        if value is None:
+            text = f"{self.step} returns nothing: the last line must be return ..."
+            raise Unfit("returns nothing", text, self.get(self.step))
+        size = len(value) if isinstance(value, tuple | list) or np.ndim(value) else 0
+        if size != 2:
+            form = f"{size} entries" if size else f"a value of type {type(value).__name__}"
+            text = f"{self.step} returns {form}; expected are two arrays, the new positions and velocities"
+            raise Unfit("wrong shape" if size else "wrong type", text, self.get(self.step))
+        x_new, v_new = self.fit(self.step, value[0], x.shape), self.fit(self.step, value[1], x.shape)
+        if np.isnan(x_new.sum() + v_new.sum()) and (np.isnan(x_new).any() or np.isnan(v_new).any()):
+            text = f"{self.step} returns NaN (not a number): look for a division by 0 or the root of a negative number"
+            raise Unfit("NaN", text, self.get(self.step))
+        return x_new, v_new
+
+
+def march(
+    module: ModuleType,
+    own: Collection[str],
+    step: str,
+    x: np.ndarray,
+    v: np.ndarray,
+    segments: list[Segment],
+    compiled: Mapping[str, Callable[..., Any]],
+) -> March:
+    """Advance a rope from positions x and velocities v, shape (n, 3), over some segments. Raises Unfit."""
+    functions = Functions(module, own, step, compiled)
+    ends: list[np.ndarray] = []
+    taken, last_v, left = 0, v, False
+    began = time.perf_counter()
+    with np.errstate(all="ignore"):
+        for segment in segments:
+            functions.forces = segment.forces
+            for i in range(segment.steps):
+                functions.now = (i + 0.5) * segment.h  # a step does not say at which of its moments it asks
+                x, v = functions.advance(x, v, segment.h)
+                taken += 1
+                if len(segment.root):
+                    x[0], v[0] = segment.root[i, :3], segment.root[i, 3:]
+                left = not (np.abs(x).max() < MAX_COORDINATE and np.abs(v).max() < MAX_COORDINATE)
+                if left:
+                    break
+            if left:
+                break
+            ends.append(x)
+            last_v = v
+    seconds = time.perf_counter() - began
+    return March(np.array(ends).reshape(-1, *x.shape), last_v, taken, seconds, left)
+
+
+def packed(segment: Segment) -> list[Any]:
+    """A segment as what crosses the pipe (`wire.py`)."""
+    return [segment.steps, segment.h, [*segment.forces], segment.root]
+
+
+def unpacked(parts: Any) -> Segment:
+    """The segment that `packed` made."""
+    steps, h, forces, root = parts
+    return Segment(int(steps), float(h), Forces(*forces), np.asarray(root, np.float64))

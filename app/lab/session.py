@@ -1,0 +1,181 @@
+"""`springtide lab DIR` while it runs: watches the student's folder, tries what is saved, and runs it.
+
+A thread waits for files to be saved. Each saved version is copied, tried in a process of its own, and handed to the
+rope (`live_rope.py`) where it works; where it does not, the last one that worked goes on. What the panel shows is one
+frozen record, `state`, which is replaced and never changed.
+"""
+
+import contextlib
+import itertools
+import queue
+import shutil
+import tempfile
+import threading
+import time
+import traceback
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import watchfiles
+
+from app.lab.background_check import BackgroundCheck
+from app.lab.live_rope import LiveRope, Loaded, own_of, try_rope
+from app.lab.rope_march import FILE
+from app.lab.runner import TIME_LIMIT, RunError, Runner
+from app.lab.saved import Saved, keep, read_files
+from app.lab.scene_values import SceneValues
+from app.lab.task import Task
+from sim.validation import argument_error
+
+SETTLE_TIME = 50  # [ms] without a further change before a save is read: editors write a file in several steps
+MAX_SETTLE_TIME = 400  # [ms]
+COMPILE_DELAY = 1.0  # [s] after a save: who saves again at once is not kept waiting
+LOOK_INTERVAL = 500  # [ms] between two looks whether to end
+
+
+class CodeState(NamedTuple):
+    """What is to be said of the student's files."""
+
+    version: int = 0  # of the files as saved last
+    saved_at: str = ""  # clock time
+    running: int = 0  # the version that moves the rope, 0: none
+    error: RunError | None = None  # what stops the newest version
+    not_compiled: str = ""  # why a function of the version that runs could not be compiled
+    begun: frozenset[str] = frozenset()  # functions with a body in the version that runs, or in the newest
+
+
+class Session:
+    """The student's folder while the lab is served. Raises ValueError where it is no folder."""
+
+    def __init__(
+        self, folder: Path, tasks: Sequence[Task], own_tasks: Sequence[Path] = (), time_limit: float = TIME_LIMIT
+    ) -> None:
+        """own_tasks: folders with a teacher's tasks, which are among these.
+
+        time_limit: [s] of one call of a student's function.
+        """
+        if not folder.is_dir():
+            raise argument_error("DIR", str(folder), "a folder that `springtide lab new` has made")
+        self.folder, self.tasks, self.time_limit = folder, tasks, time_limit
+        self.state = CodeState()
+        self.copies = Path(tempfile.mkdtemp(prefix="springtide-lab-"))
+        self.saved: Saved | None = None  # the newest version
+        self.number = 0
+        self.spare = self.make_runner()
+        self.rope = LiveRope(self.note_failure)
+        self.check = BackgroundCheck(own_tasks)
+        self.values = SceneValues({task.name: task for task in tasks}, time_limit)
+        self.rope_version = 0  # number of the last version that was tried for the rope
+        self.compiler: Runner | None = None  # of the version that is being compiled
+        self.to_compile: queue.SimpleQueue[Saved | None] = queue.SimpleQueue()
+        self.stop = threading.Event()
+        self.compiling = threading.Thread(target=self.compile_versions, name="student's compiler", daemon=True)
+        self.compiling.start()
+        self.thread = threading.Thread(target=self.watch, name="student's files", daemon=True)
+        self.thread.start()
+
+    def make_runner(self) -> Runner:
+        """A process that waits in an empty folder for the next version: starting it takes longer than trying that."""
+        self.number += 1
+        folder = self.copies / str(self.number)
+        folder.mkdir()
+        runner = Runner(folder, self.time_limit)
+        with contextlib.suppress(RunError):  # said when the version is tried
+            runner.start()
+        return runner
+
+    def watch(self) -> None:
+        """Load the files as they are, then each time that one is saved."""
+        changes = watchfiles.watch(
+            self.folder, stop_event=self.stop, recursive=False, raise_interrupt=False, step=SETTLE_TIME,
+            debounce=MAX_SETTLE_TIME, rust_timeout=LOOK_INTERVAL, yield_on_timeout=True,
+        )  # fmt: skip
+        for _ in itertools.chain([()], changes):
+            if self.stop.is_set():
+                return
+            try:
+                self.load()
+            except Exception:  # the thread lives: the next save may do
+                traceback.print_exc()
+
+    def load(self) -> None:
+        """Take the files up as they are now, where one has changed."""
+        texts = read_files(self.folder)
+        if self.saved is not None and texts == self.saved.texts:
+            return
+        runner = self.spare
+        before, self.saved = self.saved, keep(texts, runner.folder, self.number, self.tasks)
+        saved = self.saved
+        changed = saved.changed(before)
+        helpers = changed - {task.file for task in self.tasks}  # which any function may use
+        names = [task.name for task in self.tasks if task.file and (helpers or task.file in changed)]
+        self.check.request(saved.folder, names, saved.begun)
+        self.state = self.state._replace(version=saved.number, saved_at=time.strftime("%H:%M:%S"), error=None)
+        if FILE in texts and self.is_for_rope(changed):
+            self.rope_version = saved.number
+            if self.compiler is not None:
+                self.compiler.abort()
+            self.try_version(Loaded(saved, runner))
+        else:
+            runner.close()
+        self.spare = self.make_runner()
+
+    def is_for_rope(self, changed: frozenset[str]) -> bool:
+        """Whether a change of these files can change the rope: of its own file, or of one that no task names."""
+        others = {task.file for task in self.tasks} - {FILE}
+        return not changed <= others
+
+    def try_version(self, loaded: Loaded) -> None:
+        """Hand a version to the rope if it takes a few steps; say why where it does not."""
+        saved, runner = loaded.saved, loaded.runner
+        method, sphere = self.rope.method, self.rope.sphere
+        try:
+            try_rope(runner, saved, method, sphere=sphere)
+        except RunError as error:
+            runner.close()
+            self.note_failure(saved, error)
+            return
+        begun = own_of(saved, method, sphere=sphere)
+        self.state = self.state._replace(running=saved.number if begun else 0, begun=saved.begun, not_compiled="")
+        self.rope.adopt(loaded)
+        if begun:
+            self.to_compile.put(saved)
+
+    def compile_versions(self) -> None:
+        """Compile what moves the rope, and hand it to the rope where that works; of several versions the last."""
+        while (saved := self.to_compile.get()) is not None:
+            self.stop.wait(COMPILE_DELAY)
+            self.compiler = runner = Runner(saved.folder, self.time_limit, compiles=True)
+            if not self.to_compile.empty() or self.stop.is_set():  # `close` sees the compiler, or this sees the end
+                continue
+            try:
+                names, why = runner.compile(saved.begun)
+            except RunError as error:
+                names, why = [], error.text
+            self.compiler = None
+            if saved.number == self.rope_version:  # else it was aborted
+                self.state = self.state._replace(not_compiled=why)
+            if names and not self.stop.is_set():
+                self.rope.adopt(Loaded(saved, runner, tuple(names)))
+            else:
+                runner.close()
+
+    def note_failure(self, saved: Saved, error: RunError) -> None:
+        """A version cannot run; what is said of a version before the newest is out of date."""
+        if saved.number == self.state.version:
+            self.state = self.state._replace(error=error)
+
+    def close(self) -> None:
+        """End threads and processes, and remove the copies."""
+        self.stop.set()
+        self.thread.join()
+        self.to_compile.put(None)
+        if self.compiler is not None:
+            self.compiler.abort()
+        self.compiling.join()
+        self.spare.close()
+        self.rope.close()
+        self.check.close()
+        self.values.close()
+        shutil.rmtree(self.copies, ignore_errors=True)

@@ -1,0 +1,194 @@
+"""The workbook: which task is shown, and the answers of a student's folder, if there is one.
+
+Browsers' callbacks write answers on one thread, what is seen to be done is ticked off on another. Each change reads
+answers.toml, changes one value and writes the whole file; a lock keeps two changes apart, and a change from a look at
+the file that began before it. What the student wrote with an editor meanwhile is kept.
+"""
+
+import threading
+import unicodedata
+from collections.abc import Sequence
+from pathlib import Path
+
+from app.lab.answer_check import AnswerVerdict, check_answer
+from app.lab.answers import FILE, Answers, Value, change_answer, read_answers
+from app.lab.live_values import LiveNumber, LiveValues
+from app.lab.task import Question, Setup, Task
+from app.render.formula import formula
+from sim.quantities import read_number
+from sim.validation import argument_error
+
+MAX_TEXT = 4000  # characters of an answer
+ALLOWED_CONTROLS = "\n\t"
+DONE = "done"  # key of the steps that were seen to be done
+SHOWN = "answer_shown"  # key of whether the answer was looked at: from then on the prediction stays as it is
+PREDICTION = "predict"  # key of the question that is answered before
+
+
+class Workbook:
+    """The tasks to go through, one at a time, and what has been answered."""
+
+    def __init__(self, tasks: Sequence[Task], folder: Path | None = None) -> None:
+        """folder: made by `springtide lab new`; without one only the guides of the items are shown.
+
+        Raises ValueError where there is nothing to show, or a law is no formula.
+        """
+        self.all_tasks, self.folder = tuple(tasks), folder
+        self.tasks = tuple(task for task in tasks if folder is not None or task.guide is not None)
+        if not self.tasks:
+            raise argument_error("tasks", "none", "at least one task")
+        for task in self.tasks:
+            check_laws(task)
+        self.lock = threading.RLock()
+        self.answers = Answers("", {})
+        self.read_at: tuple[int, int] | None = None  # time and size of the file that was read
+        self.revision: int = 0  # how often the answers have changed
+        self.looked_at: set[str] = set()  # names of the tasks that show their answer, where there is no folder
+        self.refresh()
+        self.index = 0 if folder is None else self.first_open()
+
+    # ----- which task is shown
+
+    @property
+    def task(self) -> Task:
+        """The task that is shown."""
+        return self.tasks[self.index]
+
+    def first_open(self) -> int:
+        """Where to go on: the first task that is not complete, from the last one on that was begun."""
+        begun = {name for (name, _), value in self.answers.values.items() if value != ""}
+        last = max((i for i, task in enumerate(self.tasks) if task.name in begun), default=0)
+        is_open = [i for i, task in enumerate(self.tasks) if not self.is_complete(task)]
+        return next((i for i in is_open if i >= last), is_open[0] if is_open else 0)
+
+    def go(self, index: int) -> None:
+        """Show another task; beyond the first and the last one nothing happens."""
+        self.index = min(max(index, 0), len(self.tasks) - 1)
+
+    def go_to_scene(self, scene: str) -> None:
+        """Without a folder: show the first task of a scene, where the one that is shown is of another."""
+        if self.folder is not None or self.set_up_of(self.task).scene == scene:
+            return
+        own = (i for i, task in enumerate(self.tasks) if self.set_up_of(task).scene == scene)
+        self.index = next(own, self.index)
+
+    def set_up_of(self, task: Task) -> Setup:
+        """Where the task can be seen: as it says, or as another task of its item says."""
+        others = (other.setup for other in self.all_tasks if other.item == task.item and other.setup is not None)
+        setup = task.setup or next(others, None)
+        return Setup("", "", "") if setup is None else setup
+
+    # ----- answers
+
+    def refresh(self) -> None:
+        """Read answers.toml where it has changed since it was read."""
+        if self.folder is None:
+            return
+        with self.lock:
+            try:
+                status = (self.folder / FILE).stat()
+                found = status.st_mtime_ns, status.st_size
+            except OSError:
+                found = None
+            if found != self.read_at or found is None:
+                answers = read_answers(self.folder)
+                if answers != self.answers:
+                    self.answers = answers
+                    self.revision += 1
+                self.read_at = found
+
+    def verdict(self, task: Task, question: Question) -> AnswerVerdict:
+        """The answer to a question, and what the check says of it."""
+        return check_answer(question, self.answers.of(task, question))
+
+    def is_complete(self, task: Task) -> bool:
+        """Whether every question is answered, and none wrongly."""
+        return all(self.verdict(task, question).state in ("right", "given") for question in task.questions)
+
+    def answer(self, task: Task, question: Question, text: str) -> None:
+        """Keep an answer as it was typed or chosen; an empty one takes it back.
+
+        Raises ValueError for one that is not allowed, OSError where the file cannot be written.
+        """
+        if question.key == PREDICTION and self.is_shown(task):
+            raise ValueError("The answer has been shown: the prediction stays as it is.")
+        self.keep(task.name, question.key, answer_of(question, text))
+
+    def keep(self, task: str, key: str, value: Value) -> None:
+        """Change one value of answers.toml. Raises ValueError where the file cannot be read, OSError for writing."""
+        if self.folder is None:
+            return
+        with self.lock:
+            found = read_answers(self.folder)
+            if found.error and (self.folder / FILE).exists():
+                raise ValueError(f"{found.error}. Nothing is written until this is repaired.")
+            change_answer(self.folder, self.all_tasks, found, task, key, value)
+            self.refresh()
+
+    # ----- what was done, and whether the answer was shown
+
+    def done(self, task: Task) -> frozenset[int]:
+        """Numbers of the steps, from 1, that were seen to be done."""
+        text = str(self.answers.values.get((task.name, DONE), ""))
+        return frozenset(int(word) for word in text.split() if word.isdecimal() and len(word) < 3)
+
+    def watch(self, task: Task, values: LiveValues) -> None:
+        """Tick off the next step where it is seen to be done now. Raises what `keep` raises."""
+        done = self.done(task)
+        number = next((i for i in range(1, len(task.steps) + 1) if i not in done), None)
+        if self.folder is None or number is None:
+            return
+        if all(condition.holds(values) for condition in task.steps[number - 1].when):
+            self.keep(task.name, DONE, " ".join(str(i) for i in sorted(done | {number})))
+
+    def is_shown(self, task: Task) -> bool:
+        """Whether the answer has been shown."""
+        if self.folder is None:
+            return task.name in self.looked_at
+        return self.answers.values.get((task.name, SHOWN)) == "yes"
+
+    def show_answer(self, task: Task) -> None:
+        """Show the answer. Raises ValueError where a prediction comes first, and what `keep` raises."""
+        if self.folder is None:
+            self.looked_at ^= {task.name}
+            return
+        first = next((q for q in task.questions if q.key == PREDICTION), None)
+        if first is not None and self.verdict(task, first).state != "given":
+            raise ValueError("Write your prediction first: it is kept, and is neither right nor wrong.")
+        if not self.is_shown(task):
+            self.keep(task.name, SHOWN, "yes")
+
+
+def check_laws(task: Task) -> None:
+    """Raises ValueError where a law of the task's guide is no formula."""
+    for law in task.guide.law if task.guide is not None else ():
+        try:
+            formula(law)
+        except ValueError as error:
+            raise argument_error(f"{task.name}.toml: law", law, f"a formula ({error})") from None
+
+
+def answer_of(question: Question, text: str) -> Value:
+    """What is kept of a text from outside. Raises ValueError, with a line for the student, where it is not allowed."""
+    if len(text) > MAX_TEXT:
+        raise ValueError(f"An answer has at most {MAX_TEXT} characters. This one has more, and is not kept.")
+    if any(unicodedata.category(c) in ("Cc", "Cs") and c not in ALLOWED_CONTROLS for c in text):
+        raise ValueError("The answer has control characters, and is not kept.")
+    word = text.strip()
+    if not word or question.kind == "text":
+        return word
+    if question.kind == "choice":
+        if word not in question.choices:
+            raise ValueError(f"{word!r} is none of the choices.")
+        return word
+    try:
+        return read_number(word, question.unit)
+    except ValueError as reason:
+        unit = f" in {question.unit}" if question.unit else ""
+        raise ValueError(f"{word!r} is not kept: write a number{unit} ({reason}).") from None
+
+
+def read_off(question: Question, values: LiveValues) -> str:
+    """The live value that answers a question, as it would be typed; "" where the scene has none now."""
+    found = values.get(question.read_off)
+    return f"{found.value:.6g}" if isinstance(found, LiveNumber) and abs(found.value) < 1e300 else ""

@@ -1,0 +1,209 @@
+"""The folder "Your code": which functions of the student's run, how fast, how far they are right, what is wrong."""
+
+import numpy as np
+import viser
+
+from app.lab.live_rope import StudentReport, functions_in_use
+from app.lab.live_values import LiveValues
+from app.lab.program_check import Verdict
+from app.lab.runner import RunError
+from app.lab.scene_values import Compared
+from app.lab.session import CodeState, Session
+from app.lab.task import Task
+from app.panel.plots import scale_of
+from app.render.html import (
+    ERROR_COLOUR,
+    GOOD_COLOUR,
+    WARNING_COLOUR,
+    Html,
+    bold,
+    coloured,
+    faint,
+    fill,
+    join,
+    lines,
+    note,
+)
+from app.scenes.charts import PALETTE
+from sim.formatting import number
+
+SAME = 1e-6  # [m] below which two ropes are the same
+CHART_WIDTH, CHART_HEIGHT = 280, 110  # [pixels] of the chart of the difference
+CHART_LEFT, CHART_BOTTOM, CHART_TOP = 40, 18, 8  # [pixels] of its margins
+MAX_POINTS = 150  # of its line
+COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "failed": ERROR_COLOUR, "checking": WARNING_COLOUR}
+
+
+class CodePanel:
+    """Shows the state of a session."""
+
+    def __init__(self, gui: viser.GuiApi, session: Session, scene: str) -> None:
+        self.session, self.scene = session, scene
+        self.shown = ""
+        with gui.add_folder("Your code"):
+            self.text = gui.add_html("")
+
+    def headline(self) -> Html:
+        """One line on the state of the files."""
+        return headline(self.session.state, self.session.rope.report)
+
+    def update(self, live: LiveValues) -> None:
+        """Show what has changed; called a few times a second. live: what the scene offers."""
+        session = self.session
+        session.values.ask(self.scene, session.saved, live)
+        text = note(lines([rope_lines(session.state, session.rope.report), function_lines(session)]))
+        if text != self.shown:
+            self.shown = text
+            self.text.content = text
+
+
+def place_of(error: RunError) -> str:
+    """The file of an error, and its line where it is known."""
+    return f"{error.file}, line {error.line}" if error.line else error.file
+
+
+def headline(state: CodeState, report: StudentReport) -> Html:
+    """The state of the files on one line, for the block of the panel that is always in sight."""
+    if state.error is not None:
+        place, text = place_of(state.error), state.error.text
+        return fill("Your code: {}: {}: {}", coloured("stopped", ERROR_COLOUR), place, text)
+    if report.left_at == report.left_at:
+        return fill("Your code: {}", coloured(f"the rope left its bounds at t = {report.left_at:.2f} s", ERROR_COLOUR))
+    if not report.version:
+        return fill("Your code: {}", "moves nothing here" if state.version else "reading your files …")
+    return fill("Your code: {} since {}", coloured("runs", GOOD_COLOUR), state.saved_at)
+
+
+def rope_lines(state: CodeState, report: StudentReport) -> Html:
+    """What is saved, what stops it, and the rope that it moves."""
+    said: list[Html] = [saved_text(state)]
+    if state.error is not None:
+        place = bold(place_of(state.error))
+        said.append(fill('<div class="springtide-code-error">{}: {}</div>', place, state.error.text))
+        if report.version:
+            said.append(fill("The last version that worked goes on."))
+    if report.version:
+        said += rope_texts(state, report)
+    return lines(said)
+
+
+def saved_text(state: CodeState) -> Html:
+    """Which version there is."""
+    if not state.version:
+        return fill("Reading your files …")
+    if state.error is not None:
+        return fill("Saved at {}: {}", state.saved_at, coloured("stopped", ERROR_COLOUR))
+    if not state.running:
+        return fill("Write spring_force in rope.py and save it: the rope moves by it at once.")
+    return fill("Saved at {}: {}", state.saved_at, coloured("runs", GOOD_COLOUR))
+
+
+def rope_texts(state: CodeState, report: StudentReport) -> list[Html]:
+    """The rope that the student's functions move."""
+    used = functions_in_use(state.begun, report.method, sphere=report.sphere)
+    own = ", ".join(name for name, is_own in used.items() if is_own)
+    other = ", ".join(name for name, is_own in used.items() if not is_own)
+    said = [fill("Your rope moves by {}{}.", bold(own), fill(" (reference: {})", other) if other else "")]
+    if report.seconds:
+        pace = report.step / report.seconds
+        speed = f"{1e6 * report.seconds:.0f} µs a step, {number(pace)} times real time"
+        kept = ", ".join(name for name in report.compiled if used.get(name))
+        how = f"{kept} compiled by numba" if kept else "Plain Python"
+        said.append(fill("{}: {}.", how, speed if pace > 1.0 else coloured(speed, WARNING_COLOUR)))
+        if state.not_compiled and not kept:
+            said.append(faint(f"Not compiled: {state.not_compiled}"))
+    if report.left_at == report.left_at:
+        said.append(coloured(f"Your rope left its bounds at t = {report.left_at:.2f} s.", ERROR_COLOUR))
+    elif report.difference == report.difference:
+        said.append(fill("{} from the program's rope (translucent).", bold(length_text(report.difference))))
+        said.append(difference_chart(report))
+    if report.method == "leapfrog" and report.difference > SAME:
+        said.append(faint("The program's leapfrog takes damping exactly: a right one differs by a centimetre or so."))
+    if report.restarts:
+        said.append(faint(f"Too slow: it started again from the program's rope {report.restarts} times."))
+    return said
+
+
+def length_text(length: float) -> str:
+    """A distance between the ropes."""
+    return "Less than 1 µm" if length < SAME else f"{number(length)} m"
+
+
+def difference_chart(report: StudentReport) -> Html:
+    """The course of the difference as a line; nothing where there was none.
+
+    A chart of viser's (uPlot) in a folder widens the panel with each change of its axes.
+    """
+    times, differences = report.times, report.differences
+    if len(times) < 2 or differences.max() < SAME:
+        return Html()
+    chosen = np.unique(np.linspace(0, len(times) - 1, MAX_POINTS).astype(int))
+    scale = scale_of(0.0, float(differences.max()))
+    first, last = float(times[0]), float(times[-1])
+    x = CHART_LEFT + (times[chosen] - first) / (last - first) * (CHART_WIDTH - CHART_LEFT - 4)
+    bottom = CHART_HEIGHT - CHART_BOTTOM
+    y = bottom - differences[chosen] / scale.high * (bottom - CHART_TOP)
+    line = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
+    ticks = join(
+        tick_mark(bottom - tick / scale.high * (bottom - CHART_TOP), word)
+        for tick, word in zip(scale.ticks, scale.words, strict=True)
+    )
+    return fill(
+        '<svg class="springtide-difference" viewBox="0 0 {w} {h}" width="100%" role="img" font-size="11" '
+        'fill="currentColor"><title>Distance of your rope from the program\'s [m] over time [s]</title>{ticks}'
+        '<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>'
+        '<text x="{left}" y="{h}">{first:.1f} s</text>'
+        '<text x="{w}" y="{h}" text-anchor="end">{last:.1f} s</text></svg>',
+        w=CHART_WIDTH, h=CHART_HEIGHT, ticks=ticks, line=line, colour=PALETTE[0], left=CHART_LEFT,
+        first=first, last=last,
+    )  # fmt: skip
+
+
+def tick_mark(y: float, word: str) -> Html:
+    """A line across the chart at a height [pixels], with its word."""
+    return fill(
+        '<path d="M{left} {y:.1f}H{right}" stroke="currentColor" opacity="0.2"/>'
+        '<text x="{end}" y="{foot:.1f}" text-anchor="end">{word}</text>',
+        left=CHART_LEFT, right=CHART_WIDTH, y=y, end=CHART_LEFT - 4, foot=y + 4, word=word,
+    )  # fmt: skip
+
+
+def function_lines(session: Session) -> Html:
+    """The state of every function that is begun, and what is wrong with it."""
+    verdicts, waiting, compared = session.check.verdicts, session.check.waiting, session.values.found
+    rows: list[Html] = []
+    not_begun = 0
+    for task in session.tasks:
+        if not task.file:
+            continue
+        verdict = Verdict("checking") if task.name in waiting else verdicts.get(task.name, Verdict("not begun"))
+        if verdict.state == "not begun":
+            not_begun += 1
+        else:
+            rows.append(function_line(task, verdict, compared.get(task.name)))
+    if not_begun:
+        rows.append(faint(f"{not_begun} functions not begun"))
+    return join(rows)
+
+
+def compared_text(compared: Compared | None) -> Html:
+    """The function at the numbers of the scene, beside the program's number."""
+    if compared is None or compared.student is None:
+        return Html()
+    value, unit = compared.value, f" {compared.value.unit}" if compared.value.unit else ""
+    return fill(
+        '<div class="springtide-faint">{}: {}, program {}</div>',
+        value.what, bold(f"{number(compared.student, 4)}{unit}"), f"{number(compared.program, 4)}{unit}",
+    )  # fmt: skip
+
+
+def function_line(task: Task, verdict: Verdict, compared: Compared | None = None) -> Html:
+    """One function: its name and state, why it is not right, and what it gives in the scene."""
+    named = f"{verdict.mistake}. " if verdict.state == "wrong" and verdict.mistake else ""
+    why = f"{named[:1].upper()}{named[1:]}{verdict.text}" if verdict.state in ("wrong", "failed") else ""
+    return fill(
+        '<div class="springtide-function" data-function="{}" data-state="{}">{} {}{}{}</div>',
+        task.name, verdict.state, task.name, coloured(verdict.state, COLOURS[verdict.state]),
+        fill('<div class="springtide-faint">{}</div>', why) if why else "",
+        compared_text(compared),
+    )  # fmt: skip

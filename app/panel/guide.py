@@ -1,0 +1,323 @@
+"""The lab guide in the panel: one task at a time. With a student's folder it is the workbook, which keeps answers.
+
+Callbacks run on viser's event loop. They change the workbook and nothing on the page; `update`, on the viewer's
+thread, shows what has changed.
+"""
+
+import time
+from collections.abc import Callable
+
+import viser
+
+from app.lab.live_values import LiveNumber, LiveValues, fill_in
+from app.lab.task import Question, Setup, Task
+from app.lab.workbook import PREDICTION, Workbook, read_off
+from app.render.formula import formula
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, join, note
+from app.render.viser_types import GuiHandle, ViserEvent
+from app.scenes.contract import AnyKind, AnySnapshot
+from sim.formatting import number
+from sim.parameters import Value, in_words, parameters_of
+
+REFRESH_INTERVAL = 0.5  # [s] between two updates of live values, and two looks at answers.toml
+TYPING_PAUSE = 1.0  # [s] after the last keystroke, after which a text is kept
+UNANSWERED = "Choose …"  # in the list of choices
+SET_UP, SHOW, HIDE = "Set this up", "Show the answer", "Hide the answer"
+STATE_COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "given": GOOD_COLOUR}
+STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Kept."}
+
+
+def live_values(kind: AnyKind, snapshot: AnySnapshot) -> LiveValues:
+    """All that a task may name: the parameters, what the scene offers, the clock, and whether the run has stopped."""
+    found: dict[str, bool | str | LiveNumber] = {}
+    for name, parameter in parameters_of(snapshot.params).items():
+        value: Value = getattr(snapshot.params, name)
+        meaning = parameter.title or in_words(name)
+        is_named = isinstance(value, bool | str)
+        found[name] = value if is_named else LiveNumber(float(value), parameter.unit, meaning)
+    status = snapshot.status
+    found["time"] = LiveNumber(status.time, "s", "Time")
+    found["diverged"] = bool(status.halted) or status.replayed is not None
+    if kind.live_values is not None:
+        found |= {name: LiveNumber(m.value, m.unit, m.meaning) for name, m in kind.live_values(snapshot).items()}
+    return found
+
+
+class QuestionWidgets:
+    """One question of the workbook: what is asked, where it is answered, and what the check says."""
+
+    def __init__(self, guide: "Guide", task: Task, question: Question) -> None:
+        self.guide, self.task, self.question = guide, task, question
+        self.workbook = guide.workbook
+        self.refusal = ""
+        self.typed = self.flushed = "", 0.0  # the text as typed, and when [s] it last changed; the one that was kept
+        gui = guide.gui
+        heading = "Predict" if question.key == PREDICTION else "Explain" if question.kind == "text" else "Measure"
+        self.widgets: list[GuiHandle] = []
+        unit = f" [{question.unit}]" if question.unit else ""
+        self.widgets.append(gui.add_html(note(fill("<b>{}</b> {}", heading, question.ask))))
+        shown = self.kept_text()
+        if question.kind == "choice":
+            self.field: GuiHandle = gui.add_dropdown(heading, (UNANSWERED, *question.choices), initial_value=shown)
+        else:
+            self.field = gui.add_text(f"{heading}{unit}", shown, multiline=question.kind == "text")
+        self.field.on_update(self.on_field)
+        self.widgets.append(self.field)
+        self.reader: GuiHandle | None = None
+        if question.read_off:
+            self.reader = gui.add_button("Read off")
+            self.reader.on_click(self.on_read_off)
+            self.widgets.append(self.reader)
+        self.line = gui.add_html("")
+        self.widgets.append(self.line)
+        self.show()
+
+    def kept_text(self) -> str:
+        """What the field holds for the answer that is kept."""
+        answer = self.workbook.answers.of(self.task, self.question)
+        if self.question.kind == "choice":
+            return answer if isinstance(answer, str) and answer in self.question.choices else UNANSWERED
+        return "" if answer is None else answer if isinstance(answer, str) else f"{answer:g}"
+
+    async def on_field(self, event: ViserEvent) -> None:
+        """A browser has answered; a text is kept once the typing pauses."""
+        if event.client_id is None:
+            return
+        text = str(event.target.value)
+        if self.question.kind == "text":
+            self.typed = text, time.monotonic()
+        else:
+            self.keep("" if text == UNANSWERED else text)
+
+    async def on_read_off(self, event: ViserEvent) -> None:
+        """Take the live value."""
+        text = read_off(self.question, self.guide.values)
+        if event.client_id is not None and text:
+            self.keep(text)
+
+    def keep(self, text: str) -> None:
+        """Keep an answer, or remember why it was refused."""
+        self.refusal = self.guide.attempt(lambda: self.workbook.answer(self.task, self.question, text))
+        self.guide.stale = True
+
+    def flush(self, now: float) -> None:
+        """Keep a text that is not being typed any more."""
+        typed = self.typed  # a browser may type on meanwhile
+        if typed is not self.flushed and now - typed[1] >= TYPING_PAUSE:
+            self.flushed = typed
+            self.keep(typed[0])
+
+    def show(self) -> None:
+        """Show the answer that is kept, and what is said to it; a text that is being typed is left alone."""
+        verdict = self.workbook.verdict(self.task, self.question)
+        locked = self.question.key == PREDICTION and self.workbook.is_shown(self.task)
+        if self.field.disabled != locked:
+            self.field.disabled = locked
+        shown = self.kept_text()
+        if self.typed is self.flushed and not self.refusal and self.field.value.strip() != shown:
+            self.field.value = shown
+        if self.reader is not None:
+            value = self.guide.values.get(self.question.read_off)
+            label = "Read off: not in this scene"
+            if isinstance(value, LiveNumber):
+                label = f"Read off: {number(value.value, 4)} {value.unit}"
+            if self.reader.label != label:
+                self.reader.label = label
+        said = Html()
+        if self.refusal:
+            said = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal)
+        elif verdict.state in STATE_WORDS:
+            text = verdict.text
+            if self.question.kind == "text" and verdict.state == "given":
+                text = f"Compare: {self.question.why}" if self.question.why else ""
+            said = fill(
+                '<div class="springtide-line springtide-verdict">{} {}</div>',
+                coloured(STATE_WORDS[verdict.state], STATE_COLOURS[verdict.state]),
+                text,
+            )
+        if self.line.content != str(said):
+            self.line.content = str(said)
+
+    def remove(self) -> None:
+        """Take it from the page."""
+        for widget in self.widgets:
+            widget.remove()
+
+
+class Guide:
+    """The folder of the panel."""
+
+    def __init__(self, gui: viser.GuiApi, kind: AnyKind, workbook: Workbook, set_up: Callable[[Setup], None]) -> None:
+        """set_up: shows a set-up of a task; raises ValueError where it does not exist."""
+        self.gui, self.kind, self.workbook, self.set_up = gui, kind, workbook, set_up
+        self.values: LiveValues = {}
+        self.refreshed_at = 0.0
+        self.stale = True  # whether something other than live values is to be shown anew
+        self.revision: int = workbook.revision
+        self.refusal = ""  # why the last thing that was asked for was not possible
+        self.unwritten = ""  # why a step could not be ticked off at the last look
+        self.shown: Task | None = None
+        self.questions: list[QuestionWidgets] = []
+        workbook.go_to_scene(kind.name)
+        self.titles = tuple(title_of(task) for task in workbook.tasks)
+        self.folder = gui.add_folder("Lab guide" if workbook.folder is None else "Workbook")
+        with self.folder:
+            self.chooser = gui.add_dropdown("Task", self.titles, initial_value=self.titles[workbook.index])
+            self.chooser.on_update(self.on_chooser)
+            self.turn = gui.add_button_group("", ("Previous", "Next"))
+            self.turn.on_click(self.on_turn)
+            self.text = gui.add_html("")
+            self.tools = gui.add_button_group("", (SET_UP, SHOW))
+            self.tools.on_click(self.on_tool)
+            self.answer = gui.add_html("")
+        self.show_task()
+
+    # ----- what browsers do
+
+    async def on_chooser(self, event: ViserEvent) -> None:
+        """A task was chosen."""
+        if event.client_id is not None and event.target.value in self.titles:
+            self.workbook.go(self.titles.index(event.target.value))
+
+    async def on_turn(self, event: ViserEvent) -> None:
+        """On to the next task, or back."""
+        self.workbook.go(self.workbook.index + (1 if event.target.value == "Next" else -1))
+
+    async def on_tool(self, event: ViserEvent) -> None:
+        """Set the task up, or show its answer."""
+        task = self.workbook.task
+        if event.target.value == SET_UP:
+            self.refusal = self.attempt(lambda: self.set_up(self.workbook.set_up_of(task)))
+        else:
+            self.refusal = self.attempt(lambda: self.workbook.show_answer(task))
+        self.stale = True
+
+    def attempt(self, action: Callable[[], None]) -> str:
+        """Do something; returns why it was not possible, or ""."""
+        try:
+            action()
+        except ValueError as error:
+            return str(error)
+        except OSError as error:
+            return f"answers.toml could not be written: {error.strerror or error}"
+        return ""
+
+    # ----- what is shown
+
+    def update(self, snapshot: AnySnapshot) -> None:
+        """Show what has changed; live values a few times a second. Called on the viewer's thread."""
+        now = time.monotonic()
+        for widgets in self.questions:
+            widgets.flush(now)
+        refresh = now - self.refreshed_at >= REFRESH_INTERVAL
+        if refresh:
+            self.refreshed_at = now
+            self.workbook.refresh()
+            self.values = live_values(self.kind, snapshot)
+            if self.is_set_up_here:
+                self.unwritten = self.attempt(lambda: self.workbook.watch(self.workbook.task, self.values))
+        if self.workbook.revision != self.revision:
+            self.revision, self.stale = self.workbook.revision, True
+        if self.workbook.task is not self.shown:
+            self.refusal = self.unwritten = ""
+            self.show_task()
+        elif refresh or self.stale:
+            self.show_values()
+        self.stale = False
+
+    @property
+    def is_set_up_here(self) -> bool:
+        """Whether the task that is shown belongs to the open scene."""
+        return self.workbook.set_up_of(self.workbook.task).scene == self.kind.name
+
+    def show_task(self) -> None:
+        """Show another task."""
+        self.flush()
+        for widgets in self.questions:
+            widgets.remove()
+        task = self.workbook.task
+        title = self.titles[self.workbook.tasks.index(task)]
+        if self.chooser.value != title:
+            self.chooser.value = title
+        self.questions = []
+        if self.workbook.folder is not None:
+            with self.folder:
+                self.questions = [QuestionWidgets(self, task, question) for question in task.questions]
+        self.show_values()
+        self.shown = task
+
+    def show_values(self) -> None:
+        """Show the texts of the task with the values of now."""
+        task = self.workbook.task
+        shown = self.workbook.is_shown(task)
+        tools = (SET_UP, HIDE if shown and self.workbook.folder is None else SHOW)
+        if self.tools.options != tools:
+            self.tools.options = tools
+        text = note(join((self.statement(task), self.now(task), self.steps(task))))
+        if self.text.content != text:
+            self.text.content = text
+        answer = note(join((self.said(), self.answer_text(task) if shown else "")))
+        if self.answer.content != answer:
+            self.answer.content = answer
+        for widgets in self.questions:
+            widgets.show()
+
+    def statement(self, task: Task) -> Html:
+        """What the task asks, and where to look."""
+        setup = self.workbook.set_up_of(task)
+        asked = task.guide.question if task.guide is not None else task.title
+        more = Html()
+        if self.workbook.folder is not None:
+            code = fill(" Write <code>{}</code> in <code>{}</code>.", task.name, task.file) if task.file else ""
+            more = fill("<div>{}{}</div>", task.statement, code)
+        return fill(
+            '<div class="springtide-guide"><b>{}</b>{}<div class="springtide-faint">{}</div></div>',
+            asked, more, setup.look,
+        )  # fmt: skip
+
+    def now(self, task: Task) -> Html:
+        """The live values that the task keeps in sight."""
+        found = [self.values.get(name) for name in self.workbook.set_up_of(task).show]
+        rows = [fill("{}: <b>{}</b>", v.meaning, format(v, "")) for v in found if isinstance(v, LiveNumber)]
+        return fill('<div class="springtide-now">Now: {}</div>', join(rows, " · ")) if rows else Html()
+
+    def steps(self, task: Task) -> Html:
+        """What is to be done, ticked off where it was seen."""
+        if self.workbook.folder is None:
+            return Html()
+        done = self.workbook.done(task)
+        return join(
+            fill(
+                '<div class="springtide-step" data-done="{}">{} <b>Do</b> {}</div>',
+                "yes" if i in done else "no",
+                coloured("✓", GOOD_COLOUR) if i in done else "○",
+                step.text,
+            )
+            for i, step in enumerate(task.steps, 1)
+        )
+
+    def said(self) -> Html:
+        """What was not possible, and why."""
+        error = self.refusal or self.unwritten or self.workbook.answers.error
+        return fill('<div class="springtide-refusal" role="alert">{}</div>', error) if error else Html()
+
+    def answer_text(self, task: Task) -> Html:
+        """The law, and the answer with the values of now; what is missing where the scene is set up otherwise."""
+        guide = task.guide
+        if guide is None:
+            return Html()
+        laws = join(fill('<div class="springtide-law">{}</div>', formula(law)) for law in guide.law)
+        if not self.is_set_up_here or not all(condition.holds(self.values) for condition in guide.needs):
+            hint = coloured(f"Press “{SET_UP}” for the numbers.", WARNING_COLOUR)
+            return fill('<div class="springtide-answer">{}{}</div>', laws, hint)
+        return fill('<div class="springtide-answer">{}{}</div>', laws, fill_in(guide.answer, self.values))
+
+    def flush(self) -> None:
+        """Keep the texts that are being typed."""
+        for widgets in self.questions:
+            widgets.flush(float("inf"))
+
+
+def title_of(task: Task) -> str:
+    """What the list of tasks calls one."""
+    return f"{task.item} {task.title}{' (optional)' if task.optional else ''}"

@@ -1,0 +1,316 @@
+"""The folder "Record and share": the timeline of the recording, links, set-ups, and files of what was recorded.
+
+Callbacks run on viser's event loop; `update` runs on the viewer's thread. What takes long runs in a thread of its own.
+"""
+
+# pyright: reportPrivateUsage=false
+
+import csv
+import io
+import threading
+import time
+import traceback
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+import viser
+
+from app.messages import BaseParams, Pause, PlotRow, Vector
+from app.panel.recorder import RATES, Kept, Recorder
+from app.render.cameras import place_camera
+from app.render.html import fill, note
+from app.render.viser_types import GuiHandle, ViserEvent
+from app.scenes import scene_named
+from app.scenes.contract import AnyKind, AnySnapshot, PostCommand
+from app.scenes.setups import MAX_NAME, MAX_NOTE, Camera, Setup, read_file, read_query, write_file, write_query
+
+SPAN_INTERVAL = 0.5  # [s] between two updates of the timeline's ends
+SLIDER_STEP = 0.01  # [s] of the timeline
+PICTURE_SIZES = {  # [pixels]
+    "As in the page": (0, 0),
+    "1280 x 720": (1280, 720),
+    "1920 x 1080": (1920, 1080),
+    "3840 x 2160": (3840, 2160),
+}
+PICTURE_TIMEOUT = 60.0  # [s] for a browser to draw a picture
+BACK, FORWARD, PRESENT = "◀ Back", "Forward ▶", "Now"
+COPY, SAVE, PLOTS, PICTURE, REPLAY = "Copy link", "Save set-up", "Plots as CSV", "Picture", "Replay"
+OPEN, LEAVE = "Open it for all", "Leave the lab as it is"
+
+MakeReplay = Callable[[AnyKind, Sequence[Kept], Sequence[PlotRow]], str]
+
+
+class Settings(Protocol):
+    """What the folder needs of the panel."""
+
+    kind: AnyKind
+    loaded: str
+
+    @property
+    def params(self) -> BaseParams:
+        """The parameters as set now."""
+        ...
+
+    def show_setup(self, setup: Setup, client: int | None) -> None:
+        """Show a set-up, of this scene or another; the camera is that of one browser."""
+        ...
+
+    def plot_rows(self) -> Sequence[PlotRow]:
+        """The rows of the plots that are kept."""
+        ...
+
+
+class Share:
+    """The folder, and the hidden field through which a page sends its address or a file."""
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        lab: viser.GuiFolderHandle,
+        panel: Settings,
+        recorder: Recorder,
+        post: PostCommand,
+        wake: Callable[[], None],
+        make_replay: MakeReplay,
+    ) -> None:
+        """lab: the folder that stays in sight. wake: has the viewer's thread look at the recorder.
+
+        make_replay: makes the page of a replay.
+        """
+        self.server, self.panel, self.recorder, self.post = server, panel, recorder, post
+        self.wake, self.make_replay = wake, make_replay
+        self.gui = gui = server.gui
+        self.span_at = 0.0
+        self.span: tuple[float, float] = (0.0, 0.0)
+        self.busy = threading.Lock()  # one file at a time
+        self.waiting: tuple[Setup, int | None] | None = None  # a set-up that the visitors are asked about
+        with lab:
+            self.request = gui.add_html("", visible=False)
+            self.decide = gui.add_button_group("", (OPEN, LEAVE), visible=False)
+        self.decide.on_click(self.on_decision)
+        self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
+        self.inbox.on_update(self.on_inbox)
+        holder = fill('<span data-springtide-inbox="{}"></span>', self.inbox._impl.uuid)
+        gui.add_html(str(holder))
+        with gui.add_folder("Record and share", expand_by_default=False):
+            self.time = gui.add_slider("Recorded [s]", 0.0, 1.0, SLIDER_STEP, 0.0, disabled=True)
+            self.time.on_update(self.on_time)
+            self.steps = gui.add_button_group("", (BACK, "Play", FORWARD, PRESENT))
+            self.steps.on_click(self.on_step)
+            self.rate = gui.add_dropdown("Rate", tuple(f"×{rate:g}" for rate in RATES), hint="Of playing the recording")
+            self.rate.on_update(self.on_rate)
+            self.loop = gui.add_checkbox("Repeat", initial_value=False, hint="Play the recording again and again")
+            self.loop.on_update(self.on_loop)
+            self.state = gui.add_html("")
+            self.name = gui.add_text("Name", "", hint=f"Of the set-up that is saved, at most {MAX_NAME} characters")
+            self.note = gui.add_text("Note", "", hint=f"Kept with the set-up, at most {MAX_NOTE} characters")
+            self.links = gui.add_button_group("", (COPY, SAVE))
+            self.links.on_click(self.on_link)
+            gui.add_html(
+                '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
+                '<input type="file" accept=".json" data-springtide-load></label></div>'
+            )
+            self.size = gui.add_dropdown("Picture size", tuple(PICTURE_SIZES))
+            self.transparent = gui.add_checkbox("Transparent background", initial_value=False)
+            self.files = gui.add_button_group("Save", (PLOTS, PICTURE, REPLAY))
+            self.files.on_click(self.on_file)
+            self.line = gui.add_html("")
+
+    def say(self, text: object) -> None:
+        """A line at the end of the folder."""
+        self.line.content = note(text) if text else ""
+
+    async def on_inbox(self, event: ViserEvent) -> None:
+        """A page has sent its address ("?scene=...") or a file ("{...}")."""
+        text = str(event.target.value)
+        if event.client_id is None or not text:
+            return
+        self.inbox.value = ""  # so that the same text can come again
+        try:
+            setup = read_query(text) if text.startswith("?") else read_file(text)
+        except ValueError as reason:
+            self.refuse(event.client, str(reason))
+            return
+        if setup.scene == self.panel.kind.name and setup.params == self.panel.params:
+            self.place(setup, event.client)
+        elif len(self.server.get_clients()) > 1:
+            self.ask(setup, event.client_id)
+        else:
+            self.panel.show_setup(setup, event.client_id)
+
+    def refuse(self, client: viser.ClientHandle | None, reason: str) -> None:
+        """Tell one browser why a set-up was not taken."""
+        if client is not None:
+            client.add_notification("This set-up was not opened", reason, color="red", auto_close_seconds=30.0)
+
+    def place(self, setup: Setup, client: viser.ClientHandle | None) -> None:
+        """Give one browser the camera of a set-up that is shown already."""
+        if client is not None and setup.camera is not None:
+            place_camera(client.camera, *setup.camera)
+
+    def ask(self, setup: Setup, client: int | None) -> None:
+        """Ask the visitors whether a set-up may change what all of them see."""
+        self.waiting = setup, client
+        title, name = scene_named(setup.scene).title, setup.name or setup.preset
+        words = fill(
+            "Another browser asks to open <b>{}</b>{}. This changes the lab for all {} browsers.",
+            title,
+            f" ({name})" if name else "",
+            len(self.server.get_clients()),
+        )
+        self.request.content = note(words)
+        self.request.visible = self.decide.visible = True
+
+    async def on_decision(self, event: ViserEvent) -> None:
+        """A visitor has answered."""
+        waiting, self.waiting = self.waiting, None
+        self.request.visible = self.decide.visible = False
+        if waiting is not None and event.target.value == OPEN:
+            self.panel.show_setup(*waiting)
+
+    async def on_time(self, event: ViserEvent) -> None:
+        """A browser has moved along the timeline: the lab pauses, and shows what was."""
+        if event.client_id is not None:
+            self.post(Pause())
+            self.recorder.show_time(float(event.target.value))
+            self.wake()
+
+    async def on_step(self, event: ViserEvent) -> None:
+        """Back, play or stop, forward, now."""
+        match event.target.value:
+            case name if name == PRESENT:
+                self.recorder.show_present()
+            case name if name == BACK:
+                self.post(Pause())
+                self.recorder.step(-1)
+            case name if name == FORWARD:
+                self.post(Pause())
+                self.recorder.step(1)
+            case _:
+                self.post(Pause())
+                self.recorder.play()
+        self.wake()
+
+    async def on_rate(self, event: ViserEvent) -> None:
+        """The pace of playing."""
+        self.recorder.rate = float(str(event.target.value).removeprefix("×"))
+
+    async def on_loop(self, event: ViserEvent) -> None:
+        """Whether playing begins again at its end."""
+        self.recorder.loops = bool(event.target.value)
+
+    async def on_link(self, event: ViserEvent) -> None:
+        """Show the link, or save the set-up, with the camera of the browser that asks."""
+        client = event.client
+        if client is None:
+            return
+        panel = self.panel
+        camera = camera_of(client)
+        if event.target.value == COPY:
+            query = write_query(panel.kind, panel.params, panel.loaded, camera)
+            self.say(fill('<a class="springtide-link" data-springtide-link="{}" href="{}">{}</a>', query, query, query))
+            return
+        try:
+            name, words = self.name.value.strip(), self.note.value.strip()
+            text = write_file(panel.kind, panel.params, panel.loaded, camera, name=name, note=words)
+        except ValueError as reason:
+            self.say(str(reason))
+            return
+        client.send_file_download(f"springtide-{panel.kind.name}.json", text.encode(), save_immediately=True)
+        self.say("The set-up was sent to the browser as a file.")
+
+    async def on_file(self, event: ViserEvent) -> None:
+        """Make a file in a thread of its own, and send it to the browser that asks."""
+        client = event.client
+        if client is None:
+            return
+        make = {PLOTS: self.plots_file, PICTURE: self.picture_file, REPLAY: self.replay_file}[event.target.value]
+        if not self.busy.acquire(blocking=False):
+            self.say("Another file is still being made.")
+            return
+        self.say(f"{event.target.value}: being made …")
+        threading.Thread(target=self.send, args=(make, client), name="file for the page", daemon=True).start()
+
+    def send(self, make: Callable[[viser.ClientHandle], tuple[str, bytes]], client: viser.ClientHandle) -> None:
+        """Make a file and send it; whatever goes wrong is said in the folder."""
+        try:
+            name, content = make(client)
+            client.send_file_download(name, content, save_immediately=True)
+            self.say(f"{name}, {len(content) / 1e6:.2f} MB, was sent to the browser.")
+        except (ValueError, TimeoutError, RuntimeError) as reason:
+            self.say(f"No file was made: {reason}")
+        except Exception as error:
+            traceback.print_exc()
+            self.say(f"No file was made: {type(error).__name__}: {error}")
+        finally:
+            self.busy.release()
+
+    def plots_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """All plot rows that are kept, as CSV with names and units. Raises ValueError where there are none."""
+        kind = self.panel.kind
+        rows = self.panel.plot_rows()
+        if not rows:
+            raise ValueError("nothing has been plotted yet: let the scene run first")
+        return f"springtide-{kind.name}.csv", plots_csv(kind, rows).encode()
+
+    def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """What one browser shows, drawn again at the chosen size."""
+        import imageio.v3 as iio  # only where a picture is made
+
+        width, height = PICTURE_SIZES[self.size.value]
+        picture = client.get_render(
+            height or client.camera.image_height,
+            width or client.camera.image_width,
+            transport_format="png" if self.transparent.value else "jpeg",
+            timeout=PICTURE_TIMEOUT,
+        )
+        encoded = io.BytesIO()
+        iio.imwrite(encoded, picture, extension=".png")  # pyright: ignore[reportUnknownMemberType]
+        return f"springtide-{self.panel.kind.name}.png", encoded.getvalue()
+
+    def replay_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """The recording as one page. Raises ValueError where nothing was recorded."""
+        page = self.make_replay(self.panel.kind, self.recorder.kept(), self.panel.plot_rows())
+        return f"springtide-{self.panel.kind.name}.html", page.encode()
+
+    def update(self, snapshot: AnySnapshot) -> None:
+        """Keep the timeline up to date."""
+        now = time.monotonic()
+        shown = self.recorder.shown
+        if shown is None and now - self.span_at < SPAN_INTERVAL:
+            return
+        self.span_at = now
+        low, high = self.recorder.span()
+        if (low, high) != self.span:
+            self.span = low, high
+            self.time.disabled = high <= low
+            if high > low:
+                self.time.min, self.time.max = round(low, 2), round(high, 2)
+        at = high if shown is None else shown.time
+        if self.span[1] > self.span[0] and abs(self.time.value - at) > 0.5 * SLIDER_STEP:
+            self.time.value = round(min(max(at, self.time.min), self.time.max), 2)
+        words = fill("Recorded: {:.1f} s, {:.0f} MB", high - low, self.recorder.bytes / 1e6)
+        if shown is not None:
+            words = fill("<b>Shown: t = {:.2f} s of the recording.</b> {}", shown.time, words)
+        if self.state.content != note(words):
+            self.state.content = note(words)
+
+
+def camera_of(client: viser.ClientHandle) -> Camera:
+    """Position and target of a browser's camera [m]."""
+
+    def vector(values: np.ndarray) -> Vector:
+        return float(values[0]), float(values[1]), float(values[2])
+
+    return vector(client.camera.position), vector(client.camera.look_at)
+
+
+def plots_csv(kind: AnyKind, rows: Sequence[PlotRow]) -> str:
+    """Plot rows as CSV: time, and each series with the unit of the plot that shows it."""
+    units = {name: plot.unit for plot in kind.plots.values() for name in plot.series}
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["t [s]", *(f"{name} [{units[name]}]" if units.get(name) else name for name in kind.series)])
+    writer.writerows([repr(value) for value in row] for row in rows)
+    return text.getvalue()

@@ -1,0 +1,27 @@
+"""What the tasks of the lab use of the cloth: its springs, its strain, the limit of its step."""
+
+from typing import TYPE_CHECKING
+
+from app.messages import Snapshot
+from app.scenes.cloth.parameters import Params
+from app.scenes.contract import Measure
+from app.scenes.springs.live_values import stability_values
+
+if TYPE_CHECKING:
+    from app.scenes.cloth.scene import ClothFrame, ClothReadings
+
+
+def live_values(snapshot: Snapshot) -> dict[str, Measure]:
+    """The numbers of a snapshot."""
+    p: Params = snapshot.params
+    frame: ClothFrame = snapshot.frame
+    readings: ClothReadings = snapshot.readings
+    rows, cols = frame.strain.shape
+    return stability_values(readings.stability) | {
+        "particles": Measure(rows * cols, "1", "Particles"),
+        "structural_links": Measure(rows * (cols - 1) + cols * (rows - 1), "1", "Structural springs"),
+        "shear_links": Measure(2 * (rows - 1) * (cols - 1), "1", "Shear springs"),
+        "bend_links": Measure(rows * (cols - 2) + cols * (rows - 2), "1", "Bend springs"),
+        "largest_strain": Measure(100.0 * float(frame.strain.max()), "%", "Largest strain"),
+        "cloth_mass": Measure(p.density * p.width * p.length, "kg", "Mass of the cloth"),
+    }

@@ -1,0 +1,32 @@
+"""What the tasks of the lab use of a race: the error of each rope, its energy, how near its limit its step is."""
+
+from typing import TYPE_CHECKING
+
+from app.messages import Snapshot
+from app.scenes.contract import Measure
+
+if TYPE_CHECKING:
+    from app.scenes.race.entrants import RaceReadings
+
+
+def live_values(snapshot: Snapshot) -> dict[str, Measure]:
+    """The numbers of a snapshot."""
+    readings: RaceReadings = snapshot.readings
+    found: dict[str, Measure] = {}
+    for r in readings.results:
+        n = r.number
+        found |= {
+            f"error_{n}": Measure(r.error, "m", f"Error of rope {n}"),
+            f"energy_error_{n}": Measure(-r.numerical_dissipation, "J", f"Energy that the method of rope {n} added"),
+            f"h_omega_{n}": Measure(r.gauge.h_omega, "1", f"hω of rope {n}"),
+            f"limit_{n}": Measure(r.gauge.limit, "1", f"Limit of hω of rope {n}"),
+            f"stiffness_{n}": Measure(r.stiffness, "N/m", f"Stiffness of rope {n}"),
+            f"own_step_{n}": Measure(r.step, "s", f"Time step of rope {n}"),
+            f"evaluations_{n}": Measure(r.evals, "1", f"Evaluations of the forces in a step of rope {n}"),
+        }
+    stopped = [r for r in readings.results if r.failure]
+    stable = [r for r in readings.results if r.gauge.h_omega <= r.gauge.limit]
+    return found | {
+        "ropes_stopped": Measure(len(stopped), "1", "Ropes that left their bounds"),
+        "ropes_stable": Measure(len(stable), "1", "Ropes within the limit of their method"),
+    }

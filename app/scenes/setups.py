@@ -1,0 +1,260 @@
+"""Set-ups: what a scene is set to, as the query of an address and as a file. Both are read here, and by nothing else.
+
+The address `/?scene=rope&preset=...&stiffness=2000` and the file
+
+    {"version": 1, "scene": "rope", "preset": "...", "parameters": {"stiffness": 2000}, "name": "...", "note": "..."}
+
+say the same: the values of a preset (by default the scene's defaults), and those that differ from it. A number is
+written so that reading it gives the very same number. A hull from a file is no parameter, and is left out.
+"""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+from urllib.parse import parse_qsl, urlencode
+
+from app.messages import BaseParams, Vector
+from app.scenes import NAMES, scene_named
+from app.scenes.contract import AnyKind, SceneKind
+from sim.parameters import Value, changed_names, check_record, parameters_of, parse_value, similar, unknown_parameter
+from sim.quantities import read_number, write_number
+from sim.validation import argument_error
+
+VERSION = 1  # of the file; raised where an older program could not read it
+MAX_LENGTH = 5000  # characters of a query or a file
+MAX_NAME, MAX_NOTE = 60, 1000  # characters
+MAX_CAMERA_DISTANCE = 1e4  # [m] from the origin
+CAMERA_DECIMALS = 3  # of the camera's coordinates [m]
+OWN_KEYS = ("scene", "preset", "camera")  # of a query; all others are parameters
+FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", "name", "note")
+
+Camera = tuple[Vector, Vector]  # position and target [m]
+
+
+class Setup(NamedTuple):
+    """What a scene is set to."""
+
+    scene: str
+    params: BaseParams  # the scene's own record
+    values: Mapping[str, Value]  # the parameters that were named, by the preset or one by one
+    preset: str = ""  # that they differ from; "" for the defaults
+    camera: Camera | None = None
+    name: str = ""
+    note: str = ""
+
+
+def differing_values(kind: AnyKind, params: BaseParams, preset: str) -> dict[str, Value]:
+    """The parameters in which a record differs from a preset of the scene, or from the defaults where it is ""."""
+    base = check_record(kind.params, kind.presets[preset] if preset else {})
+    names = changed_names(base, params)
+    return {name: getattr(params, name) for name in parameters_of(params) if name in names}
+
+
+def nearest_preset(kind: AnyKind, params: BaseParams, preset: str) -> str:
+    """`preset` where naming it makes the set-up shorter, otherwise ""."""
+    if preset not in kind.presets:
+        return ""
+    return preset if len(differing_values(kind, params, preset)) < len(differing_values(kind, params, "")) else ""
+
+
+def write_value(value: Value) -> str:
+    """A value as `parse_value` reads it."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return value if isinstance(value, str) else write_number(value)
+
+
+def write_query(kind: AnyKind, params: BaseParams, preset: str = "", camera: Camera | None = None) -> str:
+    """The shortest query, "?scene=...", that says a set-up. preset: that the parameters were made from."""
+    base = nearest_preset(kind, params, preset)
+    said = {"scene": kind.name}
+    if base:
+        said["preset"] = base
+    said.update({name: write_value(value) for name, value in differing_values(kind, params, base).items()})
+    if camera is not None:
+        said["camera"] = ",".join(f"{c:g}" for c in camera_numbers(camera))
+    return "?" + urlencode(said, safe=",")
+
+
+def read_query(query: str) -> Setup:
+    """The set-up that a query says, with or without its "?". Raises ValueError for what is not allowed."""
+    check_length("address", query)
+    pairs = parse_qsl(query.removeprefix("?"), keep_blank_values=True)
+    given = dict(pairs)
+    for name in given:
+        if sum(other == name for other, _ in pairs) > 1:
+            raise ValueError(f"{shortened(name)!r}: given more than once in the address")
+    kind = kind_named(given.get("scene"))
+    preset = given.get("preset", "")
+    known = parameters_of(kind.params)
+    values = dict(preset_named("preset", preset, kind)) if preset else {}
+    for name, text in given.items():
+        if name in OWN_KEYS:
+            continue
+        if name not in known:
+            raise unknown_parameter(name, known)
+        values[name] = parse_value(name, known[name], text)
+    camera = None
+    if "camera" in given:
+        camera = read_camera([camera_number(text, given["camera"]) for text in given["camera"].split(",")])
+    return Setup(kind.name, check_record(kind.params, values), values, preset, camera)
+
+
+def camera_numbers(camera: Camera) -> list[float]:
+    """The six numbers of a camera, rounded to a millimetre."""
+    return [round(c, CAMERA_DECIMALS) + 0.0 for point in camera for c in point]
+
+
+def camera_number(text: str, camera: str) -> float:
+    """One of the camera's six numbers. Raises ValueError."""
+    try:
+        return read_number(text)
+    except ValueError:
+        raise camera_error(camera) from None
+
+
+def camera_error(camera: object) -> ValueError:
+    """The error for what is no camera."""
+    allowed = f"six numbers, position and target, at most {MAX_CAMERA_DISTANCE:g} m from the origin and not the same"
+    return argument_error("camera", camera, allowed)
+
+
+def read_camera(numbers: object) -> Camera:
+    """Position and target of six numbers [m]. Raises ValueError."""
+    if not isinstance(numbers, list) or len(numbers) != 6:
+        raise camera_error(numbers)
+    if any(isinstance(c, bool) or not isinstance(c, int | float) for c in numbers):
+        raise camera_error(numbers)
+    if not all(abs(c) <= MAX_CAMERA_DISTANCE for c in numbers):  # before `float`, which raises for a very long number
+        raise camera_error(numbers)
+    x, y, z, target_x, target_y, target_z = (float(c) for c in numbers)
+    position, target = (x, y, z), (target_x, target_y, target_z)
+    if position == target:
+        raise camera_error(numbers)
+    return position, target
+
+
+def write_file(
+    kind: AnyKind,
+    params: BaseParams,
+    preset: str = "",
+    camera: Camera | None = None,
+    *,
+    name: str = "",
+    note: str = "",
+) -> str:
+    """The text of a file that says a set-up. Raises ValueError for a name or note that is not allowed."""
+    base = nearest_preset(kind, params, preset)
+    content: dict[str, Any] = {"version": VERSION, "scene": kind.name}
+    if base:
+        content["preset"] = base
+    content["parameters"] = differing_values(kind, params, base)
+    if camera is not None:
+        content["camera"] = camera_numbers(camera)
+    if name:
+        content["name"] = read_text("name", name, MAX_NAME)
+    if note:
+        content["note"] = read_text("note", note, MAX_NOTE)
+    return json.dumps(content, ensure_ascii=False, indent=2) + "\n"
+
+
+def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Setup:
+    """The set-up that the text of a file says. where: names the file in errors. scene: that it has to be of, if any.
+
+    A file without a version is of version 1, and one without a scene is of `scene`. Raises ValueError for what is not
+    allowed.
+    """
+    check_length(where, text)
+    try:
+        content = json.loads(text, object_pairs_hook=unique_keys)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{where}: not a file of JSON: {error}") from None
+    form = f'{{"version": {VERSION}, "scene": "{scene or "rope"}", "parameters": {{...}}}}'
+    if not isinstance(content, dict) or not isinstance(content.get("parameters", {}), dict):
+        raise argument_error(where, shortened(text), f"a file {form}")
+    for key in content:
+        if key not in FILE_KEYS:
+            raise argument_error(f"{where}: key", key, "one of " + ", ".join(FILE_KEYS))
+    version = content.get("version", 1)
+    if isinstance(version, bool) or version not in range(1, VERSION + 1):
+        raise argument_error(f"{where}: version", version, f"1 to {VERSION}; a newer one needs a newer Springtide")
+    if "parameters" not in content and "preset" not in content:
+        raise argument_error(where, shortened(text), f"a file {form}")
+    found = content.get("scene", scene)
+    if scene is not None and found != scene:
+        raise argument_error(f"{where}: scene", found, scene)
+    kind = kind_named(found)
+    preset = content.get("preset", "")
+    values = {} if preset == "" else dict(preset_named(f"{where}: preset", preset, kind))
+    given = content.get("parameters", {})
+    checked = check_record(kind.params, given)
+    values.update({name: getattr(checked, name) for name in given})
+    camera = read_camera(content["camera"]) if content.get("camera") is not None else None
+    name = read_text(f"{where}: name", content.get("name", ""), MAX_NAME)
+    note = read_text(f"{where}: note", content.get("note", ""), MAX_NOTE)
+    return Setup(kind.name, check_record(kind.params, values), values, preset, camera, name, note)
+
+
+def unique_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    """An object of JSON. Raises ValueError where a key is there twice: which value counts would be unclear."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a key is there twice")
+    return found
+
+
+def check_length(what: str, text: str) -> None:
+    """Raises ValueError for a text that no set-up is as long as."""
+    if len(text) > MAX_LENGTH:
+        raise argument_error(what, f"{len(text)} characters", f"at most {MAX_LENGTH}")
+
+
+def shortened(text: str) -> str:
+    """The beginning of a text, for a message."""
+    return text if len(text) <= 40 else text[:40] + "..."
+
+
+def read_text(what: str, text: object, max_length: int) -> str:
+    """A name or note: printable, on one line. Raises ValueError."""
+    if not isinstance(text, str) or len(text) > max_length or not text.isprintable():
+        raise argument_error(what, shortened(str(text)), f"at most {max_length} printable characters on one line")
+    return text
+
+
+def kind_named(name: object) -> AnyKind:
+    """The scene of a set-up. Raises ValueError where there is none of that name."""
+    if not isinstance(name, str) or name not in NAMES:
+        close = similar(name, NAMES) if isinstance(name, str) else []
+        hint = f"; did you mean {' or '.join(close)}?" if close else ""
+        raise ValueError(f"{argument_error('scene', name, 'one of ' + ', '.join(NAMES))}{hint}")
+    return scene_named(name)
+
+
+def preset_named(what: str, preset: object, kind: SceneKind[Any, Any, Any]) -> Mapping[str, Value]:
+    """The values of a scene's preset. Raises ValueError where it has none of that name."""
+    if not isinstance(preset, str) or preset not in kind.presets:
+        raise argument_error(what, preset, "one of " + ", ".join(kind.presets))
+    return kind.presets[preset]
+
+
+def preset_values(
+    option: str, preset: str, kind: SceneKind[Any, Any, Any], folder: Path | None = None
+) -> dict[str, Value]:
+    """The parameters that a preset names. preset: a name, or the path of a .json file, relative to `folder`.
+
+    Raises ValueError, naming the option, where there is no such preset of this scene or a value is not allowed.
+    """
+    if preset in kind.presets:
+        return dict(kind.presets[preset])
+    path = (folder or Path()) / preset
+    if path.suffix != ".json" and not path.is_file():
+        raise argument_error(option, preset, "one of " + ", ".join(kind.presets) + "; or a file FILE.json")
+    try:
+        with path.open("rb") as file:
+            text = file.read(4 * MAX_LENGTH + 1).decode("utf-8")
+    except OSError as error:
+        raise argument_error(option, str(path), f"a file that can be read ({error.strerror})") from None
+    except ValueError:
+        raise argument_error(option, str(path), "a file of JSON in UTF-8") from None
+    return dict(read_file(text, f"{option} {path}", kind.name).values)

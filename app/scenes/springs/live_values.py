@@ -1,0 +1,15 @@
+"""What the tasks of the lab use of every scene of springs: how near its limit a step is."""
+
+from app.scenes.contract import Measure
+from sim.springs.stability import Gauge
+
+
+def stability_values(gauge: Gauge) -> dict[str, Measure]:
+    """h omega, its limit, and the largest stable step."""
+    return {
+        "h_omega": Measure(gauge.h_omega, "1", "hω"),
+        "h_omega_limit": Measure(gauge.limit, "1", "Limit of hω"),
+        "limit_used": Measure(gauge.h_omega / gauge.limit if gauge.limit else float("inf"), "1", "hω over its limit"),
+        "damping_ratio": Measure(gauge.zeta, "1", "Damping ratio ζ of the fastest mode"),
+        "critical_step": Measure(gauge.critical_step, "s", "Largest stable step"),
+    }

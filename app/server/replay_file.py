@@ -1,0 +1,115 @@
+"""A replay: one HTML file with frames of a scene, its parameters and plots, which opens offline in any browser.
+
+The frames are drawn by the scene's own view, on a server that nobody connects to, and recorded by viser's serialiser,
+which adds its client. Positions are rounded below what can be seen: rounded numbers take half the space.
+"""
+
+# pyright: reportPrivateUsage=false
+
+import contextlib
+import io
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.messages import BaseParams, PlotRow
+from app.panel.recorder import MAX_PAUSE, Kept
+from app.render.cameras import place_cameras
+from app.render.html import Html, fill, join
+from app.render.line_chart import line_chart
+from app.scenes import view_named
+from app.scenes.contract import AnyKind
+from app.scenes.setups import write_value
+from app.server.guard import open_server
+from sim.parameters import in_words, parameters_of
+
+MAX_FRAMES = 200  # of a replay; of more, each second or third is taken
+MAX_RAW_BYTES = 50e6  # of the arrays of all frames, before they are compressed: a file of about 25 MB
+BITS = 11  # kept of each coordinate, over its largest size in a frame
+STYLE = (
+    "#springtide-about{position:fixed;bottom:52px;left:8px;z-index:9;max-width:600px;max-height:80vh;overflow:auto;"
+    "background:#fffffff2;color:#1b2a3a;border-radius:6px;padding:6px 10px;font:13px/1.4 sans-serif;"
+    "box-shadow:0 1px 6px #0003}#springtide-about summary{cursor:pointer;font-weight:bold}"
+    "#springtide-about td{padding:0 10px 0 0}"
+)
+
+
+def rounded(buffer: memoryview) -> memoryview:
+    """An array of 3-vectors of float32 with `BITS` bits of each coordinate; other arrays as they are."""
+    values = np.asarray(buffer)
+    if values.dtype != np.float32 or values.ndim < 2 or values.shape[-1] != 3 or not values.size:
+        return buffer
+    largest = np.abs(values).reshape(-1, 3).max(axis=0)
+    step = np.exp2(np.ceil(np.log2(np.maximum(largest, 1e-9))) - BITS).astype(np.float32)
+    return np.ascontiguousarray(np.round(values / step) * step, np.float32).data
+
+
+def thinned(frames: Sequence[Kept]) -> list[Kept]:
+    """Every n-th frame, so that they keep within `MAX_FRAMES` and `MAX_RAW_BYTES`."""
+    total = sum(kept.size for kept in frames)
+    share = max(1, -(-len(frames) // MAX_FRAMES), int(np.ceil(total / MAX_RAW_BYTES)))
+    return list(frames[::share])
+
+
+def replay_html(kind: AnyKind, frames: Sequence[Kept], rows: Sequence[PlotRow]) -> str:
+    """The page of a replay. frames: at least one. rows: of the plots.
+
+    Raises ValueError where there is no frame.
+    """
+    chosen = thinned(frames)
+    if not chosen:
+        raise ValueError("nothing has been recorded yet: let the scene run first")
+    server, _ = open_server("127.0.0.1", 0)
+    try:
+        view = view_named(kind.name)(server, lambda command: None)
+        params = chosen[-1].params
+        place_cameras(server, *view.first_view(params), view.FIELD_OF_VIEW)
+        view.show(chosen[0].frame)
+        recording = server.get_scene_serializer()
+        for before, kept in itertools.pairwise(chosen):
+            recording.insert_sleep(min(kept.wall - before.wall, MAX_PAUSE * len(frames) / len(chosen)))
+            with server.atomic():
+                view.show(kept.frame)
+        server.flush()
+        recording._binary_buffers = [rounded(buffer) for buffer in recording._binary_buffers]
+        page = recording.as_html()
+        view.close()
+    finally:
+        with contextlib.redirect_stdout(io.StringIO()):  # viser would say that a server has stopped
+            server.stop()
+    about = about_html(kind, params, rows, chosen[0].time, chosen[-1].time)
+    return page.replace("<title>Viser</title>", str(fill("<title>Springtide: {}</title>", kind.title)), 1).replace(
+        "</body>", f"{about}</body>", 1
+    )
+
+
+def about_html(kind: AnyKind, params: BaseParams, rows: Sequence[PlotRow], start: float, end: float) -> Html:
+    """What the replay shows: the scene, all of its parameters, and its plots between two times [s]."""
+    table = join(
+        fill(
+            "<tr><td>{}</td><td>{} {}</td></tr>", p.title or in_words(name), write_value(getattr(params, name)), p.unit
+        )
+        for name, p in parameters_of(params).items()
+    )
+    return fill(
+        "<style>{}</style><details id='springtide-about'><summary>{}: t = {:.2f} to {:.2f} s</summary>"
+        "{}<table>{}</table></details>",
+        Html(STYLE), kind.title, start, end, plot_charts(kind, rows, start, end), table,
+    )  # fmt: skip
+
+
+def plot_charts(kind: AnyKind, rows: Sequence[PlotRow], start: float, end: float) -> Html:
+    """A chart for each plot of the scene that has finite numbers between two times [s]."""
+    inside = [row for row in rows if start <= row[0] <= end]
+    if len(inside) < 2:
+        return Html()
+    columns = np.array(inside, np.float64).T
+    return join(
+        line_chart(
+            f"{plot.title} [{plot.unit}]",
+            columns[0],
+            {name: columns[1 + kind.series.index(name)] for name in plot.series},
+        )
+        for plot in kind.plots.values()
+    )

@@ -1,0 +1,73 @@
+"""Tables of linear coefficients: of the shipped shapes (`assets/hydrodynamics`), and of a hull of one's own beside it.
+
+The table of a hull from a file lies in a file of the same name that ends with `.hydrodynamics.npz`. It is made by
+`springtide hydrodynamics`, and belongs to that mesh only.
+"""
+
+import functools
+import hashlib
+from importlib.resources import files
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from sim.floating.closed_mesh import ClosedMesh
+from sim.validation import argument_error
+
+ENDING = ".hydrodynamics.npz"
+
+
+class LinearTable(NamedTuple):
+    """Linear coefficients of hulls by their sides and drafts.
+
+    At unit density and gravity, in units of a length of the hull, about the waterline above its centre of mass.
+    """
+
+    aspect: np.ndarray  # (a,) length over width
+    draft: np.ndarray  # (d,)
+    direction: np.ndarray  # (m,) [rad] in which waves run: one, a quarter of the circle, or all of it
+    frequency: np.ndarray  # (n,)
+    added_mass: np.ndarray  # (a, d, n, 6, 6)
+    damping: np.ndarray  # (a, d, n, 6, 6)
+    infinite: np.ndarray  # (a, d, 6, 6) added mass at infinite frequency
+    excitation: np.ndarray  # (a, d, n, m, 6) complex
+
+
+@functools.cache
+def table_of(name: str) -> LinearTable:
+    """A committed table: "box", "cylinder" or "sphere"."""
+    with files("assets").joinpath(f"hydrodynamics/{name}.npz").open("rb") as file, np.load(file) as arrays:
+        return LinearTable(**{field: arrays[field] for field in LinearTable._fields})
+
+
+def place_of_table(hull_file: str | Path) -> Path:
+    """Where the table of the hull in a file lies."""
+    path = Path(hull_file)
+    return path.with_name(path.stem + ENDING)
+
+
+def fingerprint(mesh: ClosedMesh) -> str:
+    """A text that two meshes share only if they are the same."""
+    digest = hashlib.sha256(np.round(mesh.vertices, 6).tobytes())
+    digest.update(mesh.faces.tobytes())
+    return digest.hexdigest()
+
+
+def write_table(path: Path, table: LinearTable, mesh: ClosedMesh) -> None:
+    """Write the table of a mesh to a file. Raises OSError where that fails."""
+    with path.open("wb") as file:
+        np.savez_compressed(file, mesh=np.array(fingerprint(mesh)), **table._asdict())
+
+
+def read_table(path: Path, mesh: ClosedMesh) -> LinearTable:
+    """The table of a mesh. Raises ValueError for a file that is no table, or that of another mesh."""
+    try:
+        with np.load(path) as arrays:
+            made_of = str(arrays["mesh"])
+            table = LinearTable(**{field: arrays[field] for field in LinearTable._fields})
+    except Exception as error:  # numpy's reader raises errors of many types
+        raise argument_error("path", str(path), f"a table made by `springtide hydrodynamics` ({error})") from error
+    if made_of != fingerprint(mesh):
+        raise argument_error("path", str(path), "the table of this mesh: make it again by `springtide hydrodynamics`")
+    return table

@@ -1,0 +1,101 @@
+"""A student's functions at the numbers of a scene: right ones give what the program has."""
+
+import dataclasses
+import time
+from pathlib import Path
+
+import pytest
+
+from app.lab.folder import make_folder
+from app.lab.live_values import LiveNumber
+from app.lab.program_check import Verdict
+from app.lab.saved import keep, read_files
+from app.lab.scene_values import VALUES, SceneValues
+from app.lab.task import load_tasks
+from app.panel.code_panel import function_line
+from app.panel.guide import live_values
+from app.scenes import scene_named
+from app.server.loop import SimLoop
+
+TASKS = {task.name: task for task in load_tasks()}
+RADIAL = {"extra_draft", "draft", "net_buoyancy", "wave_decay", "reflectance"}
+SCENES = [
+    ("radial_sea", {"spill": "layer", "oil": "Alaska North Slope 2002"}, RADIAL),
+    ("radial_sea", {"spill": "mixed"}, {"net_buoyancy", "mixture_viscosity", "wave_decay", "reflectance"}),
+    (
+        "square_sea",
+        {"viscosity": 1e-3, "loop_period": 20.0, "statistics": True, "size": "64"},
+        {"gravity", "damping_length", "dispersion"},
+    ),
+    ("cloth", {"rows": 5, "cols": 4}, {"cloth_links"}),
+]
+
+
+@pytest.mark.parametrize(
+    ("scene", "values", "expected"), SCENES, ids=[f"{scene}-{number}" for number, (scene, _, _) in enumerate(SCENES)]
+)
+def test_the_reference_solutions_give_the_numbers_of_the_program(
+    tmp_path: Path, scene: str, values: dict[str, object], expected: set[str]
+) -> None:
+    make_folder(tmp_path / "solutions", list(TASKS.values()), solutions=True)
+    saved = keep(read_files(tmp_path / "solutions"), tmp_path / "solutions", 1, list(TASKS.values()))
+    kind = scene_named(scene)
+    loop = SimLoop(kind.make(dataclasses.replace(kind.params(), **values)))
+    loop.tick(0.1)
+    found = SceneValues(TASKS, 20.0)
+    try:
+        end = time.monotonic() + 60.0
+        while set(found.found) != expected and time.monotonic() < end:
+            found.ask(scene, saved, live_values(kind, loop.latest))
+            time.sleep(0.05)
+            loop.tick(0.05)
+        assert set(found.found) == expected
+        for task, compared in found.found.items():
+            tolerance = 0.02 if task == "wave_decay" else 1e-6  # Lamb's law is that of a small viscosity
+            assert compared.error == ""
+            assert compared.student == pytest.approx(compared.program, rel=tolerance), task
+            assert compared.value.what in function_line(TASKS[task], Verdict("right"), compared)
+    finally:
+        found.close()
+
+
+def test_every_value_is_of_a_task_of_that_scene() -> None:
+    assert {TASKS[task].file for _, task in VALUES} == {"radial_sea.py", "square_sea.py", "cloth.py"}
+    assert all(TASKS[task].file == f"{scene}.py" for scene, task in VALUES)
+
+
+def test_an_endless_function_is_called_once(tmp_path: Path) -> None:
+    source = "def cloth_links(rows, cols):\n    open('calls', 'a').write('x')\n    while True: pass\n"
+    (tmp_path / "cloth.py").write_text(source)
+    saved = keep(read_files(tmp_path), tmp_path, 1, list(TASKS.values()))
+    found = SceneValues(TASKS, 0.5)
+    try:
+        for rows in (5, 6):
+            before, links = found.found, {"structural_links": 1.0, "shear_links": 1.0, "bend_links": 1.0}
+            live = {name: LiveNumber(value) for name, value in {"rows": rows, "cols": 4, **links}.items()}
+            found.ask("cloth", saved, live)
+            end = time.monotonic() + 30.0
+            while found.found is before and time.monotonic() < end:
+                time.sleep(0.02)
+            assert "endless loop" in found.found["cloth_links"].error
+        assert (tmp_path / "calls").read_text() == "x"
+    finally:
+        found.close()
+
+
+def test_a_function_without_a_number_is_left_to_its_check(tmp_path: Path) -> None:
+    (tmp_path / "cloth.py").write_text("def cloth_links(rows, cols):\n    return 1 / 0\n")
+    saved = keep(read_files(tmp_path), tmp_path, 1, list(TASKS.values()))
+    kind = scene_named("cloth")
+    loop = SimLoop(kind.make(dataclasses.replace(kind.params(), rows=5, cols=4)))
+    found = SceneValues(TASKS, 20.0)
+    try:
+        found.ask("cloth", saved, live_values(kind, loop.latest))
+        end = time.monotonic() + 60.0
+        while not found.found and time.monotonic() < end:
+            time.sleep(0.02)
+        compared = found.found["cloth_links"]
+        assert (compared.student, compared.error) == (None, "cloth.py, line 2: ZeroDivisionError: division by zero")
+        assert "program" not in function_line(TASKS["cloth_links"], Verdict("failed", compared.error), compared)
+    finally:
+        found.close()

@@ -1,0 +1,268 @@
+"""A student's folder while the lab is served: what is saved runs, what is wrong is named, and the lab goes on."""
+
+import dataclasses
+import inspect
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.lab.background_check import BackgroundCheck
+from app.lab.folder import make_folder
+from app.lab.program_check import Verdict
+from app.lab.rope_march import REFERENCE
+from app.lab.session import Session
+from app.lab.task import load_tasks
+from app.messages import Grab, Place, StudentAnswer
+from app.panel.code_panel import function_lines, headline, rope_lines
+from app.scenes.rope.parameters import Params
+from app.scenes.rope.scene import RopeScene, rows_of
+
+TASKS = load_tasks()
+HEAD = "import numpy as np\n\n"
+RIGHT = HEAD + inspect.getsource(REFERENCE["spring_force"])
+# Line of spring_force -> kind of the error and a part of what is said; each is put before the right body.
+ACCIDENTS = {
+    "while True: pass": ("endless", "endless loop"),
+    "exit()": ("ended", "calls exit()"),
+    "__import__('os')._exit(3)": ("ended", "exit status 3"),
+    "np.ones(1 << 27)": ("memory", "MiB"),
+    "for i in range(1_000_000): print(i)": ("printed", "10000 lines"),
+    "return x1 + x3": ("raised", "NameError: name 'x3' is not defined"),
+    "return np.zeros(4)": ("wrong shape", "spring_force returns an array of shape (4,)"),
+    "return 'pull'": ("wrong type", "type str"),
+    "return": ("returns nothing", "last line must be return"),
+    "return np.sqrt(-abs(x1))": ("NaN", "spring_force returns NaN"),
+    "return (": ("syntax", "SyntaxError"),
+}
+
+
+def with_line(line: str) -> str:
+    return RIGHT.replace("    r = np", f"    {line}\n    r = np")
+
+
+def wait_for(condition: Callable[[], object], seconds: float = 30.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+@pytest.fixture(scope="module")
+def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
+    """A folder of exercises that is being worked on."""
+    folder = tmp_path_factory.mktemp("lab") / "mine"
+    make_folder(folder, TASKS)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("app.lab.session.COMPILE_DELAY", 1e6)  # compiling takes seconds: see tests/stress
+        session = Session(folder, TASKS, time_limit=1.0)
+        wait_for(lambda: session.state.version == 1)
+        yield session
+        copies = session.copies
+        session.close()
+    assert not copies.exists()
+
+
+def save(session: Session, text: str, file: str = "rope.py") -> None:
+    """Save a file, and wait until it has been taken up."""
+    before = session.state.version
+    (session.folder / file).write_text(text)
+    wait_for(lambda: session.state.version > before)
+
+
+def run(scene: RopeScene, frames: int = 20) -> None:
+    """Let a rope run, with as much time for the student's as it needs."""
+    assert scene.student is not None
+    for _ in range(frames):
+        scene.advance(2)
+        wait_for(lambda: scene.student.live.answers.qsize() or not scene.student.sent)
+        scene.handle(StudentAnswer())
+
+
+def make_scene(session: Session, **values: object) -> RopeScene:
+    return RopeScene(dataclasses.replace(Params(integrator="rk4"), **values), session.rope)
+
+
+@pytest.fixture
+def right(session: Session) -> Session:
+    """The session with a right `spring_force`, and nothing else, that moves the rope."""
+    if not session.rope.versions or session.rope.versions[-1].saved.texts["rope.py"] != RIGHT.encode():
+        save(session, RIGHT)
+        wait_for(lambda: session.rope.taken == session.state.version)
+    return session
+
+
+def test_without_a_function_there_is_no_second_rope(session: Session) -> None:
+    scene = make_scene(session)
+    run(scene, 3)
+    assert scene.frame().reference is None
+    assert session.rope.report.version == 0
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"integrator": "explicit_euler", "time_step": 1 / 480},
+        {"integrator": "leapfrog", "damping": 0.0, "drag": 0.0, "floor": False},
+        {"root_swing": 0.2, "swing_period": 2.0, "time_step": 1 / 480},
+        {"units": "material", "points": 20, "length": 4.0, "time_step": 1 / 960, "friction": 0.0},
+    ],
+    ids=str,
+)
+def test_a_right_function_moves_the_rope_as_the_program_does(right: Session, values: dict[str, object]) -> None:
+    scene = make_scene(right, **values)
+    run(scene, 30)
+    frame = scene.frame()
+    assert frame.reference is not None
+    assert np.abs(frame.points[:, 2].astype(float) - 3.0).max() > 0.01  # it has moved
+    tolerance = 1e-3 if "root_swing" in values else 1e-9  # a step sees the moving root go on straight
+    assert right.rope.report.difference < tolerance
+    assert scene.time == pytest.approx(right.rope.report.times[-1])
+
+
+@pytest.mark.parametrize("law", ["clipped", "lab"])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_floor_sphere_and_mouse_are_those_of_the_program(right: Session, law: str, friction: float) -> None:
+    scene = make_scene(right, time_step=1 / 480, sphere=True, sphere_radius=0.6, contact_law=law, friction=friction)
+    assert scene.student is not None
+    scene.state.x[2] -= 2.98  # into the floor; some points are in the sphere as well
+    scene.state.v[0] = 1.0
+    scene.handles.sphere.place_at((-1.0, 0.1, 0.3))
+    scene.change_forces(scene.params)
+    scene.handle(Place("sphere", (-1.1, 0.1, 0.3)))
+    scene.handle(Grab(9, (-2.0, 0.4, 0.5)))
+    scene.student.restart(rows_of(scene.state.x), rows_of(scene.state.v))
+    start = scene.state.x.copy()
+    run(scene, 20)
+    assert scene.net.grab is not None
+    assert np.abs(scene.state.x - start).max() > 0.05
+    # A step of the student has the moving sphere where it is in the middle of the step, not at each stage.
+    assert right.rope.report.difference < 2e-5
+
+
+def test_a_wrong_function_leaves_the_program_s_rope_alone(right: Session) -> None:
+    save(right, RIGHT.replace("return stiffness", "return -stiffness"))
+    wait_for(lambda: right.rope.taken == right.state.version)
+    scene, alone = make_scene(right), RopeScene(Params(integrator="rk4"))
+    run(scene, 60)
+    alone.advance(120)
+    assert np.isfinite(right.rope.report.left_at)
+    assert np.array_equal(scene.state.x, alone.state.x)
+    assert np.isfinite(scene.frame().points).all()
+
+
+@pytest.mark.parametrize("line", ACCIDENTS)
+def test_what_goes_wrong_is_named_and_the_last_version_goes_on(right: Session, line: str) -> None:
+    working = right.rope.taken
+    start = time.monotonic()
+    save(right, with_line(line))
+    wait_for(lambda: right.state.error)
+    error = right.state.error
+    assert error is not None
+    assert error.kind == ACCIDENTS[line][0]
+    assert ACCIDENTS[line][1] in error.text
+    definition = error.kind in ("wrong shape", "wrong type", "returns nothing", "NaN")
+    ended = error.line is None and "exit status" in error.text  # there is nobody left to ask
+    assert (error.file, ended or error.line) == ("rope.py", ended or (3 if definition else 11))
+    scene = make_scene(right)
+    run(scene, 3)
+    assert right.rope.report.version == working
+    assert scene.frame().reference is not None
+    assert time.monotonic() - start < 30.0
+
+
+def test_an_error_that_comes_later_is_named_and_the_version_before_goes_on(right: Session) -> None:
+    working = right.rope.taken
+    save(right, with_line("if x2[2] < 2.9: raise ValueError('too low')"))
+    wait_for(lambda: right.state.error)  # the rope that it is tried with is lower
+    assert right.state.error is not None
+    assert (right.state.error.file, right.state.error.line) == ("rope.py", 11)
+    scene = make_scene(right)
+    run(scene, 3)
+    assert right.rope.report.version == working
+
+
+def test_a_file_of_another_scene_does_not_begin_the_rope_again(right: Session) -> None:
+    save(right, RIGHT + "\n# a new version\n")
+    wait_for(lambda: right.rope.taken == right.state.version)
+    begun: list[int] = []
+    right.rope.connect(lambda: None, lambda: begun.append(1))
+    save(right, HEAD + "def cloth_links(rows, cols):\n    return []\n", "cloth.py")
+    save(right, RIGHT + "\n# changed\n")
+    wait_for(lambda: right.rope.taken == right.state.version)
+    assert begun == [1]  # what the rope takes, it takes in order
+
+
+def test_an_answer_to_a_scene_that_was_left_is_not_taken_by_the_next(right: Session) -> None:
+    left = make_scene(right, points=7)
+    left.advance(2)
+    wait_for(lambda: right.rope.answers.qsize())
+    scene = make_scene(right)
+    scene.handle(StudentAnswer())  # to what it has not asked for
+    assert scene.frame().reference is None
+    run(scene, 3)
+    assert scene.frame().points.shape == (scene.params.points, 3)
+
+
+def test_what_is_no_folder_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="DIR"):
+        Session(tmp_path / "nothing", TASKS)
+
+
+def test_the_functions_of_a_saved_file_are_checked_as_lab_check_does(right: Session) -> None:
+    not_begun = "\n\ndef step_euler(x, v, h, acceleration):\n    ...\n"
+    save(right, RIGHT.replace("return stiffness", "return -stiffness") + not_begun)
+    save(right, HEAD + "def cloth_links(rows, cols):\n    return 1 / 0\n", "cloth.py")
+    wait_for(lambda: {"spring_force", "cloth_links"} <= set(right.check.verdicts) and not right.check.waiting)
+    verdicts = right.check.verdicts
+    spring, cloth = verdicts["spring_force"], verdicts["cloth_links"]
+    assert (spring.state, spring.mistake) == ("wrong", "sign of the spring reversed")
+    assert (cloth.state, cloth.text) == ("failed", "cloth.py, line 4: ZeroDivisionError: division by zero")
+    assert verdicts["step_euler"].state == "not begun"
+    page = function_lines(right)
+    assert 'data-function="spring_force" data-state="wrong"' in page
+    assert "Sign of the spring reversed. " in page
+    process = right.check.process
+    assert process is not None
+    process.kill()  # it is started again
+    save(right, RIGHT)
+    wait_for(lambda: right.check.verdicts.get("spring_force") == Verdict("right"))
+
+
+def test_a_check_that_is_killed_is_said_and_waits_for_nothing(tmp_path: Path) -> None:
+    (tmp_path / "rope.py").write_text("import time\ntime.sleep(60)\n")
+    check = BackgroundCheck()
+    try:
+        check.request(tmp_path, ["spring_force"], frozenset({"spring_force"}))
+        assert check.waiting
+        assert check.process is not None
+        check.process.kill()
+        wait_for(lambda: not check.waiting)
+        assert check.verdicts["spring_force"].state == "failed"
+    finally:
+        check.close()
+
+
+def test_the_panel_says_what_runs_and_what_is_wrong(right: Session) -> None:
+    scene = make_scene(right)
+    run(scene, 3)
+    text = rope_lines(right.state, right.rope.report)
+    assert "moves by <b>spring_force</b> (reference: step_rk4)" in text
+    assert "<b>Less than 1 µm</b>" in text
+    assert "polyline" not in text
+    save(right, with_line("return x1 + '<b>'"))
+    wait_for(lambda: right.state.error)
+    run(scene, 3)
+    text = rope_lines(right.state, right.rope.report)
+    assert "<b>rope.py, line 11</b>: " in text
+    assert "</b>: rope.py, line 11: " in headline(right.state, right.rope.report)
+    assert "The last version that worked goes on." in text
+    save(right, RIGHT.replace("return stiffness", "return 0.9 * stiffness"))
+    wait_for(lambda: right.rope.taken == right.state.version)
+    run(scene, 10)
+    text = rope_lines(right.state, right.rope.report)
+    assert "polyline" in text
+    assert "stopped" not in text

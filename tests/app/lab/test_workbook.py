@@ -1,0 +1,255 @@
+"""The workbook: what it keeps in answers.toml, what it refuses, and what it remembers."""
+
+import dataclasses
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from app.lab.answers import FILE, Answers, read_answers
+from app.lab.folder import make_folder
+from app.lab.live_values import LiveNumber
+from app.lab.task import Question, Task, load_tasks
+from app.lab.workbook import DONE, MAX_TEXT, Workbook, read_off
+
+TASKS = load_tasks()  # with their checks: the folder's files are made of them
+DRAFT = next(task for task in TASKS if task.name == "extra_draft")
+ODD = "Two\nlines \"\"\" \\ 波 🌊 '''"
+PREDICT, MEASURE, EXPLAIN = DRAFT.questions
+
+
+def test_a_law_that_is_no_formula_is_named() -> None:
+    assert DRAFT.guide is not None
+    broken = dataclasses.replace(DRAFT, guide=dataclasses.replace(DRAFT.guide, law=("a = {b",)))
+    with pytest.raises(ValueError, match=r"extra_draft\.toml: law: 'a = \{b' .*braces"):
+        Workbook([broken])
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    make_folder(tmp_path / "mylab", TASKS)
+    return tmp_path / "mylab"
+
+
+def answered(folder: Path, task: Task, question: Question) -> object:
+    return read_answers(folder).of(task, question)
+
+
+def test_without_a_folder_the_guides_are_shown_and_nothing_is_kept() -> None:
+    book = Workbook(TASKS)
+    assert len(book.tasks) == 22
+    assert not book.is_shown(book.task)
+    book.show_answer(book.task)
+    assert book.is_shown(book.task)
+    book.show_answer(book.task)
+    assert not book.is_shown(book.task)
+    book.go_to_scene("cloth")
+    assert book.task.item == "3.3-3"
+    book.go(10**6)
+    assert book.index == 21
+    book.go(-5)
+    assert book.index == 0
+    with pytest.raises(ValueError, match="at least one"):
+        Workbook([])
+
+
+def test_the_first_task_that_is_open_is_shown_on_another_day(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    assert len(book.tasks) == len(TASKS)
+    assert book.index == 0
+    for question, text in zip(book.task.questions, ("oil", "oil", "Archimedes: F = rho g V."), strict=True):
+        book.answer(book.task, question, text)
+    # The second task has a function and no question, and is complete here.
+    assert Workbook(TASKS, folder).task.name == "extra_draft"
+
+
+def test_the_workbook_goes_on_after_the_last_task_that_was_begun(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    euler = next(task for task in TASKS if task.name == "step_euler")
+    book.answer(euler, euler.questions[0], "It flies apart.")
+    assert Workbook(TASKS, folder).task is euler
+    for question in euler.questions[1:]:
+        book.answer(euler, question, str(question.right))
+    assert Workbook(TASKS, folder).task.name == "step_rk4"
+
+
+def test_steps_are_ticked_off_one_after_the_other(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    spring = next(task for task in TASKS if task.name == "spring_force")
+    hanging = {"damping": LiveNumber(7.0), "drag": LiveNumber(1.0), "time": LiveNumber(20.0, "s")}
+    book.watch(spring, hanging)
+    assert not book.done(spring)
+    book.watch(spring, {**hanging, "damping": LiveNumber(0.0), "drag": LiveNumber(0.0)})
+    assert book.done(spring) == {1}
+    book.watch(spring, hanging)
+    assert book.done(spring) == {1, 2}
+
+
+@pytest.mark.parametrize(
+    ("question", "text", "kept"),
+    [
+        (PREDICT, "as before", "as before"), (MEASURE, "0,031", 0.031), (MEASURE, "31 mm", 0.031),
+        (MEASURE, " 3.1e-2 m ", 0.031), (MEASURE, "", None), (EXPLAIN, ODD, ODD),
+        (EXPLAIN, "x" * MAX_TEXT, "x" * MAX_TEXT), (EXPLAIN, "[draft]\nmeasure = 3", "[draft]\nmeasure = 3"),
+    ],
+)  # fmt: skip
+def test_answers_are_kept(folder: Path, question: Question, text: str, kept: object) -> None:
+    book = Workbook(TASKS, folder)
+    book.answer(DRAFT, question, text)
+    assert answered(folder, DRAFT, question) == book.answers.of(DRAFT, question) == kept
+    assert read_answers(folder).error == ""
+
+
+@pytest.mark.parametrize(
+    ("question", "text", "reason"),
+    [
+        (PREDICT, "sideways", "none of the choices"), (MEASURE, "a lot", "number in m"), (MEASURE, "1,000", "comma"),
+        (MEASURE, "5 kg", "no unit"), (MEASURE, "1e999", "kept"), (MEASURE, "nan", "number"),
+        (EXPLAIN, "x" * (MAX_TEXT + 1), "at most 4000"), (EXPLAIN, "a\x07b", "control"), (EXPLAIN, "\ud800", "control"),
+    ],
+)  # fmt: skip
+def test_what_is_not_allowed_is_refused_in_one_line_and_changes_nothing(folder: Path, question, text, reason) -> None:
+    book = Workbook(TASKS, folder)
+    before = (folder / FILE).read_bytes()
+    with pytest.raises(ValueError, match=reason) as error:
+        book.answer(DRAFT, question, text)
+    assert "\n" not in str(error.value)
+    assert (folder / FILE).read_bytes() == before
+
+
+def test_a_prediction_comes_before_the_answer_and_stays(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    with pytest.raises(ValueError, match="prediction first"):
+        book.show_answer(DRAFT)
+    book.answer(DRAFT, PREDICT, "higher")
+    book.show_answer(DRAFT)
+    with pytest.raises(ValueError, match="stays as it is"):
+        book.answer(DRAFT, PREDICT, "deeper")
+    again = Workbook(TASKS, folder)
+    assert again.is_shown(DRAFT)
+    assert answered(folder, DRAFT, PREDICT) == "higher"
+
+
+def test_what_is_seen_to_be_done_is_ticked_off_for_good(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    thin, thick = ({"spill": "layer", "thickness": LiveNumber(d, "m")} for d in (0.2, 0.6))
+    book.watch(DRAFT, thin)
+    assert not book.done(DRAFT)
+    book.watch(DRAFT, thick)
+    assert book.done(DRAFT) == {1}
+    written = (folder / FILE).stat().st_mtime_ns
+    book.watch(DRAFT, thick)
+    book.watch(DRAFT, thin)
+    assert (folder / FILE).stat().st_mtime_ns == written
+    assert Workbook(TASKS, folder).done(DRAFT) == {1}
+    (folder / FILE).write_text(f'[extra_draft]\n{DONE} = "x 99999999999 1 ²"\n')
+    book.refresh()
+    assert book.done(DRAFT) == {1}
+
+
+def test_only_one_value_changes_and_comments_and_edits_stay(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    path = folder / FILE
+    text = path.read_text().replace('name = ""', 'name = "Ada"  # mine')
+    path.write_text(text.replace("[extra_draft]", "# my own note\n[extra_draft]"))
+    book.answer(DRAFT, MEASURE, "0.03")
+    book.answer(DRAFT, EXPLAIN, "One line.\n# no comment\nmeasure = 4")
+    book.answer(DRAFT, MEASURE, "0.031")
+    book.keep("extra_draft", DONE, "1")
+    now = path.read_text()
+    assert "# my own note\n[extra_draft]" in now
+    assert 'name = "Ada"  # mine' in now
+    assert read_answers(folder).name == "Ada"
+    assert answered(folder, DRAFT, MEASURE) == 0.031
+    assert answered(folder, DRAFT, EXPLAIN) == "One line.\n# no comment\nmeasure = 4"
+    assert now.count("measure = 0.031") == 1
+    assert len(now.splitlines()) == len(text.splitlines()) + 1 + 4  # the note, three lines of text, what was done
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", 'extra_draft = {measure = 1}\nname = "Ada"\n', '[top_fluid]\nlaw = """\n[extra_draft]\nmeasure = 2"""\n',
+     "[extra_draft]\nmeasure = [\n1,\n2]\n", "['extra_draft']\nmeasure = 1\n"],
+)  # fmt: skip
+def test_a_file_written_in_another_way_gets_the_answer_too(folder: Path, text: str) -> None:
+    (folder / FILE).write_text(text)
+    before = read_answers(folder)
+    Workbook(TASKS, folder).answer(DRAFT, MEASURE, "0.031")
+    after = read_answers(folder)
+    assert after.error == ""
+    assert answered(folder, DRAFT, MEASURE) == 0.031
+    assert after.name == before.name
+    left = {key: value for key, value in before.values.items() if key != ("extra_draft", "measure")}
+    assert {key: after.values[key] for key in left} == left
+
+
+def test_a_broken_file_is_said_and_never_written_over(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    (folder / FILE).write_text("[extra_draft\nmine")
+    with pytest.raises(ValueError, match="Nothing is written until this is repaired"):
+        book.answer(DRAFT, MEASURE, "0.031")
+    assert (folder / FILE).read_text() == "[extra_draft\nmine"
+    book.refresh()
+    assert FILE in book.answers.error
+
+
+def test_a_file_that_was_removed_is_made_again_and_a_folder_that_is_gone_is_an_error(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    (folder / FILE).unlink()
+    book.answer(DRAFT, MEASURE, "0.031")
+    assert answered(folder, DRAFT, MEASURE) == 0.031
+    folder.rename(folder.with_name("moved"))
+    with pytest.raises(OSError, match=r"."):
+        book.answer(DRAFT, MEASURE, "0.032")
+
+
+def test_changes_from_two_threads_are_both_kept(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    ticking = threading.Thread(target=lambda: [book.keep("extra_draft", DONE, str(i)) for i in range(10)])
+    ticking.start()
+    for i in range(10):
+        book.answer(DRAFT, EXPLAIN, f"Sentence number {i}.")
+    ticking.join()
+    assert book.answers.values["extra_draft", DONE] == "9"
+    assert answered(folder, DRAFT, EXPLAIN) == "Sentence number 9."
+
+
+def test_a_look_at_the_file_that_began_before_a_change_does_not_undo_it(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    book = Workbook(TASKS, folder)
+    (folder / FILE).write_text("[extra_draft]\nmeasure = 1\n")
+    has_read = threading.Event()
+
+    def read_slowly(folder: Path) -> Answers:
+        found = read_answers(folder)
+        if threading.current_thread() is looking:
+            has_read.set()
+            time.sleep(0.2)
+        return found
+
+    looking = threading.Thread(target=book.refresh)
+    monkeypatch.setattr("app.lab.workbook.read_answers", read_slowly)
+    looking.start()
+    assert has_read.wait(10.0)
+    book.answer(DRAFT, MEASURE, "2")
+    looking.join()
+    assert book.answers.of(DRAFT, MEASURE) == 2.0
+
+
+def test_edits_of_the_file_are_seen(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    revision = book.revision
+    book.refresh()
+    assert book.revision == revision
+    (folder / FILE).write_text("[extra_draft]\nmeasure = 7\n")
+    book.refresh()
+    assert book.revision == revision + 1
+    assert book.verdict(DRAFT, MEASURE).state == "wrong"
+
+
+def test_what_is_read_off_is_a_number_of_the_scene() -> None:
+    assert read_off(MEASURE, {"added_draft": LiveNumber(0.0310244, "m")}) == "0.0310244"
+    assert read_off(MEASURE, {}) == ""
+    assert read_off(MEASURE, {"added_draft": LiveNumber(float("nan"), "m")}) == ""

@@ -1,0 +1,200 @@
+"""The lab guide and the workbook in the panel, on a viser server without a browser."""
+
+import asyncio
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from app.lab.answers import FILE, read_answers
+from app.lab.folder import make_folder
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
+from app.panel.guide import HIDE, SET_UP, SHOW, UNANSWERED, Guide, QuestionWidgets
+from app.server.viewer import Viewer
+from tests.app.server.test_viewer import wait_for
+
+TASKS = load_tasks()
+
+
+def does(callback: Any, value: object = None) -> None:
+    """What viser does when a browser sets a widget."""
+    asyncio.run(callback(SimpleNamespace(target=SimpleNamespace(value=value), client_id=1, client=None)))
+
+
+def opened(workbook: Workbook, scene: str = "rope") -> Viewer:
+    viewer = Viewer("127.0.0.1", 0, workbook=workbook)
+    viewer.open(scene)
+    return viewer
+
+
+@pytest.fixture
+def plain() -> Iterator[Viewer]:
+    viewer = opened(Workbook(TASKS))
+    yield viewer
+    viewer.shut()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    make_folder(tmp_path / "mylab", TASKS)
+    return tmp_path / "mylab"
+
+
+@pytest.fixture
+def student(folder: Path) -> Iterator[Viewer]:
+    viewer = opened(Workbook(TASKS, folder))
+    yield viewer
+    viewer.shut()
+
+
+def guide_of(viewer: Viewer) -> Guide:
+    assert viewer.panel.guide is not None
+    return viewer.panel.guide
+
+
+def show(viewer: Viewer, name: str) -> Guide:
+    """Show a task."""
+    guide = guide_of(viewer)
+    guide.workbook.go(next(i for i, task in enumerate(guide.workbook.tasks) if task.name == name))
+    wait_for(lambda: guide.shown is not None and guide.shown.name == name)
+    return guide
+
+
+def widgets_of(guide: Guide, key: str) -> QuestionWidgets:
+    return next(widgets for widgets in guide.questions if widgets.question.key == key)
+
+
+def test_the_guide_of_a_scene_begins_with_its_first_question_and_turns(plain: Viewer) -> None:
+    guide = guide_of(plain)
+    assert guide.shown is not None
+    assert guide.shown.item == "3.2-1"
+    assert "Complete the rope" in guide.text.content
+    does(guide.on_turn, "Next")
+    wait_for(lambda: "Euler" in guide.text.content)
+    assert guide.chooser.value.startswith("3.2-2")
+    does(guide.on_turn, "Previous")
+    wait_for(lambda: "Complete the rope" in guide.text.content)
+    does(guide.on_chooser, guide.titles[0])
+    wait_for(lambda: "Which fluid is on top" in guide.text.content)
+    assert not guide.questions
+
+
+def test_a_task_is_set_up_in_its_scene_and_its_answer_follows_the_parameters(plain: Viewer) -> None:
+    guide = show(plain, "step_euler")
+    does(guide.on_tool, SHOW)
+    wait_for(lambda: SET_UP in guide.answer.content)  # leapfrog runs, so that the numbers are of something else
+    assert HIDE in guide.tools.options
+    does(guide.on_tool, SET_UP)
+    wait_for(lambda: plain.scene.params.integrator == "explicit_euler")
+    assert plain.scene.params.stiffness == plain.panel.params.stiffness == 200.0
+    assert plain.panel.preset.value == "Lab code: 10 points (changed)"
+    wait_for(lambda: "with 200\u00a0N/m it has" in guide.answer.content)
+    assert "<math" in guide.answer.content
+    plain.panel.set("stiffness", 300.0)
+    wait_for(lambda: "with 300\u00a0N/m it has" in guide.answer.content)
+    does(guide.on_tool, SHOW)
+    wait_for(lambda: "math" not in guide.answer.content)
+
+
+def test_a_task_of_another_scene_opens_it_and_stays_the_shown_one(plain: Viewer) -> None:
+    guide = show(plain, "cloth_links")
+    does(guide.on_tool, SET_UP)
+    wait_for(lambda: plain.is_open and plain.panel.kind.name == "cloth")
+    assert plain.scene.params == type(plain.scene.params)()
+    again = guide_of(plain)
+    assert again.shown is not None
+    assert again.shown.name == "cloth_links"
+    # The set-up of a task is not what the scene opens with later.
+    assert "cloth" not in plain.first_params
+
+
+def test_a_student_predicts_measures_and_explains(student: Viewer, folder: Path) -> None:
+    guide = show(student, "step_euler")
+    does(guide.on_tool, SHOW)
+    wait_for(lambda: "Write your prediction first" in guide.answer.content)
+    does(widgets_of(guide, "predict").on_field, "It flies apart.")
+    widgets_of(guide, "predict").flush(float("inf"))
+    number = widgets_of(guide, "stiffness")
+    does(number.on_field, "a lot")
+    wait_for(lambda: "is not kept: write a number in N/m" in number.line.content)
+    does(number.on_field, "720")
+    wait_for(lambda: "At that stiffness the rope flies apart" in number.line.content)
+    assert "Not right" in number.line.content
+    does(guide.on_tool, SET_UP)
+    wait_for(lambda: student.scene.params.integrator == "explicit_euler")
+    student.panel.set("stiffness", 440.0)
+    wait_for(lambda: 'data-done="yes"' in guide.text.content)
+    assert number.reader is not None
+    wait_for(lambda: number.reader is not None and number.reader.label == "Read off: 440 N/m")
+    does(number.on_read_off)
+    wait_for(lambda: "Right." in number.line.content)
+    assert number.field.value == "440"
+    does(guide.on_tool, SHOW)
+    wait_for(lambda: "<math" in guide.answer.content)
+    assert widgets_of(guide, "predict").field.disabled
+    kept = read_answers(folder).values
+    assert kept["step_euler", "predict"] == "It flies apart."
+    assert kept["step_euler", "stiffness"] == 440.0
+    assert kept["step_euler", "done"] == "1"
+
+
+def test_everything_is_there_again_on_another_day_and_an_editor_is_seen(student: Viewer, folder: Path) -> None:
+    guide = show(student, "step_rk4")
+    does(widgets_of(guide, "predict").on_field, "higher")
+    does(widgets_of(guide, "evaluations").on_field, "4")
+    student.shut()
+    other = opened(Workbook(TASKS, folder))
+    try:
+        again = show(other, "step_rk4")
+        assert widgets_of(again, "predict").field.value == "higher"
+        assert widgets_of(again, "evaluations").field.value == "4"
+        assert widgets_of(again, "stiffness").field.value == ""
+        (folder / FILE).write_text("[step_rk4]\nevaluations = 5\n")
+        wait_for(lambda: widgets_of(again, "evaluations").field.value == "5")
+        assert widgets_of(again, "predict").field.value == UNANSWERED
+        (folder / FILE).write_text("[step_rk4\n")
+        wait_for(lambda: "answers.toml" in again.answer.content)
+    finally:
+        other.shut()
+
+
+def test_a_text_is_kept_when_the_typing_pauses_and_when_the_task_is_left(student: Viewer, folder: Path) -> None:
+    guide = show(student, "reflectance")
+    text = widgets_of(guide, "explain")
+    does(text.on_field, "Hardly any")
+    does(text.on_field, "Hardly any light comes")
+    assert ("reflectance", "explain") not in read_answers(folder).values or not read_answers(folder).values[
+        "reflectance", "explain"
+    ]
+    does(guide.on_turn, "Next")
+    wait_for(lambda: guide.shown is not None and guide.shown.name != "reflectance")
+    assert read_answers(folder).values["reflectance", "explain"] == "Hardly any light comes"
+    again = widgets_of(show(student, "reflectance"), "explain")
+    assert again.field.value == "Hardly any light comes"
+    does(again.on_field, "x" * 4500)
+    again.flush(float("inf"))
+    wait_for(lambda: "at most 4000 characters" in again.line.content)
+    assert read_answers(folder).values["reflectance", "explain"] == "Hardly any light comes"
+
+
+def test_a_folder_that_cannot_be_written_is_said(student: Viewer, folder: Path) -> None:
+    guide = show(student, "step_rk4")
+    folder.rename(folder.with_name("moved"))
+    choice = widgets_of(guide, "predict")
+    does(choice.on_field, "higher")
+    wait_for(lambda: "answers.toml could not be written: No such file" in choice.line.content)
+
+
+def test_what_could_not_be_ticked_off_is_said_until_it_can(student: Viewer, folder: Path) -> None:
+    guide = show(student, "step_euler")
+    does(guide.on_tool, SET_UP)
+    wait_for(lambda: student.scene.params.integrator == "explicit_euler")
+    moved = folder.rename(folder.with_name("moved"))
+    student.panel.set("stiffness", 440.0)
+    wait_for(lambda: "could not be written" in guide.answer.content)
+    moved.rename(folder)
+    wait_for(lambda: 'data-done="yes"' in guide.text.content)
+    wait_for(lambda: "could not be written" not in guide.answer.content)

@@ -1,0 +1,85 @@
+"""A replay: one page that holds the frames, the parameters and the plots."""
+
+import base64
+import re
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+import zstandard
+
+from app.panel.recorder import Recorder
+from app.scenes import scene_named
+from app.server.loop import SimLoop
+from app.server.replay_file import BITS, MAX_FRAMES, replay_html, rounded, thinned
+
+DURATION = 2.0  # [s]
+
+
+@pytest.fixture(scope="module")
+def recorded() -> Any:
+    kind = scene_named("rope")
+    loop = SimLoop(kind.make(kind.params(points=7)), audience=lambda: 1)
+    recorder, rows, wall = Recorder(), [], 0.0
+    while wall < DURATION:
+        loop.tick(1 / 30)
+        wall += 1 / 30 + 1e-6
+        recorder.note(loop.latest, wall)
+        rows += [loop.plot_rows.popleft() for _ in range(len(loop.plot_rows))]
+    return kind, recorder.kept(), rows
+
+
+@pytest.fixture(scope="module")
+def page(recorded: Any) -> str:
+    return replay_html(*recorded)
+
+
+def content(page: str) -> dict[str, Any]:
+    """The recording within a page, in viser's format: a length, then zstandard, in it a length and msgpack."""
+    data = re.search(r'__VISER_EMBED_DATA__="([^"]*)"', page)
+    assert data is not None
+    raw = zstandard.ZstdDecompressor().decompress(base64.b64decode(data[1])[8:])
+    return msgspec.msgpack.decode(raw[8 : 8 + int.from_bytes(raw[:8], "little")])
+
+
+def test_the_page_holds_every_frame_and_its_time(recorded: Any, page: str) -> None:
+    _, frames, _ = recorded
+    found = content(page)
+    times = sorted({time for time, message in found["messages"] if message.get("name") == "/points"})
+    assert found["durationSeconds"] == pytest.approx(frames[-1].wall - frames[0].wall)
+    assert len(times) == len(frames)
+
+
+def test_the_page_says_what_it_shows_and_runs_no_text_of_ours(recorded: Any, page: str) -> None:
+    kind, frames, _ = recorded
+    assert f"<title>Springtide: {kind.title}</title>" in page
+    assert f"t = {frames[0].time:.2f} to {frames[-1].time:.2f} s" in page
+    about = page[page.index("springtide-about") :]
+    assert "<td>Points</td><td>7 </td>" in about
+    assert about.count("<svg") == len(kind.plots)
+    assert "src=" not in about
+
+
+def test_rounding_keeps_what_is_seen_and_leaves_other_arrays() -> None:
+    rng = np.random.default_rng(1)
+    points = (rng.uniform(-1, 1, (500, 3)) * (100.0, 3.0, 0.01)).astype(np.float32)
+    kept = np.asarray(rounded(points.data))
+    assert (np.abs(kept - points).max(axis=0) <= 0.5**BITS * np.abs(points).max(axis=0) * 1.0001).all()
+    assert kept.dtype == np.float32
+    assert len(np.unique(kept[:, 0])) < len(np.unique(points[:, 0]))
+    faces = np.arange(12, dtype=np.uint32).reshape(4, 3)
+    assert (np.asarray(rounded(faces.data)) == faces).all()
+
+
+def test_long_recordings_are_thinned_evenly(recorded: Any) -> None:
+    _, frames, _ = recorded
+    many = [frames[0]] * (3 * MAX_FRAMES)
+    assert len(thinned(many)) == MAX_FRAMES
+    big = [frames[0]._replace(size=1_000_000)] * 200
+    assert sum(kept.size for kept in thinned(big)) <= 50e6
+
+
+def test_without_a_frame_it_says_so(recorded: Any) -> None:
+    with pytest.raises(ValueError, match="nothing has been recorded yet"):
+        replay_html(recorded[0], (), ())

@@ -1,0 +1,57 @@
+"""`springtide lab DIR` as the server runs it: what is saved moves the rope, and nothing of it stops the lab."""
+
+import inspect
+import time
+from pathlib import Path
+
+import pytest
+
+from app.lab.folder import make_folder
+from app.lab.rope_march import REFERENCE
+from app.lab.session import Session
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
+from app.scenes import scene_named
+from app.scenes.race.parameters import Params
+from app.server.viewer import Viewer
+from tests.app.server.test_viewer import wait_for
+
+RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
+
+
+def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.lab.session.COMPILE_DELAY", 1e6)
+    monkeypatch.setattr(Viewer, "audience", lambda self: 1)
+    tasks, folder = load_tasks(), tmp_path / "mine"
+    make_folder(folder, tasks)
+    session = Session(folder, tasks, time_limit=1.0)
+    viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
+    try:
+        wait_for(
+            lambda: session.rope.taken == 1
+        )  # what the new folder holds; to begin again with it is no start of a run
+        viewer.open("rope")
+        loop = viewer.loop
+        assert loop.latest.frame.reference is None
+        (folder / "rope.py").write_text(RIGHT)
+        wait_for(lambda: loop.latest.frame.reference is not None)
+        assert loop.counts["starts"] == 1  # both ropes began again
+        (folder / "rope.py").write_text(RIGHT.replace("    r = np", "    while True: pass\n    r = np"))
+        wait_for(lambda: session.state.version == 3)
+        ticks, started = loop.counts["ticks"], time.monotonic()
+        wait_for(lambda: session.state.error is not None)
+        waited = time.monotonic() - started
+        assert session.state.error is not None
+        assert session.state.error.kind == "endless"
+        assert loop.counts["ticks"] - ticks > 3 * waited  # the loop of the scene goes on meanwhile
+        assert not loop.halted
+        assert loop.latest.frame.reference is not None
+        viewer.make_scene(scene_named("race"), Params(), viewer.commands.put)  # which runs nothing of the student's
+        (folder / "rope.py").write_text(RIGHT + "\n# once more\n")
+        wait_for(lambda: session.rope.taken == 4)
+        assert loop.counts["starts"] == 1
+    finally:
+        viewer.shut()
+        session.close()

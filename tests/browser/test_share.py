@@ -1,0 +1,90 @@
+"""Links, set-ups and recordings in the page."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from urllib.parse import quote
+
+import pytest
+
+from app.scenes import NAMES, scene_named
+from app.server.viewer import Viewer
+from tests.browser.conftest import Tab
+
+SCENE = "rope"
+
+
+@pytest.fixture
+def opened(shown: tuple[Viewer, Tab]) -> tuple[Viewer, Tab]:
+    """The folder, unfolded."""
+    _, tab = shown
+    if not tab.page.get_by_role("button", name="Copy link").is_visible():
+        tab.page.get_by_role("button", name="Record and share", exact=True).click()
+        tab.wait(lambda: tab.page.get_by_role("button", name="Copy link").is_visible(), 20)
+    return shown
+
+
+def load(tab: Tab, path: Path, content: object) -> None:
+    """Choose a file in the page."""
+    path.write_text(content if isinstance(content, str) else json.dumps(content), "utf-8")
+    tab.page.locator("[data-springtide-load]").set_input_files(str(path))
+
+
+def test_a_link_is_taken_after_a_question_and_made_again(
+    opened: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
+) -> None:
+    """With a second visitor, who comes by a link."""
+    lab, tab = opened
+    open_tab(lab.port, query="&scene=rope&stiffness=2k&time_step=1/600&camera=3,-4,2,0,0,1.5")
+    base = f"http://127.0.0.1:{lab.port}/"
+    button = tab.page.get_by_role("button", name="Open it for all")
+    tab.wait(button.is_visible, 60)
+    assert vars(lab.panel.params)["stiffness"] == 800.0
+    button.click()
+    tab.wait(lambda: vars(lab.panel.params)["stiffness"] == 2000.0, 20)
+    assert vars(lab.panel.params)["time_step"] == 1 / 600
+    # The link that is made has the same parameters, and the camera of the browser that asks.
+    tab.wait(lambda: len({tuple(c.camera.position.round(2)) for c in lab.server.get_clients().values()}) == 2, 30)
+    tab.page.get_by_role("button", name="Copy link").click()
+    words = f"{base}?scene=rope&time_step={quote('1/600', safe='')}&stiffness=2000&camera="
+    tab.wait(lambda: tab.page.locator(".springtide-link").count() > 0, 20)
+    link = tab.wait(lambda: tab.page.locator(".springtide-link").get_attribute("href"), 20)
+    assert link.startswith(words)
+    assert not link.endswith("camera=3,-4,2,0,0,1.5")
+
+
+def test_a_file_is_loaded_or_refused_in_one_line(opened: tuple[Viewer, Tab], tmp_path: Path) -> None:
+    lab, tab = opened
+    load(tab, tmp_path / "a.json", {"scene": "rope", "parameters": {"points": 23}})
+    tab.wait(lambda: vars(lab.panel.params)["points"] == 23, 20)
+    for content, words in (
+        ({"scene": "rope", "parameters": {"points": -4}}, "points: -4 is not allowed"),
+        ("<script>alert(1)</script>", "not a file of JSON"),
+        ("x" * 100_000, "not a file of JSON"),
+    ):
+        load(tab, tmp_path / "b.json", content)
+        tab.wait(lambda words=words: words in tab.page.locator("body").inner_text(), 20)
+        # Closed, as it would cover what other tests click.
+        notice = tab.page.locator(".mantine-Notification-root", has_text="not opened")
+        notice.get_by_role("button").click()
+        tab.wait(lambda notice=notice: notice.count() == 0, 20)
+    assert vars(lab.panel.params)["points"] == 23
+
+
+def test_the_timeline_shows_what_was(opened: tuple[Viewer, Tab]) -> None:
+    lab, tab = opened
+    tab.wait(lambda: len(lab.panel.recorder.frames) > 10, 30)
+    tab.page.get_by_role("button", name="◀ Back").click()
+    tab.wait(lambda: lab.panel.recorder.shown is not None and not lab.loop.running, 20)
+    shown = lab.panel.recorder.shown
+    assert shown is not None
+    tab.wait(lambda: f"t = {shown.time:.2f} s of the recording" in tab.page.locator("body").inner_text(), 20)
+    tab.page.get_by_role("button", name="Now", exact=True).click()
+    tab.wait(lambda: lab.panel.recorder.shown is None, 20)
+
+
+def test_no_preset_has_a_name_that_the_address_bar_would_change() -> None:
+    """viser's client writes the address anew without escaping it."""
+    for name in NAMES:
+        for preset in scene_named(name).presets:
+            assert not set(preset) & set("&+#%="), preset

@@ -1,0 +1,52 @@
+"""`springtide lab DIR` in a real browser: the rope moves by what a student saves, and the panel says what is wrong."""
+
+import inspect
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.lab.folder import make_folder
+from app.lab.rope_march import REFERENCE
+from app.lab.session import Session
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
+from app.messages import Pause, Play
+from app.scenes.rope.parameters import Params
+from app.server.viewer import Viewer
+
+RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
+
+
+@pytest.mark.stress
+def test_a_wrong_turn_and_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, open_tab) -> None:
+    monkeypatch.setattr("app.lab.session.COMPILE_DELAY", 1e6)  # compiling takes seconds: see tests/stress
+    tasks, folder = load_tasks(), tmp_path / "mine"
+    make_folder(folder, tasks)
+    session = Session(folder, tasks)
+    viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
+    try:
+        viewer.open("rope", Params(integrator="rk4"))
+        tab = open_tab(viewer.port)
+        tab.wait(lambda: len(tab.vertices("/rope")) > 0)
+        assert len(tab.vertices("/reference")) == 0
+        (folder / "rope.py").write_text(RIGHT)
+        start = time.monotonic()
+        tab.wait(lambda: len(tab.vertices("/reference")) > 0)
+        print(f"from saving to the rope moving by it in the page: {time.monotonic() - start:.2f} s")
+        viewer.loop.commands.put(Pause())
+        tab.wait(lambda: np.abs(tab.vertices("/rope").mean(0) - tab.vertices("/reference").mean(0)).max() < 1e-3)
+        frame = viewer.loop.latest.frame
+        assert np.allclose(frame.points, frame.reference, atol=1e-6)  # two ropes in one place
+        viewer.loop.commands.put(Play())
+        (folder / "rope.py").write_text(RIGHT.replace("    r = np", "    r = nq\n    r = np"))
+        tab.wait(lambda: tab.page.get_by_text("rope.py, line 11: NameError: name 'nq' is not defined").count())
+        assert tab.page.get_by_text("The last version that worked goes on.").count() == 1
+        (folder / "rope.py").write_text(RIGHT)
+        tab.wait(lambda: tab.page.locator("[data-function=spring_force][data-state=right]").count())
+        assert tab.page.get_by_text("NameError").count() == 0
+        assert tab.errors == []
+    finally:
+        viewer.shut()
+        session.close()

@@ -1,0 +1,82 @@
+"""A student goes through one task of the workbook in a real browser: predict, set up, measure, explain, come back."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.lab.answers import read_answers
+from app.lab.folder import make_folder
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
+from app.messages import Pause
+from app.server.viewer import Viewer
+from tests.browser.conftest import Tab
+
+TASKS = load_tasks()
+TASK = next(task for task in TASKS if task.name == "spring_force")
+
+
+@pytest.fixture
+def student(one_page: tuple[Viewer, Tab], tmp_path: Path) -> Iterator[tuple[Viewer, Tab, Path]]:
+    """The page that all modules share, with the workbook of a new folder."""
+    lab, tab = one_page
+    folder = tmp_path / "mylab"
+    make_folder(folder, TASKS)
+    tab.errors.clear()
+    lab.workbook = Workbook(TASKS, folder)
+    tab.follow(lab, "rope")
+    yield lab, tab, folder
+    lab.workbook = None
+    lab.loop.commands.put(Pause())
+
+
+def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path]) -> None:
+    lab, tab, folder = student
+    page = tab.page
+    tab.wait(lambda: page.locator(".springtide-guide").count())
+
+    def kept(key: str) -> object:
+        return read_answers(folder).values.get((TASK.name, key), "")
+
+    page.get_by_label("Task", exact=True).click()
+    page.get_by_role("option", name="3.2-1 The force of a damped spring").click()
+    text = page.get_by_role("textbox", name="Predict")
+    tab.wait(text.count)
+    page.get_by_role("button", name="Show the answer").click()
+    tab.wait(lambda: "prediction first" in page.locator(".springtide-refusal").inner_text())
+
+    text.click()
+    page.keyboard.type("It swings for ever, r n space and all.")  # none of its keys may play, step or reset the lab
+    tab.wait(lambda: kept("predict") == "It swings for ever, r n space and all.")
+    assert lab.loop.latest.status.starts == 0
+    assert lab.loop.running
+
+    page.get_by_role("button", name="Set this up").click()
+    tab.wait(lambda: lab.panel.preset.value == "Lab code: 10 points")
+    lab.panel.set("stiffness", 8000.0)
+    lab.panel.set("time_step", 1 / 500)
+
+    number = page.get_by_role("textbox", name="Measure [m]")
+    number.fill("much")
+    number.press("Enter")
+    tab.wait(lambda: "is not kept" in page.locator(".springtide-refusal").inner_text())
+    number.fill("5625e-4")
+    number.press("Enter")
+    tab.wait(lambda: "stretch of the whole rope" in page.locator(".springtide-verdict").last.inner_text())
+    page.get_by_role("button", name="Read off: ").click()
+    tab.wait(lambda: isinstance(kept("stretch"), float) and kept("stretch") != 0.5625)
+    number.fill("0,1125")
+    number.press("Enter")
+    tab.wait(lambda: kept("stretch") == 0.1125)
+    page.get_by_role("button", name="Show the answer").click()
+    tab.wait(lambda: page.locator(".springtide-answer math").count())
+
+    page.reload()
+    tab.wait(lambda: page.locator(".springtide-guide").count())
+    tab.wait(lambda: page.get_by_role("textbox", name="Measure [m]").input_value() == "0.1125")
+    assert page.get_by_role("textbox", name="Predict").input_value() == "It swings for ever, r n space and all."
+    assert page.get_by_role("textbox", name="Predict").is_disabled()
+    assert page.locator(".springtide-answer math").count() == 2
+    assert "The top spring carries all nine points" in page.locator(".springtide-verdict").last.inner_text()
+    assert tab.errors == []

@@ -1,0 +1,114 @@
+"""Checks of arguments: what passes, what does not, and what the error says."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sim import validation as v
+
+NOT_NUMBERS = (math.nan, True, np.True_, "1", None, [1.0], 1j)
+
+
+def refused(call, *arguments, **options) -> str:
+    with pytest.raises(ValueError, match=r"^a: .* is not allowed; allowed: \S") as error:
+        call("a", *arguments, **options)
+    return str(error.value).partition("allowed: ")[2]
+
+
+def test_an_error_is_the_name_the_value_and_what_is_allowed():
+    assert str(v.argument_error("mass", -1.0, "above 0 kg")) == "mass: -1.0 is not allowed; allowed: above 0 kg"
+
+
+@pytest.mark.parametrize("value", NOT_NUMBERS)
+def test_what_is_no_number_is_nan_and_refused(value):
+    assert math.isnan(v.as_float(value))
+    for call, more in (
+        (v.check_number, (0.0, 1.0, "m")),
+        (v.check_positive, ("m",)),
+        (v.check_not_negative, ("m",)),
+        (v.check_within, (0.0, 1.0)),
+        (v.check_finite, ()),
+    ):
+        refused(call, value, *more)
+
+
+@pytest.mark.parametrize("value", [1, 1.0, np.int8(1), np.float32(1.0)])
+def test_numbers_of_any_kind_are_numbers(value):
+    for found in (
+        v.check_number("a", value, 1.0, 1.0, "m"),
+        v.check_positive("a", value, "m"),
+        v.check_not_negative("a", value, "m"),
+        v.check_within("a", value, 1.0, 1.0),
+        v.check_finite("a", value),
+    ):
+        assert found == 1.0
+        assert type(found) is float
+    assert v.as_float(10**400) == math.inf
+
+
+def test_a_number_lies_in_its_range_with_the_ends_or_without():
+    assert v.check_number("a", 0.0, 0.0, 2.0, "m") == 0.0
+    assert v.check_number("a", 2.0, 0.0, 2.0, "m") == 2.0
+    assert v.check_number("a", 1e-300, 0.0, 2.0, "m", above=True) == 1e-300
+    assert refused(v.check_number, 2.1, 0.0, 2.0, "m") == "from 0 to 2 m"
+    assert refused(v.check_number, -0.1, 0.0, math.inf, "m") == "from 0 m"
+    assert refused(v.check_number, 0.0, 0.0, math.inf, "m", above=True) == "above 0 m"
+    assert refused(v.check_number, math.inf, -math.inf, math.inf, "") == "a finite number"
+
+
+def test_above_0_not_below_0_within_and_finite():
+    assert refused(v.check_positive, 0.0, "m") == "a number above 0 m"
+    assert refused(v.check_positive, math.inf, "m") == "a number above 0 m"
+    assert v.check_positive("a", math.inf, "m", allow_infinite=True) == math.inf
+    assert refused(v.check_positive, -1.0, "m", allow_infinite=True) == "a number above 0 m, or inf"
+    assert v.check_not_negative("a", 0.0, "m") == 0.0
+    assert refused(v.check_not_negative, -1e-300, "m") == "0 or above, finite m"
+    assert refused(v.check_not_negative, math.inf, "m") == "0 or above, finite m"
+    assert v.check_within("a", 3.0, 2.0, 3.0) == 3.0
+    assert v.check_within("a", math.inf, 2.0, math.inf) == math.inf
+    assert refused(v.check_within, 3.1, 2.0, 3.0, "m") == "2 to 3 m"
+    assert refused(v.check_within, 1.9, 2.0, 3.0) == "2 to 3"
+    assert v.check_finite("a", -1e300) == -1e300
+    assert refused(v.check_finite, -math.inf, "m") == "a finite number m"
+
+
+def test_whole_numbers_are_whole():
+    assert all(map(v.is_whole_number, (0, -3, np.int64(2), 10**400)))
+    assert not any(map(v.is_whole_number, (0.0, True, "1", None, np.float64(1.0))))
+
+
+def test_choices_and_vectors():
+    assert v.check_choice("a", "x", ["x", "y"]) == "x"
+    assert refused(v.check_choice, "z", ["x", "y"]) == "one of x, y"
+    refused(v.check_choice, None, ["x"])
+    refused(v.check_choice, ["x"], ["x"])
+    assert v.check_vector("a", np.arange(3)) == (0.0, 1.0, 2.0)
+    assert v.check_vector("a", [1, 2], 2) == (1.0, 2.0)
+    for bad in ((1.0, 2.0), (1.0, 2.0, 3.0, 4.0), (1.0, 2.0, math.inf), "123", 1.0):
+        assert refused(v.check_vector, bad) == "3 finite numbers [m]"
+
+
+def test_positions_are_pairs_within_what_a_grid_can_count():
+    found = v.check_positions("a", [[1, 2], [3, 4], [5, 6]])
+    assert found.tolist() == [[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]]
+    assert found.dtype == np.float64
+    assert v.check_positions("a", [[1e12, -1e12]]).shape == (1, 2)
+    for bad in ([1.0, 2.0], [[1.0, 2.0, 3.0]], [[[1.0, 2.0]]], [["1", "2"]], [[True, False]], [[1.0, 2.0], [3.0]]):
+        assert "positions of shape (n, 2)" in refused(v.check_positions, bad)
+    for bad in ([[0.0, 1.1e12]], [[math.nan, 0.0]], [[0.0, -math.inf]]):
+        assert "at most 1e+12 m" in refused(v.check_positions, bad)
+
+
+def test_wavenumbers_are_0_or_above_and_have_powers():
+    assert v.check_wavenumbers("a", [0.0, 1e20]).tolist() == [0.0, 1e20]
+    assert v.check_wavenumbers("a", 2).shape == ()
+    for bad in ([-1e-9, 1.0], [1.1e20], [math.nan], math.inf, "2"):
+        assert refused(v.check_wavenumbers, bad) == "numbers from 0 to 1e+20 rad/m"
+
+
+def test_an_array_holds_real_numbers():
+    assert v.as_array("a", [1, 2.5], "numbers").tolist() == [1.0, 2.5]
+    assert v.as_array("a", [], "numbers").shape == (0,)
+    for bad in ([1j], ["1"], [True], [[1.0], [1.0, 2.0]], [None]):
+        assert refused(v.as_array, bad, "numbers") == "numbers"

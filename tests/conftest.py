@@ -8,6 +8,21 @@ import pytest
 import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread, as it does when the program runs
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Everything in tests/browser needs a browser, and has a second try, since a page drawn in software can be late.
+
+    Of several processes (`-n`), one runs all tests with a browser, since two browsers would slow each other down. The
+    tests of another file share their fixtures in one process.
+    """
+    for item in items:
+        if "/tests/browser/" in item.path.as_posix():
+            item.add_marker(pytest.mark.browser)
+        browser = item.get_closest_marker("browser") is not None
+        if browser:
+            item.add_marker(pytest.mark.flaky(reruns=1))
+        item.add_marker(pytest.mark.xdist_group("browser" if browser else item.path.as_posix()))
+
+
 @pytest.fixture
 def lab(request: pytest.FixtureRequest) -> Iterator[Any]:
     """A viewer with the module's SCENE and PARAMS open, or the rope, on a free port of the loopback."""

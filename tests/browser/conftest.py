@@ -44,13 +44,6 @@ def new_page(chromium: Any, width: int, height: int, shaded: bool) -> Any:
     return page
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Everything in this folder needs a browser."""
-    for item in items:
-        if "/tests/browser/" in item.path.as_posix():
-            item.add_marker(pytest.mark.browser)
-
-
 @pytest.fixture(scope="session", autouse=True)
 def frequent_questions() -> Iterator[None]:
     """Many tests wait until a browser says that it draws the water's shader."""

@@ -1,8 +1,6 @@
 """A control: what it is set to is bounded, shown and passed on; the value itself is the panel's."""
 
-import asyncio
 import re
-from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import pytest
@@ -11,6 +9,7 @@ from app.panel.control import SliderScale, title
 from app.scenes import NAMES, scene_named
 from app.server.viewer import Viewer
 from sim.parameters import parameters_of
+from tests import coroutines
 
 
 def test_what_a_control_is_set_to_is_bounded_shown_and_passed_on(lab: Viewer) -> None:
@@ -88,8 +87,7 @@ def test_a_list_shows_titles_and_the_record_has_names(lab: Viewer) -> None:
     assert control.field.value == "Runge-Kutta 4 (RK4)"
     assert lab.panel.params.integrator == "rk4"
     event = SimpleNamespace(client_id=1, target=SimpleNamespace(value="Euler, implicit"))
-    with ThreadPoolExecutor() as pool:  # this thread may have a running event loop: that of a test's browser
-        pool.submit(asyncio.run, control.on_field(event)).result()
+    coroutines.run(control.on_field(event))
     assert lab.panel.params.integrator == "implicit_euler"
 
 

@@ -1,6 +1,5 @@
 """The lab guide and the workbook in the panel, on a viser server without a browser."""
 
-import asyncio
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,6 +13,7 @@ from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
 from app.panel.guide import HIDE, SET_UP, SHOW, UNANSWERED, Guide, QuestionWidgets
 from app.server.viewer import Viewer
+from tests import coroutines
 from tests.app.server.test_viewer import wait_for
 
 TASKS = load_tasks()
@@ -21,7 +21,7 @@ TASKS = load_tasks()
 
 def does(callback: Any, value: object = None) -> None:
     """What viser does when a browser sets a widget."""
-    asyncio.run(callback(SimpleNamespace(target=SimpleNamespace(value=value), client_id=1, client=None)))
+    coroutines.run(callback(SimpleNamespace(target=SimpleNamespace(value=value), client_id=1, client=None)))
 
 
 def opened(workbook: Workbook, scene: str = "rope") -> Viewer:

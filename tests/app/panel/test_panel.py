@@ -1,6 +1,5 @@
 """The panel on a viser server without a browser."""
 
-import asyncio
 import inspect
 import time
 from collections.abc import Callable, Iterator
@@ -13,6 +12,7 @@ import viser
 from app.messages import Load
 from app.scenes import NAMES
 from app.server.viewer import Viewer
+from tests import coroutines
 from tests.app.server.test_viewer import wait_for
 
 
@@ -67,12 +67,12 @@ def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) 
     before = panel.preset.value
     command = next(c for c in lab.server.gui._command_handle_from_uuid.values() if "Pendulum" in c._impl.props.label)
     for callback in command._impl.trigger_cb:
-        asyncio.run(callback(SimpleNamespace(target=command, client_id=1)))
+        coroutines.run(callback(SimpleNamespace(target=command, client_id=1)))
     assert panel.preset.value == "Pendulum" != before
     time.sleep(0.3)  # viser tells of the assignment to the list, too
     assert [type(c) for c in posted] == [Load]
     panel.preset.value = before
     for callback in panel.preset._impl.update_cb:
-        asyncio.run(callback(SimpleNamespace(target=panel.preset, client_id=1)))
+        coroutines.run(callback(SimpleNamespace(target=panel.preset, client_id=1)))
     time.sleep(0.3)
     assert [c.number for c in posted] == [1, 2]

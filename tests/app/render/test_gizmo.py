@@ -1,11 +1,11 @@
 """The arrows that move a thing, on a handle without a server."""
 
-import asyncio
 from types import SimpleNamespace
 from typing import Any
 
 from app.messages import Place
 from app.render.gizmo import Gizmo
+from tests import coroutines
 
 
 class Handle:
@@ -29,7 +29,7 @@ def test_arrows_above_a_thing_move_the_thing() -> None:
     gizmo.show((1.0, 2.0, 3.0), 0.75)
     assert handle.position == (1.0, 2.0, 3.75)
     handle.position = (1.5, 2.0, 4.0)
-    asyncio.run(handle.callback(SimpleNamespace(target=handle)))
+    coroutines.run(handle.callback(SimpleNamespace(target=handle)))
     assert posted == [Place("sphere", (1.5, 2.0, 3.25))]
 
 
@@ -46,5 +46,5 @@ def test_hidden_arrows_come_back_where_the_thing_is() -> None:
 def test_a_place_that_is_not_finite_is_not_posted() -> None:
     _, handle, posted = make()
     handle.position = (float("nan"), 0.0, 0.0)
-    asyncio.run(handle.callback(SimpleNamespace(target=handle)))
+    coroutines.run(handle.callback(SimpleNamespace(target=handle)))
     assert posted == []

@@ -5,8 +5,6 @@ import http.client
 import math
 import random
 import socket
-from collections.abc import Coroutine
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import msgspec
@@ -18,6 +16,7 @@ from websockets.asyncio.client import connect
 
 from app.server.guard import MAX_TEXT_LENGTH, allowed_value, is_bounded, is_own_origin, open_server
 from app.server.viewer import Viewer
+from tests import coroutines
 
 
 @pytest.mark.parametrize(
@@ -63,20 +62,14 @@ async def say(port: int, messages: list[dict[str, Any]], origin: str | None = No
                 cuts += 1
 
 
-def talk(words: Coroutine[Any, Any, Any]) -> Any:
-    """Run a conversation on a loop of its own: the browser tests leave one running on this thread."""
-    with ThreadPoolExecutor(1) as pool:
-        return pool.submit(asyncio.run, words).result()
-
-
 def test_a_foreign_page_is_refused(lab: Viewer) -> None:
     with pytest.raises(websockets.exceptions.InvalidStatus) as refusal:
-        talk(say(lab.port, [], "http://evil.example"))
+        coroutines.run(say(lab.port, [], "http://evil.example"))
     assert refusal.value.response.status_code == 403
 
 
 def test_the_page_itself_is_let_in(lab: Viewer) -> None:
-    talk(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
+    coroutines.run(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
 
 
 def test_the_page_is_served(lab: Viewer) -> None:
@@ -149,7 +142,7 @@ def test_2000_hostile_messages_leave_the_server_running_and_the_state_finite(lab
     rng = random.Random(2)
     uuids = list(lab.server.gui._gui_input_handle_from_uuid)
     messages = [hostile_message(rng, uuids) for _ in range(2000)]
-    cuts = talk(say(lab.port, messages))
+    cuts = coroutines.run(say(lab.port, messages))
     assert cuts < 500
     assert sum(lab.screen.refused.values()) > 500
     lab.loop.audience = lambda: 1
@@ -165,7 +158,7 @@ def test_2000_hostile_messages_leave_the_server_running_and_the_state_finite(lab
         elif not isinstance(value, bool):
             assert control.parameter.low <= value <= control.parameter.high, name
     assert lab.server._share_tunnel is None
-    talk(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
+    coroutines.run(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
 
 
 def test_the_share_tunnel_has_no_handler(lab: Viewer) -> None:

@@ -13,7 +13,7 @@ from app.panel.recorder import MAX_RATE
 from app.scenes import scene_named
 from app.scenes.compiling import Job
 from app.server.viewer import Viewer
-from tests.app.server.test_guard import talk
+from tests import coroutines
 
 
 def wait_for(condition: Any) -> None:
@@ -73,11 +73,11 @@ class Client:
 def test_a_browser_that_goes_lets_go_of_what_it_held_and_of_nothing_else(lab: Viewer) -> None:
     lab.commands.put(Grab(5, (0.0, 0.0, 2.0), client=1))
     wait_for(lambda: lab.scene.handles.drag.hold is not None)
-    talk(lab.on_disconnect(Client(2)))  # type: ignore[arg-type]
+    coroutines.run(lab.on_disconnect(Client(2)))  # type: ignore[arg-type]
     ticks = lab.loop.counts["ticks"]
     wait_for(lambda: lab.loop.counts["ticks"] > ticks + 3)
     assert lab.scene.handles.drag.hold is not None
-    talk(lab.on_disconnect(Client(1)))  # type: ignore[arg-type]
+    coroutines.run(lab.on_disconnect(Client(1)))  # type: ignore[arg-type]
     wait_for(lambda: lab.scene.handles.drag.hold is None)
 
 

@@ -16,6 +16,7 @@ TITLES = {  # name -> (title in a list, name in a sentence)
     "pefrl": ("PEFRL (no damping)", "PEFRL"),
     "dopri5": ("Dormand-Prince 5, adaptive", "Dormand-Prince 5"),
     "dop853": ("Dormand-Prince 8, adaptive", "Dormand-Prince 8"),
+    "rkn8": ("Nyström 8, adaptive", "Nyström 8"),
 }
 ORDER = sorted(INTEGRATORS, key=[*TITLES, *INTEGRATORS].index)
 # A method that is not listed above comes last, with its name in words.

@@ -3,6 +3,7 @@
 import cmath
 import functools
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -40,6 +41,11 @@ def limit_of_polynomial(coefficients: tuple[float, ...], zeta: float) -> float:
         r = np.polynomial.polynomial.polyval(np.multiply.outer(both, z), coefficients)
         return np.abs(r).max(axis=0)
 
+    return limit_of_many(growth)
+
+
+def limit_of_many(growth: Callable[[Any], Any]) -> float:
+    """`limit_of`, of a growth that takes many z at a time."""
     # A live display asks often: scan four units of z in one go, where most such methods have their limit.
     known, many = 0.0, round(4.0 / SCAN)
     while known < FURTHEST:
@@ -48,6 +54,27 @@ def limit_of_polynomial(coefficients: tuple[float, ...], zeta: float) -> float:
             return limit_of(growth, known=known + SCAN * int(left.argmax()))
         known += SCAN * many
     return float("inf")
+
+
+def nystroem_growth(c: Any, velocity: Any, position: Any, zeta: float, z: Any) -> Any:
+    """Largest eigenvalue of a step of x'' + 2 zeta x' + x = 0 with h = z, of an explicit Nystroem method.
+
+    c: (stages,) times; velocity, position: (stages + 1, stages) weights of the stages, and of the new state last.
+    """
+    z = np.asarray(z, dtype=float)
+    step = []
+    for x, v in ((1.0, 0.0), (0.0, 1.0)):
+        k = np.zeros((len(c), *z.shape))
+        for i, (time, in_velocity, in_position) in enumerate(zip((*c, 1.0), velocity, position, strict=True)):
+            xs = x + time * z * v + z * z * np.tensordot(in_position, k, 1)
+            vs = v + z * np.tensordot(in_velocity, k, 1)
+            if i < len(c):
+                k[i] = -xs - 2.0 * zeta * vs
+        step.append((xs, vs))
+    (a, c0), (b, d) = step
+    half = 0.5 * (a + d)
+    root = np.sqrt(half * half - (a * d - b * c0) + 0j)
+    return np.maximum(abs(half + root), abs(half - root))
 
 
 def polynomial_of(a: tuple[tuple[float, ...], ...], b: tuple[float, ...]) -> tuple[float, ...]:

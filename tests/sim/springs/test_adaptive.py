@@ -1,5 +1,9 @@
 """Adaptive methods, and the methods that refuse what they cannot do."""
 
+import itertools
+import math
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from scipy.integrate._ivp import dop853_coefficients
@@ -8,7 +12,7 @@ from scipy.integrate._ivp.rk import RK45
 from sim.springs import INTEGRATORS, rope, simulate
 from sim.springs.analysis.amplification import polynomial_of
 from sim.springs.forces.acceleration import set_acceleration
-from sim.springs.integrators.embedded import dop853, dopri5, stages
+from sim.springs.integrators.embedded import dop853, dopri5, rkn8, stages
 from sim.springs.integrators.embedded.errors import error_of
 from sim.springs.state import State, advance, energy
 from tests.sim.springs.reference import integrated
@@ -33,6 +37,58 @@ def test_the_coefficients_are_those_of_an_independent_source():
 def test_the_stability_polynomial_is_the_exponential_s_to_the_order(module, order):
     exact = np.cumprod([1.0, *(1.0 / i for i in range(1, order + 1))])
     assert polynomial_of(module.A, module.B)[: order + 1] == pytest.approx(exact, rel=1e-12)
+
+
+def test_rkn8_solves_the_order_conditions_of_nystroem_methods():
+    """Those of order 8 for x'' = g(x), of order 6 for its estimate, and those that take damping in (exact sums)."""
+    c, b, b_v, e, e_v = ([Fraction(w) for w in row] for row in (rkn8.C, rkn8.B, rkn8.B_V, rkn8.E, rkn8.E_V))
+    positions, velocities = (
+        [[Fraction(w) for w in (*row, *(0.0,) * (8 - len(row)))] for row in rows] for rows in (rkn8.A, rkn8.V)
+    )
+    powers = [[t**q for t in c] for q in range(9)]
+    ones = powers[0]
+
+    def total(*factors):
+        """sum_i of the product of vectors."""
+        return sum(math.prod(terms) for terms in zip(*factors, strict=True))
+
+    def times(rows, vector):
+        return [total(row, vector) for row in rows]
+
+    def is_close(found, wanted):
+        assert abs(float(found - Fraction(wanted))) < 1e-15
+
+    for w, w_v, order in ((b, b_v, 8), ([p - q for p, q in zip(b, e, strict=False)], None, 6)):
+        for q in range(order - 1):
+            is_close(total(w, powers[q]), Fraction(1, (q + 1) * (q + 2)))
+        if w_v is not None:
+            for q in range(order):
+                is_close(total(w_v, powers[q]), Fraction(1, q + 1))
+    for q in range(6):
+        is_close(total(e_v[:8], powers[q]) + e_v[8], 0)
+    assert abs(total(e_v[:8], powers[6]) + e_v[8]) > 1e-4
+    for p in range(6):
+        for q in range(6 - p):
+            chain = total(b_v, powers[p], times(positions, powers[q]))
+            is_close(chain, Fraction(1, (q + 1) * (q + 2) * (p + q + 3)))
+    for p, q in itertools.product(range(3), range(2)):  # a chain of two
+        inner = times(positions, times(positions, powers[q]))
+        is_close(total(b_v, powers[p], inner), Fraction(1, math.prod(range(q + 1, q + 5)) * (p + q + 5)))
+
+    second = [row[1] for row in velocities]
+    for i in range(8):
+        is_close(total(velocities[i], ones), c[i])
+        if i != 1:
+            is_close(total(velocities[i], c), c[i] ** 2 / 2)
+        is_close(total(b_v, [row[i] for row in velocities]), b_v[i] * (1 - c[i]))
+    for p in range(5):
+        for q in range(5 - p):
+            chain = total(b_v, powers[p], times(velocities, powers[q]))
+            is_close(chain, Fraction(1, (q + 1) * (p + q + 2)))
+    for p, q in ((0, 2), (0, 3), (1, 2)):
+        is_close(total(e_v[:8], powers[p], times(velocities, powers[q])) + e_v[8] * total(b_v, powers[q]), 0)
+    is_close(total(b_v, c, second), 0)
+    is_close(total(e_v[:8], second), 0)
 
 
 @pytest.mark.parametrize("name", ADAPTIVE)

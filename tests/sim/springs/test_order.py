@@ -12,7 +12,8 @@ from tests.sim.springs.reference import exact, integrated, slope
 
 SECONDS = 0.5
 COARSEST = {1: 400, 2: 50, 4: 50, 5: 100}  # steps that are well inside the asymptotic range, by order
-LOW = [name for name, record in INTEGRATORS.items() if record.order <= 5]  # the order that doubles can show at length
+# Orders that doubles can show at length.
+LOW = [name for name, record in INTEGRATORS.items() if max(record.order, record.undamped_order) <= 5]
 PATH = PinPath(-0.1, ((0.01, -0.02, 0.03), (0.2, -0.1, 0.5), (-0.6, 0.4, 2.0), (1.0, 0.5, -3.0)))
 ROPES = {
     "isotropic": rope(10),
@@ -82,6 +83,18 @@ def test_dop853_is_of_order_eight():
     counts = [16, 20, 24, 32, 40, 48, 64]
     errors = errors_of(net, "dop853", counts, (fine.x, fine.v), 1.0)
     assert slope(counts, errors) == pytest.approx(8, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("damping", "model", "least", "most"),  # terms of higher order are still seen where there is damping
+    [(0.0, "isotropic", 7.7, 8.3), (2.0, "isotropic", 4.8, 5.5), (1.0, "axial", 4.8, 6.3)],
+)
+def test_rkn8_is_of_order_eight_and_of_five_with_damping(damping, model, least, most):
+    net = rope(6, stiffness=300.0, damping=damping, drag=0.2 * damping, damping_model=model)
+    fine = integrated(net, "dop853", 1.0, 300)
+    counts = [48, 56, 64, 80, 96]
+    errors = errors_of(net, "rkn8", counts, (fine.x, fine.v), 1.0)
+    assert least < slope(counts, errors) < most
 
 
 def test_damping_link_by_link_seeds_no_folds():

@@ -12,14 +12,20 @@ from tests.naive import tangent
 from tests.sim.springs.nets import DAMPABLE, patch, touching_patch
 
 ZETAS = (0.0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.707, 1.0, 2.0)
-LIMITS = {  # largest stable h omega at each zeta
+LIMITS = {  # largest stable h omega at each zeta; None: beyond it a method grows too slowly to be seen
     "explicit_euler": (0, 0.02, 0.1, 0.2, 0.5, 1, 1.414, 2, 0.536),
     "symplectic_euler": (2, 1.980, 1.902, 1.810, 1.562, 1.236, 1.035, 0.828, 0.472),
     "leapfrog_lagged": (2, 1.980, 1.902, 1.810, 1.562, 1.236, 1.035, 0.828, 0.472),
     "leapfrog": (2,) * 9,
     "rk4": (2.82843, 2.849, 2.910, 2.951, 2.897, 2.623, 2.704, 2.785, 0.746),
+    "rkn8": (None, 4.782, 5.532, 5.479, 5.849, 3.779, 3.279, 2.662, 1.329),
 }
-CASES = [(name, zeta, limit) for name, limits in LIMITS.items() for zeta, limit in zip(ZETAS, limits, strict=True)]
+CASES = [
+    (name, zeta, limit)
+    for name, limits in LIMITS.items()
+    for zeta, limit in zip(ZETAS, limits, strict=True)
+    if limit is not None
+]
 STIFFEST = {  # largest stable link stiffness of the lab's rope: points, step, damping, drag
     (10, 1 / 60, 7.0, 1.0): {"explicit_euler": 435, "symplectic_euler": 2829, "leapfrog": 3700, "rk4": 7989},
     (10, 1 / 60, 0.0, 1.0): {"explicit_euler": 15, "symplectic_euler": 3669, "leapfrog": 3700, "rk4": 7433},
@@ -154,11 +160,11 @@ def test_declared_limits_are_the_table_s(name, zeta, limit):
     assert INTEGRATORS[name].limit(zeta) == pytest.approx(limit, rel=1e-2, abs=1e-12)
 
 
-@pytest.mark.parametrize(("name", "limit"), [("pefrl", 2.989), ("dopri5", 0.9972), ("dop853", 5.960)])
+@pytest.mark.parametrize(("name", "limit"), [("pefrl", 2.989), ("dopri5", 0.9972), ("dop853", 5.960), ("rkn8", 3.2937)])
 def test_undamped_limits_of_the_methods_of_high_order(name, limit):
     assert INTEGRATORS[name].limit(0.0) == pytest.approx(limit, rel=1e-3)
     assert growth(name, 0.0, 0.99 * limit) < 100.0
-    if name != "dopri5":  # which grows by 1e-5 a step there
+    if name not in ("dopri5", "rkn8"):  # which grow by 1e-5 a step there
         assert not growth(name, 0.0, 1.01 * limit) < 1000.0
 
 

@@ -2,7 +2,7 @@
 
 The step's error is measured per position [m] and velocity [m/s] against atol + rtol |value|, root mean square
 (Solving ODEs I, II.4.11). Order 5 steps freely past the frames and fills them by a quintic from positions, velocities
-and accelerations at both ends, of the order of the method; order 8, or a ledger, lets the steps end on the frames.
+and accelerations at both ends, of the order of the method; higher orders, or a ledger, let the steps end on the frames.
 """
 
 import numpy as np
@@ -69,9 +69,9 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
     for j in range(size):
         a[j], xs[0, j], vs[0, j] = stages.a[j], x[j], v[j]
     evals, steps, frame = 1, 0, 1
-    lands = method.order > 5 or with_account
+    lands = method.error_order > 5 or with_account
     h = first_step(x, v, a, rtol, atol)
-    power, before = -1.0 / method.order, 1.0
+    power, before = -1.0 / method.error_order, 1.0
     grow = GROW
     while frame < len(times):
         goal = times[frame] if lands else last

@@ -32,7 +32,7 @@ class Tableau(NamedTuple):
     a: NDArray[np.float64]  # (rows, WIDEST) their weights in the velocity
     g: NDArray[np.float64]  # (rows, WIDEST) and in the position
     stages: int  # s
-    order: int
+    error_order: int  # power of the step with which the estimated error of a step shrinks
 
 
 class Stages(NamedTuple):
@@ -49,21 +49,29 @@ class Stages(NamedTuple):
 Rows = tuple[tuple[float, ...], ...]
 
 
-def tableau(order: int, c: tuple[float, ...], slopes: Rows, weights: tuple[float, ...], errors: Rows) -> Tableau:
+def tableau(error_order: int, c: tuple[float, ...], slopes: Rows, weights: tuple[float, ...], errors: Rows) -> Tableau:
     """A method from Butcher's tableau: `slopes` below the diagonal, `weights`, and the weights of its error estimates.
 
     An estimate may have one weight more than there are stages, that of the new state's own acceleration.
     """
-    s = len(weights)
-    full = np.zeros((s + 1, s + 1))
-    for i, row in enumerate((*slopes, weights)):
-        full[i, : len(row)] = row
-    velocity = np.zeros((s + 1 + len(errors), s + 1))
-    velocity[: s + 1] = full
-    for i, row in enumerate(errors):
-        velocity[s + 1 + i, : len(row)] = row
+    velocity = rows_of((*slopes, weights, *errors), len(weights))
     # What no path leads to is 0 there but for round-off of products with zeros, that is, exactly.
-    position = velocity @ full
+    return tableau_of_rows(error_order, c, velocity, velocity @ velocity[: len(weights) + 1])
+
+
+def rows_of(rows: Rows, stages: int) -> NDArray[np.float64]:
+    """Rows of a tableau of so many stages, filled up with zeros, the new state's column included."""
+    full = np.zeros((len(rows), stages + 1))
+    for i, row in enumerate(rows):
+        full[i, : len(row)] = row
+    return full
+
+
+def tableau_of_rows(
+    error_order: int, c: tuple[float, ...], velocity: NDArray[np.float64], position: NDArray[np.float64]
+) -> Tableau:
+    """A method from the weights (rows, stages + 1) of all rows in the velocity and in the position."""
+    s = velocity.shape[1] - 1
     counts, terms = np.zeros(len(velocity), dtype=np.int64), np.zeros((len(velocity), WIDEST), dtype=np.uint64)
     a, g = np.zeros((2, len(velocity), WIDEST))
     for i in range(len(velocity)):
@@ -71,8 +79,8 @@ def tableau(order: int, c: tuple[float, ...], slopes: Rows, weights: tuple[float
         counts[i] = len(used) + len(used) % 2
         terms[i, : len(used)] = used
         a[i, : len(used)], g[i, : len(used)] = velocity[i, used], position[i, used]
-    times = np.array([*c, 1.0, *(0.0 for _ in errors)])
-    return Tableau(times, counts, terms, a, g, s, order)
+    times = np.array([*c, 1.0, *(0.0 for _ in velocity[s + 1 :])])
+    return Tableau(times, counts, terms, a, g, s, error_order)
 
 
 @kernel

@@ -11,6 +11,8 @@ import numpy as np
 
 from sim.jit import kernel
 
+PULL_TOLERANCE, MAX_PULL_ITERATIONS = 1e-3, 12  # of the largest pull, before it is cut to it exactly
+
 
 class Scratch(NamedTuple):
     """Arrays that the kernels of one body write before they read them; allocated once for all bodies."""
@@ -123,33 +125,48 @@ def add_pull(fleet, i, h, rate, scratch):
 
     With K the mobility of the point, an implicit step of x'' = -rate^2 x - 2 rate x' is the impulse
     P = -s/(1 + s) K^-1 (x' + x rate/(2 + h rate)), s = h rate (2 + h rate) (Catto, Soft Constraints, GDC 2011).
+    An impulse above the limit is (K + m)^-1 instead of K^-1 times the same, m such that it has the size of the limit:
+    the further above, the straighter it points to the target. Scaled down it would point as K^-1 turns it, and a body
+    that is pulled upwards at a corner would run aside. m by the iteration of More and Sorensen 1983.
     """
     H, v, w, p, change = scratch.H, scratch.v, scratch.w, scratch.pull_point, scratch.load
-    K, K_inv, impulse = np.empty((3, 3)), np.empty((3, 3)), np.empty(3)
+    K, K_inv, wanted, impulse = np.empty((3, 3)), np.empty((3, 3)), np.empty(3), np.empty(3)
     for c in range(3):  # column c of K: the velocity of the point after a unit impulse along c
         set_impulse(change, p, c == 0, c == 1, c == 2)
         solve_factorised(scratch.factor, change)
         for a in range(3):
             K[a, c] = change[a] + change[3 + (a + 1) % 3] * p[(a + 2) % 3] - change[3 + (a + 2) % 3] * p[(a + 1) % 3]
-    set_inverse(K, K_inv)
     s = h * rate * (2.0 + h * rate)
-    impulse[:] = 0.0
     for c in range(3):
         offset = p[c]
         for a in range(3):
             offset += H[a, c] * (fleet.position[i, a] - fleet.pull_target[i, a])
         speed = v[c] + w[(c + 1) % 3] * p[(c + 2) % 3] - w[(c + 2) % 3] * p[(c + 1) % 3]
-        wanted = -s / (1.0 + s) * (speed + offset * rate / (2.0 + h * rate))
-        for a in range(3):
-            impulse[a] += K_inv[a, c] * wanted
-    size = np.sqrt(impulse[0] * impulse[0] + impulse[1] * impulse[1] + impulse[2] * impulse[2])
-    limit = fleet.pull_limit[i] * h
+        wanted[c] = -s / (1.0 + s) * (speed + offset * rate / (2.0 + h * rate))
+    limit, size = fleet.pull_limit[i] * h, 0.0
+    for _ in range(MAX_PULL_ITERATIONS):
+        set_inverse(K, K_inv)
+        set_product(K_inv, wanted, impulse)
+        size = np.sqrt(impulse[0] * impulse[0] + impulse[1] * impulse[1] + impulse[2] * impulse[2])
+        if not size > limit * (1.0 + PULL_TOLERANCE):
+            break
+        set_product(K_inv, impulse, change)
+        bend = impulse[0] * change[0] + impulse[1] * change[1] + impulse[2] * change[2]
+        for c in range(3):
+            K[c, c] += (size / limit - 1.0) * size * size / bend
     scale = limit / size if size > limit else 1.0
     set_impulse(change, p, scale * impulse[0], scale * impulse[1], scale * impulse[2])
     solve_factorised(scratch.factor, change)
     for c in range(3):
         v[c] += change[c]
         w[c] += change[3 + c]
+
+
+@kernel(inline=True)
+def set_product(matrix, vector, out):
+    """Set the first three of out to matrix (3, 3) times vector (3,)."""
+    for c in range(3):
+        out[c] = matrix[c, 0] * vector[0] + matrix[c, 1] * vector[1] + matrix[c, 2] * vector[2]
 
 
 @kernel

@@ -10,15 +10,17 @@ import subprocess
 import time
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
+from tests.faults.calls import function_at, is_kernel
 from tests.faults.drawing import ROOT, Listed, read_list
-from tests.faults.trial import OWN, Outcome, run_tests
+from tests.faults.trial import OWN, Mode, Outcome, run_tests
 from tests.test_layers import imports, module_of
 
 RESULTS = ROOT / "assets" / "bench" / "faults.csv"
 COLUMNS = ("module", "kind", "before", "occurrence", "after", "result", "by", "seconds")
 PLAIN_LIMIT, COMPILED_LIMIT = 60.0, 300.0  # [s] for all tests of a fault
-PLAIN_TEST, QUICK = 1.0, 0.1  # [s] that a test may take as plain Python, and that it takes to be among the quick ones
+PLAIN_TEST = 2.0  # [s] that a test may take as plain Python
 DISCOVERED = re.compile(r"^sim/(ocean/spectra|springs/integrators|floating/shapes)/\w+\.py$")
 OTHER_TESTS = {  # of modules with tests of other names
     "sim/validation.py": (
@@ -30,17 +32,17 @@ OTHER_TESTS = {  # of modules with tests of other names
 }
 
 
-def copy_of_checkout(work: Path) -> Path:
+def copy_of_checkout(work: Path, name: str) -> Path:
     """A fresh copy of the sources and what tests read, below `work`."""
-    tree = work / "tree"
+    tree = work / name
     shutil.rmtree(tree, ignore_errors=True)
-    names = subprocess.run(
+    listed = subprocess.run(
         ["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout.split("\n")
-    for name in filter(None, names):
-        if (ROOT / name).is_file():
-            (tree / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(ROOT / name, tree / name)
+    for path in filter(None, listed):
+        if (ROOT / path).is_file():
+            (tree / path).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / path, tree / path)
     return tree
 
 
@@ -108,21 +110,40 @@ def distances(module: str) -> dict[str, int]:
     return {paths[name].relative_to(ROOT).as_posix(): steps for name, steps in found.items()}
 
 
-class PlainTests:
-    """The tests of a file that are quick as plain Python, found by trying; kept in `work`."""
+class CallingTests:
+    """Which tests reach a function, found by running them once; kept in `work`."""
 
     def __init__(self, work: Path, tree: Path) -> None:
-        self.tree, self.path = tree, work / "plain.json"
-        self.files: dict[str, dict[str, float]] = json.loads(self.path.read_text()) if self.path.exists() else {}
+        self.tree, self.path = tree, work / "calls.json"
+        self.files: dict[str, dict[str, Any]] = json.loads(self.path.read_text()) if self.path.exists() else {}
 
-    def of(self, name: str) -> dict[str, float]:
-        """How long each of them takes [s]."""
-        key = f"{name} {hashlib.sha256((self.tree / name).read_bytes()).hexdigest()[:16]}"
+    def of(self, files: list[str], module: str, first: int | None, *, plain: bool) -> list[str]:
+        """Those in `files` that call the function at line `first` of a module, the quick ones first."""
+        found = []
+        for name in files:
+            known = self.known(name, plain=plain)
+            found += [
+                (seconds, test)
+                for test, seconds in known["durations"].items()
+                if first is None or f"{module}:{first}" in known["calls"].get(test, ())
+            ]
+        return [test for _, test in sorted(found)]
+
+    def known(self, name: str, *, plain: bool) -> dict[str, Any]:
+        """How long each test of a file takes [s], and what it calls."""
+        key = f"{'plain' if plain else 'compiled'} {name} {file_hash(self.tree / name)}"
         if key not in self.files:
-            outcome = run_tests(self.tree, [name], 300.0, plain=True, options=("--timeout", str(PLAIN_TEST)))
-            self.files[key] = {test: seconds for test, seconds in outcome.durations.items() if seconds < QUICK}
+            mode = Mode(plain, until_failure=False, with_calls=True)
+            seconds = PLAIN_TEST if plain else COMPILED_LIMIT
+            outcome = run_tests(self.tree, [name], 4 * COMPILED_LIMIT, mode, seconds)
+            print(f"({'plain' if plain else 'compiled'}: {len(outcome.durations)} tests of {name})", flush=True)
+            self.files[key] = {"durations": outcome.durations, "calls": outcome.calls}
             self.path.write_text(json.dumps(self.files))
         return self.files[key]
+
+
+def file_hash(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
 
 
 def key_of_fault(listed: Listed) -> tuple[str, ...]:
@@ -157,54 +178,57 @@ class Trials:
     def __init__(self, work: Path, *, plain_only: bool) -> None:
         work.mkdir(parents=True, exist_ok=True)
         self.work, self.plain_only = work, plain_only
-        self.tree = copy_of_checkout(work)
+        self.tree = copy_of_checkout(work, "tree")
+        self.sound = copy_of_checkout(work, "sound")
         link_cache(work)
-        self.plain_tests = PlainTests(work, self.tree)
+        self.calling = CallingTests(work, self.tree)
 
     def try_fault(self, listed: Listed) -> tuple[str, str]:
-        """("found", the test that found it), ("not found", ""), or ("gone", "") where the source has no such line."""
+        """("found", the test that found it), ("not found", ""), ("open", why), or ("gone", "") without such a line."""
         fault = listed.fault
         path = self.tree / fault.module
         sound = path.read_text()
-        wrong = fault.planted(sound)
-        if wrong is None:
+        line, wrong = fault.line(sound), fault.planted(sound)
+        if line is None or wrong is None:
             return "gone", ""
-        files = files_for(fault.module)
-        # Kernels of springs are in one another, so that compiling them again takes longer than most tests.
-        plain = [
-            test
-            for name in files
-            if fault.module.startswith("sim/springs/") and name.startswith("tests/sim/")
-            for test, _ in sorted(self.plain_tests.of(name).items(), key=lambda pair: pair[1])
-        ]
+        files, first = files_for(fault.module), function_at(sound, line + 1)
+        # Only a fault in a function that is not compiled itself leaves all compiled kernels as they are.
+        same_kernels = first is not None and not is_kernel(sound, first)
+        # Kernels of springs and bodies are in one another, so that compiling them again takes longer than most tests.
+        in_kernels = fault.module.startswith(("sim/springs/", "sim/floating/"))
+        near = [name for name in files if name.startswith("tests/sim/")]
+        plain = self.calling.of(near, fault.module, first, plain=True) if in_kernels else []
+        reaching = self.calling.of(files, fault.module, first, plain=False) if same_kernels else []
+        if reaching and not self.plain_only:
+            plain = []
         known = {folder.name for folder in (self.work / "cache" / "kernels").iterdir()}
         try:
             path.write_text(wrong)
-            return self.first_failure(plain, files)
+            return self.first_failure(plain, reaching, files, same_kernels=same_kernels)
         finally:
             path.write_text(sound)
             forget_new_kernels(self.work, known)
 
-    def first_failure(self, plain: list[str], files: list[str]) -> tuple[str, str]:
+    def first_failure(
+        self, plain: list[str], reaching: list[str], files: list[str], *, same_kernels: bool
+    ) -> tuple[str, str]:
         """The result, from tests as plain Python first; what they do not notice is tried compiled, or left open."""
         if plain:
-            (self.work / "tests.txt").write_text("\n".join(plain))
-            outcome = self.run([f"@{self.work / 'tests.txt'}"], PLAIN_LIMIT, plain=True)
+            outcome = self.run(plain, PLAIN_LIMIT, Mode(plain=True))
             if outcome.failed and not outcome.crash:
                 return "found", outcome.failed
         if self.plain_only:
             return "open", ""
         if not files:
             return "not found", "no test"
-        outcome = self.run(files, COMPILED_LIMIT, plain=False)
+        outcome = self.run(reaching or files, COMPILED_LIMIT, Mode(False, self.sound if same_kernels else None))
         if outcome.failed:
             return "found", outcome.failed
-        if not outcome.ended:
-            return "found", f"no end within {COMPILED_LIMIT:g} s, or a crash"
-        return "not found", ""
+        return ("not found", "") if outcome.ended else ("open", f"no end within {COMPILED_LIMIT:g} s")
 
-    def run(self, tests: list[str], seconds: float, *, plain: bool) -> Outcome:
-        return run_tests(self.tree, tests, seconds, plain=plain, options=("-x", "--timeout", "60"))
+    def run(self, tests: list[str], seconds: float, mode: Mode) -> Outcome:
+        (self.work / "tests.txt").write_text("\n".join(tests))
+        return run_tests(self.tree, [f"@{self.work / 'tests.txt'}"], seconds, mode, seconds)
 
 
 def in_rounds(faults: list[Listed]) -> list[Listed]:
@@ -236,6 +260,7 @@ def run_faults(work: Path, start: str, only: str, seconds: float, *, plain_only:
             begun = time.monotonic()
             result, by = trials.try_fault(listed)
             took = time.monotonic() - begun
+        results = read_results()  # another run may have written since
         results[key] = dict(zip(COLUMNS, (*key, result, by, f"{took:.1f}"), strict=True))
         print(f"{result:10} {took:6.1f} s  {listed.fault.module}: {listed.fault.after}  [{by}]", flush=True)
         write_results(results)

@@ -29,13 +29,16 @@ class Fault(NamedTuple):
     occurrence: int  # 0 for the first such line of the module
     after: str
 
+    def line(self, source: str) -> int | None:
+        """The number of its line, from 0; None where the source no longer has it."""
+        found = [number for number, line in enumerate(source.split("\n")) if line.strip() == self.before]
+        return found[self.occurrence] if self.occurrence < len(found) else None
+
     def planted(self, source: str) -> str | None:
         """The source with this fault; None where it no longer has the line."""
-        lines = source.split("\n")
-        found = [number for number, line in enumerate(lines) if line.strip() == self.before]
-        if self.occurrence >= len(found):
+        number, lines = self.line(source), source.split("\n")
+        if number is None:
             return None
-        number = found[self.occurrence]
         indent = lines[number][: len(lines[number]) - len(lines[number].lstrip())]
         lines[number] = indent + self.after
         return "\n".join(lines)

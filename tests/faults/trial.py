@@ -16,6 +16,7 @@ import scipy.special  # noqa: F401
 import trimesh  # noqa: F401
 
 import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread
+from tests.faults.calls import CallRecorder
 
 USAGE = 99  # exit status of a run that had no tests
 OWN = ("app", "assets", "sim", "tests")
@@ -28,16 +29,23 @@ class Outcome(NamedTuple):
     durations: dict[str, float]  # [s] of each test that passed
     failed: str  # the first that failed, or ""
     crash: bool  # whether it failed by an error that compiled code does not raise, or took too long
-    ended: bool  # False where the time was up, or the process died
+    ended: bool  # False where the time was up
+    calls: dict[str, list[str]] = {}  # the functions that each test called, where that was asked for  # noqa: RUF012
 
 
 class Recorder:
-    """A plugin of pytest: what passed, how long it took, and the first failure."""
+    """A plugin of pytest: what passed, how long it took, and the first failure.
 
-    def __init__(self) -> None:
+    It ends the run at the first failure, if that is asked for. As plain Python there may be a failure behind a crash.
+    """
+
+    def __init__(self, *, until_failure: bool, plain: bool) -> None:
         self.durations: dict[str, float] = {}
         self.failures: list[str] = []
-        self.crash = False
+        self.crash, self.until_failure, self.plain = False, until_failure, plain
+
+    def pytest_sessionstart(self, session: pytest.Session) -> None:
+        self.session = session
 
     def pytest_collectreport(self, report: Any) -> None:
         if report.failed:
@@ -45,15 +53,26 @@ class Recorder:
 
     def pytest_runtest_logreport(self, report: Any) -> None:
         if report.failed:
-            self.failures.append(report.nodeid)
-            if len(self.failures) == 1:
-                self.crash = any(f"{crash}" in report.longreprtext for crash in CRASHES)
+            crash = any(crash in report.longreprtext for crash in CRASHES)
+            self.failures.insert(0 if self.crash and not crash else len(self.failures), report.nodeid)
+            self.crash = crash and (self.crash or len(self.failures) == 1)
+            if self.until_failure and not (self.plain and self.crash):
+                self.session.shouldstop = "a test failed"
         elif report.when == "call" and report.passed:
             self.durations[report.nodeid] = report.duration
 
 
-def run_tests(tree: Path, tests: list[str], seconds: float, *, plain: bool, options: tuple[str, ...]) -> Outcome:
-    """Run tests of the checkout in `tree` for at most `seconds` [s]; plain: kernels as plain Python."""
+class Mode(NamedTuple):
+    """How tests are run."""
+
+    plain: bool  # kernels as plain Python
+    sound: Path | None = None  # a checkout of which the compiled kernels are taken, where no kernel is different
+    until_failure: bool = True  # end at the first failure
+    with_calls: bool = False  # record which functions each test calls
+
+
+def run_tests(tree: Path, tests: list[str], seconds: float, mode: Mode, timeout: float) -> Outcome:
+    """Run tests of the checkout in `tree` for at most `seconds` [s], each for at most `timeout` [s]."""
     report, log = tree.parent / "report.json", tree.parent / "log.txt"
     report.unlink(missing_ok=True)
     child = os.fork()
@@ -62,7 +81,7 @@ def run_tests(tree: Path, tests: list[str], seconds: float, *, plain: bool, opti
         output = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(output, 1)
         os.dup2(output, 2)
-        os._exit(in_child(tree, tests, report, plain=plain, options=options))
+        os._exit(in_child(tree, tests, report, mode, timeout))
     ended, status, start = False, 0, time.monotonic()
     while not ended and time.monotonic() - start < seconds:
         found, status = os.waitpid(child, os.WNOHANG)
@@ -74,11 +93,20 @@ def run_tests(tree: Path, tests: list[str], seconds: float, *, plain: bool, opti
     if ended and os.waitstatus_to_exitcode(status) == USAGE:
         raise RuntimeError(f"pytest did not find the tests; its output is in {log}")
     if not report.exists():
-        return Outcome({}, "", False, False)
+        return Outcome({}, "the process died" if ended else "", False, ended)
     return Outcome(**json.loads(report.read_text()))
 
 
-def in_child(tree: Path, tests: list[str], report: Path, *, plain: bool, options: tuple[str, ...]) -> int:
+def use_kernels_of(sound: Path, tree: Path) -> None:
+    """Take the compiled kernels of the checkout in `sound`: a fault outside of kernels leaves them as they are."""
+    import sim.jit
+
+    folder = sim.jit.kernel_folder
+    sim.jit.ROOT = sound
+    sim.jit.kernel_folder = lambda path: folder(sound / path.relative_to(tree.resolve()))  # type: ignore[assignment]
+
+
+def in_child(tree: Path, tests: list[str], report: Path, mode: Mode, timeout: float) -> int:
     """The run itself; returns the exit status."""
     for name in [name for name in sys.modules if name.partition(".")[0] in OWN]:
         del sys.modules[name]
@@ -86,11 +114,15 @@ def in_child(tree: Path, tests: list[str], report: Path, *, plain: bool, options
     sys.path[:] = [str(tree), *(path for path in sys.path if path not in ("", os.getcwd()))]
     os.environ["PYTHONPATH"] = str(tree)
     os.environ["SPRINGTIDE_CACHE"] = str(tree.parent / "cache")
-    numba.config.DISABLE_JIT = plain  # type: ignore[attr-defined]
-    recorder = Recorder()
-    status = pytest.main(["-q", "-p", "no:cacheprovider", "--tb=native", *options, *tests], plugins=[recorder])
-    if recorder.failures or status == pytest.ExitCode.OK:
+    numba.config.DISABLE_JIT = mode.plain  # type: ignore[attr-defined]
+    if mode.sound is not None:
+        use_kernels_of(mode.sound, tree)
+    recorder, calls = Recorder(until_failure=mode.until_failure, plain=mode.plain), CallRecorder(tree)
+    plugins = [recorder, calls] if mode.with_calls else [recorder]
+    options = ["-q", "-p", "no:cacheprovider", "--tb=native", "-m", "not stress and not browser"]
+    status = pytest.main([*options, "--timeout", str(timeout), *tests], plugins=plugins)
+    if recorder.failures or status in (pytest.ExitCode.OK, pytest.ExitCode.INTERRUPTED):
         failed = recorder.failures[0] if recorder.failures else ""
-        report.write_text(json.dumps(Outcome(recorder.durations, failed, recorder.crash, True)._asdict()))
+        report.write_text(json.dumps(Outcome(recorder.durations, failed, recorder.crash, True, calls.called)._asdict()))
         return 0
     return USAGE if status in (pytest.ExitCode.USAGE_ERROR, pytest.ExitCode.NO_TESTS_COLLECTED) else int(status)

@@ -6,7 +6,7 @@ import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from app.lab.task import Question, Task
 from sim.files import replacing
@@ -82,12 +82,13 @@ def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: s
     that leaves no place for the value; then it is written anew.
     """
     path = folder / FILE
-    text = path.read_text(ENCODING) if path.exists() else ""
+    # As bytes, so that lines end as they did.
+    text = path.read_bytes().decode(ENCODING) if path.exists() else ""
     changed = with_value(text, task, key, value)
     if changed is None:
         changed = answers_text(tasks, Answers(answers.name, {**answers.values, (task, key): value}))
     with replacing(path) as draft:
-        draft.write_text(changed, "utf-8")
+        draft.write_bytes(changed.encode())
 
 
 def with_value(text: str, task: str, key: str, value: Value) -> str | None:
@@ -106,11 +107,19 @@ def with_value(text: str, task: str, key: str, value: Value) -> str | None:
         quotes = next((mark for mark in ('"""', "'''") if mark in lines[first]), "")
         ends = (i for i in range(first + 1, end + 1) if quotes in lines[i - 1])
         after = next((i for i in ends if not quotes or is_toml("\n".join(lines[first:i]))), first)
-    changed = "\n".join([*lines[:first], f"{key} = {quoted(value)}", *lines[after:]])
-    table = tomllib.loads(text)
-    expected = {**table, task: {**table.get(task, {}), key: value}}
+    assignment = f"{key} = {quoted(value)}"
+    if "\r\n" in text:
+        assignment = assignment.replace("\n", "\r\n") + "\r"
+    changed = "\n".join([*lines[:first], assignment, *lines[after:]]).removesuffix("\r")
+    table = exact(text)
+    expected = {**table, task: {**table.get(task, {}), **exact(f"{key} = {quoted(value)}")}}
     # A line within a text may look like a heading or like an assignment: then the file does not say what it should.
-    return changed if is_toml(changed) and tomllib.loads(changed) == expected else None
+    return changed if is_toml(changed) and exact(changed) == expected else None
+
+
+def exact(text: str) -> dict[str, Any]:
+    """A TOML file with its floats as they are written, because NaN differs from itself. Raises ValueError."""
+    return tomllib.loads(text, parse_float=lambda digits: ("float", digits))
 
 
 def is_toml(text: str) -> bool:

@@ -36,6 +36,7 @@ class Job(NamedTuple):
     x: np.ndarray  # (n, 3) [m]
     v: np.ndarray  # (n, 3) [m/s]
     segments: Sequence[Segment]
+    answers: "queue.SimpleQueue[Answer]"  # of the scene that asks
 
 
 class Answer(NamedTuple):
@@ -106,12 +107,11 @@ def try_rope(runner: Runner, saved: Saved, method: str, *, sphere: bool) -> None
 
 
 class LiveRope:
-    """Runs jobs in a thread. `submit` and `answers` are for the simulation thread; `adopt` for who loads versions."""
+    """Runs jobs in a thread. `submit` is for the simulation thread; `adopt` for who loads versions."""
 
     def __init__(self, fail: Callable[[Saved, RunError], None]) -> None:
         """fail: is told of a version that fails while it runs; on this object's thread."""
-        self.answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
-        self.runs = itertools.count(1)  # for all scenes: an answer may come when the scene that asked is closed
+        self.runs = itertools.count(1)  # for all scenes
         self.connect(lambda: None, lambda: None)
         self.method, self.sphere = "rk4", False  # of the last job: what a new version is tried with
         self.fail = fail
@@ -129,7 +129,7 @@ class LiveRope:
         self.report = StudentReport()  # replaced by the simulation thread
 
     def submit(self, job: Job) -> None:
-        """Have steps taken; the answer comes through `answers`."""
+        """Have steps taken; the answer comes through its queue."""
         self.inbox.put(job)
 
     def adopt(self, loaded: Loaded) -> None:
@@ -147,7 +147,7 @@ class LiveRope:
             if isinstance(item, Loaded):
                 self.take(item)
             else:
-                self.answers.put(self.advance(item))
+                item.answers.put(self.advance(item))
                 self.wake()
         for loaded in self.versions:
             loaded.runner.close()

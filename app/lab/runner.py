@@ -87,7 +87,11 @@ class Runner:
         own: names of the functions that the student has begun. step: name of the method's function. x, v: (n, 3).
         """
         arguments = [sorted(own), step, x, v, [packed(segment) for segment in segments]]
-        return March(*self._ask("march", FILE, step, arguments))
+        answer = self._ask("march", FILE, step, arguments)
+        if not is_march(answer, x.shape):
+            self.close()
+            raise RunError("ended", f"{step} wrote into the pipe of the lab", FILE)
+        return March(*answer)
 
     def compile(self, own: Collection[str]) -> tuple[list[str], str]:
         """Compile the functions that move a rope, for later marches; which could be, and why others could not.
@@ -172,8 +176,21 @@ class Runner:
             "OMP_NUM_THREADS": "1",
             "PYTHONDONTWRITEBYTECODE": "1",
         }
+        try:
+            process = self._process = self._started(surroundings)
+        except OSError as error:  # no more processes, files or memory
+            raise RunError("ended", f"no process can be started: {error.strerror or error}", "Python") from error
+        if self._aborted:
+            process.kill()
+        self._answers = queue.SimpleQueue()
+        threading.Thread(target=read_answers, args=(process, self._answers), daemon=True).start()
+        self._next(time.monotonic() + LOAD_LIMIT, LOAD_LIMIT, "Python", "the start of the process")
+        return process
+
+    def _started(self, surroundings: dict[str, str]) -> subprocess.Popen[bytes]:
+        """A new process with these environment variables. Raises OSError."""
         trace = self._trace = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
-        process = subprocess.Popen(
+        return subprocess.Popen(
             [
                 sys.executable,
                 "-P",
@@ -192,13 +209,6 @@ class Runner:
             env=surroundings,
             start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle
         )
-        self._process = process
-        if self._aborted:
-            process.kill()
-        self._answers = queue.SimpleQueue()
-        threading.Thread(target=read_answers, args=(process, self._answers), daemon=True).start()
-        self._next(time.monotonic() + LOAD_LIMIT, LOAD_LIMIT, "Python", "the start of the process")
-        return process
 
     def _where(self) -> tuple[str, int, str] | None:
         """File, line and function of the student's at which the process is; None where that cannot be found out."""
@@ -255,6 +265,16 @@ def read_answers(process: subprocess.Popen[bytes], answers: "queue.SimpleQueue[l
         answers.put(answer)
         if answer is None:
             return
+
+
+def is_march(answer: Any, shape: tuple[int, ...]) -> bool:
+    """Whether an answer holds what a `March` of points (n, 3) does: a student's function may have forged it."""
+    if not isinstance(answer, tuple) or len(answer) != len(March._fields):
+        return False
+    x, v, steps, seconds, left = answer
+    arrays = all(isinstance(array, np.ndarray) and array.dtype == np.float64 for array in (x, v))
+    numbers = isinstance(steps, int) and isinstance(seconds, float) and isinstance(left, bool)
+    return arrays and numbers and x.shape == (len(x), *shape) and v.shape == shape
 
 
 def compute(functions: list[Callable[..., Any]], answer: list[Any]) -> list[Any]:

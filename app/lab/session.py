@@ -62,7 +62,7 @@ class Session:
         self.copies = Path(tempfile.mkdtemp(prefix="springtide-lab-"))
         self.saved: Saved | None = None  # the newest version
         self.number = 0
-        self.spare = self.make_runner()
+        self.spare: Runner | None = self.make_runner()
         self.rope = LiveRope(self.note_failure)
         self.check = BackgroundCheck(own_tasks)
         self.values = SceneValues({task.name: task for task in tasks}, time_limit)
@@ -96,21 +96,21 @@ class Session:
                 return
             try:
                 self.load()
-            except Exception:  # the thread lives: the next save may do
-                traceback.print_exc()
+            except Exception as error:  # the thread lives: the files are taken up once that is possible
+                self.note_trouble(error)
 
     def load(self) -> None:
         """Take the files up as they are now, where one has changed."""
         texts = read_files(self.folder)
         if self.saved is not None and texts == self.saved.texts:
             return
-        runner = self.spare
-        before, self.saved = self.saved, keep(texts, runner.folder, self.number, self.tasks)
-        saved = self.saved
-        changed = saved.changed(before)
+        runner = self.spare = self.spare or self.make_runner()
+        saved = keep(texts, runner.folder, self.number, self.tasks)
+        changed = saved.changed(self.saved)
         helpers = changed - {task.file for task in self.tasks}  # which any function may use
         names = [task.name for task in self.tasks if task.file and (helpers or task.file in changed)]
         self.check.request(saved.folder, names, saved.begun)
+        self.saved, self.spare = saved, None
         self.state = self.state._replace(version=saved.number, saved_at=time.strftime("%H:%M:%S"), error=None)
         if FILE in texts and self.is_for_rope(changed):
             self.rope_version = saved.number
@@ -119,7 +119,15 @@ class Session:
             self.try_version(Loaded(saved, runner))
         else:
             runner.close()
-        self.spare = self.make_runner()
+        with contextlib.suppress(OSError):  # said when it is needed
+            self.spare = self.make_runner()
+
+    def note_trouble(self, error: Exception) -> None:
+        """The files could not be taken up, by no fault of theirs: a full disk, or no more processes."""
+        text = f"the saved files cannot be taken up: {error}"
+        if self.state.error is None or self.state.error.text != text:  # it is tried again twice a second
+            traceback.print_exception(error)
+            self.state = self.state._replace(error=RunError("ended", text, str(self.folder)))
 
     def is_for_rope(self, changed: frozenset[str]) -> bool:
         """Whether a change of these files can change the rope: of its own file, or of one that no task names."""
@@ -174,7 +182,8 @@ class Session:
         if self.compiler is not None:
             self.compiler.abort()
         self.compiling.join()
-        self.spare.close()
+        if self.spare is not None:
+            self.spare.close()
         self.rope.close()
         self.check.close()
         self.values.close()

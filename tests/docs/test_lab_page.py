@@ -7,7 +7,11 @@ from pathlib import Path
 import pytest
 
 from app.__main__ import main
+from app.lab.live_values import LiveNumber, fill_in
 from app.lab.task import QUESTION_KINDS, load_tasks
+from app.render.formula import formula
+from app.scenes.rope.parameters import Params
+from sim.parameters import parameters_of
 from tests.docs.pages import ROOT, text_of
 
 PAGE = text_of(ROOT / "docs" / "lab.md")
@@ -44,6 +48,11 @@ def test_the_teacher_s_example_works(teacher: Path) -> None:
     assert main(new) == 0
     stub = (teacher / "course" / "pendulum.py").read_text()
     assert "def pendulum_period(length, gravity):" in stub
+    task = next(task for task in load_tasks(teacher / "my_tasks") if task.name == "pendulum_period")
+    assert task.guide is not None
+    assert "<mfrac>" in formula(task.guide.law[0])
+    scene = {name: LiveNumber(1.0, p.unit, name) for name, p in parameters_of(Params()).items()}
+    assert "On a thread of 1 m, under 1 m/s²" in fill_in(task.guide.answer, scene).replace("\xa0", " ")
     assert "np.sqrt" not in stub
     assert main(check) == 1
     assert main(["lab", "new", "solved", "--solutions", "--tasks", "my_tasks"]) == 0

@@ -6,6 +6,7 @@ both ropes at the moment that the student's has reached, so that what differs is
 
 import collections
 import math
+import queue
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,7 @@ class StudentRope:
 
     def __init__(self, live: LiveRope) -> None:
         self.live = live
+        self.answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
         self.run = 0  # number of the run, of `LiveRope.runs`
         self.max_speed = 0.0  # [m/s] of the fastest point, along an axis
         self.rows: collections.deque[tuple[float, float]] = collections.deque(maxlen=MAX_ROWS)  # (t, m)
@@ -83,12 +85,13 @@ class StudentRope:
             pieces.append(self.waiting.popleft())
             steps += pieces[-1].segment.steps
         self.sent = pieces
-        self.live.submit(Job(self.run, self.method, self.x, self.v, [piece.segment for piece in pieces]))
+        segments = [piece.segment for piece in pieces]
+        self.live.submit(Job(self.run, self.method, self.x, self.v, segments, self.answers))
 
     def collect(self, max_reach: float) -> None:
         """Take the answers that have come. max_reach: [m] from the root at which a rope has left its bounds."""
-        while not self.live.answers.empty():
-            answer = self.live.answers.get_nowait()
+        while not self.answers.empty():
+            answer = self.answers.get_nowait()
             if answer.run == self.run:
                 self.take(answer, max_reach)
         self.send()

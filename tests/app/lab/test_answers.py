@@ -79,6 +79,18 @@ def test_a_byte_order_mark_is_read_over(tmp_path: Path) -> None:
     assert (back.error, back.name, back.values) == ("", "Ada", {("filler", "a"): 2.0})
 
 
+@pytest.mark.parametrize("value", [2.0, "two\nlines"])
+@pytest.mark.parametrize("tail", ["", "b = 3\n", "\n[other]\nx = inf\n"])
+def test_all_but_the_value_stays_as_it_is_with_nan_and_any_line_ends(tmp_path: Path, value: object, tail: str) -> None:
+    for end in ("\n", "\r\n"):
+        before = f'name = "Ada"\n# mine\n[filler]\na = 1\n{tail}z = nan\n'.replace("\n", end)
+        (tmp_path / FILE).write_bytes(before.encode())
+        change_answer(tmp_path, TASKS, read_answers(tmp_path), "filler", "a", value)
+        written = "2.0" if value == 2.0 else f'"""{end}two{end}lines"""'
+        assert (tmp_path / FILE).read_bytes().decode() == before.replace("a = 1", f"a = {written}")
+        assert read_answers(tmp_path).values["filler", "a"] == value
+
+
 def test_no_file_is_said(tmp_path: Path) -> None:
     assert FILE in read_answers(tmp_path).error
 
@@ -90,12 +102,12 @@ from pathlib import Path
 from app.lab.answers import change_answer, read_answers
 from app.lab.task import load_tasks
 
-def write_half(path, text, encoding):
-    with open(path, "w", encoding=encoding) as file:
-        file.write(text[: len(text) // 2])
+def write_half(path, data):
+    with open(path, "wb") as file:
+        file.write(data[: len(data) // 2])
     os._exit(3)
 
-Path.write_text = write_half
+Path.write_bytes = write_half
 folder = Path(sys.argv[1])
 change_answer(folder, load_tasks(with_checks=False), read_answers(folder), "filler", "0", "new")
 """

@@ -11,8 +11,10 @@ import pytest
 
 from app.lab.background_check import BackgroundCheck
 from app.lab.folder import make_folder
+from app.lab.live_rope import try_rope
 from app.lab.program_check import Verdict
 from app.lab.rope_march import REFERENCE
+from app.lab.runner import RunError
 from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.messages import Grab, Place, StudentAnswer
@@ -77,7 +79,7 @@ def run(scene: RopeScene, frames: int = 20) -> None:
     assert scene.student is not None
     for _ in range(frames):
         scene.advance(2)
-        wait_for(lambda: scene.student.live.answers.qsize() or not scene.student.sent)
+        wait_for(lambda: scene.student.answers.qsize() or not scene.student.sent)
         scene.handle(StudentAnswer())
 
 
@@ -197,14 +199,59 @@ def test_a_file_of_another_scene_does_not_begin_the_rope_again(right: Session) -
 
 
 def test_an_answer_to_a_scene_that_was_left_is_not_taken_by_the_next(right: Session) -> None:
-    left = make_scene(right, points=7)
+    left, scene = make_scene(right, points=7), make_scene(right)
+    assert left.student is not None
+    assert scene.student is not None
     left.advance(2)
-    wait_for(lambda: right.rope.answers.qsize())
-    scene = make_scene(right)
-    scene.handle(StudentAnswer())  # to what it has not asked for
-    assert scene.frame().reference is None
-    run(scene, 3)
+    scene.advance(2)
+    wait_for(scene.student.answers.qsize)
+    left.handle(StudentAnswer())  # its thread is still at work
+    assert left.frame().points.shape == (7, 3)
+    scene.handle(StudentAnswer())
+    assert scene.frame().reference is not None
     assert scene.frame().points.shape == (scene.params.points, 3)
+
+
+def test_where_no_process_can_be_started_that_is_said_and_tried_again(right: Session) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(11, "Resource temporarily unavailable")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("app.lab.runner.Runner._started", refuse)
+        right.rope.versions[-1].runner.close()  # as after an error
+        scene = make_scene(right)
+        run(scene, 3)
+        wait_for(lambda: right.state.error)
+        assert right.state.error is not None
+        assert "no process can be started: Resource temporarily unavailable" in str(right.state.error)
+    save(right, RIGHT + "\n# once more\n")
+    wait_for(lambda: right.rope.taken == right.state.version)
+    run(scene, 3)
+    assert right.rope.report.version == right.state.version
+
+
+def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None:
+    def full_disk(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    before = right.state.version
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(right.check, "request", full_disk)
+        (right.folder / "rope.py").write_text(RIGHT + "\n# later\n")
+        wait_for(lambda: right.state.error)
+        assert right.state.error is not None
+        assert "cannot be taken up" in right.state.error.text
+        assert right.state.version == before
+    wait_for(lambda: right.state.version > before)
+    assert right.state.error is None
+
+
+def test_a_forged_answer_is_named(right: Session) -> None:
+    found = right.rope.versions[-1].runner
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(found, "_ask", lambda *_: (1, 2, 3))
+        with pytest.raises(RunError, match="pipe of the lab"):
+            try_rope(found, right.rope.versions[-1].saved, "rk4", sphere=False)
 
 
 def test_what_is_no_folder_is_refused(tmp_path: Path) -> None:
@@ -228,6 +275,7 @@ def test_the_functions_of_a_saved_file_are_checked_as_lab_check_does(right: Sess
     process = right.check.process
     assert process is not None
     process.kill()  # it is started again
+    process.wait()
     save(right, RIGHT)
     wait_for(lambda: right.check.verdicts.get("spring_force") == Verdict("right"))
 

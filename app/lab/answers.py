@@ -16,6 +16,9 @@ MAX_SIZE = 2**20  # [bytes] of a file that is read
 ENCODING = "utf-8-sig"  # for reading: some editors begin a file with a byte order mark
 LINE = 100  # characters of a comment's line
 
+DONE = "done"  # key of the steps that were seen to be done
+SHOWN = "answer_shown"  # key of whether the answer was looked at: from then on the prediction stays as it is
+
 Value = str | float
 
 
@@ -36,6 +39,15 @@ class Answers(NamedTuple):
         if value == "" or (isinstance(value, float) and not math.isfinite(value)):
             return None
         return value
+
+    def done(self, task: Task) -> frozenset[int]:
+        """Numbers of the steps, from 1, that were seen to be done."""
+        text = str(self.values.get((task.name, DONE), ""))
+        return frozenset(int(word) for word in text.split() if word.isdecimal() and len(word) < 3)
+
+    def is_shown(self, task: Task) -> bool:
+        """Whether the answer was looked at in the panel."""
+        return self.values.get((task.name, SHOWN)) == "yes"
 
 
 def number_in(text: str) -> Value:

@@ -11,6 +11,7 @@ from app.lab.task import Task
 from sim.validation import argument_error
 
 PICTURES = "pictures"  # folder for pictures of the screen, which the report shows
+MAX_PICTURES = 60  # that the report shows
 
 
 def make_folder(folder: Path, tasks: Sequence[Task], *, solutions: bool = False) -> list[Path]:
@@ -86,13 +87,17 @@ def readme_text(name: str, tasks: Sequence[Task]) -> str:
         "",
         "1. Read it below. Predict first: write your prediction into `answers.toml`.",
         "2. Write the function, where there is one. The docstring has the equation, the units and the shapes.",
-        "3. Look at it in Springtide: the command below each task opens the right scene.",
-        f"4. Check your work in the folder above this one: `springtide lab check {quoted}`. It says what is right,",
-        "   and what is wrong and why. Check as often as you like.",
-        "5. Answer the questions in `answers.toml`.",
+        "3. Look at it in Springtide.",
+        "4. Check your work. Check as often as you like.",
+        "5. Answer the questions.",
         "",
-        f"Put pictures of your screen (PNG or JPEG) into `{PICTURES}`. At the end write the page that you hand in:",
-        f"`springtide lab check {quoted} --report report.html`.",
+        "Run these commands in the folder above this one:",
+        "",
+        f"- `springtide lab {quoted}` opens the scenes in a browser. They run your functions as you save them.",
+        "  The folder Workbook in the panel has the tasks below. It sets them up, keeps answers and takes pictures.",
+        f"- `springtide lab check {quoted}` says what is right, and what is wrong and why.",
+        f"- `springtide lab check {quoted} --report report.html` writes the page that you hand in.",
+        f"  It shows the pictures (PNG or JPEG) in `{PICTURES}`, with a task those that its name begins.",
         "",
         "Functions take and return numpy arrays and numbers. Loops are as right as array operations. You may write",
         "functions and files of your own beside those that are asked for.",

@@ -1,27 +1,37 @@
 """The page to hand in: one HTML file that needs no network. Everything that a student wrote is escaped."""
 
 import base64
+import inspect
+import time
 from collections.abc import Sequence
-from pathlib import Path
 
 from app.lab.answer_check import AnswerVerdict
-from app.lab.answers import Value
+from app.lab.answers import Answers, Value
 from app.lab.chart import chart
 from app.lab.check import FolderResult, TaskResult
-from app.lab.folder import PICTURES
+from app.lab.folder import MAX_PICTURES, PICTURES
+from app.lab.program_check import SAMPLES
+from app.lab.task import Task
+from app.render.formula import formula
 from app.render.html import Html, fill, join
 
 MAX_CODE = 20_000  # characters of a student's file that are shown
-MAX_PICTURES = 30
 MAX_PICTURE = 4 * 2**20  # [bytes]
 # The first bytes of a picture -> its type; other files are left out, whatever their names.
 SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
+PARTS = {"Predict": "Predicted", "Measure": "Measured", "Explain": "Explained"}
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #1b2a3a; max-width: 60em; margin: 2em auto; padding: 0 1em; }
 h1, h2, h3 { line-height: 1.25; } h3 { margin: 2em 0 0.3em; }
 table { border-collapse: collapse; margin: 0.5em 0; } td, th { border: 1px solid #ccd3da; padding: 0.25em 0.6em;
 text-align: left; vertical-align: top; overflow-wrap: break-word; }
-.answers { table-layout: fixed; width: 100%; } .answers :is(td, th):first-child { width: 6.5em; }
+.answers { table-layout: fixed; width: 100%; } .answers th { background: #f3f5f7; }
+.question + .question { border-top: 1px solid #ccd3da; margin-top: 0.5em; padding-top: 0.3em; }
+.question p { margin: 0.2em 0; }
+.answer { white-space: pre-wrap; font-weight: 600; } .steps { padding-left: 1.2em; }
+math { margin: 0.6em 0; font-size: 115%; }
+h3 { border-top: 2px solid #ccd3da; padding-top: 0.8em; }
+@media print { h3, figure, .question { break-inside: avoid; } }
 pre { background: #f3f5f7; padding: 0.7em; overflow-x: auto; font-size: 13px; } img, svg { max-width: 100%; }
 .right { color: #1e6b2c; } .wrong, .failed { color: #b51d1d; } .incomplete { color: #9a4b00; }
 .faint { color: #4d5560; }
@@ -68,21 +78,28 @@ def student_section(result: FolderResult, number: int) -> Html:
     (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
     name = result.answers.name or f"Folder {result.folder.name}"
     error = fill('<p class="failed">{}</p>', result.answers.error) if result.answers.error else Html()
+    found = pictures(result)
+    tasks = join(
+        task_section(result, entry, f"student-{number}-{entry.task.name}", of_task(found, entry.task.name))
+        for entry in result.tasks
+    )
+    rest = of_task(found, "")
     return fill(
-        '<section id="student-{}"><h1>{}</h1><p>{} of {} mandatory tasks are right, and {} of {} optional ones.</p>{}'
-        "{}{}{}<h2>Code</h2>{}</section>",
-        number, name, right, count, more, optional, error, overview(result),
-        join(task_section(entry) for entry in result.tasks), pictures(result.folder), code(result),
+        '<section id="student-{0}"><h1>{1}</h1><p>Springs and waves, the course lab. Checked on {2}.</p>'
+        "<p>{3} of {4} mandatory tasks are right, and {5} of {6} optional ones.</p>{7}{8}{9}{10}"
+        "<h2>Code</h2>{11}</section>",
+        number, name, time.strftime("%Y-%m-%d %H:%M"), right, count, more, optional, error, overview(result, number),
+        tasks, fill("<h2>More pictures</h2>{}", rest) if rest else Html(), code(result),
     )  # fmt: skip
 
 
-def overview(result: FolderResult) -> Html:
-    """The state of every task."""
+def overview(result: FolderResult, number: int) -> Html:
+    """The state of every task, with a link to its section."""
     rows = join(
         fill(
-            '<tr><td>{}</td><td>{}{}</td><td class="{}">{}</td></tr>',
-            entry.task.item, entry.task.title, " (optional)" if entry.task.optional else "",
-            state_class(entry.state), entry.state,
+            '<tr><td>{}</td><td><a href="#student-{}-{}">{}</a>{}</td><td class="{}">{}</td></tr>',
+            entry.task.item, number, entry.task.name, entry.task.title,
+            " (optional)" if entry.task.optional else "", state_class(entry.state), entry.state,
         )
         for entry in result.tasks
     )  # fmt: skip
@@ -94,57 +111,107 @@ def state_class(state: str) -> str:
     return {"not begun": "faint", "given": "faint"}.get(state, state)
 
 
-def task_section(entry: TaskResult) -> Html:
-    """One task: its statement, what the program says to the function, answers beside predictions."""
-    task, program = entry.task, entry.program
-    said = Html()
-    if program is not None:
-        mistake = f" ({program.mistake})" if program.mistake and program.state == "wrong" else ""
-        said = fill(
-            '<p>Function <code>{}</code>: <b class="{}">{}</b>{}. {}</p>',
-            task.name, state_class(program.state), program.state, mistake, program.text,
-        )  # fmt: skip
-    table = Html()
-    if entry.answers:
-        table = fill(
-            '<table class="answers"><tr><th></th><th>question</th><th>answer</th><th>check</th></tr>{}</table>',
-            join(answer_row(verdict) for verdict in entry.answers),
+def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Html) -> Html:
+    """One task: its statement, law, what was done, what the program says, and answers. shown: its pictures."""
+    task = entry.task
+    laws = join(formula(law) for law in task.guide.law) if task.guide is not None else Html()
+    return fill(
+        '<h3 id="{}">{} {}{}: <span class="{}">{}</span></h3><p class="faint">{}</p>{}{}{}{}{}{}',
+        anchor, task.item, task.title, " (optional)" if task.optional else "", state_class(entry.state), entry.state,
+        task.statement, laws, steps(result.answers, task), program_text(entry), answers_of(result.answers, entry),
+        Html() if entry.points is None else chart(entry.points), shown,
+    )  # fmt: skip
+
+
+def steps(answers: Answers, task: Task) -> Html:
+    """What was to be done in the scene, and whether the workbook has seen it."""
+    done = answers.done(task)
+    rows = join(
+        fill(
+            "<li>{} {}</li>",
+            fill('<b class="right">✓ seen:</b>') if number in done else fill('<span class="faint">not seen:</span>'),
+            step.text,
         )
+        for number, step in enumerate(task.steps, 1)
+    )
+    return fill('<ul class="steps">{}</ul>', rows) if rows else Html()
+
+
+def program_text(entry: TaskResult) -> Html:
+    """What the check says to the function, and what it has checked."""
+    program = entry.program
+    if program is None:
+        return Html()
+    mistake = f" ({program.mistake})" if program.mistake and program.state == "wrong" else ""
+    text = program.text
+    if program.state == "right":
+        behaviour = inspect.getdoc(getattr(entry.task.check, "behaviour", None)) or ""
+        text = f"As the reference at {SAMPLES} random inputs. {behaviour and 'Behaviour: '}{behaviour}"
     return fill(
-        '<h3>{} {}{}: <span class="{}">{}</span></h3><p class="faint">{}</p>{}{}{}',
-        task.item, task.title, " (optional)" if task.optional else "", state_class(entry.state), entry.state,
-        task.statement, said, table, Html() if entry.points is None else chart(entry.points),
+        '<p>Function <code>{}</code>: <b class="{}">{}</b>{}. {}</p>',
+        entry.task.name, state_class(program.state), program.state, mistake, text,
     )  # fmt: skip
 
 
-def answer_row(verdict: AnswerVerdict) -> Html:
+def answers_of(answers: Answers, entry: TaskResult) -> Html:
+    """The answers of a task: predictions beside measurements, and explanations below."""
+    if not entry.answers:
+        return Html()
+    cells = {part: [answer for answer in entry.answers if answer.question.part == part] for part in PARTS}
+    above = [part for part in ("Predict", "Measure") if cells[part]]
+    explained = join(answer_text(answer) for answer in cells["Explain"])
+    looked_at = "The answer of the program was looked at in the panel."
+    return fill(
+        '<table class="answers"><tr>{}</tr><tr>{}</tr>{}</table>{}',
+        join(fill('<th colspan="{}">{}</th>', 3 - len(above), PARTS[part]) for part in above),
+        join(
+            fill('<td colspan="{}">{}</td>', 3 - len(above), join(answer_text(answer) for answer in cells[part]))
+            for part in above
+        ),
+        fill('<tr><th colspan="2">{}</th></tr><tr><td colspan="2">{}</td></tr>', PARTS["Explain"], explained)
+        if explained
+        else Html(),
+        fill('<p class="faint">{}</p>', looked_at) if answers.is_shown(entry.task) else Html(),
+    )  # fmt: skip
+
+
+def answer_text(verdict: AnswerVerdict) -> Html:
     """One question with its answer and what the check says."""
-    state = "kept for the teacher" if verdict.state == "given" else verdict.state
+    state = {"given": "", "not begun": "not answered"}.get(verdict.state, verdict.state)
+    said = fill('<p><span class="{}">{}</span> {}</p>', state_class(verdict.state), state, verdict.text)
     return fill(
-        '<tr><td>{}</td><td>{}</td><td>{}</td><td><span class="{}">{}</span> {}</td></tr>',
-        verdict.question.key,
-        verdict.question.ask, answer_text(verdict.answer, verdict.question.unit), state_class(verdict.state), state,
-        verdict.text,
+        '<div class="question"><p class="faint">{}</p><p class="answer">{}</p>{}</div>',
+        verdict.question.ask, value_text(verdict.answer, verdict.question.unit), said if state else Html(),
     )  # fmt: skip
 
 
-def answer_text(answer: Value | None, unit: str) -> str:
+def value_text(answer: Value | None, unit: str) -> str:
     """An answer with its unit."""
     if answer is None:
         return ""
     return answer if isinstance(answer, str) else f"{answer:g} {unit}".strip()
 
 
-def pictures(folder: Path) -> Html:
-    """The pictures that the student took, as part of the page."""
-    found = []
-    for path in sorted((folder / PICTURES).glob("*"))[:MAX_PICTURES]:
+def pictures(result: FolderResult) -> list[tuple[str, Html]]:
+    """The pictures that the student took, as parts of the page, each with the task that its name begins with, or ""."""
+    names = {entry.task.name for entry in result.tasks}
+    found: list[tuple[str, Html]] = []
+    for path in sorted((result.folder / PICTURES).glob("*"))[:MAX_PICTURES]:
         data = path.read_bytes() if path.is_file() and path.stat().st_size <= MAX_PICTURE else b""
         kind = next((kind for head, kind in SIGNATURES.items() if data.startswith(head)), None)
         if kind is not None:
             source = f"data:{kind};base64,{base64.b64encode(data).decode()}"
-            found.append(fill('<figure><img src="{}" alt=""><figcaption>{}</figcaption></figure>', source, path.name))
-    return fill("<h2>Pictures</h2>{}", join(found)) if found else Html()
+            first = path.stem.partition(" ")[0]
+            figure = fill(
+                '<figure><img src="{}" alt="{}"><figcaption>{}</figcaption></figure>', source, path.stem, path.name
+            )
+            found.append((first if first in names else "", figure))
+    return found
+
+
+def of_task(found: Sequence[tuple[str, Html]], task: str) -> Html:
+    """The pictures of one task."""
+    return join(picture for name, picture in found if name == task)
 
 
 def code(result: FolderResult) -> Html:

@@ -22,6 +22,7 @@ from sim.validation import argument_error, as_float
 TASKS = Path(__file__).parent / "tasks"  # those of the course
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 QUESTION_KINDS = ("choice", "number", "text")
+PREDICTION = "predict"  # key of the question that is answered before
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,6 +47,11 @@ class Question:
     why: str = ""  # the explanation that the check gives
     read_off: str = ""  # name of the live value that answers it, or ""
     typical_errors: tuple[TypicalError, ...] = ()
+
+    @property
+    def part(self) -> str:
+        """The part of the task that it belongs to: "Predict", "Measure" or "Explain"."""
+        return "Predict" if self.key == PREDICTION else "Explain" if self.kind == "text" else "Measure"
 
     def is_near(self, answer: float, value: float) -> bool:
         """Whether a number counts as this value."""

@@ -5,24 +5,24 @@ answers.toml, changes one value and writes the whole file; a lock keeps two chan
 the file that began before it. What the student wrote with an editor meanwhile is kept.
 """
 
+import itertools
 import threading
 import unicodedata
 from collections.abc import Sequence
 from pathlib import Path
 
 from app.lab.answer_check import AnswerVerdict, check_answer
-from app.lab.answers import FILE, Answers, Value, change_answer, read_answers
+from app.lab.answers import DONE, FILE, SHOWN, Answers, Value, change_answer, read_answers
+from app.lab.folder import MAX_PICTURES, PICTURES
 from app.lab.live_values import LiveNumber, LiveValues
-from app.lab.task import Question, Setup, Task
+from app.lab.task import PREDICTION, Question, Setup, Task
 from app.render.formula import formula
+from sim.files import replacing
 from sim.quantities import read_number
 from sim.validation import argument_error
 
 MAX_TEXT = 4000  # characters of an answer
 ALLOWED_CONTROLS = "\n\t"
-DONE = "done"  # key of the steps that were seen to be done
-SHOWN = "answer_shown"  # key of whether the answer was looked at: from then on the prediction stays as it is
-PREDICTION = "predict"  # key of the question that is answered before
 
 
 class Workbook:
@@ -125,12 +125,29 @@ class Workbook:
             change_answer(self.folder, self.all_tasks, found, task, key, value)
             self.refresh()
 
+    def add_picture(self, task: Task, words: str, picture: bytes) -> str:
+        """Keep a picture that was taken for a task; returns its name. words: what it shows, as a part of the name.
+
+        Raises ValueError where there are as many as the report shows, OSError where it cannot be written.
+        """
+        assert self.folder is not None
+        folder = self.folder / PICTURES
+        folder.mkdir(exist_ok=True)
+        if sum(1 for _ in folder.iterdir()) >= MAX_PICTURES:
+            raise ValueError(f"The report shows {MAX_PICTURES} pictures. Delete some in {PICTURES} first.")
+        names = (
+            f"{task.name} {words}{end}.jpg" for end in itertools.chain([""], map(" ({})".format, itertools.count(2)))
+        )
+        path = next(folder / name for name in names if not (folder / name).exists())
+        with replacing(path) as draft:
+            draft.write_bytes(picture)
+        return path.name
+
     # ----- what was done, and whether the answer was shown
 
     def done(self, task: Task) -> frozenset[int]:
         """Numbers of the steps, from 1, that were seen to be done."""
-        text = str(self.answers.values.get((task.name, DONE), ""))
-        return frozenset(int(word) for word in text.split() if word.isdecimal() and len(word) < 3)
+        return self.answers.done(task)
 
     def watch(self, task: Task, values: LiveValues) -> None:
         """Tick off the next step where it is seen to be done now. Raises what `keep` raises."""
@@ -145,7 +162,7 @@ class Workbook:
         """Whether the answer has been shown."""
         if self.folder is None:
             return task.name in self.looked_at
-        return self.answers.values.get((task.name, SHOWN)) == "yes"
+        return self.answers.is_shown(task)
 
     def show_answer(self, task: Task) -> None:
         """Show the answer. Raises ValueError where a prediction comes first, and what `keep` raises."""

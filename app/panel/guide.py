@@ -4,16 +4,19 @@ Callbacks run on viser's event loop. They change the workbook and nothing on the
 thread, shows what has changed.
 """
 
+import threading
 import time
+import traceback
 from collections.abc import Callable
 
 import viser
 
 from app.lab.live_values import LiveNumber, LiveValues, fill_in
-from app.lab.task import Question, Setup, Task
-from app.lab.workbook import PREDICTION, Workbook, read_off
+from app.lab.task import PREDICTION, Question, Setup, Task
+from app.lab.workbook import Workbook, read_off
+from app.panel.picture import take_picture
 from app.render.formula import formula
-from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, join, note
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, faint, fill, join, note
 from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.contract import AnyKind, AnySnapshot
 from sim.formatting import number
@@ -23,6 +26,7 @@ REFRESH_INTERVAL = 0.5  # [s] between two updates of live values, and two looks 
 TYPING_PAUSE = 1.0  # [s] after the last keystroke, after which a text is kept
 UNANSWERED = "Choose …"  # in the list of choices
 SET_UP, SHOW, HIDE = "Set this up", "Show the answer", "Hide the answer"
+PICTURE = "Take a picture"
 STATE_COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "given": GOOD_COLOUR}
 STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Kept."}
 
@@ -52,7 +56,7 @@ class QuestionWidgets:
         self.refusal = ""
         self.typed = self.flushed = "", 0.0  # the text as typed, and when [s] it last changed; the one that was kept
         gui = guide.gui
-        heading = "Predict" if question.key == PREDICTION else "Explain" if question.kind == "text" else "Measure"
+        heading = question.part
         self.widgets: list[GuiHandle] = []
         unit = f" [{question.unit}]" if question.unit else ""
         self.widgets.append(gui.add_html(note(fill("<b>{}</b> {}", heading, question.ask))))
@@ -156,6 +160,8 @@ class Guide:
         self.revision: int = workbook.revision
         self.refusal = ""  # why the last thing that was asked for was not possible
         self.unwritten = ""  # why a step could not be ticked off at the last look
+        self.busy = threading.Lock()  # one picture at a time
+        self.picture_said = ""  # what became of the last picture
         self.shown: Task | None = None
         self.questions: list[QuestionWidgets] = []
         workbook.go_to_scene(kind.name)
@@ -169,6 +175,9 @@ class Guide:
             self.text = gui.add_html("")
             self.tools = gui.add_button_group("", (SET_UP, SHOW))
             self.tools.on_click(self.on_tool)
+            if workbook.folder is not None:
+                self.camera = gui.add_button_group("", (PICTURE,))
+                self.camera.on_click(self.on_picture)
             self.answer = gui.add_html("")
         self.show_task()
 
@@ -191,6 +200,34 @@ class Guide:
         else:
             self.refusal = self.attempt(lambda: self.workbook.show_answer(task))
         self.stale = True
+
+    async def on_picture(self, event: ViserEvent) -> None:
+        """Take a picture of what this browser shows, for the report."""
+        if event.client is None or not self.busy.acquire(blocking=False):
+            return
+        self.picture_said = "The picture is being taken …"
+        self.stale = True
+        arguments = event.client, self.workbook.task
+        threading.Thread(target=self.take_picture, args=arguments, name="picture for the report", daemon=True).start()
+
+    def take_picture(self, client: viser.ClientHandle, task: Task) -> None:
+        """Keep a picture in the student's folder; whatever goes wrong is said. In a thread of its own."""
+        try:
+            time_now = self.values.get("time")
+            at = f" {time_now.value:.2f} s" if isinstance(time_now, LiveNumber) else ""
+            picture = take_picture(client, jpeg=True)
+            name = self.workbook.add_picture(task, f"{self.kind.name}{at}", picture)
+            self.picture_said = f"The report has the picture “{name}”."
+        except OSError as error:  # a TimeoutError is one too
+            self.picture_said = f"No picture was taken: {error.strerror or error}"
+        except (ValueError, RuntimeError) as reason:
+            self.picture_said = f"No picture was taken: {reason}"
+        except Exception as error:
+            traceback.print_exc()
+            self.picture_said = f"No picture was taken: {type(error).__name__}: {error}"
+        finally:
+            self.stale = True
+            self.busy.release()
 
     def attempt(self, action: Callable[[], None]) -> str:
         """Do something; returns why it was not possible, or ""."""
@@ -219,7 +256,7 @@ class Guide:
         if self.workbook.revision != self.revision:
             self.revision, self.stale = self.workbook.revision, True
         if self.workbook.task is not self.shown:
-            self.refusal = self.unwritten = ""
+            self.refusal = self.unwritten = self.picture_said = ""
             self.show_task()
         elif refresh or self.stale:
             self.show_values()
@@ -299,7 +336,8 @@ class Guide:
     def said(self) -> Html:
         """What was not possible, and why."""
         error = self.refusal or self.unwritten or self.workbook.answers.error
-        return fill('<div class="springtide-refusal" role="alert">{}</div>', error) if error else Html()
+        said = fill('<div class="springtide-refusal" role="alert">{}</div>', error) if error else Html()
+        return join((said, faint(self.picture_said))) if self.picture_said else said
 
     def answer_text(self, task: Task) -> Html:
         """The law, and the answer with the values of now; what is missing where the scene is set up otherwise."""

@@ -17,6 +17,7 @@ import numpy as np
 import viser
 
 from app.messages import BaseParams, Pause, PlotRow, Vector
+from app.panel.picture import take_picture
 from app.panel.recorder import RATES, Kept, Recorder
 from app.render.cameras import place_camera
 from app.render.html import fill, note
@@ -33,7 +34,6 @@ PICTURE_SIZES = {  # [pixels]
     "1920 x 1080": (1920, 1080),
     "3840 x 2160": (3840, 2160),
 }
-PICTURE_TIMEOUT = 60.0  # [s] for a browser to draw a picture
 BACK, FORWARD, PRESENT = "◀ Back", "Forward ▶", "Now"
 COPY, SAVE, PLOTS, PICTURE, REPLAY = "Copy link", "Save set-up", "Plots as CSV", "Picture", "Replay"
 OPEN, LEAVE = "Open it for all", "Leave the lab as it is"
@@ -256,18 +256,8 @@ class Share:
 
     def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """What one browser shows, drawn again at the chosen size."""
-        import imageio.v3 as iio  # only where a picture is made
-
-        width, height = PICTURE_SIZES[self.size.value]
-        picture = client.get_render(
-            height or client.camera.image_height,
-            width or client.camera.image_width,
-            transport_format="png" if self.transparent.value else "jpeg",
-            timeout=PICTURE_TIMEOUT,
-        )
-        encoded = io.BytesIO()
-        iio.imwrite(encoded, picture, extension=".png")  # pyright: ignore[reportUnknownMemberType]
-        return f"springtide-{self.panel.kind.name}.png", encoded.getvalue()
+        picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
+        return f"springtide-{self.panel.kind.name}.png", picture
 
     def replay_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """The recording as one page. Raises ValueError where nothing was recorded."""

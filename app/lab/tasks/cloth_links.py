@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def cloth_links(rows, cols):
@@ -87,6 +87,13 @@ MISTAKES = (
         "Every link is there twice, once from each end: the cloth is twice as stiff.",
         variant(ALL, twice=True),
     ),
+)
+
+CURVE = Curve(
+    "points along each side",
+    "links",
+    np.arange(3.0, 17.0),
+    lambda f, x: [len(f(int(n), int(n))) for n in x],
 )
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def damping_length(viscosity, time):
@@ -32,6 +32,13 @@ MISTAKES = (
     Mistake("root of the time only", "The viscosity belongs under the root as well.", lambda n, t: 2 * n * np.sqrt(t)),
     Mistake("divided by the time", "The damping grows with the time.", lambda n, t: 2 * np.sqrt(n / t)),
     Mistake("time not used", "The longer viscosity acts, the more it damps.", lambda n, t: 2 * np.sqrt(n)),
+)
+
+CURVE = Curve(
+    "time [s]",
+    "damping length for 1e-3 m2/s [m]",
+    np.linspace(0.0, 600.0, 40),
+    lambda f, x: [f(1e-3, t) for t in x],
 )
 
 

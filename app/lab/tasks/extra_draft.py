@@ -1,6 +1,8 @@
 """The reference solution and the check of a task."""
 
-from app.lab.checking import Mistake, require
+import numpy as np
+
+from app.lab.checking import Curve, Mistake, require
 
 
 def extra_draft(oil_thickness, oil_density, water_density):
@@ -55,6 +57,13 @@ MISTAKES = (
         "Divide the difference of the densities by that of the water.",
         lambda d, o, w: d * (w - o),
     ),
+)
+
+CURVE = Curve(
+    "thickness of the oil [m]",
+    "extra draft [m]",
+    np.linspace(0.0, 0.6, 30),
+    lambda f, x: [f(d, 866.0, 1025.0) for d in x],
 )
 
 

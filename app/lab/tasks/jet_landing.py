@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def jet_landing(x, v, level, gravity):
@@ -76,6 +76,13 @@ MISTAKES = (
     Mistake(
         "straight down", "The drop also moves along x and y.", lambda x, v, level, g: np.array([x[0], x[1], level])
     ),
+)
+
+CURVE = Curve(
+    "speed at 45 degrees [m/s]",
+    "distance [m]",
+    np.linspace(0.0, 12.0, 40),
+    lambda f, x: [f(np.array([0.0, 0.0, 3.0]), np.array([s, 0.0, s]) / np.sqrt(2.0), 0.0, 9.81)[0] for s in x],
 )
 
 

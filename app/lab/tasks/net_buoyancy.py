@@ -1,6 +1,8 @@
 """The reference solution and the check of a task."""
 
-from app.lab.checking import Mistake, require
+import numpy as np
+
+from app.lab.checking import Curve, Mistake, require
 
 
 def net_buoyancy(volume, body_density, fluid_density, gravity):
@@ -37,6 +39,13 @@ MISTAKES = (
         "The buoyancy is that of air. The body is inside the fluid, whatever is above.",
         lambda V, b, f, g: (1.2 - b) * g * V,
     ),
+)
+
+CURVE = Curve(
+    "density of the body [kg/m3]",
+    "net force on 1 m3 in sea water [N]",
+    np.linspace(700.0, 1300.0, 30),
+    lambda f, x: [f(1.0, density, 1025.0, 9.81) for density in x],
 )
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def rope_acceleration(x, v, mass, stiffness, damping, drag, rest_length, gravity):
@@ -111,6 +111,18 @@ MISTAKES = (
     Mistake("sign of the drag reversed", "The air drives the points on. The drag is -c v.", variant(air=-1.0)),
     Mistake("damping forgotten", "The springs have no damping.", variant(damped=0.0)),
     Mistake("rest length forgotten", "The springs pull as if their rest length were 0.", variant(rest=0.0)),
+)
+
+CURVE = Curve(
+    "length of the last link, 0.2 m at rest [m]",
+    "acceleration of the last point [m/s2]",
+    np.linspace(0.15, 0.25, 41),
+    lambda f, x: [
+        f(np.array([[0, 0, 0], [0, 0, -0.2], [0, 0, -0.2 - d]]), np.zeros((3, 3)), 1.0, 800.0, 7.0, 1.0, 0.2, 10.0)[
+            2, 2
+        ]
+        for d in x
+    ],
 )
 
 

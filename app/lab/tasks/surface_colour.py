@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Mistake, require
+from app.lab.checking import Curve, Mistake, require
 
 
 def surface_colour(oil_colour, water_colour, thickness, absorption):
@@ -54,6 +54,13 @@ MISTAKES = (
         lambda o, w, d, a: (o + w) / 2,
     ),
     Mistake("colour of the oil alone", "A thin layer lets the water shine through.", lambda o, w, d, a: o),
+)
+
+CURVE = Curve(
+    "thickness of the oil [m]",
+    "share of red",
+    np.linspace(0.0, 0.2, 40),
+    lambda f, x: [f(np.array([0.1, 0.07, 0.04]), np.array([0.0, 0.3, 0.4]), d, 15.0)[0] for d in x],
 )
 
 

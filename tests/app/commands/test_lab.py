@@ -181,6 +181,35 @@ def test_the_report_holds_predictions_answers_and_checks(finished: Path, tmp_pat
     assert "Reference solutions" in text
 
 
+def test_the_report_shows_laws_what_was_done_and_pictures_beside_their_task(finished: Path, tmp_path: Path) -> None:
+    read = read_answers(finished)
+    more = {
+        ("spring_force", "done"): "2",
+        ("spring_force", "answer_shown"): "yes",
+        ("spring_force", "predict"): "It swings for ever.",
+    }
+    write_answers(finished, TASKS, read._replace(values={**read.values, **more}))
+    for name in ("spring_force rope 1.00 s", "my cat"):
+        (finished / "pictures" / f"{name}.png").write_bytes(PIXEL)
+    report = tmp_path / "report.html"
+    assert main(["lab", "check", str(finished), "--report", str(report)]) == 0
+    text = report.read_text("utf-8")
+    begin = text.index('<h3 id="student-0-spring_force">')
+    section = text[begin : text.index("<h3 id=", begin + 1)]
+    assert section.count("<math") == 2
+    first, second = section.split("<li>")[1:3]
+    assert "not seen:" in first
+    assert "✓ seen:" in second
+    assert "looked at in the panel" in section
+    assert text.count("looked at in the panel") == 1
+    row = section[section.index("<th") :]
+    assert row.index("Predicted") < row.index("Measured") < row.index("It swings for ever.") < row.index("0.1125 m")
+    assert "at 12 random inputs. Behaviour: No force at rest" in section
+    assert "spring_force rope 1.00 s.png" in section
+    assert "my cat.png" not in section
+    assert text.index("More pictures") < text.index("my cat.png")
+
+
 def test_odd_folders_end_with_results_and_no_traceback(finished: Path, empty: Path, tmp_path: Path, capsys) -> None:
     (finished / "answers.toml").write_bytes(b"\xff\xfe broken")
     (finished / "rope.py").write_bytes(b"\xff\xfe\x00 = 1")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.lab.answers import FILE, Answers, read_answers
-from app.lab.folder import make_folder
+from app.lab.folder import MAX_PICTURES, PICTURES, make_folder
 from app.lab.live_values import LiveNumber
 from app.lab.task import Question, Task, load_tasks
 from app.lab.workbook import DONE, MAX_TEXT, Workbook, read_off
@@ -253,3 +253,14 @@ def test_what_is_read_off_is_a_number_of_the_scene() -> None:
     assert read_off(MEASURE, {"added_draft": LiveNumber(0.0310244, "m")}) == "0.0310244"
     assert read_off(MEASURE, {}) == ""
     assert read_off(MEASURE, {"added_draft": LiveNumber(float("nan"), "m")}) == ""
+
+
+def test_pictures_are_named_by_their_task_and_none_replaces_another(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    names = [book.add_picture(DRAFT, "radial_sea 1.00 s", bytes([i])) for i in range(3)]
+    assert names == [f"extra_draft radial_sea 1.00 s{end}.jpg" for end in ("", " (2)", " (3)")]
+    assert [(folder / PICTURES / name).read_bytes() for name in names] == [b"\0", b"\1", b"\2"]
+    for i in range(MAX_PICTURES - 3):
+        (folder / PICTURES / str(i)).touch()
+    with pytest.raises(ValueError, match="60 pictures"):
+        book.add_picture(DRAFT, "again", b"")

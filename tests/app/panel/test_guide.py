@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from app.lab.answers import FILE, read_answers
-from app.lab.folder import make_folder
+from app.lab.folder import PICTURES, make_folder
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.panel.guide import HIDE, SET_UP, SHOW, UNANSWERED, Guide, QuestionWidgets
+from app.panel.guide import HIDE, PICTURE, SET_UP, SHOW, UNANSWERED, Guide, QuestionWidgets
 from app.server.viewer import Viewer
 from tests import coroutines
 from tests.app.server.test_viewer import wait_for
@@ -198,3 +198,23 @@ def test_what_could_not_be_ticked_off_is_said_until_it_can(student: Viewer, fold
     moved.rename(folder)
     wait_for(lambda: 'data-done="yes"' in guide.text.content)
     wait_for(lambda: "could not be written" not in guide.answer.content)
+
+
+def test_a_picture_is_kept_for_the_task_that_is_shown(student: Viewer, folder: Path, monkeypatch) -> None:
+    def refuse(client: object, *, jpeg: bool) -> bytes:
+        raise TimeoutError("the browser has gone")
+
+    guide = show(student, "spring_force")
+    wait_for(lambda: "time" in guide.values)
+    event = SimpleNamespace(target=SimpleNamespace(value=PICTURE), client_id=1, client=object())
+    monkeypatch.setattr("app.panel.guide.take_picture", lambda client, *, jpeg: b"\xff\xd8\xff")
+    coroutines.run(guide.on_picture(event))
+    wait_for(lambda: "The report has the picture" in guide.answer.content)
+    name = next((folder / PICTURES).iterdir()).name
+    assert name.startswith("spring_force rope ")
+    assert name in guide.answer.content
+    monkeypatch.setattr("app.panel.guide.take_picture", refuse)
+    wait_for(lambda: not guide.busy.locked())
+    coroutines.run(guide.on_picture(event))
+    wait_for(lambda: "No picture was taken: the browser has gone" in guide.answer.content)
+    assert len(list((folder / PICTURES).iterdir())) == 1

@@ -1,0 +1,29 @@
+"""Pictures of what one browser shows: the browser draws the view once more."""
+
+import io
+
+import viser
+
+PICTURE_TIMEOUT = 60.0  # [s] for a browser to draw a picture
+QUALITY = 90  # of JPEG
+
+
+def take_picture(
+    client: viser.ClientHandle, size: tuple[int, int] = (0, 0), *, transparent: bool = False, jpeg: bool = False
+) -> bytes:
+    """The view of a browser as a PNG or JPEG file; without panel. size: width and height [pixels], 0 as in the page.
+
+    Waits for the browser, so it must not be called on viser's event loop. Raises TimeoutError, RuntimeError.
+    """
+    import imageio.v3 as iio  # only where a picture is made
+
+    picture = client.get_render(
+        size[1] or client.camera.image_height,
+        size[0] or client.camera.image_width,
+        transport_format="png" if transparent else "jpeg",
+        timeout=PICTURE_TIMEOUT,
+    )
+    encoded = io.BytesIO()
+    how = {"extension": ".jpg", "quality": QUALITY} if jpeg else {"extension": ".png"}
+    iio.imwrite(encoded, picture[..., :3] if jpeg else picture, **how)  # pyright: ignore
+    return encoded.getvalue()

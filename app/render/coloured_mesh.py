@@ -1,7 +1,8 @@
 """A mesh with vertices that move and change colour in every frame, which stock viser does not have.
 
-The colours travel in one array with the vertices, behind them, where no face refers to them; `js/injection.js` gives
-them to the shader (see `app/render/injection.py`). A browser without that shader draws the mesh in one colour.
+Vertices and colours travel packed in a hidden mesh. `js/injection.js` gives them to the drawn mesh and to its shader
+(see `app/render/injection.py`). A browser without that shader is sent the vertices themselves, and draws them in one
+colour.
 """
 
 from typing import Any
@@ -10,16 +11,19 @@ import numpy as np
 import viser
 
 from app.render.injection import add_data_mesh, injector_of
+from sim.packing import pack
 from sim.validation import argument_error
 
 SUFFIX = "vertex_colors"  # of the hidden mesh that makes the script replace the shader
+COLOUR_STEP = 1 / 255
 
 
 class ColouredMesh:
     """A streaming mesh with a colour at each vertex.
 
-    vertices: (n, 3) [m]. faces: (m, 3). colors: (n, 3), sRGB in 0..1. color: the only colour in browsers
-    without the shader. plain: never send the shader. Further arguments go to viser's `add_mesh_simple`.
+    vertices: (n, 3) [m]. faces: (m, 3). colors: (n, 3), sRGB in 0..1. columns: the vertices lie in rows of so many
+    neighbours. step [m]: to which browsers with the shader round the vertices. color: the only colour in browsers
+    without it. plain: never send the shader. Further arguments go to viser's `add_mesh_simple`.
     Raises ValueError where there is not one colour a vertex.
     """
 
@@ -31,26 +35,30 @@ class ColouredMesh:
         faces: np.ndarray,
         colors: np.ndarray,
         *,
+        columns: int,
+        step: float,
         color: tuple[int, int, int] = (200, 160, 90),
         plain: bool = False,
         **mesh: Any,
     ) -> None:
         self.name = name
-        self._count = len(vertices)
-        self._injector = None if plain else injector_of(server)
-        rows = self._count if self._injector is None else 2 * self._count
-        self._vertices_and_colors = np.empty((rows, 3), np.float32)
+        self._columns, self._step = columns, step
+        self._fields = np.empty((6, len(vertices)), np.float32)  # x, y, z and red, green, blue
         self._fill(vertices, colors)
+        self._injector = None if plain else injector_of(server)
         faces = np.asarray(faces, np.uint32)
-        self.mesh = server.scene.add_mesh_simple(name, self._vertices_and_colors, faces, color=color, **mesh)
+        self.mesh = server.scene.add_mesh_simple(name, self._vertices(), faces, color=color, **mesh)
         if self._injector is not None:
-            add_data_mesh(server, f"{name}/{SUFFIX}", np.zeros((1, 3)))
+            self._packed_mesh = add_data_mesh(server, f"{name}/{SUFFIX}", self._packed())
             self._injector.watch(name)
 
     def set(self, vertices: np.ndarray | None = None, colors: np.ndarray | None = None) -> None:
         """Set the vertices (n, 3) [m], their colours (n, 3), or both."""
         self._fill(vertices, colors)
-        self.mesh.vertices = self._vertices_and_colors
+        if self._injector is not None:
+            self._packed_mesh.vertices = self._packed()
+        if self.has_shader is not True:
+            self.mesh.vertices = self._vertices()
 
     @property
     def has_shader(self) -> bool | None:
@@ -64,10 +72,17 @@ class ColouredMesh:
         self.mesh.remove()
 
     def _fill(self, vertices: np.ndarray | None, colors: np.ndarray | None) -> None:
-        """Write what is given into the array that travels."""
-        if colors is not None and np.shape(colors) != (self._count, 3):
-            raise argument_error("colors", np.shape(colors), f"shape ({self._count}, 3)")
+        """Keep what is given."""
+        if colors is not None and np.shape(colors) != (self._fields.shape[1], 3):
+            raise argument_error("colors", np.shape(colors), f"shape ({self._fields.shape[1]}, 3)")
         if vertices is not None:
-            self._vertices_and_colors[: self._count] = vertices
-        if colors is not None and self._injector is not None:
-            self._vertices_and_colors[self._count :] = colors
+            self._fields[:3] = np.transpose(vertices)
+        if colors is not None:
+            self._fields[3:] = np.transpose(colors)
+
+    def _vertices(self) -> np.ndarray:
+        return np.ascontiguousarray(self._fields[:3].T)
+
+    def _packed(self) -> np.ndarray:
+        """Vertices and colours as `js/injection.js` reads them."""
+        return pack(self._fields, (*[self._step] * 3, *[COLOUR_STEP] * 3), self._columns)

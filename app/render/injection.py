@@ -10,9 +10,10 @@ change:
   server and never one per frame.
 - `window.__viserMutable` in the page: `nodeRefFromName`, `scene`, `requestRender`.
 
-Everything that changes travels as vertices, either of hidden meshes (`add_data_mesh`) or behind the vertices of the
-drawn mesh, because viser keeps only the newest vertices of a mesh. A hidden mesh named "<node>/<suffix>" makes the
-script replace the shader of "<node>"; each file in `js/` names its suffix.
+Everything that changes travels as vertices of hidden meshes (`add_data_mesh`), because viser keeps only the newest
+vertices of a mesh. What moves the vertices of a drawn mesh travels packed (`sim/packing.py`), in a fifth of the bytes;
+the drawn mesh's own vertices are sent only where a browser does not say that it has the shader. A hidden mesh named
+"<node>/<suffix>" makes the script replace the shader of "<node>"; each file in `js/` names its suffix.
 
 Each browser is asked whether that worked: the script writes the names of the nodes that it has drawn into the page's
 local storage, where `ClientHandle.local_storage` (public) reads them.
@@ -38,7 +39,7 @@ QUESTION_TIMEOUT = 5.0  # [s] after which a question is given up, and asked agai
 MAX_QUESTIONS = 16  # open at the same time, a thread each: browsers that are stuck do not delay the others
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
 MAX_ANSWER_LENGTH = 10_000  # [characters] that are read of an answer
-SCRIPTS = ("injection.js", "water_shader.js", "water.js", "rain.js")
+SCRIPTS = ("injection.js", "packed.js", "water_shader.js", "water.js", "rain.js")
 
 _injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
 _disabled: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()
@@ -60,6 +61,7 @@ class ShaderInjector:
         self._drawn: dict[int, frozenset[str]] = {}  # client id -> the watched nodes that it draws with their shader
         self._open: set[int] = set()  # client ids of the questions that wait for an answer
         self._unanswered = threading.Event()
+        self.is_recorded = False  # whether what is drawn is only recorded, for pages that have the script
         server._websock_server.queue_message(_messages.RunJavascriptMessage(source=self.script()))
         server.on_client_connect(lambda client: self._unanswered.set())
         threading.Thread(target=self._ask_clients, name="shader questions", daemon=True).start()
@@ -97,6 +99,8 @@ class ShaderInjector:
 
     def is_active(self, name: str) -> bool | None:
         """True if every connected browser draws the node with its shader, False if one does not, None while unknown."""
+        if self.is_recorded:
+            return True
         server = self._server()
         clients = list(server.get_clients()) if server is not None else []
         if not clients:
@@ -169,6 +173,13 @@ class ShaderInjector:
 def disable_shaders(server: viser.ViserServer) -> None:
     """Draw everything on this server by viser's public API alone; to be called before anything is drawn."""
     _disabled.add(server)
+
+
+def record_shaders(server: viser.ViserServer) -> None:
+    """Leave out what only browsers without shaders need: this server's messages are recorded, with the script."""
+    injector = injector_of(server)
+    assert injector is not None
+    injector.is_recorded = True
 
 
 def injector_of(server: viser.ViserServer) -> ShaderInjector | None:

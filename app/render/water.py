@@ -1,8 +1,9 @@
 """The mesh of a sea: with shaders in browsers that take them, and as stock viser draws it in the others.
 
-The surface travels as the vertices of one mesh, its slopes and foam as the vertices of a hidden one, and its material
-as the vertices of a third, hidden and small. `js/water.js` (see `app/render/injection.py`) makes water of them. A
-browser that does not take the shader draws the same mesh in one colour, with further meshes for foam, slick and grid.
+The surface travels packed, as displacements, slopes and foam (`sim/packing.py`), and its material as a few numbers,
+both as the vertices of hidden meshes. `js/water.js` (see `app/render/injection.py`) makes water of them. A browser that
+does not take the shader is sent the vertices themselves and draws them in one colour, with further meshes for foam,
+slick and grid.
 """
 
 from typing import Any
@@ -10,12 +11,19 @@ from typing import Any
 import numpy as np
 import viser
 
+from app.render.cameras import lowest_camera
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import Material, as_bytes, uniform_table
 from app.render.skies import CAMERA_RANGE
+from sim.packing import pack
 from sim.validation import argument_error
 
 RIPPLE_PERIOD = 1024.0  # [s] after which ripples start again: their phases are single precision in the browser
+MIN_STEP, MAX_STEP = 2.5e-4, 4e-3  # [m] to which displacements are rounded before they are sent
+RECORDED_STEP = 2e-3  # [m] the same where there is no camera: in a replay
+STEP_ANGLE = 7e-4  # the step over the height of the lowest camera: half a pixel at 1080 rows and 75 degrees
+SLOPE_STEP = 1 / 512
+FOAM_STEP = 1 / 255
 PLAIN_FOAM_COLOUR = (235, 240, 242)
 PLAIN_MESH_DEPTH = 0.5  # [m] below the water at which a plain mesh is hidden
 PLAIN_MESH_HEIGHT = 0.02  # [m] above the water at which it shows
@@ -28,8 +36,9 @@ class Water:
     Without `faces` the points are a square periodic tile of side length [m]: [i, j] rests at x = i length/rows,
     y = j length/cols, the row and column that close the tile are added here, and tiles x tiles (odd) copies of it are
     drawn from the same buffers. With `faces`, (m, 3) indices into the rows * cols points, it is a mesh of any shape
-    around the origin, drawn once, with radius length [m]. plain: draw without shaders, by viser's public API.
-    Raises ValueError for an even number of tiles.
+    around the origin, drawn once, with radius length [m]; its points rest about `rest`, (rows * cols, 3) [m], which
+    lies in rows of `columns` neighbours.
+    plain: draw without shaders, by viser's public API. Raises ValueError for an even number of tiles.
     """
 
     def __init__(
@@ -42,6 +51,8 @@ class Water:
         *,
         tiles: int = 1,
         faces: np.ndarray | None = None,
+        rest: np.ndarray | None = None,
+        columns: int = 1,
         material: Material | None = None,
         plain: bool = False,
     ) -> None:
@@ -62,9 +73,12 @@ class Water:
             a, b, c, d = corner, corner + cols + 1, corner + cols + 2, corner + 1
             self._faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)]).astype(np.uint32)
         else:
-            rest = np.zeros((rows, cols, 3))
+            rest = np.zeros((rows, cols, 3)) if rest is None else rest.reshape(rows, cols, 3)
             self._faces = np.asarray(faces, np.uint32)
         self._vertices = rest.astype(np.float32)
+        self._rest = np.ascontiguousarray(self._vertices.reshape(-1, 3).T)  # x, y, z
+        self._columns = cols + 1 if self._grid else columns
+        self._fields = np.empty((6, self._rest.shape[1]), np.float32)  # displacement, slopes and foam
         self._slope_and_foam = np.zeros_like(self._vertices)
         self.mesh = server.scene.add_mesh_simple(
             name,
@@ -77,7 +91,8 @@ class Water:
         self._plain_meshes: dict[str, viser.MeshHandle] = {}
         self._injector = None if plain else injector_of(server)
         if self._injector is not None:
-            self._slope_mesh = add_data_mesh(server, f"{name}/water_slopes", self._slope_and_foam.reshape(-1, 3))
+            add_data_mesh(server, f"{name}/water_rest", self._vertices.reshape(-1, 3))
+            self._surface_mesh = add_data_mesh(server, f"{name}/water_surface", self._packed())
             self._material_mesh = add_data_mesh(server, f"{name}/water_material", self._uniforms())
             self._injector.watch(name)
 
@@ -98,9 +113,10 @@ class Water:
         if self._grid:
             self._vertices[rows, :, 0] += self._length
             self._vertices[:, cols, 1] += self._length
-        self.mesh.vertices = self._vertices.reshape(-1, 3)
+        if self.has_shader is not True:
+            self.mesh.vertices = self._vertices.reshape(-1, 3)
         if self._injector is not None:
-            self._slope_mesh.vertices = self._slope_and_foam.reshape(-1, 3)
+            self._surface_mesh.vertices = self._packed()
             height = 4.0 * float(np.std(vertices[..., 2]))
             self._sea_state = (float(time) % RIPPLE_PERIOD, height, float(np.vdot(slopes, slopes)) / (rows * cols))
             self._material_mesh.vertices = self._uniforms()
@@ -123,6 +139,22 @@ class Water:
         if self._injector is not None:
             self._injector.unwatch(self.name)
         self.mesh.remove()
+
+    def _packed(self) -> np.ndarray:
+        """Displacement, slopes and foam of all vertices, as `js/water.js` reads them.
+
+        Displacements are finer the nearer a camera can be to the water: no drawn point moves by half a pixel.
+        """
+        fields = self._fields
+        np.subtract(self._vertices.reshape(-1, 3).T, self._rest, out=fields[:3])
+        fields[3:] = self._slope_and_foam.reshape(-1, 3).T
+        centre = np.round(fields[:3].mean(axis=1))  # of a mesh that has moved as a whole
+        fields[:3] -= centre[:, None]
+        camera = lowest_camera(self._server)
+        above = (camera or 0.0) - float(fields[2].max() + centre[2])
+        step = RECORDED_STEP if camera is None else min(max(STEP_ANGLE * above, MIN_STEP), MAX_STEP)
+        steps = (step, step, step, SLOPE_STEP, SLOPE_STEP, FOAM_STEP)
+        return pack(fields, steps, self._columns, (*centre, 0.0, 0.0, 0.0))
 
     def _uniforms(self) -> np.ndarray:
         """The uniforms of the shader, as `material.uniform_table` orders them."""

@@ -17,15 +17,17 @@ from app.messages import BaseParams, PlotRow
 from app.panel.recorder import MAX_PAUSE, Kept
 from app.render.cameras import place_cameras
 from app.render.html import Html, fill, join
+from app.render.injection import record_shaders
 from app.render.line_chart import line_chart
 from app.scenes import view_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import write_value
 from app.server.guard import open_server
+from sim.packing import is_packed
 from sim.parameters import in_words, parameters_of
 
 MAX_FRAMES = 200  # of a replay; of more, each second or third is taken
-MAX_RAW_BYTES = 50e6  # of the arrays of all frames, before they are compressed: a file of about 25 MB
+MAX_RAW_BYTES = 80e6  # of the arrays of all frames, before they are packed: a file of about 20 MB
 BITS = 11  # kept of each coordinate, over its largest size in a frame
 STYLE = (
     "#springtide-about{position:fixed;bottom:52px;left:8px;z-index:9;max-width:600px;max-height:80vh;overflow:auto;"
@@ -36,9 +38,10 @@ STYLE = (
 
 
 def rounded(buffer: memoryview) -> memoryview:
-    """An array of 3-vectors of float32 with `BITS` bits of each coordinate; other arrays as they are."""
+    """An array of 3-vectors of float32 with `BITS` bits of each coordinate; packed and other arrays as they are."""
     values = np.asarray(buffer)
-    if values.dtype != np.float32 or values.ndim < 2 or values.shape[-1] != 3 or not values.size:
+    vectors = values.dtype == np.float32 and values.ndim >= 2 and values.shape[-1] == 3 and values.size > 0
+    if not vectors or is_packed(values):
         return buffer
     largest = np.abs(values).reshape(-1, 3).max(axis=0)
     step = np.exp2(np.ceil(np.log2(np.maximum(largest, 1e-9))) - BITS).astype(np.float32)
@@ -62,6 +65,7 @@ def replay_html(kind: AnyKind, frames: Sequence[Kept], rows: Sequence[PlotRow]) 
         raise ValueError("nothing has been recorded yet: let the scene run first")
     server, _ = open_server("127.0.0.1", 0)
     try:
+        record_shaders(server)
         view = view_named(kind.name)(server, lambda command: None)
         params = chosen[-1].params
         place_cameras(server, *view.first_view(params), view.FIELD_OF_VIEW)

@@ -22,6 +22,15 @@ WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
     const flat = "#version 300 es\\nout lowp vec4 color; void main() { color = vec4(0.3, 0.5, 0.6, 1.0); }";
     put.call(this, shader, fragment ? flat : source);
 };"""
+# The drawn vertices of a mesh, as the bytes of single-precision numbers in base 64: a list of 50,000 numbers takes
+# seconds to come through.
+VERTICES = """name => { const ref = window.__viserMutable?.nodeRefFromName?.[name]; let found = null;
+    if (ref) ref.traverse(o => { if (o.isMesh && !found) found = o; });
+    if (!found) return "";
+    const bytes = new Uint8Array(new Float32Array(found.geometry.attributes.position.array).buffer);
+    let text = "";
+    for (let at = 0; at < bytes.length; at += 4096) text += String.fromCharCode(...bytes.subarray(at, at + 4096));
+    return btoa(text); }"""
 # Where a point of the scene [m] is on the page [pixels].
 PIXEL = """point => { const viewer = window.__viserMutable, camera = viewer.camera;
     const nodes = Object.entries(viewer.nodeRefFromName);
@@ -64,6 +73,12 @@ def chromium() -> Iterator[Any]:
         browser.close()
 
 
+def vertices_of(page: Any, node: str) -> np.ndarray:
+    """The drawn vertices (n, 3) that a page holds of a mesh; empty where it has none."""
+    numbers = base64.b64decode(page.evaluate(VERTICES, node))
+    return np.frombuffer(numbers, np.float32).astype(float).reshape(-1, 3)
+
+
 class Tab:
     """One page on a server, with flat shaders or with those that users see, and the errors on it."""
 
@@ -102,22 +117,7 @@ class Tab:
 
     def vertices(self, node: str) -> np.ndarray:
         """The drawn vertices (n, 3) that the page holds of a mesh; empty where it has none."""
-        # As text: a list of 50,000 numbers takes seconds to come through.
-        numbers = self.page.evaluate(
-            """name => { const ref = window.__viserMutable?.nodeRefFromName?.[name]; let found = null;
-               if (ref) ref.traverse(o => { if (o.isMesh && !found) found = o; });
-               if (!found) return "";
-               const numbers = new Float32Array(found.geometry.attributes.position.array);
-               const coloured = window.__viserMutable.nodeRefFromName[name + "/vertex_colors"];
-               const drawn = numbers.length / (coloured ? 2 : 1);
-               const bytes = new Uint8Array(numbers.buffer, 0, 4 * drawn);
-               let text = "";
-               for (let at = 0; at < bytes.length; at += 4096)
-                   text += String.fromCharCode(...bytes.subarray(at, at + 4096));
-               return btoa(text); }""",
-            node,
-        )
-        return np.frombuffer(base64.b64decode(numbers), np.float32).astype(float).reshape(-1, 3)
+        return vertices_of(self.page, node)
 
     def pixel(self, point: Any) -> tuple[float, float]:
         """Where a point [m] is on the page."""

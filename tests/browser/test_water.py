@@ -18,7 +18,7 @@ from app.render.injection import injector_of
 from app.render.material import Material
 from app.render.skies import set_sky
 from app.render.water import Water
-from tests.browser.conftest import new_page
+from tests.browser.conftest import new_page, vertices_of
 
 SIZE = 32
 LENGTH = 64.0  # [m]
@@ -114,6 +114,14 @@ def test_the_script_answers_and_its_programs_link(chromium, server):
     assert wait(page, lambda: water.has_shader is True)
     assert materials(page) == {"/sea": "springtide-water/sea"}
     assert errors == []
+    moved, slopes, foam = surface(phase=1.0)
+    moved += [0.3, -0.2, 0.1]
+    water.set_surface(moved, slopes, foam)
+    closed = np.concatenate([moved, moved[:1] + [LENGTH, 0.0, 0.0]])
+    closed = np.concatenate([closed, closed[:, :1] + [0.0, LENGTH, 0.0]], axis=1).reshape(-1, 3)
+    # No drawn point is off by half a pixel of a picture with 1080 rows, seen from the camera.
+    pixel = 2.0 * np.tan(np.radians(75.0) / 2.0) / 1080 * (25.0 - 1.1)
+    assert wait(page, lambda: np.abs(vertices_of(page, "/sea") - closed).max() < 0.5 * pixel)
     page.close()
 
 
@@ -232,7 +240,7 @@ def test_colours_reach_the_vertices_of_a_streaming_mesh(chromium, server):
     corners = np.array([[0, 0, 0], [64, 0, 0], [64, 64, 0], [0, 64, 0]], float)
     faces = np.array([[0, 1, 2], [0, 2, 3]])
     red = np.tile([0.5, 0.0, 0.0], (4, 1))
-    coloured = ColouredMesh(server, "/quad", corners, faces, red, color=(0, 0, 255))
+    coloured = ColouredMesh(server, "/quad", corners, faces, red, columns=2, step=1e-3, color=(0, 0, 255))
     page, errors = visit(chromium, server)
     assert wait(page, lambda: coloured.has_shader is True)
 

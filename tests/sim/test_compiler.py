@@ -1,11 +1,18 @@
 """Parts and entries: what a kernel becomes when kernels call it, and when Python does."""
 
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
 
+from sim import jit
 from sim.jit import chosen, kernel
 from tests.sim.test_jit import python
+
+with pytest.MonkeyPatch.context() as patch:
+    patch.setattr(jit, "CACHE", None)
+    # It remembers the answer: the kernels of this file are not kept, and each run of the tests compiles them.
+    jit.kernel_folder(Path(__file__).resolve())
 
 
 class Round(NamedTuple):

@@ -15,9 +15,11 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
 
     Without threads and without a browser: viser takes the messages all the same.
     """
+    from app.render.injection import record_shaders
     from app.server.viewer import Viewer
 
     viewer = Viewer("127.0.0.1", 0)
+    record_shaders(viewer.server)  # as to a browser that draws with them
     try:
         viewer.open(name)
         viewer.stop_threads()

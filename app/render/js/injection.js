@@ -56,22 +56,12 @@ function insertAfter(shader, stage, chunk, text) {
   shader[stage] = shader[stage].replace(`#include <${chunk}>`, `#include <${chunk}>\n${text}`);
 }
 
-// A colour at each vertex, for any mesh with a child "<name>/vertex_colors": the second half of its vertices, to which
-// no face refers, holds the sRGB colours in 0..1 of the first half.
+// A colour at each vertex, for any mesh with a child "<name>/vertex_colors", which carries the positions of its vertices
+// and their sRGB colours in 0..1, packed (packed.js).
 shaders.push({
   suffix: "/vertex_colors",
-  update({ mesh }) {
-    const attributes = mesh.geometry.attributes;
-    if (!attributes.position) return null;
-    const numbers = attributes.position.array;
-    const half = numbers.length / 2;
-    if (!attributes.vertexColor || attributes.vertexColor.array.length !== half) {
-      mesh.geometry.setAttribute("vertexColor", new attributes.position.constructor(numbers.subarray(half), 3));
-    } else if (attributes.vertexColor.source !== numbers) {
-      attributes.vertexColor.array = numbers.subarray(half);
-      attributes.vertexColor.needsUpdate = true;
-    }
-    attributes.vertexColor.source = numbers;
+  update({ mesh, data }) {
+    if (!applyPacked(mesh, data, "vertexColor", null)) return null;
     const edit = (shader) => {
       insertAfter(shader, "vertexShader", "common", "attribute vec3 vertexColor; varying vec3 vVertexColor;");
       insertAfter(shader, "vertexShader", "begin_vertex", "vVertexColor = pow(max(vertexColor, 0.0), vec3(2.2));");

@@ -1,7 +1,8 @@
 // The shader of water, for "<name>" where there is a "<name>/water_material".
 //
-// "<name>/water_slopes" carries (slope x, slope y, foam) at each vertex. The vertices of "<name>/water_material" are
-// the uniforms, in the order of WATER_UNIFORMS (app/render/material.py). "Sea" in a name means the frame of the node,
+// "<name>/water_surface" carries displacement, slope x, slope y and foam of each vertex, packed (packed.js), and
+// "<name>/water_rest" where the vertices rest. The vertices of "<name>/water_material" are the uniforms, in the order of
+// WATER_UNIFORMS (app/render/material.py). "Sea" in a name means the frame of the node,
 // z up; three's world is rotated against it.
 
 const seas = new Map(); // name of the node -> what this file has made for it
@@ -141,15 +142,6 @@ function chooseLevels(sea, camera) {
   }
 }
 
-// Give a mesh the vertices of a hidden mesh as one more vertex attribute. It is the same object, so that nothing is
-// copied: viser exchanges the array in it at each update. False while the two differ in length.
-function shareAttribute(mesh, attribute, data) {
-  const source = data.geometry.attributes.position;
-  if (!source || source.count !== mesh.geometry.attributes.position.count) return false;
-  if (mesh.geometry.attributes[attribute] !== source) mesh.geometry.setAttribute(attribute, source);
-  return true;
-}
-
 shaders.push({
   suffix: "/water_material",
   removeUnused() {
@@ -160,14 +152,15 @@ shaders.push({
     }
   },
   update({ base, mesh, data, renderer, camera }) {
-    const slopes = meshOf(`${base}/water_slopes`);
-    if (!slopes || !shareAttribute(mesh, "slopeAndFoam", slopes)) return null;
+    const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
+    if (!surface || !rest) return null;
     let sea = seas.get(base);
     if (!sea || sea.mesh !== mesh || sea.geometry !== mesh.geometry) {
       if (sea) disposeSea(sea);
       seas.set(base, (sea = makeSea(mesh, uniformsOf(base, mesh))));
       mesh.geometry.computeVertexNormals = () => {}; // the slopes replace them: viser need not compute them each frame
     }
+    if (!applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array)) return null;
     readMaterial(sea, data);
     const [rows, columns, length] = sea.uniforms.grid.value.toArray();
     const [count, drawSky, wireframe] = sea.uniforms.extent.value.toArray();

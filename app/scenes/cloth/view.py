@@ -18,8 +18,10 @@ from app.scenes.cloth.scene import ClothFrame, ClothReadings
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 from sim.formatting import number
+from sim.packing import compile_packing
 
 CLOTH_COLOUR = (176, 58, 72)
+POINT_STEP = 2.0**-15  # [m] to which points are rounded for the page: no grain shows in the light on a fine cloth
 SPHERE_ROWS = 24  # of the drawn sphere, from pole to pole
 SPHERE_COLOUR = (92, 140, 190)
 PIN_COLOUR = (60, 66, 80)
@@ -85,6 +87,8 @@ class View:
             frame.points.reshape(-1, 3),
             faces(rows, cols),
             self.colours(frame),
+            columns=cols,
+            step=POINT_STEP,
             color=CLOTH_COLOUR,
             side="double",
         )
@@ -165,5 +169,5 @@ class View:
 
 
 def warm_up() -> Pieces:
-    """The drawing compiles nothing."""
-    return {}
+    """What the drawing calls."""
+    return {"packing": compile_packing}

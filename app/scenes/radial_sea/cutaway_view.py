@@ -16,6 +16,8 @@ OIL_LIGHT_SHARE = 0.55  # of that colour in the drawn one
 SURFACE_LINE, INTERFACE_LINE = (235, 246, 250), (255, 196, 64)
 LINE_OFFSET = 0.02  # [m] that lines stand before the wall
 
+WALL_STEP = 1e-3  # [m] to which points of the walls are rounded for the page
+
 
 class Walls:
     """Draws `Cutaway`s."""
@@ -35,7 +37,7 @@ class Walls:
         self.painted: tuple[object, ...] = ()
         self.mesh = ColouredMesh(
             server, name, self.vertices(cutaway), np.concatenate([*quads, floor]).astype(np.uint32), self.colours,
-            color=(40, 110, 130), cast_shadow=False, receive_shadow=False,
+            columns=n, step=WALL_STEP, color=(40, 110, 130), cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
         lines = np.zeros((FAR_WALL_POINTS - 1, 2, 3), np.float32)
         self.lines = [

@@ -30,6 +30,7 @@ from app.scenes.radial_sea.well_blowout import FIRE, RIG
 from sim.floating.shapes import Appearance
 from sim.ocean.radial import RadialSurface
 from sim.ocean.radial_grid import RadialGrid
+from sim.packing import compile_packing
 
 SUN_BEARING = 1.25  # [rad] from +x: beyond the buoys, as seen from the first view
 SUN_LAMP_INTENSITY = 2.2  # of the lamp that stands for a sun of SUN_LAMP_STRENGTH
@@ -131,9 +132,12 @@ class View:
             if self.water is not None:
                 self.water.remove()
             self.grid = frame.grid
+            grid = frame.grid
+            rest = np.column_stack([grid.x, grid.y, np.zeros(len(grid))])
             self.water = Water(
-                self.server, "/sea", 1, len(frame.grid), GRID_RADIUS, faces=frame.grid.faces, material=material
-            )
+                self.server, "/sea", 1, len(grid), GRID_RADIUS,
+                faces=grid.faces, rest=rest, columns=grid.spokes, material=material,
+            )  # fmt: skip
         elif material != self.material:
             self.water.set_material(material)
         self.material = material
@@ -276,5 +280,5 @@ def handle_scale(frame: RadialFrame, kind: str) -> float:
 
 
 def warm_up() -> Pieces:
-    """Nothing here is compiled."""
-    return {}
+    """What the drawing calls."""
+    return {"packing": compile_packing}

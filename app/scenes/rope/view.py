@@ -20,10 +20,12 @@ from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROPE_RADIUS, SPHERE
 from app.scenes.springs.view import RopeSurroundings
 from sim.formatting import number
+from sim.packing import compile_packing
 
 ROPE_COLOUR = (196, 154, 92)
 REFERENCE_COLOUR = (60, 110, 190)
 REFERENCE_OPACITY = 0.35
+TUBE_STEP = 2.0**-15  # [m] to which points of the tube are rounded for the page
 REFERENCE_RADIUS = 1.35 * ROPE_RADIUS  # [m]: seen around the student's rope where both are in one place
 BEAD_COLOUR = (58, 68, 86)
 HOOK_COLOUR = (60, 66, 80)
@@ -82,6 +84,8 @@ class View:
             self.vertices,
             tube_faces(rings),
             self.rgb,
+            columns=SIDES,
+            step=TUBE_STEP,
             color=ROPE_COLOUR,
             side="double",
         )
@@ -232,7 +236,7 @@ def bead_radius(points: np.ndarray) -> float:
 
 def warm_up() -> Pieces:
     """What the drawing calls."""
-    return {"drawing": compile_drawing}
+    return {"drawing": compile_drawing, "packing": compile_packing}
 
 
 def compile_drawing() -> None:

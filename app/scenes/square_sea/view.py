@@ -18,6 +18,7 @@ from app.scenes.square_sea import report
 from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity
 from app.scenes.square_sea.rain_view import RainMesh
 from app.scenes.square_sea.scene import SeaFrame
+from sim.packing import compile_packing
 
 DEFAULTS = Params()
 TARGETS = {  # [m] of each view: how far ahead its target is, and the target's height
@@ -195,5 +196,5 @@ def add_gauge(server: viser.ViserServer) -> viser.FrameHandle:
 
 
 def warm_up() -> Pieces:
-    """The drawing compiles nothing."""
-    return {}
+    """What the drawing calls."""
+    return {"packing": compile_packing}

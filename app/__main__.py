@@ -160,6 +160,10 @@ def add_serving(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scene", default="rope", metavar="SCENE", help=", ".join(NAMES) + " (default: rope)")
     parser.add_argument("--host", default="127.0.0.1", help="address to serve on; 0.0.0.0 shows the lab to the network")
     parser.add_argument("--port", type=int, default=8080, help="default: 8080; 0 for any free port")
+    path = "the path at which a proxy shows the lab, where it passes it on"
+    parser.add_argument("--base-path", default="", metavar="PATH", help=path)
+    origin = "the address, as in a browser, of a proxy that pages may come through; may be given more than once"
+    parser.add_argument("--allowed-origin", action="append", default=[], metavar="ORIGIN", help=origin)
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
     parser.add_argument("--paused", action="store_true", help="start paused")
     parser.add_argument("--plain-water", action="store_true", help="draw with viser's public interface only")
@@ -217,6 +221,8 @@ def serve(arguments: argparse.Namespace, session: Any = None) -> int:
         paused=arguments.paused,
         plain=arguments.plain_water,
         developer=arguments.developer,
+        base_path=arguments.base_path,
+        origins=arguments.allowed_origin,
         workbook=None if session is None else Workbook(session.tasks, session.folder),
         session=session,
     )

@@ -6,10 +6,12 @@ import socket
 import sys
 import threading
 import webbrowser
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
+from app.server.access import Access, read_base_path, read_key, read_origin
 from app.server.guard import is_loopback
 from app.server.viewer import Viewer
 from sim.validation import argument_error
@@ -17,6 +19,7 @@ from sim.validation import argument_error
 if TYPE_CHECKING:
     from app.lab.session import Session
 
+KEY_VARIABLE = "SPRINGTIDE_KEY"  # of the environment: other users of the machine can read a command line
 WAIT_INTERVAL = 0.5  # [s] between two looks for Ctrl-C, which on Windows does not interrupt a wait
 
 
@@ -44,19 +47,24 @@ def serve_lab(
     paused: bool,
     plain: bool,
     developer: bool,
+    base_path: str = "",
+    origins: Sequence[str] = (),
     workbook: Workbook | None = None,
     session: "Session | None" = None,
 ) -> int:
     """Print the address that is bound, open the scene, and wait. Returns the exit status. session: a student's folder.
 
     The page is there before the scene is, and shows what is compiled. workbook: None for the guide of the course lab.
+    base_path, origins: of a proxy; see `app/server/access.py`. The key is taken from the environment.
 
-    Raises ValueError for what is no address.
+    Raises ValueError for what is no address, path or origin.
     """
     check_address(host, port)
+    key = read_key(os.environ.pop(KEY_VARIABLE, ""))
+    access = Access(read_base_path(base_path), tuple(read_origin(origin) for origin in origins), key)
     try:
         viewer = Viewer(
-            host, port, plain=plain, developer=developer, compile_ahead=True, say=say, session=session,
+            host, port, plain=plain, developer=developer, compile_ahead=True, say=say, session=session, access=access,
             workbook=workbook or Workbook(load_tasks(with_checks=False)),
         )  # fmt: skip
     except OSError as error:
@@ -76,7 +84,7 @@ def serve_lab(
         signal.signal(signal.SIGINT, end)
     try:
         shown = "localhost" if is_loopback(host) or host == "0.0.0.0" else f"[{host}]" if ":" in host else host
-        address = f"http://{shown}:{viewer.port}"
+        address = f"http://{shown}:{viewer.port}{access.base_path}"
         say(f"Springtide is on {address}  (Ctrl-C ends it)")
         if not is_loopback(host):
             say(f"Warning: anyone who can reach {host} on port {viewer.port} can drive this lab.")

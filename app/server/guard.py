@@ -26,8 +26,10 @@ from urllib.parse import urlsplit
 import viser
 import websockets.asyncio.server
 from viser import _messages as vm
+from websockets.http11 import Request, Response
 
 from app.render.viser_types import GuiHandle, ViserConnection, ViserMessage
+from app.server.access import OWN_PAGES_ONLY, Access, admitted
 from app.server.page import own_answer, with_cover
 
 MAX_NUMBER = 1e6  # any number in a message beyond this is refused
@@ -88,16 +90,26 @@ def is_loopback(host: str) -> bool:
         return False
 
 
+def may_connect(request: Request, bound: str, access: Access) -> bool:
+    """Whether a request, which brought the key where there is one, is from a page that may connect."""
+    origin = request.headers.get("Origin")
+    return bool(access.key) or origin in access.origins or is_own_origin(origin, request.headers.get("Host"), bound)
+
+
 @contextlib.contextmanager
-def checked_origins(bound: str) -> Generator[None]:
+def checked_requests(bound: str, access: Access) -> Generator[None]:
     """While open, a websocket server that starts refuses upgrades from other pages with 403."""
     serve = websockets.asyncio.server.serve
 
     def guarded_serve(*args: object, process_request: ViserConnection = None, **options: object) -> object:
-        def check(connection: ViserConnection, request: ViserConnection) -> object:
-            if not is_own_origin(request.headers.get("Origin"), request.headers.get("Host"), bound):
+        def check(connection: ViserConnection, sent: Request) -> object:
+            request = admitted(access, sent)
+            if isinstance(request, Response):
+                return request
+            if not may_connect(request, bound, access):
                 return connection.respond(HTTPStatus.FORBIDDEN, "This page may not connect here.\n")
-            return own_answer(request) or with_cover(request, process_request(connection, request))
+            answer = own_answer(request, shared=bool(access.key))
+            return answer or with_cover(request, process_request(connection, request))
 
         return serve(*args, process_request=check, **options)  # type: ignore[arg-type]
 
@@ -305,15 +317,15 @@ def check_port(host: str, port: int) -> None:
         probe.bind((host, port))
 
 
-def open_server(host: str, port: int) -> tuple[viser.ViserServer, Screen]:
+def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> tuple[viser.ViserServer, Screen]:
     """A viser server that only our own page may connect to and that only takes what `Screen` lets through.
 
-    Raises OSError where the port is busy or may not be bound.
+    access: who else may connect. Raises OSError where the port is busy or may not be bound.
     """
     check_port(host, port)
     # A message that cannot be decoded ends its connection, and would print a traceback each time.
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
-    with checked_origins(host), contextlib.redirect_stdout(io.StringIO()):  # we print our own address
+    with checked_requests(host, access), contextlib.redirect_stdout(io.StringIO()):  # we print our own address
         server = viser.ViserServer(host=host, port=port, label="Springtide", verbose=False)
     if port not in (0, server.get_port()):
         server.stop()

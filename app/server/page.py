@@ -1,7 +1,7 @@
 """The page that a browser is given: viser's, with a title, a cover for while nothing is drawn, and our own script.
 
 viser serves one HTML file. The cover stands at the top of its body, so that it is seen before the client behind it has
-been read; the scripts below it are those of `SCRIPTS` in `app/render/js`.
+been read; the scripts below it are those of `SCRIPTS` in `app/render/js`. `ADDRESS_SCRIPT` runs before all others.
 """
 
 import functools
@@ -14,15 +14,19 @@ from websockets.http11 import Request, Response
 
 ALIVE_PATH = "/springtide-alive"  # what the page asks for, to see whether the server is still there
 TITLE = "<title>Springtide</title>"
+ADDRESS_SCRIPT = "address.js"
 SCRIPTS = ("page.js", "fields.js", "camera.js", "charts.js", "share.js", "display.js", "access.js")
 COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'
 
 
-def own_answer(request: Request) -> Response | None:
-    """The answer to a request that viser knows nothing of; None for the others."""
+def own_answer(request: Request, *, shared: bool) -> Response | None:
+    """The answer to a request that viser knows nothing of; None for the others. shared: pages of others may read it."""
     if request.path.partition("?")[0] != ALIVE_PATH:
         return None
-    return Response(HTTPStatus.OK, "OK", Headers({"Content-Type": "text/plain", "Content-Length": "0"}), b"")
+    headers = Headers({"Content-Type": "text/plain", "Content-Length": "0"})
+    if shared:
+        headers["Access-Control-Allow-Origin"] = "*"
+    return Response(HTTPStatus.OK, "OK", headers, b"")
 
 
 def with_cover(request: Request, response: Response | None) -> Response | None:
@@ -45,11 +49,12 @@ def covered(sent: bytes, zipped: bool) -> bytes:
     folder = resources.files("app.render") / "js"
     style = (folder / "page.css").read_text("utf-8")
     script = "".join((folder / name).read_text("utf-8") for name in SCRIPTS)
+    first = f"<script>{(folder / ADDRESS_SCRIPT).read_text('utf-8')}</script><style>{style}</style>"
     head, _, body = page.decode("utf-8").rpartition("<body>")
     # viser's client is one long script in the head: below the cover it does not delay it.
     start = head.index("<script")
     client, end = head[start : head.rindex("</script>") + len("</script>")], head.rindex("</script>") + len("</script>")
-    head = head[:start].replace("<title>Viser</title>", TITLE, 1) + f"<style>{style}</style>" + head[end:]
+    head = head[:start].replace("<title>Viser</title>", TITLE, 1) + first + head[end:]
     body = body.replace("</body>", f"{client}<script>{script}</script></body>", 1)
     found = f"{head}<body>{COVER}{body}".encode()
     return gzip.compress(found) if zipped else found

@@ -23,6 +23,7 @@ from app.render.viser_types import ViserConnection
 from app.scenes import NAMES, scene_named, view_named
 from app.scenes.compiling import Compiling, describe
 from app.scenes.contract import AnyKind, AnyScene, PostCommand
+from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.compile_gate import CompileGate
 from app.server.counters import Unwatched, gather, modules
 from app.server.guard import open_server
@@ -55,12 +56,13 @@ class Viewer:
         workbook: Workbook | None = None,
         session: "Session | None" = None,
         say: Callable[[str], None] = lambda text: None,
+        access: Access = OWN_PAGES_ONLY,
     ) -> None:
         """plain: draw by viser's public API alone. developer: show the work counts in the panel.
 
         compile_ahead: while a scene runs, compile what it and the other scenes may call later. workbook: the tasks of
         the lab, which the panel of each scene shows. session: of a student's folder, with functions that the scenes
-        run. say: prints a line.
+        run. say: prints a line. access: who may connect beside a browser of this machine.
 
         Raises OSError where the port cannot be bound.
         """
@@ -68,7 +70,7 @@ class Viewer:
         self.compile_ahead, self.workbook, self.session, self.say = compile_ahead, workbook, session, say
         self.notice = ""  # what is compiled before something else can be shown
         self.developer = developer
-        self.server, self.screen = open_server(host, port)
+        self.server, self.screen = open_server(host, port, access)
         if plain:
             disable_shaders(self.server)
         connection: ViserConnection = self.server._websock_server

@@ -40,12 +40,12 @@ def test_only_the_page_itself_is_its_own_origin(origin: str | None, host: str, b
     assert is_own_origin(origin, host, bound) is own
 
 
-async def say(port: int, messages: list[dict[str, Any]], origin: str | None = None) -> int:
+async def say(port: int, messages: list[dict[str, Any]], origin: str | None = None, path: str = "") -> int:
     """Connect as a client of the right version and send messages; how often the server cut the connection.
 
     It does so at a message that cannot be decoded. The next message then goes out on a new one.
     """
-    address = f"ws://127.0.0.1:{port}"
+    address = f"ws://127.0.0.1:{port}{path}"
     protocol = websockets.Subprotocol(f"viser-v{viser.__version__}")
     waiting = list(reversed(messages))
     cuts = 0

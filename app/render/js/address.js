@@ -1,0 +1,22 @@
+// The address of the page, made right before viser's client reads it.
+//
+// The client connects to a websocket at the page's own address without its last slash. Below a path that a proxy shows,
+// this would not be the lab's path, so there the page names its file. The client would also connect to, or play, what a
+// link names in "websocket" or "playbackPath", and run the JavaScript that it gets from there. And where the page has a
+// path, the client would write its websocket into the address bar.
+
+(() => {
+  "use strict";
+  const NOT_FROM_LINKS = ["websocket", "playbackPath"];
+  const replace = history.replaceState.bind(history);
+
+  function own(address) {
+    const found = new URL(address, location.href);
+    for (const name of NOT_FROM_LINKS) if (found.searchParams.has(name)) found.searchParams.delete(name);
+    if (found.pathname !== "/" && found.pathname.endsWith("/")) found.pathname += "index.html";
+    return found.href;
+  }
+
+  history.replaceState = (state, title, address) => replace(state, title, address && own(address));
+  history.replaceState(null, "", location.href);
+})();

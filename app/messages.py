@@ -1,7 +1,8 @@
 """All that crosses a thread: commands to the simulation, snapshots and plot rows from it. All are immutable."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import Future
 from dataclasses import Field
 from typing import ClassVar, Generic, NamedTuple, Protocol, TypeVar
 
@@ -133,8 +134,26 @@ class StudentAnswer(NamedTuple):
     """The process that runs a student's functions has come to a result, which the scene may take."""
 
 
+class Ask(NamedTuple):
+    """Call `read` between two steps, and answer with what it returns or raises."""
+
+    read: Callable[[], object]
+    answer: Future[object]
+
+
+class Advance(NamedTuple):
+    """Run for a simulated time, to a whole step, then go on or stand still as before; answer with the time then [s].
+
+    Where nobody looks it runs as fast as it can. The answer is a DivergenceError where the run halts before, and a
+    RuntimeError where it begins again.
+    """
+
+    seconds: float
+    answer: Future[float]
+
+
 SceneCommand = Place | Grab | Release | Point | StudentAnswer  # what a scene handles; the rest is the loop's
-Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Load | SceneCommand
+Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Load | Ask | Advance | SceneCommand
 
 
 class WorkCount(NamedTuple):

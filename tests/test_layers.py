@@ -17,7 +17,7 @@ ORDER = (
     ("bench",),
     ("sweep", "stability"),
     ("experiments",),
-    ("commands",),
+    ("commands", "notebook"),
     ("server",),
     ("panel",),
     ("scenes",),

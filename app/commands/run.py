@@ -1,7 +1,6 @@
 """`springtide run`: a scene without a browser, sampled into one .npz file with units and all parameters."""
 
 import json
-import math
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from rich.progress import Progress
 from app.files import check_out_file
 from app.messages import DivergenceError
 from app.scenes.contract import Scene, SceneKind
+from app.scenes.stepping import steps_to
 from sim.files import replacing
 from sim.validation import argument_error, check_number
 
@@ -73,11 +73,6 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
         print(f"The run ended early. {problem}")
         return 1
     return 0
-
-
-def steps_to(running: Scene[Any, Any, Any], until: float) -> int:
-    """Steps from a scene's time to the first whole step at or after `until` [s], round-off allowed for."""
-    return max(0, math.ceil((until - running.time) / running.step * (1.0 - 1e-9) - 1e-6))
 
 
 def write_arrays(path: Path, arrays: dict[str, Any]) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.server.access import Access, read_base_path, read_key, read_origin
+from app.server.access import KEY_VARIABLE, Access, read_base_path, read_key, read_origin
 from app.server.guard import is_loopback
 from app.server.viewer import Viewer
 from sim.validation import argument_error
@@ -19,7 +19,6 @@ from sim.validation import argument_error
 if TYPE_CHECKING:
     from app.lab.session import Session
 
-KEY_VARIABLE = "SPRINGTIDE_KEY"  # of the environment: other users of the machine can read a command line
 WAIT_INTERVAL = 0.5  # [s] between two looks for Ctrl-C, which on Windows does not interrupt a wait
 
 

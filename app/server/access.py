@@ -21,6 +21,7 @@ from websockets.http11 import Request, Response
 
 from sim.validation import argument_error
 
+KEY_VARIABLE = "SPRINGTIDE_KEY"  # of the environment: other users of the machine can read a command line
 KEY_HEADER = "X-Springtide-Key"
 BASE_PATH = re.compile(r"(/(?!\.+(/|$))([A-Za-z0-9._~@-]|%[0-9A-Fa-f]{2})+)+")
 KEY = re.compile(r"[A-Za-z0-9_-]{16,200}")
@@ -76,7 +77,7 @@ def read_origin(text: str) -> str:
 def read_key(text: str) -> str:
     """A key from the environment; "" where there is none. Raises ValueError for one that could be guessed."""
     if text and not KEY.fullmatch(text):
-        raise argument_error("SPRINGTIDE_KEY", f"{len(text)} characters", "16 to 200 letters, digits, _ and -")
+        raise argument_error(KEY_VARIABLE, f"{len(text)} characters", "16 to 200 letters, digits, _ and -")
     return text
 
 

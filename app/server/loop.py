@@ -11,8 +11,12 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
+from concurrent.futures import Future
+from typing import NamedTuple
 
 from app.messages import (
+    Advance,
+    Ask,
     BaseParams,
     Command,
     DivergenceError,
@@ -30,6 +34,7 @@ from app.messages import (
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
+from app.scenes.stepping import steps_to
 from app.server.merging import merged
 from app.server.replay import Replay
 from sim.parameters import effect_of_change
@@ -40,7 +45,15 @@ IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 MAX_CATCH_UP = 0.25  # [s] of wall time that one tick makes up for
 RATE_WINDOW = 1.0  # [s] over which rates are measured
-MAX_PLOT_ROWS = 20_000  # waiting for the viewer; beyond that the oldest are dropped
+MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond that the oldest are dropped
+
+
+class Goal(NamedTuple):
+    """What an `Advance` waits for."""
+
+    until: float  # [s] of simulated time
+    answer: Future[float]
+    was_running: bool
 
 
 class FixedStep:
@@ -118,6 +131,8 @@ class SimLoop:
         self.wall = 0.0
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
         self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
+        self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
+        self.goal: Goal | None = None  # that a program waits for
         self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
         self.latest: AnySnapshot = self.snapshot()
 
@@ -136,8 +151,13 @@ class SimLoop:
         changed |= self.handle_waiting()
         if self.running and self.audience() and self.replay is not None:
             changed |= self.play_replay(self.replay, wall)
+        elif self.goal is not None and self.running and not self.audience():
+            self.hurry(self.goal.until)
+            changed = True
         elif self.running and self.audience():
             n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame_interval)
+            if self.goal is not None:
+                n = min(n, steps_to(self.scene, self.goal.until))
             if n:
                 (self.advance_within_budget if self.cost_unknown else self.advance)(n)
                 changed = True
@@ -146,6 +166,8 @@ class SimLoop:
         self.counts["ticks"] += 1
         if changed:
             self.publish()
+        if self.goal is not None:
+            self.settle(self.goal)
         self.busy_since = None
 
     def take(self, params: BaseParams) -> bool:
@@ -167,6 +189,46 @@ class SimLoop:
             self.scene.params = params
             self.reset()
         return True
+
+    def settle(self, goal: Goal) -> None:
+        """Answer the program that waits, where the run has come to the time or can come no further."""
+        reason = self.stopped_by
+        arrived = steps_to(self.scene, goal.until) == 0
+        if not (arrived or reason or goal.answer.cancelled()):
+            return
+        self.goal = None
+        if not reason:
+            self.running = goal.was_running
+        if not goal.answer.set_running_or_notify_cancel():
+            return
+        if reason:
+            goal.answer.set_exception(DivergenceError(reason))
+        else:
+            goal.answer.set_result(self.scene.time)
+
+    @property
+    def stopped_by(self) -> str:
+        """Why the run can go no further, or ""; known before its last moments have been shown again."""
+        return self.halted if self.replay is None else self.replay.reason
+
+    def tell(self, read: Callable[[], object], answer: Future[object]) -> None:
+        """Answer a program that asks."""
+        if not answer.set_running_or_notify_cancel():
+            return
+        try:
+            answer.set_result(read())
+        except Exception as error:
+            answer.set_exception(error)
+
+    def hurry(self, until: float) -> None:
+        """Take steps up to a time [s] while the frame's budget lasts, as many at once as a frame of a viewer has."""
+        most = max(1, int(FRAME_INTERVAL / self.scene.step * (1 + 1e-9)))
+        spent = 0.0
+        while spent < SOLVE_SHARE * FRAME_INTERVAL and self.running and self.replay is None:
+            left = steps_to(self.scene, until)
+            if left == 0:
+                return
+            spent += self.advance(min(most, left))
 
     def advance_within_budget(self, n: int) -> None:
         """Take up to n steps in growing parts while the frame's budget lasts.
@@ -267,6 +329,12 @@ class SimLoop:
             case Reset():
                 self.counts["starts"] += 1
                 self.reset()
+            case Ask(read, answer):
+                self.tell(read, answer)
+            case Advance(seconds, answer):
+                self.give_up("another program waits for the lab")
+                self.goal = Goal(self.scene.time + seconds, answer, self.running)
+                self.running = not self.stopped_by
             case _:
                 self.guarded(lambda: self.scene.handle(command))
 
@@ -285,8 +353,15 @@ class SimLoop:
                 self.pacer.dropped += count - done - 1
                 return
 
+    def give_up(self, reason: str) -> None:
+        """Tell the program that waits, if any, why the time that it waits for does not come."""
+        goal, self.goal = self.goal, None
+        if goal is not None and goal.answer.set_running_or_notify_cancel():
+            goal.answer.set_exception(RuntimeError(reason))
+
     def reset(self) -> None:
         """The scene from its start; a run that had halted goes on."""
+        self.give_up("the lab was begun again")
         self.running, self.halted = self.running or bool(self.halted), ""
         self.pacer.debt = 0.0
         self.replay = None
@@ -325,7 +400,13 @@ class SimLoop:
         if where:
             raise DivergenceError(f"What is to be drawn is not finite ({where}). Reset, or take a smaller step.")
         readings, work, curves = scene.readings(), scene.work(), scene.curves()
-        self.plot_rows.extend(scene.take_plot_rows())
+        rows = scene.take_plot_rows()
+        self.plot_rows.extend(rows)
+        for row in rows:
+            if row[0] != row[0]:  # a NaN time: the run starts over
+                self.kept_rows.clear()
+            else:
+                self.kept_rows.append(row)
         return Snapshot(serial, frame, self.status(), readings, work, scene.params, curves)
 
     def status(self) -> Status:
@@ -353,7 +434,7 @@ class SimLoop:
         """Tick until `stop` is set, at the frame rate while there is something to do."""
         last = self.clock()
         while not stop.is_set():
-            busy = self.running and self.audience() > 0
+            busy = self.running and (self.audience() > 0 or self.goal is not None)
             now = self.clock()
             try:
                 self.tick(now - last)

@@ -4,6 +4,8 @@ from collections.abc import Iterable
 from typing import Literal
 
 from app.messages import (
+    Advance,
+    Ask,
     Command,
     Grab,
     Halt,
@@ -34,12 +36,14 @@ def merged(commands: Iterable[Command]) -> list[Command]:
     """The commands that have the same effect as all of them in order.
 
     Of presets and resets the last is left, and nothing that a scene was asked for before it; single steps are added
-    up; of the positions of one thing, and of the drags of one browser, the last is left.
+    up; of the positions of one thing, and of the drags of one browser, the last is left. What a program waits for comes
+    last, in order.
     """
     halt: Halt | None = None
     start: Load | Reset | None = None
     motion: Motion | None = None
     steps = 0
+    asked: list[Command] = []
     scene: dict[tuple[str, str | int], SceneCommand] = {}
     for command in commands:
         match command:
@@ -65,6 +69,8 @@ def merged(commands: Iterable[Command]) -> list[Command]:
                 put_last(scene, ("point", ""), command)
             case StudentAnswer():
                 put_last(scene, ("student", ""), command)
+            case Ask() | Advance():
+                asked.append(command)
     found: list[Command] = [halt] if halt else []
     if start is not None:
         found.append(start)
@@ -73,7 +79,7 @@ def merged(commands: Iterable[Command]) -> list[Command]:
         found.append(StepOnce(steps))
     if motion is not None:
         found.append(COMMAND_OF[motion])
-    return found
+    return found + asked
 
 
 def put_last(waiting: dict[tuple[str, str | int], SceneCommand], key: tuple[str, str | int], new: SceneCommand) -> None:

@@ -2,6 +2,8 @@
 
 # pyright: reportPrivateUsage=false
 
+import contextlib
+import io
 import queue
 import threading
 import time
@@ -342,4 +344,5 @@ class Viewer:
             finally:
                 self.changing.release()
         self.want("")
-        self.server.stop()
+        with contextlib.redirect_stdout(io.StringIO()):  # viser says so, in the middle of a notebook too
+            self.server.stop()

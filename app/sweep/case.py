@@ -10,10 +10,10 @@ import numpy as np
 
 import app
 import sim
-from app.commands.run import steps_to
 from app.messages import DivergenceError
 from app.scenes import scene_named
 from app.scenes.measures import plotted
+from app.scenes.stepping import steps_to
 from sim.jit import sources_hash
 from sim.parameters import check_record
 

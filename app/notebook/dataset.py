@@ -1,0 +1,76 @@
+"""What a lab knows at one time, as a labelled dataset."""
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from app.messages import PlotRow
+from app.scenes.charts import Chart
+from app.scenes.contract import AnyKind, AnyScene
+from sim.parameters import parameters_of
+
+Labelled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]  # dimensions, values, attributes
+
+
+def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: str) -> xr.Dataset:
+    """The plots over `t` [s]; and, at the time `now` [s], the state, the measures, and the other charts.
+
+    rows: of the plots. link: of the set-up. Called between two steps.
+    """
+    found: dict[str, Labelled] = {}
+    table = np.array([*rows]).reshape(-1, 1 + len(kind.series))
+    units = {name: plot.unit for plot in kind.plots.values() for name in plot.series}
+    for column, name in enumerate(kind.series, 1):
+        found[as_name(name)] = (("t",), table[:, column], attributes(units.get(name, ""), name))
+    for name, (array, unit) in scene.arrays().items():
+        # A name that a plot has too is that of the state.
+        own = f"state_{name}" if name in found else name
+        dimensions = tuple(f"{own}_{axis}" for axis in range(array.ndim))
+        found[own] = (dimensions, array, attributes(*split_unit(unit)))
+    for name, measure in ({} if kind.measures is None else kind.measures(scene)).items():
+        own = f"measured_{name}" if name in found else name
+        found[own] = ((), np.array(measure.value), attributes(measure.unit, measure.meaning))
+    for parameter, chart in (scene.curves() or {}).items():
+        found.update(columns_of(kind, parameter, chart))
+    coordinates = {
+        "t": ("t", table[:, 0], attributes("s", "simulated time")),
+        "now": ((), np.array(scene.time), attributes("s", "simulated time of the state")),
+    }
+    values = {name: getattr(scene.params, name) for name in parameters_of(scene.params)}
+    about = {"scene": kind.name, "link": link, "parameters": json.dumps(values)}
+    return xr.Dataset(found, coordinates, about)
+
+
+def columns_of(kind: AnyKind, parameter: str, chart: Any) -> Mapping[str, Labelled]:
+    """The columns of a chart that is not over time, as variables over its own dimension."""
+    dimension = parameter.removeprefix("plot_")
+    axes = kind.curves[parameter]
+    if isinstance(chart, Chart):
+        first, names, columns = chart.first, [line.label for line in chart.lines], chart.columns
+    else:
+        first, names, columns = axes.first, list(axes.names), chart
+    labels = [f"{axes.title}: {first}", *(f"{axes.title}: {name}" for name in names)]
+    return {
+        as_name(f"{dimension}_{name}"): ((dimension,), np.asarray(column), {"long_name": label})
+        for name, column, label in zip([first.partition(" [")[0], *names], columns, labels, strict=True)
+    }
+
+
+def as_name(words: str) -> str:
+    """Words as a name that can follow a dot."""
+    return "".join(c if c.isalnum() else "_" for c in words)
+
+
+def split_unit(text: str) -> tuple[str, str]:
+    """Unit and meaning of a text such as "J: kinetic, elastic" or "m, of each rope"."""
+    at = min((text.find(mark) for mark in (":", ",") if mark in text), default=math.inf)
+    return (text, "") if at == math.inf else (text[: int(at)], text[int(at) + 1 :].strip())
+
+
+def attributes(unit: str, meaning: str = "") -> dict[str, str]:
+    """The attributes of a variable."""
+    return {"units": unit or "1", **({"long_name": meaning} if meaning else {})}

@@ -1,0 +1,305 @@
+"""The handle of a lab that runs beside a notebook, and how one is opened."""
+
+import atexit
+import contextlib
+import threading
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from app.messages import Advance, Ask, Pause, Play, Reset
+from app.notebook.output import Output, cell_of_now
+from app.notebook.picture import Still, take_picture
+from app.scenes import scene_named
+from app.scenes.contract import AnyKind
+from app.scenes.setups import preset_values, read_query, write_query
+from app.server.access import Access, make_key
+from app.server.viewer import Viewer
+from sim.parameters import check_record, check_value, parameters_of, unknown_parameter
+from sim.validation import argument_error, check_number, is_whole_number
+
+if TYPE_CHECKING:
+    import xarray
+
+HOST = "127.0.0.1"
+MAX_WAIT = 1e6  # [s] of simulated time
+MIN_HEIGHT, MAX_HEIGHT = 200, 4000  # [pixels] of the output
+POLL_INTERVAL = 0.05  # [s] between two looks at what is waited for: an interrupt of the kernel comes between
+CALL_TIMEOUT = 20.0  # [s] for viser's event loop to answer
+T = TypeVar("T")
+
+
+class Lab:
+    """A lab that runs beside the notebook. The parameters of its scene are attributes, to read and to set.
+
+    With `with app.show(...) as lab:` it ends with the block.
+    """
+
+    def __init__(self, viewer: Viewer, key: str, output: Output) -> None:
+        """key: the secret in the address of its page."""
+        set_own = super().__setattr__
+        set_own("_viewer", viewer)
+        set_own("_key", key)
+        set_own("_output", output)
+
+    @property
+    def scene(self) -> str:
+        """Name of the scene that is open."""
+        return self._kind.name
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self._open.loop.latest.status.time
+
+    @property
+    def running(self) -> bool:
+        """Whether the clock runs. It stands still where no browser looks."""
+        return self._open.loop.running
+
+    @property
+    def link(self) -> str:
+        """The set-up as an address, "?scene=...": `app.show` takes it, and so does any page of the lab."""
+        panel = self._open.panel
+        return write_query(panel.kind, panel.params, panel.loaded)
+
+    @property
+    def address(self) -> str:
+        """Address of the page, for a browser on the kernel's machine. Who has it can drive the lab."""
+        return f"http://{HOST}:{self._open.port}/{self._key}/"
+
+    def set(self, **values: float | str) -> None:
+        """Set parameters. Raises ValueError, and sets none of them, where one is not allowed."""
+        known = parameters_of(self._params)
+        for name in values:
+            if name not in known:
+                raise unknown_parameter(name, known)
+        good = {name: check_value(name, known[name], plain(value)) for name, value in values.items()}
+        panel = self._open.panel
+
+        def set_all() -> None:
+            for name, value in good.items():
+                panel.set(name, value)
+
+        self._on_event_loop(set_all)
+
+    def wait(self, seconds: float) -> float:
+        """Let the lab run for `seconds` [s] of simulated time, to a whole step; returns the time then [s].
+
+        After it the clock goes on, or stands still where it did before. With a browser on it the lab runs at its speed,
+        without one as fast as it can. Raises ValueError for a time that is none, DivergenceError where the run stops
+        before, and RuntimeError where it is begun again or another scene is opened meanwhile.
+        """
+        check_number("seconds", seconds, 0.0, MAX_WAIT, "s")
+        viewer = self._open
+        while viewer.gate.passed is not viewer.panel.state or viewer.loop.scene.params != viewer.panel.params:
+            time.sleep(POLL_INTERVAL)  # until what was set has been compiled and taken
+            self._check_open()
+        answer: Future[float] = Future()
+        viewer.commands.put(Advance(float(seconds), answer))
+        return self._result_of(answer)
+
+    def reset(self) -> None:
+        """Begin the run again, with the parameters as they are."""
+        self._open.commands.put(Reset())
+
+    def play(self) -> None:
+        """Let the clock run."""
+        self._open.commands.put(Play())
+
+    def pause(self) -> None:
+        """Stop the clock."""
+        self._open.commands.put(Pause())
+
+    def data(self) -> "xarray.Dataset":
+        """What the lab knows now, with units in `attrs`; needs the extra `jupyter`.
+
+        Over `t` [s] the values of the plots since the run began, at most 20,000 of each; at the time `now` [s] the
+        state, the measures and the other charts of the scene.
+        """
+        from app.notebook.dataset import to_dataset  # xarray takes half a second to import
+
+        viewer, kind = self._open, self._kind
+        loop, scene = viewer.loop, viewer.loop.scene
+        return self._asked(lambda: to_dataset(kind, scene, loop.kept_rows, self.link))
+
+    def picture(self, width: int = 960, height: int = 540) -> Still:
+        """A picture [pixels] of what a browser shows, which stays in the notebook.
+
+        Raises RuntimeError where no browser shows the lab, and TimeoutError where one does not draw.
+        """
+        return take_picture(self._open, width, height)
+
+    def stop(self) -> None:
+        """End the lab. Its last picture stays in the output cell."""
+        viewer: Viewer = self._viewer
+        if viewer.ended:
+            return
+        with contextlib.suppress(RuntimeError, TimeoutError):
+            if viewer.audience():
+                self._output.still = take_picture(viewer, *self._output.still_size)
+        viewer.shut()
+        self._output.end()
+
+    def __enter__(self) -> "Lab":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def __getattr__(self, name: str) -> Any:
+        # What IPython asks every object for begins with "_", and is no parameter.
+        if not name.startswith("_") and name in parameters_of(self._params):
+            return getattr(self._params, name)
+        raise AttributeError(str(unknown_parameter(name, parameters_of(self._params))))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if hasattr(type(self), name):
+            raise AttributeError(f"{name}: no parameter, so it cannot be set")
+        self.set(**{name: value})
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *({} if self._viewer.ended else parameters_of(self._params))]
+
+    def __repr__(self) -> str:
+        if self._viewer.ended:
+            return "<a lab that was stopped>"
+        return f"<lab of the scene {self.scene}, t = {self.time:.2f} s>"
+
+    @property
+    def _open(self) -> Viewer:
+        """The viewer. Raises RuntimeError where the lab was stopped."""
+        self._check_open()
+        return self._viewer
+
+    @property
+    def _kind(self) -> AnyKind:
+        return self._open.panel.kind
+
+    @property
+    def _params(self) -> Any:
+        """The parameters as set now."""
+        return self._open.panel.params
+
+    def _check_open(self) -> None:
+        if self._viewer.ended:
+            raise RuntimeError("this lab was stopped; app.show opens another")
+
+    def _asked(self, read: Callable[[], T]) -> T:
+        """What `read` returns between two steps of the simulation."""
+        answer: Future[Any] = Future()
+        self._open.commands.put(Ask(read, answer))
+        return self._result_of(answer)
+
+    def _result_of(self, answer: "Future[T]") -> T:
+        """The answer of the open scene. Raises RuntimeError where it is closed before it has answered."""
+        loop = self._viewer.loop
+        try:
+            while True:
+                with contextlib.suppress(TimeoutError):
+                    return answer.result(POLL_INTERVAL)
+                self._check_open()
+                if self._viewer.loop is not loop:
+                    raise RuntimeError("another scene was opened meanwhile")
+        finally:
+            answer.cancel()  # where the kernel was interrupted: the lab is not to wait for it
+
+    def _on_event_loop(self, action: Callable[[], None]) -> None:
+        """Call what only viser's event loop may call, and wait for it."""
+        done: Future[None] = Future()
+
+        def run() -> None:
+            try:
+                action()
+            except Exception as error:
+                done.set_exception(error)
+            else:
+                done.set_result(None)
+
+        self._viewer.server.get_event_loop().call_soon_threadsafe(run)
+        done.result(CALL_TIMEOUT)
+
+
+def plain(value: object) -> object:
+    """A number of numpy's as one of Python's."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
+LABS: dict[int, tuple[str, str, Lab]] = {}  # id -> (cell, execution, lab) of the labs that run in this kernel
+
+
+def show_lab(scene: str, preset: str, parameters: Mapping[str, object], *, paused: bool, height: int, port: int) -> Lab:
+    """See `app.show`."""
+    kind, params = read_setup(scene, preset, {name: plain(value) for name, value in parameters.items()})
+    if not is_whole_number(height) or not MIN_HEIGHT <= height <= MAX_HEIGHT:
+        raise argument_error("height", height, f"{MIN_HEIGHT} to {MAX_HEIGHT} pixels")
+    if not is_whole_number(port) or not 0 <= port <= 65535:
+        raise argument_error("port", port, "0 to 65535")
+    cell, execution = cell_of_now()
+    stop_former(cell, execution)
+    key = make_key()
+    try:
+        viewer = Viewer(HOST, int(port), compile_ahead=True, access=Access(key=key))
+    except OSError as error:
+        raise OSError(f"port: {port} cannot be used ({error.strerror or error}); 0 takes any free one") from None
+    output = Output(viewer.port, key, int(height))
+    lab = Lab(viewer, key, output)
+    output.show()
+    try:
+        viewer.open(kind.name, params, paused=bool(paused))
+    except BaseException:
+        viewer.shut()
+        output.end()
+        raise
+    LABS[id(lab)] = (cell, execution, lab)
+    keep_still(viewer, output)
+    return lab
+
+
+def read_setup(scene: str, preset: str, parameters: Mapping[str, object]) -> tuple[AnyKind, Any]:
+    """The scene and its parameters. Raises ValueError for what is not allowed."""
+    if not isinstance(scene, str) or not isinstance(preset, str):
+        raise argument_error("scene, preset", (scene, preset), "names")
+    if "?" in scene:
+        setup = read_query(scene[scene.index("?") :])
+        kind = scene_named(setup.scene)
+        values = dict(setup.values)
+    else:
+        kind, values = scene_named(scene), {}
+    if preset:
+        values.update(preset_values("preset", preset, kind))
+    if not values and not parameters and "?" not in scene:
+        return kind, kind.opening_params()
+    return kind, check_record(kind.params, {**values, **parameters})
+
+
+def stop_former(cell: str, execution: str) -> None:
+    """End the labs that an earlier execution of this cell has opened, and forget those that have ended."""
+    for name, (other, earlier, lab) in list(LABS.items()):
+        if cell and other == cell and earlier != execution:
+            lab.stop()
+        if lab._viewer.ended:
+            del LABS[name]
+
+
+def keep_still(viewer: Viewer, output: Output) -> None:
+    """Put a picture into the notebook once a browser has drawn the lab."""
+
+    def keep() -> None:
+        while not viewer.ended and output.still is None:
+            time.sleep(0.5)
+            if viewer.audience() and viewer.is_open:
+                with contextlib.suppress(RuntimeError, TimeoutError):
+                    output.show_still(take_picture(viewer, *output.still_size))
+
+    threading.Thread(target=output.context.run, args=(keep,), name="still picture", daemon=True).start()
+
+
+@atexit.register
+def stop_all() -> None:
+    """End what still runs as the kernel ends: its compilers are processes of their own."""
+    for _, _, lab in LABS.values():
+        lab._viewer.shut()

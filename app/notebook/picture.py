@@ -1,0 +1,57 @@
+"""A picture of what a browser shows."""
+
+import io
+import time
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.server.viewer import Viewer
+from sim.validation import argument_error, is_whole_number
+
+MAX_SIDE = 8000  # [pixels]
+PAGE_TIMEOUT = 20.0  # [s] for a page to connect
+DRAW_TIMEOUT = 60.0  # [s] for a browser to draw a picture
+POLL_INTERVAL = 0.05  # [s]
+
+
+class Still:
+    """A picture that a notebook shows and keeps."""
+
+    def __init__(self, png: bytes) -> None:
+        self.png = png
+
+    def _repr_png_(self) -> bytes:
+        return self.png
+
+    def save(self, path: str | Path) -> None:
+        """Write a PNG file. Raises OSError."""
+        Path(path).write_bytes(self.png)
+
+
+def take_picture(viewer: Viewer, width: int, height: int) -> Still:
+    """What the newest browser shows, drawn again at width x height [pixels].
+
+    Raises ValueError for a size that is none, RuntimeError where no browser shows the lab, and TimeoutError where it
+    does not draw.
+    """
+    for name, side in (("width", width), ("height", height)):
+        if not is_whole_number(side) or not 1 <= side <= MAX_SIDE:
+            raise argument_error(name, side, f"1 to {MAX_SIDE} pixels")
+    end = time.monotonic() + PAGE_TIMEOUT
+    while not (clients := viewer.server.get_clients()):
+        if time.monotonic() > end or viewer.ended:
+            raise RuntimeError("no browser shows this lab, so there is no picture of it; open its cell in a browser")
+        time.sleep(POLL_INTERVAL)
+    pixels: NDArray[np.uint8] = clients[max(clients)].get_render(int(height), int(width), timeout=DRAW_TIMEOUT)
+    return Still(encoded(pixels))
+
+
+def encoded(pixels: NDArray[np.uint8]) -> bytes:
+    """Pixels (height, width, 3 or 4) as PNG."""
+    import imageio.v3 as iio  # only where a picture is taken
+
+    file = io.BytesIO()
+    iio.imwrite(file, pixels, extension=".png")
+    return file.getvalue()

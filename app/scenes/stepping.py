@@ -1,0 +1,10 @@
+"""How many steps lead a scene to a time."""
+
+import math
+
+from app.scenes.contract import AnyScene
+
+
+def steps_to(running: AnyScene, until: float) -> int:
+    """Steps from a scene's time to the first whole step at or after `until` [s], round-off allowed for."""
+    return max(0, math.ceil((until - running.time) / running.step * (1.0 - 1e-9) - 1e-6))

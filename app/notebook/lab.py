@@ -29,6 +29,7 @@ MAX_WAIT = 1e6  # [s] of simulated time
 MIN_HEIGHT, MAX_HEIGHT = 200, 4000  # [pixels] of the output
 POLL_INTERVAL = 0.05  # [s] between two looks at what is waited for: an interrupt of the kernel comes between
 CALL_TIMEOUT = 20.0  # [s] for viser's event loop to answer
+LAST_TIMEOUT = 2.0  # [s] for the last picture; without it an earlier one stays
 T = TypeVar("T")
 
 
@@ -140,7 +141,7 @@ class Lab:
             return
         with contextlib.suppress(RuntimeError, TimeoutError):
             if viewer.audience():
-                self._output.still = take_picture(viewer, *self._output.still_size)
+                self._output.still = take_picture(viewer, *self._output.still_size, LAST_TIMEOUT)
         viewer.shut()
         self._output.end()
 

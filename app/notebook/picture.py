@@ -12,7 +12,7 @@ from sim.validation import argument_error, is_whole_number
 
 MAX_SIDE = 8000  # [pixels]
 PAGE_TIMEOUT = 20.0  # [s] for a page to connect
-DRAW_TIMEOUT = 60.0  # [s] for a browser to draw a picture
+DRAW_TIMEOUT = 20.0  # [s] for a browser to draw a picture; it draws none of a page that is scrolled out of sight
 POLL_INTERVAL = 0.05  # [s]
 
 
@@ -30,8 +30,8 @@ class Still:
         Path(path).write_bytes(self.png)
 
 
-def take_picture(viewer: Viewer, width: int, height: int) -> Still:
-    """What the newest browser shows, drawn again at width x height [pixels].
+def take_picture(viewer: Viewer, width: int, height: int, timeout: float = DRAW_TIMEOUT) -> Still:
+    """What the newest browser shows, drawn again at width x height [pixels]. timeout: [s] for drawing it.
 
     Raises ValueError for a size that is none, RuntimeError where no browser shows the lab, and TimeoutError where it
     does not draw.
@@ -44,7 +44,10 @@ def take_picture(viewer: Viewer, width: int, height: int) -> Still:
         if time.monotonic() > end or viewer.ended:
             raise RuntimeError("no browser shows this lab, so there is no picture of it; open its cell in a browser")
         time.sleep(POLL_INTERVAL)
-    pixels: NDArray[np.uint8] = clients[max(clients)].get_render(int(height), int(width), timeout=DRAW_TIMEOUT)
+    try:
+        pixels: NDArray[np.uint8] = clients[max(clients)].get_render(int(height), int(width), timeout=timeout)
+    except TimeoutError:
+        raise TimeoutError(f"the browser drew no picture within {timeout:g} s; the page has to be in sight") from None
     return Still(encoded(pixels))
 
 

@@ -12,7 +12,6 @@ import asyncio
 import collections
 import contextlib
 import dataclasses
-import io
 import ipaddress
 import logging
 import math
@@ -23,6 +22,7 @@ from http import HTTPStatus
 from typing import TypeAlias, TypeGuard, cast
 from urllib.parse import urlsplit
 
+import rich
 import viser
 import websockets.asyncio.server
 from viser import _messages as vm
@@ -307,6 +307,17 @@ def put_intakes(server: viser.ViserServer, screen: Screen) -> None:
     connection.on_client_disconnect(leave)
 
 
+@contextlib.contextmanager
+def quiet() -> Generator[None]:
+    """While open, viser prints nothing: we print our own address, and a notebook would show all of it."""
+    console = rich.get_console()
+    before, console.quiet = console.quiet, True
+    try:
+        yield
+    finally:
+        console.quiet = before
+
+
 def check_port(host: str, port: int) -> None:
     """Raise OSError where `port` cannot be bound: viser would silently take the next one."""
     if port == 0:
@@ -325,7 +336,7 @@ def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> tuple[
     check_port(host, port)
     # A message that cannot be decoded ends its connection, and would print a traceback each time.
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
-    with checked_requests(host, access), contextlib.redirect_stdout(io.StringIO()):  # we print our own address
+    with checked_requests(host, access), quiet():
         server = viser.ViserServer(host=host, port=port, label="Springtide", verbose=False)
     if port not in (0, server.get_port()):
         server.stop()

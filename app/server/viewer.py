@@ -2,8 +2,6 @@
 
 # pyright: reportPrivateUsage=false
 
-import contextlib
-import io
 import queue
 import threading
 import time
@@ -28,7 +26,7 @@ from app.scenes.contract import AnyKind, AnyScene, PostCommand
 from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.compile_gate import CompileGate
 from app.server.counters import Unwatched, gather, modules
-from app.server.guard import open_server
+from app.server.guard import open_server, quiet
 from app.server.loop import SimLoop
 from app.server.replay_file import replay_html
 from app.server.transport import TransportCounters
@@ -344,5 +342,5 @@ class Viewer:
             finally:
                 self.changing.release()
         self.want("")
-        with contextlib.redirect_stdout(io.StringIO()):  # viser says so, in the middle of a notebook too
+        with quiet():
             self.server.stop()

@@ -196,9 +196,9 @@ class SimLoop:
         arrived = steps_to(self.scene, goal.until) == 0
         if not (arrived or reason or goal.answer.cancelled()):
             return
-        self.goal = None
         if not reason:
             self.running = goal.was_running
+        self.goal = None
         if not goal.answer.set_running_or_notify_cancel():
             return
         if reason:

@@ -3,12 +3,15 @@
 import dataclasses
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 from app.messages import (
+    Advance,
+    Ask,
     DivergenceError,
     Halt,
     Load,
@@ -419,3 +422,66 @@ def test_a_scene_that_fails_outside_its_guard_halts_the_run_and_the_thread_lives
     stop.set()
     thread.join(5.0)
     assert "no such step" in capsys.readouterr().err
+
+
+def test_what_a_program_waits_for_ends_at_the_whole_step_and_leaves_the_clock_as_it_was() -> None:
+    for audience in (0, 1):
+        for paused in (False, True):
+            loop, scene = make(audience=lambda audience=audience: audience, paused=paused, cost=1e-4)
+            answer: Future[float] = Future()
+            loop.commands.put(Advance(0.995, answer))
+            while not answer.done():
+                loop.tick(FRAME_INTERVAL)
+            assert answer.result() == scene.time == pytest.approx(1.0)
+            assert loop.running is not paused
+            assert loop.latest.status.time == scene.time
+
+
+def test_without_an_audience_a_program_does_not_wait_for_the_clock() -> None:
+    loop, _ = make(audience=lambda: 0, cost=1e-4)
+    answer: Future[float] = Future()
+    loop.commands.put(Advance(1.0, answer))
+    loop.tick(FRAME_INTERVAL)
+    assert loop.scene.time >= 0.5  # 100 steps take 10 ms
+    assert loop.pacer.dropped == 0
+
+
+def test_a_program_that_waits_is_told_why_the_time_does_not_come() -> None:
+    loop, scene = make()
+    for command, kind, words in (
+        (Reset(), RuntimeError, "begun again"),
+        (Load(Params(), 0), RuntimeError, "begun again"),
+        (Advance(1.0, Future()), RuntimeError, "another program"),
+        (Halt("no more"), DivergenceError, "no more"),
+    ):
+        answer: Future[float] = Future()
+        loop.handle(Play())
+        loop.commands.put(Advance(5.0, answer))
+        loop.tick(FRAME_INTERVAL)
+        assert not answer.done()
+        loop.commands.put(command)
+        loop.tick(FRAME_INTERVAL)
+        with pytest.raises(kind, match=words):
+            answer.result(0)
+    assert loop.goal is None
+    scene.fails = DivergenceError("too far")
+    loop.handle(Play())
+    answer = Future()
+    loop.commands.put(Advance(5.0, answer))
+    loop.tick(FRAME_INTERVAL)
+    with pytest.raises(DivergenceError, match="too far"):
+        answer.result(0)
+
+
+def test_a_program_is_answered_between_two_steps_with_what_it_reads_or_what_went_wrong() -> None:
+    loop, scene = make()
+    good: Future[object] = Future()
+    bad: Future[object] = Future()
+    late: Future[object] = Future()
+    late.cancel()
+    for answer, read in ((good, lambda: scene.time), (bad, lambda: 1 / 0), (late, lambda: 1 / 0)):
+        loop.commands.put(Ask(read, answer))
+    loop.tick(FRAME_INTERVAL)
+    assert good.result(0) == 0.0
+    with pytest.raises(ZeroDivisionError):
+        bad.result(0)

@@ -1,0 +1,27 @@
+"""What jupyter-server-proxy is told."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from app.notebook.server_proxy import springtide
+from app.server.access import KEY_HEADER, KEY_VARIABLE, read_key
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_each_start_has_a_key_of_its_own_that_no_command_line_shows() -> None:
+    first, second = springtide(), springtide()
+    key = first["environment"][KEY_VARIABLE]  # type: ignore[index]
+    assert read_key(key) == key != second["environment"][KEY_VARIABLE]  # type: ignore[index]
+    assert first["request_headers_override"] == {KEY_HEADER: key}
+    assert key not in " ".join(first["command"])  # type: ignore[arg-type]
+
+
+def test_the_entry_point_is_declared_and_is_taken_by_the_proxy() -> None:
+    entries = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]
+    assert entries == {"jupyter_serverproxy_servers": {"springtide": "app.notebook.server_proxy:springtide"}}
+    config = pytest.importorskip("jupyter_server_proxy.config", reason="the extra jupyter is not installed")
+    process = config.ServerProcess(name="springtide", **springtide())
+    assert process.launcher_entry.title == "Springtide"

@@ -3,24 +3,28 @@
 import json
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from app.messages import PlotRow
 from app.scenes.charts import Chart
 from app.scenes.contract import AnyKind, AnyScene
 from sim.parameters import parameters_of
 
+if TYPE_CHECKING:
+    import xarray
+
 Labelled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]  # dimensions, values, attributes
 
 
-def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: str) -> xr.Dataset:
+def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: str) -> "xarray.Dataset":
     """The plots over `t` [s]; and, at the time `now` [s], the state, the measures, and the other charts.
 
     rows: of the plots. link: of the set-up. Called between two steps.
     """
+    import xarray as xr  # half a second
+
     found: dict[str, Labelled] = {}
     table = np.array([*rows]).reshape(-1, 1 + len(kind.series))
     units = {name: plot.unit for plot in kind.plots.values() for name in plot.series}

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from app.messages import Advance, Ask, Pause, Play, Reset
+from app.notebook.dataset import to_dataset
 from app.notebook.output import Output, cell_of_now
 from app.notebook.picture import Still, take_picture
 from app.scenes import scene_named
@@ -121,8 +122,6 @@ class Lab:
         Over `t` [s] the values of the plots since the run began, at most 20,000 of each; at the time `now` [s] the
         state, the measures and the other charts of the scene.
         """
-        from app.notebook.dataset import to_dataset  # xarray takes half a second to import
-
         viewer, kind = self._open, self._kind
         loop, scene = viewer.loop, viewer.loop.scene
         return self._asked(lambda: to_dataset(kind, scene, loop.kept_rows, self.link))

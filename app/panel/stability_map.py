@@ -23,9 +23,10 @@ from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.contract import SpringParams, StabilityMap
 from sim.formatting import SUPERSCRIPTS
 from sim.parameters import Parameter, parameters_of
-from sim.springs import INTEGRATORS
+from sim.springs import INTEGRATORS, Integrator, Net
 from sim.springs.analysis.growth import outcome
 from sim.springs.analysis.settling import find_rest_positions
+from sim.springs.automatic import AUTO, choose_for_step
 from sim.springs.stability import critical_step
 from sim.springs.state import State
 
@@ -81,10 +82,18 @@ def axes_of(params: SpringParams, parameter: str) -> Axes:
     )
 
 
+def method_of(params: SpringParams, net: Net) -> Integrator:
+    """The method that runs."""
+    if params.integrator == AUTO:
+        return choose_for_step(net, params.time_step).integrator
+    return INTEGRATORS[params.integrator]
+
+
 def measure_row(scene: StabilityMap, axes: Axes, stiffness: float) -> Row:
     """What becomes of the scene's net at rest at each step of the map."""
     params = dataclasses.replace(axes.params, **{axes.parameter: stiffness})
-    net, record = scene.build(params), INTEGRATORS[params.integrator]
+    net = scene.build(params)
+    record = method_of(params, net)
     state = State.at_rest(net)
     state.x[:] = find_rest_positions(net)
     most = min(max(WORK // params.points, 256), 4096)
@@ -135,9 +144,10 @@ class StabilityMapPanel:
     def measure(self, number: int) -> None:
         """Measure row by row, in a thread of its own; the panel draws what is there."""
         params = self.read()
-        record = INTEGRATORS[params.integrator]
         try:
-            if record.undamped_only and self.scene.build(params).is_damped:
+            net = self.scene.build(params)
+            record = method_of(params, net)
+            if record.undamped_only and net.is_damped:
                 self.axes, self.problem = None, f"{record.name.upper()} allows no damping: set damping and drag to 0."
                 return
             axes = axes_of(params, self.scene.stiffness(params))

@@ -1,14 +1,19 @@
-"""Which integrator runs: the chosen one, or a replacement where the chosen one refuses the net."""
+"""Which integrator runs: the chosen one, what `auto` takes, or a replacement where the chosen one refuses the net."""
 
+from sim.springs.automatic import AUTO, choose_for_step
 from sim.springs.integrators import Integrator, discover, integrator_named
 from sim.springs.net import Net
 
 
-def integrator_or_fallback(name: str, net: Net) -> tuple[Integrator, str]:
+def integrator_or_fallback(name: str, net: Net, h: float) -> tuple[Integrator, str]:
     """The integrator called `name`, or its replacement where it takes no damping and `net` is damped.
 
-    Also returns the line that says why a replacement runs, or "". Raises ValueError for an unknown name.
+    h: [s], by which "auto" chooses. Also returns the line that says why another method runs than the one called so,
+    or "". Raises ValueError for an unknown name.
     """
+    if name == AUTO:
+        choice = choose_for_step(net, h)
+        return choice.integrator, f"{choice.integrator.name} runs: {choice.reason}"
     chosen = integrator_named(name)
     if not (chosen.undamped_only and net.is_damped):
         return chosen, ""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
+from sim.springs.automatic import AUTO, choose_for_step, choose_for_tolerance
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
 from sim.springs.stability import critical_step, gershgorin
@@ -38,6 +39,7 @@ class Run(NamedTuple):
     force_evals: int
     diverged_at: float | None  # [s]
     step: float | None  # [s] that was taken; None where the method chose its own
+    integrator: str  # that ran: what "auto" took
 
 
 def simulate(
@@ -54,6 +56,8 @@ def simulate(
 ) -> Run:
     """Integrate `net` from rest and sample it at `frames` equal times from 0 to `duration` [s].
 
+    integrator: a name in `INTEGRATORS`, or "auto", which takes an adaptive method by the net's damping and the
+    tolerance, or by the step (sim/springs/automatic.py); `integrator` of the run says which.
     step: [s], 1/1200 by default, or half the critical step at the start where that is shorter; shortened equally where
     it does not divide a frame interval, and `step` of the run is the one taken. A step that is given is taken, however
     long: see `sim.springs.stability.critical_step`. rtol, atol: adaptive methods choose steps with an error within
@@ -66,21 +70,24 @@ def simulate(
     Raises ValueError, naming the argument, its value and what is allowed.
     """
     check_net(net)
-    record = integrator_named(integrator)
+    record = None if integrator == AUTO else integrator_named(integrator)
     if step is not None:
         check_number("step", step, 0, math.inf, "s", above=True)
     for name, value, least in (("rtol", rtol, LEAST_RTOL), ("atol", atol, LEAST_ATOL)):
         if value is not None:
             check_number(name, value, least, 1, "")
-            if not record.adaptive or step is not None:
-                raise argument_error(
-                    name, value, "None, as the step is given" if record.adaptive else "adaptive methods only"
-                )
+            adaptive = record is None or record.adaptive
+            if not adaptive or step is not None:
+                raise argument_error(name, value, "None, as the step is given" if adaptive else "adaptive methods only")
     check_number("duration", duration, 0, math.inf, "s", above=True)
     if not is_whole_number(frames) or not 2 <= frames <= MOST_FRAMES:
         raise argument_error("frames", frames, f"a whole number from 2 to {MOST_FRAMES}")
     if not isinstance(with_account, bool | np.bool_):
         raise argument_error("with_account", with_account, "True or False")
+    if record is None:
+        interval = duration / (int(frames) - 1)
+        choice = choose_for_step(net, step) if step else choose_for_tolerance(net, rtol or RTOL, interval)
+        record = choice.integrator
     check_damping(net, record)
     if record.undamped_only and net.grab is not None and net.grab.damping > 0.0:
         raise argument_error("grab.damping", net.grab.damping, f"0, as {record.name} takes no damping")
@@ -136,7 +143,7 @@ def stepped(
         ledger[frame] = *energy(net, state), state.dissipated, state.work
         if progress:
             progress(frame + 1, len(t))
-    return Run(t, per_point(net, xs), per_point(net, vs), ledger, state.force_evals, diverged_at, h)
+    return Run(t, per_point(net, xs), per_point(net, vs), ledger, state.force_evals, diverged_at, h, record.name)
 
 
 def marched(
@@ -164,9 +171,8 @@ def marched(
         if progress:
             progress(frame + 1, len(t))
     diverged_at = None if filled == len(t) else float(stopped_at)
-    return Run(
-        t, per_point(net, xs.reshape(shape)), per_point(net, vs.reshape(shape)), ledger, evals, diverged_at, None
-    )
+    x_frames, v_frames = per_point(net, xs.reshape(shape)), per_point(net, vs.reshape(shape))
+    return Run(t, x_frames, v_frames, ledger, evals, diverged_at, None, record.name)
 
 
 def first_insane_time(net: Net, state: State, integrator: Integrator, h: float, steps: int) -> float:

@@ -3,7 +3,7 @@
 import dataclasses
 from typing import Any
 
-from app.scenes.springs.methods import METHODS
+from app.scenes.springs.methods import METHODS_AND_AUTO
 from sim.parameters import parameter
 from sim.springs.cloth import PIN_CHOICES
 
@@ -16,7 +16,9 @@ MAX_ACCOUNTED_PARTICLES = 2500
 class Params:
     """The cloth's parameters."""
 
-    integrator: str = parameter("leapfrog", choices=METHODS, doc="Method of integration", group="Main", title="Method")
+    integrator: str = parameter(
+        "leapfrog", choices=METHODS_AND_AUTO, doc="Method of integration", group="Main", title="Method"
+    )
     time_step: float = parameter(1 / 2400, 1e-5, 0.05, "s", "Step h of the integrator", log_from=1e-5, group="Main")
     stiffness: float = parameter(
         800.0, 1.0, 1e5, "N/m", "Stiffness of the structural springs, to the next particle", log_from=1.0, group="Main"

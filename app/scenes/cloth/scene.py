@@ -24,6 +24,7 @@ from sim.springs import Grab as Pull
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.strain import structural_strain
+from sim.springs.automatic import AUTO
 from sim.springs.integrator_fallback import integrator_or_fallback
 from sim.springs.net import PinPath
 from sim.springs.resampling import resample
@@ -97,7 +98,8 @@ def compile_gauge() -> None:
 
 def needs(params: Params) -> tuple[str, ...]:
     """What a scene with these parameters runs."""
-    return integrator_or_fallback(params.integrator, build(params, sphere_home(params)))[0].name, GAUGE
+    net = build(params, sphere_home(params))
+    return integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE
 
 
 class ClothScene:
@@ -127,7 +129,7 @@ class ClothScene:
     @property
     def note(self) -> str:
         """Why another method runs than the one chosen, or ""."""
-        return self.fallback_note
+        return "" if self.params.integrator == AUTO else self.fallback_note
 
     @property
     def particles(self) -> int:
@@ -292,7 +294,7 @@ class ClothScene:
 
     def assess_stability(self) -> None:
         """Compare the step with its limit: at the state as it is where that is quick, else by a bound for all."""
-        self.integrator, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net)
+        self.integrator, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net, self.step)
         record = self.integrator
         exact = self.particles <= MAX_ASSESSED_PARTICLES
         if exact:

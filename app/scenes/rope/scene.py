@@ -33,6 +33,7 @@ from sim.springs import Net, rope
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.tension import rope_tension
+from sim.springs.automatic import AUTO
 from sim.springs.integrator_fallback import integrator_or_fallback
 from sim.springs.resampling import resample
 from sim.springs.stability import Gauge, critical_stiffness, gauge, top_modes
@@ -109,7 +110,7 @@ def compile_gauge() -> None:
 
 def needs(params: Params) -> tuple[str, ...]:
     """What a scene with these parameters runs."""
-    return integrator_or_fallback(params.integrator, build(params))[0].name, GAUGE
+    return integrator_or_fallback(params.integrator, build(params), params.time_step)[0].name, GAUGE
 
 
 def rows_of(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -162,7 +163,7 @@ class RopeScene:
     @property
     def note(self) -> str:
         """Why another method runs than the one chosen, or ""."""
-        return self.fallback_note
+        return "" if self.params.integrator == AUTO else self.fallback_note
 
     def reset(self) -> None:
         """The rope at rest, level from its root; root and sphere where a new scene has them."""
@@ -267,7 +268,7 @@ class RopeScene:
 
     def assess_stability(self) -> None:
         """Compare the step with the limits at the state as it is, and sum up the cost of an implicit method."""
-        self.integrator, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net)
+        self.integrator, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net, self.step)
         modes = top_modes(self.net, self.state.x, self.state.t)
         stability = gauge(self.net, self.integrator, self.step, self.state, modes)
         largest = critical_stiffness(self.net, self.integrator, self.step, self.state, modes)

@@ -2,6 +2,7 @@
 
 from sim.parameters import in_words
 from sim.springs import INTEGRATORS
+from sim.springs.automatic import AUTO
 
 TITLES = {  # name -> (title in a list, name in a sentence)
     "explicit_euler": ("Euler, explicit (lab eq. 5)", "explicit Euler"),
@@ -21,6 +22,7 @@ TITLES = {  # name -> (title in a list, name in a sentence)
 ORDER = sorted(INTEGRATORS, key=[*TITLES, *INTEGRATORS].index)
 # A method that is not listed above comes last, with its name in words.
 METHODS = {name: TITLES[name][0] if name in TITLES else in_words(name) for name in ORDER}
+METHODS_AND_AUTO = {**METHODS, AUTO: "Automatic (Dormand-Prince or Nyström)"}  # where a net chooses its method
 
 
 def method_name(integrator: str) -> str:

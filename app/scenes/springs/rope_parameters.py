@@ -3,7 +3,7 @@
 import dataclasses
 
 from app.messages import Vector
-from app.scenes.springs.methods import METHODS
+from app.scenes.springs.methods import METHODS_AND_AUTO
 from sim.parameters import parameter
 from sim.springs import Contact, Net, lab_units, rope
 from sim.springs.net import CONTACT_LAWS, DAMPING_MODELS
@@ -17,7 +17,9 @@ ROPE_RADIUS = 0.035  # [m] of the drawn rope, and of its points for contact
 class RopeParams:
     """Clock, material and surroundings of a rope; the defaults are the lab's code defaults with a better integrator."""
 
-    integrator: str = parameter("leapfrog", choices=METHODS, doc="Method of integration", group="Main", title="Method")
+    integrator: str = parameter(
+        "leapfrog", choices=METHODS_AND_AUTO, doc="Method of integration", group="Main", title="Method"
+    )
     time_step: float = parameter(1 / 60, 1e-5, 0.1, "s", "Step h of the integrator", log_from=1e-5, group="Main")
     stiffness: float = parameter(800.0, 1.0, 1e9, "N/m", "Stiffness k of a link", log_from=1.0, group="Main")
     damping: float = parameter(7.0, 0.0, 1e5, "N·s/m", "Damping b of a link", log_from=1e-3, group="Main")

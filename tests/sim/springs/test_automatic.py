@@ -1,0 +1,60 @@
+"""`auto`: which of the embedded methods runs."""
+
+import numpy as np
+import pytest
+
+from sim.springs import INTEGRATORS, cloth, rope, simulate
+from sim.springs.automatic import AUTO, choose_for_step, choose_for_tolerance
+from sim.springs.integrator_fallback import integrator_or_fallback
+from sim.springs.stability import critical_step
+
+ADAPTIVE = [name for name, record in INTEGRATORS.items() if record.adaptive]
+NETS = {
+    "undamped": rope(10, damping=0.0, drag=0.0),
+    "the lab's": rope(10),
+    "overdamped": rope(10, damping=28.0),
+    "stiff": rope(10, stiffness=8e4),
+    "stiff, damped": rope(10, stiffness=8e4, damping=30.0),
+    "long": rope(40, damping=1.0, mass=0.1),
+    "cloth": cloth(6, 6),
+}
+
+
+@pytest.mark.parametrize("net", NETS.values(), ids=NETS)
+def test_auto_takes_hardly_more_evaluations_than_the_best_of_the_embedded_methods(net):
+    for rtol in (1e-4, 1e-7, 1e-10):
+        taken = choose_for_tolerance(net, rtol, 1.0).integrator.name
+        evals = {name: simulate(net, name, rtol=rtol, atol=0.01 * rtol, frames=2, duration=1.0) for name in ADAPTIVE}
+        best = min(run.force_evals for run in evals.values())
+        assert evals[taken].force_evals < 1.5 * best
+
+
+def test_auto_knows_soft_damped_nets_and_close_frames():
+    assert choose_for_tolerance(NETS["the lab's"], 1e-8, 1.0).integrator.name == "dop853"
+    assert choose_for_tolerance(NETS["undamped"], 1e-8, 1.0).integrator.name == "rkn8"
+    assert choose_for_tolerance(NETS["stiff, damped"], 1e-8, 1.0).integrator.name == "rkn8"
+    assert choose_for_tolerance(NETS["the lab's"], 1e-6, 1e-3).integrator.name == "dopri5"
+    assert choose_for_tolerance(rope(10, gravity=0.0), 1e-12, 1.0).integrator.name == "rkn8"
+
+
+@pytest.mark.parametrize("net", NETS.values(), ids=NETS)
+def test_auto_holds_at_a_given_step_wherever_an_embedded_method_does(net):
+    most = max(critical_step(net, name) for name in ADAPTIVE)
+    for share in (0.05, 0.3, 0.9):
+        taken = choose_for_step(net, share * most).integrator
+        assert critical_step(net, taken) > share * most
+        others = [name for name in ADAPTIVE if INTEGRATORS[name].evals < taken.evals]
+        assert all(critical_step(net, name) < 1.2 * share * most for name in others)
+    assert choose_for_step(net, 2.0 * most).integrator.name in ("rkn8", "dop853")
+
+
+def test_a_run_says_what_auto_took():
+    run = simulate(rope(), AUTO, rtol=1e-8, atol=1e-10, duration=1.0, frames=2)
+    assert run.integrator == "dop853"
+    assert np.array_equal(run.x, simulate(rope(), "dop853", rtol=1e-8, atol=1e-10, duration=1.0, frames=2).x)
+    assert simulate(rope(), AUTO, 1e-3, 0.1, 2).integrator == "dopri5"
+    assert simulate(rope(), "rk4", duration=0.1, frames=2).integrator == "rk4"
+    record, note = integrator_or_fallback(AUTO, rope(), 1e-3)
+    assert (record.name, note) == ("dopri5", "dopri5 runs: it holds at this step with the fewest force evaluations")
+    with pytest.raises(ValueError, match=r"rtol: .* the step is given"):
+        simulate(rope(), AUTO, 1e-3, rtol=1e-6)

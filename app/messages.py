@@ -95,11 +95,19 @@ class Reset(NamedTuple):
     """Back to the start of the scene; parameters and camera stay."""
 
 
+class KeptState(NamedTuple):
+    """A state from which a scene can go on."""
+
+    value: object  # as `Scene.keep` gave it
+    arrays: Mapping[int, int]  # identity -> bytes of each array in it; some are shared with the states before
+
+
 class Load(NamedTuple):
     """Take a whole record of parameters, as a preset has it, and start from it: one command, one step of the loop."""
 
     params: BaseParams  # the scene's `Params`
     number: int  # of the preset, counted from 1: parameters polled with another number belong before or after it
+    state: KeptState | None = None  # to go on from, of a scene that had these parameters; None: begin again
 
 
 class Place(NamedTuple):
@@ -199,6 +207,7 @@ class Snapshot(NamedTuple, Generic[P, F, R]):
     work: WorkCounts  # what the scene did and what it skipped, since it was opened
     params: P  # the parameters that this moment was made with
     curves: Mapping[str, object] | None = None  # parameter -> columns of its chart
+    state: KeptState | None = None  # of this moment, to go on from later; in some snapshots only
 
 
 class Moment(NamedTuple):

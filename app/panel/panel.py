@@ -14,7 +14,19 @@ from viser._messages import HotkeyKey  # viser names no public type of its keys
 
 from app.lab import task
 from app.lab.workbook import Workbook
-from app.messages import BaseParams, Command, Load, Pause, Play, PlotRow, Reset, StepOnce, TogglePlay, WorkCounts
+from app.messages import (
+    BaseParams,
+    Command,
+    KeptState,
+    Load,
+    Pause,
+    Play,
+    PlotRow,
+    Reset,
+    StepOnce,
+    TogglePlay,
+    WorkCounts,
+)
 from app.panel.control import Control
 from app.panel.display import Display
 from app.panel.guide import Guide
@@ -252,6 +264,13 @@ class Panel:
         self.take(params, preset, number)
         self.post(Load(params, number))
 
+    def resume(self, params: BaseParams, state: KeptState) -> None:
+        """Have the scene go on from a state, with the parameters that it had then: one command."""
+        number = self.state[1] + 1
+        self.history.note(Settings(self.params, self.loaded), "moment")
+        self.take(params, self.loaded, number)
+        self.post(Load(params, number, state))
+
     def undo(self) -> None:
         """The settings before the last change of a parameter or preset."""
         settings = self.history.take_last()
@@ -312,7 +331,8 @@ class Panel:
         rows: new plot rows. busy: [s] that the present tick has taken.
         """
         now = time.monotonic()
-        self.plots.update(snapshot, rows)
+        shown = self.recorder.shown
+        self.plots.update(snapshot, rows, None if shown is None else shown.time)
         if snapshot.status.halted != self.halted:
             self.halted = snapshot.status.halted
             self.status_at = 0.0

@@ -1,6 +1,8 @@
 """Live plots in a dock of their own, made when first asked for. Rows are kept whether a plot is open or not."""
 
+import bisect
 import collections
+import itertools
 import math
 import time
 from collections.abc import Sequence
@@ -19,7 +21,8 @@ from app.scenes.charts import Chart, Columns, CurveAxes, Line
 from app.scenes.contract import AnyKind, AnySnapshot
 
 SEND_INTERVAL = 0.12  # [s] between two sends
-MAX_ROWS = 900  # kept: half a minute of a scene that adds 30 a second
+MAX_ROWS = 5400  # kept: three minutes of a scene that adds 30 a second
+SHOWN_ROWS = 900  # in a chart: half a minute of them
 CHART_HEIGHT, TALL_CHART_HEIGHT = 220, 260  # [pixels] of a chart, and of one with a logarithmic scale
 PADDING = (12, 16, 0, 0)  # [pixels] above, right, below, left: room for half of the highest tick's words
 DIGIT_WIDTH, TICK_ROOM = 7.5, 16.0  # [pixels] of a digit of a tick, and beside the words
@@ -95,12 +98,14 @@ class Plots:
         """How many charts were drawn and how many did not have to be."""
         return {"charts drawn": WorkCount(self.drawn, self.skipped)}
 
-    def update(self, snapshot: AnySnapshot, rows: list[PlotRow]) -> None:
-        """Take new rows and, at a few hertz, send what is open."""
+    def update(self, snapshot: AnySnapshot, rows: list[PlotRow], moment: float | None = None) -> None:
+        """Take new rows and, at a few hertz, send what is open. moment: time [s] that is to be seen; None: the last."""
         for row in rows:
             if row[0] != row[0]:  # a NaN time: the run starts over
                 self.rows.clear()
             else:
+                while self.rows and self.rows[-1][0] >= row[0]:  # it has gone on from an earlier moment
+                    self.rows.pop()
                 self.rows.append(row)
         now = time.monotonic()
         if now - self.sent_at < SEND_INTERVAL:
@@ -114,7 +119,7 @@ class Plots:
         before = self.drawn
         if wanted:
             self.send_curves(snapshot, wanted)
-            self.send_plots(wanted)
+            self.send_plots(wanted, moment)
         self.skipped += len(names) - (self.drawn - before)
 
     def show(self, wanted: frozenset[str]) -> None:
@@ -145,16 +150,26 @@ class Plots:
                 axes = self.kind.curves[name]
                 self.send(name, axes.first, lines_of(axes.names), columns)  # type: ignore[arg-type]
 
-    def send_plots(self, wanted: frozenset[str]) -> None:
-        """Send the open charts over time that lack the newest row."""
-        newest = self.rows[-1] if self.rows else None
-        behind = [name for name in self.kind.plots if name in wanted and self.sent.get(name, 0) is not newest]
-        table: NDArray[np.float64] = np.array(self.rows).T if behind and self.rows else np.empty((1, 0))
+    def rows_about(self, moment: float | None) -> list[PlotRow]:
+        """The rows that charts show: the last ones, or those about a moment [s], in steps of half a chart."""
+        start = len(self.rows) - SHOWN_ROWS
+        if moment is not None and start > 0 and moment < self.rows[start][0]:
+            half = SHOWN_ROWS // 2
+            index = bisect.bisect_left(self.rows, moment, key=lambda row: row[0])
+            start = min(start, max(index // half - 1, 0) * half)
+        return list(itertools.islice(self.rows, max(start, 0), max(start, 0) + SHOWN_ROWS))
+
+    def send_plots(self, wanted: frozenset[str], moment: float | None) -> None:
+        """Send the open charts over time that show other rows than they are to."""
+        shown = self.rows_about(moment)
+        ends = (shown[0], shown[-1]) if shown else None
+        behind = [name for name in self.kind.plots if name in wanted and self.sent.get(name, 0) != ends]
+        table: NDArray[np.float64] = np.array(shown).T if behind and shown else np.empty((1, 0))
         for name in behind:
-            self.sent[name] = newest
+            self.sent[name] = ends
             series = self.kind.plots[name].series
             rows = [1 + self.kind.series.index(one) for one in series]
-            columns = (table[0], *(table[row] for row in rows)) if self.rows else (table[0],) * (1 + len(rows))
+            columns = (table[0], *(table[row] for row in rows)) if shown else (table[0],) * (1 + len(rows))
             self.send(name, "t [s]", lines_of(series), columns)
 
     def send(self, name: str, first: str, lines: tuple[Line, ...], columns: Columns, end: float | None = None) -> None:

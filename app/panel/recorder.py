@@ -7,12 +7,12 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from app.messages import BaseParams
+from app.messages import BaseParams, KeptState
 from app.scenes.contract import AnySnapshot
 
-MAX_BYTES = 150e6  # of all frames that are kept
+MAX_BYTES = 150e6  # of all frames and states that are kept
 MAX_DURATION = 180.0  # [s] of simulated time that is kept
-MAX_RATE = 30.0  # [1/s] frames kept a second of wall time; the page may show more
+MAX_RATE = 30.0  # [1/s] frames kept a second of wall time, and those that have a state; the page may show more
 MAX_PAUSE = 0.25  # [s] between two frames as they are played: a pause of the lab is shorter there
 RATES = (1.0, 0.5, 0.2, 0.1)  # at which a recording is played, as parts of the rate that it was recorded at
 
@@ -25,6 +25,7 @@ class Kept(NamedTuple):
     frame: object  # the scene's own record
     params: BaseParams
     size: int  # [bytes] that it holds alone
+    state: KeptState | None = None  # to go on from
 
 
 def size_of(frame: object, last: object = None) -> int:
@@ -39,6 +40,13 @@ def size_of(frame: object, last: object = None) -> int:
     return 0
 
 
+def size_of_state(state: KeptState | None, last: KeptState | None) -> int:
+    """Bytes of the arrays of a state that are not in the state before."""
+    if state is None:
+        return 0
+    return sum(size for owner, size in state.arrays.items() if last is None or owner not in last.arrays)
+
+
 class Recorder:
     """Records on the viewer's thread; the page's controls choose on viser's event loop. One lock for both.
 
@@ -49,6 +57,7 @@ class Recorder:
         self.lock = threading.Lock()
         self.frames: collections.deque[Kept] = collections.deque()
         self.bytes = 0
+        self.last_state: KeptState | None = None
         self.starts = -1
         self.was_running = False  # at the last snapshot: where a frame is chosen the lab pauses a little later
         self.position: int | None = None  # of the frame that is shown; None: the present
@@ -65,16 +74,22 @@ class Recorder:
             if status.running and not self.was_running:  # the lab goes on: the present is shown
                 self.position, self.playing = None, False
             self.was_running = status.running
-            if status.starts != self.starts or (self.frames and status.time < self.frames[-1].time):
+            if status.starts != self.starts:
                 self.starts = status.starts
                 self.clear()
+            while self.position is None and self.frames and self.frames[-1].time > status.time:
+                self.bytes -= self.frames.pop().size  # the run has gone on from an earlier moment
             if self.position is not None or (self.frames and status.time == self.frames[-1].time):
                 return
             last = self.frames[-1] if self.frames else None
-            if last is not None and wall - last.wall < 1.0 / MAX_RATE:
+            state = snapshot.state
+            if last is not None and state is None and wall - last.wall < 1.0 / MAX_RATE:
                 return
             size = size_of(snapshot.frame, None if last is None else last.frame)
-            self.frames.append(Kept(status.time, wall, snapshot.frame, snapshot.params, size))
+            if state is not None:
+                size += size_of_state(state, self.last_state)
+                self.last_state = state
+            self.frames.append(Kept(status.time, wall, snapshot.frame, snapshot.params, size, state))
             self.bytes += size
             while len(self.frames) > 1 and (
                 self.bytes > MAX_BYTES or self.frames[-1].time - self.frames[0].time > MAX_DURATION
@@ -84,7 +99,7 @@ class Recorder:
     def clear(self) -> None:
         """Forget all frames, and show the present."""
         self.frames.clear()
-        self.bytes = 0
+        self.bytes, self.last_state = 0, None
         self.position, self.playing = None, False
 
     def span(self) -> tuple[float, float]:
@@ -148,6 +163,14 @@ class Recorder:
         """The frame to show instead of the present; None for the present."""
         with self.lock:
             return None if self.position is None else self.frames[self.position]
+
+    def resumable(self) -> Kept | None:
+        """The last frame up to the one that is shown that has a state to go on from; None where there is none."""
+        with self.lock:
+            if self.position is None:
+                return None
+            before = (self.frames[i] for i in range(self.position, -1, -1))
+            return next((kept for kept in before if kept.state is not None), None)
 
     def kept(self) -> tuple[Kept, ...]:
         """All frames, the oldest first."""

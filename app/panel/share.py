@@ -16,7 +16,7 @@ from typing import Protocol
 import numpy as np
 import viser
 
-from app.messages import BaseParams, Pause, PlotRow, Vector
+from app.messages import BaseParams, KeptState, Pause, PlotRow, Vector
 from app.panel.picture import take_picture
 from app.panel.recorder import RATES, Kept, Recorder
 from app.render.cameras import place_camera
@@ -28,6 +28,7 @@ from app.scenes.setups import MAX_NAME, MAX_NOTE, Camera, Setup, read_file, read
 
 SPAN_INTERVAL = 0.5  # [s] between two updates of the timeline's ends
 SLIDER_STEP = 0.01  # [s] of the timeline
+HAND_TIME = 1.0  # [s] after a hand has moved the timeline in which it is left to the hand
 PICTURE_SIZES = {  # [pixels]
     "As in the page": (0, 0),
     "1280 x 720": (1280, 720),
@@ -35,8 +36,12 @@ PICTURE_SIZES = {  # [pixels]
     "3840 x 2160": (3840, 2160),
 }
 BACK, FORWARD, PRESENT = "◀ Back", "Forward ▶", "Now"
+CONTINUE = "Continue from here"
 COPY, SAVE, PLOTS, PICTURE, REPLAY = "Copy link", "Save set-up", "Plots as CSV", "Picture", "Replay"
 OPEN, LEAVE = "Open it for all", "Leave the lab as it is"
+
+# What `app/render/js/charts.js` reads the time of the line in the charts from.
+MOMENT = '<b data-springtide-moment="{}">Shown: t = {:.2f} s of the recording.</b>'
 
 MakeReplay = Callable[[AnyKind, Sequence[Kept], Sequence[PlotRow]], str]
 
@@ -54,6 +59,10 @@ class Settings(Protocol):
 
     def show_setup(self, setup: Setup, client: int | None) -> None:
         """Show a set-up, of this scene or another; the camera is that of one browser."""
+        ...
+
+    def resume(self, params: BaseParams, state: KeptState) -> None:
+        """Have the scene go on from a state, with the parameters that it had then."""
         ...
 
     def plot_rows(self) -> Sequence[PlotRow]:
@@ -81,11 +90,12 @@ class Share:
         self.server, self.panel, self.recorder, self.post = server, panel, recorder, post
         self.wake, self.make_replay = wake, make_replay
         self.gui = gui = server.gui
-        self.span_at = 0.0
+        self.span_at = self.moved_at = 0.0
         self.span: tuple[float, float] = (0.0, 0.0)
         self.busy = threading.Lock()  # one file at a time
         self.waiting: tuple[Setup, int | None] | None = None  # a set-up that the visitors are asked about
         with lab:
+            self.moment = gui.add_html("", visible=False)
             self.request = gui.add_html("", visible=False)
             self.decide = gui.add_button_group("", (OPEN, LEAVE), visible=False)
         self.decide.on_click(self.on_decision)
@@ -98,6 +108,12 @@ class Share:
             self.time.on_update(self.on_time)
             self.steps = gui.add_button_group("", (BACK, "Play", FORWARD, PRESENT))
             self.steps.on_click(self.on_step)
+            self.resume = gui.add_button(
+                CONTINUE,
+                disabled=True,
+                hint="From the moment that is shown; what came later is forgotten",
+            )
+            self.resume.on_click(self.on_resume)
             self.rate = gui.add_dropdown("Rate", tuple(f"×{rate:g}" for rate in RATES), hint="Of playing the recording")
             self.rate.on_update(self.on_rate)
             self.loop = gui.add_checkbox("Repeat", initial_value=False, hint="Play the recording again and again")
@@ -172,6 +188,7 @@ class Share:
     async def on_time(self, event: ViserEvent) -> None:
         """A browser has moved along the timeline: the lab pauses, and shows what was."""
         if event.client_id is not None:
+            self.moved_at = time.monotonic()
             self.post(Pause())
             self.recorder.show_time(float(event.target.value))
             self.wake()
@@ -191,6 +208,15 @@ class Share:
                 self.post(Pause())
                 self.recorder.play()
         self.wake()
+
+    async def on_resume(self, event: ViserEvent) -> None:
+        """Go on from the moment that is shown, or from the last state before it."""
+        kept = self.recorder.resumable()
+        if kept is None or kept.state is None:
+            self.say("No state was kept that early. Choose a later moment.")
+            return
+        self.say(fill("The run goes on from t = {:.2f} s.", kept.time))
+        self.panel.resume(kept.params, kept.state)
 
     async def on_rate(self, event: ViserEvent) -> None:
         """The pace of playing."""
@@ -278,13 +304,16 @@ class Share:
             if high > low:
                 self.time.min, self.time.max = round(low, 2), round(high, 2)
         at = high if shown is None else shown.time
-        if self.span[1] > self.span[0] and abs(self.time.value - at) > 0.5 * SLIDER_STEP:
+        held = now - self.moved_at < HAND_TIME and not self.recorder.playing  # what comes late would pull it back
+        if not held and self.span[1] > self.span[0] and abs(self.time.value - at) > 0.5 * SLIDER_STEP:
             self.time.value = round(min(max(at, self.time.min), self.time.max), 2)
-        words = fill("Recorded: {:.1f} s, {:.0f} MB", high - low, self.recorder.bytes / 1e6)
-        if shown is not None:
-            words = fill("<b>Shown: t = {:.2f} s of the recording.</b> {}", shown.time, words)
-        if self.state.content != note(words):
-            self.state.content = note(words)
+        words = note(fill("Recorded: {:.1f} s, {:.0f} MB", high - low, self.recorder.bytes / 1e6))
+        if self.state.content != words:
+            self.state.content = words
+        words = "" if shown is None else note(fill(MOMENT, shown.time, shown.time))
+        if self.moment.content != words:
+            self.moment.content, self.moment.visible = words, bool(words)
+            self.resume.disabled = not words
 
 
 def camera_of(client: viser.ClientHandle) -> Camera:

@@ -112,6 +112,17 @@ class Scene(Protocol[P, F_co, R_co]):
         """The state for a file: name -> (array, unit)."""
         ...
 
+    def keep(self) -> object:
+        """All that changes as the scene runs, in copies that nothing changes later (`app/scenes/moments.py`)."""
+        ...
+
+    def resume(self, kept: object) -> None:
+        """Go on from what `keep` gave, with `params` as they were then; `kept` can be used again.
+
+        Nobody holds what was held then.
+        """
+        ...
+
     def work(self) -> WorkCounts:
         """What was done and what was skipped since the scene was made."""
         ...

@@ -177,7 +177,7 @@ def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Set
         if key not in FILE_KEYS:
             raise argument_error(f"{where}: key", key, "one of " + ", ".join(FILE_KEYS))
     version = content.get("version", 1)
-    if isinstance(version, bool) or version not in range(1, VERSION + 1):
+    if type(version) is not int or not 1 <= version <= VERSION:
         raise argument_error(f"{where}: version", version, f"1 to {VERSION}; a newer one needs a newer Springtide")
     if "parameters" not in content and "preset" not in content:
         raise argument_error(where, shortened(text), f"a file {form}")

@@ -21,6 +21,7 @@ from app.messages import (
     Command,
     DivergenceError,
     Halt,
+    KeptState,
     Load,
     Pause,
     Play,
@@ -34,6 +35,7 @@ from app.messages import (
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
+from app.scenes.moments import arrays_in
 from app.scenes.stepping import steps_to
 from app.server.merging import merged
 from app.server.replay import Replay
@@ -44,6 +46,8 @@ PART_GROWTH = 8  # ratio of two successive parts of a frame's steps while the co
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 MAX_CATCH_UP = 0.25  # [s] of wall time that one tick makes up for
+KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least
+KEEP_SHARE = 0.01  # of a core that keeping states may take
 RATE_WINDOW = 1.0  # [s] over which rates are measured
 MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond that the oldest are dropped
 
@@ -129,6 +133,7 @@ class SimLoop:
         self.counts: collections.Counter[str] = collections.Counter()
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
         self.wall = 0.0
+        self.keep_at = 0.0  # [s] of `wall` from which a state is kept again
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
         self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
         self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
@@ -319,12 +324,15 @@ class SimLoop:
                 self.step_by_hand(steps)
             case Halt(reason):
                 self.halt(reason)
-            case Load(params, number):
+            case Load(params, number, state):
                 self.loaded = number
                 self.scene.params = params
                 self.cost_unknown = True
-                self.counts["starts"] += 1
-                self.reset()
+                if state is None:
+                    self.counts["starts"] += 1
+                    self.reset()
+                else:
+                    self.resume(state)
                 self.running = not self.halted
             case Reset():
                 self.counts["starts"] += 1
@@ -367,6 +375,22 @@ class SimLoop:
         self.replay = None
         self.guarded(self.scene.reset)
 
+    def resume(self, state: KeptState) -> None:
+        """The scene from a state that was kept."""
+        self.halted, self.replay, self.pacer.debt = "", None, 0.0
+        self.history.clear()
+        self.guarded(lambda: self.scene.resume(state.value))
+
+    def keep_state(self) -> KeptState | None:
+        """The state of a running scene, a few times a second; seldom where copying it takes long."""
+        if not self.running or self.replay is not None or self.wall < self.keep_at or not self.audience():
+            return None
+        start = self.effort()
+        value = self.scene.keep()
+        state = KeptState(value, arrays_in(value))
+        self.keep_at = self.wall + max(KEEP_INTERVAL, (self.effort() - start) / KEEP_SHARE)
+        return state
+
     def publish(self) -> None:
         """Hand the viewer what there is now."""
         self.latest = self.snapshot()
@@ -405,9 +429,11 @@ class SimLoop:
         for row in rows:
             if row[0] != row[0]:  # a NaN time: the run starts over
                 self.kept_rows.clear()
-            else:
-                self.kept_rows.append(row)
-        return Snapshot(serial, frame, self.status(), readings, work, scene.params, curves)
+                continue
+            while self.kept_rows and self.kept_rows[-1][0] >= row[0]:  # it has gone on from an earlier moment
+                self.kept_rows.pop()
+            self.kept_rows.append(row)
+        return Snapshot(serial, frame, self.status(), readings, work, scene.params, curves, self.keep_state())
 
     def status(self) -> Status:
         """The clock and the rates."""

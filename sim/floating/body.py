@@ -87,6 +87,11 @@ class Fleet(NamedTuple):
     linear_hull: np.ndarray  # (n,) int, index in linear
     linear: PackedLinear
 
+    def __deepcopy__(self, memo: object) -> "Fleet":
+        """The same bodies, which go on by themselves; what is fixed is shared."""
+        changing = {name: getattr(self, name).copy() for name in self._fields[: self._fields.index("vertex_start")]}
+        return self._replace(**changing)
+
 
 def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
     """The arrays of many bodies.

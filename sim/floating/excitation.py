@@ -7,6 +7,7 @@ X_plane, found here from the hull itself. The difference D = X - X_plane is summ
 those of linear theory, whatever the length of the wave beside the hull, and large ones follow the surface.
 """
 
+import copy
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -91,6 +92,12 @@ class WaveExcitation:
         self.heading = np.full(len(keys), np.inf)  # (n,) [rad] for which the weights were taken
         self.weights = np.zeros((len(keys), 12, 0))
         self.impulses: tuple[np.ndarray, ...] = ()  # (n,) [m3 times m/s] upward at the last calls, the newest first
+
+    def __deepcopy__(self, memo: object) -> "WaveExcitation":
+        """The same excitation, which goes on by itself: headings and weights are all that is changed in place."""
+        other = copy.copy(self)
+        other.heading, other.weights = self.heading.copy(), self.weights.copy()
+        return other
 
     def forces(
         self, fleet: Fleet, labels: np.ndarray, kx: np.ndarray, ky: np.ndarray, amplitude: np.ndarray,

@@ -9,6 +9,7 @@ A wave shorter than twice the local spacing of the grid is skipped, one up to fo
 pops as the grid moves; `evaluated` and `skipped` count (wave, vertex) pairs. At points all waves are there.
 """
 
+import copy
 import math
 from typing import NamedTuple
 
@@ -63,6 +64,10 @@ class RadialSea:
         self.slick: SlickCover | None = None  # what calms the waves under it
         self._loss: tuple[FluidColumn, np.ndarray, np.ndarray] | None = None  # of the fluids in the slick, k [1/m]
         self._set(waves, column, check_not_negative("exposure", exposure, "s"), waves.phase)
+
+    def __deepcopy__(self, memo: object) -> "RadialSea":
+        """The same waves, which go on by themselves: nothing is changed in place but kept results."""
+        return copy.copy(self)
 
     def change(
         self, t: float, waves: Waves | None = None, column: FluidColumn | None = None, exposure: float | None = None,

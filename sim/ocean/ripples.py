@@ -7,6 +7,7 @@ Limits: the tile is periodic, so a ring that leaves comes back; `leak` is a unif
 left. A disturbance narrower than two cells is cut off by the grid and shows the cut as fine ringing.
 """
 
+import copy
 import math
 
 import numpy as np
@@ -35,6 +36,12 @@ class Ripples:
         self._odd = np.zeros((size, size + 2), real)
         self._scratch = (np.empty(size, real), np.empty(size, real))
         self._checks = 0
+
+    def __deepcopy__(self, memo: object) -> "Ripples":
+        """The same rings, which go on by themselves."""
+        other = copy.copy(self)
+        other._even, other._odd = self._even.copy(), self._odd.copy()
+        return other
 
     def set_medium(self, t: float, rate: np.ndarray, decay: np.ndarray, push: np.ndarray) -> None:
         """From time t [s] propagate with quarter planes rate [turns/s], decay [1/s], push = k tanh(kh)/(rho omega)."""

@@ -5,6 +5,7 @@ analytic: nothing accumulates, and a frame costs the transforms it reads plus on
 Limits: linear waves, made sharper by the choppy displacement; a tile shorter than the dominant wave loses its energy.
 """
 
+import copy
 import dataclasses
 import math
 from typing import Any
@@ -97,7 +98,7 @@ class Sea:
         self.rows["k2"] = (self.k**2).astype(self._real)
 
         self.transforms = Transforms(self.size, precision)
-        self._heights = np.zeros((self.size, self.size + 2), self._real)
+        self._heights: np.ndarray | None = None  # made when first asked for
         self._scratch = (np.empty(self.size, self._real), np.empty(self.size, self._real))
         given = {
             "wind_speed": wind_speed,
@@ -115,6 +116,16 @@ class Sea:
         self._set_conditions(spectrum, given | more, Medium())
         self._start = self._target
         self._set_planes()
+
+    def __deepcopy__(self, memo: dict) -> "Sea":
+        """A sea that goes on from here by itself.
+
+        It shares arrays that nothing changes in place, and the transforms: both are for the same thread.
+        """
+        other = copy.copy(self)
+        other._past, other._ripples = dict(self._past), copy.deepcopy(self._ripples, memo)
+        other._heights = other._evolved = other._latest = None
+        return other
 
     @property
     def choppiness(self) -> float:
@@ -282,6 +293,8 @@ class Sea:
     def heights_spectrum(self, t: float) -> np.ndarray:
         """h(k, t) with rings on the half plane ky >= 0, as its real view (N, N + 2). Kept until another t is asked."""
         key = self._key(t)
+        if self._heights is None:
+            self._heights = np.zeros((self.size, self.size + 2), self._real)
         if self._evolved != key:
             even, odd = self._planes_at(t)
             fade = self.radial["1"]
@@ -329,6 +342,7 @@ class Sea:
         if max(abs(i), abs(j)) >= self.size // 2 or i == j == 0:
             return
         S[i, j] += m0 / dk**2
+        self._unit = self._unit.copy()  # as copies of this sea share it
         self._unit[i, j] *= math.sqrt(0.5) / abs(self._unit[i, j])
 
     def _checked_time(self, t: float) -> float:

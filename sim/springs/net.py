@@ -175,6 +175,10 @@ class Net:
     thickness: float = 0.0  # [m]: particles nearer to each other than this push, 0: they pass
     threads: int = 1  # that a cloth's forces are worked out on
 
+    def __deepcopy__(self, memo: object) -> "Net":
+        """The net itself: nothing changes it."""
+        return self
+
     def __post_init__(self) -> None:
         """Raises ValueError, naming the field, for what the kernels cannot take: they check no index."""
         object.__setattr__(self, "x0", start_positions(self.x0))

@@ -1,10 +1,15 @@
 // Gaps in the charts: uPlot leaves a gap at null only, and viser sends arrays of numbers, in which NaN means no value.
+// The time axis: viser keeps the part of it that is shown, and on a slow page loses it when a chart is made anew. Here all
+// of it is shown again, unless it was zoomed by hand.
+// A line in the charts over time, where the recording is shown: the panel says the time in `data-springtide-moment`.
 //
 // Of viser this file uses window.__viserTestpoints.uplots, the charts of the page.
 
 (() => {
   "use strict";
   const SEARCH_INTERVAL = 200; // [ms] between two looks for new charts
+  const MIN_ZOOM = 3; // [pixels] of a drag that zooms; uPlot's own is less
+  const LINE_STYLE = "position:absolute;top:0;bottom:0;width:0;border-left:2px solid #e03131;pointer-events:none";
 
   // uPlot asks this for the parts of a line that are not drawn: [from, to] along x [pixels of the canvas].
   function gapsAtNaN(chart, series, first, last) {
@@ -19,12 +24,65 @@
     return gaps;
   }
 
-  setInterval(() => {
+  // A drag across a chart zooms it, a double click ends that.
+  let pressed = null; // where in a chart the mouse was pressed
+  function watchZoom({ over }) {
+    over.addEventListener("mousedown", (event) => (pressed = { over, x: event.clientX }));
+    over.addEventListener("dblclick", () => delete over.dataset.springtideZoomed);
+    over.dataset.springtideWatched = "";
+  }
+  window.addEventListener("mouseup", (event) => {
+    if (pressed && Math.abs(event.clientX - pressed.x) > MIN_ZOOM) pressed.over.dataset.springtideZoomed = "";
+    pressed = null;
+  });
+
+  function showWholeAxis(chart) {
+    const { x } = chart.scales, times = chart.data[0];
+    if (!("springtideWatched" in chart.over.dataset)) watchZoom(chart);
+    if ("springtideZoomed" in chart.over.dataset || !x.auto(chart, false)) return;
+    const min = times[0], max = times[times.length - 1];
+    if (max > min && (x.min !== min || x.max !== max)) chart.setScale("x", { min, max });
+  }
+
+  // Put the line of a chart where the moment is [s]; NaN, and a moment that the chart does not show, have none.
+  function placeMoment(chart, moment) {
+    const { min, max } = chart.scales.x;
+    const shown = chart.series[0].label === "t [s]" && moment >= min && moment <= max;
+    let line = chart.over.querySelector(".springtide-moment");
+    if (!shown) {
+      line?.remove();
+      return;
+    }
+    if (!line) {
+      line = document.createElement("div");
+      line.className = "springtide-moment";
+      line.style.cssText = LINE_STYLE;
+      chart.over.append(line);
+    }
+    const left = `${chart.valToPos(moment, "x")}px`;
+    if (line.style.left !== left) line.style.left = left;
+  }
+
+  let lastMoment = "", lookedAt = 0;
+  function update(now) {
+    const moment = document.querySelector("[data-springtide-moment]")?.dataset.springtideMoment || "";
+    if (now - lookedAt >= SEARCH_INTERVAL || moment !== lastMoment) {
+      look(moment);
+      lookedAt = now;
+      lastMoment = moment;
+    }
+    requestAnimationFrame(update);
+  }
+  requestAnimationFrame(update);
+
+  function look(moment) {
     const charts = (window.__viserTestpoints && window.__viserTestpoints.uplots) || {};
     for (const { chart } of Object.values(charts)) {
+      showWholeAxis(chart);
+      placeMoment(chart, moment === "" ? NaN : Number(moment));
       const without = chart.series.filter((series, k) => k > 0 && series.gaps !== gapsAtNaN);
       for (const series of without) series.gaps = gapsAtNaN;
       if (without.length) chart.redraw();
     }
-  }, SEARCH_INTERVAL);
+  }
 })();

@@ -13,6 +13,7 @@ from app.scenes.cloth.live_values import live_values
 from app.scenes.cloth.parameters import MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
+from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
 from app.scenes.springs.drag import Drag, PullFrame
@@ -42,6 +43,9 @@ MAX_PULL_STIFFNESS_STEP = 0.1  # stiffness of a pull over mass / step^2, so that
 BOB_RATE = 4.0  # [rad/s] of the sphere's motion up and down
 ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact", "dissipated")
 SERIES = (*ENERGY_SERIES, "largest strain")
+CHANGING = (  # as a cloth moves
+    "net", "state", "account", "account_kept", "sphere", "handles", "ends", "anchors", "corrections",
+)  # fmt: skip
 PLOTS = {
     "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES),
     "plot_strain": PlotAxes("Largest strain", "%", ("largest strain",)),
@@ -152,6 +156,19 @@ class ClothScene:
         self.hold_pins()
         self.corrections = 0.0
         self.plot_rows.restart()
+        self.last_moments.clear()
+        self.assess_stability()
+
+    def keep(self) -> dict[str, object]:
+        """State, energy account and what is moved, as they are now."""
+        return copied({name: getattr(self, name) for name in CHANGING})
+
+    def resume(self, kept: object) -> None:
+        """Go on from what `keep` gave."""
+        restore(self, kept)
+        self.drag.clear()
+        self.tuner.restart()
+        self.plot_rows.last = -math.inf
         self.last_moments.clear()
         self.assess_stability()
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from app.messages import Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts, vector_of
 from app.scenes.charts import Chart
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
+from app.scenes.moments import copied, restore
 from app.scenes.race.charts import CURVES, RaceCharts
 from app.scenes.race.entrants import Race, RaceReadings
 from app.scenes.race.live_values import live_values
@@ -26,6 +27,7 @@ from sim.springs.stability import gauge
 from sim.springs.state import State, energy
 
 ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
+CHANGING = ("net", "race", "charts", "handles", "assessed_at")  # as the ropes move
 REFERENCE = "reference run"  # name of the piece to compile
 
 
@@ -100,6 +102,15 @@ class RaceScene:
         self.race = Race(self.net, self.params)
         self.charts = RaceCharts(self.race)
         self.assessed_at = 0.0  # [s]
+
+    def keep(self) -> dict[str, object]:
+        """All ropes and their references, the charts, and what is moved, as they are now."""
+        return copied({name: getattr(self, name) for name in CHANGING}, self.charts.drawn)
+
+    def resume(self, kept: object) -> None:
+        """Go on from what `keep` gave."""
+        restore(self, kept)
+        self.handles.drag.clear()
 
     def change_forces(self, params: Params) -> None:
         """Take new parameters; the motion goes on."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, WorkCount, WorkCounts
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
+from app.scenes.moments import copied, restore
 from app.scenes.radial_sea.bodies import FloatingBodies, kind_of
 from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.cutaway import Cutaway, cutaway_at, outline
@@ -63,6 +64,9 @@ PLOTS = {
 CURVES = {
     "plot_budget": CurveAxes("Oil budget [% of the oil spilled]", "t [h]", tuple(line.label for line in BUDGET_LINES))
 }
+CHANGING = (  # as time passes
+    "time", "age", "column", "wave_choice", "sum", "bodies", "radiated_waves", "well_blowout", "foam_threshold",
+)  # fmt: skip
 FRAME_INTERVAL = 1 / 30  # [s] between frames
 GRID_RADIUS = 5000.0  # [m] of the last ring
 FIRST_RING = 0.35  # [m] radius of the first ring
@@ -175,6 +179,25 @@ class RadialSeaScene:
         self.set_grid()
         self.drawn: tuple[object, ...] = ()
         self.plot_rows.append((math.nan,) * (len(SERIES) + 1))
+
+    def keep(self) -> dict[str, object]:
+        """Waves, bodies, their waves, fire and oil, as they are now."""
+        bodies = self.bodies
+        return copied(
+            {name: getattr(self, name) for name in CHANGING},
+            self.column,
+            bodies.column,
+            bodies.hulls,
+            bodies.body_kinds,
+        )
+
+    def resume(self, kept: object) -> None:
+        """Go on from what `keep` gave."""
+        restore(self, kept)
+        for client in set(self.bodies.holders.values()):
+            self.bodies.release(client)
+        self.tile, self.drawn, self.plotted_at = None, (), -math.inf
+        self.forget_costs()
 
     def make_bodies(self) -> FloatingBodies:
         """The bodies that the parameters ask for, at rest in their places."""

@@ -1,5 +1,6 @@
 """The rope of springs, part 2 of the lab: its root and its points can be dragged."""
 
+import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from app.messages import (
 )
 from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
+from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.rope.live_values import live_values
 from app.scenes.rope.measures import measures
@@ -49,6 +51,7 @@ FULL_RATE_SPEED = 0.6  # [m/s] on screen: 10 mm, about two pixels, between frame
 QUARTER_RATE_SPEED = 0.075  # [m/s] on screen: 5 mm between frames at a quarter of it
 ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact", "dissipated", "error")
 SERIES = (*ENERGY_SERIES, "tip height")
+CHANGING = ("net", "state", "account", "handles", "corrections", "max_reach")  # as a rope moves
 PLOTS = {
     "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES),
     "plot_tip": PlotAxes("Height of the tip", "m", ("tip height",)),
@@ -179,6 +182,22 @@ class RopeScene:
         self.assess_stability()
         if self.student is not None:
             self.student.restart(rows_of(self.state.x), rows_of(self.state.v))
+
+    def keep(self) -> dict[str, object]:
+        """State, energy account and what is moved, as they are now."""
+        return copied({name: getattr(self, name) for name in CHANGING})
+
+    def resume(self, kept: object) -> None:
+        """Go on from what `keep` gave."""
+        restore(self, kept)
+        self.handles.drag.clear()
+        self.counted = self.state.force_evals, self.state.steps
+        self.plot_rows.last = -math.inf
+        self.last_moments.clear()
+        self.max_speed = np.inf
+        self.assess_stability()
+        if self.student is not None:
+            self.student.begin(rows_of(self.state.x), rows_of(self.state.v), self.state.t)
 
     def set_bounds(self) -> None:
         """How far a rope of these parameters may get; how fast it is going to be is not known."""

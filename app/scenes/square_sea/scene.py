@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from app.messages import PlotRow, Point, SceneCommand, Vector, WorkCount
 from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
+from app.scenes.moments import copied, restore
 from app.scenes.square_sea.live_values import live_values
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, Params, conditions, hidden, rain_settings
@@ -27,6 +28,10 @@ HELP = (
     "press <b>2</b> for a storm and <b>4</b> for a planet of 1/100 of the Earth's mass."
 )
 SERIES = ("wave gauge",)
+CHANGING = (  # as time passes
+    "steps", "sea", "rainfall", "foam", "drawn_at", "foam_cover", "foam_correction", "foam_cover_before", "foam_limit",
+    "jacobian_deviation", "slope_left", "pace", "paced_at", "changed_at", "transition", "viscous_area", "tile_length",
+)  # fmt: skip
 PLOTS = {"plot_wave_gauge": PlotAxes("Height at the wave gauge", "m", SERIES)}
 CURVES = {"plot_wave_spectrum": CurveAxes("Spectrum at the wave gauge [m²/Hz]", "f [Hz]", ("measured", "theory"))}
 STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
@@ -141,6 +146,18 @@ class SquareSeaScene:
         self.tile_length = self.params.length
         self.begin_plots()
         self.make_sea()
+
+    def keep(self) -> dict[str, object]:
+        """Sea, foam and rain, as they are now."""
+        return copied({name: getattr(self, name) for name in CHANGING}, self.foam)
+
+    def resume(self, kept: object) -> None:
+        """Go on from what `keep` gave; the wave gauge stays where it is, and forgets what came later."""
+        restore(self, kept)
+        while self.gauge.trace and self.gauge.trace[-1][0] > self.time:
+            self.gauge.trace.pop()
+        self.plotted_at = self.spectrum_at = self.measured_at = -math.inf
+        self.report = self.theory = self.drawn = self.earlier_height = None
 
     def begin_plots(self) -> None:
         """Clear the plots."""

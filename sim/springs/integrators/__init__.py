@@ -39,6 +39,10 @@ class Integrator(NamedTuple):
     undamped_only: bool = False  # refuses nets with damping
     march: Callable[..., tuple[int, int, int, float]] | None = None  # adaptive methods: with steps of its own choosing
 
+    def __deepcopy__(self, memo: object) -> "Integrator":
+        """The record itself: nothing changes it."""
+        return self
+
     @property
     def adaptive(self) -> bool:
         """Whether it takes rtol and atol instead of a step."""

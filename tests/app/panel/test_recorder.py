@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from app.messages import Snapshot, Status
+from app.messages import KeptState, Snapshot, Status
 from app.panel import recorder as module
 from app.panel.recorder import Recorder, size_of
 
@@ -140,3 +140,31 @@ def test_frames_that_come_faster_than_the_rate_are_left_out() -> None:
     for number in range(120):
         recorder.note(snapshot(number), number / 120)
     assert 25 <= len(recorder.frames) <= 31
+
+
+def test_a_run_that_goes_on_from_earlier_replaces_what_came_later(filled: Recorder) -> None:
+    size = filled.bytes
+    filled.show_time(1.0)
+    filled.note(snapshot(99, running=False), 5.0)
+    filled.note(snapshot(21), 5.1)
+    assert number_of(filled) is None
+    assert [kept.time for kept in filled.frames] == [n * INTERVAL for n in range(22)]
+    assert filled.bytes == size * 22 // 100
+
+
+def test_it_goes_on_from_the_last_state_up_to_the_frame_that_is_shown() -> None:
+    recorder, shared, wall = Recorder(), np.zeros(1000), 0.0
+    for number in range(40):
+        own = np.zeros(10)
+        state = KeptState(number, {id(shared): shared.nbytes, id(own): own.nbytes}) if number % 10 == 5 else None
+        recorder.note(snapshot(number)._replace(state=state), wall)
+        wall += INTERVAL
+    assert recorder.resumable() is None  # the present is shown
+    recorder.show_time(31 * INTERVAL)
+    kept = recorder.resumable()
+    assert kept is not None
+    assert kept.state is not None
+    assert (kept.time, kept.state.value) == (25 * INTERVAL, 25)
+    recorder.show_time(4 * INTERVAL)
+    assert recorder.resumable() is None
+    assert recorder.bytes == 40 * 120 + 4 * 80 + shared.nbytes  # what states share is counted once

@@ -138,6 +138,7 @@ def test_an_address_takes_numbers_as_people_write_them() -> None:
         ('{"parameters": {}}', "scene: None"),
         ('{"version": 2, "scene": "rope", "parameters": {}}', "version: 2 is not allowed"),
         ('{"version": true, "scene": "rope", "parameters": {}}', "version: True is not allowed"),
+        ('{"version": 1.0, "scene": "rope", "parameters": {}}', "version: 1.0 is not allowed"),
         ('{"version": "1", "scene": "rope", "parameters": {}}', "version: '1' is not allowed"),
         ('{"scene": "rope", "scene": "race", "parameters": {}}', "a key is there twice"),
         ('{"scene": "rope", "parameters": {"points": 5, "points": 6}}', "a key is there twice"),

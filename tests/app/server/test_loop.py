@@ -86,6 +86,12 @@ class Scene:
     def handle(self, command: object) -> None:
         """No command means anything to it."""
 
+    def keep(self) -> float:
+        return self.time
+
+    def resume(self, kept: float) -> None:
+        self.time = kept
+
     def frame(self) -> float:
         return self.time
 
@@ -373,6 +379,26 @@ def test_a_preset_is_one_command_and_starts_from_exactly_its_record() -> None:
     loop.tick(FRAME_INTERVAL)
     assert scene.params.stiffness == 6.0
     assert scene.resets == 1
+
+
+def test_states_are_kept_while_the_run_goes_on_and_gone_on_from_without_a_new_start() -> None:
+    loop, scene = make()
+    states = []
+    for _ in range(60):
+        loop.tick(FRAME_INTERVAL)
+        if loop.latest.state is not None:
+            states.append((loop.latest.status.time, loop.latest.state))
+    assert 8 <= len(states) <= 11
+    loop.commands.put(Pause())
+    loop.tick(1.0)
+    assert loop.latest.state is None
+    time, state = states[3]
+    starts = loop.latest.status.starts
+    loop.commands.put(Load(Params(stiffness=3.0), 1, state))
+    loop.tick(0.0)
+    assert (scene.time, scene.params.stiffness, scene.resets) == (time, 3.0, 0)
+    assert loop.running
+    assert loop.latest.status.starts == starts
 
 
 def test_single_steps_are_counted_and_bounded_by_the_frames_budget() -> None:

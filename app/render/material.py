@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sim.ocean.oil_film import EXTINCTION, light_through
+
 RGB = tuple[float, float, float]
 HAZE_DISTANCE = 3000.0  # [m]
 
@@ -12,8 +14,8 @@ HAZE_DISTANCE = 3000.0  # [m]
 # here; `js/water_shader.js` declares each of them with its meaning.
 WATER_UNIFORMS = (
     "deepColor", "scatterColor", "foamColor", "sunDirection", "sunLight", "optics", "lens", "ripple", "skyline",
-    "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "extent", "wireColor", "slick", "slickDeepColor",
-    "slickScatterColor", "slickOptics", "cutout", "cutoutDirection",
+    "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "extent", "wireColor", "slick", "slickOptics",
+    "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection",
 )  # fmt: skip
 # The same for the shader of the rain, `js/rain.js`.
 RAIN_UNIFORMS = ("rain", "streak")
@@ -21,15 +23,22 @@ RAIN_UNIFORMS = ("rain", "streak")
 
 @dataclass(frozen=True)
 class SlickRegion:
-    """A round slick of another fluid on the water. Colours as in `Material`."""
+    """A round slick of the material's oil on the water; towards its edge it thins out to a sheen."""
 
     centre: tuple[float, float]  # (x, y) [m]
     radius: float  # [m]
-    deep_color: RGB
-    scatter_color: RGB
-    refractive_index: float
+    thickness: float  # [m]
     roughness: float  # rms slope
     ripple_factor: float  # on the slope of the ripples, 0 to 1
+
+
+@dataclass(frozen=True)
+class Oil:
+    """Oil on the water, which lets the less light through the thicker it is (`sim/ocean/oil_film.py`)."""
+
+    color: RGB  # sRGB of a thick layer, in 0..1
+    refractive_index: float
+    thickness: float  # [m] of a layer on all the sea; 0: none, the oil is in a slick
 
 
 @dataclass(frozen=True)
@@ -49,7 +58,7 @@ class Material:
     deep_color: RGB = (0.0, 0.20, 0.31)  # of the light that comes back from deep water
     scatter_color: RGB = (0.10, 0.52, 0.50)  # of the light that crests, and water full of bubbles, scatter
     foam_color: RGB = (0.93, 0.95, 0.96)
-    refractive_index: float = 1.333  # sets the Fresnel reflectance
+    refractive_index: float = 1.333  # of the water; sets the Fresnel reflectance where no oil is on it
     roughness: float = 0.03  # rms slope of what neither the mesh nor the ripples show
     reflection_factor: float = 1.0  # on every reflection; 1 is physics, the oil of the course lab is below
 
@@ -81,8 +90,17 @@ class Material:
 
     wireframe: bool = False  # draw the grid of the mesh
     wire_color: RGB = (0.95, 0.55, 0.1)
-    slick: SlickRegion | None = None
+    oil: Oil | None = None
+    slick: SlickRegion | None = None  # of that oil
     cutout: Cutout | None = None
+
+    def seen_color(self, thickness: float) -> RGB:
+        """Colour of what comes back from below through so much oil [m], where one colour is all that is drawn."""
+        if self.oil is None:
+            return self.deep_color
+        through = light_through(thickness)
+        red, green, blue = (through * self.deep_color + (1.0 - through) * self.oil.color).tolist()
+        return red, green, blue
 
 
 def linear(color: RGB) -> np.ndarray:
@@ -107,7 +125,7 @@ def uniform_table(
     sea_state: time [s], significant height [m], mean square slope. grid: rows and columns of vertices (0 for a mesh
     that is no grid), and the side of a tile or the radius of the mesh [m]. tiles: along a side.
     """
-    m, slick, cutout = material, material.slick, material.cutout
+    m, oil, slick, cutout = material, material.oil, material.slick, material.cutout
     sun = np.asarray(m.sun_direction, float)
     nothing = (0.0, 0.0, 0.0)
     values: dict[str, Sequence[float] | np.ndarray] = {
@@ -129,9 +147,10 @@ def uniform_table(
         "extent": (tiles, float(m.draw_sky), float(m.wireframe)),
         "wireColor": linear(m.wire_color),
         "slick": nothing if slick is None else (*slick.centre, slick.radius),
-        "slickDeepColor": nothing if slick is None else linear(slick.deep_color),
-        "slickScatterColor": nothing if slick is None else linear(slick.scatter_color),
-        "slickOptics": nothing if slick is None else (slick.refractive_index, slick.roughness, slick.ripple_factor),
+        "slickOptics": nothing if slick is None else (slick.thickness, slick.roughness, slick.ripple_factor),
+        "oilColor": nothing if oil is None else linear(oil.color),
+        "oilFilm": nothing if oil is None else (oil.thickness, oil.refractive_index, m.refractive_index),
+        "oilExtinction": EXTINCTION,
         "cutout": nothing if cutout is None else (*cutout.centre, cutout.half_width),
         "cutoutDirection": nothing if cutout is None else (*cutout.direction, cutout.length),
     }

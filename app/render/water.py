@@ -84,7 +84,7 @@ class Water:
             name,
             self._vertices.reshape(-1, 3),
             self._faces,
-            color=as_bytes(self._material.deep_color),
+            color=self._plain_color(),
             cast_shadow=False,
             receive_shadow=False,
         )
@@ -125,7 +125,7 @@ class Water:
     def set_material(self, material: Material) -> None:
         """Change how it looks from the next frame on."""
         self._material = material
-        self.mesh.color = as_bytes(material.deep_color)
+        self.mesh.color = self._plain_color()
         if self._injector is not None:
             self._material_mesh.vertices = self._uniforms()
 
@@ -156,6 +156,11 @@ class Water:
         steps = (step, step, step, SLOPE_STEP, SLOPE_STEP, FOAM_STEP)
         return pack(fields, steps, self._columns, (*centre, 0.0, 0.0, 0.0))
 
+    def _plain_color(self) -> tuple[int, int, int]:
+        """The colour of the sea in browsers without the shader."""
+        oil = self._material.oil
+        return as_bytes(self._material.seen_color(oil.thickness if oil is not None else 0.0))
+
     def _uniforms(self) -> np.ndarray:
         """The uniforms of the shader, as `material.uniform_table` orders them."""
         rows, cols = (self._shape[0] + 1, self._shape[1] + 1) if self._grid else (0, 0)
@@ -172,7 +177,7 @@ class Water:
         if slick is not None or "plain_slick" in self._plain_meshes:
             (x, y), radius = (slick.centre, slick.radius) if slick is not None else ((0.0, 0.0), 0.0)
             inside = np.hypot(self._vertices[..., 0] - x, self._vertices[..., 1] - y) < radius
-            colour = as_bytes((slick or self._material).deep_color)
+            colour = as_bytes(self._material.seen_color(slick.thickness if slick is not None else 0.0))
             self._set_plain_mesh("plain_slick", self._raised(inside), self._faces, color=colour)
         if self._material.wireframe or "plain_wire" in self._plain_meshes:
             wire = self._set_plain_mesh("plain_wire", self._vertices.reshape(-1, 3), self._faces, wireframe=True)

@@ -237,13 +237,14 @@ const WATER_GLSL = {
       return vec2(clamp(cover, 0.0, 1.0), clamp(0.35 + 0.65 * mat - 0.5 * crumb + 0.3 * (grain - 0.5), 0.0, 1.0));
     }
 
-    // A round slick of another fluid on the water, with an irregular edge.
+    // Oil on the water, as a layer on all of it or as a round slick with an irregular edge.
+    uniform vec3 oilColor; // of a thick layer
+    uniform vec3 oilFilm; // thickness of the layer [m] (0: none), refractive indices of the oil (0: no oil) and the water
+    uniform vec3 oilExtinction; // [1/m] of light that goes down and up again
     uniform vec3 slick; // centre x, y, radius [m] (0: no slick)
-    uniform vec3 slickDeepColor;
-    uniform vec3 slickScatterColor;
-    uniform vec3 slickOptics; // refractive index, roughness, factor on the slope of ripples
+    uniform vec3 slickOptics; // thickness [m], roughness, factor on the slope of ripples
 
-    // Share of the slick's fluid at a point, 0 to 1.
+    // How far inside the slick a point is, 0 to 1 at the end of its rim.
     float slickCover(vec2 x) {
       if (slick.z <= 0.0) return 0.0;
       vec2 d = x - slick.xy;
@@ -251,17 +252,41 @@ const WATER_GLSL = {
       if (abs(off) > 1.5 * size) return off > 0.0 ? 1.0 : 0.0;
       float torn = gradientNoise(d / size).x + 0.5 * gradientNoise(d / size * 2.7 + 5.0).x;
       torn += 0.25 * gradientNoise(d / size * 7.1 - 3.0).x;
-      return smoothstep(-0.05, 0.05, off / size + 0.8 * torn);
+      return smoothstep(-0.1, 0.5, off / size + 0.8 * torn);
     }
-    vec3 deepUnder(float oil) { return mix(deepColor, slickDeepColor, oil); }
-    vec3 scatterUnder(float oil) { return mix(scatterColor, slickScatterColor, oil); }
-    vec3 opticsUnder(float oil) { return mix(optics, vec3(slickOptics.xy, optics.z), oil); }
+
+    // Thickness of the oil [m]. A layer varies along the wind; the rim of a slick thins out over all its classes of
+    // appearance, from the slick's own thickness to that of a sheen.
+    float oilThickness(vec2 x, float inside) {
+      if (oilFilm.x > 0.0) {
+        vec2 d = vec2(cos(wind.x), sin(wind.x));
+        vec2 p = vec2(dot(x, d) / 23.0, dot(x, vec2(-d.y, d.x)) / 7.0);
+        return oilFilm.x * exp(0.7 * gradientNoise(p).x + 0.4 * gradientNoise(p * 3.1 + 8.0).x);
+      }
+      return inside > 0.0 ? 3e-8 * pow(max(slickOptics.x, 3e-8) / 3e-8, inside) : 0.0;
+    }
+
+    // What a film of oil mirrors over what its upper face alone does, in red, green and blue (sim/ocean/oil_film.py).
+    // facing: cosine of the angle from which it is seen.
+    vec3 filmGain(float d, float facing) {
+      float n = oilFilm.y, r1 = (1.0 - n) / (1.0 + n);
+      vec3 q = (1.0 - r1 * r1) * (n - oilFilm.z) / (n + oilFilm.z) * exp(-0.5 * oilExtinction * d);
+      float inOil = sqrt(1.0 - (1.0 - facing * facing) / (n * n));
+      vec3 phase = 12.566371 * n * d * inOil / vec3(610e-9, 545e-9, 450e-9);
+      vec3 fringes = exp(-0.5 * phase * phase * 0.002025) * cos(min(phase, 200.0));
+      return (r1 * r1 + q * q + 2.0 * r1 * q * fringes) / (r1 * r1);
+    }
 
     // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; flatness: 1 where
     // there is no mesh.
     vec3 shadeSea(vec3 at, vec2 rest, vec3 slopeAndFoam, float flatness) {
       float oil = slickCover(at.xy);
-      vec3 deep = deepUnder(oil), scatter = scatterUnder(oil), optics = opticsUnder(oil);
+      float film = oilThickness(at.xy, oil);
+      vec3 clear = exp(-oilExtinction * film);
+      vec3 deep = mix(oilColor, deepColor, clear), scatter = mix(1.8 * oilColor, scatterColor, clear);
+      float under = film > 0.0 ? max(oil, step(1e-9, oilFilm.x)) : 0.0;
+      vec3 optics = mix(optics, vec3(optics.x, slickOptics.y, optics.z), oil);
+      if (under > 0.0) optics.x = oilFilm.y;
       slopeAndFoam.z *= 1.0 - oil;
       vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
       vec3 toEye = eye - at;
@@ -311,7 +336,9 @@ const WATER_GLSL = {
       // Fresnel over a rough surface: Bruneton, Neyret & Holzschuch 2010, eq. 18.
       float f0 = pow((optics.x - 1.0) / (optics.x + 1.0), 2.0);
       float F = f0 + (1.0 - f0) * pow(1.0 - facing, 5.0 * exp(-2.69 * sigma)) / (1.0 + 22.7 * pow(sigma, 1.5));
-      F *= optics.z;
+      vec3 mirror = vec3(F);
+      if (under > 0.0) mirror *= mix(filmGain(film, facing), vec3(1.0), F);
+      mirror *= optics.z;
       vec3 R = reflect(-V, N);
       R.z = abs(R.z) + 0.01;
       R = normalize(R);
@@ -338,7 +365,7 @@ const WATER_GLSL = {
       // Water full of air under and around foam is bright.
       body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, slopeAndFoam.z);
 
-      vec3 color = mix(body, mirrored, F) + sunLight * glitter * (1.0 - foam);
+      vec3 color = mix(body, mirrored, mirror) + sunLight * glitter * (1.0 - foam);
       // Foam scatters light many times, so it is lit from all sides.
       vec3 white = foamColor * (ambient * 1.15 + sunLight * 0.3183 * (0.35 + 0.65 * sunUp)) * (0.72 + 0.38 * bubbles.y);
       color = mix(color, white, foam * (0.6 + 0.4 * bubbles.y));

@@ -9,11 +9,11 @@ import numpy as np
 from app.messages import Snapshot
 from app.scenes.contract import Measure
 from app.scenes.measures import slug
-from app.scenes.radial_sea.parameters import OPAQUE_THICKNESS
 from app.scenes.radial_sea.well_blowout import FALL_TIME, LANDING, NOZZLE
 from sim.ocean.emulsions import arrhenius
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import diffuse_reflectance, normal_reflectance
+from sim.ocean.oil_film import OPAQUE_THICKNESS
 
 if TYPE_CHECKING:
     from app.scenes.radial_sea.bodies import BodyReading

@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from app.render.material import RGB, Cutout, Material, SlickRegion
+from app.render.material import RGB, Cutout, Material, Oil, SlickRegion
 from app.scenes.radial_sea.frame import RadialFrame
-from app.scenes.radial_sea.parameters import OPAQUE_THICKNESS, Params
+from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.well_blowout import Slick
 from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.oil_film import light_through
 
 LAB_SPECULAR = 0.4  # share of oil's reflection that is drawn with optics "lab"
 RIPPLE_LENGTH = 0.9  # [m] of the wave that stands for all ripples of the material, in how they decay under oil
@@ -22,8 +23,6 @@ MIXTURE_ROUGHNESS = 0.06
 MIXTURE_BASE_SHARE = 0.35  # share of oil's colours in a mixture with hardly any oil; it grows with the fraction
 OIL_FOAM: RGB = (0.45, 0.36, 0.26)
 OIL_ROUGHNESS = 0.02
-OIL_SCATTER = 1.3  # factor on the oil's colour in what it scatters
-MIN_SLICK_THICKNESS = 0.05  # [m] that a slick is drawn with
 
 
 def rgb_of(colour: str) -> np.ndarray:
@@ -59,53 +58,43 @@ def material_of(light: Material, frame: RadialFrame) -> Material:
         "ripple_direction": math.radians(p.wind_direction),
         "wireframe": p.grid,
         "reflection_factor": LAB_SPECULAR if p.optics == "lab" and p.spill != "none" else 1.0,
-        "refractive_index": column.surface.refractive_index,
         "clouds": min(0.15 + 0.045 * p.wind_speed, 0.9),
         "cutout": None
         if cutaway is None
         else Cutout(cutaway.middle, cutaway.half_width, cutaway.direction, cutaway.length),
     }
-    if column.kind == "water":
-        region = None if frame.slick is None else slick_region(light, p, column, frame.slick)
-        return dataclasses.replace(light, **common, slick=region)
-    return dataclasses.replace(light, **common, **oil_colours(light, column))
+    if column.kind != "water":
+        return dataclasses.replace(light, **common, **oil_look(light, column))
+    return dataclasses.replace(light, **common, **({} if frame.slick is None else slick_look(p, column, frame.slick)))
 
 
-def oil_colours(light: Material, column: FluidColumn) -> dict[str, Any]:
-    """Body colours. Oil sends nearly no light back from below; a mixture is brown and turbid."""
+def oil_look(light: Material, column: FluidColumn) -> dict[str, Any]:
+    """What changes in a material under a layer of oil, or where oil and water are mixed: that is brown and turbid."""
     oil = rgb_of(column.oil.colour)
     if column.kind == "mixed":
         share = mixture_share(column)
-        deep = blend(light.deep_color, blend(oil, MIXTURE_SCATTER, 0.45), share)
-        scatter = blend(light.scatter_color, MIXTURE_SCATTER, share)
         return {
-            "deep_color": deep,
-            "scatter_color": scatter,
+            "refractive_index": column.surface.refractive_index,
+            "deep_color": blend(light.deep_color, blend(oil, MIXTURE_SCATTER, 0.45), share),
+            "scatter_color": blend(light.scatter_color, MIXTURE_SCATTER, share),
             "foam_color": MIXTURE_FOAM,
             "roughness": MIXTURE_ROUGHNESS,
         }
-    # A thin layer lets some of the water's colour through.
-    opacity = 1.0 - math.exp(-column.thickness / OPAQUE_THICKNESS)
-    deep, scatter = blend(light.deep_color, oil, opacity), blend(light.scatter_color, OIL_SCATTER * oil, opacity)
+    red, green, blue = oil.tolist()
+    hidden = 1.0 - float(light_through(column.thickness)[1])
     return {
-        "deep_color": deep,
-        "scatter_color": scatter,
-        "foam_color": blend(light.foam_color, OIL_FOAM, opacity),
+        "oil": Oil((red, green, blue), column.oil.refractive_index, column.thickness),
+        "foam_color": blend(light.foam_color, OIL_FOAM, hidden),
         "roughness": OIL_ROUGHNESS,
     }
 
 
-def slick_region(light: Material, p: Params, column: FluidColumn, slick: Slick) -> SlickRegion:
-    """A slick of this oil, drawn as if it were opaque: the colour of water through thin oil is not modelled."""
-    layer = dataclasses.replace(column, thickness=max(slick.thickness, MIN_SLICK_THICKNESS), fraction=0.0)
-    colours = oil_colours(light, layer)
+def slick_look(p: Params, column: FluidColumn, slick: Slick) -> dict[str, Any]:
+    """What changes in a material where there is a slick of this oil."""
+    layer = dataclasses.replace(column, thickness=slick.thickness, fraction=0.0)
     calm = ripple_slope(p, layer, p.exposure) / ripple_slope(p, column, 0.0)
-    return SlickRegion(
-        slick.centre,
-        round(slick.radius, 1),
-        colours["deep_color"],
-        colours["scatter_color"],
-        column.oil.refractive_index,
-        colours["roughness"],
-        round(calm, 2),
-    )
+    red, green, blue = rgb_of(column.oil.colour).tolist()
+    return {
+        "oil": Oil((red, green, blue), column.oil.refractive_index, 0.0),
+        "slick": SlickRegion(slick.centre, round(slick.radius, 1), slick.thickness, OIL_ROUGHNESS, round(calm, 2)),
+    }

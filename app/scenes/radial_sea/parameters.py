@@ -21,7 +21,6 @@ WATER = "sea water"
 MIN_FILM = 1e-6  # [m] of oil that counts as a layer: thinner, the spill is gone
 OWN_DENSITIES = ("density_1", "density_2", "density_3")  # parameters: densities of the first bodies
 LEVEL_SPECTRUM = "pierson_moskowitz"  # makes no waves without wind
-OPAQUE_THICKNESS = 7e-5  # [m] of crude over which light falls to 1/e: 0.2 mm show its true colour (Bonn Agreement)
 SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
 
 

@@ -14,6 +14,7 @@ from sim.formatting import fixed, metres, number, percent, seconds
 from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.gerstner import peak_wavenumber
+from sim.ocean.oil_film import appearance
 from sim.ocean.weathering.components import WARM
 from sim.parameters import parameters_of
 
@@ -232,6 +233,8 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
         prediction = readings.bodies[0].prediction
         rest = "sinks" if math.isinf(prediction.draft) else f"draft at rest {fixed(prediction.draft, 3)} m"
         marks["density"] = f"{readings.bodies[0].title}, {fixed(prediction.height, 2)} m high: {rest}"
+    if column.kind == "layer":
+        marks["thickness"] = f"seen from above: {appearance(column.thickness)}"
     if column.kind == "mixed":
         density, viscosity = column.surface.density, column.surface.viscosity
         law = MIXTURE_LAWS[column.law]

@@ -115,6 +115,12 @@ class Recorder:
                 self.position = max(0, bisect.bisect_right(times, time + 1e-9) - 1)
                 self.playing, self.played = False, 0.0
 
+    def show_frame(self, kept: Kept) -> None:
+        """Show one frame, unless it is no longer kept."""
+        with self.lock:
+            self.position = next((i for i, one in enumerate(self.frames) if one is kept), self.position)
+            self.playing, self.played = False, 0.0
+
     def step(self, count: int) -> None:
         """Show a frame `count` further on, or back; from the present, the one before the last."""
         with self.lock:

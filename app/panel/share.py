@@ -5,11 +5,11 @@ Callbacks run on viser's event loop; `update` runs on the viewer's thread. What 
 
 # pyright: reportPrivateUsage=false
 
-import csv
 import io
 import threading
 import time
 import traceback
+import zipfile
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
@@ -19,6 +19,7 @@ import viser
 from app.messages import BaseParams, KeptState, Pause, PlotRow, Vector
 from app.panel.picture import take_picture
 from app.panel.recorder import RATES, Kept, Recorder
+from app.panel.recording_files import plots_csv, plots_svg, recording_npz
 from app.render.cameras import place_camera
 from app.render.html import fill, note
 from app.render.viser_types import GuiHandle, ViserEvent
@@ -38,6 +39,16 @@ PICTURE_SIZES = {  # [pixels]
 BACK, FORWARD, PRESENT = "◀ Back", "Forward ▶", "Now"
 CONTINUE = "Continue from here"
 COPY, SAVE, PLOTS, PICTURE, REPLAY = "Copy link", "Save set-up", "Plots as CSV", "Picture", "Replay"
+CHARTS, ARRAYS, FILM = "Plots as SVG", "Arrays", "Film pictures"
+MAX_PICTURES = 900  # of a film: half a minute of a recording
+MAX_FILM = 400e6  # [bytes] of all pictures of a film
+BARRIER_SIZE = (16, 16)  # [pixels] of a picture that is asked for only to know that what was sent before it has come
+DRAWN_TIMEOUT = 5.0  # [s] for the viewer's thread to send a frame of the recording
+# Buttons that the page itself answers (app/render/js/share.js).
+PAGE_BUTTONS = (
+    '<div class="springtide-switches"><button type="button" data-springtide-clip>Record clip</button>'
+    '<button type="button" data-springtide-charts>Plots as PNG</button></div>'
+)
 OPEN, LEAVE = "Open it for all", "Leave the lab as it is"
 
 # What `app/render/js/charts.js` reads the time of the line in the charts from.
@@ -92,6 +103,7 @@ class Share:
         self.gui = gui = server.gui
         self.span_at = self.moved_at = 0.0
         self.span: tuple[float, float] = (0.0, 0.0)
+        self.sent: Kept | None = None  # the frame of the recording that the viewer sent last
         self.busy = threading.Lock()  # one file at a time
         self.waiting: tuple[Setup, int | None] | None = None  # a set-up that the visitors are asked about
         with lab:
@@ -129,8 +141,11 @@ class Share:
             )
             self.size = gui.add_dropdown("Picture size", tuple(PICTURE_SIZES))
             self.transparent = gui.add_checkbox("Transparent background", initial_value=False)
-            self.files = gui.add_button_group("Save", (PLOTS, PICTURE, REPLAY))
-            self.files.on_click(self.on_file)
+            self.files = gui.add_button_group("", (PLOTS, PICTURE, REPLAY))
+            self.more_files = gui.add_button_group("", (CHARTS, ARRAYS, FILM))
+            for group in (self.files, self.more_files):
+                group.on_click(self.on_file)
+            gui.add_html(PAGE_BUTTONS)
             self.line = gui.add_html("")
 
     def say(self, text: object) -> None:
@@ -251,7 +266,14 @@ class Share:
         client = event.client
         if client is None:
             return
-        make = {PLOTS: self.plots_file, PICTURE: self.picture_file, REPLAY: self.replay_file}[event.target.value]
+        make = {
+            PLOTS: self.plots_file,
+            CHARTS: self.charts_file,
+            PICTURE: self.picture_file,
+            REPLAY: self.replay_file,
+            ARRAYS: self.arrays_file,
+            FILM: self.film_file,
+        }[event.target.value]
         if not self.busy.acquire(blocking=False):
             self.say("Another file is still being made.")
             return
@@ -284,6 +306,55 @@ class Share:
         """What one browser shows, drawn again at the chosen size."""
         picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
         return f"springtide-{self.panel.kind.name}.png", picture
+
+    def charts_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """All plots as SVG. Raises ValueError where there are none."""
+        kind = self.panel.kind
+        return f"springtide-{kind.name}.svg", plots_svg(kind, self.panel.plot_rows()).encode()
+
+    def arrays_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """The arrays of the recording. Raises ValueError where nothing was recorded."""
+        kind = self.panel.kind
+        return f"springtide-{kind.name}.npz", recording_npz(kind, self.recorder.kept())
+
+    def film_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """A PNG of every frame of the recording from the one that is shown on, drawn by one browser, in a ZIP file.
+
+        Raises ValueError where nothing was recorded, or where a hand chose another moment meanwhile.
+        """
+        frames = self.recorder.kept()
+        if not frames:
+            raise ValueError("nothing has been recorded yet: let the scene run first")
+        shown = self.recorder.shown
+        start = 0 if shown is None else next((i for i, kept in enumerate(frames) if kept is shown), 0)
+        chosen = frames[start : start + MAX_PICTURES]
+        self.post(Pause())
+        size, transparent = PICTURE_SIZES[self.size.value], self.transparent.value
+        content, times = io.BytesIO(), ["picture,t [s]"]
+        with zipfile.ZipFile(content, "w", zipfile.ZIP_STORED) as film:
+            for number, kept in enumerate(chosen, 1):
+                if number > 1 and self.recorder.shown is not chosen[number - 2]:
+                    raise ValueError("another moment was chosen before all pictures were taken")
+                self.recorder.show_frame(kept)
+                self.wait_until_sent(kept)
+                take_picture(client, BARRIER_SIZE)
+                film.writestr(f"{number:04d}.png", take_picture(client, size, transparent=transparent))
+                times.append(f"{number:04d}.png,{kept.time!r}")
+                self.say(f"{FILM}: {number} of {len(chosen)}. Choose another moment to end it.")
+                if content.tell() > MAX_FILM:
+                    break
+            film.writestr("times.csv", "\n".join(times) + "\n")
+        return f"springtide-{self.panel.kind.name}-film.zip", content.getvalue()
+
+    def wait_until_sent(self, kept: Kept) -> None:
+        """Wait until the viewer's thread has sent a frame of the recording. Raises TimeoutError."""
+        end = time.monotonic() + DRAWN_TIMEOUT
+        while self.sent is not kept:
+            if time.monotonic() > end:
+                raise TimeoutError("the recording could not be shown")
+            self.wake()
+            time.sleep(0.01)
+        self.server.flush()
 
     def replay_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """The recording as one page. Raises ValueError where nothing was recorded."""
@@ -323,13 +394,3 @@ def camera_of(client: viser.ClientHandle) -> Camera:
         return float(values[0]), float(values[1]), float(values[2])
 
     return vector(client.camera.position), vector(client.camera.look_at)
-
-
-def plots_csv(kind: AnyKind, rows: Sequence[PlotRow]) -> str:
-    """Plot rows as CSV: time, and each series with the unit of the plot that shows it."""
-    units = {name: plot.unit for plot in kind.plots.values() for name in plot.series}
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["t [s]", *(f"{name} [{units[name]}]" if units.get(name) else name for name in kind.series)])
-    writer.writerows([repr(value) for value in row] for row in rows)
-    return text.getvalue()

@@ -210,6 +210,8 @@ class SceneKind(Generic[P, F, R]):
     )  # parameter that opens the chart -> its axes
     measures: Callable[..., dict[str, Measure]] | None = None  # of the scene, what a sweep records; None: the plot rows
     live_values: Callable[..., dict[str, Measure]] | None = None  # of a snapshot, what the tasks of the lab use
+    # Unit of each array of a frame that goes into a file of the recording; arrays of a record in it: "record_array".
+    frame_units: Mapping[str, str] = field(default_factory=dict[str, str])
     stability_map: StabilityMap | None = None
     needs: Callable[[P], tuple[str, ...]] | None = None  # pieces of `warm_up` to run with these parameters; None: all
     # Makes the simulation with a student's functions running beside it; None: this scene has no use for them.

@@ -15,10 +15,10 @@ import numpy as np
 
 from app.messages import BaseParams, PlotRow
 from app.panel.recorder import MAX_PAUSE, Kept
+from app.panel.recording_files import plot_charts
 from app.render.cameras import place_cameras
 from app.render.html import Html, fill, join
 from app.render.injection import record_shaders
-from app.render.line_chart import line_chart
 from app.scenes import view_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import write_value
@@ -90,6 +90,7 @@ def replay_html(kind: AnyKind, frames: Sequence[Kept], rows: Sequence[PlotRow]) 
 
 def about_html(kind: AnyKind, params: BaseParams, rows: Sequence[PlotRow], start: float, end: float) -> Html:
     """What the replay shows: the scene, all of its parameters, and its plots between two times [s]."""
+    charts = join(plot_charts(kind, [row for row in rows if start <= row[0] <= end]))
     table = join(
         fill(
             "<tr><td>{}</td><td>{} {}</td></tr>", p.title or in_words(name), write_value(getattr(params, name)), p.unit
@@ -99,21 +100,5 @@ def about_html(kind: AnyKind, params: BaseParams, rows: Sequence[PlotRow], start
     return fill(
         "<style>{}</style><details id='springtide-about'><summary>{}: t = {:.2f} to {:.2f} s</summary>"
         "{}<table>{}</table></details>",
-        Html(STYLE), kind.title, start, end, plot_charts(kind, rows, start, end), table,
+        Html(STYLE), kind.title, start, end, charts, table,
     )  # fmt: skip
-
-
-def plot_charts(kind: AnyKind, rows: Sequence[PlotRow], start: float, end: float) -> Html:
-    """A chart for each plot of the scene that has finite numbers between two times [s]."""
-    inside = [row for row in rows if start <= row[0] <= end]
-    if len(inside) < 2:
-        return Html()
-    columns = np.array(inside, np.float64).T
-    return join(
-        line_chart(
-            f"{plot.title} [{plot.unit}]",
-            columns[0],
-            {name: columns[1 + kind.series.index(name)] for name in plot.series},
-        )
-        for plot in kind.plots.values()
-    )

@@ -289,6 +289,7 @@ class Viewer:
             self.recorded = recorded
             self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
+        self.panel.share.sent = recorded
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
         """Show something; what goes wrong halts the run once, and this thread lives to say so."""

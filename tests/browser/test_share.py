@@ -1,13 +1,15 @@
 """Links, set-ups and recordings in the page."""
 
 import json
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from urllib.parse import quote
 
+import imageio.v3 as iio
 import pytest
 
-from app.messages import Pause, Play
+from app.messages import Pause, Play, Reset
 from app.scenes import NAMES, scene_named
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
@@ -108,6 +110,37 @@ def test_the_plots_show_the_moment_and_the_run_goes_on_from_it(opened: tuple[Vie
     assert lab.loop.scene.time < time + 0.5
     assert lab.panel.recorder.span()[1] <= lab.loop.scene.time + 0.1
     tab.wait(lambda: not tab.page.evaluate(MOMENT_PLACES), 20)
+    lab.panel.set("plot_tip", False)
+
+
+def test_film_clip_and_plots_are_made_as_files(opened: tuple[Viewer, Tab], tmp_path: Path) -> None:
+    lab, tab = opened
+    lab.panel.set("plot_tip", True)
+    tab.wait(lambda: len(lab.panel.recorder.frames) > 10 and "plot_tip" in lab.panel.plots.charts, 30)
+    tab.page.get_by_role("button", name="Record clip").click()
+    tab.page.wait_for_timeout(1500)
+
+    def saved(button: str) -> Path:
+        with tab.page.expect_download(timeout=60_000) as download:
+            tab.page.locator(button).click()
+        download.value.save_as(tmp_path / download.value.suggested_filename)
+        return tmp_path / download.value.suggested_filename
+
+    clip = saved("[data-springtide-clip]").read_bytes()
+    assert clip[4:8] == b"ftyp" or clip[:4] == b"\x1a\x45\xdf\xa3"  # MP4 or WebM
+    assert iio.imread(saved("[data-springtide-charts]")).std() > 1.0
+    lab.loop.commands.put(Reset())
+    tab.wait(lambda: 0.3 < lab.loop.scene.time < 3.0 and len(lab.panel.recorder.frames) > 4, 30)  # it falls
+    lab.loop.commands.put(Pause())
+    tab.wait(lambda: not lab.loop.running, 20)
+    frames = lab.panel.recorder.kept()
+    lab.panel.recorder.show_frame(frames[-4])
+    with zipfile.ZipFile(saved("button:has-text('Film pictures')")) as film:
+        assert len(film.namelist()) == 4 + 1
+        pictures = [iio.imread(film.read(name)) for name in film.namelist()[:-1]]  # in one colour, as shaders are flat
+        times = film.read("times.csv").decode().splitlines()
+    assert len({picture.shape for picture in pictures}) == 1
+    assert [float(line.split(",")[1]) for line in times[1:]] == [kept.time for kept in frames[-4:]]
     lab.panel.set("plot_tip", False)
 
 

@@ -1,9 +1,16 @@
 // Links and set-ups: what stands in the address of this page is sent to the lab once, and a file that is chosen is read
 // here and sent as text. The lab checks both. A link that the lab has made is shown with this page's own address.
+// Clips are recorded here from the canvas of the view, and plots are saved as one picture.
+//
+// Of viser this file uses window.__viserMutable (canvas, sendMessage) and window.__viserTestpoints.uplots.
 
 (() => {
   "use strict";
   const MAX_LENGTH = 5000; // [characters] that the lab takes
+  const CLIP_TYPES = ["video/mp4;codecs=avc1.640028", "video/webm;codecs=vp9", "video/webm"];
+  const CLIP_RATE = 30; // [1/s] pictures of a clip
+  const CLIP_BITS = 12e6; // [bit/s]
+  const MAX_CLIP = 300; // [s] after which a clip ends by itself
   const ASKED = 3000; // [ms] after a press of "Copy link" within which a link is copied to the clipboard
   const VISER_NAMES = new Set([
     "darkMode", "dummyWindowDimensions", "dummyWindowTitle", "fixedDpr", "forceOrbitOriginTool", "hideViserLogo",
@@ -41,9 +48,102 @@
     completeLinks();
   }
 
+  function download(content, name) {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(content);
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  }
+
+  let clip = null; // the recorder of the clip that is being made
+  function toggleClip(button) {
+    if (clip) {
+      clip.stop();
+      return;
+    }
+    const type = CLIP_TYPES.find((one) => window.MediaRecorder?.isTypeSupported(one));
+    if (!type) {
+      button.textContent = "This browser records no clips";
+      return;
+    }
+    const parts = [], started = performance.now();
+    clip = new MediaRecorder(window.__viserMutable.canvas.captureStream(CLIP_RATE), {
+      mimeType: type, videoBitsPerSecond: CLIP_BITS,
+    });
+    const show = () => {
+      const seconds = (performance.now() - started) / 1000;
+      button.textContent = `Stop clip (${seconds.toFixed(0)} s)`;
+      if (seconds >= MAX_CLIP) clip.stop();
+    };
+    const timer = setInterval(show, 500);
+    clip.ondataavailable = (event) => parts.push(event.data);
+    clip.onstop = () => {
+      clearInterval(timer);
+      for (const track of clip.stream.getTracks()) track.stop();
+      clip = null;
+      button.textContent = "Record clip";
+      download(new Blob(parts, { type }), type.startsWith("video/mp4") ? "springtide.mp4" : "springtide.webm");
+    };
+    clip.start(1000);
+    show();
+  }
+
+  // All charts below each other, each with its title above and the names of its lines below.
+  function saveCharts(button) {
+    const charts = Object.values(window.__viserTestpoints?.uplots || {}).map(({ chart }) => chart);
+    if (!charts.length) {
+      button.textContent = "Open a plot first";
+      setTimeout(() => (button.textContent = "Plots as PNG"), 3000);
+      return;
+    }
+    const ratio = devicePixelRatio, line = 26 * ratio;
+    const sheet = document.createElement("canvas"), pen = sheet.getContext("2d");
+    const width = Math.max(...charts.map((chart) => chart.ctx.canvas.width));
+    // The names of a chart's lines, in as many rows as they need: [row, left, name, colour] of each.
+    const keys = charts.map((chart) => {
+      let row = 0, left = 8 * ratio;
+      pen.font = `${11 * ratio}px sans-serif`;
+      return chart.series.slice(1).filter(({ show }) => show).map(({ label, _stroke: stroke }) => {
+        const size = pen.measureText(`— ${label}   `).width;
+        if (left + size > width && left > 8 * ratio) {
+          row += 1;
+          left = 8 * ratio;
+        }
+        left += size;
+        return [row, left - size, `— ${label}`, typeof stroke === "string" ? stroke : "#888888"];
+      });
+    });
+    const rows = keys.map((key) => 1 + Math.max(0, ...key.map(([row]) => row)));
+    sheet.width = width;
+    sheet.height = charts.reduce((sum, chart, i) => sum + chart.ctx.canvas.height + (1 + rows[i]) * line, 0);
+    pen.fillStyle = getComputedStyle(charts[0].root.parentElement).getPropertyValue("--mantine-color-body") || "#ffffff";
+    pen.fillRect(0, 0, sheet.width, sheet.height);
+    pen.textBaseline = "middle";
+    let top = 0;
+    charts.forEach((chart, i) => {
+      const title = chart.root.querySelector(".u-title");
+      pen.fillStyle = getComputedStyle(title || chart.root).color;
+      pen.font = `bold ${13 * ratio}px sans-serif`;
+      pen.fillText(title?.textContent || "", 8 * ratio, top + line / 2);
+      pen.drawImage(chart.ctx.canvas, 0, top + line);
+      top += line + chart.ctx.canvas.height;
+      pen.font = `${11 * ratio}px sans-serif`;
+      for (const [row, left, name, colour] of keys[i]) {
+        pen.fillStyle = colour;
+        pen.fillText(name, left, top + (row + 0.5) * line);
+      }
+      top += rows[i] * line;
+    });
+    sheet.toBlob((content) => download(content, "springtide-plots.png"));
+  }
+
   document.addEventListener("click", (event) => {
     const button = event.target instanceof Element && event.target.closest("button");
-    if (button && button.textContent === "Copy link") pressed = performance.now();
+    if (!button) return;
+    if (button.textContent === "Copy link") pressed = performance.now();
+    if ("springtideClip" in button.dataset) toggleClip(button);
+    if ("springtideCharts" in button.dataset) saveCharts(button);
   }, true);
   document.addEventListener("change", async (event) => {
     const field = event.target;

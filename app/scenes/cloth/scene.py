@@ -399,5 +399,6 @@ SCENE = SceneKind(
     needs=needs,
     series=SERIES,
     plots=PLOTS,
+    frame_units={"points": "m", "strain": ""},
     live_values=live_values,
 )

@@ -226,6 +226,7 @@ SCENE = SceneKind(
     series=(),
     plots={},
     curves=CURVES,
+    frame_units={"ropes": "m, side by side", "references": "m"},
     measures=measures,
     stability_map=StabilityMap(stiffness_parameter, build_rope),
     live_values=live_values,

@@ -602,6 +602,13 @@ SCENE = SceneKind(
     plots=PLOTS,
     curves=CURVES,
     measures=measures,
+    frame_units={
+        "positions": "m",
+        "rotations": "quaternion (w, x, y, z)",
+        "surface_vertices": "m",
+        "surface_slope": "",
+        "foam": "0 to 1",
+    },
     live_values=live_values,
     needs=needs,
 )

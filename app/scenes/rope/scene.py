@@ -393,6 +393,7 @@ SCENE = SceneKind(
     needs=needs,
     series=SERIES,
     plots=PLOTS,
+    frame_units={"points": "m", "reference": "m, the program's rope beside a student's", "tension": "N"},
     measures=measures,
     stability_map=StabilityMap(stiffness_parameter, build),
     live_values=live_values,

@@ -430,5 +430,6 @@ SCENE = SceneKind(
     plots=PLOTS,
     curves=CURVES,
     measures=measures,
+    frame_units={"vertices": "m", "slopes": "", "foam": "0 to 1"},
     live_values=live_values,
 )

@@ -23,6 +23,14 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         item.add_marker(pytest.mark.xdist_group("browser" if browser else item.path.as_posix()))
 
 
+@pytest.fixture(scope="session", autouse=True)
+def no_own_setups(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """The lists of presets are those of the program, whatever the user keeps."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SPRINGTIDE_DATA", str(tmp_path_factory.mktemp("data")))
+        yield
+
+
 @pytest.fixture
 def lab(request: pytest.FixtureRequest) -> Iterator[Any]:
     """A viewer with the module's SCENE and PARAMS open, or the rope, on a free port of the loopback."""

@@ -40,6 +40,7 @@ from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, col
 from app.render.viser_types import ViserEvent
 from app.scenes import scene_named
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
+from app.scenes.own_setups import own_files
 from app.scenes.setups import Setup
 from sim.parameters import Value, changed_names, check_record, in_words, parameters_of
 from sim.validation import argument_error
@@ -54,6 +55,7 @@ MARKS_INTERVAL = 0.5  # [s]
 WORK_INTERVAL = 2.0  # [s]
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
 DIGITS: tuple[HotkeyKey, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
+OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
 OPEN_GROUPS = 1  # the first groups of parameters start open
 BUTTONS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce(), "Reset": Reset()}
 
@@ -102,9 +104,12 @@ class Panel:
         with gui.add_folder("Lab") as self.lab:
             self.add_chooser(scenes)
             presets = tuple(kind.presets)
+            self.own = own_presets(kind)  # name in the list -> set-up of the user
             # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
             self.loaded = min(presets, key=lambda name: len(changed_names(self.params_of(name), params)))
-            self.preset = gui.add_dropdown("Preset", presets, hint="Loads all settings and starts again from rest")
+            self.preset = gui.add_dropdown(
+                "Preset", (*presets, *self.own), hint="Loads all settings and starts again from rest"
+            )
             self.preset.on_update(self.on_preset)
             self.running = True  # as the buttons show it
             self.buttons = gui.add_button_group("", button_names(self.running))
@@ -225,12 +230,14 @@ class Panel:
 
     async def on_preset(self, event: ViserEvent) -> None:
         """A browser has chosen a preset; viser also calls this where `show_preset` assigns it, without a client."""
-        if event.client_id is not None and event.target.value in self.kind.presets:
+        if event.client_id is not None and event.target.value in (*self.kind.presets, *self.own):
             self.load(event.target.value)
 
     def params_of(self, preset: str) -> BaseParams:
         """The parameters that a preset sets. What is no parameter (a hull from a file) stays as it is."""
-        return with_fields_of(self.params, check_record(type(self.params), self.kind.presets[preset]))
+        own = self.own.get(preset)
+        params = own.params if own else check_record(type(self.params), self.kind.presets[preset])
+        return with_fields_of(self.params, params)
 
     def load(self, preset: str) -> None:
         """Every parameter as the preset has it, and the scene from its start: one command."""
@@ -252,6 +259,15 @@ class Panel:
             return
         self.camera = camera
         self.load_params(with_fields_of(self.params, setup.params), setup.preset or next(iter(self.kind.presets)))
+
+    def show_own(self, chosen: str = "") -> None:
+        """Read the user's own set-ups again. chosen: the one that the parameters are those of, if any."""
+        self.own = own_presets(self.kind)
+        if chosen:
+            self.loaded = OWN.format(chosen)
+        if self.loaded not in (*self.kind.presets, *self.own):
+            self.loaded = next(iter(self.kind.presets))
+        self.show_preset()
 
     def plot_rows(self) -> Sequence[PlotRow]:
         """The rows of the plots that are kept."""
@@ -275,7 +291,8 @@ class Panel:
         """The settings before the last change of a parameter or preset."""
         settings = self.history.take_last()
         if settings is not None:
-            self.take(*settings, self.state[1])
+            known = settings.preset in (*self.kind.presets, *self.own)  # a set-up of the user may be gone
+            self.take(settings.params, settings.preset if known else next(iter(self.kind.presets)), self.state[1])
 
     def take(self, params: BaseParams, preset: str, number: int) -> None:
         """Take and show parameters. preset: that they come from. number: how many presets have been loaded."""
@@ -293,7 +310,7 @@ class Panel:
         look = {name for name, parameter in parameters_of(self.params).items() if parameter.affects == "look"}
         changed = changed_names(self.params_of(self.loaded), self.params) - look
         shown = f"{self.loaded} (changed)" if changed else self.loaded
-        options = (*self.kind.presets, *((shown,) if changed else ()))
+        options = (*self.kind.presets, *self.own, *((shown,) if changed else ()))
         if self.preset.options != options:
             self.preset.options = options
         if self.preset.value != shown:
@@ -400,6 +417,11 @@ def params_of_setup(setup: task.Setup) -> tuple[AnyKind, BaseParams, str]:
     if preset not in kind.presets:
         raise argument_error("preset", preset, "one of " + ", ".join(kind.presets))
     return kind, check_record(kind.params, {**kind.presets[preset], **setup.parameters}), preset
+
+
+def own_presets(kind: AnyKind) -> dict[str, Setup]:
+    """The user's own set-ups of a scene, by their names in the list of presets."""
+    return {OWN.format(name): setup for name, (_, setup) in own_files(kind).items()}
 
 
 def with_fields_of(old: BaseParams, new: BaseParams) -> BaseParams:

@@ -25,6 +25,7 @@ from app.render.html import fill, note
 from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes import scene_named
 from app.scenes.contract import AnyKind, AnySnapshot, PostCommand
+from app.scenes.own_setups import keep_own, remove_own
 from app.scenes.setups import MAX_NAME, MAX_NOTE, Camera, Setup, read_file, read_query, write_file, write_query
 
 SPAN_INTERVAL = 0.5  # [s] between two updates of the timeline's ends
@@ -39,6 +40,7 @@ PICTURE_SIZES = {  # [pixels]
 BACK, FORWARD, PRESENT = "◀ Back", "Forward ▶", "Now"
 CONTINUE = "Continue from here"
 COPY, SAVE, PLOTS, PICTURE, REPLAY = "Copy link", "Save set-up", "Plots as CSV", "Picture", "Replay"
+KEEP, REMOVE = "Keep as preset", "Remove preset"
 CHARTS, ARRAYS, FILM = "Plots as SVG", "Arrays", "Film pictures"
 MAX_PICTURES = 900  # of a film: half a minute of a recording
 MAX_FILM = 400e6  # [bytes] of all pictures of a film
@@ -74,6 +76,10 @@ class Settings(Protocol):
 
     def resume(self, params: BaseParams, state: KeptState) -> None:
         """Have the scene go on from a state, with the parameters that it had then."""
+        ...
+
+    def show_own(self, chosen: str = "") -> None:
+        """Read the user's own set-ups again. chosen: the one that the parameters are those of, if any."""
         ...
 
     def plot_rows(self) -> Sequence[PlotRow]:
@@ -131,10 +137,14 @@ class Share:
             self.loop = gui.add_checkbox("Repeat", initial_value=False, hint="Play the recording again and again")
             self.loop.on_update(self.on_loop)
             self.state = gui.add_html("")
-            self.name = gui.add_text("Name", "", hint=f"Of the set-up that is saved, at most {MAX_NAME} characters")
+            self.name = gui.add_text(
+                "Name", "", hint=f"Of the set-up that is saved, kept or removed, at most {MAX_NAME} characters"
+            )
             self.note = gui.add_text("Note", "", hint=f"Kept with the set-up, at most {MAX_NOTE} characters")
             self.links = gui.add_button_group("", (COPY, SAVE))
             self.links.on_click(self.on_link)
+            self.own = gui.add_button_group("", (KEEP, REMOVE))
+            self.own.on_click(self.on_own)
             gui.add_html(
                 '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
                 '<input type="file" accept=".json" data-springtide-load></label></div>'
@@ -260,6 +270,24 @@ class Share:
             return
         client.send_file_download(f"springtide-{panel.kind.name}.json", text.encode(), save_immediately=True)
         self.say("The set-up was sent to the browser as a file.")
+
+    async def on_own(self, event: ViserEvent) -> None:
+        """Keep what is set in the list of presets under its name, or remove what has that name."""
+        client, panel, name = event.client, self.panel, self.name.value.strip()
+        if client is None:
+            return
+        try:
+            if event.target.value == KEEP:
+                text = write_file(panel.kind, panel.params, panel.loaded, name=name, note=self.note.value.strip())
+                keep_own(panel.kind, name, text)
+                panel.show_own(name)
+                self.say(fill("{} is now in the list of presets.", name))
+            else:
+                remove_own(panel.kind, name)
+                panel.show_own()
+                self.say(fill("{} was removed from the list of presets.", name))
+        except (ValueError, OSError) as reason:
+            self.say(str(reason))
 
     async def on_file(self, event: ViserEvent) -> None:
         """Make a file in a thread of its own, and send it to the browser that asks."""

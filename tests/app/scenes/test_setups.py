@@ -9,6 +9,7 @@ from urllib.parse import urlencode
 
 import pytest
 
+from app.render.html import fill
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import (
     FILE_KEYS,
@@ -231,3 +232,22 @@ def test_a_set_up_runs_as_the_record_does() -> None:
         scene.advance(100)
     a, b = (scene.arrays() for scene in runs)
     assert all((a[key][0] == b[key][0]).all() for key in a)
+
+
+@pytest.mark.parametrize("size", [MAX_LENGTH + 1, 1_000_000])
+def test_what_is_too_long_is_refused_unread(size: int) -> None:
+    for text in ("?scene=rope&stiffness=" + "1" * size, '{"scene": "rope", "parameters": ' + "{" * size, "[" * size):
+        for read in (read_query, read_file):
+            with pytest.raises(ValueError, match=r"characters' is not allowed; allowed: at most 5000"):
+                read(text)
+
+
+def test_a_script_in_a_name_stays_text() -> None:
+    script = "<script>alert(1)</script><img src=x onerror=alert(1)>"
+    rope = scene_named("rope")
+    setup = read_file(write_file(rope, rope.params(), name=script, note=script))
+    assert (setup.name, setup.note) == (script, script)
+    with pytest.raises(ValueError, match="no such parameter") as caught:
+        read_query(f"?scene=rope&{urlencode({script: 1})}")
+    assert "\n" not in str(caught.value)
+    assert "<script>" not in str(fill("{}", caught.value))  # as the page shows it

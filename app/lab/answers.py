@@ -15,6 +15,7 @@ FILE = "answers.toml"
 MAX_SIZE = 2**20  # [bytes] of a file that is read
 ENCODING = "utf-8-sig"  # for reading: some editors begin a file with a byte order mark
 LINE = 100  # characters of a comment's line
+QUOTES = ('"""', "'''")  # around a text of several lines
 
 DONE = "done"  # key of the steps that were seen to be done
 SHOWN = "answer_shown"  # key of whether the answer was looked at: from then on the prediction stays as it is
@@ -113,10 +114,11 @@ def with_value(text: str, task: str, key: str, value: Value) -> str | None:
     end = next((i for i in range(begin, len(lines)) if lines[i].startswith("[")), len(lines))
     assigns = re.compile(rf'\s*"?{re.escape(key)}"?\s*=')
     first = next((i for i in range(begin, end) if assigns.match(lines[i])), None)
-    if first is None:
-        first = after = next(i for i in range(end, begin - 1, -1) if i == begin or lines[i - 1].strip())
+    if first is None:  # above the comments of the next heading
+        is_text = [bool(line.strip()) and (line[0] != "#" or line.rstrip()[-3:] in QUOTES) for line in lines]
+        first = after = next(i for i in range(end, begin - 1, -1) if i == begin or is_text[i - 1])
     else:
-        quotes = next((mark for mark in ('"""', "'''") if mark in lines[first]), "")
+        quotes = next((mark for mark in QUOTES if mark in lines[first]), "")
         ends = (i for i in range(first + 1, end + 1) if quotes in lines[i - 1])
         after = next((i for i in ends if not quotes or is_toml("\n".join(lines[first:i]))), first)
     assignment = f"{key} = {quoted(value)}"

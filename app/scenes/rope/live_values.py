@@ -30,7 +30,7 @@ def live_values(snapshot: Snapshot) -> dict[str, Measure]:
         "link_stiffness": Measure(stiffness, "N/m", "Stiffness of a link"),
         "carried_weight": Measure(lift, "N", "Weight that the top spring carries at rest"),
         "rest_stretch": Measure(lift / stiffness, "m", "Stretch of the top spring at rest"),
-        "top_stretch": Measure(stretch, "m", "Stretch of the top spring now"),
+        "top_stretch": Measure(stretch, "m", "Stretch of the top spring"),
         "largest_tension": Measure(float(frame.tension.max()), "N", "Largest tension"),
         "tip_height": Measure(float(points[-1, 2]), "m", "Height of the tip"),
     }

@@ -148,6 +148,14 @@ def test_what_is_seen_to_be_done_is_ticked_off_for_good(folder: Path) -> None:
     assert book.done(DRAFT) == {1}
 
 
+def test_a_new_value_stands_above_the_heading_of_the_next_task(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    book.answer(DRAFT, EXPLAIN, "One line.\n# no comment")
+    before = (folder / FILE).read_text()
+    book.keep(DRAFT.name, "done", "1")
+    assert (folder / FILE).read_text() == before.replace('# no comment"""\n', '# no comment"""\ndone = "1"\n')
+
+
 def test_only_one_value_changes_and_comments_and_edits_stay(folder: Path) -> None:
     book = Workbook(TASKS, folder)
     path = folder / FILE

@@ -16,12 +16,14 @@ from app.lab.program_check import conform
 from app.lab.runner import RunError, Runner
 from app.lab.saved import Saved
 from app.lab.task import Task
+from sim.ocean.spectra import phillips
 
 EARTH_GRAVITY = 9.81  # [m/s2] of the radial sea
 WAVE = 2.0 * math.pi  # [rad/m] wavenumber of the wave of 1 m that the radial sea tells the lifetime of
 DECAY_TIME = 10.0  # [s]
 LIGHT, HEAVY = 0.01, 100.0  # [Earth masses]
 
+Argument = float | tuple[float, ...]  # a number or a vector
 Number = Callable[[str], float]  # the live value of this name; raises LookupError where the scene has none
 
 
@@ -30,10 +32,10 @@ class SceneValue(NamedTuple):
 
     what: str
     unit: str
-    arguments: Callable[[Number], tuple[float, ...]]
+    arguments: Callable[[Number], tuple[Argument, ...]]
     program: Callable[[Number], float]  # the program's own number
     size: bool = False  # of the result, the number of entries counts
-    spill: str = ""  # that the radial sea must have for this, "" for any
+    needs: tuple[str, str] = ("", "")  # a choice of the scene that this is for, and its value
 
 
 def dispersion_here(n: Number) -> float:
@@ -41,6 +43,19 @@ def dispersion_here(n: Number) -> float:
     base = 2.0 * math.pi / n("loop_period")
     k = 2.0 * math.pi / n("wave_length")
     return n("dispersion_scale") * math.floor(math.sqrt(n("gravity_here") * k) / base) * base
+
+
+def longest_wave(n: Number) -> tuple[Argument, ...]:
+    """Arguments of `spectrum`: the wave of k = g/U^2 along the wind."""
+    speed, g = n("wind_speed"), n("gravity_here")
+    return (g / speed**2, 0.0), (speed, 0.0), n("phillips_constant"), g
+
+
+def phillips_here(n: Number) -> float:
+    """The power [m4] that the square sea gives this wave."""
+    constant, g, speed = n("phillips_constant"), n("gravity_here"), n("wind_speed")
+    c = phillips.PhillipsConditions(phillips_constant=constant, gravity=g, wind_speed=speed)
+    return float(phillips.density(np.array([g / speed**2]), np.zeros(1), c)[0])
 
 
 VALUES: Mapping[tuple[str, str], SceneValue] = {  # scene and task -> the value
@@ -51,17 +66,17 @@ VALUES: Mapping[tuple[str, str], SceneValue] = {  # scene and task -> the value
     ("radial_sea", "extra_draft"): SceneValue(
         "this layer", "m",
         lambda n: (n("thickness"), n("oil_density"), n("water_density")), lambda n: n("added_draft"),
-        spill="layer",
+        needs=("spill", "layer"),
     ),
     ("radial_sea", "draft"): SceneValue(
         "the box in these fluids", "m",
         lambda n: (n("box_density"), n("box_height"), n("oil_density"), n("thickness"), n("water_density")),
-        lambda n: n("box_draft"), spill="layer",
+        lambda n: n("box_draft"), needs=("spill", "layer"),
     ),
     ("radial_sea", "mixture_viscosity"): SceneValue(
         "this mixture", "Pa·s",
         lambda n: (1e-3 * n("oil_viscosity"), 1e-3 * n("water_viscosity"), n("fraction")),
-        lambda n: 1e-3 * n("solution_viscosity"), spill="mixed",
+        lambda n: 1e-3 * n("solution_viscosity"), needs=("spill", "mixed"),
     ),
     ("radial_sea", "wave_decay"): SceneValue(
         f"1 m high, 1 m long, after {DECAY_TIME:g} s (the program takes the exact root)", "m",
@@ -74,6 +89,9 @@ VALUES: Mapping[tuple[str, str], SceneValue] = {  # scene and task -> the value
     ),
     ("square_sea", "gravity"): SceneValue(
         "a planet of 100 Earth masses", "m/s²", lambda n: (HEAVY,), lambda n: n("gravity_heavy"),
+    ),
+    ("square_sea", "spectrum"): SceneValue(
+        "waves of k = g/U² along this wind", "m⁴", longest_wave, phillips_here, needs=("spectrum", "phillips"),
     ),
     ("square_sea", "damping_length"): SceneValue(
         "a minute of this viscosity", "m", lambda n: (n("viscosity"), 60.0), lambda n: n("minute_length"),
@@ -106,7 +124,7 @@ class Wanted(NamedTuple):
     """What to compute."""
 
     saved: Saved
-    arguments: Mapping[str, tuple[float, ...]]  # task -> arguments
+    arguments: Mapping[str, tuple[Argument, ...]]  # task -> arguments
     program: Mapping[str, float]
     values: Mapping[str, SceneValue]
 
@@ -120,19 +138,20 @@ def wanted(scene: str, tasks: Mapping[str, Task], saved: Saved, live: LiveValues
             raise LookupError(name)
         return found.value
 
-    arguments: dict[str, tuple[float, ...]] = {}
+    arguments: dict[str, tuple[Argument, ...]] = {}
     program: dict[str, float] = {}
     values: dict[str, SceneValue] = {}
     for (of_scene, task), value in VALUES.items():
         if of_scene != scene or task not in tasks or task not in saved.begun:
             continue
-        if value.spill not in ("", live.get("spill", "")):
+        choice, needed = value.needs
+        if choice and live.get(choice) != needed:
             continue
         try:
             given, number_there = value.arguments(number), value.program(number)
         except (LookupError, ZeroDivisionError, ValueError):  # the scene has no such thing just now
             continue
-        arguments[task] = tuple(int(a) for a in given) if task in WHOLE else given
+        arguments[task] = tuple(int(a) for a in given if not isinstance(a, tuple)) if task in WHOLE else given
         program[task], values[task] = number_there, value
     return Wanted(saved, arguments, program, values)
 
@@ -178,13 +197,14 @@ class SceneValues:
             runner.close()
 
     def compare(
-        self, runner: Runner, task: Task, value: SceneValue, given: tuple[float, ...], program: float
+        self, runner: Runner, task: Task, value: SceneValue, given: tuple[Argument, ...], program: float
     ) -> Compared:
         """One function. After an error that costs a process it is not called again: a scene's numbers never rest."""
         if task.name in self.errors:
             return Compared(value, None, program, self.errors[task.name])
         try:
-            result: Any = runner.call(task.file, task.name, *given)
+            vectors = (np.array(a) if isinstance(a, tuple) else a for a in given)
+            result: Any = runner.call(task.file, task.name, *vectors)
             if value.size:
                 result = float(len(np.asarray(result)))
             return Compared(value, float(conform(result, 0.0)), program)

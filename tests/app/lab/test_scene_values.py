@@ -24,8 +24,8 @@ SCENES = [
     ("radial_sea", {"spill": "mixed"}, {"net_buoyancy", "mixture_viscosity", "wave_decay", "reflectance"}),
     (
         "square_sea",
-        {"viscosity": 1e-3, "loop_period": 20.0, "statistics": True, "size": "64"},
-        {"gravity", "damping_length", "dispersion"},
+        {"viscosity": 1e-3, "loop_period": 20.0, "statistics": True, "size": "64", "spectrum": "phillips"},
+        {"gravity", "damping_length", "dispersion", "spectrum"},
     ),
     ("cloth", {"rows": 5, "cols": 4}, {"cloth_links"}),
 ]

@@ -108,6 +108,10 @@ def with_value(text: str, task: str, key: str, value: Value) -> str | None:
     """The text of answers.toml with one value changed and no other line; None where there is no plain place for it."""
     lines = text.split("\n")
     heads = [i for i, line in enumerate(lines) if line.strip() == f"[{task}]"]
+    if not heads:  # a task without questions has no heading at first
+        end = "\r" if "\r\n" in text else ""
+        lines = [*text.removesuffix("\n").split("\n"), end, f"[{task}]{end}", ""]
+        heads = [len(lines) - 2]
     if len(heads) != 1:
         return None
     begin = heads[0] + 1
@@ -126,7 +130,10 @@ def with_value(text: str, task: str, key: str, value: Value) -> str | None:
         assignment = assignment.replace("\n", "\r\n") + "\r"
     changed = "\n".join([*lines[:first], assignment, *lines[after:]]).removesuffix("\r")
     table = exact(text)
-    expected = {**table, task: {**table.get(task, {}), **exact(f"{key} = {quoted(value)}")}}
+    entries = table.get(task, {})
+    if not isinstance(entries, dict):
+        return None
+    expected = {**table, task: {**entries, **exact(f"{key} = {quoted(value)}")}}
     # A line within a text may look like a heading or like an assignment: then the file does not say what it should.
     return changed if is_toml(changed) and exact(changed) == expected else None
 

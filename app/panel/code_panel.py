@@ -107,8 +107,10 @@ def rope_texts(state: CodeState, report: StudentReport) -> list[Html]:
     if report.seconds:
         pace = report.step / report.seconds
         speed = f"{1e6 * report.seconds:.0f} µs a step, {number(pace)} times real time"
-        kept = ", ".join(name for name in report.compiled if used.get(name))
-        how = f"{kept} compiled by numba" if kept else "Plain Python"
+        kept = [name for name in report.compiled if used.get(name)]
+        rest = [name for name, is_own in used.items() if is_own and name not in kept]
+        how = f"{', '.join(kept)} compiled by numba" if kept else "Plain Python"
+        how += f", {', '.join(rest)} plain Python" if kept and rest else ""
         said.append(fill("{}: {}.", how, speed if pace > 1.0 else coloured(speed, WARNING_COLOUR)))
         if state.not_compiled and not kept:
             said.append(faint(f"Not compiled: {state.not_compiled}"))

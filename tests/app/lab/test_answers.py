@@ -91,6 +91,16 @@ def test_all_but_the_value_stays_as_it_is_with_nan_and_any_line_ends(tmp_path: P
         assert read_answers(tmp_path).values["filler", "a"] == value
 
 
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_a_task_without_questions_gets_a_heading_at_the_end(tmp_path: Path, end: str) -> None:
+    before = f"# mine{end}[filler]{end}a = 1{end}"
+    (tmp_path / FILE).write_bytes(before.encode())
+    for value in ("1", "1 2"):
+        change_answer(tmp_path, TASKS, read_answers(tmp_path), "net_buoyancy", "done", value)
+        written = f'{end}[net_buoyancy]{end}done = "{value}"{end}'
+        assert (tmp_path / FILE).read_bytes().decode() == before + written
+
+
 def test_no_file_is_said(tmp_path: Path) -> None:
     assert FILE in read_answers(tmp_path).error
 

@@ -70,7 +70,8 @@ def headline(state: CodeState, report: StudentReport) -> Html:
     if report.left_at == report.left_at:
         return fill("Your code: {}", coloured(f"the rope left its bounds at t = {report.left_at:.2f} s", ERROR_COLOUR))
     if not report.version:
-        return fill("Your code: {}", "moves nothing here" if state.version else "reading your files …")
+        saved = f"saved at {state.saved_at}, moves nothing here" if state.version else "reading your files …"
+        return fill("Your code: {}", saved)
     return fill("Your code: {} since {}", coloured("runs", GOOD_COLOUR), state.saved_at)
 
 

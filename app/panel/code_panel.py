@@ -31,6 +31,7 @@ SAME = 1e-6  # [m] below which two ropes are the same
 CHART_WIDTH, CHART_HEIGHT = 280, 110  # [pixels] of the chart of the difference
 CHART_LEFT, CHART_BOTTOM, CHART_TOP = 40, 18, 8  # [pixels] of its margins
 MAX_POINTS = 150  # of its line
+ORDER = ("failed", "wrong", "checking", "right")  # of the functions
 COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "failed": ERROR_COLOUR, "checking": WARNING_COLOUR}
 
 
@@ -155,10 +156,10 @@ def difference_chart(report: StudentReport) -> Html:
         '<svg class="springtide-difference" viewBox="0 0 {w} {h}" width="100%" role="img" font-size="11" '
         'fill="currentColor"><title>Distance of your rope from the program\'s [m] over time [s]</title>{ticks}'
         '<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>'
-        '<text x="{left}" y="{h}">{first:.1f} s</text>'
-        '<text x="{w}" y="{h}" text-anchor="end">{last:.1f} s</text></svg>',
+        '<text x="{left}" y="{foot}">{first:.1f} s</text>'
+        '<text x="{w}" y="{foot}" text-anchor="end">{last:.1f} s</text></svg>',
         w=CHART_WIDTH, h=CHART_HEIGHT, ticks=ticks, line=line, colour=PALETTE[0], left=CHART_LEFT,
-        first=first, last=last,
+        foot=CHART_HEIGHT - 3, first=first, last=last,
     )  # fmt: skip
 
 
@@ -172,9 +173,9 @@ def tick_mark(y: float, word: str) -> Html:
 
 
 def function_lines(session: Session) -> Html:
-    """The state of every function that is begun, and what is wrong with it."""
+    """The state of every function that is begun, and what is wrong with it; those that are right come last."""
     verdicts, waiting, compared = session.check.verdicts, session.check.waiting, session.values.found
-    rows: list[Html] = []
+    rows: list[tuple[int, Html]] = []
     not_begun = 0
     for task in session.tasks:
         if not task.file:
@@ -183,10 +184,9 @@ def function_lines(session: Session) -> Html:
         if verdict.state == "not begun":
             not_begun += 1
         else:
-            rows.append(function_line(task, verdict, compared.get(task.name)))
-    if not_begun:
-        rows.append(faint(f"{not_begun} functions not begun"))
-    return join(rows)
+            rows.append((ORDER.index(verdict.state), function_line(task, verdict, compared.get(task.name))))
+    rest = faint(f"{not_begun} functions not begun") if not_begun else Html()
+    return join([*(row for _, row in sorted(rows, key=lambda row: row[0])), rest])
 
 
 def compared_text(compared: Compared | None) -> Html:

@@ -27,6 +27,7 @@ TYPING_PAUSE = 1.0  # [s] after the last keystroke, after which a text is kept
 UNANSWERED = "Choose …"  # in the list of choices
 SET_UP, SHOW, HIDE = "Set this up", "Show the answer", "Hide the answer"
 PICTURE = "Take a picture"
+PICTURE_WIDTH = 1280  # [pixels] of a picture for the report
 STATE_COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "given": GOOD_COLOUR}
 STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Kept."}
 
@@ -215,7 +216,7 @@ class Guide:
         try:
             time_now = self.values.get("time")
             at = f" {time_now.value:.2f} s" if isinstance(time_now, LiveNumber) else ""
-            picture = take_picture(client, jpeg=True)
+            picture = take_picture(client, (PICTURE_WIDTH, 0), jpeg=True)
             name = self.workbook.add_picture(task, f"{self.kind.name}{at}", picture)
             self.picture_said = f"The report has the picture “{name}”."
         except OSError as error:  # a TimeoutError is one too

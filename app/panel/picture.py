@@ -11,15 +11,19 @@ QUALITY = 90  # of JPEG
 def take_picture(
     client: viser.ClientHandle, size: tuple[int, int] = (0, 0), *, transparent: bool = False, jpeg: bool = False
 ) -> bytes:
-    """The view of a browser as a PNG or JPEG file; without panel. size: width and height [pixels], 0 as in the page.
+    """The view of a browser as a PNG or JPEG file; without panel.
+
+    size: width and height [pixels]; a height of 0 is that of the page's proportions, a width of 0 that of the page.
 
     Waits for the browser, so it must not be called on viser's event loop. Raises TimeoutError, RuntimeError.
     """
     import imageio.v3 as iio  # only where a picture is made
 
+    camera = client.camera
+    width = size[0] or camera.image_width
     picture = client.get_render(
-        size[1] or client.camera.image_height,
-        size[0] or client.camera.image_width,
+        size[1] or round(width * camera.image_height / camera.image_width),
+        width,
         transport_format="png" if transparent else "jpeg",
         timeout=PICTURE_TIMEOUT,
     )

@@ -201,13 +201,13 @@ def test_what_could_not_be_ticked_off_is_said_until_it_can(student: Viewer, fold
 
 
 def test_a_picture_is_kept_for_the_task_that_is_shown(student: Viewer, folder: Path, monkeypatch) -> None:
-    def refuse(client: object, *, jpeg: bool) -> bytes:
+    def refuse(client: object, size: object, *, jpeg: bool) -> bytes:
         raise TimeoutError("the browser has gone")
 
     guide = show(student, "spring_force")
     wait_for(lambda: "time" in guide.values)
     event = SimpleNamespace(target=SimpleNamespace(value=PICTURE), client_id=1, client=object())
-    monkeypatch.setattr("app.panel.guide.take_picture", lambda client, *, jpeg: b"\xff\xd8\xff")
+    monkeypatch.setattr("app.panel.guide.take_picture", lambda client, size, *, jpeg: b"\xff\xd8\xff")
     coroutines.run(guide.on_picture(event))
     wait_for(lambda: "The report has the picture" in guide.answer.content)
     name = next((folder / PICTURES).iterdir()).name

@@ -31,7 +31,7 @@ import numpy as np
 import viser
 from viser import _messages
 
-from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS
+from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
 
 STORAGE_KEY = "springtide-shaders"  # of the page's local storage, under which the script answers
 ASK_INTERVAL = 0.5  # [s] between two questions to a browser that has not answered for every node
@@ -73,6 +73,7 @@ class ShaderInjector:
             "STORAGE_KEY": STORAGE_KEY,
             "WATER_UNIFORMS": WATER_UNIFORMS,
             "RAIN_UNIFORMS": RAIN_UNIFORMS,
+            "MAX_WATERLINES": MAX_WATERLINES,
         }
         shared = [f"const {name} = {json.dumps(value)};" for name, value in constants.items()]
         files = [(resources.files("app.render") / "js" / name).read_text("utf-8") for name in SCRIPTS]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.ocean.oil_film import EXTINCTION, light_through
+from sim.validation import argument_error
 
 RGB = tuple[float, float, float]
 HAZE_DISTANCE = 3000.0  # [m]
@@ -17,6 +18,7 @@ WATER_UNIFORMS = (
     "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "extent", "wireColor", "slick", "slickOptics",
     "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection",
 )  # fmt: skip
+MAX_WATERLINES = 12  # that the shader of the water draws foam and shade around
 # The same for the shader of the rain, `js/rain.js`.
 RAIN_UNIFORMS = ("rain", "streak")
 
@@ -39,6 +41,16 @@ class Oil:
     color: RGB  # sRGB of a thick layer, in 0..1
     refractive_index: float
     thickness: float  # [m] of a layer on all the sea; 0: none, the oil is in a slick
+
+
+@dataclass(frozen=True)
+class Waterline:
+    """Where something stands in the water: a rectangle with round corners, seen from above."""
+
+    centre: tuple[float, float]  # (x, y) [m]
+    heading: float  # [rad] of its first side against x
+    half_sides: tuple[float, float]  # [m] without the corners
+    corner: float  # radius of the corners [m]; a circle has no sides
 
 
 @dataclass(frozen=True)
@@ -112,6 +124,19 @@ def as_bytes(color: RGB) -> tuple[int, int, int]:
     """An sRGB colour in 0..1 as 0..255."""
     red, green, blue = (round(255 * min(max(c, 0.0), 1.0)) for c in color)
     return red, green, blue
+
+
+def waterline_table(waterlines: Sequence[Waterline]) -> np.ndarray:
+    """The uniforms of the waterlines, (2 MAX_WATERLINES, 3) float32: x, y, heading, then half sides and corner.
+
+    A corner of 0 means none. Raises ValueError for more than MAX_WATERLINES.
+    """
+    if len(waterlines) > MAX_WATERLINES:
+        raise argument_error("waterlines", len(waterlines), f"at most {MAX_WATERLINES}")
+    table = np.zeros((2 * MAX_WATERLINES, 3), np.float32)
+    for k, line in enumerate(waterlines):
+        table[2 * k : 2 * k + 2] = (*line.centre, line.heading), (*line.half_sides, line.corner)
+    return table
 
 
 def uniform_table(

@@ -6,6 +6,7 @@ does not take the shader is sent the vertices themselves and draws them in one c
 slick and grid.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ import viser
 
 from app.render.cameras import lowest_camera
 from app.render.injection import add_data_mesh, injector_of
-from app.render.material import Material, as_bytes, uniform_table
+from app.render.material import Material, Waterline, as_bytes, uniform_table, waterline_table
 from app.render.skies import CAMERA_RANGE
 from sim.packing import pack
 from sim.validation import argument_error
@@ -94,6 +95,7 @@ class Water:
             add_data_mesh(server, f"{name}/water_rest", self._vertices.reshape(-1, 3))
             self._surface_mesh = add_data_mesh(server, f"{name}/water_surface", self._packed())
             self._material_mesh = add_data_mesh(server, f"{name}/water_material", self._uniforms())
+            self._waterline_mesh = add_data_mesh(server, f"{name}/water_lines", waterline_table(()))
             self._injector.watch(name)
 
     def set_surface(self, vertices: np.ndarray, slopes: np.ndarray, foam: np.ndarray, time: float = 0.0) -> None:
@@ -128,6 +130,11 @@ class Water:
         self.mesh.color = self._plain_color()
         if self._injector is not None:
             self._material_mesh.vertices = self._uniforms()
+
+    def set_waterlines(self, waterlines: Sequence[Waterline]) -> None:
+        """What stands in the water from the next frame on; browsers without the shader do not draw it."""
+        if self._injector is not None:
+            self._waterline_mesh.vertices = waterline_table(waterlines)
 
     @property
     def has_shader(self) -> bool | None:

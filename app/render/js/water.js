@@ -1,7 +1,7 @@
 // The shader of water, for "<name>" where there is a "<name>/water_material".
 //
 // "<name>/water_surface" carries displacement, slope x, slope y and foam of each vertex, packed (packed.js), and
-// "<name>/water_rest" where the vertices rest. The vertices of "<name>/water_material" are the uniforms, in the order of
+// "<name>/water_rest" where the vertices rest; "<name>/water_lines" what stands in the water. The vertices of "<name>/water_material" are the uniforms, in the order of
 // WATER_UNIFORMS (app/render/material.py). "Sea" in a name means the frame of the node,
 // z up; three's world is rotated against it.
 
@@ -24,6 +24,7 @@ function uniformsOf(base, mesh) {
   if (!uniformsByName.has(base)) {
     const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
     for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
+    uniforms.waterlines = { value: Array.from({ length: 2 * MAX_WATERLINES }, () => mesh.position.clone().set(0, 0, 0)) };
     uniformsByName.set(base, uniforms);
   }
   return uniformsByName.get(base);
@@ -162,6 +163,11 @@ shaders.push({
     }
     if (!applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array)) return null;
     readMaterial(sea, data);
+    const lines = meshOf(`${base}/water_lines`);
+    if (lines) {
+      const numbers = lines.geometry.attributes.position.array;
+      sea.uniforms.waterlines.value.forEach((vector, k) => vector.fromArray(numbers, 3 * k));
+    }
     const [rows, columns, length] = sea.uniforms.grid.value.toArray();
     const [count, drawSky, wireframe] = sea.uniforms.extent.value.toArray();
     const shape = [rows, columns, length, count].join();

@@ -277,6 +277,22 @@ const WATER_GLSL = {
       return (r1 * r1 + q * q + 2.0 * r1 * q * fringes) / (r1 * r1);
     }
 
+    // What stands in the water, two vectors each: x, y, heading, then half sides and corner [m] (0: none).
+    uniform vec3 waterlines[2 * MAX_WATERLINES];
+
+    // Distance [m] of a point from the nearest of them; 0 inside.
+    float distanceToHull(vec2 x) {
+      float nearest = 1e3;
+      for (int k = 0; k < MAX_WATERLINES; k++) {
+        vec3 place = waterlines[2 * k], size = waterlines[2 * k + 1];
+        if (size.z <= 0.0) break;
+        vec2 d = x - place.xy, e = vec2(cos(place.z), sin(place.z));
+        d = abs(vec2(dot(d, e), dot(d, vec2(-e.y, e.x))));
+        nearest = min(nearest, length(max(d - size.xy, 0.0)) - size.z);
+      }
+      return max(nearest, 0.0);
+    }
+
     // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; flatness: 1 where
     // there is no mesh.
     vec3 shadeSea(vec3 at, vec2 rest, vec3 slopeAndFoam, float flatness) {
@@ -322,7 +338,11 @@ const WATER_GLSL = {
         }
         rough = max(rough, 0.0);
       }
-      vec2 bubbles = foamCover(rest, clamp(slopeAndFoam.z, 0.0, 1.0), footprint);
+      // Water that washes around a hull foams, the wider the higher the waves; close to it less light comes in.
+      float hull = distanceToHull(at.xy);
+      float wash = (1.0 - smoothstep(0.0, 0.15 + 0.35 * sqrt(seaState.y), hull)) * smoothstep(0.05, 0.6, seaState.y);
+      wash *= (1.0 - oil) * (0.75 + 0.5 * gradientNoise(at.xy * 2.3 - 0.4 * seaState.x).x);
+      vec2 bubbles = foamCover(rest, clamp(max(slopeAndFoam.z, 0.8 * wash), 0.0, 1.0), footprint);
       float foam = bubbles.x;
       float variance = optics.y * optics.y + 0.5 * (rough + fine.z);
       float sigma = sqrt(variance);
@@ -370,12 +390,14 @@ const WATER_GLSL = {
       vec3 white = foamColor * (ambient * 1.15 + sunLight * 0.3183 * (0.35 + 0.65 * sunUp)) * (0.72 + 0.38 * bubbles.y);
       color = mix(color, white, foam * (0.6 + 0.4 * bubbles.y));
 
+      color *= 0.65 + 0.35 * smoothstep(0.0, 0.6, hull);
       return mix(color, haze, lost) * lens.y;
     }`,
 };
 
 const WATER_FRAGMENT = `
   #define STANDARD
+  #define MAX_WATERLINES ${MAX_WATERLINES}
   uniform mat4 toSea;
   ${WATER_GLSL.noise}
   ${WATER_GLSL.sky}
@@ -412,6 +434,7 @@ const DOME_VERTEX = `
   }`;
 const DOME_FRAGMENT = `
   #define STANDARD
+  #define MAX_WATERLINES ${MAX_WATERLINES}
   uniform mat4 toSea;
   ${WATER_GLSL.noise}
   ${WATER_GLSL.sky}

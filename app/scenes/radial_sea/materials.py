@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from app.render.material import RGB, Cutout, Material, Oil, SlickRegion
+from app.render.material import MAX_WATERLINES, RGB, Cutout, Material, Oil, SlickRegion, Waterline
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.parameters import Params
-from app.scenes.radial_sea.well_blowout import Slick
+from app.scenes.radial_sea.well_blowout import RIG, Slick
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.oil_film import light_through
 
@@ -22,6 +22,8 @@ MIXTURE_FOAM: RGB = (0.80, 0.72, 0.60)
 MIXTURE_ROUGHNESS = 0.06
 MIXTURE_BASE_SHARE = 0.35  # share of oil's colours in a mixture with hardly any oil; it grows with the fraction
 OIL_FOAM: RGB = (0.45, 0.36, 0.26)
+LEG_DISTANCE, LEG_RADIUS = 14.33, 1.3  # [m] of the rig's legs at the water, from its middle (assets/make_models.py)
+HULL_CORNER = 0.1  # radius of the corners of a box over half its side
 OIL_ROUGHNESS = 0.02
 
 
@@ -47,6 +49,23 @@ def ripple_slope(p: Params, column: FluidColumn, age: float) -> float:
 def mixture_share(column: FluidColumn) -> float:
     """Share of oil's colours in those of a mixture."""
     return min(1.0, MIXTURE_BASE_SHARE + column.fraction)
+
+
+def waterlines_of(frame: RadialFrame) -> list[Waterline]:
+    """Where the legs of the rig and the first bodies stand in the water, as from above, upright."""
+    x, y = RIG
+    legs = [(x + i * LEG_DISTANCE, y + j * LEG_DISTANCE) for i in (-1, 1) for j in (-1, 1)]
+    lines = [Waterline(leg, 0.0, (0.0, 0.0), LEG_RADIUS) for leg in legs]
+    for kind, position, turn in zip(frame.kinds, frame.positions.tolist(), frame.rotations.tolist(), strict=True):
+        if len(lines) == MAX_WATERLINES:
+            break
+        hull = frame.hulls[kind]
+        a, b = (0.5 * np.ptp(hull.extents[:2], axis=1)).tolist()
+        corner = HULL_CORNER * min(a, b) if hull.shape.collision == "box" else min(a, b)
+        w, i, j, k = turn
+        heading = math.atan2(2.0 * (w * k + i * j), 1.0 - 2.0 * (j * j + k * k))
+        lines.append(Waterline((position[0], position[1]), heading, (a - corner, b - corner), corner))
+    return lines
 
 
 def material_of(light: Material, frame: RadialFrame) -> Material:

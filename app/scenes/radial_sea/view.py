@@ -22,7 +22,7 @@ from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.fire_view import Flames
 from app.scenes.radial_sea.frame import RadialFrame
-from app.scenes.radial_sea.materials import material_of
+from app.scenes.radial_sea.materials import material_of, waterlines_of
 from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
 from app.scenes.radial_sea.scene import GRID_RADIUS
@@ -145,6 +145,7 @@ class View:
         if s is not self.surface:
             self.surface = s
             self.water.set_surface(s.vertices[None], s.slope[None], frame.foam[None], frame.time)
+            self.water.set_waterlines(waterlines_of(frame))
 
     def show_fire(self, frame: RadialFrame) -> None:
         """Draw flames, smoke and the oil of the jet, and light what is near the fire."""

@@ -13,7 +13,7 @@ Oil absorbs blue more than red, exponentially in the wavelength. The extinction 
 0.2 mm shows the oil's own colour, as in the Bonn Agreement's oil appearance code: sheen 0.04 to 0.3 um, rainbow 0.3 to
 5 um, metallic 5 to 50 um, discontinuous true colour 50 to 200 um, continuous true colour above (Bonn Agreement Aerial
 Operations Handbook, 2009, part 3, annex A). A film of one thickness has no colours of interference left above 2 um;
-what observers call rainbow up to 5 um is a film whose thickness varies. `app/render/js/water_shader.js` draws by the
+what observers call rainbow up to 5 um is a film of varying thickness. `app/render/js/water_shader.js` draws by the
 same formulas.
 """
 

@@ -82,8 +82,10 @@ def files_by_place(module: str) -> list[str]:
     parts = module.split("/")
     if parts[0] == "app":
         scene = parts[2] if len(parts) > 3 and parts[2] != "springs" else ""
+        sweep = ROOT / "tests/app/sweep/test_case.py"  # it reads the measures of all scenes
         return sorted(
-            path.relative_to(ROOT).as_posix() for path in (ROOT / "tests/app/scenes").glob(f"test_{scene}*.py")
+            path.relative_to(ROOT).as_posix()
+            for path in [*(ROOT / "tests/app/scenes").glob(f"test_{scene}*.py"), sweep]
         )
     if len(parts) == 2:
         return [f"tests/sim/test_{parts[1]}"]

@@ -1,6 +1,7 @@
 """The cloth scene without a browser: presets, handles, drags, and what it says when it diverges."""
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from app.panel.panel import status_line
 from app.scenes.cloth.parameters import PRESETS, Params, hidden
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene
 from app.scenes.cloth.view import View, faces
+from app.scenes.measures import plotted
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
 
@@ -65,7 +67,9 @@ def test_a_dragged_particle_follows_and_is_released():
     target = (float(before[0]), float(before[1]) - 0.4, float(before[2]))
     scene.handle(Grab(index, target))
     run(scene, 0.7)
-    assert scene.frame().pull is not None
+    stiffness = min(scene.params.pull / 0.1, 0.1 * scene.net.mass / scene.step**2)
+    stretch = np.linalg.norm(np.array(target) - scene.state.x[:, 7, 4])
+    assert scene.frame().pull.load == pytest.approx(min(1.0, stretch * stiffness / scene.params.pull), rel=1e-4)
     assert scene.state.x[1, 7, 4] < before[1] - 0.2
     scene.handle(Release())
     run(scene, 0.1)
@@ -262,3 +266,18 @@ def test_what_one_browser_holds_no_other_takes_or_releases():
     assert scene.frame().pull.particle == 74
     scene.handle(Release(client=1))
     assert scene.frame().pull is None
+
+
+@pytest.mark.parametrize("step", [1e-4, 1 / 240])
+def test_a_pull_is_as_stiff_as_the_step_allows(step):
+    scene = ClothScene(dataclasses.replace(SMALL, time_step=step, pull=3.0))
+    stiffness, damping = scene.pull_spring()
+    assert stiffness == pytest.approx(min(3.0 / 0.1, 0.1 * scene.net.mass / step**2))
+    assert damping == pytest.approx(0.5 * math.sqrt(stiffness * scene.net.mass))
+
+
+def test_plot_rows_are_measures_with_the_units_of_their_charts():
+    found = plotted(SCENE, (0.5, *range(1, 8)))
+    assert found["kinetic"] == (2, "J", "Energy: kinetic")
+    assert found["gravity_energy"] == (4, "J", "Energy: gravity")  # not the parameter
+    assert found["largest_strain"] == (7, "%", "largest strain")

@@ -8,17 +8,19 @@ import pytest
 
 from app.commands.run import run_to_file
 from app.messages import Grab, Place, Release
+from app.render.html import ERROR_COLOUR
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.race.charts import MAX_ROWS, RaceCharts, round_up
 from app.scenes.race.entrants import tick_of
 from app.scenes.race.html import results_table
 from app.scenes.race.measures import measures
 from app.scenes.race.parameters import PRESETS, Params, hidden, offset_of
-from app.scenes.race.scene import SCENE, RaceScene
+from app.scenes.race.scene import SCENE, RaceScene, compile_gauge
 from app.scenes.race.view import LABEL_HEIGHT, SHOWN_ASPECT, View
 from app.scenes.springs.methods import method_name
 from app.scenes.springs.rope_parameters import ROOT, build_rope
 from app.server.loop import SimLoop
+from sim import formatting
 from sim.parameters import check_record, parameters_of
 from sim.springs import simulate
 from sim.springs.analysis.reference_run import HORIZON_SEPARATION, ReferenceRun
@@ -61,6 +63,8 @@ def test_every_race_runs_and_is_shown(preset):
     assert len(frame.labels) == len(set(frame.labels)) == scene.params.ropes
     words = results_table(scene.readings())
     assert all(method_name(rope.integrator) in words for rope in scene.readings().results)
+    for rope in scene.readings().results:  # force evaluations a second
+        assert f">{formatting.number(round(rope.evals / rope.step))}<" in words
     charts = scene.curves()
     for chart in charts.values():
         assert len(chart.columns) == len(chart.lines) + 1
@@ -180,6 +184,7 @@ def test_a_method_that_takes_no_damping_fails_at_once():
         "",
         "allows no damping: set damping and air drag to 0, and switch the floor off",
     )
+    assert f'style="color:{ERROR_COLOUR}">{second.failure}<' in results_table(scene.readings())
     assert scene.time == pytest.approx(0.5)
 
 
@@ -400,3 +405,7 @@ def test_a_sweep_records_each_rope_of_a_race():
     found = measures(scene)
     assert found["error_1"].value > found["error_2"].value > 0.0
     assert set(found) == {f"{what}_{n}" for what in ("error", "numerical_dissipation", "h_omega") for n in (1, 2, 3)}
+
+
+def test_the_gauge_is_compiled_ahead_as_it_is_called():
+    compile_gauge()

@@ -538,3 +538,15 @@ def test_both_surfaces_have_the_height_of_the_spectrum_on_the_same_fluids(change
     for reading in found.values():
         assert reading.height == pytest.approx(height, rel=0.01)
         assert reading.error == pytest.approx(reading.height / height - 1.0, abs=1e-3)
+
+
+def test_radiated_waves_are_laid_on_the_rings_that_they_reach(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = RadialSeaScene(with_parameters(bodies=0))
+    laid = []
+    monkeypatch.setattr(scene.radiated_waves, "lay", lambda t, vertices, slopes, count: laid.append(vertices.copy()))
+    scene.advance(1)
+    scene.frame()
+    rings, centre = laid[-2:]
+    assert len(rings) == scene.grid.spokes * (scene.grid.radii < 57.6).sum()
+    assert np.hypot(*rings[:, :2].T).max() < 60.0
+    assert len(centre) == 1

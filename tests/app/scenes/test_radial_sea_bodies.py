@@ -141,6 +141,12 @@ def test_weights_and_forces_are_on_screen_and_in_sweeps() -> None:
         assert shown.replace(",", "") in text.replace("\u202f", "").replace(",", ""), shown
     found = measures(loop.scene)
     assert found["box_mass"].value == pytest.approx(box.density * box.volume)
+    assert found["box_wet_volume_below"].value == box.wet_volume[1] != box.wet_volume[0]
+    loop = SimLoop(scene_with(**CALM))
+    loop.tick(0.1)
+    text = forces_html(loop.latest.readings)
+    assert "wet volume" in text
+    assert "wet in oil" not in text
 
 
 def test_a_mean_begins_anew_when_a_body_is_let_go() -> None:

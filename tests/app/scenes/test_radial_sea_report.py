@@ -10,7 +10,7 @@ from app.scenes.radial_sea.budget import budget_html
 from app.scenes.radial_sea.charts import budget_chart
 from app.scenes.radial_sea.live_values import live_values
 from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden, spill_of
-from app.scenes.radial_sea.report import marks_of, mixture_html, notes_of, oil_budget_text, readout_of
+from app.scenes.radial_sea.report import marks_of, mixture_html, notes_of, oil_budget_text, readout_of, surfaces_html
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import OilBudget
 from app.server.loop import SimLoop
@@ -250,3 +250,12 @@ def test_a_slick_is_said_to_calm_the_sea_where_it_does(values: dict[str, str], c
         loop.tick(0.1)
     assert loop.latest.readings.oil_budget.fed > 0.0
     assert ("A wave of" in readout_of(loop.latest)) == calms
+
+
+def test_the_cost_of_a_surface_is_shown_in_milliseconds() -> None:
+    loop = SimLoop(RadialSeaScene(check_record(Params, {"compare": True, "bodies": 0, "wave_count": 16})))
+    loop.tick(0.1)
+    costs = [surface.cost for surface in loop.latest.readings.surfaces.values()]
+    assert len(costs) == 2
+    text = surfaces_html(loop.latest)
+    assert all(f">{1e3 * cost:.2f}<" in text for cost in costs)

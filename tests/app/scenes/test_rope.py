@@ -2,18 +2,25 @@
 
 import contextlib
 import dataclasses
+import math
 
 import numpy as np
 import pytest
 
 from app.messages import DivergenceError, Grab, Place, Release, WorkCount, finite_vector
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, coloured
 from app.scenes.contract import FRAME_INTERVAL
+from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import PRESETS, Params
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, RopeScene
+from app.scenes.springs.html import stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROOT, SPHERE
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
 from sim.springs import INTEGRATORS
+from sim.springs.analysis.extremes import extremes
+from sim.springs.stability import Gauge
+from sim.springs.state import velocities
 from sim.springs.statics import hanging_chain
 from sim.springs.tracking import CriticallyDampedTracker
 
@@ -337,3 +344,33 @@ def test_the_root_swings_about_where_it_was_put_and_comes_to_rest_again() -> Non
     scene.advance(480)
     assert scene.handles.at_rest
     assert tuple(scene.state.x[:, 0, 0]) == ROOT
+
+
+def test_a_sweep_records_the_tip_of_the_rope() -> None:
+    scene = RopeScene(Params())
+    run(scene, 30, 2)
+    found = {name: measure.value for name, measure in measures(scene).items()}
+    assert found["tip_height"] == scene.state.x[2, 0, 9] < scene.state.x[2, 0, 1]
+    assert found["tip_speed"] == np.linalg.norm(velocities(scene.net, scene.state)[:, 0, 9]) > 0.1
+
+
+def test_the_line_under_the_time_step_names_the_largest_that_is_stable() -> None:
+    assert step_mark(0.0123) == "stable up to 12.3 ms"
+    assert step_mark(0.0) == "no step is stable with this method"
+    assert step_mark(math.inf) == "every step is stable"
+
+
+@pytest.mark.parametrize(
+    ("h_omega", "verdict", "colour"),
+    [(1.5, "stable", GOOD_COLOUR), (1.7, "stable", WARNING_COLOUR), (2.1, "unstable", ERROR_COLOUR)],
+)
+def test_the_stability_bar_has_the_verdict_in_its_colour(h_omega: float, verdict: str, colour: str) -> None:
+    bar = stability_bar(Gauge(h_omega / 1e-3, 0.0, h_omega, 2.0, 2e-3))
+    assert coloured(verdict, colour) in bar
+    assert f"width:{min(50.0 * h_omega, 100.0):.0f}%;background:{colour}" in bar
+
+
+def test_a_rope_has_left_its_bounds_at_three_times_the_length_it_hangs_at() -> None:
+    scene = RopeScene(Params(floor=False))
+    start = extremes(scene.state.x, scene.state.v).reach
+    assert scene.max_reach == pytest.approx(4.0 + 3.0 * 2.5625 + start)  # the lab's ten points hang 2.56 m deep

@@ -9,6 +9,7 @@ from app.messages import Point, Reset
 from app.scenes.square_sea import report
 from app.scenes.square_sea import scene as square_sea
 from app.scenes.square_sea.live_values import live_values
+from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, Params, conditions, rain_settings
 from app.scenes.square_sea.rainfall import RING_STEEPNESS, Rainfall
 from app.scenes.square_sea.scene import SquareSeaScene
@@ -172,7 +173,9 @@ def test_statistics_and_spectrum_are_computed_only_where_shown_and_a_hidden_gaug
     scene = SquareSeaScene(Params(**SMALL, statistics=False))
     run(scene, 30)
     assert scene.counts["statistics"] == scene.counts["gauge spectra"] == 0
-    assert scene.counts["gauge readings"] == len(scene.take_plot_rows()) - 1 < 30
+    rows = scene.take_plot_rows()
+    assert scene.counts["gauge readings"] == len(rows) - 1 < 30
+    assert np.diff([row[0] for row in rows[1:]]).min() > 0.99 * square_sea.PLOT_ROW_INTERVAL
     assert scene.readings().report is None
     shown = SquareSeaScene(Params(**SMALL, plot_wave_gauge=True, plot_wave_spectrum=True))
     run(shown, 30)
@@ -363,3 +366,13 @@ def test_the_dominant_waves_have_a_length_where_there_are_waves(change):
     has_waves = "wind_speed" not in change
     assert math.isfinite(found["wave_length"].value) == math.isfinite(found["open_speed"].value) == has_waves
     assert (found["open_height"].value > 0.0) == has_waves
+
+
+def test_a_sweep_records_the_highest_crest_and_the_waves_about_the_peak():
+    scene = SquareSeaScene(Params(size="128", mesh="64", amplitude=1.5))
+    scene.advance(2)
+    found = {name: measure.value for name, measure in measures(scene).items()}
+    assert found["crest_height"] == pytest.approx(1.5 * scene.sea.surface(scene.time).height.max(), rel=1e-6)
+    length = 9.81 * found["expected_period"] ** 2 / (2.0 * math.pi)  # of deep water
+    assert found["wave_length"] == pytest.approx(length, rel=0.1)
+    assert found["wave_speed"] == pytest.approx(found["wave_length"] / found["expected_period"], rel=1e-9)

@@ -17,6 +17,7 @@ from app.scenes.square_sea.report import (
     low_pass_line,
     marks,
     readout,
+    statistics_table,
     viscosity_line,
     wind_line,
 )
@@ -151,3 +152,9 @@ def test_lines_under_controls_follow_the_spectrum() -> None:
     fast = read(planet="by gravity", gravity=981.0, seconds=0.5, length=32.0)
     assert "not resolved in time" in str(readout(fast))
     assert "not resolved in time" not in str(readout(regular))
+
+
+def test_the_band_of_heights_is_two_standard_deviations() -> None:
+    r = read(1.0, length=400.0).readings.report
+    height = r.theory.statistics.significant_height
+    assert f"{height:.3g} ± {2.0 * r.theory.scatter * height:.2g}" in str(statistics_table(r))

@@ -56,7 +56,9 @@ def solve(
         center_of_mass=(0.0, 0.0, 0.0),
     )
     names = ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")
-    solver = capytaine.BEMSolver()
+    # Potentials instead of sources: on the panels of a ball the added mass is then right within 0.2 % instead of 2 %,
+    # and damping and excitation agree within 0.2 % instead of 4 %.
+    solver = capytaine.BEMSolver(method="direct")
     water = {"body": body, "water_depth": np.inf, "g": 1.0, "rho": 1.0}
 
     def radiate(omega: float) -> tuple[np.ndarray, np.ndarray]:

@@ -1,6 +1,7 @@
 """Each fault of the list, in a copy of the checkout, against the tests that concern its module."""
 
 import csv
+import functools
 import hashlib
 import json
 import os
@@ -89,19 +90,26 @@ def files_by_place(module: str) -> list[str]:
         )
     if len(parts) == 2:
         return [f"tests/sim/test_{parts[1]}"]
-    return sorted(
-        path.relative_to(ROOT).as_posix() for path in (ROOT / "tests" / parts[0] / parts[1]).glob("test_*.py")
-    )
+    others = [ROOT / "tests/app/commands/test_hydrodynamics.py"] if parts[1] == "floating" else []
+    paths = [*(ROOT / "tests" / parts[0] / parts[1]).glob("test_*.py"), *others]
+    return sorted(path.relative_to(ROOT).as_posix() for path in paths)
 
 
-def distances(module: str) -> dict[str, int]:
-    """How many imports lead from each source to a module, of those that lead there at all."""
+@functools.cache
+def import_graph() -> tuple[dict[str, Path], dict[str, list[str]]]:
+    """The sources by the names of their modules, and which modules import each."""
     paths = {module_of(path): path for top in OWN for path in (ROOT / top).rglob("*.py")}
     importers: dict[str, list[str]] = {name: [] for name in paths}
     for name, path in paths.items():
         for other in imports(path):
             if other in importers:
                 importers[other].append(name)
+    return paths, importers
+
+
+def distances(module: str) -> dict[str, int]:
+    """How many imports lead from each source to a module, of those that lead there at all."""
+    paths, importers = import_graph()
     start = module_of(ROOT / module)
     found, waiting = {start: 0}, [start]
     for name in waiting:

@@ -8,12 +8,15 @@ import time
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import imageio  # noqa: F401
 import numba
+import pyfftw  # noqa: F401
 import pytest
 import scipy.integrate
 import scipy.optimize
 import scipy.special  # noqa: F401
 import trimesh  # noqa: F401
+import viser  # noqa: F401
 
 import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread
 from tests.faults.calls import CallRecorder

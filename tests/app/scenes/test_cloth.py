@@ -9,7 +9,7 @@ import pytest
 from app.messages import DivergenceError, Grab, Place, Release
 from app.panel.panel import status_line
 from app.scenes.cloth.parameters import PRESETS, Params, hidden
-from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene
+from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
 from app.scenes.cloth.view import View, faces
 from app.scenes.measures import plotted
 from app.server.loop import SimLoop
@@ -281,3 +281,12 @@ def test_plot_rows_are_measures_with_the_units_of_their_charts():
     assert found["kinetic"] == (2, "J", "Energy: kinetic")
     assert found["gravity_energy"] == (4, "J", "Energy: gravity")  # not the parameter
     assert found["largest_strain"] == (7, "%", "largest strain")
+
+
+def test_gusts_blow_along_across_and_up_by_their_shares():
+    params = dataclasses.replace(SMALL, wind=8.0, gust=0.5, wind_direction=90.0)
+    across, along, up = np.array([gusty_wind(params, t) for t in np.linspace(0.0, 400.0, 40_001)]).T
+    assert along.mean() == pytest.approx(8.0, rel=0.01)
+    assert along.std() == pytest.approx(8.0 * 0.5 * math.sqrt((0.3**2 + 0.2**2) / 2.0), rel=0.01)
+    assert np.abs(across).max() == pytest.approx(8.0 * 0.5 * 0.35, rel=1e-3)
+    assert up.max() == pytest.approx(8.0 * 0.5 * 0.15, rel=1e-3)

@@ -550,3 +550,12 @@ def test_radiated_waves_are_laid_on_the_rings_that_they_reach(monkeypatch: pytes
     assert len(rings) == scene.grid.spokes * (scene.grid.radii < 57.6).sum()
     assert np.hypot(*rings[:, :2].T).max() < 60.0
     assert len(centre) == 1
+
+
+def test_every_surface_has_radiated_waves_or_has_none() -> None:
+    scene = RadialSeaScene(with_parameters(bodies=2, wave_count=16))
+    for _ in range(20):
+        scene.advance(2)
+        scene.frame()
+    done, skipped, _ = scene.work()["surfaces with radiated waves"]
+    assert (done + skipped, done > 0) == (scene.counts["surfaces"], True)

@@ -259,3 +259,21 @@ def test_the_cost_of_a_surface_is_shown_in_milliseconds() -> None:
     assert len(costs) == 2
     text = surfaces_html(loop.latest)
     assert all(f">{1e3 * cost:.2f}<" in text for cost in costs)
+    radial = loop.latest.readings.surfaces["sum"]
+    grid = loop.latest.frame.grid
+    assert radial.shortest == pytest.approx(2.0 * (grid.radii[1] - grid.radii[0]), rel=0.1)
+    assert radial.extent == 2.0 * grid.radii[-1]
+
+
+@pytest.mark.parametrize(("fraction", "beyond"), [(0.05, False), (0.3, True)])
+def test_the_line_under_a_mixture_says_where_its_law_ends(fraction: float, beyond: bool) -> None:
+    values = {"spill": "mixed", "mixture_law": "taylor", "fraction": fraction, "bodies": 0, "oil": "Arabian Light"}
+    loop = SimLoop(RadialSeaScene(check_record(Params, {"wave_count": 16, **values})))
+    loop.tick(0.1)
+    said = marks_of(loop.latest)
+    ending = "; the law holds up to 10%" if beyond else ""
+    assert said["continuous"].replace("\u202f", "") == f"{100.0 * fraction:.0f}\u00a0% drops of oil{ending}"
+    column = loop.latest.readings.column
+    assert float(said["mixture_law"].split("\u202f")[0].split(" ")[0]) == pytest.approx(
+        1e3 * column.surface.viscosity, rel=6e-3
+    )

@@ -409,3 +409,16 @@ def test_a_sweep_records_each_rope_of_a_race():
 
 def test_the_gauge_is_compiled_ahead_as_it_is_called():
     compile_gauge()
+
+
+def test_all_roots_swing_by_the_arrows_that_are_set():
+    scene = race(ropes=2, root_swing=0.3, swing_period=0.7)
+    places = []
+    for _ in range(126):
+        scene.advance(1)
+        places.append(scene.race.entrants[1].state.x[0, 0, 0])
+    phase = 2.0 * np.pi * scene.race.tick / 0.7 * np.arange(126)
+    waves = np.column_stack([np.cos(phase), np.sin(phase)])
+    found = np.linalg.lstsq(waves[63:], np.array(places)[63:] - ROOT[0])[0]
+    assert np.hypot(*found) == pytest.approx(0.3, rel=0.15)
+    assert abs(np.diff(places)).max() < 1.2 * 0.3 * 2.0 * np.pi / 0.7 * scene.race.tick

@@ -323,6 +323,8 @@ def test_the_stiffest_rope_holds_with_every_implicit_method(name: str) -> None:
     assert most_evals <= 60
     cost = scene.readings().cost
     assert 1.0 <= cost.corrections <= 25.0
+    each = scene.state.force_evals / scene.state.steps - INTEGRATORS[name].evals_outside_newton
+    assert cost.corrections == pytest.approx(each, rel=0.4)
     assert cost.damping_dissipation > 0.0
     if name == "implicit_euler":
         assert cost.numerical_dissipation > 0.1 * cost.damping_dissipation

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from app.messages import Snapshot
+from app.render.html import WARNING_COLOUR, bold
 from app.scenes.square_sea.live_values import open_sea
 from app.scenes.square_sea.parameters import Params
 from app.scenes.square_sea.report import (
@@ -145,6 +146,7 @@ def test_lines_under_controls_follow_the_spectrum() -> None:
     assert "19.5" not in wind_line(params(spectrum="jonswap"))
     grown = marks(read(spectrum="jonswap", wind_speed=7.0, seconds=0.2))
     assert "fully grown" in grown["fetch"]
+    assert numbers(grown["size"]) == pytest.approx([params().length / 64.0, params().length / 32.0], rel=6e-3)
     assert numbers(grown["fetch"])[0] == pytest.approx(1.5777e4 * 49.0 / 9.81, rel=6e-3)
     regular = read(spectrum="regular", wave_period=6.0, wave_height=1.0, seconds=0.2)
     assert numbers(marks(regular)["wave_period"])[1] == pytest.approx(6.2, abs=0.05)
@@ -158,3 +160,8 @@ def test_the_band_of_heights_is_two_standard_deviations() -> None:
     r = read(1.0, length=400.0).readings.report
     height = r.theory.statistics.significant_height
     assert f"{height:.3g} ± {2.0 * r.theory.scatter * height:.2g}" in str(statistics_table(r))
+    drawn = f"{r.measured.significant_height:.3g}"
+    assert str(bold(drawn)) in str(statistics_table(r))
+    high = r._replace(measured=r.measured._replace(significant_height=(1.0 + 3.0 * r.theory.scatter) * height))
+    assert str(bold(drawn)) not in str(statistics_table(high))
+    assert WARNING_COLOUR in str(statistics_table(high))

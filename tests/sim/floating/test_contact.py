@@ -113,6 +113,14 @@ def test_hulls_are_as_wide_as_they_look():
             assert collide(fleet, 0.0) == touching
 
 
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (0.6, 0.0, 0.8), (0.48, 0.64, 0.6)])
+def test_balls_touch_in_any_direction_at_the_sum_of_their_radii(direction):
+    for gap, touching in ((-0.01, 1), (0.01, 0)):
+        place = (0.8 + gap) * np.array(direction)
+        fleet = make_fleet([Body(Hull.sphere(0.5), 500.0), Body(Hull.sphere(0.3), 500.0, tuple(place))])
+        assert collide(fleet, 0.0) == touching
+
+
 def test_bodies_dropped_into_one_another_part():
     ball = Hull.sphere(0.5)
     fleet = make_fleet([Body(ball, 400.0, (0.1 * i, 0.05 * (i % 3), 0.0)) for i in range(10)])

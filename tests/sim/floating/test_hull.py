@@ -61,6 +61,13 @@ def test_a_mesh_inside_out_is_turned():
     assert Hull.from_arrays(box.vertices, box.faces[:, ::-1]).volume == pytest.approx(1.0)
 
 
+def test_vertices_that_no_face_has_are_left_out():
+    box = Hull.box(1.0, 2.0, 3.0)
+    found = Hull.from_arrays(np.concatenate([[[9.0, 9.0, 9.0]], box.vertices]), box.faces + 1)
+    assert found.volume == pytest.approx(6.0)
+    np.testing.assert_allclose(found.extents, box.extents)
+
+
 def broken_meshes():
     box = Hull.box(1.0, 1.0, 1.0)
     turned = box.faces.copy()
@@ -74,6 +81,7 @@ def broken_meshes():
         "not finite": (infinite, box.faces, "not finite"),
         "flat": (box.vertices * [1, 1, 0], box.faces, "extents"),
         "no such vertex": (box.vertices, box.faces + 1, "faces of vertices 0 to 7"),
+        "counted from the end": (box.vertices, box.faces - 1, "vertex -1 is not allowed"),
         "empty": (np.zeros((0, 3)), np.zeros((0, 3), dtype=int), "m at least 4"),
         "huge": (box.vertices * 1e200, box.faces, "extents"),
     }

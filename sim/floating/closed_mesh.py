@@ -65,11 +65,8 @@ def checked_mesh(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -
     if vertices.ndim != 2 or vertices.shape[1] != 3 or faces.ndim != 2 or faces.shape[1] != 3 or len(faces) < 4:
         raise argument_error(name, f"{vertices.shape} vertices, {faces.shape} faces", "(n, 3), (m, 3), m at least 4")
     if faces.min() < 0 or faces.max() >= len(vertices):
-        raise argument_error(
-            name,
-            f"vertex {faces.min() if faces.min() < 0 else faces.max()}",
-            f"faces of vertices 0 to {len(vertices) - 1}",
-        )
+        wrong = faces.min() if faces.min() < 0 else faces.max()
+        raise argument_error(name, f"vertex {wrong}", f"faces of vertices 0 to {len(vertices) - 1}")
     used, faces = np.unique(faces, return_inverse=True)
     vertices, faces = vertices[used], faces.reshape(-1, 3)
     if not np.isfinite(vertices).all():

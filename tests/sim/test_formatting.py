@@ -27,7 +27,8 @@ def test_a_length_is_in_the_unit_it_is_read_in(value: float, text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.0, "0 s"), (80.0, "80 s"), (120.0, "2 min"), (7200.0, "2 h"), (3e5, "3.47 days"),
+    ("value", "text"), [(0.0, "0 s"), (80.0, "80 s"), (120.0, "2 min"), (5200.0, "86.7 min"),
+                        (5600.0, "1.56 h"), (7200.0, "2 h"), (3e5, "3.47 days"),
                         (6.312e7, "2 years"), (1 / 60, "16.7 ms"), (0.0026, "2.6 ms"), (4e-6, "4 µs"),
                         (4e-8, "0.04 µs"), (math.inf, "∞")],
 )  # fmt: skip

@@ -7,6 +7,8 @@ import pytest
 import trimesh
 
 from sim.floating import Hull
+from sim.floating.shapes.box import box
+from sim.floating.shapes.record import Appearance, Shape
 from sim.floating.shapes.sphere import geodesic
 from tests.naive_floating import lumpy, quaternion
 
@@ -26,8 +28,14 @@ def test_round_primitives_have_the_true_volume_and_nearly_the_true_inertia():
     assert np.diag(sphere.inertia) == pytest.approx(0.4 * sphere.volume * 0.25, rel=1e-4)
     cylinder = Hull.cylinder(0.5, 2.0)
     assert cylinder.volume == pytest.approx(math.pi * 0.25 * 2, rel=1e-13)
+    np.testing.assert_allclose(cylinder.extents, [[-0.5, 0.5], [-0.5, 0.5], [-1.0, 1.0]])
     across = cylinder.volume * (3 * 0.25 + 4) / 12
     assert np.diag(cylinder.inertia) == pytest.approx([across, across, cylinder.volume * 0.125], rel=1e-4)
+
+
+def test_a_shape_without_appearances_looks_as_it_is_named():
+    shape = Shape("square_pyramid", box, lengths=(1.0, 1.0, 1.0))
+    assert shape.appearances == (Appearance("square_pyramid", "Square pyramid"),)
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -17,7 +17,7 @@ from sim.floating import (
     step,
     still_water,
 )
-from sim.floating.excitation import WaveExcitation, plane_force
+from sim.floating.excitation import HullExcitation, WaveExcitation, plane_force
 from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange
 from sim.floating.linear_motion import first_swings, linear_decay, linear_response
 from sim.floating.linear_table import table_of
@@ -158,8 +158,23 @@ def test_the_hemisphere_has_the_added_mass_of_hulme() -> None:
     linear = afloat(Hull.sphere(1.0), 512.5, WATER).linear
     for kr, known in ((0.1, 0.8627), (0.4, 0.6452), (1.0, 0.4284)):
         a, _ = linear.at(math.sqrt(kr))
-        assert a[2, 2] / linear.volume == pytest.approx(known, rel=0.03)
-    assert linear.infinite[2, 2] / linear.volume == pytest.approx(0.5, rel=0.03)
+        assert a[2, 2] / linear.volume == pytest.approx(known, rel=3e-3)
+    assert linear.infinite[2, 2] / linear.volume == pytest.approx(0.5, rel=3e-3)
+
+
+def test_forces_fade_over_the_hull_s_length_beyond_the_highest_frequency() -> None:
+    linear = afloat(Hull.sphere(1.0), 512.5, WATER).linear
+    last = linear.frequency[-1] ** 2
+    at, beyond = HullExcitation(Hull.sphere(1.0), linear, 0.0).tabulate(np.array([last, last + 1.5 / linear.length]))
+    np.testing.assert_allclose(beyond, math.exp(-1.5) * at, rtol=1e-9, atol=1e-12)
+
+
+def test_the_swings_of_a_damped_cosine_have_its_period_and_ratio() -> None:
+    period, rate = 23.7, 0.01  # [samples], of each sample
+    t = np.arange(100)
+    found, ratio = first_swings(np.exp(-rate * t) * np.cos(2.0 * math.pi / period * t))
+    assert found == pytest.approx(period, rel=1e-3)
+    assert ratio == pytest.approx(math.exp(-rate * period), rel=0.01)
 
 
 @pytest.mark.parametrize("name", ["box", "cylinder", "sphere"])
@@ -172,8 +187,16 @@ def test_tables_obey_haskind_and_take_energy(name: str) -> None:
         k = frequency**2
         expected = k * frequency / 2 * np.mean(np.abs(linear.excitation[i, :, 2]) ** 2)
         scale = linear.damping[:, 2, 2].max()
-        assert linear.damping[i, 2, 2] == pytest.approx(expected, abs=0.05 * scale)
-    assert (np.einsum("adnii->adni", table.damping[:, 1:-1])[:, :, :14, :3] > -5e-3).all()
+        assert linear.damping[i, 2, 2] == pytest.approx(expected, abs=(0.02 if i < 15 else 0.04) * scale)
+    assert (np.einsum("adnii->adni", table.damping[:, 1:-1])[:, :, :14, :3] > -1e-4).all()
+
+
+def test_the_tables_of_a_ball_obey_haskind_within_half_a_percent() -> None:
+    """At their own drafts, up to one and a quarter radii."""
+    table = table_of("sphere")
+    frequency, damping = table.frequency[:14], table.damping[0, :6, :14, 2, 2]
+    expected = frequency**3 / 2 * np.abs(table.excitation[0, :6, :14, 0, 2]) ** 2
+    np.testing.assert_allclose(damping, expected, atol=5e-3 * damping.max())
 
 
 def test_a_turned_hull_and_a_turned_wave_are_one() -> None:

@@ -269,6 +269,10 @@ class Panel:
             self.loaded = next(iter(self.kind.presets))
         self.show_preset()
 
+    def keep_curves(self, on: bool) -> None:
+        """Keep the curves that the plots have, to be drawn beside those of the runs that follow; or drop them."""
+        self.plots.kept = tuple(self.plots.rows) if on else ()
+
     def plot_rows(self) -> Sequence[PlotRow]:
         """The rows of the plots that are kept."""
         return tuple(self.plots.rows)

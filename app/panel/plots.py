@@ -31,6 +31,7 @@ TICKS = 4  # about so many intervals between two ends of a scale
 MIN_SPAN = 1e-3  # of a scale, over the size of its numbers: a constant has a scale too
 MIN_FILLED = 0.3  # share of a scale that its data must fill, or the scale is made anew
 COLOURS = ("#7048e8", "#1c7ed6", "#f76707", "#12b886", "#e64980", "#868e96", "#e03131")
+KEPT_OPACITY, KEPT_DASH = "99", (5.0, 4.0)  # of the lines of an earlier run: a hexadecimal byte, [pixels]
 EMPTY = np.array([0.0, 1.0])  # the times of a chart without rows
 
 Look: TypeAlias = tuple[str, tuple[Line, ...], float | None, "Scale | None"]
@@ -91,6 +92,7 @@ class Plots:
         self.sent: dict[str, object] = {}  # the columns that each curve shows, and the last row of each plot
         self.dock: Dock | None = None
         self.open: frozenset[str] = frozenset()  # parameters of the open charts
+        self.kept: tuple[PlotRow, ...] = ()  # rows of an earlier run, drawn beside those of this one
         self.sent_at = 0.0
         self.drawn = self.skipped = 0  # charts sent again, and charts that were closed or had nothing new
 
@@ -161,16 +163,23 @@ class Plots:
 
     def send_plots(self, wanted: frozenset[str], moment: float | None) -> None:
         """Send the open charts over time that show other rows than they are to."""
-        shown = self.rows_about(moment)
-        ends = (shown[0], shown[-1]) if shown else None
+        shown, kept = self.rows_about(moment), self.kept
+        ends = (shown[0], shown[-1], kept) if shown else (kept,)
         behind = [name for name in self.kind.plots if name in wanted and self.sent.get(name, 0) != ends]
-        table: NDArray[np.float64] = np.array(shown).T if behind and shown else np.empty((1, 0))
+        if not behind:
+            return
+        width = 1 + len(self.kind.series)
+        now, before = (np.array(rows, np.float64).reshape(-1, width) for rows in (shown, beside(shown, kept)))
+        times = np.union1d(now[:, 0], before[:, 0])
         for name in behind:
             self.sent[name] = ends
             series = self.kind.plots[name].series
             rows = [1 + self.kind.series.index(one) for one in series]
-            columns = (table[0], *(table[row] for row in rows)) if shown else (table[0],) * (1 + len(rows))
-            self.send(name, "t [s]", lines_of(series), columns)
+            lines, columns = lines_of(series), [at_times(times, now, row) for row in rows]
+            if kept:
+                lines = (*lines, *(kept_line(line) for line in lines))
+                columns += [at_times(times, before, row) for row in rows]
+            self.send(name, "t [s]", lines, (times, *columns))
 
     def send(self, name: str, first: str, lines: tuple[Line, ...], columns: Columns, end: float | None = None) -> None:
         """Send one chart. end: of the scale of the first column, which then starts at 0; None to fit it to the data."""
@@ -234,6 +243,26 @@ class Plots:
                 padding=PADDING,
                 legend=uplot.Legend(live=False),  # a short key, without a column of values
             )
+
+
+def beside(shown: Sequence[PlotRow], kept: Sequence[PlotRow]) -> list[PlotRow]:
+    """The rows of an earlier run that belong into the chart of these: as many as a chart shows."""
+    if not shown:
+        return list(kept[:SHOWN_ROWS])
+    found = [row for row in kept if row[0] >= shown[0][0]]
+    return [row for i, row in enumerate(found) if i < SHOWN_ROWS or row[0] <= shown[-1][0]]
+
+
+def at_times(times: NDArray[np.float64], rows: NDArray[np.float64], column: int) -> NDArray[np.float64]:
+    """A column of rows (n, columns) at other times [s], linear in between; NaN before the first and after the last."""
+    if not len(rows):
+        return np.full(len(times), math.nan)
+    return np.interp(times, rows[:, 0], rows[:, column], math.nan, math.nan)
+
+
+def kept_line(line: Line) -> Line:
+    """How a line of an earlier run is drawn."""
+    return Line(f"{line.label}, kept", line.colour + KEPT_OPACITY, 1.5, KEPT_DASH)
 
 
 def lines_of(names: Sequence[str]) -> tuple[Line, ...]:

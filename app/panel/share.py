@@ -40,6 +40,7 @@ PICTURE_SIZES = {  # [pixels]
 BACK, FORWARD, PRESENT = "◀ Back", "Forward ▶", "Now"
 CONTINUE = "Continue from here"
 COPY, SAVE, PLOTS, PICTURE, REPLAY = "Copy link", "Save set-up", "Plots as CSV", "Picture", "Replay"
+KEEP_CURVES, DROP_CURVES = "Keep curves", "Drop curves"
 KEEP, REMOVE = "Keep as preset", "Remove preset"
 CHARTS, ARRAYS, FILM = "Plots as SVG", "Arrays", "Film pictures"
 MAX_PICTURES = 900  # of a film: half a minute of a recording
@@ -80,6 +81,10 @@ class Settings(Protocol):
 
     def show_own(self, chosen: str = "") -> None:
         """Read the user's own set-ups again. chosen: the one that the parameters are those of, if any."""
+        ...
+
+    def keep_curves(self, on: bool) -> None:
+        """Keep the curves that the plots have, to be drawn beside those of the runs that follow; or drop them."""
         ...
 
     def plot_rows(self) -> Sequence[PlotRow]:
@@ -136,6 +141,8 @@ class Share:
             self.rate.on_update(self.on_rate)
             self.loop = gui.add_checkbox("Repeat", initial_value=False, hint="Play the recording again and again")
             self.loop.on_update(self.on_loop)
+            self.curves = gui.add_button_group("", (KEEP_CURVES, DROP_CURVES))
+            self.curves.on_click(self.on_curves)
             self.state = gui.add_html("")
             self.name = gui.add_text(
                 "Name", "", hint=f"Of the set-up that is saved, kept or removed, at most {MAX_NAME} characters"
@@ -270,6 +277,16 @@ class Share:
             return
         client.send_file_download(f"springtide-{panel.kind.name}.json", text.encode(), save_immediately=True)
         self.say("The set-up was sent to the browser as a file.")
+
+    async def on_curves(self, event: ViserEvent) -> None:
+        """Keep the curves of the plots over time beside those of the next run, or drop them."""
+        on = event.target.value == KEEP_CURVES
+        rows = self.panel.plot_rows()
+        if on and not rows:
+            self.say("There are no curves over time to keep.")
+            return
+        self.panel.keep_curves(on)
+        self.say(fill("Kept: the curves up to t = {:.2f} s. They are dashed.", rows[-1][0]) if on else "")
 
     async def on_own(self, event: ViserEvent) -> None:
         """Keep what is set in the list of presets under its name, or remove what has that name."""

@@ -140,7 +140,7 @@ class Lab:
             return
         with contextlib.suppress(RuntimeError, TimeoutError):
             if viewer.audience():
-                self._output.still = take_picture(viewer, *self._output.still_size, LAST_TIMEOUT)
+                self._output.still = take_picture(viewer, *self._output.still_size, timeout=LAST_TIMEOUT)
         viewer.shut()
         self._output.end()
 

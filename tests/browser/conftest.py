@@ -83,14 +83,22 @@ class Tab:
     """One page on a server, with flat shaders or with those that users see, and the errors on it."""
 
     def __init__(
-        self, chromium: Any, port: int, width: int = 900, height: int = 560, shaded: bool = False, query: str = ""
+        self,
+        chromium: Any,
+        port: int,
+        width: int = 900,
+        height: int = 560,
+        shaded: bool = False,
+        query: str = "",
+        address: str = "",
     ) -> None:
+        """address: of the page where a proxy shows it, with a "?"."""
         self.page = new_page(chromium, width, height, shaded)
         self.errors: list[str] = []
         self.followed = 0  # number of scenes that were opened for it
         self.page.on("console", self.note)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.goto(f"http://127.0.0.1:{port}/?hideViserLogo&fixedDpr={PIXEL_RATIO}{query}")
+        self.page.goto(f"{address or f'http://127.0.0.1:{port}/?'}&hideViserLogo&fixedDpr={PIXEL_RATIO}{query}")
 
     def note(self, message: Any) -> None:
         if message.type == "error" and not any(harmless in message.text for harmless in HARMLESS_ERRORS):

@@ -1,8 +1,12 @@
 """What the page says while there is no picture: before, and after the server."""
 
+import socket
 import time
 from typing import Any
 
+import pytest
+
+from app.server.access import Access
 from app.server.viewer import Viewer
 from tests.browser.conftest import new_page
 
@@ -49,3 +53,29 @@ def test_without_webgl_the_page_says_so(chromium: Any) -> None:
     finally:
         viewer.shut()
         page.close()
+
+
+def test_no_link_leads_the_page_to_another_server(chromium: Any) -> None:
+    """What viser's client gets from there may be JavaScript, which would run as if it were ours."""
+    key = "k" * 16
+    viewer = Viewer("127.0.0.1", 0, access=Access(key=key))
+    page = new_page(chromium, 640, 400, shaded=False)
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        there = f"localhost:{other.getsockname()[1]}"
+        asked = f"websocket=ws://{there}&playbackPath=http://{there}/x&scene=rope&stiffness=3000"
+        try:
+            viewer.open("rope")
+            page.goto(f"http://127.0.0.1:{viewer.port}/{key}/?{asked}&fixedDpr=0.2", wait_until="commit")
+            page.wait_for_selector(".springtide-panel[data-state]")
+            page.wait_for_function("!location.search.includes('websocket')")
+            assert page.evaluate("location.href").endswith(f"{key}/index.html?scene=rope&stiffness=3000&fixedDpr=0.2")
+            end = time.monotonic() + 30.0
+            while viewer.panel.params.stiffness != 3000.0:  # the rest of the link counts
+                assert time.monotonic() < end
+                page.wait_for_timeout(50)
+            other.setblocking(False)
+            with pytest.raises(BlockingIOError):
+                other.accept()
+        finally:
+            viewer.shut()
+            page.close()

@@ -1,0 +1,120 @@
+"""The example notebooks, each in a kernel that a real Jupyter server has started."""
+
+import asyncio
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.jupyter import Jupyter, jupyter
+
+nbformat = pytest.importorskip("nbformat", reason="the extra test is not installed")
+nbclient = pytest.importorskip("nbclient", reason="the extra test is not installed")
+jupyter_client = pytest.importorskip("jupyter_client", reason="the extra test is not installed")
+ROOT = Path(__file__).parents[3]
+NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Jupyter]:
+    with jupyter(tmp_path_factory.mktemp("jupyter")) as server:
+        yield server
+
+
+def run(server: Jupyter, notebook: Any) -> Any:
+    """Execute a notebook in a kernel of the server, and return it with its outputs; fails where a cell does."""
+
+    async def execute(connection: Path) -> None:
+        client = nbclient.NotebookClient(notebook, timeout=600)
+        client.kc = jupyter_client.AsyncKernelClient()
+        client.kc.load_connection_file(str(connection))
+        client.kc.start_channels(hb=False)
+        try:
+            await client.kc.wait_for_ready(timeout=60)
+            for number, cell in enumerate(notebook.cells):
+                await client.async_execute_cell(cell, number)
+        finally:
+            client.kc.stop_channels()
+
+    kernel = server.ask("api/kernels", "POST")["id"]
+    try:
+        asyncio.run(execute(server.runtime / f"kernel-{kernel}.json"))
+    finally:
+        server.ask(f"api/kernels/{kernel}", "DELETE")
+    return notebook
+
+
+def outputs(notebook: Any) -> list[Any]:
+    return [output for cell in notebook.cells for output in cell.get("outputs", [])]
+
+
+def test_the_examples_are_there_and_are_no_other_than_what_is_tested() -> None:
+    assert [path.stem for path in NOTEBOOKS] == ["race", "rope", "sea"]
+    for path in NOTEBOOKS:
+        notebook = nbformat.read(path, as_version=4)
+        nbformat.validate(notebook)
+        assert "app.show(" in "".join(cell.source for cell in notebook.cells)
+
+
+def test_two_labs_in_a_notebook_and_a_cell_that_is_run_again(server: Jupyter) -> None:
+    code = (
+        "import threading\nimport app\nrope = app.show('rope', stiffness=2000, paused=True)",
+        "other = app.show('rope', paused=True)\nrope.wait(0.5)\nother.wait(0.25)",
+        "print(round(rope.time, 6), round(other.time, 6), rope.address != other.address)\nrope.stop()\nother.wait(0.25)",
+        "print(round(other.time, 6), rope)",
+        "try:\n    app.show('rope', stiffness=-1)\nexcept ValueError as reason:\n    print(reason)",
+        "other.stop()\nprint([t.name for t in threading.enumerate() if t.name in ('simulation', 'viewer')])",
+    )
+    done = run(server, nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in code]))
+    found = outputs(done)
+    assert all(output.output_type != "error" for output in found)
+    said = "".join(output.get("text", "") for output in found if output.output_type == "stream").splitlines()
+    assert said == [
+        "0.5 0.25 True",
+        "0.5 <a lab that was stopped>",
+        "stiffness: -1 is not allowed; allowed: 1 to 1e9 N/m",
+        "[]",
+    ]
+    shown = [output.data for output in found if output.output_type == "display_data"]
+    assert len(shown) == 4  # a page and a place for a picture, twice
+    assert "viser" not in str(shown)
+    assert shown[0]["text/plain"] == "This lab was stopped."  # no browser has drawn it
+
+
+@pytest.mark.stress
+@pytest.mark.timeout(1200)
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_an_example_runs_clean(server: Jupyter, path: Path) -> None:
+    start = time.monotonic()
+    done = run(server, nbformat.read(path, as_version=4))
+    print(f"{path.stem}: {time.monotonic() - start:.1f} s")
+    for output in outputs(done):
+        assert output.output_type != "error"
+        assert output.get("name") != "stderr", output
+    assert any("image/png" in output.get("data", {}) for output in outputs(done))  # its figures
+
+
+@pytest.mark.stress
+def test_a_kernel_that_restarts_or_ends_leaves_no_process(server: Jupyter) -> None:
+    psutil = pytest.importorskip("psutil")
+    kernel = server.ask("api/kernels", "POST")["id"]
+    connection = server.runtime / f"kernel-{kernel}.json"
+    client = jupyter_client.BlockingKernelClient()
+    for ending in ("restart", "DELETE"):
+        client.load_connection_file(str(connection))
+        client.start_channels(hb=False)
+        client.wait_for_ready(timeout=60)
+        reply = client.execute_interactive(
+            "import app\nlab = app.show('cloth')", timeout=200, output_hook=lambda _: None
+        )
+        assert reply["content"]["status"] == "ok"
+        below = psutil.Process(server.process.pid).children(recursive=True)
+        client.stop_channels()
+        if ending == "restart":
+            server.ask(f"api/kernels/{kernel}/restart", "POST")
+        else:
+            server.ask(f"api/kernels/{kernel}", "DELETE")
+        _, alive = psutil.wait_procs(below, timeout=15)
+        assert [p.pid for p in alive if p.status() != psutil.STATUS_ZOMBIE] == []

@@ -62,8 +62,8 @@ def test_two_labs_in_a_notebook_and_a_cell_that_is_run_again(server: Jupyter) ->
     code = (
         "import threading\nimport app\nrope = app.show('rope', stiffness=2000, paused=True)",
         "other = app.show('rope', paused=True)\nrope.wait(0.5)\nother.wait(0.25)",
-        "print(round(rope.time, 6), round(other.time, 6), rope.address != other.address)\nrope.stop()\nother.wait(0.25)",
-        "print(round(other.time, 6), rope)",
+        "print(round(rope.time, 6), round(other.time, 6), rope.address != other.address)",
+        "rope.stop()\nother.wait(0.25)\nprint(round(other.time, 6), rope)",
         "try:\n    app.show('rope', stiffness=-1)\nexcept ValueError as reason:\n    print(reason)",
         "other.stop()\nprint([t.name for t in threading.enumerate() if t.name in ('simulation', 'viewer')])",
     )

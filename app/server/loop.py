@@ -48,6 +48,7 @@ MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 MAX_CATCH_UP = 0.25  # [s] of wall time that one tick makes up for
 KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least
 KEEP_SHARE = 0.01  # of a core that keeping states may take
+HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
 RATE_WINDOW = 1.0  # [s] over which rates are measured
 MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond that the oldest are dropped
 
@@ -137,6 +138,7 @@ class SimLoop:
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
         self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
         self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
+        self.published = 0.0  # [s] of simulated time, of the last snapshot
         self.goal: Goal | None = None  # that a program waits for
         self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
         self.latest: AnySnapshot = self.snapshot()
@@ -226,14 +228,19 @@ class SimLoop:
             answer.set_exception(error)
 
     def hurry(self, until: float) -> None:
-        """Take steps up to a time [s] while the frame's budget lasts, as many at once as a frame of a viewer has."""
+        """Take steps up to a time [s] while the frame's budget lasts, as many at once as a frame of a viewer has.
+
+        Some scenes record what they draw, so there is a snapshot now and then.
+        """
         most = max(1, int(FRAME_INTERVAL / self.scene.step * (1 + 1e-9)))
-        spent = 0.0
-        while spent < SOLVE_SHARE * FRAME_INTERVAL and self.running and self.replay is None:
+        start = self.effort()
+        while self.running and self.replay is None and self.effort() - start < SOLVE_SHARE * FRAME_INTERVAL:
             left = steps_to(self.scene, until)
             if left == 0:
                 return
-            spent += self.advance(min(most, left))
+            self.advance(min(most, left))
+            if self.scene.time - self.published >= HURRY_INTERVAL:
+                self.publish()
 
     def advance_within_budget(self, n: int) -> None:
         """Take up to n steps in growing parts while the frame's budget lasts.
@@ -394,6 +401,7 @@ class SimLoop:
     def publish(self) -> None:
         """Hand the viewer what there is now."""
         self.latest = self.snapshot()
+        self.published = self.scene.time
         self.fresh.set()
 
     def snapshot(self) -> AnySnapshot:

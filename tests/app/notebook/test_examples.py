@@ -101,8 +101,8 @@ def test_a_kernel_that_restarts_or_ends_leaves_no_process(server: Jupyter) -> No
     psutil = pytest.importorskip("psutil")
     kernel = server.ask("api/kernels", "POST")["id"]
     connection = server.runtime / f"kernel-{kernel}.json"
-    client = jupyter_client.BlockingKernelClient()
     for ending in ("restart", "DELETE"):
+        client = jupyter_client.BlockingKernelClient()
         client.load_connection_file(str(connection))
         client.start_channels(hb=False)
         client.wait_for_ready(timeout=60)

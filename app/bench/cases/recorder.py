@@ -1,0 +1,45 @@
+"""What recording costs: processor time of the frames and states that are kept, and the memory that they hold."""
+
+import time
+from typing import Any
+
+from app.panel.recorder import Recorder
+from app.scenes import NAMES, scene_named
+from app.scenes.moments import arrays_in
+from app.server.loop import KEEP_INTERVAL, KEEP_SHARE, SimLoop
+
+DURATION, QUICK_DURATION = 12.0, 1.0  # [s] of wall time that are recorded
+
+
+def rows(quick: bool = False) -> list[dict[str, Any]]:
+    """Each scene as it is shown first: per cent of a core at real time, and the megabytes of a second."""
+    return [record(name, QUICK_DURATION if quick else DURATION) for name in NAMES]
+
+
+def record(name: str, duration: float) -> dict[str, Any]:
+    """Record one scene for so long [s], on a clock of its own."""
+    kind = scene_named(name)
+    scene = kind.make(kind.opening_params())
+    loop, recorder = SimLoop(scene), Recorder()
+    wall = noting = keeping = 0.0
+    kept = 0
+    while wall < duration:
+        loop.tick(loop.frame_interval)
+        wall += loop.frame_interval
+        start = time.thread_time()
+        recorder.note(loop.latest, wall)
+        noting += time.thread_time() - start
+        if kept < wall / KEEP_INTERVAL:  # as often as the loop does
+            start = time.thread_time()
+            arrays_in(scene.keep())
+            keeping += time.thread_time() - start
+            kept += 1
+    low, high = recorder.span()
+    return {
+        "scene": name,
+        "frames [% of a core]": 100.0 * noting / wall,
+        "states [% of a core]": 100.0 * min(keeping / wall, KEEP_SHARE),
+        "a state [ms]": 1e3 * keeping / max(kept, 1),
+        "memory [MB]": recorder.bytes / 1e6,
+        "recorded [s]": high - low,
+    }

@@ -15,6 +15,7 @@ FILE = "answers.toml"
 MAX_SIZE = 2**20  # [bytes] of a file that is read
 ENCODING = "utf-8-sig"  # for reading: some editors begin a file with a byte order mark
 LINE = 100  # characters of a comment's line
+NAME = re.compile(r"(?m)\Aname *=.*?(?=\r?$)|(?<=\n)name *=.*?(?=\r?$)")  # the line with the student's name
 QUOTES = ('"""', "'''")  # around a text of several lines
 
 DONE = "done"  # key of the steps that were seen to be done
@@ -100,6 +101,17 @@ def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: s
     changed = with_value(text, task, key, value)
     if changed is None:
         changed = answers_text(tasks, Answers(answers.name, {**answers.values, (task, key): value}))
+    with replacing(path) as draft:
+        draft.write_bytes(changed.encode())
+
+
+def change_name(folder: Path, tasks: Sequence[Task], answers: Answers, name: str) -> None:
+    """Change the student's name, as `change_answer` does a value. Raises OSError where that cannot be done."""
+    path = folder / FILE
+    text = path.read_bytes().decode(ENCODING) if path.exists() else ""
+    changed = NAME.sub(lambda _: f"name = {quoted(name)}", text, count=1)
+    if not is_toml(changed) or exact(changed) != {**exact(text), "name": name}:
+        changed = answers_text(tasks, answers._replace(name=name))
     with replacing(path) as draft:
         draft.write_bytes(changed.encode())
 

@@ -89,7 +89,7 @@ def readme_text(name: str, tasks: Sequence[Task]) -> str:
         "2. Write the function, where there is one. The docstring has the equation, the units and the shapes.",
         "3. Look at it in Springtide.",
         "4. Check your work. Check as often as you like.",
-        f"5. Answer the questions, in the panel or in `{FILE}`. Write your name into that file.",
+        f"5. Answer the questions, in the panel or in `{FILE}`. Write your name there too.",
         "",
         "Run these commands in the folder above this one:",
         "",

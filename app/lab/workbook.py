@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from app.lab.answer_check import AnswerVerdict, check_answer
-from app.lab.answers import DONE, FILE, SHOWN, Answers, Value, change_answer, read_answers
+from app.lab.answers import DONE, FILE, SHOWN, Answers, Value, change_answer, change_name, read_answers
 from app.lab.folder import MAX_PICTURES, PICTURES
 from app.lab.live_values import LiveNumber, LiveValues
 from app.lab.task import PREDICTION, Question, Setup, Task
@@ -22,6 +22,7 @@ from sim.quantities import read_number
 from sim.validation import argument_error
 
 MAX_TEXT = 4000  # characters of an answer
+MAX_NAME = 100  # characters of a name
 ALLOWED_CONTROLS = "\n\t"
 
 
@@ -114,15 +115,30 @@ class Workbook:
             raise ValueError("The answer has been shown: the prediction stays as it is.")
         self.keep(task.name, question.key, answer_of(question, text))
 
+    def rename(self, text: str) -> None:
+        """Keep the student's name. Raises ValueError for one that is not allowed, OSError as `answer` does."""
+        name = " ".join(text.split())
+        if len(name) > MAX_NAME or not name.isprintable():
+            raise ValueError(f"A name has at most {MAX_NAME} characters, and no control characters.")
+        if self.folder is None or name == self.answers.name:
+            return
+        with self.lock:
+            change_name(self.folder, self.all_tasks, self.read_whole(self.folder), name)
+            self.refresh()
+
+    def read_whole(self, folder: Path) -> Answers:
+        """The answers as they are in the file. Raises ValueError where it cannot be read."""
+        found = read_answers(folder)
+        if found.error and (folder / FILE).exists():
+            raise ValueError(f"{found.error}. Nothing is written until this is repaired.")
+        return found
+
     def keep(self, task: str, key: str, value: Value) -> None:
         """Change one value of answers.toml. Raises ValueError where the file cannot be read, OSError for writing."""
         if self.folder is None:
             return
         with self.lock:
-            found = read_answers(self.folder)
-            if found.error and (self.folder / FILE).exists():
-                raise ValueError(f"{found.error}. Nothing is written until this is repaired.")
-            change_answer(self.folder, self.all_tasks, found, task, key, value)
+            change_answer(self.folder, self.all_tasks, self.read_whole(self.folder), task, key, value)
             self.refresh()
 
     def add_picture(self, task: Task, words: str, picture: bytes) -> str:

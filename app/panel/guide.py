@@ -169,6 +169,9 @@ class Guide:
         self.titles = tuple(title_of(task) for task in workbook.tasks)
         self.folder = gui.add_folder("Lab guide" if workbook.folder is None else "Workbook")
         with self.folder:
+            if workbook.folder is not None:
+                self.name = gui.add_text("Your name", workbook.answers.name)
+                self.name.on_update(self.on_name)
             self.chooser = gui.add_dropdown("Task", self.titles, initial_value=self.titles[workbook.index])
             self.chooser.on_update(self.on_chooser)
             self.turn = gui.add_button_group("", ("Previous", "Next"))
@@ -188,6 +191,12 @@ class Guide:
         """A task was chosen."""
         if event.client_id is not None and event.target.value in self.titles:
             self.workbook.go(self.titles.index(event.target.value))
+
+    async def on_name(self, event: ViserEvent) -> None:
+        """The student's name, for the report."""
+        if event.client_id is not None:
+            self.refusal = self.attempt(lambda: self.workbook.rename(str(event.target.value)))
+            self.stale = True
 
     async def on_turn(self, event: ViserEvent) -> None:
         """On to the next task, or back."""

@@ -272,3 +272,20 @@ def test_pictures_are_named_by_their_task_and_none_replaces_another(folder: Path
         (folder / PICTURES / str(i)).touch()
     with pytest.raises(ValueError, match="60 pictures"):
         book.add_picture(DRAFT, "again", b"")
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_the_name_is_changed_in_its_place(folder: Path, end: str) -> None:
+    before = (folder / FILE).read_text().replace("\n", end)
+    (folder / FILE).write_bytes(before.encode())
+    book = Workbook(TASKS, folder)
+    book.rename('  Ada "L." \\1  Lovelace ')
+    after = before.replace('name = ""', 'name = "Ada \\"L.\\" \\\\1 Lovelace"', 1)
+    assert (folder / FILE).read_bytes().decode() == after
+    assert book.answers.name == 'Ada "L." \\1 Lovelace'
+    with pytest.raises(ValueError, match="at most 100"):
+        book.rename("x" * 101)
+    (folder / FILE).write_text('# mine\n[extra_draft]\nexplain = """\nname = 1\n"""\n')
+    book.rename("Ada")
+    assert read_answers(folder).name == "Ada"
+    assert read_answers(folder).values["extra_draft", "explain"] == "name = 1\n"

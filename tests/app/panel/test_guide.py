@@ -218,3 +218,12 @@ def test_a_picture_is_kept_for_the_task_that_is_shown(student: Viewer, folder: P
     coroutines.run(guide.on_picture(event))
     wait_for(lambda: "No picture was taken: the browser has gone" in guide.answer.content)
     assert len(list((folder / PICTURES).iterdir())) == 1
+
+
+def test_the_name_is_kept_and_refused(student: Viewer, folder: Path) -> None:
+    guide = guide_of(student)
+    does(guide.on_name, "Ada")
+    assert read_answers(folder).name == "Ada"
+    does(guide.on_name, "x" * 101)
+    wait_for(lambda: "A name has at most" in guide.answer.content)
+    assert read_answers(folder).name == "Ada"

@@ -105,3 +105,8 @@ def test_material_units_stretch_as_the_continuum_but_for_the_end_point_s_surplus
         surplus = links * net.mass / 2 * 10.0 / net.families[0].stiffness
         stretch = -hanging_chain(net).x[-1, 2] - 2.0
         assert stretch - surplus == pytest.approx(10.0 * 2.0**2 / (2.0 * 500.0), rel=1e-12)
+
+
+def test_points_of_a_size_touch_floor_and_sphere_with_their_surface():
+    view = rope(4, floor=-2.0, sphere=(0.1, 0.2, -1.0, 0.5), radius=0.1).kernel_view(1e-3)
+    assert (view.floor, view.sx, view.sy, view.sz, view.sr) == pytest.approx((-1.9, 0.1, 0.2, -1.0, 0.6))

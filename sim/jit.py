@@ -24,11 +24,12 @@ from numba.core.caching import CompileResultCacheImpl, IndexDataCacheFile
 from numba.core.compiler import Flags
 from numba.core.options import TargetOptions
 from numba.core.registry import cpu_target
+from numba.extending import intrinsic
 
 from sim.compiler import Choice, Entry, EntryCompiler, KernelFlags, Part, PartCompiler, PartResult
 from sim.files import locked
 
-__all__ = ["CACHE", "MAX_THREADS", "chosen", "kernel", "prange", "set_threads"]
+__all__ = ["CACHE", "MAX_THREADS", "chosen", "is_stopped", "kernel", "prange", "set_threads"]
 
 ROOT = Path(__file__).resolve().parent.parent
 OWN_PACKAGES = ("sim", "app", "tests")
@@ -241,6 +242,46 @@ def chosen(variants: dict[type, Any]) -> Any:
     choice.__class__ = Choice
     choice.variants = variants
     return choice
+
+
+@intrinsic
+def _load(typing: Any, array: Any, index: Any) -> Any:
+    """A number of an array of int64 that another thread may change: an atomic load, which no loop keeps a copy of."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+        return builder.load_atomic(builder.gep(data, [arguments[1]]), "monotonic", 8)
+
+    return numba.types.int64(array, numba.types.intp), generate
+
+
+_take_gil = numba.types.ExternalFunction("PyGILState_Ensure", numba.types.int32())
+_give_gil = numba.types.ExternalFunction("PyGILState_Release", numba.types.void(numba.types.int32))
+_handle_signals = numba.types.ExternalFunction("PyErr_CheckSignals", numba.types.int32())
+_forget_error = numba.types.ExternalFunction("PyErr_Clear", numba.types.void())
+
+
+def _is_stopped(request: Any) -> bool:
+    if _load(request, 0) != 0:
+        return True
+    if _load(request, 1) != 0:
+        held = _take_gil()
+        failed = _handle_signals() != 0
+        if failed:
+            _forget_error()
+            request[0] = 1
+        _give_gil(held)
+        return failed
+    return False
+
+
+def _is_stopped_interpreted(request: Any) -> bool:
+    return bool(request[0])
+
+
+# Whether a long solve is to end, by the two numbers of `sim.interruption`: that another thread asked for it, and
+# that Python is to be asked for a Ctrl-C, in which case the first is set.
+is_stopped: Any = kernel(_is_stopped_interpreted if numba.config.DISABLE_JIT else _is_stopped)  # type: ignore[attr-defined]
 
 
 def set_threads(count: int) -> None:

@@ -14,6 +14,8 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import NamedTuple
 
+import numpy as np
+
 from app.messages import (
     Advance,
     Ask,
@@ -27,6 +29,7 @@ from app.messages import (
     Play,
     PlotRow,
     Reset,
+    SceneCommand,
     Snapshot,
     Status,
     StepOnce,
@@ -39,10 +42,12 @@ from app.scenes.moments import arrays_in
 from app.scenes.stepping import steps_to
 from app.server.merging import merged
 from app.server.replay import Replay
+from sim.interruption import InterruptionError, use_request
 from sim.parameters import effect_of_change
 
 SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
 PART_GROWTH = 8  # ratio of two successive parts of a frame's steps while the cost of a step is not known
+PATIENCE = 0.05  # [s] that a control waits for a solve
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 MAX_CATCH_UP = 0.25  # [s] of wall time that one tick makes up for
@@ -59,6 +64,17 @@ class Goal(NamedTuple):
     until: float  # [s] of simulated time
     answer: Future[float]
     was_running: bool
+
+
+class CommandQueue(queue.SimpleQueue[Command]):
+    """Commands for the simulation, and whether one is among them that should not wait for a long solve."""
+
+    urgent = False
+
+    def put(self, item: Command, block: bool = True, timeout: float | None = None) -> None:
+        """Add a command. What goes on with the solve as it is can wait for it: drags, and going on."""
+        super().put(item, block, timeout)
+        self.urgent = self.urgent or not isinstance(item, SceneCommand | Play | Ask | Advance)
 
 
 class FixedStep:
@@ -105,7 +121,7 @@ class SimLoop:
     def __init__(
         self,
         scene: AnyScene,
-        commands: "queue.SimpleQueue[Command] | None" = None,
+        commands: CommandQueue | None = None,
         read_params: Callable[[], tuple[BaseParams, int]] | None = None,
         audience: Callable[[], int] = lambda: 1,
         *,
@@ -119,7 +135,9 @@ class SimLoop:
         machine that takes the processor away does not make the scene look expensive.
         """
         self.scene = scene
-        self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
+        self.commands = commands or CommandQueue()
+        self.request = np.zeros(2, np.int64)  # its first number ends the solve that runs: see sim/interruption.py
+        self.unfinished: Callable[[], None] | None = None  # what was ended early and has to be done all the same
         self.read_params = read_params or (lambda: (scene.params, self.loaded))
         self.audience = audience
         self.clock, self.effort = clock, effort
@@ -156,6 +174,9 @@ class SimLoop:
         # Parameters first: a reset starts from them. A record of a `Load` that is still on the way comes with it.
         changed = loads == self.loaded and params is not self.scene.params and self.take(params)
         changed |= self.handle_waiting()
+        if self.unfinished is not None:
+            self.guarded(self.unfinished, again=True)
+            changed = True
         if self.running and self.audience() and self.replay is not None:
             changed |= self.play_replay(self.replay, wall)
         elif self.goal is not None and self.running and not self.audience():
@@ -190,7 +211,7 @@ class SimLoop:
             self.halt(self.replay.reason)
             self.replay = None
         if effect == "forces":
-            self.guarded(lambda: self.scene.change_forces(params))
+            self.guarded(lambda: self.scene.change_forces(params), again=True)
             self.scene.params = params  # also where the scene failed: not to be tried again in every tick
         else:
             self.scene.params = params
@@ -248,7 +269,7 @@ class SimLoop:
         Another method or more points may make a step a thousand times as expensive as the last one was.
         """
         part, spent = 1, 0.0
-        while n > 0 and part > 0 and self.running and self.replay is None:
+        while n > 0 and part > 0 and self.running and self.replay is None and not self.request[0]:
             part = min(part, n)
             self.pacer.cost = 0.0
             spent += self.advance(part)
@@ -277,10 +298,28 @@ class SimLoop:
         self.counts["steps"] += n
         return seconds
 
-    def guarded(self, action: Callable[[], None]) -> None:
-        """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say."""
+    def give_way(self, asked: BaseParams) -> None:
+        """End a solve that keeps a control waiting; called from another thread.
+
+        The next tick handles what was asked for, from the last good state. asked: the parameters as the panel has them.
+        """
+        since = self.busy_since
+        if since is None or self.clock() - since < PATIENCE:
+            return
+        if self.commands.urgent or effect_of_change(self.scene.params, asked) in ("forces", "start"):
+            self.request[0] = 1
+
+    def guarded(self, action: Callable[[], None], *, again: bool = False) -> None:
+        """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
+
+        again: to be done once more, in this tick or the next, where it is ended early.
+        """
+        self.unfinished = None
         try:
             action()
+        except InterruptionError:
+            self.counts["solves ended early"] += 1
+            self.unfinished = action if again else None
         except DivergenceError as error:
             if error.moments and self.running:
                 self.replay = Replay(error.moments, str(error))
@@ -307,6 +346,7 @@ class SimLoop:
         """Handle what is left of the waiting commands once they are merged; True where there was one."""
         waiting = [] if self.first is None else [self.first]
         self.first = None
+        self.commands.urgent = False
         for _ in range(
             self.commands.qsize()
         ):  # nobody else takes from it; what comes meanwhile waits for the next tick
@@ -380,7 +420,7 @@ class SimLoop:
         self.running, self.halted = self.running or bool(self.halted), ""
         self.pacer.debt = 0.0
         self.replay = None
-        self.guarded(self.scene.reset)
+        self.guarded(self.scene.reset, again=True)
 
     def resume(self, state: KeptState) -> None:
         """The scene from a state that was kept."""
@@ -466,8 +506,12 @@ class SimLoop:
 
     def run(self, stop: threading.Event) -> None:
         """Tick until `stop` is set, at the frame rate while there is something to do."""
+        use_request(self.request)
         last = self.clock()
-        while not stop.is_set():
+        while True:
+            self.request[0] = 0
+            if stop.is_set():
+                return
             busy = self.running and (self.audience() > 0 or self.goal is not None)
             now = self.clock()
             try:

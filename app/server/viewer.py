@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import viser
 
 from app.lab.workbook import Workbook
-from app.messages import BaseParams, Command, Halt, Release, Reset, StudentAnswer, WorkCount
+from app.messages import BaseParams, Halt, Release, Reset, StudentAnswer, WorkCount
 from app.panel.display import set_theme
 from app.panel.panel import Panel, add_scene_chooser
 from app.panel.recorder import Kept
@@ -27,7 +27,7 @@ from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.compile_gate import CompileGate
 from app.server.counters import Unwatched, gather, modules
 from app.server.guard import open_server, quiet
-from app.server.loop import SimLoop
+from app.server.loop import PATIENCE, CommandQueue, SimLoop
 from app.server.replay_file import replay_html
 from app.server.transport import TransportCounters
 
@@ -77,7 +77,7 @@ class Viewer:
         connection.get_message_buffer().window_duration_sec = SEND_WINDOW
         self.transport = TransportCounters(self.server)
         self.port = self.server.get_port()
-        self.commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        self.commands = CommandQueue()
         self.server.on_client_disconnect(self.on_disconnect)
         self.stop = threading.Event()
         self.ended = False
@@ -127,7 +127,7 @@ class Viewer:
         name = kind.name
         make_view = view_named(name)
         self.clear()
-        commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        commands = CommandQueue()
         self.commands = commands
         self.scene = self.make_scene(kind, params, commands.put)
         self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
@@ -247,10 +247,14 @@ class Viewer:
 
     def show_snapshots(self, loop: SimLoop, stop: threading.Event) -> None:
         """Show each new snapshot once, as soon as it is there, and keep the panel's status up to date."""
-        recorder = self.panel.recorder
+        recorder, shown_at = self.panel.recorder, loop.clock()
         while not stop.is_set():
-            loop.fresh.wait(PLAYED_INTERVAL if recorder.playing else HEARTBEAT)
+            woken = loop.fresh.wait(min(PATIENCE, PLAYED_INTERVAL))
+            loop.give_way(self.panel.params)
+            if not woken and loop.clock() - shown_at < (PLAYED_INTERVAL if recorder.playing else HEARTBEAT):
+                continue
             loop.fresh.clear()
+            shown_at = loop.clock()
             self.unwatched.note(self.audience())
             if not stop.is_set():
                 self.show_latest()
@@ -314,8 +318,10 @@ class Viewer:
         )
 
     def stop_threads(self) -> None:
-        """Stop the threads of the open scene; a long solve ends by itself later, on a scene that is no longer shown."""
+        """Stop the threads of the open scene; a solve that runs is ended early."""
         self.stop.set()
+        if self.is_open:
+            self.loop.request[0] = 1
         for thread in self.threads:
             thread.join(MAX_JOIN_TIME)
         self.threads = []

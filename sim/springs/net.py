@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.interruption import stop_request
 from sim.jit import MAX_THREADS, chosen
 from sim.validation import argument_error, check_choice, check_number, check_vector, is_whole_number
 
@@ -124,6 +125,7 @@ class RopeArrays(NamedTuple):
     grab_k: float
     grab_b: float
     grab_max: float
+    stop: NDArray[np.int64]  # (2,) that ends a long solve, see sim.interruption
 
 
 class WideArrays(NamedTuple):
@@ -263,7 +265,7 @@ class Net:
 
     def kernel_view(self, h: float) -> Any:
         """The kernels' view of this net for steps of h [s]. Its arrays are shared, but for those the kernels fill."""
-        view = self._unit_step_view._replace(stop_rate=1.0 / h)
+        view = self._unit_step_view._replace(stop_rate=1.0 / h, stop=stop_request())
         if self.thickness == 0.0:
             return view
         return view._replace(pairs=np.full_like(view.pairs, -1), seen=np.zeros_like(view.seen))
@@ -317,6 +319,7 @@ class Net:
             grab_k=float(grab.stiffness),
             grab_b=float(grab.damping),
             grab_max=float(grab.max_force),
+            stop=stop_request(),
         )
         if self.is_rope and self.air is None and self.thickness == 0.0:
             return view

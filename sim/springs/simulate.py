@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.interruption import raise_if_stopped
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.automatic import AUTO, choose_for_step, choose_for_tolerance
@@ -22,7 +23,6 @@ SAFETY = 0.5
 RTOL, ATOL = 1e-6, 1e-9  # of adaptive methods
 LEAST_RTOL, LEAST_ATOL = 1e-14, 1e-18  # below, round-off asks for ever shorter steps
 MOST_STEPS = 1e10  # of a run: hours of a rope
-POINT_STEPS = 5e7  # in one call of a kernel, which nothing interrupts: some seconds
 FRICTION_STEP = 1e-3  # [s] that regularises friction where the step varies
 MOST_FRAMES = 10_000_000  # what memory may hold, of a small net
 
@@ -126,11 +126,9 @@ def stepped(
     vs = np.full_like(xs, np.nan)
     ledger = np.full((len(t), 6), np.nan)
     diverged_at = None
-    most = max(1, round(POINT_STEPS / net.x0[0].size))
     for frame in range(len(t)):
         if frame:
-            for done in range(0, steps, most):
-                advance(net, state, record, h, min(most, steps - done), with_account=with_account)
+            advance(net, state, record, h, steps, with_account=with_account)
             if not state.is_bounded:
                 diverged_at = first_insane_time(net, calm, record, h, steps * (frame - calm_frame))
                 # What blows up may have passed the bound between frames, and come back for one.
@@ -163,6 +161,7 @@ def marched(
     x, v = net.x0.reshape(-1).copy(), np.zeros(net.x0.size)
     p = net.kernel_view(FRICTION_STEP)
     evals, _, filled, stopped_at = record.march(x, v, t, rtol, atol, p, with_account, xs, vs, taken)
+    raise_if_stopped()
     shape = (len(t), *net.x0.shape)
     xs[filled:], vs[filled:] = np.nan, np.nan
     ledger = np.full((len(t), 6), np.nan)

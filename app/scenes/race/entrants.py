@@ -5,6 +5,7 @@ tick are shortened equally. A rope that diverges stops at its last good state an
 accepts no damping never starts on a damped net. The others go on.
 """
 
+import copy
 import dataclasses
 import math
 import time
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from app.messages import Vector
 from app.scenes.race.parameters import Params, method_of
 from app.scenes.springs.divergence import stability_number
+from sim.interruption import InterruptionError
 from sim.springs import INTEGRATORS, Integrator, Net
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
@@ -202,9 +204,9 @@ class Entrant:
         shortest = [math.inf, math.inf]
         for _ in range(TIMING_REPEATS if many > MIN_TIMING_STEPS else 1):
             for i, steps in enumerate((1, many)):
-                copy = self.state.copy()
+                trial = self.state.copy()
                 start = self.clock()
-                advance(self.net, copy, self.record, self.step, steps)
+                advance(self.net, trial, self.record, self.step, steps)
                 shortest[i] = min(shortest[i], self.clock() - start)
         now = max(0.0, shortest[1] - shortest[0]) / (many - 1)
         # Down at once, up slowly: what disturbs a timing makes it longer.
@@ -256,10 +258,17 @@ class Race:
         """
         duration = ticks * self.tick
         before = self.counts()
-        for entrant in self.entrants:
-            entrant.advance(dataclasses.replace(moving, families=entrant.net.families), ticks)
-        for reference, entrant in zip(self.references, self.entrants, strict=False):
-            reference.advance(dataclasses.replace(moving, families=entrant.net.families), self.t, duration)
+        states, references = [entrant.state.copy() for entrant in self.entrants], copy.deepcopy(self.references)
+        try:
+            for entrant in self.entrants:
+                entrant.advance(dataclasses.replace(moving, families=entrant.net.families), ticks)
+            for reference, entrant in zip(self.references, self.entrants, strict=False):
+                reference.advance(dataclasses.replace(moving, families=entrant.net.families), self.t, duration)
+        except InterruptionError:
+            for entrant, state in zip(self.entrants, states, strict=True):
+                entrant.state = state
+            self.references = references
+            raise
         self.t += duration
         after = self.counts()
         return after[0] - before[0], after[1] - before[1]

@@ -11,6 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.interruption import raise_if_stopped
 from sim.springs import INTEGRATORS, Net
 from sim.springs.simulate import FRICTION_STEP
 from sim.springs.stability import gershgorin
@@ -75,6 +76,7 @@ class ReferenceRun:
             xs, vs, ledgers = np.empty((2, run[0].size)), np.empty((2, run[0].size)), np.zeros((2, 2))
             assert METHOD.march is not None
             _, _, filled, _ = METHOD.march(*run, times, finer * RTOL, finer * ATOL, p, False, xs, vs, ledgers)
+            raise_if_stopped()
             if filled < 2 or not np.abs(xs[1]).max() < DIVERGENCE_BOUND:
                 self.failure = f"it found no step short enough at t = {t:.2f} s"
                 return

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from sim.jit import kernel
+from sim.jit import is_stopped, kernel
 from sim.springs.analysis.energy import add_power
 from sim.springs.forces.acceleration import set_pins
 from sim.springs.integrators import Integrator
@@ -31,6 +31,8 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     for s in range(steps):
         done, size = 0, FINEST
         while done < FINEST:
+            if is_stopped(p.stop):
+                return evals
             part = h * size / FINEST
             after = t + (s + (done + size) / FINEST) * h
             for j in range(x.shape[0]):

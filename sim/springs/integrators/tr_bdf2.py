@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from sim.jit import kernel
+from sim.jit import is_stopped, kernel
 from sim.springs.analysis.energy import add_power
 from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.integrators import Integrator
@@ -39,6 +39,8 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     for s in range(steps):
         done, size = 0, FINEST
         while done < FINEST:
+            if is_stopped(p.stop):
+                return evals
             part = h * size / FINEST
             g = 0.5 * GAMMA * part
             now = t + (s + done / FINEST) * h

@@ -7,7 +7,7 @@ and accelerations at both ends, of the order of the method; higher orders, or a 
 
 import numpy as np
 
-from sim.jit import kernel
+from sim.jit import is_stopped, kernel
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.forces.acceleration import accelerate, set_pins
 from sim.springs.integrators.embedded.errors import error_of
@@ -16,6 +16,7 @@ from sim.springs.integrators.embedded.stages import accept, make_stages, take_st
 SAFETY = 0.9
 NOW, BEFORE = 0.7, 0.4  # exponents of this step's error and the last one's (Gustafsson's PI), over the order
 SHRINK, GROW = 0.2, 6.0  # least and largest factor between two steps
+TRIES_UNASKED = 16  # steps between two looks at whether the march is to end
 SMALLEST = 1e-14  # step over the whole time, below which the search is given up
 
 
@@ -56,7 +57,7 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
     """Fill xs, vs (frames, 3 rows cols) and ledgers (frames, 2) at `times`, starting from x, v at the first.
 
     Returns force evaluations, steps taken, frames filled, and the time reached [s]; fewer frames than there are where
-    no step was short enough or the state left any sane bound.
+    no step was short enough, the state left any sane bound, or p.stop asked for an end.
     """
     stages = make_stages(method, x, p)
     size = x.shape[0]
@@ -73,7 +74,11 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
     h = first_step(x, v, a, rtol, atol)
     power, before = -1.0 / method.error_order, 1.0
     grow = GROW
+    tries = 0
     while frame < len(times):
+        if tries % TRIES_UNASKED == 0 and is_stopped(p.stop):
+            break
+        tries += 1
         goal = times[frame] if lands else last
         landing = t + 1.01 * h >= goal
         step = goal - t if landing else h

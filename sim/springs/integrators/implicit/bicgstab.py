@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from sim.jit import kernel
-from sim.springs.integrators.implicit.conjugate_gradients import MOST, precondition, set_general_product
+from sim.jit import is_stopped, kernel
+from sim.springs.integrators.implicit.conjugate_gradients import MOST, UNASKED, precondition, set_general_product
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.vector_ops import add_scaled
 
@@ -30,7 +30,7 @@ def solve_stabilised_gradients(points, links, own, air, factors, r, reduction, p
     rho, alpha, omega = 1.0, 1.0, 1.0
     for count in range(MOST // 2):
         before, rho = rho, dot(shadow, r)
-        if rho == 0.0 or omega == 0.0:
+        if rho == 0.0 or omega == 0.0 or (count % UNASKED == UNASKED - 1 and is_stopped(p.stop)):
             return count
         set_turned(d, rho / before * alpha / omega, omega, q, r)
         precondition(factors, d, n, z)

@@ -2,13 +2,14 @@
 
 import numpy as np
 
-from sim.jit import kernel
+from sim.jit import is_stopped, kernel
 from sim.springs.forces.acceleration import add_row
 from sim.springs.integrators.implicit.blocks import GENERAL, SYMMETRIC, add_air_products, add_pair_products
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.vector_ops import add_scaled
 
 MOST = 500
+UNASKED = 16  # iterations between two looks at whether the solve is to end
 
 
 @kernel(noalias=True, inline=True)
@@ -133,7 +134,7 @@ def solve_conjugate_gradients(points, links, own, air, factors, r, reduction, p,
     rho = dot(r, z)
     goal = reduction * reduction * rho
     for count in range(MOST):
-        if rho <= goal:
+        if rho <= goal or (count % UNASKED == UNASKED - 1 and is_stopped(p.stop)):
             return count
         set_symmetric_product(points, links, own, air, d, p, f, q)
         alpha = rho / dot(d, q)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.jit import kernel
+from sim.jit import is_stopped, kernel
 from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.integrators.implicit.bicgstab import solve_stabilised_gradients
 from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridiagonal
@@ -222,7 +222,7 @@ def solve_stage(x0, v0, g, t, p, x, v, work, most):
     """
     n = p.rows * p.cols
     taken, settled, found, size = 0, False, 0.0, np.inf
-    while taken < most:
+    while taken < most and not is_stopped(p.stop):
         set_sum(x, x0, g, v)
         set_pins(x, v, t, p)
         accelerate(x, v, t, p, True, work.f, work.a)

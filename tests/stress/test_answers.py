@@ -1,0 +1,72 @@
+"""How long the simulation takes to answer a control, with its own threads and clock."""
+
+import math
+import os
+import random
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from app.messages import Play, Reset
+from app.scenes import NAMES
+from app.scenes.warmup import prepare
+from app.server.viewer import Viewer
+from sim.parameters import parameters_of
+from tests.stress.hammer import anywhere, ends
+from tests.stress.tally import Tally
+
+CHANGES = int(os.environ.get("SPRINGTIDE_STRESS_CHANGES", "10000")) // 10  # of each scene
+AT_ONCE = 6  # most parameters turned between two answers
+PAUSE = 0.15  # [s] in which a solve gets under way, at most
+MAX_SILENCE = 30.0  # [s], on a machine with other work: one force evaluation of a tangled cloth is not ended
+
+
+@pytest.fixture
+def viewer() -> Iterator[Viewer]:
+    made = Viewer("127.0.0.1", 0)
+    yield made
+    made.shut()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_control_is_answered_while_a_solve_runs(name: str, viewer: Viewer, tally: Tally) -> None:
+    """The answer is a snapshot of the parameters as set, or of a later reset."""
+    prepare(name)
+    viewer.open(name)
+    loop, panel = viewer.loop, viewer.panel
+    loop.audience = lambda: 1
+    rng = random.Random(f"answers {name}")
+    waits: list[tuple[float, dict[str, object]]] = []
+
+    def answered(since: float, starts: int) -> None:
+        while not (loop.latest.params == panel.params and loop.latest.status.starts >= starts):
+            assert time.monotonic() - since < 60.0, "no answer"
+            time.sleep(0.001)
+        unusual = {n: getattr(panel.params, n) for n, k in parameters_of(panel.params).items()
+                   if getattr(panel.params, n) != k.default}  # fmt: skip
+        waits.append((time.monotonic() - since, unusual))
+
+    changes = 0
+    while changes < CHANGES:
+        time.sleep(rng.uniform(0.0, PAUSE))
+        starts = loop.counts["starts"]
+        since = time.monotonic()
+        for _ in range(rng.randint(1, AT_ONCE)):
+            chosen = rng.choice(list(panel.controls))
+            parameter = parameters_of(panel.params)[chosen]
+            panel.set(chosen, rng.choice(ends(parameter)) if rng.random() < 0.4 else anywhere(parameter, rng))
+            changes += 1
+        if rng.random() < 0.2 or loop.halted:
+            loop.commands.put(Reset())
+            loop.commands.put(Play())
+            starts += 1
+        answered(since, starts)
+    longest, unusual = max(waits, key=lambda wait: wait[0])
+    share = sorted(wait for wait, _ in waits)[math.ceil(0.99 * len(waits)) - 1]
+    early = loop.counts["solves ended early"]
+    tally.notes.append(
+        f"{name}: longest wait for an answer {longest:.2f} s, 99 of 100 below {share:.2f} s; {early} solves ended; "
+        f"longest with {unusual}"
+    )
+    assert longest < MAX_SILENCE

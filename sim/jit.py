@@ -244,8 +244,7 @@ def chosen(variants: dict[type, Any]) -> Any:
     return choice
 
 
-@intrinsic
-def _load(typing: Any, array: Any, index: Any) -> Any:
+def _load_of(typing: Any, array: Any, index: Any) -> Any:
     """A number of an array of int64 that another thread may change: an atomic load, which no loop keeps a copy of."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -254,6 +253,8 @@ def _load(typing: Any, array: Any, index: Any) -> Any:
 
     return numba.types.int64(array, numba.types.intp), generate
 
+
+_load: Any = intrinsic(_load_of)
 
 _take_gil = numba.types.ExternalFunction("PyGILState_Ensure", numba.types.int32())
 _give_gil = numba.types.ExternalFunction("PyGILState_Release", numba.types.void(numba.types.int32))

@@ -97,6 +97,7 @@ class Params(RaceMethods, RopeParams, RaceRules):
         RopeParams,
         "integrator",
         default="explicit_euler",
+        choices=METHODS,
         doc="Method of integration of rope 1",
         affects="start",
         title="1: method",

@@ -65,12 +65,11 @@ def nystroem_growth(c: Any, velocity: Any, position: Any, zeta: float, z: Any) -
     step = []
     for x, v in ((1.0, 0.0), (0.0, 1.0)):
         k = np.zeros((len(c), *z.shape))
-        for i, (time, in_velocity, in_position) in enumerate(zip((*c, 1.0), velocity, position, strict=True)):
-            xs = x + time * z * v + z * z * np.tensordot(in_position, k, 1)
-            vs = v + z * np.tensordot(in_velocity, k, 1)
-            if i < len(c):
-                k[i] = -xs - 2.0 * zeta * vs
-        step.append((xs, vs))
+        for i, time in enumerate(c):
+            xs = x + time * z * v + z * z * np.tensordot(position[i], k, 1)
+            vs = v + z * np.tensordot(velocity[i], k, 1)
+            k[i] = -xs - 2.0 * zeta * vs
+        step.append((x + z * v + z * z * np.tensordot(position[-1], k, 1), v + z * np.tensordot(velocity[-1], k, 1)))
     (a, c0), (b, d) = step
     half = 0.5 * (a + d)
     root = np.sqrt(half * half - (a * d - b * c0) + 0j)

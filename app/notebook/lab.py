@@ -228,7 +228,8 @@ def plain(value: object) -> object:
     return value.item() if isinstance(value, np.generic) else value
 
 
-LABS: dict[int, tuple[str, str, Lab]] = {}  # id -> (cell, execution, lab) of the labs that run in this kernel
+# id -> (cell, execution, lab, its viewer) of the labs that run in this kernel
+LABS: dict[int, tuple[str, str, Lab, Viewer]] = {}
 
 
 def show_lab(scene: str, preset: str, parameters: Mapping[str, object], *, paused: bool, height: int, port: int) -> Lab:
@@ -254,7 +255,7 @@ def show_lab(scene: str, preset: str, parameters: Mapping[str, object], *, pause
         viewer.shut()
         output.end()
         raise
-    LABS[id(lab)] = (cell, execution, lab)
+    LABS[id(lab)] = (cell, execution, lab, viewer)
     keep_still(viewer, output)
     return lab
 
@@ -278,10 +279,10 @@ def read_setup(scene: str, preset: str, parameters: Mapping[str, object]) -> tup
 
 def stop_former(cell: str, execution: str) -> None:
     """End the labs that an earlier execution of this cell has opened, and forget those that have ended."""
-    for name, (other, earlier, lab) in list(LABS.items()):
+    for name, (other, earlier, lab, viewer) in list(LABS.items()):
         if cell and other == cell and earlier != execution:
             lab.stop()
-        if lab._viewer.ended:
+        if viewer.ended:
             del LABS[name]
 
 
@@ -301,5 +302,5 @@ def keep_still(viewer: Viewer, output: Output) -> None:
 @atexit.register
 def stop_all() -> None:
     """End what still runs as the kernel ends: its compilers are processes of their own."""
-    for _, _, lab in LABS.values():
-        lab._viewer.shut()
+    for _, _, _, viewer in LABS.values():
+        viewer.shut()

@@ -17,7 +17,7 @@ import pytest
 
 from app.render import injection
 from app.render.injection import SCRIPTS, ShaderInjector
-from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Material, SlickRegion, uniform_table
+from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Material, Oil, SlickRegion, uniform_table
 
 
 class FakeStorage:
@@ -169,7 +169,7 @@ def source_of(name: str) -> str:
 def test_the_shaders_declare_every_uniform_that_travels_and_no_other() -> None:
     declared = set()
     for name in SCRIPTS:
-        declared |= set(re.findall(r"uniform vec3 (\w+)", source_of(name)))
+        declared |= set(re.findall(r"uniform vec3 (\w+);", source_of(name)))
     assert declared == {*WATER_UNIFORMS, *RAIN_UNIFORMS}
     assert len(set(WATER_UNIFORMS)) == len(WATER_UNIFORMS)
 
@@ -196,8 +196,8 @@ def test_the_script_is_javascript(server: FakeServer, tmp_path: Path) -> None:
 
 
 def test_every_field_of_a_material_reaches_the_uniforms() -> None:
-    slick = SlickRegion((1.0, 2.0), 3.0, (0.1, 0.2, 0.3), (0.4, 0.5, 0.6), 1.5, 0.02, 0.7)
-    others = {"slick": slick, "cutout": Cutout((1.0, 2.0), 3.0, (0.6, 0.8), 4.0)}
+    slick, oil = SlickRegion((1.0, 2.0), 3.0, 0.01, 0.02, 0.7), Oil((0.1, 0.2, 0.3), 1.5, 0.1)
+    others = {"oil": oil, "slick": slick, "cutout": Cutout((1.0, 2.0), 3.0, (0.6, 0.8), 4.0)}
     plain = Material()
 
     def table(material: Material) -> np.ndarray:

@@ -11,6 +11,7 @@ import pytest
 
 from app.messages import Snapshot, WorkCount
 from app.panel.work_table import work_rows, work_table
+from app.render.injection import record_shaders
 from app.scenes import NAMES, scene_named
 from app.server.counters import HEAVY_PACKAGES, Unwatched, gather, modules, own_sources
 from app.server.loop import FRAME_INTERVAL, SimLoop
@@ -101,20 +102,26 @@ def handed_over(lab: Any, frame: Any) -> tuple[float, float]:
     return arrays, size
 
 
+def tube_bytes(lab: Any) -> int:
+    """What the drawn tube takes, packed."""
+    return lab.view.tube._packed().nbytes
+
+
 @pytest.fixture
 def still(lab: Any) -> Any:
-    """A lab without its threads, and its view, which goes on drawing."""
+    """A lab without its threads, and its view, which goes on drawing for browsers with shaders."""
     lab.stop_threads()
+    record_shaders(lab.server)
     return lab
 
 
 def test_a_browser_is_sent_what_changed_and_nothing_else(still: Any):
     still.view.show(still.scene.frame())
-    tube, points = still.view.vertices.nbytes, 12 * still.scene.params.points
-    # The tube and its colours are one array.
+    points = 12 * still.scene.params.points
+    # The tube and its colours are one packed array.
     assert handed_over(still, still.scene.frame()) == (0, 0)
     still.scene.advance(5)
-    assert handed_over(still, still.scene.frame()) == (2, 2 * tube + points)
+    assert handed_over(still, still.scene.frame()) == (2, tube_bytes(still) + points)
     plain = still.scene.frame()._replace(show_points=False)
     assert handed_over(still, plain) == (0, 0)
 
@@ -122,17 +129,17 @@ def test_a_browser_is_sent_what_changed_and_nothing_else(still: Any):
 def test_a_rope_that_nobody_sees_move_is_not_sent_until_it_has(still: Any):
     first = still.scene.frame()
     still.view.show(first)
-    tube, points = still.view.vertices.nbytes, 12 * still.scene.params.points
+    points = 12 * still.scene.params.points
     # A tenth of what shows, again and again: what has not been shown must add up.
     creep = [first._replace(points=first.points + np.float32(k * 2e-5)) for k in range(1, 12)]
     assert [handed_over(still, frame)[1] for frame in creep[:9]] == [0] * 9
-    assert handed_over(still, creep[10])[1] == 2 * tube + points
+    assert handed_over(still, creep[10])[1] == tube_bytes(still) + points
     assert np.array_equal(still.view.tension, first.tension)
     # The same holds for colours.
     tint = [creep[10]._replace(tension=first.tension + np.float32(k * 2e-4 * first.full_scale)) for k in range(1, 12)]
     assert [handed_over(still, frame)[1] for frame in tint[:9]] == [0] * 9
-    assert handed_over(still, tint[10])[1] == 2 * tube
-    assert handed_over(still, tint[10]._replace(colour="plain"))[1] == 2 * tube
+    assert handed_over(still, tint[10])[1] == tube_bytes(still)
+    assert handed_over(still, tint[10]._replace(colour="plain"))[1] == tube_bytes(still)
 
 
 def test_a_rope_at_rest_is_not_looked_at_again():

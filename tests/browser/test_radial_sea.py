@@ -6,11 +6,17 @@ import numpy as np
 import pytest
 
 from app.messages import Pause, Play, Reset
+from app.render.material import WATER_UNIFORMS
 from app.scenes.radial_sea.parameters import PRESETS
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
 SCENE = "radial_sea"
+
+
+def uniform(tab: Tab, name: str) -> np.ndarray:
+    """Three numbers of the material that the page holds."""
+    return tab.vertices("/sea/water_material")[WATER_UNIFORMS.index(name)]
 
 
 def drawn(lab: Viewer) -> bool:
@@ -31,8 +37,7 @@ def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
     tab.wait(lambda: drawn(lab))
     tab.wait(lambda: lab.view.flames is not None and lab.view.flames.handle.visible)
     tab.wait(lambda: lab.view.material.slick is not None and lab.view.material.slick.radius > 3.0)
-    # The material's last six rows are the slick's four and the cutaway's two.
-    tab.wait(lambda: tab.vertices("/sea/water_material")[-6, 2] > 3.0)
+    tab.wait(lambda: uniform(tab, "slick")[2] > 3.0)
     assert tab.errors == []
 
 
@@ -105,14 +110,15 @@ def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(shown: tuple[Vie
     lab.loop.commands.put(Reset())
     tab.wait(lambda: drawn(lab))
 
-    def brightness() -> float:
-        """Of the colours, deep and scattered, that the page holds of the water."""
-        return float(tab.vertices("/sea/water_material")[:2].sum())
+    def blue() -> float:
+        """Blue light from below by the numbers that the page holds."""
+        through = np.exp(-uniform(tab, "oilExtinction") * uniform(tab, "oilFilm")[0])
+        return float((through * uniform(tab, "deepColor") + (1.0 - through) * uniform(tab, "oilColor"))[2])
 
     tab.wait(lambda: len(tab.vertices("/sea/water_material")) > 0)
-    clear = brightness()
+    clear = blue()
     load(lab, spill="layer", thickness=0.3, speed=4.0)
-    tab.wait(lambda: brightness() < 0.3 * clear)
+    tab.wait(lambda: blue() < 0.3 * clear)
     theory = lab.scene.readings().bodies[0].prediction
     tab.wait(lambda: np.abs(lab.scene.bodies.draft - theory.draft).max() < 2e-3)
     assert (lab.scene.bodies.draft > theory.draft_in_water + 0.03).all()

@@ -1,7 +1,8 @@
 """Compiles a student's functions with numba, in the process that runs them; only that process imports this.
 
-Each function that can be compiled, and then agrees with itself in plain Python, replaces that. A method of integration
-is not compiled: it is handed a Python function, the acceleration.
+Not by `sim.jit.kernel`: these functions change with each save, so nothing is kept, and an index out of range has to be
+an error. Each function that can be compiled, and then agrees with itself in plain Python, replaces that. A method of
+integration is not compiled: it is handed a Python function, the acceleration.
 """
 
 import importlib.util

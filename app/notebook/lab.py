@@ -92,7 +92,7 @@ class Lab:
         """Let the lab run for `seconds` [s] of simulated time, to a whole step; returns the time then [s].
 
         After it the clock goes on, or stands still where it did before. With a browser on it the lab runs at its speed,
-        without one as fast as it can. Raises ValueError for a time that is none, DivergenceError where the run stops
+        without one as fast as it can. Raises ValueError for what is not a time, DivergenceError where the run stops
         before, and RuntimeError where it is begun again or another scene is opened meanwhile.
         """
         check_number("seconds", seconds, 0.0, MAX_WAIT, "s")

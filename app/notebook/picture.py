@@ -33,7 +33,7 @@ class Still:
 def take_picture(viewer: Viewer, width: int, height: int, timeout: float = DRAW_TIMEOUT) -> Still:
     """What the newest browser shows, drawn again at width x height [pixels]. timeout: [s] for drawing it.
 
-    Raises ValueError for a size that is none, RuntimeError where no browser shows the lab, and TimeoutError where it
+    Raises ValueError for what is not a size, RuntimeError where no browser shows the lab, and TimeoutError where it
     does not draw.
     """
     for name, side in (("width", width), ("height", height)):

@@ -115,14 +115,16 @@ class Water:
         if self._grid:
             self._vertices[rows, :, 0] += self._length
             self._vertices[:, cols, 1] += self._length
-        if self.has_shader is not True:
+        active = self.has_shader
+        if active is not True:
             self.mesh.vertices = self._vertices.reshape(-1, 3)
         if self._injector is not None:
             self._surface_mesh.vertices = self._packed()
             height = 4.0 * float(np.std(vertices[..., 2]))
             self._sea_state = (float(time) % RIPPLE_PERIOD, height, float(np.vdot(slopes, slopes)) / (rows * cols))
             self._material_mesh.vertices = self._uniforms()
-        self._draw_plain()
+        if active is False:
+            self._draw_plain()
 
     def set_material(self, material: Material) -> None:
         """Change how it looks from the next frame on."""
@@ -181,8 +183,6 @@ class Water:
 
     def _draw_plain(self) -> None:
         """Draw what viser's public API alone can of foam, slick, grid and far sea, where a browser has no shader."""
-        if self.has_shader is not False:
-            return
         z = self._vertices[..., 2]
         foam = self._raised(self._slope_and_foam[..., 2] > PLAIN_FOAM_LIMIT)
         self._set_plain_mesh("plain_foam", foam, self._faces, color=PLAIN_FOAM_COLOUR)

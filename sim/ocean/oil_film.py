@@ -67,6 +67,7 @@ def appearance(thickness: float) -> str:
 def checked(thickness: ArrayLike) -> NDArray[np.float64]:
     """Thicknesses [m] as (..., 1). Raises ValueError for one that is negative or not finite."""
     d = as_array("thickness", thickness, "numbers >= 0 [m]")
-    if not (np.isfinite(d) & (d >= 0.0)).all():
-        raise argument_error("thickness", float(d[~(np.isfinite(d) & (d >= 0.0))].flat[0]), "numbers >= 0 [m]")
+    bad = ~(np.isfinite(d) & (d >= 0.0))
+    if bad.any():
+        raise argument_error("thickness", float(d[bad][0]), "numbers >= 0 [m]")
     return d[..., None]

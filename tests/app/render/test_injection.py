@@ -18,6 +18,7 @@ import pytest
 from app.render import injection
 from app.render.injection import SCRIPTS, ShaderInjector
 from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Material, Oil, SlickRegion, uniform_table
+from sim.ocean.oil_film import BAND_WIDTH, BANDS
 
 
 class FakeStorage:
@@ -172,6 +173,15 @@ def test_the_shaders_declare_every_uniform_that_travels_and_no_other() -> None:
         declared |= set(re.findall(r"uniform vec3 (\w+);", source_of(name)))
     assert declared == {*WATER_UNIFORMS, *RAIN_UNIFORMS}
     assert len(set(WATER_UNIFORMS)) == len(WATER_UNIFORMS)
+
+
+def test_the_shader_has_the_bands_of_light_of_the_model_of_oil() -> None:
+    """The numbers stand in both, since a shader has constants and no table."""
+    source = source_of("water_shader.js")
+    (bands,) = re.findall(r"phase = .* / vec3\((.*)\);", source)
+    assert [float(band) for band in bands.split(",")] == pytest.approx(BANDS)
+    (width_squared,) = re.findall(r"exp\(-0\.5 \* phase \* phase \* ([0-9.]+)\)", source)
+    assert float(width_squared) == pytest.approx(BAND_WIDTH**2)
 
 
 def test_the_script_takes_the_order_of_the_uniforms_from_python(server: FakeServer) -> None:

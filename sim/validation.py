@@ -83,11 +83,11 @@ def check_choice(name: str, value: object, choices: Iterable[str]) -> str:
     return value
 
 
-def check_vector(name: str, value: object, length: int = 3) -> tuple[float, ...]:
+def check_vector(name: str, value: object, unit: str, length: int = 3) -> tuple[float, ...]:
     """`value` as `length` finite floats. Raises ValueError otherwise."""
     numbers = tuple(as_float(c) for c in value) if isinstance(value, Iterable) else ()
     if len(numbers) != length or not all(math.isfinite(c) for c in numbers):
-        raise argument_error(name, value, f"{length} finite numbers [m]")
+        raise argument_error(name, value, f"{length} finite numbers [{unit}]")
     return numbers
 
 

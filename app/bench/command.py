@@ -46,7 +46,7 @@ def run(names: list[str], quick: bool = False, peers: bool = False, out: Path | 
             try:
                 tables.save_figures(module.figures(found[name]), out)
             except ModuleNotFoundError as missing:
-                print(f"no figures of {name}: {missing.name} is not installed (pip install 'springtide[plot]')")
+                print(f"no figures of {name}: {missing.name} is not installed (pip install '.[plot]')")
     if out is not None:
         with replacing(out / "machine.txt") as draft:
             draft.write_text(tables.machine() + "\n", encoding="utf-8")

@@ -31,7 +31,7 @@ NUDGE, DECAY_TIME, INTERVAL = 1e-3, 20.0, 1 / 60  # [m or rad], [s], [s] of the 
 def require_capytaine() -> None:
     """Raises OSError where Capytaine is not installed."""
     if importlib.util.find_spec("capytaine") is None:
-        raise OSError("Capytaine is not installed; install it by: pip install 'springtide[bem]'")
+        raise OSError("Capytaine is not installed; install it by: pip install '.[bem]'")
 
 
 def make(hull_file: Path, out: Path | None) -> int:

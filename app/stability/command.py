@@ -35,7 +35,7 @@ def run(quick: bool = False, out: Path | None = None, workers: int = 0) -> int:
         try:
             tables.save_figures({name: figure(found)}, out)
         except ModuleNotFoundError as missing:
-            print(f"no figure of {name}: {missing.name} is not installed (pip install 'springtide[plot]')")
+            print(f"no figure of {name}: {missing.name} is not installed (pip install '.[plot]')")
     if out is not None:
         with replacing(out / "machine.txt") as draft:
             draft.write_text(tables.machine() + "\n", encoding="utf-8")

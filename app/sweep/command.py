@@ -33,7 +33,7 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
     check_out_file("--out", out, f"{out.name}.cases-journal", *figures)
     for package in (*REQUIRED_PACKAGES, *(("distributed",) if scheduler is not None else ())):
         if importlib.util.find_spec(package) is None:
-            raise ValueError(f"sweep: {package} is not installed (pip install 'springtide[sweep]')")
+            raise ValueError(f"sweep: {package} is not installed (pip install '.[sweep]')")
     from app.sweep.results import identity, identity_in, to_dataset, write
     from app.sweep.store import Store, check_same_sweep, remove
 
@@ -124,7 +124,7 @@ def write_figures(dataset: Any, out: Path) -> list[Path]:
     try:
         figure = draw(dataset)
     except ModuleNotFoundError as missing:
-        print(f"no figure: {missing.name} is not installed (pip install 'springtide[plot]')")
+        print(f"no figure: {missing.name} is not installed (pip install '.[plot]')")
         return []
     paths = [out.with_suffix(suffix) for suffix in FIGURE_SUFFIXES]
     for path in paths:

@@ -189,10 +189,10 @@ class Net:
             check_family(family)
         check_number("mass", self.mass, 0, math.inf, "kg", above=True)
         check_number("drag", self.drag, 0, math.inf, "N s/m")
-        check_vector("gravity", self.gravity)
+        check_vector("gravity", self.gravity, "m/s^2")
         check_choice("damping_model", self.damping_model, DAMPING_MODELS)
         check_surroundings(self.contact, self.floor, self.sphere)
-        check_vector("sphere_velocity", self.sphere_velocity)
+        check_vector("sphere_velocity", self.sphere_velocity, "m/s")
         check_number("epoch", self.epoch, -math.inf, math.inf, "s")
         check_number("radius", self.radius, 0, math.inf, "m")
         check_number("thickness", self.thickness, 0, math.inf, "m")
@@ -207,11 +207,11 @@ class Net:
             check_number("pin_paths start", path.start, -math.inf, math.inf, "s")
             if len(path.coefficients) != 4:
                 raise argument_error("pin_paths coefficients", path.coefficients, "four vectors")
-            for coefficient in path.coefficients:
-                check_vector("pin_paths coefficients", coefficient)
+            for unit, coefficient in zip(("m", "m/s", "m/s^2", "m/s^3"), path.coefficients, strict=True):
+                check_vector("pin_paths coefficients", coefficient, unit)
         if self.grab is not None:
             check_particle("grab", self.grab[:2], rows, cols)
-            check_vector("grab.target", self.grab.target)
+            check_vector("grab.target", self.grab.target, "m")
             for name in ("stiffness", "damping", "max_force"):
                 check_number(f"grab.{name}", getattr(self.grab, name), 0, math.inf, "")
         if self.air is not None:
@@ -358,7 +358,7 @@ def start_positions(x0: Any) -> NDArray[np.float64]:
 
 def check_place(name: str, value: object) -> Vector:
     """`value` as three numbers nearer to the origin than FARTHEST. Raises ValueError otherwise."""
-    x, y, z = check_vector(name, value)
+    x, y, z = check_vector(name, value, "m")
     if not max(abs(x), abs(y), abs(z)) < FARTHEST:
         raise argument_error(name, value, f"3 numbers [m], nearer to the origin than {FARTHEST:g} m")
     return x, y, z
@@ -386,7 +386,7 @@ def check_air(air: Air) -> None:
     """Raises ValueError, naming what of the air cannot be."""
     if not isinstance(air, Air):
         raise argument_error("air", air, "an Air, or None")
-    check_vector("air.wind", air.wind)
+    check_vector("air.wind", air.wind, "m/s")
     for name in ("density", "drag", "lift"):
         check_number(f"air.{name}", getattr(air, name), 0, math.inf, "")
 
@@ -405,5 +405,5 @@ def check_surroundings(
     if floor is not None:
         check_number("floor", floor, -math.inf, math.inf, "m")
     if sphere is not None:
-        check_number("sphere radius", check_vector("sphere", sphere, 4)[3], 0, math.inf, "m")
+        check_number("sphere radius", check_vector("sphere", sphere, "m", 4)[3], 0, math.inf, "m")
     return contact

@@ -83,10 +83,10 @@ def test_choices_and_vectors():
     assert refused(v.check_choice, "z", ["x", "y"]) == "one of x, y"
     refused(v.check_choice, None, ["x"])
     refused(v.check_choice, ["x"], ["x"])
-    assert v.check_vector("a", np.arange(3)) == (0.0, 1.0, 2.0)
-    assert v.check_vector("a", [1, 2], 2) == (1.0, 2.0)
+    assert v.check_vector("a", np.arange(3), "m") == (0.0, 1.0, 2.0)
+    assert v.check_vector("a", [1, 2], "m", 2) == (1.0, 2.0)
     for bad in ((1.0, 2.0), (1.0, 2.0, 3.0, 4.0), (1.0, 2.0, math.inf), "123", 1.0):
-        assert refused(v.check_vector, bad) == "3 finite numbers [m]"
+        assert refused(v.check_vector, bad, "m") == "3 finite numbers [m]"
 
 
 def test_positions_are_pairs_within_what_a_grid_can_count():

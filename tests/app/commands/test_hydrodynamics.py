@@ -87,8 +87,8 @@ def test_what_is_missing_or_wrong_is_said(
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     for words, status, text in (
-        ([str(box_file)], 1, "springtide[bem]"),
-        (["--compare"], 1, "springtide[bem]"),
+        ([str(box_file)], 1, "pip install '.[bem]'"),
+        (["--compare"], 1, "pip install '.[bem]'"),
         ([], 2, "a mesh file, or --compare"),
         ([str(box_file), "--compare"], 2, "a mesh file, or --compare"),
         ([str(box_file.with_name("none.stl"))], 2, "a mesh file that can be read"),

@@ -10,17 +10,18 @@ from sim.validation import argument_error
 
 RGB = tuple[float, float, float]
 HAZE_DISTANCE = 3000.0  # [m]
+RAIN_HEIGHT = 1000.0  # [m] from which rain falls
 
 # Uniforms of the water shader, three numbers each, in the order in which they travel. The script takes the names from
 # here; `js/water_shader.js` declares each of them with its meaning.
 WATER_UNIFORMS = (
     "deepColor", "scatterColor", "foamColor", "sunDirection", "sunLight", "optics", "lens", "ripple", "skyline",
     "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "extent", "wireColor", "slick", "slickOptics",
-    "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection",
+    "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection", "rainRings", "rainVeil",
 )  # fmt: skip
 MAX_WATERLINES = 12  # that the shader of the water draws foam and shade around
 # The same for the shader of the rain, `js/rain.js`.
-RAIN_UNIFORMS = ("rain", "streak")
+RAIN_UNIFORMS = ("rain", "streak", "dropSizes", "dropMotion")
 
 
 @dataclass(frozen=True)
@@ -100,6 +101,10 @@ class Material:
     sky_tint: RGB = (1.0, 1.0, 1.0)  # colour filter on the photograph, linear, any value from 0
     draw_sky: bool = True  # draw the sky, and the sea beyond the mesh
 
+    # Drops that make a ring [1/(m2 s)] (0: no rain), wavelength [m] and speed [m/s] of the rings.
+    rain_rings: tuple[float, float, float] = (0.0, 0.017, 0.23)
+    rain_extinction: float = 0.0  # [1/m] of light by the rain in the air
+
     wireframe: bool = False  # draw the grid of the mesh
     wire_color: RGB = (0.95, 0.55, 0.1)
     oil: Oil | None = None
@@ -160,7 +165,7 @@ def uniform_table(
         "sunDirection": sun / max(float(np.linalg.norm(sun)), 1e-9),
         "sunLight": linear(m.sun_color) * m.sun_strength,
         "optics": (m.refractive_index, m.roughness, m.reflection_factor),
-        "lens": (m.haze_distance, m.exposure, m.sun_disc),
+        "lens": (1.0 / (1.0 / m.haze_distance + m.rain_extinction), m.exposure, m.sun_disc),
         "ripple": (m.ripple_slope, m.ripple_length, m.ripple_shortest),
         "skyline": m.skyline,
         "skyFold": m.sky_fold,
@@ -176,6 +181,8 @@ def uniform_table(
         "oilColor": nothing if oil is None else linear(oil.color),
         "oilFilm": nothing if oil is None else (oil.thickness, oil.refractive_index, m.refractive_index),
         "oilExtinction": EXTINCTION,
+        "rainRings": m.rain_rings,
+        "rainVeil": (m.rain_extinction, RAIN_HEIGHT, 0.0),
         "cutout": nothing if cutout is None else (*cutout.centre, cutout.half_width),
         "cutoutDirection": nothing if cutout is None else (*cutout.direction, cutout.length),
     }

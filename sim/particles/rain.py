@@ -47,12 +47,13 @@ class Rainfall(NamedTuple):
     water: float  # [kg/m3] in the air
     rate: float  # [mm/h] that the drops amount to; near, not equal to, the rate asked for
     energy: float  # [W/m2] kinetic energy that arrives
+    extinction: float  # [1/m] of light: large drops take away twice what they cover (van de Hulst 1957, 8.22)
 
 
 def rainfall(rate: float, gravity: float = EARTH) -> Rainfall:
     """Of Marshall and Palmer's drops at `rate` [mm/h]. Raises ValueError where rate or gravity is not above 0."""
     check_positive("rate", rate, "mm/h")
-    D, N, step = _sizes(rate)
+    D, N, step = drop_sizes(rate)
     v = terminal_speed(D, gravity)
     mass = 1000.0 * math.pi / 6.0 * D**3
     return Rainfall(
@@ -61,6 +62,7 @@ def rainfall(rate: float, gravity: float = EARTH) -> Rainfall:
         float((N * mass * step).sum()),
         float((N * mass * v * step).sum() * 3600.0),
         float((0.5 * N * mass * v**3 * step).sum()),
+        float((2.0 * N * math.pi / 4.0 * D**2 * step).sum()),
     )
 
 
@@ -104,7 +106,7 @@ class Rain:
         self.weight = in_the_air / drawn  # fallen drops that each drawn one stands for
         self.hits = 0  # drawn drops that have hit
         self._random = np.random.default_rng(seed)
-        D, N, _ = _sizes(rate)
+        D, N, _ = drop_sizes(rate)
         self._sizes = D
         self._by_volume = _cumulative(N)
         self._by_flux = _cumulative(N * terminal_speed(D, gravity))
@@ -150,7 +152,7 @@ class Rain:
         return np.interp(self._random.uniform(size=count), cumulative, self._sizes)
 
 
-def _sizes(rate: float) -> tuple[np.ndarray, np.ndarray, float]:
+def drop_sizes(rate: float) -> tuple[np.ndarray, np.ndarray, float]:
     """Diameters [m], N(D) = N0 exp(-Lambda D) [1/m4] there, and their spacing [m] (midpoints)."""
     edges = np.linspace(SMALLEST, LARGEST, 2001)
     D = 0.5 * (edges[1:] + edges[:-1])

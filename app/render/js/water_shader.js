@@ -124,8 +124,16 @@ const WATER_GLSL = {
     // Mean radiance of the sky.
     vec3 ambientLight() { return photograph(vec3(0.0, 0.0, 1.0), 1.0); }
 
+    uniform vec3 rainVeil; // extinction of light by rain [1/m], height from which it falls [m], unused
+
     // Radiance of the haze in the direction d.
-    vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), skyFold.y); }`,
+    vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), skyFold.y); }
+
+    // Radiance c of the sky in the direction d as it is seen through the rain.
+    vec3 behindRain(vec3 c, vec3 d) {
+      if (rainVeil.x <= 0.0) return c;
+      return mix(horizon(d), c, exp(-rainVeil.x * rainVeil.y / max(d.z, 0.02)));
+    }`,
 
   noise: `
     #include <common>
@@ -208,33 +216,93 @@ const WATER_GLSL = {
       return sqrt(second) - sqrt(first);
     }
 
-    // Foam where the simulation has a share of it: (cover, thickness). It is a web of lines of bubbles; with
-    // more foam they widen and close into a mat, with streaks along the wind.
-    vec2 foamCover(vec2 x, float asked, float footprint) {
-      if (asked <= 0.004) return vec2(0.0);
+    // The pattern of foam by places that move with the water: walls between bubbles of two sizes, and grain. Its share
+    // of the sea below v is 1/(1 + exp(-(FOAM_0 + FOAM_1 v + FOAM_2 v^2 + FOAM_3 v^3))), fitted to 4e5 points.
+    const float FOAM_MEAN = 0.377;
+    const float FOAM_VARIANCE = 0.0578;
+    const float FOAM_COARSE_VARIANCE = 0.0498;
+    const float FOAM_SMALL_MEAN = 0.269;
+    const float FOAM_0 = -3.223;
+    const float FOAM_1 = 12.881;
+    const float FOAM_2 = -13.562;
+    const float FOAM_3 = 8.750;
+
+    // Foam where the simulation has a share of it: (cover, slope x, slope y of its bubbles, brightness). The mean cover
+    // is the share: where pixels are too wide for the pattern, it is the cover. Fresh foam is sharp, old foam is soft.
+    vec4 foamCover(vec2 x, float share, float footprint) {
+      if (share <= 0.004) return vec4(0.0);
       vec2 d = vec2(cos(wind.x), sin(wind.x));
       vec2 p = vec2(dot(x, d) * 0.7, dot(x, vec2(-d.y, d.x))) / wind.z;
-      vec2 drift = vec2(gradientNoise(p * 0.43 + 3.1).x, gradientNoise(p * 0.43 - 7.7).x);
-      p += drift * 1.1;
-      float big = gradientNoise(p * 0.5 + 11.0).x;
-      float c = clamp(asked * (1.0 + 0.9 * big), 0.0, 1.0);
-      // Distance to the nearest wall of a bubble: large cells, with small ones inside.
-      float near = 1.0 - smoothstep(0.1, 0.5, footprint / wind.z);
-      float crumb = 0.35;
-      vec2 q = p + 0.30 * vec2(gradientNoise(p * 2.3).x, gradientNoise(p * 2.3 + 9.0).x);
-      float wall = cellWalls(q * 1.4);
-      if (near > 0.0) {
-        crumb = mix(0.35, cellWalls(q * 4.7), near);
+      float seen = 1.0 - smoothstep(0.3, 0.9, footprint / wind.z);
+      float near = 1.0 - smoothstep(0.06, 0.2, footprint / wind.z);
+      float cover = share, grain = 0.0;
+      vec2 relief = vec2(0.0);
+      if (seen > 0.0) {
+        p += 1.1 * vec2(gradientNoise(p * 0.43 + 3.1).x, gradientNoise(p * 0.43 - 7.7).x);
+        vec2 q = p + 0.30 * vec2(gradientNoise(p * 2.3).x, gradientNoise(p * 2.3 + 9.0).x);
+        float v = cellWalls(q * 1.4) - 0.55 * gradientNoise(p * 0.5 + 11.0).x + 0.4 * FOAM_SMALL_MEAN;
+        float variance = FOAM_COARSE_VARIANCE;
+        if (near > 0.0) {
+          float small = cellWalls(q * 4.7) - FOAM_SMALL_MEAN;
+          vec3 bubbles = gradientNoise(p * 13.0);
+          float fine = 0.4 * small + 0.22 * bubbles.x;
+          v += near * fine;
+          variance += near * near * (FOAM_VARIANCE - FOAM_COARSE_VARIANCE);
+          relief = near * 0.5 * (bubbles.y * d + bubbles.z * vec2(-d.y, d.x));
+          grain = near * (bubbles.x - 0.8 * small);
+        }
+        v = FOAM_MEAN + (v - FOAM_MEAN) * sqrt(FOAM_VARIANCE / variance);
+        float below = 1.0 / (1.0 + exp(-(FOAM_0 + v * (FOAM_1 + v * (FOAM_2 + v * FOAM_3)))));
+        // As wide an edge on either side leaves the mean as it is.
+        float soft = min(mix(0.16, 0.05, share), 0.9 * min(share, 1.0 - share)) + 1e-4;
+        cover = mix(share, smoothstep(-soft, soft, share - below), seen);
       }
-      float grain = 0.5;
-      if (footprint < 0.06 * wind.z) grain = 0.5 + 0.8 * gradientNoise(p * 31.0).x;
-      float edge = 0.10 + 0.25 * clamp(footprint / wind.z, 0.0, 1.0);
-      float width = 0.75 * c * c + 0.22 * c;
-      float web = 1.0 - smoothstep(width - edge, width + edge, min(wall, 0.16 + 0.8 * crumb) + 0.06);
-      float mat = smoothstep(0.35, 0.95, c + 0.35 * (0.4 - crumb) + 0.25 * (grain - 0.5) + 0.3 * big);
-      float torn = smoothstep(-0.25, 0.25, gradientNoise(p * 1.9 + 21.0).x + 1.2 * c - 0.35);
-      float cover = max(web * torn * smoothstep(0.02, 0.5, c) * (1.0 - 0.5 * crumb), mat);
-      return vec2(clamp(cover, 0.0, 1.0), clamp(0.35 + 0.65 * mat - 0.5 * crumb + 0.3 * (grain - 0.5), 0.0, 1.0));
+      // Whitecaps reflect about half of the light when they are old (Koepke 1984, Appl. Opt. 23:1816).
+      float bright = mix(0.5, 1.0, smoothstep(0.1, 0.7, share)) * (1.0 + 0.35 * grain);
+      return vec4(cover, relief, bright);
+    }
+
+    // Rings of raindrops. A ring spreads at the least speed that waves have, at that wavelength; it lives until it is
+    // RING_REACH wavelengths wide. In each layer the sea has cells of RING_CELL wavelengths with one ring at a time.
+    uniform vec3 rainRings; // drops that make a ring [1/(m2 s)] (0: no rain), wavelength [m] and speed [m/s] of the ring
+    const int RING_LAYERS = 4;
+    const float RING_CELL = 10.0;
+    const float RING_REACH = 3.0;
+    const float RING_SLOPE = 0.7; // greatest, of the first wave of a large drop
+    const float RING_VARIANCE = 0.00505; // of both slopes together, where every cell has a ring
+
+    // Slopes of the rings: (slope x, slope y, variance not shown, share that is splash).
+    vec4 rainSlopes(vec2 x, float footprint) {
+      if (rainRings.x <= 0.0) return vec4(0.0);
+      float life = RING_REACH * rainRings.y / rainRings.z, side = RING_CELL * rainRings.y;
+      float share = min(rainRings.x * life * side * side / float(RING_LAYERS), 1.0); // of the cells that have a ring
+      float seen = 1.0 - smoothstep(0.15, 0.6, footprint / rainRings.y);
+      vec2 slope = vec2(0.0);
+      float splash = 0.0;
+      if (seen > 0.0) {
+        for (int k = 0; k < RING_LAYERS; k++) {
+          float turned = 0.7 * float(k);
+          vec2 p = mat2(cos(turned), sin(turned), -sin(turned), cos(turned)) * x / side;
+          p += 0.37 * float(k);
+          vec2 i = floor(p), layer = vec2(101.0, 57.0) * float(k);
+          vec2 start = hash2(i + layer);
+          float turn = seaState.x / life + start.x;
+          float number = floor(turn), age = turn - number;
+          vec2 place = hash2(i + layer + number * vec2(17.0, 29.0));
+          vec2 drop = hash2(i - layer - number * vec2(23.0, 13.0));
+          if (drop.x >= share) continue;
+          vec2 d = RING_CELL * (p - i) - (RING_REACH + 1.0) - (RING_CELL - 2.0 * RING_REACH - 2.0) * place;
+          float r = length(d), w = r - RING_REACH * age;
+          float strength = mix(0.4, 1.0, drop.y * drop.y) * (1.0 - age);
+          if (abs(w) < 1.0) {
+            float fade = (1.0 - w * w) * (1.0 - w * w);
+            vec2 along = mat2(cos(turned), -sin(turned), sin(turned), cos(turned)) * d / max(r, 1e-3);
+            slope += RING_SLOPE * strength * fade * sin(6.2832 * w) * along;
+          }
+          splash += smoothstep(0.5, 0.1, r) * smoothstep(0.2, 0.0, age);
+        }
+      }
+      return vec4(seen * slope, (1.0 - seen * seen) * share * RING_VARIANCE, seen * min(splash, 1.0));
     }
 
     // Oil on the water, as a layer on all of it or as a round slick with an irregular edge.
@@ -341,9 +409,11 @@ const WATER_GLSL = {
       float hull = distanceToHull(at.xy);
       float wash = (1.0 - smoothstep(0.0, 0.15 + 0.35 * sqrt(seaState.y), hull)) * smoothstep(0.05, 0.6, seaState.y);
       wash *= (1.0 - oil) * (0.75 + 0.5 * gradientNoise(at.xy * 2.3 - 0.4 * seaState.x).x);
-      vec2 bubbles = foamCover(rest, clamp(max(slopeAndFoam.z, 0.8 * wash), 0.0, 1.0), footprint);
+      vec4 bubbles = foamCover(rest, clamp(max(slopeAndFoam.z, 0.8 * wash), 0.0, 1.0), footprint);
       float foam = bubbles.x;
-      float variance = optics.y * optics.y + 0.5 * (rough + fine.z);
+      vec4 rings = rainSlopes(rest, footprint);
+      slope += rings.xy;
+      float variance = optics.y * optics.y + 0.5 * (rough + fine.z + rings.z);
       float sigma = sqrt(variance);
 
       // At grazing angles one sees mostly the facets that are tilted towards the eye.
@@ -363,7 +433,7 @@ const WATER_GLSL = {
       R = normalize(R);
       float dim = clamp(sqrt(sigma) * 0.7, 0.0, 0.8);
       vec3 ambient = ambientLight();
-      vec3 mirrored = addClouds(sky(R, dim), R, max(dim, 0.1), ambient).rgb;
+      vec3 mirrored = behindRain(addClouds(sky(R, dim), R, max(dim, 0.1), ambient).rgb, R);
 
       // Sun glitter: the share of facets that send the sun to the eye, Gaussian in slope (Cox & Munk 1954).
       vec3 H = normalize(V + sunDirection);
@@ -385,9 +455,12 @@ const WATER_GLSL = {
       body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, slopeAndFoam.z);
 
       vec3 color = mix(body, mirrored, mirror) + sunLight * glitter * (1.0 - foam);
-      // Foam scatters light many times, so it is lit from all sides.
-      vec3 white = foamColor * (ambient * 1.15 + sunLight * 0.3183 * (0.35 + 0.65 * sunUp)) * (0.72 + 0.38 * bubbles.y);
-      color = mix(color, white, foam * (0.6 + 0.4 * bubbles.y));
+      // Foam scatters the light of sun and sky many times. The sky is that overhead and that around.
+      vec3 around = 0.5 * (horizon(sunDirection) + horizon(-sunDirection));
+      vec3 M = normalize(vec3(-slope - bubbles.yz, 1.0));
+      vec3 white = foamColor * (0.65 * ambient + 0.35 * around + sunLight * 0.3183 * max(dot(M, sunDirection), 0.0));
+      color = mix(color, white * bubbles.w, foam);
+      color = mix(color, 0.65 * ambient + 0.35 * around, 0.5 * rings.w);
 
       color *= 0.65 + 0.35 * smoothstep(0.0, 0.6, hull);
       return mix(color, haze, lost) * lens.y;
@@ -463,7 +536,7 @@ const DOME_FRAGMENT = `
       float off = length(d - sunDirection);
       vec4 layer = addClouds(clearSky(d) + sunLight * sunGlow(off), d, 0.0, ambientLight());
       float through = 1.0 - layer.a;
-      c = (layer.rgb + sunLight * sunDisc(off) * lens.z * through * through) * lens.y;
+      c = behindRain(layer.rgb + sunLight * sunDisc(off) * lens.z * through * through, d) * lens.y;
     }
     gl_FragColor = vec4(c, 1.0);
     #include <tonemapping_fragment>

@@ -225,9 +225,8 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
     "Heavy planet": {"planet_mass": 100.0, "length": 128.0, "wind_speed": 10.0, "visibility": 1500.0, "view": "mast"},
     "Rain shower": {
-        "rain": 30.0, "length": 32.0, "wind_speed": 0.5, "wind_direction": 70.0, "mesh": "256", "rings": 2.5,
-        "frame_rate": 24.0, "view": "swimmer", "drops": 600, "visibility": 500.0, "foam": False, "sky": "dawn",
-        "clouds": 0.8, "sun": 8.0,
+        "rain": 30.0, "length": 32.0, "wind_speed": 0.5, "wind_direction": 70.0, "mesh": "256", "rings": 0.4,
+        "frame_rate": 24.0, "view": "swimmer", "drops": 600, "foam": False, "clouds": 1.0, "sun": 8.0,
     },
 }  # fmt: skip
 

@@ -2,6 +2,8 @@
 
 Streaks are a mesh, because viser replaces lines at each update but moves a mesh of fixed faces in place. The shader
 in `app/render/js/rain.js` fades streaks near the camera, keeps distant ones a pixel wide, and lights them by the sky.
+Where there is a shader, it draws thousands of further drops around the camera, with the same sizes, speeds and wind;
+they are sent once and hit nothing.
 """
 
 import numpy as np
@@ -9,7 +11,9 @@ import viser
 
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import RAIN_UNIFORMS
+from app.scenes.square_sea.parameters import RainSettings
 from app.scenes.square_sea.rainfall import MAX_SPLASHES, SPLASH_DURATION, RainFrame
+from sim.particles.rain import EARTH, rainfall, slope_parameter
 
 EXPOSURE_TIME = 1 / 40  # [s] over which a moving drop draws its streak
 STREAK_HALF_WIDTH = 0.004  # [m]
@@ -17,6 +21,10 @@ MIN_STREAK_ANGLE = 0.0007  # [rad] half the width below which the shader draws a
 STREAK_COLOUR = (214, 224, 234)
 STREAK_OPACITY = 0.6
 FADE_DISTANCE = 1.0  # [m] from the camera within which the shader draws no streak
+NEAR_DROPS = 8000  # that the shader draws around the camera, at most
+NEAR_BOX = 10.0  # [m] side of the box around the camera that they are in
+NEAR_HALF_WIDTH = 0.0022  # [m] of such a drop for each millimetre of its diameter
+NEAR_OPACITY = 0.7
 CROWN_DROPS = 6  # thrown up by a splash
 CROWN_HEIGHT, CROWN_RADIUS = 0.16, 0.09  # [m]
 HIDDEN_HEIGHT = -1e3  # [m] where unused streaks are kept
@@ -29,8 +37,8 @@ HEAD_CORNERS = STREAK_HALF_WIDTH * np.stack(  # (3, 3) [m] around the head of a 
 class StreakMesh:
     """n streaks in one mesh, each from a tail to three points around its head."""
 
-    def __init__(self, server: viser.ViserServer, name: str, n: int, exposure: float) -> None:
-        """exposure: of the water's material."""
+    def __init__(self, server: viser.ViserServer, name: str, n: int, uniforms: dict[str, tuple[float, ...]]) -> None:
+        """uniforms: of the shader, by their names in RAIN_UNIFORMS."""
         faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1]])
         self.vertices = np.full((n, 4, 3), HIDDEN_HEIGHT, np.float32)
         self.mesh = server.scene.add_mesh_simple(
@@ -45,10 +53,6 @@ class StreakMesh:
             receive_shadow=False,
         )
         if injector_of(server) is not None:
-            uniforms = {
-                "rain": (STREAK_OPACITY, exposure, FADE_DISTANCE),
-                "streak": (STREAK_HALF_WIDTH, MIN_STREAK_ANGLE, 0.0),
-            }
             values = np.array([uniforms[uniform] for uniform in RAIN_UNIFORMS])
             add_data_mesh(server, f"{name}/rain_material", values)
 
@@ -60,13 +64,28 @@ class StreakMesh:
 
 
 class RainMesh:
-    """Drops and splashes in the scene. Made for one number of drops."""
+    """Drops and splashes in the scene. Made for one number of drops, and one rain."""
 
-    def __init__(self, server: viser.ViserServer, frame: RainFrame, exposure: float) -> None:
+    def __init__(self, server: viser.ViserServer, frame: RainFrame, settings: RainSettings, exposure: float) -> None:
         """exposure: of the water's material."""
-        self.count = len(frame.drops)
-        self.drops = StreakMesh(server, "/rain/drops", self.count, exposure)
-        self.crowns = StreakMesh(server, "/rain/splashes", MAX_SPLASHES * CROWN_DROPS, exposure)
+        self.count, self.settings = len(frame.drops), settings
+        speed_factor = float(np.sqrt(settings.gravity / EARTH))
+        uniforms: dict[str, tuple[float, ...]] = {
+            "rain": (STREAK_OPACITY, exposure, FADE_DISTANCE),
+            "streak": (STREAK_HALF_WIDTH, MIN_STREAK_ANGLE, 0.0),
+            "dropSizes": (1e-3 * slope_parameter(settings.rate), speed_factor, EXPOSURE_TIME),
+            "dropMotion": (*settings.wind, 0.0),
+        }
+        self.drops = StreakMesh(server, "/rain/drops", self.count, uniforms)
+        self.crowns = StreakMesh(server, "/rain/splashes", MAX_SPLASHES * CROWN_DROPS, uniforms)
+        self.near = None
+        if injector_of(server) is not None:
+            near = uniforms | {
+                "rain": (NEAR_OPACITY, exposure, FADE_DISTANCE),
+                "streak": (NEAR_HALF_WIDTH, MIN_STREAK_ANGLE, NEAR_BOX),
+            }
+            real = rainfall(settings.rate, settings.gravity).concentration * NEAR_BOX**3
+            self.near = StreakMesh(server, "/rain/near", min(NEAR_DROPS, round(real)), near)
         number = np.arange(CROWN_DROPS)
         angle = 2.0 * np.pi * (number / CROWN_DROPS + 0.1)
         # Every second drop of a crown flies steeper, so that the crown does not look regular.
@@ -91,5 +110,7 @@ class RainMesh:
 
     def remove(self) -> None:
         """Remove drops and splashes from the scene."""
+        if self.near is not None:
+            self.near.mesh.remove()
         self.drops.mesh.remove()
         self.crowns.mesh.remove()

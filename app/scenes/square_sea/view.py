@@ -10,15 +10,17 @@ import viser
 
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
-from app.render.material import Material
+from app.render.material import RAIN_HEIGHT, Material
 from app.render.skies import CAMERA_RANGE, set_sky
 from app.render.water import Water
 from app.scenes.contract import Pieces
 from app.scenes.square_sea import report
-from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity
+from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity, rain_settings
 from app.scenes.square_sea.rain_view import RainMesh
 from app.scenes.square_sea.scene import SeaFrame
 from sim.packing import compile_packing
+from sim.particles.rain import rainfall
+from sim.particles.rain_rings import ring_flux, ring_wave
 
 DEFAULTS = Params()
 TARGETS = {  # [m] of each view: how far ahead its target is, and the target's height
@@ -39,6 +41,7 @@ MAX_RIPPLE_CELLS = 2.5  # longest ripple of the shader, in cells of the mesh: th
 MIN_RIPPLE_LENGTHS = 3.0  # shortest ripple, in capillary lengths 2 pi sqrt(tension/(density gravity))
 FOAM_CELLS = 0.9  # size of a patch of foam, in cells of the mesh, so that it hides the facets of the mesh
 MAX_RIPPLE_SLOPE = 0.25  # rms, beyond which the shader's ripples look like noise
+RAIN_BLUR = 0.9  # of the haze's colour in rain: all of the sky is haze there, and shows the blocks of the photograph
 GAUGE_COLOUR, SPAR_COLOUR = (240, 96, 32), (245, 245, 240)
 
 
@@ -114,12 +117,22 @@ class View:
             float(grey * overcast + clear * (1.0 - overcast))
             for grey, clear in zip(OVERCAST_TINT, self.sky_material.sky_tint, strict=True)
         )
+        fold, blur, limit = self.sky_material.sky_fold
+        rings, extinction, sun_left = (0.0, 1.0, 1.0), 0.0, 1.0
+        if p.rain > 0.0:
+            rings = (ring_flux(p.rain, g), *ring_wave(g, SURFACE_TENSION, WATER_DENSITY))
+            extinction = rainfall(p.rain, g).extinction
+            sun_left = math.exp(-extinction * RAIN_HEIGHT)
+            blur = RAIN_BLUR
         return dataclasses.replace(
             self.sky_material,
+            sky_fold=(fold, blur, limit),
+            rain_rings=rings,
+            rain_extinction=extinction,
             clouds=p.clouds,
             sky_tint=(red, green, blue),
-            sun_strength=self.sky_material.sun_strength * (1.0 - 0.93 * overcast),
-            sun_disc=(1.0 - overcast) ** 2,
+            sun_strength=self.sky_material.sun_strength * (1.0 - 0.93 * overcast) * sun_left,
+            sun_disc=(1.0 - overcast) ** 2 * sun_left,
             cloud_darkness=0.25 + 0.45 * overcast,
             exposure=self.sky_material.exposure * p.daylight,
             haze_distance=p.visibility,
@@ -133,14 +146,17 @@ class View:
         )
 
     def show_rain(self, frame: SeaFrame) -> None:
-        """Draw the rain; its meshes are made for one number of drops."""
+        """Draw the rain; its meshes are made for one number of drops, and one rain."""
         rain = frame.rain
-        if self.rain is not None and (rain is None or len(rain.drops) != self.rain.count):
+        settings = rain_settings(frame.params)
+        if self.rain is not None and (
+            rain is None or len(rain.drops) != self.rain.count or settings != self.rain.settings
+        ):
             self.rain.remove()
             self.rain = None
         if rain is not None:
             if self.rain is None:
-                self.rain = RainMesh(self.server, rain, self.material.exposure)
+                self.rain = RainMesh(self.server, rain, settings, self.material.exposure)
             self.rain.show(rain)
 
     def show_gauge(self, frame: SeaFrame) -> None:

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
+from sim.ocean.dispersion import phase_speed
 from sim.particles.rain import LARGEST, SMALLEST, Rain, rainfall, slope_parameter, terminal_speed
+from sim.particles.rain_rings import SMALLEST_RING_DROP, ring_flux, ring_wave
 
 FLAT = np.zeros((8, 8))
 
@@ -28,6 +30,24 @@ def test_integrals_of_the_table():
     assert moderate.rate == pytest.approx(28.2, rel=0.01)
     assert moderate.energy == pytest.approx(0.173, rel=0.01)
     assert heavy.energy == pytest.approx(0.806, rel=0.05)
+
+
+def test_rain_hides_by_what_its_drops_cover():
+    """2 pi/4 int D^2 N0 exp(-Lambda D) dD, in closed form."""
+    for rate in (1.0, 25.0, 100.0):
+        a = slope_parameter(rate)
+        low, high = (math.exp(-a * D) * (D * D / a + 2.0 * D / a**2 + 2.0 / a**3) for D in (SMALLEST, LARGEST))
+        assert rainfall(rate).extinction == pytest.approx(0.5 * math.pi * 8e6 * (low - high), rel=1e-5)
+
+
+def test_rings_are_the_slowest_waves_and_as_many_as_large_drops():
+    wave = ring_wave(9.81, 0.0728, 998.2)
+    assert wave == pytest.approx((0.01713, 0.23129), rel=1e-3)
+    for factor in (0.9, 1.1):
+        assert phase_speed(factor * 2.0 * math.pi / wave.length, tension=0.0728, density=998.2) > wave.speed
+    # Of one speed v all drops above D0 would be N0/Lambda exp(-Lambda D0) v; their speeds are 6.5 to 9.2 m/s.
+    above = 8e6 / slope_parameter(30.0) * math.exp(-slope_parameter(30.0) * SMALLEST_RING_DROP)
+    assert 6.5 * above < ring_flux(30.0) < 9.2 * above
 
 
 def test_as_many_drops_fall_as_the_rate_says():

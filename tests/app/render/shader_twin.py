@@ -1,0 +1,106 @@
+"""The noise, foam, rings and ripples of `app/render/js/water_shader.js` in numpy, with the constants of its text.
+
+Arrays of points in place of one pixel; the arithmetic is double where the shader's is single.
+"""
+
+import re
+from importlib import resources
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+SOURCE = (resources.files("app.render") / "js" / "water_shader.js").read_text("utf-8")
+
+
+def constant(name: str) -> float:
+    """The value of `const float name` or `const int name` in the shader."""
+    (value,) = re.findall(rf"const (?:float|int) {name} = ([-0-9.e]+);", SOURCE)
+    return float(value)
+
+
+def smoothstep(low: float | Array, high: float | Array, x: Array) -> Array:
+    """GLSL's smoothstep."""
+    t = np.clip((x - low) / (high - low), 0.0, 1.0)
+    return t * t * (3.0 - 2.0 * t)
+
+
+def hash2(p: Array) -> Array:
+    """Two random numbers in 0..1 for each whole-numbered point (..., 2)."""
+    q = p.astype(np.int64).astype(np.uint32) * np.array([1597334673, 3812015801], np.uint32)
+    n = (q[..., 0] ^ q[..., 1]) * np.uint32(1597334673)
+    return np.stack([n & np.uint32(0xFFFF), n >> np.uint32(16)], -1) / 65535.0
+
+
+def gradient_noise(p: Array) -> Array:
+    """(..., 3): gradient noise and its two derivatives at points (..., 2)."""
+    i = np.floor(p)
+    f = p - i
+    u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0)
+    du = 30.0 * f * f * (f * (f - 2.0) + 1.0)
+    corners = [np.array(c, float) for c in ((0, 0), (1, 0), (0, 1), (1, 1))]
+    ga, gb, gc, gd = (hash2(i + c) * 2.0 - 1.0 for c in corners)
+    a, b, c, d = ((g * (f - at)).sum(-1) for g, at in zip((ga, gb, gc, gd), corners, strict=True))
+    ux, uy = u[..., 0], u[..., 1]
+    v = a + ux * (b - a) + uy * (c - a) + ux * uy * (a - b - c + d)
+    ux, uy = ux[..., None], uy[..., None]
+    g = ga + ux * (gb - ga) + uy * (gc - ga) + ux * uy * (ga - gb - gc + gd)
+    g = g + du * (u[..., ::-1] * (a - b - c + d)[..., None] + np.stack([b, c], -1) - a[..., None])
+    return np.concatenate([v[..., None], g], -1)
+
+
+def cell_walls(p: Array) -> Array:
+    """Distance from the walls between cells around random points."""
+    i = np.floor(p)
+    f = p - i
+    first = second = np.full(p.shape[:-1], 8.0)
+    for a in (-1, 0, 1):
+        for b in (-1, 0, 1):
+            o = np.array([a, b], float)
+            r = o + hash2(i + o) - f
+            d = (r * r).sum(-1)
+            second = np.minimum(second, np.maximum(first, d))
+            first = np.minimum(first, d)
+    return np.sqrt(second) - np.sqrt(first)
+
+
+def foam_pattern(p: Array) -> tuple[Array, Array]:
+    """The pattern of foam at points (n, 2), with its small bubbles and with its large ones alone."""
+    warp = [gradient_noise(p * 0.43 + 3.1)[..., 0], gradient_noise(p * 0.43 - 7.7)[..., 0]]
+    p = p + 1.1 * np.stack(warp, -1)
+    q = p + 0.30 * np.stack([gradient_noise(p * 2.3)[..., 0], gradient_noise(p * 2.3 + 9.0)[..., 0]], -1)
+    mean = constant("FOAM_SMALL_MEAN")
+    coarse = cell_walls(q * 1.4) - 0.55 * gradient_noise(p * 0.5 + 11.0)[..., 0] + 0.4 * mean
+    fine = 0.4 * (cell_walls(q * 4.7) - mean) + 0.22 * gradient_noise(p * 13.0)[..., 0]
+    return coarse + fine, coarse
+
+
+def foam_cover(v: Array, variance: float, share: float) -> Array:
+    """What is drawn as foam where the pattern is v, of this variance, and the simulation has this share of it."""
+    v = constant("FOAM_MEAN") + (v - constant("FOAM_MEAN")) * np.sqrt(constant("FOAM_VARIANCE") / variance)
+    a, b, c, d = (constant(f"FOAM_{k}") for k in range(4))
+    below = 1.0 / (1.0 + np.exp(-(a + v * (b + v * (c + v * d)))))
+    soft = min(0.16 + (0.05 - 0.16) * share, 0.9 * min(share, 1.0 - share)) + 1e-4
+    return smoothstep(-soft, soft, share - below)
+
+
+def ring_slopes(x: Array, time: float, share: float, wavelength: float, speed: float) -> Array:
+    """(n, 2): slopes of the rings of rain at points (n, 2) [m], where pixels are fine."""
+    layers, cell, reach = int(constant("RING_LAYERS")), constant("RING_CELL"), constant("RING_REACH")
+    slope, life = np.zeros(x.shape), reach * wavelength / speed
+    for k in range(layers):
+        c, s = np.cos(0.7 * k), np.sin(0.7 * k)
+        p = x @ np.array([[c, s], [-s, c]]) / (cell * wavelength) + 0.37 * k  # GLSL's matrices are by columns
+        i, layer = np.floor(p), np.array([101.0, 57.0]) * k
+        turn = time / life + hash2(i + layer)[..., 0]
+        number = np.floor(turn)
+        age = turn - number
+        place = hash2(i + layer + number[..., None] * np.array([17.0, 29.0]))
+        drop = hash2(i - layer - number[..., None] * np.array([23.0, 13.0]))
+        d = cell * (p - i) - (reach + 1.0) - (cell - 2.0 * reach - 2.0) * place
+        r = np.sqrt((d * d).sum(-1))
+        w = r - reach * age
+        strength = (0.4 + 0.6 * drop[..., 1] ** 2) * (1.0 - age) * (np.abs(w) < 1.0) * (drop[..., 0] < share)
+        size = constant("RING_SLOPE") * strength * (1.0 - w * w) ** 2 * np.sin(6.2832 * w)
+        slope += (size / np.maximum(r, 1e-3))[..., None] * (d @ np.array([[c, -s], [s, c]]))
+    return slope

@@ -72,7 +72,8 @@ class March(NamedTuple):
 
 
 class Unfit(Exception):  # noqa: N818 - a judgement on a result, not an error of the program
-    """A student's function returned what cannot be used. kind: "wrong shape", "wrong type", "NaN", "returns nothing".
+    """A student's function returned what cannot be used. kind: "wrong shape", "wrong type", "NaN", "returns nothing",
+    "out of range".
 
     function: the one that did.
     """
@@ -83,6 +84,24 @@ class Unfit(Exception):  # noqa: N818 - a judgement on a result, not an error of
         self.text = text
         code = getattr(function, "__code__", None)
         self.line = None if code is None else int(code.co_firstlineno)
+
+
+def fitting(name: str, value: Any, shape: tuple[int, ...], function: Callable[..., Any]) -> np.ndarray:
+    """What a function of this name returned, as an array of this shape. Raises Unfit."""
+    expected = f"expected is an array of shape {shape}" if shape else "expected is a number"
+    if value is None:
+        raise Unfit("returns nothing", f"{name} returns nothing: the last line must be return ...", function)
+    try:
+        array = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        array = np.array(None)
+    if array.dtype.kind not in "biuf":
+        text = f"{name} returns a value of type {type(value).__name__}; {expected}"
+        raise Unfit("wrong type", text, function)
+    if array.shape != shape:
+        form = f"an array of shape {array.shape}" if array.shape else "a number"
+        raise Unfit("wrong shape", f"{name} returns {form}; {expected}", function)
+    return array.astype(np.float64)
 
 
 class Functions:
@@ -110,20 +129,7 @@ class Functions:
         """A result as an array of this shape. Raises Unfit."""
         if type(value) is np.ndarray and value.dtype == np.float64 and value.shape == shape:
             return value
-        function, expected = self.get(name), f"expected is an array of shape {shape}"
-        if value is None:
-            raise Unfit("returns nothing", f"{name} returns nothing: the last line must be return ...", function)
-        try:
-            array = np.asarray(value)
-        except ValueError:  # rows of different lengths
-            array = np.array(None)
-        if array.dtype.kind not in "biuf":
-            text = f"{name} returns a value of type {type(value).__name__}; {expected}"
-            raise Unfit("wrong type", text, function)
-        if array.shape != shape:
-            form = f"an array of shape {array.shape}" if array.shape else "a number"
-            raise Unfit("wrong shape", f"{name} returns {form}; {expected}", function)
-        return array.astype(np.float64)
+        return fitting(name, value, shape, self.get(name))
 
     def acceleration(self, x: Any, v: Any) -> np.ndarray:
         """The accelerations [m/s2], shape (n, 3), that a step asks for."""

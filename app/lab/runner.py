@@ -22,11 +22,13 @@ import numpy as np
 
 from app.lab.process import COMPILES, TRACE_SIGNAL
 from app.lab.rope_march import FILE, March, Segment, packed
+from app.lab.tabulate import Range
 from app.lab.wire import pack, receive, send, unpack
 
 TIME_LIMIT = 2.0  # [s] of one call
 LOAD_LIMIT = 10.0  # [s] until a new process answers its first call, which imports numpy
 COMPILE_LIMIT = 60.0  # [s] for compiling
+TABLE_ROWS = 512  # of a table that are computed in one call
 TRACE_TIME = 0.2  # [s] for which a process that does not answer may take to say where it is
 MAX_TRACE = 2**16  # [bytes] of what it says
 FRAME = re.compile(r'File "(.+)", line (\d+) in (.+)')  # as faulthandler writes it
@@ -92,6 +94,24 @@ class Runner:
             self.close()
             raise RunError("ended", f"{step} wrote into the pipe of the lab", FILE)
         return March(*answer)
+
+    def table(
+        self, file: str, function: str, columns: Sequence[np.ndarray], shape: tuple[int, ...], allowed: Range
+    ) -> np.ndarray:
+        """(n, *shape) what a function returns for each row of its arguments (`tabulate.py`). Raises RunError.
+
+        columns: (n, ...) each. The limit in time is that of each `TABLE_ROWS` rows.
+        """
+        parts: list[np.ndarray] = []
+        for first in range(0, len(columns[0]), TABLE_ROWS):
+            rows = [column[first : first + TABLE_ROWS] for column in columns]
+            part = self._ask("table", file, function, [rows, list(shape), list(allowed)])
+            is_table = isinstance(part, np.ndarray) and part.dtype == np.float64
+            if not is_table or part.shape != (len(rows[0]), *shape) or not np.isfinite(part).all():
+                self.close()
+                raise RunError("ended", f"{function} wrote into the pipe of the lab", file)
+            parts.append(part)
+        return np.concatenate(parts)
 
     def compile(self, own: Collection[str]) -> tuple[list[str], str]:
         """Compile the functions that move a rope, for later marches; which could be, and why others could not.

@@ -1,7 +1,8 @@
 """`springtide lab DIR` while it runs: watches the student's folder, tries what is saved, and runs it.
 
 A thread waits for files to be saved. Each saved version is copied, tried in a process of its own, and handed to the
-rope (`live_rope.py`) where it works; where it does not, the last one that worked goes on. What the panel shows is one
+rope (`live_rope.py`) where it works; where it does not, the last one that worked goes on. The seas run by tables of
+functions (`live_tables.py`), in the same way. What the panel shows is one
 frozen record, `state`, which is replaced and never changed.
 """
 
@@ -20,7 +21,9 @@ from typing import NamedTuple
 import watchfiles
 
 from app.lab.background_check import BackgroundCheck
+from app.lab.live_code import LiveCode
 from app.lab.live_rope import LiveRope, Loaded, own_of, try_rope
+from app.lab.live_tables import LiveTables
 from app.lab.rope_march import FILE
 from app.lab.runner import TIME_LIMIT, RunError, Runner
 from app.lab.saved import Saved, keep, read_files
@@ -39,7 +42,6 @@ class CodeState(NamedTuple):
 
     version: int = 0  # of the files as saved last
     saved_at: str = ""  # clock time
-    running: int = 0  # the version that moves the rope, 0: none
     error: RunError | None = None  # what stops the newest version
     not_compiled: str = ""  # why a function of the version that runs could not be compiled
     begun: frozenset[str] = frozenset()  # functions with a body in the version that runs, or in the newest
@@ -63,9 +65,12 @@ class Session:
         self.saved: Saved | None = None  # the newest version
         self.number = 0
         self.spare: Runner | None = self.make_runner()
+        by_name = {task.name: task for task in tasks}
         self.rope = LiveRope(self.note_failure)
+        self.tables = LiveTables(by_name, time_limit)
+        self.live = LiveCode(self.rope, self.tables)
         self.check = BackgroundCheck(own_tasks)
-        self.values = SceneValues({task.name: task for task in tasks}, time_limit)
+        self.values = SceneValues(by_name, time_limit)
         self.rope_version = 0  # number of the last version that was tried for the rope
         self.compiler: Runner | None = None  # of the version that is being compiled
         self.to_compile: queue.SimpleQueue[Saved | None] = queue.SimpleQueue()
@@ -110,6 +115,7 @@ class Session:
         helpers = changed - {task.file for task in self.tasks}  # which any function may use
         names = [task.name for task in self.tasks if task.file and (helpers or task.file in changed)]
         self.check.request(saved.folder, names, saved.begun)
+        self.tables.adopt(saved)
         self.saved, self.spare = saved, None
         self.state = self.state._replace(version=saved.number, saved_at=time.strftime("%H:%M:%S"), error=None)
         if FILE in texts and self.is_for_rope(changed):
@@ -145,7 +151,7 @@ class Session:
             self.note_failure(saved, error)
             return
         begun = own_of(saved, method, sphere=sphere)
-        self.state = self.state._replace(running=saved.number if begun else 0, begun=saved.begun, not_compiled="")
+        self.state = self.state._replace(begun=saved.begun, not_compiled="")
         self.rope.adopt(loaded)
         if begun:
             self.to_compile.put(saved)
@@ -185,6 +191,7 @@ class Session:
         if self.spare is not None:
             self.spare.close()
         self.rope.close()
+        self.tables.close()
         self.check.close()
         self.values.close()
         shutil.rmtree(self.copies, ignore_errors=True)

@@ -3,8 +3,9 @@
 It says `["ready"]` once. It takes `["call", file, function, arguments]` and answers with `["result", value]`,
 `["callback", number, arguments]` (a function among the arguments is called: the other side computes it), or
 `["failed", kind, text, file, line]`. With `["march", file, function, arguments]` it advances a rope by the student's
-functions (`rope_march.py`), and with `["compile", file, "", [names]]` it compiles them for that. What a student prints
-is counted and dropped: the pipes are the lab's own.
+functions (`rope_march.py`), with `["compile", file, "", [names]]` it compiles them for that, and with
+`["table", file, function, [columns, shape, allowed]]` it calls one function at many arguments (`tabulate.py`). What a
+student prints is counted and dropped: the pipes are the lab's own.
 """
 
 import contextlib
@@ -24,6 +25,7 @@ from typing import Any, NoReturn
 
 from app.lab.process import COMPILES, NICENESS, TRACE_SIGNAL
 from app.lab.rope_march import Unfit, march, unpacked
+from app.lab.tabulate import Range, tabulate
 from app.lab.wire import pack, receive, send, unpack
 
 MAX_LINES = 10_000  # printed in one call or march
@@ -99,6 +101,9 @@ class Worker:
             target = getattr(module, function, None)
             if not callable(target):
                 return ["failed", "missing", f"there is no function {function}", file, None]
+            if kind == "table":
+                columns, shape, allowed = unpack(arguments, self.remote)
+                return ["result", pack(tabulate(target, function, columns, tuple(shape), Range(*allowed)), lambda _: 0)]
             value = target(*unpack(arguments, self.remote))
             return ["result", pack(value, lambda _: 0)]
         except Unfit as error:

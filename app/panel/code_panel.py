@@ -4,6 +4,7 @@ import numpy as np
 import viser
 
 from app.lab.live_rope import StudentReport, functions_in_use
+from app.lab.live_tables import TableReport
 from app.lab.live_values import LiveValues
 from app.lab.program_check import Verdict
 from app.lab.runner import RunError
@@ -35,6 +36,14 @@ ORDER = ("failed", "wrong", "checking", "right")  # of the functions
 COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "failed": ERROR_COLOUR, "checking": WARNING_COLOUR}
 
 
+HINTS = {  # scene -> what to begin with
+    "rope": "Write spring_force in rope.py and save it: the rope moves by it at once.",
+    "square_sea": "Write gravity, spectrum or dispersion in square_sea.py and save it: the sea runs by it at once.",
+    "radial_sea": "Write mixture_viscosity, wave_decay, reflectance or draft in radial_sea.py and save it: the sea "
+    "runs by it at once.",
+}
+
+
 class CodePanel:
     """Shows the state of a session."""
 
@@ -43,19 +52,44 @@ class CodePanel:
         self.shown = ""
         with gui.add_folder("Your code"):
             self.text = gui.add_html("")
+            self.choice = gui.add_checkbox(
+                "Run by your functions", session.tables.shown, hint="Off: by the program's, to compare", visible=False
+            )
+
+        @self.choice.on_update
+        def _(_: object) -> None:
+            session.tables.show(self.choice.value)
 
     def headline(self) -> Html:
         """One line on the state of the files."""
-        return headline(self.session.state, self.session.rope.report)
+        session = self.session
+        return headline(state_of(session), session.rope.report, tables_of(session))
 
     def update(self, live: LiveValues) -> None:
         """Show what has changed; called a few times a second. live: what the scene offers."""
         session = self.session
         session.values.ask(self.scene, session.saved, live)
-        text = note(lines([rope_lines(session.state, session.rope.report), function_lines(session)]))
+        said = code_lines(state_of(session), session.rope.report, tables_of(session), self.scene)
+        text = note(lines([said, function_lines(session)]))
         if text != self.shown:
             self.shown = text
             self.text.content = text
+        has_choice = bool(session.tables.tables)
+        if self.choice.visible != has_choice:
+            self.choice.visible = has_choice
+
+
+def state_of(session: Session) -> CodeState:
+    """The state of the files, with what stops a function that the scene runs by."""
+    state = session.state
+    error = next(iter(session.tables.errors.values()), None)
+    return state if state.error is not None or error is None else state._replace(error=error)
+
+
+def tables_of(session: Session) -> TableReport:
+    """What runs by tables, and of what does not the functions that the student has begun."""
+    report, begun = session.tables.report, frozenset() if session.saved is None else session.saved.begun
+    return report._replace(idle={name: why for name, why in report.idle.items() if name in begun})
 
 
 def place_of(error: RunError) -> str:
@@ -63,40 +97,53 @@ def place_of(error: RunError) -> str:
     return f"{error.file}, line {error.line}" if error.line else error.file
 
 
-def headline(state: CodeState, report: StudentReport) -> Html:
+def headline(state: CodeState, report: StudentReport, tables: TableReport) -> Html:
     """The state of the files on one line, for the block of the panel that is always in sight."""
     if state.error is not None:
         place, text = place_of(state.error), state.error.text
         return fill("Your code: {}: {}: {}", coloured("stopped", ERROR_COLOUR), place, text)
     if report.left_at == report.left_at:
         return fill("Your code: {}", coloured(f"the rope left its bounds at t = {report.left_at:.2f} s", ERROR_COLOUR))
-    if not report.version:
-        saved = f"saved at {state.saved_at}, moves nothing here" if state.version else "reading your files …"
+    if not report.version and not tables.running:
+        saved = f"saved at {state.saved_at}, runs nothing here" if state.version else "reading your files …"
         return fill("Your code: {}", saved)
     return fill("Your code: {} since {}", coloured("runs", GOOD_COLOUR), state.saved_at)
 
 
-def rope_lines(state: CodeState, report: StudentReport) -> Html:
-    """What is saved, what stops it, and the rope that it moves."""
-    said: list[Html] = [saved_text(state)]
+def code_lines(state: CodeState, report: StudentReport, tables: TableReport, scene: str) -> Html:
+    """What is saved, what stops it, and what it moves in a scene."""
+    said: list[Html] = [saved_text(state, HINTS.get(scene, ""), runs=bool(report.version or tables.running))]
     if state.error is not None:
         place = bold(place_of(state.error))
         said.append(fill('<div class="springtide-code-error">{}: {}</div>', place, state.error.text))
-        if report.version:
+        if report.version or tables.running:
             said.append(fill("The last version that worked goes on."))
     if report.version:
         said += rope_texts(state, report)
-    return lines(said)
+    return lines([*said, *sea_texts(tables)])
 
 
-def saved_text(state: CodeState) -> Html:
-    """Which version there is."""
+def sea_texts(tables: TableReport) -> list[Html]:
+    """The functions that a sea runs by, those that it has no use for, and what differs from the program's sea."""
+    said: list[Html] = []
+    if tables.running:
+        what = ", ".join(f"{moved} by {name}" for name, moved in tables.running.items())
+        said.append(fill("Your sea: {}.", bold(what)))
+    for name, own, program, unit in tables.differences:
+        value, reference = (f"{number(x, 3)} {unit}" if x == x else "…" for x in (own, program))
+        said.append(fill("{} {} (program {})", name, bold(value), reference))
+    said += [faint(f"{name}: {why}, and it runs here.") for name, why in tables.idle.items()]
+    return said
+
+
+def saved_text(state: CodeState, hint: str, *, runs: bool) -> Html:
+    """Which version there is, and what to begin with where nothing runs."""
     if not state.version:
         return fill("Reading your files …")
     if state.error is not None:
         return fill("Saved at {}: {}", state.saved_at, coloured("stopped", ERROR_COLOUR))
-    if not state.running:
-        return fill("Write spring_force in rope.py and save it: the rope moves by it at once.")
+    if not runs and hint:
+        return fill("{}", hint)
     return fill("Saved at {}: {}", state.saved_at, coloured("runs", GOOD_COLOUR))
 
 

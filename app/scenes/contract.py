@@ -25,7 +25,7 @@ from sim.parameters import Value, check_record
 if TYPE_CHECKING:
     from viser import ClientHandle
 
-    from app.lab.live_rope import LiveRope
+    from app.lab.live_code import LiveCode
     from sim.springs.net import Net
 
 FRAME_INTERVAL = 1 / 60  # [s] between ticks of the loop, and between two frames of a scene that asks for nothing else
@@ -215,7 +215,7 @@ class SceneKind(Generic[P, F, R]):
     stability_map: StabilityMap | None = None
     needs: Callable[[P], tuple[str, ...]] | None = None  # pieces of `warm_up` to run with these parameters; None: all
     # Makes the simulation with a student's functions running beside it; None: this scene has no use for them.
-    make_with_student: Callable[[P, "LiveRope"], Scene[P, F, R]] | None = None
+    make_with_student: Callable[[P, "LiveCode"], Scene[P, F, R]] | None = None
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
 
     def opening_params(self) -> P:

@@ -157,11 +157,12 @@ class Viewer:
         """The simulation, with a student's functions beside it where there are any that it has a use for."""
         if self.session is None:
             return kind.make(params)
+        live = self.session.live
         if kind.make_with_student is None:
-            self.session.rope.connect(lambda: None, lambda: None)
+            live.connect(lambda: None, lambda: None)
             return kind.make(params)
-        self.session.rope.connect(lambda: post(StudentAnswer()), lambda: post(Reset()))
-        return kind.make_with_student(params, self.session.rope)
+        live.connect(lambda: post(StudentAnswer()), lambda: post(Reset()))
+        return kind.make_with_student(params, live)
 
     def compile(self, kind: AnyKind, params: BaseParams) -> bool:
         """Have compiled what a scene needs, with progress in the page and in lines on the terminal.

@@ -6,6 +6,7 @@ surface mode is excited (the interfacial one, slow and hidden, is not), and both
 
 import dataclasses
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -29,11 +30,15 @@ class FluidColumn:
     continuous: str = "plentiful"  # fluid that an emulsion's drops are in: "plentiful", "oil" or "water"
     film: bool = False  # an inextensible film on top
     gravity: float = 9.81  # [m/s2]
+    mixture_viscosity: float | None = None  # [Pa s] in place of the law's
+    decay: Callable[[np.ndarray], np.ndarray] | None = None  # decay rate (k) [1/s] in place of the exact one
 
     def __post_init__(self) -> None:
         check_not_negative("thickness", self.thickness, "m")
         check_within("fraction", self.fraction, 0.0, 1.0)
         check_positive("gravity", self.gravity, "m/s2")
+        if self.mixture_viscosity is not None:
+            check_positive("mixture_viscosity", self.mixture_viscosity, "Pa s")
         if self.law not in MIXTURE_LAWS:
             raise argument_error("law", self.law, "one of " + ", ".join(MIXTURE_LAWS))
         check_choice("continuous", self.continuous, CONTINUOUS)
@@ -62,7 +67,8 @@ class FluidColumn:
     def surface(self) -> Fluid:
         """The fluid on top."""
         if self.kind == "mixed":
-            return mixed(self.oil, self.water, self.fraction, self.law, self.continuous_fluid)
+            found = mixed(self.oil, self.water, self.fraction, self.law, self.continuous_fluid)
+            return found if self.mixture_viscosity is None else found._replace(viscosity=self.mixture_viscosity)
         return self.oil if self.kind == "layer" else self.water
 
     @property
@@ -86,8 +92,13 @@ class FluidColumn:
         return np.asarray(mode_ratios(k, *self._two()).surface)
 
     def roots(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """omega [rad/s] and decay rate [1/s] of waves of wavenumber k [rad/m], from the exact linear problem."""
+        """omega [rad/s] and decay rate [1/s] of waves of wavenumber k [rad/m], from the exact linear problem.
+
+        With a `decay` of its own, the frequency is that without viscosity.
+        """
         k = np.asarray(k, np.float64)
+        if self.decay is not None:
+            return self.omega(k), np.asarray(self.decay(k))
         if self.kind != "layer":
             return damped_root(self.omega(k), self.surface.kinematic_viscosity * k**2, self.film)
         upper, thickness, lower, gravity, _, *tensions = self._two()

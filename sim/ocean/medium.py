@@ -17,8 +17,9 @@ class Medium:
 
     viscosity: float = 0.0  # [m2/s] kinematic
     film: bool = False  # the surface cannot be stretched; else it is clean
-    dispersion_scale: float = 1.0  # factor on every frequency
-    loop_period: float | None = None  # [s] after which the sea repeats: omega is floored to multiples of 2 pi/period
+    dispersion_scale: float = 1.0  # factor on every frequency, after rounding
+    # [s] after which the sea repeats at scale 1: omega is rounded down to multiples of 2 pi/period, as in the lab.
+    loop_period: float | None = None
     frequency: Callable[[np.ndarray], np.ndarray] | None = None  # omega(k) [rad/s] in place of the conditions' own
     decay: Callable[[np.ndarray], np.ndarray] | None = None  # decay rate (k) [1/s] in place of the viscosity's
 
@@ -44,11 +45,10 @@ class Medium:
         omega, decay = damped_root(natural, self.viscosity * k**2, self.film)
         if self.decay is not None:
             omega, decay = natural, self._given("decay", k)
-        omega = omega * self.dispersion_scale
         if self.loop_period is not None:
             base = 2.0 * math.pi / self.loop_period
             omega = np.floor(omega / base) * base
-        return omega, decay
+        return omega * self.dispersion_scale, decay
 
     def _given(self, name: str, k: np.ndarray) -> np.ndarray:
         """What the function of this name gives for k."""

@@ -18,7 +18,7 @@ from sim.ocean.evolve import set_heights
 from sim.ocean.medium import Medium
 from sim.ocean.query import query
 from sim.ocean.ripples import Ripples
-from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions
+from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, Spectrum
 from sim.ocean.surface import Surface
 from sim.ocean.transforms import PRECISIONS, Transforms
 from sim.parameters import check_value
@@ -47,7 +47,7 @@ class Sea:
         self,
         size: int = 256,
         length: float = 500.0,
-        spectrum: str = "pierson_moskowitz",
+        spectrum: str | Spectrum[Any] = "pierson_moskowitz",
         wind_speed: float = 10.0,
         wind_direction: float = 0.0,
         gravity: float = 9.81,
@@ -61,6 +61,8 @@ class Sea:
         **more: Any,
     ) -> None:
         """size: cells a side, even, 8 to 4096; length [m] of the tile; the wind is U10, U19.5 for pierson_moskowitz.
+
+        spectrum: a name in `SPECTRA`, or a record of one's own.
 
         amplitudes: "random" (Gaussian) or "fixed" (random phase only); choppiness: factor on the displacement;
         viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of `Conditions` and `Medium`,
@@ -112,7 +114,8 @@ class Sea:
         self._lost = np.zeros_like(self._k)  # -ln of the share of each wave that is left of that time, a quarter plane
         # ((medium, conditions), decay rates) that were last asked for by `expose`
         self._other_decay: tuple[tuple[Medium, Conditions], np.ndarray] | None = None
-        self._sloped_under: tuple[Conditions | None, np.ndarray] = None, self._lost  # for `slope_left`
+        # for `slope_left`: under which spectrum and conditions, and the slope
+        self._sloped_under: tuple[tuple[Spectrum[Any], Conditions] | None, np.ndarray] = None, self._lost
         self._set_conditions(spectrum, given | more, Medium())
         self._start = self._target
         self._set_planes()
@@ -155,7 +158,7 @@ class Sea:
         """
         return query(self.surface(t), check_positions("points", points), exact)
 
-    def change(self, t: float, relax: float = 0.0, spectrum: str | None = None, **changes: Any) -> None:
+    def change(self, t: float, relax: float = 0.0, spectrum: str | Spectrum[Any] | None = None, **changes: Any) -> None:
         """From time t [s] on, other conditions: any of the constructor's that describe wind, gravity or the medium.
 
         Phases go on without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
@@ -167,7 +170,7 @@ class Sea:
             self._ripples.check_time(t)
         before, rate = self._undecayed(t), self._rate
         medium, conditions, decay = self.medium, self.conditions, self._decay
-        self._set_conditions(spectrum or self.spectrum.name, changes, self.medium)
+        self._set_conditions(spectrum or self.spectrum, changes, self.medium)
         self._add_to_past(medium, conditions, decay, t - self._base)
         turns = rate * (t - self._base)
         # h0(k) e^(-i omega t): the phase so far goes into the unit amplitudes, in double.
@@ -209,7 +212,7 @@ class Sea:
         other = Sea(
             size,
             self.length,
-            self.spectrum.name,
+            self.spectrum,
             choppiness=self.choppiness,
             amplitudes=self.amplitudes,
             seed=self.seed,
@@ -263,11 +266,11 @@ class Sea:
         """
         lost = self._checked_lost(t)
         c = dataclasses.replace(self.conditions, low_pass=0.0)
-        if c != self._sloped_under[0]:
+        if (self.spectrum, c) != self._sloped_under[0]:
             S = self.spectrum(self.k[:, None], self.k[None, :], c)
             folded = np.zeros_like(self._k)
             np.add.at(folded, np.ix_(self._folded, self._folded), S * resolved(self.size))
-            self._sloped_under = c, folded * self._k**2
+            self._sloped_under = (self.spectrum, c), folded * self._k**2
         slope = self._sloped_under[1]
         whole = float(slope.sum())
         return float((slope * self._passed * np.exp(-2.0 * lost)).sum()) / whole if whole > 0.0 else 1.0
@@ -309,20 +312,22 @@ class Sea:
     def _key(self, t: float) -> tuple:
         return t, self.version, self._choppiness, self._ripples.version if self._ripples is not None else -1
 
-    def _set_conditions(self, spectrum: str, values: dict[str, Any], medium: Medium) -> None:
+    def _set_conditions(self, spectrum: str | Spectrum[Any], values: dict[str, Any], medium: Medium) -> None:
         """Check everything, then set spectrum, conditions, medium, and what follows from them."""
-        if spectrum not in SPECTRA:
-            raise argument_error("spectrum", spectrum, "one of " + ", ".join(SPECTRA))
+        if not isinstance(spectrum, Spectrum):
+            if spectrum not in SPECTRA:
+                raise argument_error("spectrum", spectrum, "one of " + ", ".join(SPECTRA))
+            spectrum = SPECTRA[spectrum]
         for name in values:
             if name not in _CONDITIONS | _MEDIUM:
                 raise TypeError(f"{name}: no such condition; there are {', '.join(sorted(_CONDITIONS | _MEDIUM))}")
         given = self._given | {n: v for n, v in values.items() if n in _CONDITIONS}
         for name in given.keys() & PARAMETERS.keys():
             check_value(name, PARAMETERS[name], given[name])
-        conditions = SPECTRA[spectrum].conditions_from(given)
+        conditions = spectrum.conditions_from(given)
         medium = dataclasses.replace(medium, **{n: v for n, v in values.items() if n in _MEDIUM})
         omega, decay = medium.roots(self._k, conditions)
-        self.spectrum, self.conditions, self.medium, self._given = SPECTRA[spectrum], conditions, medium, given
+        self.spectrum, self.conditions, self.medium, self._given = spectrum, conditions, medium, given
         self._rate, self._decay, self._decays = omega / (2.0 * np.pi), decay, bool(decay.any())
         self._fall = (-decay).astype(self._real)
         S = self.spectrum(self.k[:, None], self.k[None, :], conditions)

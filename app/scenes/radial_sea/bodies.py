@@ -198,6 +198,12 @@ class FloatingBodies:
         self.excitation = self.make_excitation()
         self.heave_meter, self.lift = self.make_meters()
 
+    def set_down(self, i: int, draft: float) -> None:
+        """Put body i at rest, with its lowest point this deep [m] below the mean level."""
+        self.fleet.position[i, 2] = -self.keel[i] - draft
+        self.fleet.velocity[i] = 0.0
+        self.heave_meter, self.lift = self.make_meters()
+
     def make_meters(self) -> tuple[HeaveMeter, WindowMean]:
         """New meters of heave and of the upward forces."""
         return HeaveMeter(self.count), WindowMean(self.count, 4)

@@ -5,12 +5,22 @@ import dataclasses
 import functools
 import math
 import time
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, WorkCount, WorkCounts
+from app.messages import (
+    DivergenceError,
+    Grab,
+    Place,
+    PlotRow,
+    Release,
+    SceneCommand,
+    StudentAnswer,
+    WorkCount,
+    WorkCounts,
+)
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -48,6 +58,10 @@ from sim.ocean.statistics import energy_by_wavenumber, expected
 from sim.ocean.tile_sea import TileSea
 from sim.ocean.weathering import Weathering, weather
 from sim.parameters import Value, check_record
+
+if TYPE_CHECKING:
+    from app.lab.live_code import LiveCode
+    from app.scenes.radial_sea.student_sea import StudentRadialSea
 
 HELP = (
     "<b>Drag a buoy</b> under the water and let go. Next: press <b>2</b> for an oil spill, and compare the drafts "
@@ -140,9 +154,17 @@ class RadialSeaScene:
 
     frame_interval = FRAME_INTERVAL
 
-    def __init__(self, params: Params) -> None:
-        """Raises ValueError where the parameters name a hull file that is not a closed mesh."""
+    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
+        """live: runs a student's functions, where there are any.
+
+        Raises ValueError where the parameters name a hull file that is not a closed mesh.
+        """
         self.params = params
+        self.student: StudentRadialSea | None = None
+        if live is not None:
+            from app.scenes.radial_sea import student_sea  # only `springtide lab DIR` pays for it
+
+            self.student = student_sea.StudentRadialSea(live.tables)
         self.hull_file, self.file_shape = "", None
         self.grid_choice: tuple[int, int, str] | None = None
         self.plot_rows: list[PlotRow] = []
@@ -163,12 +185,15 @@ class RadialSeaScene:
         """The bodies at rest in their places, and no oil but what the parameters ask for."""
         p = self.params
         self.time = 0.0
-        self.column, self.age = column_of(p), exposure_of(p)
+        self.column, self.age = self.fluids(p), exposure_of(p)
         self.wave_choice = wave_choice_of(p)
         self.sum = RadialSea(draw(self.wave_choice), self.column, self.age, p.choppiness)
         self.tile: TileSea | None = None
         self.costs: dict[str, float] = {}  # surface -> [s] a frame, a running mean
         self.bodies = self.make_bodies()
+        if self.student is not None:
+            self.student.want(p, self.bodies)
+            self.set_down_box(self.student)
         self.radiated_waves = RadiatedWaves()
         self.well_blowout = WellBlowout(p)
         self.camera = (0.0, 0.0)  # [m] where the browser's camera is
@@ -198,6 +223,9 @@ class RadialSeaScene:
             self.bodies.release(client)
         self.tile, self.drawn, self.plotted_at = None, (), -math.inf
         self.forget_costs()
+        if self.student is not None:
+            self.student.taken = {}  # the sea is that of another moment
+            self.take_student(self.student)
 
     def make_bodies(self) -> FloatingBodies:
         """The bodies that the parameters ask for, at rest in their places."""
@@ -248,7 +276,7 @@ class RadialSeaScene:
     def change_forces(self, params: Params) -> None:
         """Take parameters under way: only what their change affects is replaced."""
         old, self.params = self.params, params
-        column, choice = column_of(params), wave_choice_of(params)
+        column, choice = self.fluids(params), wave_choice_of(params)
         other_fluids = column != self.column or exposure_of(params) != exposure_of(old)
         other_waves = choice != self.wave_choice
         self.column, self.wave_choice = column, choice
@@ -263,10 +291,37 @@ class RadialSeaScene:
             self.bodies = self.make_bodies()
         elif other_fluids or densities_of(params) != densities_of(old):
             self.bodies.set_fluids(params.density, column, own_densities_of(params))
+        if self.student is not None:
+            self.student.want(params, self.bodies)
         if old.ripples and not params.ripples:
             self.radiated_waves = RadiatedWaves()
         self.well_blowout.change(params)
         self.forget_costs()
+
+    def fluids(self, params: Params) -> FluidColumn:
+        """The fluids that the parameters describe, by a student's functions where the sea runs by them."""
+        return column_of(params) if self.student is None else self.student.column(params)
+
+    def take_student(self, student: "StudentRadialSea") -> None:
+        """Take what a student's functions have come to."""
+        changed = student.collect()
+        if not changed:
+            return
+        column = self.fluids(self.params)
+        if changed & {"mixture_viscosity", "wave_decay"}:
+            self.column, self.tile = column, None
+            self.sum.change(self.time, None, column, self.age)
+            self.bodies.set_fluids(self.params.density, column, own_densities_of(self.params))
+        if "draft" in changed:
+            self.set_down_box(student)
+        self.drawn = ()
+        student.report(self.params, self.bodies)
+
+    def set_down_box(self, student: "StudentRadialSea") -> None:
+        """Put the box as deep into the water as the student's draft says."""
+        draft = student.numbers.draft
+        if draft is not None:
+            self.bodies.set_down(self.bodies.kinds.index("box"), draft)
 
     def forget_costs(self) -> None:
         """Forget what the surfaces cost: it may have changed."""
@@ -275,6 +330,8 @@ class RadialSeaScene:
     def handle(self, command: SceneCommand) -> None:
         """Drag bodies, and take the place of the camera."""
         match command:
+            case StudentAnswer() if self.student is not None:
+                self.take_student(self.student)
             case Grab(index, target, client):
                 self.bodies.hold(index, target, self.params.pull, client)
             case Release(client):
@@ -396,7 +453,7 @@ class RadialSeaScene:
                 np.stack([fire.heat, fire.age / np.maximum(fire.life, np.float32(1e-3))]).astype(np.float32),
             ),
             jet=None if jet is None else jet.position[:, jet.flying].T.astype(np.float32),
-            column=self.column,
+            column=self.column if self.student is None else self.student.drawn(self.column),
             age=self.age,
         )
 
@@ -596,6 +653,7 @@ SCENE = SceneKind(
     params=Params,
     presets=PRESETS,
     make=RadialSeaScene,
+    make_with_student=RadialSeaScene,
     hidden=hidden,
     warm_up=warm_up,
     series=SERIES,

@@ -42,7 +42,7 @@ from sim.springs.stability import Gauge, critical_stiffness, gauge, top_modes
 from sim.springs.state import State, advance, energy, velocities
 
 if TYPE_CHECKING:
-    from app.lab.live_rope import LiveRope
+    from app.lab.live_code import LiveCode
     from app.scenes.rope.student_rope import StudentRope
 
 ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
@@ -129,14 +129,14 @@ def state_of(points: NDArray[np.float64]) -> NDArray[np.float64]:
 class RopeScene:
     """The rope on the simulation thread."""
 
-    def __init__(self, params: Params, live: "LiveRope | None" = None) -> None:
+    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
         """live: runs a student's functions, where there are any."""
         self.params = params
         self.student: StudentRope | None = None
         if live is not None:
             from app.scenes.rope import student_rope  # only `springtide lab DIR` pays for it
 
-            self.student = student_rope.StudentRope(live)
+            self.student = student_rope.StudentRope(live.rope)
         self.handles = RopeHandles()
         self.plot_rows = PlotRows(len(SERIES))
         self.last_moments = LastMoments()

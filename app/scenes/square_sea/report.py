@@ -128,6 +128,13 @@ def statistics_table(r: Report) -> Html:
     return join((measured, faint(text)))
 
 
+def loop_line(p: Params) -> str:
+    """After which time the sea repeats: the scale on frequencies comes after the rounding."""
+    if p.loop_period == 0.0 or p.dispersion_scale == 0.0:
+        return "never repeats"
+    return f"repeats every {seconds(p.loop_period / p.dispersion_scale, 2)}"
+
+
 def marks(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
     p: Params = snapshot.frame.params
@@ -140,7 +147,7 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
         "radius_rule": radius_line(p),
         "low_pass": low_pass_line(p),
         "viscosity": viscosity_line(p, snapshot.readings.viscous_area),
-        "loop_period": f"repeats every {seconds(p.loop_period, 2)}" if p.loop_period else "never repeats",
+        "loop_period": loop_line(p),
         "size": f"grid spacing {metres(cell)}, shortest wave {metres(2 * cell)}",
         "mesh": f"grid spacing {metres(p.length / len(snapshot.frame.vertices))}",
         "foam_by_wind": f"foam where the Jacobian is below {fixed(limit, 2)}" if math.isfinite(limit) else "no foam",

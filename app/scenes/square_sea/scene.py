@@ -3,12 +3,12 @@
 import collections
 import functools
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import PlotRow, Point, SceneCommand, Vector, WorkCount
+from app.messages import PlotRow, Point, SceneCommand, StudentAnswer, Vector, WorkCount
 from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -22,6 +22,10 @@ from sim.ocean.foam import pace, threshold, whitecaps
 from sim.ocean.tile_mesh import set_mesh
 from sim.ocean.wave_gauge import WaveGauge, where_hit
 from sim.parameters import effect_of_change
+
+if TYPE_CHECKING:
+    from app.lab.live_code import LiveCode
+    from app.scenes.square_sea.student_sea import StudentSea
 
 HELP = (
     "<b>Click the water</b> to place a wave gauge; drag to look around, scroll to move. Next: turn the wind up, or "
@@ -112,8 +116,14 @@ class SquareSeaScene:
     step = STEP
     note = ""  # it always runs what the parameters ask for
 
-    def __init__(self, params: Params) -> None:
+    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
+        """live: runs a student's functions, where there are any."""
         self.params = params
+        self.student: StudentSea | None = None
+        if live is not None:
+            from app.scenes.square_sea import student_sea  # only `springtide lab DIR` pays for it
+
+            self.student = student_sea.StudentSea(live.tables)
         self.counts: collections.Counter[str] = collections.Counter()
         self.plot_rows: list[PlotRow] = []
         self.gauge = WaveGauge()
@@ -158,6 +168,9 @@ class SquareSeaScene:
             self.gauge.trace.pop()
         self.plotted_at = self.spectrum_at = self.measured_at = -math.inf
         self.report = self.theory = self.drawn = self.earlier_height = None
+        if self.student is not None:
+            self.student.taken = {}  # the sea is that of another moment
+            self.take_student(self.student)
 
     def begin_plots(self) -> None:
         """Clear the plots."""
@@ -173,8 +186,10 @@ class SquareSeaScene:
         self.sea = Sea(int(p.size), p.length, seed=p.seed, **conditions(p, start_wind))
         self.sea.choppiness = p.choppiness * p.amplitude
         self.foam_cover_before = whitecaps(p.wind_speed if start_wind is None else start_wind)
-        if start_wind is not None:
-            self.sea.change(self.time, p.transition, **conditions(p))
+        if self.student is not None:
+            self.student.want(p)
+        if start_wind is not None or self.student is not None:
+            self.sea.change(self.time, 0.0 if start_wind is None else p.transition, **self.conditions())
         self.changed_at, self.transition, self.viscous_area = self.time, p.transition, 0.0
         self.report: Report | None = None
         self.theory: Theory | None = None
@@ -213,18 +228,46 @@ class SquareSeaScene:
             self.clear_mesh()
         if conditions(params) != conditions(old):
             self.foam_cover_before = foam_cover
-            self.sea.change(self.time, params.transition, **conditions(params))
             self.viscous_area += old.viscosity * (self.time - self.changed_at)
-            self.changed_at, self.transition = self.time, params.transition
-            self.counts["changes"] += 1
-            self.paced_at = self.measured_at = -math.inf
+            if self.student is not None:
+                self.student.want(params)
+            self.change_sea(params.transition)
+        elif self.student is not None and params.size != old.size:
+            self.student.want(params)
         self.sea.choppiness = params.choppiness * params.amplitude
         if rain_settings(params) != rain_settings(old):
             self.make_rainfall()
 
+    def change_sea(self, transition: float) -> None:
+        """Let the sea adapt to its conditions in this time [s]."""
+        self.sea.change(self.time, transition, **self.conditions())
+        self.changed_at, self.transition = self.time, transition
+        self.counts["changes"] += 1
+        self.paced_at = self.measured_at = -math.inf
+
+    def conditions(self) -> dict[str, Any]:
+        """The arguments of `Sea.change`, by a student's functions where the sea runs by them."""
+        return conditions(self.params) if self.student is None else self.student.conditions(self.params)
+
+    def take_student(self, student: "StudentSea") -> None:
+        """Take what a student's functions have come to."""
+        transition = student.collect(self.params)
+        if transition is None:
+            return
+        before = self.sea.conditions.gravity
+        self.viscous_area += self.params.viscosity * (self.time - self.changed_at)
+        self.change_sea(transition)
+        self.theory = self.drawn = None
+        if self.sea.conditions.gravity != before:
+            self.make_rainfall()
+            student.want(self.params)
+        student.report(self.params)
+
     def handle(self, command: SceneCommand) -> None:
         """A click on the water places the wave gauge there."""
         match command:
+            case StudentAnswer() if self.student is not None:
+                self.take_student(self.student)
             case Point(origin, direction):
                 at = where_hit(self.sea, self.time, origin, direction, self.params.amplitude)
                 if at is not None:
@@ -424,6 +467,7 @@ SCENE = SceneKind(
     params=Params,
     presets=PRESETS,
     make=SquareSeaScene,
+    make_with_student=SquareSeaScene,
     hidden=hidden,
     warm_up=warm_up,
     series=SERIES,

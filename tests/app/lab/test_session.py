@@ -12,13 +12,14 @@ import pytest
 from app.lab.background_check import BackgroundCheck
 from app.lab.folder import make_folder
 from app.lab.live_rope import StudentReport, try_rope
+from app.lab.live_tables import TableReport
 from app.lab.program_check import Verdict
 from app.lab.rope_march import REFERENCE
 from app.lab.runner import RunError
 from app.lab.session import CodeState, Session
 from app.lab.task import load_tasks
 from app.messages import Grab, Place, StudentAnswer
-from app.panel.code_panel import function_lines, headline, rope_lines
+from app.panel.code_panel import code_lines, function_lines, headline
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import RopeScene, rows_of
 
@@ -84,7 +85,7 @@ def run(scene: RopeScene, frames: int = 20) -> None:
 
 
 def make_scene(session: Session, **values: object) -> RopeScene:
-    return RopeScene(dataclasses.replace(Params(integrator="rk4"), **values), session.rope)
+    return RopeScene(dataclasses.replace(Params(integrator="rk4"), **values), session.live)
 
 
 @pytest.fixture
@@ -297,28 +298,28 @@ def test_a_check_that_is_killed_is_said_and_waits_for_nothing(tmp_path: Path) ->
 def test_the_panel_says_what_runs_and_what_is_wrong(right: Session) -> None:
     scene = make_scene(right)
     run(scene, 3)
-    text = rope_lines(right.state, right.rope.report)
+    text = code_lines(right.state, right.rope.report, TableReport(), "rope")
     assert "moves by <b>spring_force</b> (reference: step_rk4)" in text
     assert "<b>Less than 1 µm</b>" in text
     assert "polyline" not in text
     save(right, with_line("return x1 + '<b>'"))
     wait_for(lambda: right.state.error)
     run(scene, 3)
-    text = rope_lines(right.state, right.rope.report)
+    text = code_lines(right.state, right.rope.report, TableReport(), "rope")
     assert "<b>rope.py, line 11</b>: " in text
-    assert "</b>: rope.py, line 11: " in headline(right.state, right.rope.report)
+    assert "</b>: rope.py, line 11: " in headline(right.state, right.rope.report, TableReport())
     assert "The last version that worked goes on." in text
     save(right, RIGHT.replace("return stiffness", "return 0.9 * stiffness"))
     wait_for(lambda: right.rope.taken == right.state.version)
     run(scene, 10)
-    text = rope_lines(right.state, right.rope.report)
+    text = code_lines(right.state, right.rope.report, TableReport(), "rope")
     assert "polyline" in text
     assert "stopped" not in text
 
 
 def test_the_panel_says_which_functions_run_compiled_and_how_fast() -> None:
-    state = CodeState(version=1, running=1, begun=frozenset({"spring_force", "step_rk4"}))
+    state = CodeState(version=1, begun=frozenset({"spring_force", "step_rk4"}))
     report = StudentReport(version=1, compiled=("links", "spring_force"), method="rk4", seconds=80e-6, step=0.016)
     said = "spring_force compiled by numba, step_rk4 plain Python: 80 µs a step, 200 times real time."
-    assert said in rope_lines(state, report)
-    assert "Plain Python: 80 µs" in rope_lines(state, report._replace(compiled=()))
+    assert said in code_lines(state, report, TableReport(), "rope")
+    assert "Plain Python: 80 µs" in code_lines(state, report._replace(compiled=()), TableReport(), "rope")

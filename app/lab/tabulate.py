@@ -1,0 +1,49 @@
+"""Calls a student's function at many arguments, in the process that runs it: a table that a scene then runs by.
+
+Only numpy is imported here, so that the process starts fast.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from app.lab.rope_march import Unfit, fitting
+
+
+class Range(NamedTuple):
+    """What a result may be, ends included."""
+
+    low: float
+    high: float
+    unit: str
+
+    def __str__(self) -> str:
+        if np.isinf(self.high):
+            return f"{self.low:g} {self.unit} or more".replace("  ", " ")
+        return f"{self.low:g} to {self.high:g} {self.unit}".rstrip()
+
+
+def tabulate(
+    function: Callable[..., Any], name: str, columns: Sequence[np.ndarray], shape: tuple[int, ...], allowed: Range
+) -> np.ndarray:
+    """(n, *shape) what the function returns for each row of its arguments, columns of shape (n, ...).
+
+    Raises Unfit for a result of another shape or type, or that is not finite or not allowed.
+    """
+    rows = len(columns[0])
+    table = np.empty((rows, *shape))
+    with np.errstate(all="ignore"):
+        for i in range(rows):
+            given = [column[i].copy() if column.ndim > 1 else float(column[i]) for column in columns]
+            value = fitting(name, function(*given), shape, function)
+            if np.isnan(value).any():
+                text = f"{name} returns NaN (not a number): look for a division by 0 or the root of a negative number"
+                raise Unfit("NaN", text, function)
+            is_fit = (allowed.low <= value) & (value <= allowed.high) & ~np.isinf(value)
+            if not is_fit.all():
+                arguments = ", ".join(np.array2string(column[i], precision=4) for column in columns)
+                text = f"{name}({arguments}) returns {value[~is_fit][0]:.4g}; possible is {allowed}"
+                raise Unfit("out of range", text, function)
+            table[i] = value
+    return table

@@ -1,0 +1,185 @@
+"""A sea that runs by a student's functions: right ones leave it as it is, wrong ones show, faults are named."""
+
+import dataclasses
+import inspect
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.lab.live_code import LiveCode
+from app.lab.live_rope import LiveRope
+from app.lab.live_tables import LiveTables
+from app.lab.saved import keep
+from app.lab.task import load_tasks
+from app.messages import StudentAnswer
+from app.panel.code_panel import sea_texts
+from app.scenes.square_sea.parameters import Params
+from app.scenes.square_sea.scene import SquareSeaScene
+
+TASKS = {task.name: task for task in load_tasks()}
+HEAD = "import numpy as np\n\n\n"
+PHILLIPS = Params(size="64", mesh="32", spectrum="phillips", length=400.0, wind_speed=9.0, foam=False)
+# What a function does in place of its body -> kind of the error and a part of what is said.
+FAULTS = {
+    "return 1 / 0": ("raised", "ZeroDivisionError"),
+    "while True: pass": ("endless", "endless loop"),
+    "exit()": ("ended", "calls exit()"),
+    "return np.zeros(2)": ("wrong shape", "expected is a number"),
+    "return np.nan": ("NaN", "returns NaN"),
+    "return -3.0": ("out of range", "returns -3; possible is"),
+    "return np.inf": ("out of range", "returns inf"),
+    "return 'high'": ("wrong type", "type str"),
+    "return": ("returns nothing", "last line must be return"),
+}
+
+
+def source(*names: str) -> str:
+    return HEAD + "\n\n".join(inspect.getsource(TASKS[name].function) for name in names)
+
+
+def with_fault(name: str, line: str) -> str:
+    arguments = ", ".join(TASKS[name].arguments)
+    return f"{HEAD}def {name}({arguments}):\n    {line}\n"
+
+
+def wait_for(condition: Callable[[], object], seconds: float = 30.0) -> None:
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+class Folder:
+    """Versions of a student's file, and what runs them."""
+
+    def __init__(self, path: Path) -> None:
+        self.path, self.number = path, 0
+        self.tables = LiveTables(TASKS, 1.0)
+        self.rope = LiveRope(lambda *_: None)
+        self.live = LiveCode(self.rope, self.tables)
+
+    def save(self, text: str, file: str = "square_sea.py") -> int:
+        self.number += 1
+        folder = self.path / str(self.number)
+        folder.mkdir()
+        self.tables.adopt(keep({file: text.encode()}, folder, self.number, list(TASKS.values())))
+        return self.number
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Iterator[Folder]:
+    found = Folder(tmp_path)
+    yield found
+    found.tables.close()
+    found.rope.close()
+
+
+def settle(scene: SquareSeaScene, folder: Folder, version: int, names: set[str]) -> None:
+    """Let a scene run by these functions of a version."""
+
+    def is_taken() -> bool:
+        scene.handle(StudentAnswer())
+        taken = scene.student.taken if scene.student is not None else {}
+        return set(taken) == names and all(table.version == version for table in taken.values())
+
+    wait_for(is_taken)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [{}, {"planet_mass": 20.0, "loop_period": 20.0, "dispersion_scale": 0.5}, {"wind_direction": 77.0}],
+    ids=str,
+)
+def test_right_functions_make_the_sea_of_the_program(folder: Folder, values: dict[str, object]) -> None:
+    params = dataclasses.replace(PHILLIPS, **values)
+    scene, alone = SquareSeaScene(params, folder.live), SquareSeaScene(params)
+    names = ("gravity", "spectrum", "dispersion")
+    settle(scene, folder, folder.save(source(*names)), set(names))
+    own, program = scene.sea, alone.sea
+    assert own.significant_height_at(0.0) == pytest.approx(program.significant_height_at(0.0), rel=2e-3)
+    waves = program.energy_at(0.0) > 1e-4 * program.energy_at(0.0).max()
+    # The student's dispersion is that of deep water without surface tension, rounded to 2 pi/100000 s.
+    assert np.allclose(own.frequencies[waves], program.frequencies[waves], rtol=1e-3, atol=1e-4)
+    for _, student, reference, _ in folder.tables.report.differences:
+        assert student == pytest.approx(reference, rel=5e-3)
+
+
+def test_wrong_functions_show_and_a_switch_shows_the_program_s_sea(folder: Folder) -> None:
+    scene, alone = SquareSeaScene(PHILLIPS, folder.live), SquareSeaScene(PHILLIPS)
+    twice = source("spectrum").replace("return amplitude", "return 4 * amplitude")
+    settle(scene, folder, folder.save(twice), {"spectrum"})
+    program = alone.sea.significant_height_at(0.0)
+    assert scene.sea.significant_height_at(0.0) == pytest.approx(2.0 * program, rel=2e-3)
+    said = "".join(sea_texts(folder.tables.report))
+    assert "Your sea: <b>heights of the waves by spectrum</b>." in said
+    (what, own, reference, unit), *_ = folder.tables.report.differences
+    assert own == pytest.approx(2.0 * reference, rel=2e-3)
+    assert f"{what} <b>{own:.2f} {unit}</b> (program {reference:.2f} {unit})" in said
+    folder.tables.show(False)
+    scene.handle(StudentAnswer())
+    assert scene.sea.significant_height_at(0.0) == pytest.approx(program, rel=1e-9)
+    assert folder.tables.report.running == {}
+    folder.tables.show(True)
+    scene.handle(StudentAnswer())
+    assert scene.sea.significant_height_at(0.0) > 1.9 * program
+
+
+def test_a_change_of_the_wind_is_followed_and_another_spectrum_is_the_program_s(folder: Folder) -> None:
+    scene = SquareSeaScene(PHILLIPS, folder.live)
+    version = folder.save(source("spectrum"))
+    settle(scene, folder, version, {"spectrum"})
+    scene.advance(60)
+    scene.change_forces(dataclasses.replace(PHILLIPS, wind_speed=14.0, transition=0.0))
+    alone = SquareSeaScene(scene.params)
+    wait_for(lambda: folder.tables.tables["spectrum"].call.columns[1][0, 0] > 12.0)
+    scene.handle(StudentAnswer())
+    assert scene.sea.significant_height_at(1.0) == pytest.approx(alone.sea.significant_height_at(0.0), rel=2e-3)
+    scene.change_forces(dataclasses.replace(PHILLIPS, spectrum="jonswap"))
+    assert scene.student is not None
+    assert scene.student.taken == {}
+    assert scene.sea.spectrum.name == "jonswap"
+    assert "choose the spectrum Phillips" in folder.tables.report.idle["spectrum"]
+
+
+@pytest.mark.parametrize("name", ["gravity", "spectrum", "dispersion"])
+def test_a_fault_is_named_and_the_last_version_goes_on(folder: Folder, name: str) -> None:
+    scene = SquareSeaScene(PHILLIPS, folder.live)
+    works = folder.save(source(name))
+    settle(scene, folder, works, {name})
+    for line, (kind, said) in FAULTS.items():
+        folder.save(with_fault(name, line))
+        wait_for(lambda said=said: name in folder.tables.errors and said in folder.tables.errors[name].text)
+        error = folder.tables.errors[name]
+        assert error.kind == kind
+        assert (error.file, error.line) in (("square_sea.py", 5), ("square_sea.py", 4))
+        scene.handle(StudentAnswer())
+        scene.advance(1)
+        assert np.isfinite(scene.frame().vertices).all()
+        assert scene.student is not None
+        assert scene.student.taken[name].version == works
+    settle(scene, folder, folder.save(source(name)), {name})
+    assert folder.tables.errors == {}
+
+
+def test_an_endless_function_is_called_once_however_the_scene_changes(folder: Folder) -> None:
+    scene = SquareSeaScene(PHILLIPS, folder.live)
+    folder.save(f"{HEAD}def gravity(mass_ratio):\n    open('calls', 'a').write('x')\n    while True: pass\n")
+    wait_for(lambda: folder.tables.errors)
+    for mass in (2.0, 3.0):
+        scene.change_forces(dataclasses.replace(scene.params, planet_mass=mass))
+        wait_for(lambda mass=mass: folder.tables.tried["gravity"][1].columns[0][0] == mass)
+    assert (folder.path / "1" / "calls").read_text() == "x"
+    assert "endless loop" in folder.tables.errors["gravity"].text
+
+
+def test_a_moment_that_comes_back_runs_by_the_functions_of_now(folder: Folder) -> None:
+    scene = SquareSeaScene(PHILLIPS, folder.live)
+    kept = scene.keep()
+    twice = source("spectrum").replace("return amplitude", "return 4 * amplitude")
+    settle(scene, folder, folder.save(twice), {"spectrum"})
+    high = scene.sea.significant_height_at(0.0)
+    scene.resume(kept)
+    assert scene.sea.significant_height_at(0.0) == pytest.approx(high, rel=1e-6)

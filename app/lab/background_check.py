@@ -20,7 +20,7 @@ from app.lab.runner import ROOT, Runner
 from app.lab.task import load_tasks
 
 START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.background_check import main; main()"
-ENDED = Verdict("failed", "The check ended without a result. Save the file again.")
+ENDED = Verdict("failed", "The check ended twice without a result. Save the file again.")
 
 
 class BackgroundCheck:
@@ -32,8 +32,12 @@ class BackgroundCheck:
         self.verdicts: Mapping[str, Verdict] = {}  # function -> what its check came to
         self.waiting: frozenset[str] = frozenset()  # functions that are being checked
         self.number = 0  # of the last request
+        self.folder = Path()  # of the last request
+        self.repeated = 0  # the request that was made once more, as its process ended
         self.process: subprocess.Popen[str] | None = None
+        self.closed = False
         self.lock = threading.Lock()  # requests come from one thread, verdicts from another
+        self.sending = threading.Lock()  # held by the one that starts a process or writes to it
 
     def request(self, folder: Path, names: Sequence[str], begun: frozenset[str]) -> None:
         """Check these functions of a folder; those that are not begun need no check."""
@@ -43,17 +47,25 @@ class BackgroundCheck:
             self.verdicts = {**done, **{name: Verdict("not begun") for name in names if name not in begun}}
             self.waiting = frozenset(to_check)
             self.number += 1
-        if not to_check:
-            return
-        line = json.dumps({"number": self.number, "folder": str(folder), "names": to_check}) + "\n"
-        for _ in range(2):  # once more, where the process has ended
-            process = self.ready()
-            assert process.stdin is not None
-            with contextlib.suppress(OSError):
-                process.stdin.write(line)
-                process.stdin.flush()
-                return
-            self.close()
+            self.folder = folder
+            number = self.number
+        if to_check:
+            self.send(number, folder, to_check)
+
+    def send(self, number: int, folder: Path, names: Sequence[str]) -> None:
+        """Have the process check these functions, unless the request is out of date."""
+        line = json.dumps({"number": number, "folder": str(folder), "names": names}) + "\n"
+        with self.sending:
+            for _ in range(2):  # once more, where the process has ended
+                if self.closed or number != self.number:
+                    return
+                process = self.ready()
+                assert process.stdin is not None
+                with contextlib.suppress(OSError):
+                    process.stdin.write(line)
+                    process.stdin.flush()
+                    return
+                self.end_process()
 
     def ready(self) -> "subprocess.Popen[str]":
         """The process, started unless it runs."""
@@ -70,7 +82,10 @@ class BackgroundCheck:
         return self.process
 
     def read(self, process: "subprocess.Popen[str]") -> None:
-        """Take verdicts until the process ends. Where it ends by itself, what was not checked has failed."""
+        """Take verdicts until the process ends.
+
+        Where it ends by itself, what was not checked is checked once more; the second time it has failed.
+        """
         assert process.stdout is not None
         with contextlib.suppress(ValueError, OSError):  # closed from here
             for line in process.stdout:
@@ -81,11 +96,23 @@ class BackgroundCheck:
                         self.verdicts = {**self.verdicts, found["name"]: verdict}
                         self.waiting = self.waiting - {found["name"]}
         with self.lock:
-            if process is self.process:
-                self.verdicts = {**self.verdicts, **dict.fromkeys(self.waiting, ENDED)}
+            number, names = self.number, sorted(self.waiting)
+            if process is not self.process or not names:
+                return
+            if self.repeated == number:
+                self.verdicts = {**self.verdicts, **dict.fromkeys(names, ENDED)}
                 self.waiting = frozenset()
+                return
+            self.repeated = number
+        self.send(number, self.folder, names)
 
     def close(self) -> None:
+        """End the process, for good."""
+        with self.sending:
+            self.closed = True
+            self.end_process()
+
+    def end_process(self) -> None:
         """End the process; it ends what it has started."""
         process, self.process = self.process, None
         if process is not None:

@@ -93,6 +93,11 @@ def place_of_file_hull(hull: Hull, size: float) -> tuple[float, float]:
     return x * size + dx * farther, y * size + dy * farther
 
 
+def box_of(bodies: "FloatingBodies") -> int | None:
+    """The number of the first box, None where there is none."""
+    return next((i for i, kind in enumerate(bodies.body_kinds) if kind.shape.name == "box"), None)
+
+
 class BodyReading(NamedTuple):
     """One body now, as measured and as predicted."""
 

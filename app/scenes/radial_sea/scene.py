@@ -24,7 +24,7 @@ from app.messages import (
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
 from app.scenes.moments import copied, restore
-from app.scenes.radial_sea.bodies import FloatingBodies, kind_of
+from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
 from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.cutaway import Cutaway, cutaway_at, outline
 from app.scenes.radial_sea.frame import RadialFrame, RadialReadings, SurfaceReading
@@ -319,9 +319,9 @@ class RadialSeaScene:
 
     def set_down_box(self, student: "StudentRadialSea") -> None:
         """Put the box as deep into the water as the student's draft says."""
-        draft = student.numbers.draft
-        if draft is not None:
-            self.bodies.set_down(self.bodies.kinds.index("box"), draft)
+        box, draft = box_of(self.bodies), student.numbers.draft
+        if box is not None and draft is not None:
+            self.bodies.set_down(box, draft)
 
     def forget_costs(self) -> None:
         """Forget what the surfaces cost: it may have changed."""

@@ -1,31 +1,28 @@
 """The radial sea by a student's functions: viscosity of the mixture, decay of waves, light on oil, draft of the box."""
 
 import dataclasses
+import functools
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from app.lab.live_tables import Call, LiveTables, Table, TableReport
 from app.lab.tabulate import Range
-from app.scenes.radial_sea.bodies import FloatingBodies
+from app.scenes.radial_sea.bodies import FloatingBodies, box_of
 from app.scenes.radial_sea.parameters import Params, column_of
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import normal_reflectance
 
-VISCOSITY, DECAY, REFLECTANCE, DRAFT = (
-    "mixture_viscosity",
-    "wave_decay",
-    "reflectance",
-    "draft",
-)  # as the tasks name them
+# The functions, as the tasks name them.
+VISCOSITY, DECAY, REFLECTANCE, DRAFT = "mixture_viscosity", "wave_decay", "reflectance", "draft"
 WHAT = {
     VISCOSITY: "viscosity of the mixture",
     DECAY: "decay of the waves",
     REFLECTANCE: "light that the oil mirrors",
     DRAFT: "depth at which the box is set down",
 }
-BOX = "box"  # kind of the body that is set down
 WAVENUMBERS = np.geomspace(1e-3, 1e3, 121)  # [rad/m] of the table of decays
 TOLD_WAVE = 2.0 * math.pi  # [rad/m] wavenumber of the wave of 1 m, the decay of which is told
 LOST = 0.5  # exponent of the share of a wave that is left after the time that a decay is asked for, by Lamb's law
@@ -36,7 +33,7 @@ class StudentNumbers(NamedTuple):
     """What the student's functions come to; None where they give nothing."""
 
     viscosity: float | None  # [Pa s] of the mixture
-    rates: np.ndarray | None  # (n,) [1/s] of decay, at WAVENUMBERS
+    decay: Callable[[np.ndarray], np.ndarray] | None  # rate (k) [1/s]
     index: float | None  # refractive index of the oil
     draft: float | None  # [m] of the box
 
@@ -47,6 +44,7 @@ class StudentRadialSea:
     def __init__(self, live: LiveTables) -> None:
         self.live = live
         self.taken: dict[str, Table] = {}  # that the sea runs by
+        self.numbers = StudentNumbers(None, None, None, None)  # that they come to
 
     def want(self, p: Params, bodies: FloatingBodies) -> None:
         """Ask for the tables that the parameters have a use for; what has no use any more is not taken."""
@@ -82,44 +80,27 @@ class StudentRadialSea:
         found = dict(self.live.tables) if self.live.shown else {}
         changed = {name for name in {*found, *self.taken} if found.get(name) is not self.taken.get(name)}
         self.taken = found
+        if changed:
+            self.numbers = numbers_of(found)
         return changed
-
-    @property
-    def numbers(self) -> StudentNumbers:
-        """What the tables that are taken come to."""
-        values = {name: table.values for name, table in self.taken.items()}
-        index = rates = None
-        if REFLECTANCE in values:
-            root = math.sqrt(float(values[REFLECTANCE][0]))
-            index = (1.0 + root) / (1.0 - root)  # R = ((n - 1)/(n + 1))^2
-        if DECAY in values:
-            rates = -np.log(values[DECAY]) / self.taken[DECAY].call.columns[3]
-        first = {name: float(table[0]) for name, table in values.items()}
-        return StudentNumbers(first.get(VISCOSITY), rates, index, first.get(DRAFT))
 
     def column(self, p: Params) -> FluidColumn:
         """The fluids of the sea."""
-        viscosity, rates, _, _ = self.numbers
-        decay = None
-        if rates is not None:
-            # The rate over k^2 changes slowly with the wavelength.
-            share, logs = rates / WAVENUMBERS**2, np.log(WAVENUMBERS)
-
-            def decay(k: np.ndarray) -> np.ndarray:
-                return k**2 * np.interp(np.log(np.maximum(k, WAVENUMBERS[0])), logs, share)
-
-        return dataclasses.replace(column_of(p), mixture_viscosity=viscosity, decay=decay)
+        column = column_of(p)
+        viscosity = self.numbers.viscosity if column.kind == "mixed" else None
+        decay = None if column.kind == "water" else self.numbers.decay
+        return dataclasses.replace(column, mixture_viscosity=viscosity, decay=decay)
 
     def drawn(self, column: FluidColumn) -> FluidColumn:
         """The fluids as they are drawn."""
         index = self.numbers.index
-        if index is None:
+        if index is None or column.kind != "layer":
             return column
         return dataclasses.replace(column, oil=column.oil._replace(refractive_index=index))
 
     def report(self, p: Params, bodies: FloatingBodies) -> None:
         """Tell the panel what runs, and what differs from the program's."""
-        viscosity, rates, index, draft = self.numbers
+        viscosity, decay, index, draft = self.numbers
         program, told = column_of(p), np.array([TOLD_WAVE])
         differences: list[tuple[str, float, float, str]] = []
         if viscosity is not None:
@@ -127,7 +108,7 @@ class StudentRadialSea:
                 (f"Viscosity, {program.law.replace('_', ' ')} in the program", 1e3 * viscosity,
                  1e3 * program.surface.viscosity, "mPa·s")
             )  # fmt: skip
-        if rates is not None:
+        if decay is not None:
             own, exact = (float(c.roots(told)[1][0]) for c in (self.column(p), program))
             lives = (1.0 / rate if rate > 0.0 else math.inf for rate in (own, exact))
             differences.append(("A wave of 1 m falls to 37 % in", *lives, "s"))
@@ -141,6 +122,26 @@ class StudentRadialSea:
         self.live.report = TableReport(running, self.live.report.idle, tuple(differences))
 
 
+def numbers_of(tables: dict[str, Table]) -> StudentNumbers:
+    """What tables come to."""
+    index = decay = None
+    if REFLECTANCE in tables:
+        root = math.sqrt(float(tables[REFLECTANCE].values[0]))
+        index = (1.0 + root) / (1.0 - root)  # R = ((n - 1)/(n + 1))^2
+    if DECAY in tables:
+        table = tables[DECAY]
+        rates = -np.log(table.values) / table.call.columns[3]
+        decay = functools.partial(interpolated_decay, rates / WAVENUMBERS**2)
+    first = {name: float(table.values[0]) for name, table in tables.items()}
+    return StudentNumbers(first.get(VISCOSITY), decay, index, first.get(DRAFT))
+
+
+def interpolated_decay(over_k2: np.ndarray, k: np.ndarray) -> np.ndarray:
+    """Decay rates [1/s]; over_k2 (n,) [m2/s]: rate over k^2 at WAVENUMBERS, which changes slowly."""
+    k = np.asarray(k, np.float64)
+    return k**2 * np.interp(np.log(np.maximum(k, WAVENUMBERS[0])), np.log(WAVENUMBERS), over_k2)
+
+
 def call_of(*arguments: float, allowed: tuple[float, float, str]) -> Call:
     """One call of a function."""
     return Call(tuple(np.array([argument]) for argument in arguments), Range(*allowed))
@@ -149,8 +150,3 @@ def call_of(*arguments: float, allowed: tuple[float, float, str]) -> Call:
 def asked_time(viscosity: float) -> np.ndarray:
     """(n,) [s] after which a wave of each of WAVENUMBERS has fallen to e^-LOST, by Lamb's law: a rate can be told."""
     return LOST / (2.0 * viscosity * WAVENUMBERS**2)
-
-
-def box_of(bodies: FloatingBodies) -> int | None:
-    """The number of the first box, None where there is none."""
-    return bodies.kinds.index(BOX) if BOX in bodies.kinds else None

@@ -16,8 +16,12 @@ from app.lab.saved import keep
 from app.lab.task import load_tasks
 from app.messages import StudentAnswer
 from app.panel.code_panel import sea_texts
+from app.scenes.radial_sea.bodies import box_of
+from app.scenes.radial_sea.parameters import Params as RadialParams
+from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.square_sea.parameters import Params
 from app.scenes.square_sea.scene import SquareSeaScene
+from sim.ocean.emulsions import arrhenius
 
 TASKS = {task.name: task for task in load_tasks()}
 HEAD = "import numpy as np\n\n\n"
@@ -77,7 +81,7 @@ def folder(tmp_path: Path) -> Iterator[Folder]:
     found.rope.close()
 
 
-def settle(scene: SquareSeaScene, folder: Folder, version: int, names: set[str]) -> None:
+def settle(scene: SquareSeaScene | RadialSeaScene, folder: Folder, version: int, names: set[str]) -> None:
     """Let a scene run by these functions of a version."""
 
     def is_taken() -> bool:
@@ -183,3 +187,60 @@ def test_a_moment_that_comes_back_runs_by_the_functions_of_now(folder: Folder) -
     high = scene.sea.significant_height_at(0.0)
     scene.resume(kept)
     assert scene.sea.significant_height_at(0.0) == pytest.approx(high, rel=1e-6)
+
+
+RADIAL = ("mixture_viscosity", "wave_decay", "reflectance", "draft")
+OIL = RadialParams(spill="layer", thickness=0.2, waves=False, rig=False, ripples=False, rings=16, spokes=16)
+
+
+def test_the_radial_sea_runs_by_right_functions_as_the_program_does(folder: Folder) -> None:
+    mixed = dataclasses.replace(OIL, spill="mixed", fraction=0.4, mixture_law="arrhenius", exposure=60.0, waves=True)
+    scene, alone = RadialSeaScene(mixed, folder.live), RadialSeaScene(mixed)
+    version = folder.save(source(*RADIAL), "radial_sea.py")
+    settle(scene, folder, version, {"mixture_viscosity", "wave_decay"})
+    column = scene.column
+    assert column.surface.viscosity == pytest.approx(
+        arrhenius(column.oil.viscosity, column.water.viscosity, 0.4), rel=1e-9
+    )
+    assert scene.sum.significant_height == pytest.approx(alone.sum.significant_height, rel=1e-3)
+    scene.change_forces(dataclasses.replace(mixed, spill="layer"))
+    settle(scene, folder, version, {"wave_decay", "reflectance", "draft"})
+    scene.advance(1)
+    assert scene.frame().column.oil.refractive_index == pytest.approx(scene.column.oil.refractive_index, rel=1e-9)
+    told = {what: (own, program) for what, own, program, _ in folder.tables.report.differences}
+    assert told["Draft of the box"] == pytest.approx((told["Draft of the box"][1],) * 2, rel=1e-3)
+    assert "mix oil and water entirely" in folder.tables.report.idle["mixture_viscosity"]
+    scene.change_forces(dataclasses.replace(mixed, spill="none"))
+    assert scene.column == RadialSeaScene(scene.params).column
+
+
+def test_a_wrong_draft_lets_the_box_bob(folder: Folder) -> None:
+    scene = RadialSeaScene(OIL, folder.live)
+    box = box_of(scene.bodies)
+    assert box is not None
+    right = float(scene.bodies.fleet.position[box, 2])
+    settle(scene, folder, folder.save(source("draft"), "radial_sea.py"), {"draft"})
+    assert scene.bodies.fleet.position[box, 2] == pytest.approx(right, abs=1e-3)
+    early = "return body_density * height / water_density\n    load = body_density"
+    in_water = source("draft").replace("load = body_density", early)
+    settle(scene, folder, folder.save(in_water, "radial_sea.py"), {"draft"})
+    assert scene.bodies.fleet.position[box, 2] - right == pytest.approx(0.2 * (1 - 866 / 1025), rel=0.2)
+    scene.advance(10)
+    assert scene.bodies.fleet.velocity[box, 2] < -0.01  # it sinks to where it floats
+
+
+@pytest.mark.parametrize("name", ["wave_decay", "draft"])
+def test_the_radial_sea_keeps_the_last_version_that_worked(folder: Folder, name: str) -> None:
+    scene = RadialSeaScene(OIL, folder.live)
+    works = folder.save(source(name), "radial_sea.py")
+    settle(scene, folder, works, {name})
+    for line, (kind, said) in FAULTS.items():
+        if kind == "endless":  # takes its time, and is that of the other sea
+            continue
+        folder.save(with_fault(name, line), "radial_sea.py")
+        wait_for(lambda said=said: name in folder.tables.errors and said in folder.tables.errors[name].text)
+        assert folder.tables.errors[name].kind == kind
+        scene.handle(StudentAnswer())
+        scene.advance(1)
+        assert scene.student is not None
+        assert scene.student.taken[name].version == works

@@ -281,11 +281,16 @@ def test_the_functions_of_a_saved_file_are_checked_as_lab_check_does(right: Sess
     wait_for(lambda: right.check.verdicts.get("spring_force") == Verdict("right"))
 
 
-def test_a_check_that_is_killed_is_said_and_waits_for_nothing(tmp_path: Path) -> None:
+def test_a_check_that_is_killed_is_made_once_more_and_then_said(tmp_path: Path) -> None:
     (tmp_path / "rope.py").write_text("import time\ntime.sleep(60)\n")
     check = BackgroundCheck()
     try:
         check.request(tmp_path, ["spring_force"], frozenset({"spring_force"}))
+        assert check.waiting
+        first = check.process
+        assert first is not None
+        first.kill()
+        wait_for(lambda: check.process is not first)
         assert check.waiting
         assert check.process is not None
         check.process.kill()

@@ -95,6 +95,8 @@ class BackgroundCheck:
                         verdict = Verdict(found["state"], found["text"], found["mistake"])
                         self.verdicts = {**self.verdicts, found["name"]: verdict}
                         self.waiting = self.waiting - {found["name"]}
+        process.kill()  # it has ended, or soon will: no request must go to it
+        process.wait()
         with self.lock:
             number, names = self.number, sorted(self.waiting)
             if process is not self.process or not names:

@@ -50,6 +50,9 @@ class Forces(NamedTuple):
     pull_stiffness: float  # [N/m]
     pull_damping: float  # [N s/m]
     max_pull: float  # [N]
+    wind: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m/s] at a cloth
+    air_drag: float = 0.0  # [kg/m3] half the density of the air times the coefficient of drag
+    air_lift: float = 0.0  # [kg/m3] the same of lift
 
 
 class Segment(NamedTuple):
@@ -58,7 +61,9 @@ class Segment(NamedTuple):
     steps: int
     h: float  # [s]
     forces: Forces
-    root: np.ndarray  # (steps, 6) position [m] and velocity [m/s] of the root after each step; (0, 6) where it rests
+    # (steps, 6 p) position [m] and velocity [m/s] of each of the p points that are held, after each step; (0, 6 p)
+    # where they rest. A rope has one, its root.
+    root: np.ndarray
 
 
 class March(NamedTuple):
@@ -107,6 +112,9 @@ def fitting(name: str, value: Any, shape: tuple[int, ...], function: Callable[..
 class Functions:
     """The functions that advance a rope: the student's, and the reference solutions in place of those not written."""
 
+    reference: Mapping[str, Callable[..., Any]] = REFERENCE
+    roots = 1  # points at the start that only their path moves
+
     def __init__(
         self, module: ModuleType, own: Collection[str], step: str, compiled: Mapping[str, Callable[..., Any]]
     ) -> None:
@@ -114,7 +122,7 @@ class Functions:
 
         compiled: functions to use instead (`compiled.py`).
         """
-        found = {name: compiled.get(name) or getattr(module, name, None) for name in own if name in REFERENCE}
+        found = {name: compiled.get(name) or getattr(module, name, None) for name in own if name in self.reference}
         self.own = {name: function for name, function in found.items() if callable(function)}
         self.links = compiled.get(LINKS)
         self.step = step
@@ -123,7 +131,7 @@ class Functions:
 
     def get(self, name: str) -> Callable[..., Any]:
         """The student's function, or the reference solution."""
-        return self.own.get(name) or REFERENCE[name]
+        return self.own.get(name) or self.reference[name]
 
     def fit(self, name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
         """A result as an array of this shape. Raises Unfit."""
@@ -137,13 +145,13 @@ class Functions:
         if x.ndim != 2 or x.shape[1] != 3 or x.shape != v.shape:
             text = f"{self.step} calls acceleration(x, v) with shapes {x.shape} and {v.shape}; both must be (n, 3)"
             raise Unfit("wrong shape", text, self.get(self.step))
-        a = self.rope(x, v)
+        a = self.inner(x, v)
         self.add_surroundings(x, v, a)
         if np.isnan(a.sum()) and np.isfinite(x).all() and np.isfinite(v).all() and np.isnan(a).any():
             self.name_nan(x, v)
         return a
 
-    def rope(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+    def inner(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Springs, air and gravity: by `rope_acceleration`, or by `spring_force` at each link."""
         f = self.forces
         numbers = f.mass, f.stiffness, f.damping, f.drag, f.rest_length, f.gravity
@@ -171,16 +179,17 @@ class Functions:
 
     def add_surroundings(self, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> None:
         """Add floor, sphere and the pull of the mouse on all points but the root."""
-        f = self.forces
-        for i in np.flatnonzero(x[1:, 2] < f.floor) + 1 if x[:, 2].min() < f.floor else ():
+        f, first = self.forces, self.roots
+        for i in np.flatnonzero(x[first:, 2] < f.floor) + first if x[:, 2].min() < f.floor else ():
             up = np.array([0.0, 0.0, 1.0])
             a[i] += self.contact(f.floor - x[i, 2], up, v[i], 1.0) / f.mass
         if f.radius > 0.0:
             centre, velocity = self.sphere_now()
             distance = np.linalg.norm(x - centre, axis=1)
-            for i in range(1, len(x)) if "sphere_force" in self.own else np.flatnonzero(distance[1:] < f.radius) + 1:
+            near = np.flatnonzero(distance[first:] < f.radius) + first
+            for i in range(first, len(x)) if "sphere_force" in self.own else near:
                 a[i] += self.sphere(x[i], v[i] - velocity, centre, float(distance[i])) / f.mass
-        if f.held > 0:
+        if f.held >= first:
             gap = np.array(f.hand) - x[f.held]
             distance = float(np.linalg.norm(gap))
             k = f.max_pull / distance if f.pull_stiffness * distance > f.max_pull else f.pull_stiffness
@@ -217,6 +226,11 @@ class Functions:
         if f.friction * push < grip * speed:
             grip = f.friction * push / speed
         return push * normal - (grip if f.friction else 0.0) * sliding
+
+    def hold(self, x: np.ndarray, v: np.ndarray, segment: Segment, i: int) -> None:
+        """Put the root where it is after step i."""
+        if len(segment.root):
+            x[0], v[0] = segment.root[i, :3], segment.root[i, 3:]
 
     def name_nan(self, x: np.ndarray, v: np.ndarray) -> None:
         """Raises Unfit for the function that returns NaN at this state."""
@@ -256,17 +270,8 @@ class Functions:
         return x_new, v_new
 
 
-def march(
-    module: ModuleType,
-    own: Collection[str],
-    step: str,
-    x: np.ndarray,
-    v: np.ndarray,
-    segments: list[Segment],
-    compiled: Mapping[str, Callable[..., Any]],
-) -> March:
+def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Segment]) -> March:
     """Advance a rope from positions x and velocities v, shape (n, 3), over some segments. Raises Unfit."""
-    functions = Functions(module, own, step, compiled)
     ends: list[np.ndarray] = []
     taken, last_v, left = 0, v, False
     began = time.perf_counter()
@@ -277,8 +282,7 @@ def march(
                 functions.now = (i + 0.5) * segment.h  # a step does not say at which of its moments it asks
                 x, v = functions.advance(x, v, segment.h)
                 taken += 1
-                if len(segment.root):
-                    x[0], v[0] = segment.root[i, :3], segment.root[i, 3:]
+                functions.hold(x, v, segment, i)
                 left = not (np.abs(x).max() < MAX_COORDINATE and np.abs(v).max() < MAX_COORDINATE)
                 if left:
                     break

@@ -20,8 +20,11 @@ from typing import IO, Any
 
 import numpy as np
 
+from app.lab.cloth_march import FILE as CLOTH_FILE
+from app.lab.cloth_march import Sheet
 from app.lab.process import COMPILES, TRACE_SIGNAL
-from app.lab.rope_march import FILE, March, Segment, packed
+from app.lab.rope_march import FILE as ROPE_FILE
+from app.lab.rope_march import March, Segment, packed
 from app.lab.tabulate import Range
 from app.lab.wire import pack, receive, send, unpack
 
@@ -82,17 +85,20 @@ class Runner:
         return self._ask("call", file, function, list(arguments))
 
     def march(
-        self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment]
-    ) -> March:
-        """Advance a rope by the student's functions (`rope_march.py`). Raises RunError.
+        self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment],
+        sheet: Sheet | None = None,
+    ) -> March:  # fmt: skip
+        """Advance a rope (`rope_march.py`), or a cloth (`cloth_march.py`), by the student's functions.
 
         own: names of the functions that the student has begun. step: name of the method's function. x, v: (n, 3).
+        sheet: what the cloth is made of, None for a rope. Raises RunError.
         """
-        arguments = [sorted(own), step, x, v, [packed(segment) for segment in segments]]
-        answer = self._ask("march", FILE, step, arguments)
+        arguments = [sorted(own), step, sheet, x, v, [packed(segment) for segment in segments]]
+        file = ROPE_FILE if sheet is None else CLOTH_FILE
+        answer = self._ask("march", file, step, arguments)
         if not is_march(answer, x.shape):
             self.close()
-            raise RunError("ended", f"{step} wrote into the pipe of the lab", FILE)
+            raise RunError("ended", f"{step} wrote into the pipe of the lab", file)
         return March(*answer)
 
     def table(
@@ -118,7 +124,7 @@ class Runner:
 
         Raises RunError.
         """
-        names, why = self._ask("compile", FILE, "numba", [sorted(own)], COMPILE_LIMIT)
+        names, why = self._ask("compile", ROPE_FILE, "numba", [sorted(own)], COMPILE_LIMIT)
         return names, why
 
     def abort(self) -> None:

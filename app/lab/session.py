@@ -1,7 +1,7 @@
 """`springtide lab DIR` while it runs: watches the student's folder, tries what is saved, and runs it.
 
 A thread waits for files to be saved. Each saved version is copied, tried in a process of its own, and handed to the
-rope (`live_rope.py`) where it works; where it does not, the last one that worked goes on. The seas run by tables of
+rope (`live_net.py`) where it works; where it does not, the last one that worked goes on. The seas run by tables of
 functions (`live_tables.py`), in the same way. What the panel shows is one
 frozen record, `state`, which is replaced and never changed.
 """
@@ -22,9 +22,8 @@ import watchfiles
 
 from app.lab.background_check import BackgroundCheck
 from app.lab.live_code import LiveCode
-from app.lab.live_rope import LiveRope, Loaded, own_of, try_rope
+from app.lab.live_net import CLOTH, ROPE, LiveNet, Loaded
 from app.lab.live_tables import LiveTables
-from app.lab.rope_march import FILE
 from app.lab.runner import TIME_LIMIT, RunError, Runner
 from app.lab.saved import Saved, keep, read_files
 from app.lab.scene_values import SceneValues
@@ -66,9 +65,10 @@ class Session:
         self.number = 0
         self.spare: Runner | None = self.make_runner()
         by_name = {task.name: task for task in tasks}
-        self.rope = LiveRope(self.note_failure)
+        self.rope = LiveNet(ROPE, self.note_failure)
+        self.cloth = LiveNet(CLOTH, self.note_failure)
         self.tables = LiveTables(by_name, time_limit)
-        self.live = LiveCode(self.rope, self.tables)
+        self.live = LiveCode(self.rope, self.cloth, self.tables)
         self.check = BackgroundCheck(own_tasks)
         self.values = SceneValues(by_name, time_limit)
         self.rope_version = 0  # number of the last version that was tried for the rope
@@ -118,12 +118,16 @@ class Session:
         self.tables.adopt(saved)
         self.saved, self.spare = saved, None
         self.state = self.state._replace(version=saved.number, saved_at=time.strftime("%H:%M:%S"), error=None)
-        if FILE in texts and self.is_for_rope(changed):
+        if ROPE.file in texts and self.is_for(ROPE.file, changed):
             self.rope_version = saved.number
             if self.compiler is not None:
                 self.compiler.abort()
-            self.try_version(Loaded(saved, runner))
-        else:
+            if self.try_version(self.rope, Loaded(saved, runner)):
+                self.to_compile.put(saved)
+            runner = None
+        if CLOTH.file in texts and self.is_for(CLOTH.file, changed):
+            self.try_version(self.cloth, Loaded(saved, runner or Runner(saved.folder, self.time_limit)))
+        elif runner is not None:
             runner.close()
         with contextlib.suppress(OSError):  # said when it is needed
             self.spare = self.make_runner()
@@ -135,26 +139,22 @@ class Session:
             traceback.print_exception(error)
             self.state = self.state._replace(error=RunError("ended", text, str(self.folder)))
 
-    def is_for_rope(self, changed: frozenset[str]) -> bool:
-        """Whether a change of these files can change the rope: of its own file, or of one that no task names."""
-        others = {task.file for task in self.tasks} - {FILE}
+    def is_for(self, file: str, changed: frozenset[str]) -> bool:
+        """Whether a change of these files can change what functions of a file move: itself, or one no task names."""
+        others = {task.file for task in self.tasks} - {file}
         return not changed <= others
 
-    def try_version(self, loaded: Loaded) -> None:
-        """Hand a version to the rope if it takes a few steps; say why where it does not."""
-        saved, runner = loaded.saved, loaded.runner
-        method, sphere = self.rope.method, self.rope.sphere
+    def try_version(self, net: LiveNet, loaded: Loaded) -> bool:
+        """Hand a version to rope or cloth if it takes a few steps; say why where it does not. Whether it moves it."""
         try:
-            try_rope(runner, saved, method, sphere=sphere)
+            own = net.attempt(loaded)
         except RunError as error:
-            runner.close()
-            self.note_failure(saved, error)
-            return
-        begun = own_of(saved, method, sphere=sphere)
-        self.state = self.state._replace(begun=saved.begun, not_compiled="")
-        self.rope.adopt(loaded)
-        if begun:
-            self.to_compile.put(saved)
+            loaded.runner.close()
+            self.note_failure(loaded.saved, error)
+            return False
+        self.state = self.state._replace(begun=loaded.saved.begun, not_compiled="")
+        net.adopt(loaded)
+        return bool(own)
 
     def compile_versions(self) -> None:
         """Compile what moves the rope, and hand it to the rope where that works; of several versions the last."""
@@ -191,6 +191,7 @@ class Session:
         if self.spare is not None:
             self.spare.close()
         self.rope.close()
+        self.cloth.close()
         self.tables.close()
         self.check.close()
         self.values.close()

@@ -2,10 +2,10 @@
 
 It says `["ready"]` once. It takes `["call", file, function, arguments]` and answers with `["result", value]`,
 `["callback", number, arguments]` (a function among the arguments is called: the other side computes it), or
-`["failed", kind, text, file, line]`. With `["march", file, function, arguments]` it advances a rope by the student's
-functions (`rope_march.py`), with `["compile", file, "", [names]]` it compiles them for that, and with
-`["table", file, function, [columns, shape, allowed]]` it calls one function at many arguments (`tabulate.py`). What a
-student prints is counted and dropped: the pipes are the lab's own.
+`["failed", kind, text, file, line]`. With `["march", file, function, arguments]` it advances a rope or a cloth by the
+student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it compiles those of a
+rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function at many arguments
+(`tabulate.py`). What a student prints is counted and dropped: the pipes are the lab's own.
 """
 
 import contextlib
@@ -23,8 +23,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
+from app.lab.cloth_march import ClothFunctions, Sheet
 from app.lab.process import COMPILES, NICENESS, TRACE_SIGNAL
-from app.lab.rope_march import Unfit, march, unpacked
+from app.lab.rope_march import Functions, Unfit, march, unpacked
 from app.lab.tabulate import Range, tabulate
 from app.lab.wire import pack, receive, send, unpack
 
@@ -95,8 +96,12 @@ class Worker:
                 return ["result", pack([sorted(self.compiled), why], lambda _: 0)]
             module = self.load(file)
             if kind == "march":
-                own, step, x, v, segments = unpack(arguments, self.remote)
-                done = march(module, own, step, x, v, [unpacked(segment) for segment in segments], self.compiled)
+                own, step, sheet, x, v, segments = unpack(arguments, self.remote)
+                if sheet is None:
+                    functions = Functions(module, own, step, self.compiled)
+                else:
+                    functions = ClothFunctions(module, own, step, Sheet(*sheet))
+                done = march(functions, x, v, [unpacked(segment) for segment in segments])
                 return ["result", pack(tuple(done), lambda _: 0)]
             target = getattr(module, function, None)
             if not callable(target):

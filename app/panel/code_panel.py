@@ -3,7 +3,7 @@
 import numpy as np
 import viser
 
-from app.lab.live_rope import StudentReport, functions_in_use
+from app.lab.live_net import StudentReport, cloth_functions_in_use, functions_in_use
 from app.lab.live_tables import TableReport
 from app.lab.live_values import LiveValues
 from app.lab.program_check import Verdict
@@ -38,10 +38,14 @@ COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "failed": ERROR_COLOUR, 
 
 HINTS = {  # scene -> what to begin with
     "rope": "Write spring_force in rope.py and save it: the rope moves by it at once.",
+    "cloth": "Write cloth_forces or cloth_links in cloth.py and save it: a cloth moves by it at once.",
     "square_sea": "Write gravity, spectrum or dispersion in square_sea.py and save it: the sea runs by it at once.",
     "radial_sea": "Write mixture_viscosity, wave_decay, reflectance or draft in radial_sea.py and save it: the sea "
     "runs by it at once.",
 }
+
+
+TRANSLUCENT = {"rope": "rope (translucent)", "cloth": "cloth (yours is the translucent one)"}
 
 
 class CodePanel:
@@ -49,6 +53,7 @@ class CodePanel:
 
     def __init__(self, gui: viser.GuiApi, session: Session, scene: str) -> None:
         self.session, self.scene = session, scene
+        self.net = session.cloth if scene == "cloth" else session.rope
         self.shown = ""
         with gui.add_folder("Your code"):
             self.text = gui.add_html("")
@@ -63,13 +68,13 @@ class CodePanel:
     def headline(self) -> Html:
         """One line on the state of the files."""
         session = self.session
-        return headline(state_of(session), session.rope.report, tables_of(session))
+        return headline(state_of(session), self.net.report, tables_of(session), self.scene)
 
     def update(self, live: LiveValues) -> None:
         """Show what has changed; called a few times a second. live: what the scene offers."""
         session = self.session
         session.values.ask(self.scene, session.saved, live)
-        said = code_lines(state_of(session), session.rope.report, tables_of(session), self.scene)
+        said = code_lines(state_of(session), self.net.report, tables_of(session), self.scene)
         text = note(lines([said, function_lines(session)]))
         if text != self.shown:
             self.shown = text
@@ -97,13 +102,14 @@ def place_of(error: RunError) -> str:
     return f"{error.file}, line {error.line}" if error.line else error.file
 
 
-def headline(state: CodeState, report: StudentReport, tables: TableReport) -> Html:
+def headline(state: CodeState, report: StudentReport, tables: TableReport, scene: str) -> Html:
     """The state of the files on one line, for the block of the panel that is always in sight."""
     if state.error is not None:
         place, text = place_of(state.error), state.error.text
         return fill("Your code: {}: {}: {}", coloured("stopped", ERROR_COLOUR), place, text)
     if report.left_at == report.left_at:
-        return fill("Your code: {}", coloured(f"the rope left its bounds at t = {report.left_at:.2f} s", ERROR_COLOUR))
+        left = f"the {scene} left its bounds at t = {report.left_at:.2f} s"
+        return fill("Your code: {}", coloured(left, ERROR_COLOUR))
     if not report.version and not tables.running:
         saved = f"saved at {state.saved_at}, runs nothing here" if state.version else "reading your files …"
         return fill("Your code: {}", saved)
@@ -119,7 +125,7 @@ def code_lines(state: CodeState, report: StudentReport, tables: TableReport, sce
         if report.version or tables.running:
             said.append(fill("The last version that worked goes on."))
     if report.version:
-        said += rope_texts(state, report)
+        said += net_texts(state, report, scene)
     return lines([*said, *sea_texts(tables)])
 
 
@@ -147,12 +153,15 @@ def saved_text(state: CodeState, hint: str, *, runs: bool) -> Html:
     return fill("Saved at {}: {}", state.saved_at, coloured("runs", GOOD_COLOUR))
 
 
-def rope_texts(state: CodeState, report: StudentReport) -> list[Html]:
-    """The rope that the student's functions move."""
-    used = functions_in_use(state.begun, report.method, sphere=report.sphere)
+def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]:
+    """The rope or cloth that the student's functions move."""
+    if scene == "cloth":
+        used = cloth_functions_in_use(state.begun)
+    else:
+        used = functions_in_use(state.begun, report.method, sphere=report.sphere)
     own = ", ".join(name for name, is_own in used.items() if is_own)
     other = ", ".join(name for name, is_own in used.items() if not is_own)
-    said = [fill("Your rope moves by {}{}.", bold(own), fill(" (reference: {})", other) if other else "")]
+    said = [fill("Your {} moves by {}{}.", scene, bold(own), fill(" (reference: {})", other) if other else "")]
     if report.seconds:
         pace = report.step / report.seconds
         speed = f"{1e6 * report.seconds:.0f} µs a step, {number(pace)} times real time"
@@ -164,14 +173,17 @@ def rope_texts(state: CodeState, report: StudentReport) -> list[Html]:
         if state.not_compiled and not kept:
             said.append(faint(f"Not compiled: {state.not_compiled}"))
     if report.left_at == report.left_at:
-        said.append(coloured(f"Your rope left its bounds at t = {report.left_at:.2f} s.", ERROR_COLOUR))
+        said.append(coloured(f"Your {scene} left its bounds at t = {report.left_at:.2f} s.", ERROR_COLOUR))
     elif report.difference == report.difference:
-        said.append(fill("{} from the program's rope (translucent).", bold(length_text(report.difference))))
+        said.append(fill("{} from the program's {}.", bold(length_text(report.difference)), TRANSLUCENT[scene]))
         said.append(difference_chart(report))
-    if report.method == "leapfrog" and report.difference > SAME:
+    if report.grid != (0, 0):
+        rows, cols = report.grid
+        said.append(fill("{} × {} points, without pleats and self-collision: plain Python is slow.", rows, cols))
+    if scene == "rope" and report.method == "leapfrog" and report.difference > SAME:
         said.append(faint("The program's leapfrog takes damping exactly: a right one differs by a centimetre or so."))
     if report.restarts:
-        said.append(faint(f"Too slow: it started again from the program's rope {report.restarts} times."))
+        said.append(faint(f"Too slow: it started again from the program's {scene} {report.restarts} times."))
     return said
 
 

@@ -159,9 +159,9 @@ class Viewer:
             return kind.make(params)
         live = self.session.live
         if kind.make_with_student is None:
-            live.connect(lambda: None, lambda: None)
+            live.connect(kind.name, lambda: None, lambda: None)
             return kind.make(params)
-        live.connect(lambda: post(StudentAnswer()), lambda: post(Reset()))
+        live.connect(kind.name, lambda: post(StudentAnswer()), lambda: post(Reset()))
         return kind.make_with_student(params, live)
 
     def compile(self, kind: AnyKind, params: BaseParams) -> bool:

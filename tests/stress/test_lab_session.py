@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.lab.folder import make_folder
-from app.lab.live_rope import step_of
+from app.lab.live_net import step_of
 from app.lab.rope_march import REFERENCE
 from app.lab.session import Session
 from app.lab.task import load_tasks

@@ -17,7 +17,7 @@ from app.lab.folder import make_folder
 from app.lab.rope_march import Segment
 from app.lab.runner import Runner
 from app.lab.task import load_tasks
-from app.scenes.rope.student_rope import forces_of
+from app.scenes.springs.student_net import forces_of
 from sim.springs import rope
 
 REPEATS = 7

@@ -2,12 +2,12 @@
 
 import dataclasses
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts
+from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, StudentAnswer, Vector, WorkCounts
 from app.scenes.charts import PlotAxes
 from app.scenes.cloth.live_values import live_values
 from app.scenes.cloth.parameters import MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
@@ -32,6 +32,10 @@ from sim.springs.resampling import resample
 from sim.springs.stability import Gauge, gauge, gershgorin
 from sim.springs.state import State, advance, energy, velocities
 from sim.springs.tracking import CriticallyDampedTracker
+
+if TYPE_CHECKING:
+    from app.lab.live_code import LiveCode
+    from app.scenes.cloth.student_cloth import StudentCloth
 
 ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
 MAX_ASSESSED_PARTICLES = 1100  # above this an assessment takes too long, and Gershgorin's bound is shown
@@ -67,6 +71,7 @@ class ClothFrame(NamedTuple):
     grid: bool
     colour: str
     pull: PullFrame | None
+    student: NDArray[np.float32] | None  # (r, c, 3) [m] the student's cloth beside the program's
 
 
 class ClothReadings(NamedTuple):
@@ -111,8 +116,14 @@ class ClothScene:
 
     frame_interval = FRAME_INTERVAL
 
-    def __init__(self, params: Params) -> None:
+    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
+        """live: runs a student's functions, where there are any."""
         self.params = params
+        self.student: StudentCloth | None = None
+        if live is not None:
+            from app.scenes.cloth import student_cloth  # only `springtide lab DIR` pays for it
+
+            self.student = student_cloth.StudentCloth(live.cloth)
         self.plot_rows = PlotRows(len(SERIES))
         self.last_moments = LastMoments()
         self.counts = SpringWorkCounts()
@@ -158,6 +169,8 @@ class ClothScene:
         self.plot_rows.restart()
         self.last_moments.clear()
         self.assess_stability()
+        if self.student is not None:
+            self.student.start(self.params, self.state)
 
     def keep(self) -> dict[str, object]:
         """State, energy account and what is moved, as they are now."""
@@ -171,6 +184,9 @@ class ClothScene:
         self.plot_rows.last = -math.inf
         self.last_moments.clear()
         self.assess_stability()
+        if self.student is not None:
+            self.student.set_up(self.params)
+            self.student.begin(self.student.rows_of(self.state.x), self.student.rows_of(self.state.v), self.state.t)
 
     def hold_pins(self) -> None:
         """Hold the pinned particles where they are, with a handle at each end of the first row."""
@@ -195,6 +211,8 @@ class ClothScene:
                 self.state.v[:, i, j] = 0.0
         self.account.book_change(stored, self.net, self.state)
         self.assess_stability()
+        if self.student is not None:
+            self.student.change(params, old, self.state)
 
     def handle(self, command: SceneCommand) -> None:
         """Move pins or sphere, pull a particle, or let go of it."""
@@ -210,6 +228,8 @@ class ClothScene:
                 self.drag.move(client, index, (x, y, z), target)
             case Release(client):
                 self.drag.release(client)
+            case StudentAnswer() if self.student is not None:
+                self.student.collect(MAX_DISTANCE)
             case _:
                 pass
 
@@ -236,6 +256,8 @@ class ClothScene:
         if self.integrator.implicit:
             self.corrections = (self.state.force_evals - good.force_evals) / steps
         self.net = net
+        if self.student is not None:
+            self.student.follow_cloth(net, good, self.state, self.step)
         is_due = self.particles <= MAX_ASSESSED_PARTICLES and self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL
         self.counts.add("stability checks", 1, is_due)
         if is_due:
@@ -360,9 +382,13 @@ class ClothScene:
             _, index, hand = self.drag.hold
             distance = float(np.linalg.norm(np.asarray(hand.position) - self.state.x.reshape(3, -1)[:, index]))
             pull = PullFrame(index, hand.position, min(1.0, distance * self.pull_spring()[0] / params.pull))
+        x, student = self.state.x, None
+        both = None if self.student is None else self.student.pictured(x)
+        if both is not None:
+            x, student = both
         frame = ClothFrame(
-            points=np.ascontiguousarray(np.moveaxis(self.state.x, 0, -1), dtype=np.float32),
-            strain=structural_strain(self.net, self.state.x).astype(np.float32),
+            points=np.ascontiguousarray(np.moveaxis(x, 0, -1), dtype=np.float32),
+            strain=structural_strain(self.net, x).astype(np.float32),
             full_strain=0.01 * params.full_strain,
             pins=None if params.pinned == "free" else (self.handles[0].target, self.handles[1].target),
             pole=params.start == "flag" and params.pinned in ("corners", "edge"),
@@ -373,6 +399,7 @@ class ClothScene:
             handles=params.handles,
             colour=params.colour,
             pull=pull,
+            student=student,
         )
         self.last_moments.add(self.state.t, frame, frame.points)
         return frame
@@ -394,11 +421,12 @@ SCENE = SceneKind(
     params=Params,
     presets=PRESETS,
     make=ClothScene,
+    make_with_student=ClothScene,
     hidden=hidden,
     warm_up=warm_up,
     needs=needs,
     series=SERIES,
     plots=PLOTS,
-    frame_units={"points": "m", "strain": ""},
+    frame_units={"points": "m", "strain": "", "student": "m, a student's cloth beside the program's"},
     live_values=live_values,
 )

@@ -21,6 +21,7 @@ from sim.formatting import number
 from sim.packing import compile_packing
 
 CLOTH_COLOUR = (176, 58, 72)
+STUDENT_COLOUR, STUDENT_OPACITY = (40, 92, 170), 0.55
 POINT_STEP = 2.0**-15  # [m] to which points are rounded for the page: no grain shows in the light on a fine cloth
 SPHERE_ROWS = 24  # of the drawn sphere, from pole to pole
 SPHERE_COLOUR = (92, 140, 190)
@@ -75,6 +76,8 @@ class View:
             "/pole", np.zeros((1, 2, 3), np.float32), colors=POLE_COLOUR, thickness=POLE_WIDTH, visible=False
         )
         self.pull = PullLine(server)
+        self.student: viser.MeshHandle | None = None  # the student's cloth, once there was one
+        self.student_shape = (0, 0)
 
     def build(self, frame: ClothFrame) -> None:
         """Make the mesh for another grid."""
@@ -119,6 +122,7 @@ class View:
             self.pull.show(None)
         else:
             self.pull.show((self.points[frame.pull.particle], frame.pull.target), frame.pull.load)
+        self.show_student(frame.student)
         self.surroundings.show(frame.floor, frame.grid)
         for index, (gizmo, pin_ball) in enumerate(zip(self.pins, self.pin_balls, strict=True)):
             pin_ball.visible = frame.pins is not None
@@ -138,6 +142,21 @@ class View:
         if frame.sphere is not None and frame.sphere != self.shown_sphere:
             self.shown_sphere = frame.sphere
             self.ball.vertices = (self.unit_ball * frame.sphere[3] + frame.sphere[:3]).astype(np.float32)
+
+    def show_student(self, points: np.ndarray | None) -> None:
+        """The student's cloth (rows, cols, 3) [m], translucent; None: there is none."""
+        if points is not None:
+            shape, vertices = points.shape[:2], points.reshape(-1, 3)
+            if self.student is None or shape != self.student_shape:
+                self.student_shape = shape
+                self.student = self.server.scene.add_mesh_simple(
+                    "/student", vertices, faces(*shape), color=STUDENT_COLOUR, opacity=STUDENT_OPACITY, side="double",
+                    cast_shadow=False,
+                )  # fmt: skip
+            else:
+                self.student.vertices = vertices
+        if self.student is not None:
+            self.student.visible = points is not None
 
     def readout(self, snapshot: ClothSnapshot) -> str:
         """The stability bar, the cost of an implicit step and the colour scale, as HTML."""

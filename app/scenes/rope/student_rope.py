@@ -1,152 +1,22 @@
-"""The student's rope beside the program's, as the rope scene sees it: what it is asked to do, and how far it has come.
-
-The program's rope never waits for the student's. Each piece of its motion is recorded and sent on; the picture shows
-both ropes at the moment that the student's has reached, so that what differs is the ropes and not the time.
-"""
-
-import collections
-import math
-import queue
-from typing import NamedTuple
+"""The student's rope beside the program's."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.live_rope import Answer, Job, LiveRope, StudentReport
-from app.lab.rope_march import Forces, Segment
+from app.lab.rope_march import Segment
+from app.scenes.springs.student_net import StudentNet, forces_of
 from sim.springs import Net
 
-MAX_BEHIND = 1.0  # [s] of simulated time that the student's rope may be late; then it starts again from the program's
-MAX_MATCHED = 0.1  # [s] up to which the program's rope is drawn as late as the student's
-JOB_TIME = 0.05  # [s] that a job should take
-MAX_ROWS = 600  # kept of the course of the difference
 
-
-class Piece(NamedTuple):
-    """A piece of the program's motion."""
-
-    segment: Segment
-    time: float  # [s] at its end
-    x: NDArray[np.float64]  # (n, 3) [m] the program's rope at its end
-
-
-class StudentRope:
+class StudentRope(StudentNet):
     """Used by the rope scene on the simulation thread."""
 
-    def __init__(self, live: LiveRope) -> None:
-        self.live = live
-        self.answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
-        self.run = 0  # number of the run, of `LiveRope.runs`
-        self.max_speed = 0.0  # [m/s] of the fastest point, along an axis
-        self.rows: collections.deque[tuple[float, float]] = collections.deque(maxlen=MAX_ROWS)  # (t, m)
-        self.waiting: collections.deque[Piece] = collections.deque()
-        self.sent: list[Piece] = []  # of the job that is under way
-        self.points: NDArray[np.float64] | None = None  # (n, 3) [m]; None: there is no rope of the student's
-        self.matched: NDArray[np.float64] | None = None  # (n, 3) [m] the program's rope at the same moment
-
-    def begin(self, x: NDArray[np.float64], v: NDArray[np.float64], time: float) -> None:
-        """Start at the program's rope, x and v of shape (n, 3), at a time [s]."""
-        self.run = next(self.live.runs)
-        self.waiting.clear()
-        self.sent = []
-        self.x, self.v, self.time = x, v, time
-        self.points = self.matched = x if self.points is not None else None
-        self.cost = 0.0  # [s] of a step; 0: not known
-        self.left = False
-        self.live.report = self.live.report._replace(left_at=math.nan, behind=0.0)
-
-    def restart(self, x: NDArray[np.float64], v: NDArray[np.float64]) -> None:
-        """A new run."""
-        self.rows.clear()
-        self.begin(x, v, 0.0)
-        self.live.report = StudentReport(version=self.live.report.version)
-
-    def follow(
+    def follow_rope(
         self, net: Net, start: float, steps: int, h: float, method: str, x: NDArray[np.float64], v: NDArray[np.float64]
     ) -> None:
         """The program's rope has taken steps from time `start` [s], and is at x with velocities v, shape (n, 3)."""
-        self.method = method
-        end = start + steps * h
-        self.waiting.append(Piece(Segment(steps, h, forces_of(net, start), root_path(net, start, steps, h)), end, x))
-        if end - self.time > MAX_BEHIND and not self.left:
-            restarts = self.live.report.restarts + 1
-            self.begin(x, v, end)
-            self.live.report = self.live.report._replace(restarts=restarts)
-        self.send()
-
-    def send(self) -> None:
-        """Hand on what waits, unless a job is under way: as many steps as are done in `JOB_TIME`."""
-        if self.sent or not self.waiting or self.left:
-            return
-        most = JOB_TIME / self.cost if self.cost else 1.0
-        pieces: list[Piece] = []
-        steps = 0
-        while self.waiting and (not pieces or steps + self.waiting[0].segment.steps <= most):
-            pieces.append(self.waiting.popleft())
-            steps += pieces[-1].segment.steps
-        self.sent = pieces
-        segments = [piece.segment for piece in pieces]
-        self.live.submit(Job(self.run, self.method, self.x, self.v, segments, self.answers))
-
-    def collect(self, max_reach: float) -> None:
-        """Take the answers that have come. max_reach: [m] from the root at which a rope has left its bounds."""
-        while not self.answers.empty():
-            answer = self.answers.get_nowait()
-            if answer.run == self.run:
-                self.take(answer, max_reach)
-        self.send()
-
-    def take(self, answer: Answer, max_reach: float) -> None:
-        """Take an answer of this run."""
-        pieces, self.sent = self.sent, []
-        sphere = any(piece.segment.forces.radius > 0.0 for piece in pieces)
-        self.live.report = self.live.report._replace(
-            version=answer.version, compiled=answer.compiled, method=self.method, sphere=sphere
-        )
-        if not answer.version:
-            self.points = self.matched = None
-            self.max_speed = 0.0
-            self.waiting.clear()
-            if pieces:
-                self.x, self.v, self.time = pieces[-1].x, np.zeros_like(pieces[-1].x), pieces[-1].time
-            return
-        self.cost = answer.seconds
-        left = answer.left
-        for piece, x in zip(pieces, answer.x, strict=False):
-            if np.linalg.norm(x - x[0], axis=1).max() > max_reach:
-                left = True
-                break
-            self.x, self.time, self.matched = x, piece.time, piece.x
-            self.rows.append((piece.time, float(np.linalg.norm(x - piece.x, axis=1).max())))
-        self.v, self.points, self.left = answer.v, self.x, left
-        self.max_speed = 0.0 if left else float(np.abs(answer.v).max())
-        table = np.array(self.rows).reshape(-1, 2)
-        behind = sum(piece.segment.steps * piece.segment.h for piece in self.waiting)
-        self.live.report = self.live.report._replace(
-            seconds=answer.seconds, step=pieces[-1].segment.h, behind=behind,
-            left_at=self.time if left else math.nan, difference=self.rows[-1][1] if self.rows else math.nan,
-            times=table[:, 0], differences=table[:, 1],
-        )  # fmt: skip
-        if left:
-            self.waiting.clear()
-
-    def drawn(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-        """The student's rope and the program's beside it, (n, 3) [m]; None without the first. x: the program's now."""
-        if self.points is None or self.matched is None or len(self.points) != len(x):
-            return None
-        return self.points, self.matched if self.live.report.behind <= MAX_MATCHED and not self.left else x
-
-
-def forces_of(net: Net, start: float) -> Forces:
-    """Material and surroundings of a net at a time [s]."""
-    p = net.kernel_view(1.0)
-    link, seconds = net.families[0], start - p.epoch
-    centre = p.sx + seconds * p.svx, p.sy + seconds * p.svy, p.sz + seconds * p.svz
-    return Forces(
-        p.mass, link.stiffness, link.damping, p.drag, link.rest, -p.gz, p.floor if p.has_floor else -math.inf,
-        p.sr if p.has_sphere else 0.0, centre, (p.svx, p.svy, p.svz), p.contact_k, p.contact_b, p.friction,
-        p.lab_contact, p.grabbed, (p.grab_x, p.grab_y, p.grab_z), p.grab_k, p.grab_b, p.grab_max,
-    )  # fmt: skip
+        segment = Segment(steps, h, forces_of(net, start), root_path(net, start, steps, h))
+        self.follow(segment, start + steps * h, method, x, v)
 
 
 def root_path(net: Net, start: float, steps: int, h: float) -> NDArray[np.float64]:

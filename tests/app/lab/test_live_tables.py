@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from app.lab.live_code import LiveCode
-from app.lab.live_rope import LiveRope
+from app.lab.live_net import CLOTH, ROPE, LiveNet
 from app.lab.live_tables import LiveTables
 from app.lab.saved import keep
 from app.lab.task import load_tasks
@@ -62,8 +62,8 @@ class Folder:
     def __init__(self, path: Path) -> None:
         self.path, self.number = path, 0
         self.tables = LiveTables(TASKS, 1.0)
-        self.rope = LiveRope(lambda *_: None)
-        self.live = LiveCode(self.rope, self.tables)
+        self.nets = [LiveNet(material, lambda *_: None) for material in (ROPE, CLOTH)]
+        self.live = LiveCode(*self.nets, self.tables)
 
     def save(self, text: str, file: str = "square_sea.py") -> int:
         self.number += 1
@@ -78,7 +78,8 @@ def folder(tmp_path: Path) -> Iterator[Folder]:
     found = Folder(tmp_path)
     yield found
     found.tables.close()
-    found.rope.close()
+    for net in found.nets:
+        net.close()
 
 
 def settle(scene: SquareSeaScene | RadialSeaScene, folder: Folder, version: int, names: set[str]) -> None:

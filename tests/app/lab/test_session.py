@@ -11,7 +11,7 @@ import pytest
 
 from app.lab.background_check import BackgroundCheck
 from app.lab.folder import make_folder
-from app.lab.live_rope import StudentReport, try_rope
+from app.lab.live_net import StudentReport, try_rope
 from app.lab.live_tables import TableReport
 from app.lab.program_check import Verdict
 from app.lab.rope_march import REFERENCE
@@ -312,7 +312,7 @@ def test_the_panel_says_what_runs_and_what_is_wrong(right: Session) -> None:
     run(scene, 3)
     text = code_lines(right.state, right.rope.report, TableReport(), "rope")
     assert "<b>rope.py, line 11</b>: " in text
-    assert "</b>: rope.py, line 11: " in headline(right.state, right.rope.report, TableReport())
+    assert "</b>: rope.py, line 11: " in headline(right.state, right.rope.report, TableReport(), "rope")
     assert "The last version that worked goes on." in text
     save(right, RIGHT.replace("return stiffness", "return 0.9 * stiffness"))
     wait_for(lambda: right.rope.taken == right.state.version)

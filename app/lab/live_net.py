@@ -1,4 +1,4 @@
-"""The rope that a student's functions move: a thread that has it computed, in a process of its own.
+"""The rope or cloth that a student's functions move: a thread that has it computed, in a process of its own.
 
 A scene hands jobs over and takes answers; it never waits. Of the versions of the student's files the newest one runs
 that works; which one fails, and why, is kept until the next one is saved.
@@ -14,6 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from app.lab.cloth_march import FILE as CLOTH_FILE
+from app.lab.cloth_march import Sheet
+from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_march import REFERENCE, Forces, Segment
 from app.lab.runner import RunError, Runner
 from app.lab.saved import Saved
@@ -26,17 +29,22 @@ STEPS = {  # method of the scene -> the task with its step
 }
 OTHER_STEP = "step_rk4"  # for the methods that no task asks for
 ROPE_FUNCTIONS = tuple(REFERENCE)
+# A cloth's step is the program's: by the method of the scene where that is cheap enough for plain Python.
+CLOTH_STEPS = {"explicit_euler": "step_euler", "rk4": "step_rk4"}
+OTHER_CLOTH_STEP = "step_symplectic"
+CLOTH_FUNCTIONS = ("cloth_forces", "cloth_links")
 
 
 class Job(NamedTuple):
     """Steps that a scene asks for."""
 
-    run: int  # number of the run that they belong to, from `LiveRope.runs`
+    run: int  # number of the run that they belong to, from `LiveNet.runs`
     method: str  # name in INTEGRATORS
     x: np.ndarray  # (n, 3) [m]
     v: np.ndarray  # (n, 3) [m/s]
     segments: Sequence[Segment]
     answers: "queue.SimpleQueue[Answer]"  # of the scene that asks
+    sheet: Sheet | None = None  # what a cloth is made of; None for a rope
 
 
 class Answer(NamedTuple):
@@ -60,9 +68,9 @@ class Loaded(NamedTuple):
 
 
 class StudentReport(NamedTuple):
-    """What a scene says of the student's rope, for the panel. It is replaced, never changed."""
+    """What a scene says of the student's rope or cloth, for the panel. It is replaced, never changed."""
 
-    version: int = 0  # of the files; 0: no function of the student's moves a rope
+    version: int = 0  # of the files; 0: no function of the student's moves it
     compiled: tuple[str, ...] = ()  # functions that run compiled
     method: str = ""
     sphere: bool = False
@@ -71,7 +79,8 @@ class StudentReport(NamedTuple):
     behind: float = 0.0  # [s] of simulated time
     restarts: int = 0  # how often it was too late and started again from the program's rope
     left_at: float = math.nan  # [s] when it left its bounds
-    difference: float = math.nan  # [m] largest distance between the same points of both ropes
+    difference: float = math.nan  # [m] largest distance between the same points of both; NaN where they have others
+    grid: tuple[int, int] = (0, 0)  # rows and columns of the student's cloth, where it is coarser than the program's
     times: NDArray[np.float64] = np.zeros(0)  # (rows,) [s]
     differences: NDArray[np.float64] = np.zeros(0)  # (rows,) [m]
 
@@ -91,6 +100,39 @@ def own_of(saved: Saved, method: str, *, sphere: bool) -> frozenset[str]:
     return saved.begun & set(ROPE_FUNCTIONS) - unused
 
 
+class Material(NamedTuple):
+    """What tells a rope from a cloth."""
+
+    file: str  # of the student's functions
+    step_of: Callable[[str], str]  # method -> the function that takes its steps
+    own_of: Callable[..., frozenset[str]]  # version, method, sphere -> the student's functions that move it
+    attempt: Callable[..., None]  # runner, version, method, sphere: takes a few steps, and raises RunError
+
+
+def step_of_cloth(method: str) -> str:
+    """The function that takes the steps of a method."""
+    return CLOTH_STEPS.get(method, OTHER_CLOTH_STEP)
+
+
+def own_of_cloth(saved: Saved, method: str, *, sphere: bool) -> frozenset[str]:
+    """The student's functions that move a cloth, by any method."""
+    return saved.begun & set(CLOTH_FUNCTIONS)
+
+
+def try_cloth(runner: Runner, saved: Saved, method: str, *, sphere: bool) -> None:
+    """Take a few steps from a level cloth that is stretched. Raises RunError."""
+    rows, cols, spacing = 4, 5, 0.1
+    j, i = np.meshgrid(1.1 * spacing * np.arange(cols), 1.2 * spacing * np.arange(rows))
+    x = np.stack([j, i, 2.0 + 0.1 * np.sin(3.0 * i + j)], axis=-1).reshape(-1, 3)
+    forces = Forces(
+        0.05, 200.0, 0.1, 0.0, spacing, 9.81, -math.inf, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 300.0, 0.2, 0.0, False,
+        -1, (0.0, 0.0, 0.0), 0.0, 0.0, 1.0,
+    )  # fmt: skip
+    sheet = Sheet(rows, cols, (spacing, spacing), 100.0, 3.0, (0, cols - 1))
+    own = own_of_cloth(saved, method, sphere=sphere)
+    runner.march(own, step_of_cloth(method), x, 0.1 * x, [Segment(3, 1 / 480, forces, np.zeros((0, 12)))], sheet)
+
+
 def try_rope(runner: Runner, saved: Saved, method: str, *, sphere: bool) -> None:
     """Take a few steps from a bent rope. Raises RunError."""
     n = 6
@@ -106,11 +148,16 @@ def try_rope(runner: Runner, saved: Saved, method: str, *, sphere: bool) -> None
     runner.march(own, step_of(method), x, v, [Segment(3, 1 / 480, forces, np.zeros((0, 6)))])
 
 
-class LiveRope:
-    """Runs jobs in a thread. `submit` is for the simulation thread; `adopt` for who loads versions."""
+ROPE = Material(ROPE_FILE, step_of, own_of, try_rope)
+CLOTH = Material(CLOTH_FILE, step_of_cloth, own_of_cloth, try_cloth)
 
-    def __init__(self, fail: Callable[[Saved, RunError], None]) -> None:
+
+class LiveNet:
+    """Runs jobs in a thread. `submit` is for the simulation thread; `attempt` and `adopt` for who loads versions."""
+
+    def __init__(self, material: Material, fail: Callable[[Saved, RunError], None]) -> None:
         """fail: is told of a version that fails while it runs; on this object's thread."""
+        self.material = material
         self.runs = itertools.count(1)  # for all scenes
         self.connect(lambda: None, lambda: None)
         self.method, self.sphere = "rk4", False  # of the last job: what a new version is tried with
@@ -131,6 +178,13 @@ class LiveRope:
     def submit(self, job: Job) -> None:
         """Have steps taken; the answer comes through its queue."""
         self.inbox.put(job)
+
+    def attempt(self, loaded: Loaded) -> frozenset[str]:
+        """Take a few steps as the last job did; the student's functions among those that took them. Raises RunError."""
+        own = self.material.own_of(loaded.saved, self.method, sphere=self.sphere)
+        if own:
+            self.material.attempt(loaded.runner, loaded.saved, self.method, sphere=self.sphere)
+        return own
 
     def adopt(self, loaded: Loaded) -> None:
         """Take a version that has been tried, in place of those before it."""
@@ -171,14 +225,15 @@ class LiveRope:
         self.method = job.method
         self.sphere = any(segment.forces.radius > 0.0 for segment in job.segments)
         for saved, runner, compiled in reversed(self.versions):
-            own = own_of(saved, job.method, sphere=self.sphere)
+            own = self.material.own_of(saved, job.method, sphere=self.sphere)
             if not own:
-                break  # the student has written nothing that moves this rope
+                break  # the student has written nothing that moves this
             attempt = saved.number, bool(compiled), own
             if attempt in self.failed:
                 continue
             try:
-                done = runner.march(own, step_of(job.method), job.x, job.v, job.segments)
+                step = self.material.step_of(job.method)
+                done = runner.march(own, step, job.x, job.v, job.segments, job.sheet)
             except RunError as error:
                 self.failed.add(attempt)
                 runner.close()
@@ -188,6 +243,11 @@ class LiveRope:
             each = done.seconds / max(done.steps, 1)
             return Answer(job.run, done.x, done.v, each, done.left, saved.number, compiled)
         return Answer(job.run, job.x[None][:0], job.v, 0.0, False, 0)
+
+
+def cloth_functions_in_use(begun: Collection[str]) -> dict[str, bool]:
+    """The functions that move a cloth, and whether each is the student's own."""
+    return {name: name in begun for name in CLOTH_FUNCTIONS}
 
 
 def functions_in_use(begun: Collection[str], method: str, *, sphere: bool) -> dict[str, bool]:

@@ -1,0 +1,133 @@
+"""Advances a cloth with a student's functions, in the process that runs them; see `rope_march.py`.
+
+The student's `cloth_links` says which points are joined, and `cloth_forces` what the links do. Air, floor, sphere and
+the pull of the mouse are the program's laws; points do not collide with each other.
+"""
+
+import functools
+from collections.abc import Callable, Collection, Mapping
+from types import MappingProxyType, ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from app.lab.rope_march import Functions, Segment, Unfit, fitting
+from app.lab.tasks.cloth_forces import cloth_forces
+from app.lab.tasks.cloth_links import cloth_links
+from app.lab.tasks.step_euler import step_euler
+from app.lab.tasks.step_rk4 import step_rk4
+
+FILE = "cloth.py"  # where the tasks have these functions
+
+
+def step_symplectic(x: Any, v: Any, h: float, acceleration: Callable[..., Any]) -> tuple[Any, Any]:
+    """One step of symplectic Euler: one acceleration a step, and stable at the longest steps."""
+    v = v + h * acceleration(x, v)
+    return x + h * v, v
+
+
+class Sheet(NamedTuple):
+    """What a cloth is made of, beside `Forces`, which has the mass of a point and the stiffness along rows and columns.
+
+    Point (i, j) has the number i cols + j.
+    """
+
+    rows: int
+    cols: int
+    spacing: tuple[float, float]  # [m] at rest, along a row and along a column
+    shear: float  # [N/m] of the links across a cell
+    bend: float  # [N/m] of the links to the next point but one
+    pins: tuple[int, ...]  # numbers of the points that are held; a segment's `root` says where
+
+
+class ClothFunctions(Functions):
+    """The functions that advance a cloth."""
+
+    reference: Mapping[str, Callable[..., Any]] = MappingProxyType({
+        "cloth_links": cloth_links, "cloth_forces": cloth_forces, "step_euler": step_euler, "step_rk4": step_rk4,
+        "step_symplectic": step_symplectic,
+    })  # fmt: skip
+    roots = 0
+
+    def __init__(self, module: ModuleType, own: Collection[str], step: str, sheet: Sheet) -> None:
+        """own, step: as of `Functions`. Raises Unfit for links that no cloth of this size has."""
+        super().__init__(module, own, step, {})
+        self.sheet, self.pins = sheet, np.array(sheet.pins, int)
+        links = checked_links(self.get("cloth_links"), sheet.rows, sheet.cols)
+        (i, j), (k, m) = (np.divmod(links[:, end], sheet.cols) for end in (0, 1))
+        down, along = np.abs(k - i), np.abs(m - j)
+        self.rest = np.hypot(along * sheet.spacing[0], down * sheet.spacing[1])
+        self.links, self.kind = links, np.where(down * along > 0, 1, np.where(down + along > 1, 2, 0))
+
+    def inner(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Links, air and gravity."""
+        f, sheet = self.forces, self.sheet
+        total = -f.drag * v
+        for kind, stiffness in enumerate((f.stiffness, sheet.shear, sheet.bend)):
+            chosen = self.kind == kind
+            if chosen.any():
+                total += self.link_forces(x, v, chosen, stiffness)
+        total += self.wind(x, v)
+        a = total / f.mass
+        a[:, 2] -= f.gravity
+        return a
+
+    def acceleration(self, x: Any, v: Any) -> np.ndarray:
+        """The accelerations [m/s2], shape (n, 3), that a step asks for."""
+        a = super().acceleration(x, v)
+        a[self.pins] = 0.0
+        return a
+
+    def link_forces(self, x: np.ndarray, v: np.ndarray, chosen: np.ndarray, stiffness: float) -> np.ndarray:
+        """The forces [N], shape (n, 3), of some links. The student's function may change its arguments."""
+        arrays = x.copy(), v.copy(), self.links[chosen], self.rest[chosen]
+        value = self.get("cloth_forces")(*arrays, stiffness, self.forces.damping)
+        return self.fit("cloth_forces", value, x.shape)
+
+    def wind(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """The force [N], shape (n, 3), of the air (`sim/springs/forces/wind.py`)."""
+        f, shape = self.forces, (self.sheet.rows, self.sheet.cols, 3)
+        force = np.zeros(shape)
+        if f.air_drag == f.air_lift == 0.0:
+            return force.reshape(x.shape)
+        a, b, c, d = corners(x.reshape(shape))
+        area = 0.5 * np.cross(d - a, c - b)
+        u = np.array(f.wind) - 0.25 * sum(corners(v.reshape(shape)))
+        flow = (u * area).sum(axis=-1, keepdims=True)
+        size, speed = (np.maximum(np.linalg.norm(y, axis=-1, keepdims=True), 1e-150) for y in (area, u))
+        along = np.abs(flow) * (f.air_drag - f.air_lift * np.abs(flow) / size / speed)
+        quarter = 0.25 * (along * u + flow / size * f.air_lift * speed * area)
+        for corner in corners(force):
+            corner += quarter
+        return force.reshape(x.shape)
+
+    def name_nan(self, x: np.ndarray, v: np.ndarray) -> None:
+        """Raises Unfit for cloth_forces, where that returns NaN at this state."""
+        if "cloth_forces" in self.own and np.isnan(self.link_forces(x, v, self.kind >= 0, self.forces.stiffness)).any():
+            text = "cloth_forces returns NaN (not a number): look for a division by 0 or the root of a negative number"
+            raise Unfit("NaN", text, self.own["cloth_forces"])
+
+    def hold(self, x: np.ndarray, v: np.ndarray, segment: Segment, i: int) -> None:
+        """Put the pins where they are after step i."""
+        if len(segment.root):
+            x[self.pins], v[self.pins] = np.moveaxis(segment.root[i].reshape(len(self.pins), 2, 3), 1, 0)
+
+
+def corners(of: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The four corners of every cell, (rows - 1, cols - 1, 3) each, as views."""
+    return of[:-1, :-1], of[:-1, 1:], of[1:, :-1], of[1:, 1:]
+
+
+@functools.lru_cache(maxsize=4)
+def checked_links(function: Callable[..., Any], rows: int, cols: int) -> np.ndarray:
+    """(links, 2) whole numbers of points. Raises Unfit for anything else."""
+    value = function(rows, cols)
+    count = len(value) if isinstance(value, list | tuple | np.ndarray) else 0
+    links = fitting("cloth_links", value, (count, 2), function)
+    if not ((links >= 0) & (links < rows * cols) & (links == np.floor(links))).all():
+        last = rows * cols - 1
+        text = f"cloth_links returns a point that is not there: a cloth of {rows} x {cols} has the points 0 to {last}"
+        raise Unfit("out of range", text, function)
+    if (links[:, 0] == links[:, 1]).any():
+        raise Unfit("out of range", "cloth_links joins a point to itself", function)
+    return links.astype(int)

@@ -1,0 +1,126 @@
+"""The student's cloth beside the program's: of the same points where those are few, else a coarser one."""
+
+import dataclasses
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.lab.cloth_march import Sheet
+from app.lab.live_net import Answer, LiveNet
+from app.lab.rope_march import Segment
+from app.scenes.cloth.parameters import Params
+from app.scenes.cloth.start import build, sphere_home
+from app.scenes.springs.student_net import StudentNet, forces_of
+from sim.springs import INTEGRATORS, Net
+from sim.springs.resampling import resample
+from sim.springs.stability import gershgorin
+from sim.springs.state import State
+
+MAX_SAME_POINTS = 64  # of a cloth that plain Python moves with all its points
+COARSE_SIDES = (10, 6)  # rows and columns of a coarser one at most: for functions of arrays, and for loops
+SLOWEST_PACE = 1.2  # simulated over real time, below which the coarser one of these is taken
+STEP_SHARE = 0.7  # of the longest stable step that a coarser cloth takes
+
+
+class StudentCloth(StudentNet):
+    """Used by the cloth scene on the simulation thread."""
+
+    def __init__(self, live: LiveNet) -> None:
+        super().__init__(live)
+        self.side = COARSE_SIDES[0]
+
+    def set_up(self, params: Params) -> bool:
+        """Choose the points, and what joins them. Whether they are others than before."""
+        self.params = params
+        rows, cols = params.rows, params.cols
+        self.is_comparable = rows * cols <= MAX_SAME_POINTS
+        if not self.is_comparable:
+            rows, cols = min(rows, self.side), min(cols, self.side)
+            # Without pleats, which a coarse cloth does not resolve: as wide as the pleated one.
+            width = params.width * (params.gather if params.start == "hanging" else 1.0)
+            params = dataclasses.replace(params, rows=rows, cols=cols, width=width, gather=1.0, thickness=0.0)
+        self.net = build(params, sphere_home(params))
+        across, down, shear, _, bend, _ = self.net.families
+        pins = tuple(i * cols + j for i, j in sorted(self.net.pinned))
+        before, self.sheet = (
+            self.sheet,
+            Sheet(rows, cols, (across.rest, down.rest), shear.stiffness, bend.stiffness, pins),
+        )
+        method = INTEGRATORS["symplectic_euler"]
+        omega, rate = gershgorin(self.net, self.net.x0)
+        self.longest = STEP_SHARE * method.limit(0.5 * rate / omega) / omega if omega > 0.0 else math.inf
+        return before is None or (before.rows, before.cols, before.pins) != (rows, cols, pins)
+
+    def rows_of(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n, 3) of the student's points, from (3, r, c) of the program's."""
+        assert self.sheet is not None
+        return resample(values, self.sheet.rows, self.sheet.cols).reshape(3, -1).T.copy()
+
+    def start(self, params: Params, state: State) -> None:
+        """A new run."""
+        self.side = COARSE_SIDES[0]
+        self.set_up(params)
+        x = self.rows_of(state.x)
+        self.restart(x if self.is_comparable else self.net.x0.reshape(3, -1).T.copy(), np.zeros_like(x))
+        self.tell_grid()
+
+    def change(self, params: Params, old: Params, state: State) -> None:
+        """Other parameters: the motion goes on, from the program's where the points are others."""
+        if self.set_up(params) or params.integrator != old.integrator:
+            self.begin(self.rows_of(state.x), self.rows_of(state.v), state.t)
+        self.tell_grid()
+
+    def tell_grid(self) -> None:
+        """Tell the panel of a coarser cloth."""
+        assert self.sheet is not None
+        grid = (0, 0) if self.is_comparable else (self.sheet.rows, self.sheet.cols)
+        self.live.report = self.live.report._replace(grid=grid)
+
+    def follow_cloth(self, net: Net, before: State, after: State, h: float) -> None:
+        """The program's cloth has taken steps of h [s], moved by `net`, from the state before to the one after."""
+        assert self.sheet is not None
+        duration = after.t - before.t
+        steps = round(duration / h)
+        if not self.is_comparable:
+            steps = max(1, math.ceil(duration / self.longest))
+        forces = forces_of(net, before.t)._replace(mass=self.net.mass, damping=self.net.families[0].damping)
+        x, last = self.rows_of(after.x), self.rows_of(before.x)
+        if not self.is_comparable:
+            forces = forces._replace(held=-1)
+        pins = list(self.sheet.pins)
+        moved = x[pins] - last[pins]
+        path = np.zeros((0, 6 * len(pins)))
+        if moved.any():
+            share = np.arange(1, steps + 1)[:, None, None] / steps
+            held = np.concatenate(
+                [last[pins] + share * moved, np.broadcast_to(moved / duration, (steps, *moved.shape))], axis=-1
+            )
+            path = held.reshape(steps, -1)
+        segment = Segment(steps, duration / steps, forces, path)
+        self.follow(segment, after.t, self.params.integrator, x, self.rows_of(after.v))
+
+    def pictured(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float32]] | None:
+        """The program's cloth (3, r, c) [m] as it is drawn beside the student's, and that, (rows, cols, 3) [m].
+
+        None where there is no cloth of the student's. x: (3, r, c) [m] the program's now.
+        """
+        assert self.sheet is not None
+        shape = (self.sheet.rows, self.sheet.cols, 3)
+        both = self.drawn(self.rows_of(x))
+        if both is None:
+            return None
+        own, program = both
+        if self.is_comparable:
+            x = np.ascontiguousarray(np.moveaxis(program.reshape(shape), -1, 0))
+        return x, own.reshape(shape).astype(np.float32)
+
+    def take(self, answer: Answer, max_reach: float) -> None:
+        """Take an answer of this run; a coarse cloth that is too slow goes on as a coarser one."""
+        step = self.sent[-1].segment.h if self.sent else 0.0
+        super().take(answer, max_reach)
+        if not self.is_comparable and self.side != COARSE_SIDES[-1] and answer.seconds * SLOWEST_PACE > step:
+            self.side = COARSE_SIDES[-1]
+            self.set_up(self.params)
+            self.begin(self.net.x0.reshape(3, -1).T.copy(), np.zeros_like(self.net.x0.reshape(3, -1).T), self.time)
+            self.tell_grid()

@@ -166,24 +166,55 @@ const WATER_GLSL = {
     uniform vec3 ripple; // rms slope, longest and shortest ripple [m]
     uniform vec3 extent; // tiles along a side, whether the sky is drawn, whether the wireframe is
 
-    // Fresnel reflectance at the cosine c, from f0 at normal incidence (Schlick 1994, Comput. Graph. Forum 13:233).
-    float schlick(float f0, float c) {
-      float m = clamp(1.0 - c, 0.0, 1.0), m2 = m * m;
-      return f0 + (1.0 - f0) * m2 * m2 * m;
+    // Fresnel reflectance of unpolarised light at the cosine c on a fluid of index n.
+    float fresnel(float c, float n) {
+      float g = sqrt(n * n - 1.0 + c * c), p = (g - c) / (g + c), q = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
+      return 0.5 * p * p * (1.0 + q * q);
     }
+
+    // What a rough sea mirrors, seen at the cosine c of the angle to its normal: (reflectance, mean slope of the facets
+    // that mirror, towards the eye). The slopes are Gaussian with this rms along each axis (Cox and Munk 1954), and
+    // count by how much of them the eye sees. Gauss and Legendre's sum over the visible slopes along the view.
+    const float FACET_LIMIT = 3.2; // rms slopes beyond which no facet is counted
+    const vec3 FACET_NODES = vec3(0.238619186, 0.661209386, 0.932469514);
+    const vec3 FACET_WEIGHTS = vec3(0.467913935, 0.360761573, 0.171324492);
+    vec2 roughMirror(float c, float rms, float n) {
+      float level = sqrt(1.0 - c * c);
+      float low = -FACET_LIMIT, high = min(c / max(level * rms, 1e-6), FACET_LIMIT);
+      vec3 sum = vec3(0.0); // of weight, weight times reflectance, the same times slope
+      for (int k = 0; k < 6; k++) {
+        float node = FACET_NODES[k % 3] * (k < 3 ? 1.0 : -1.0);
+        float t = 0.5 * (high - low) * node + 0.5 * (high + low), slope = rms * t;
+        float seen = max(c - slope * level, 0.0);
+        float weight = FACET_WEIGHTS[k % 3] * exp(-0.5 * t * t) * seen;
+        float mirrored = weight * fresnel(min(seen / sqrt(1.0 + slope * slope + rms * rms), 1.0), n);
+        sum += vec3(weight, mirrored, -mirrored * slope);
+      }
+      return vec2(sum.y / sum.x, sum.z / max(sum.y, 1e-9));
+    }
+
+    const float NOISE_VARIANCE = 0.0310; // of gradientNoise
+    const float NOISE_SLOPE_VARIANCE = 0.2588; // of each of its derivatives
+    const float GUST_MEAN = 0.65;
+    const float GUST_CONTRAST = 0.5;
+    const float CREST = 0.6; // length of a crest along the wind over that across it
 
     // Slopes of ripples that are too short for the mesh: (slope x, slope y, variance not shown, gust). Each octave has
     // the same variance, as in the equilibrium range of wind waves. An octave that is finer than a pixel is not shown;
-    // its variance is returned instead. Phase speeds are those of deep water.
+    // its variance is returned instead, so that both together are always the square of ripple.x. Phase speeds are
+    // those of deep water.
     vec4 ripples(vec2 x, float footprint) {
       vec2 slope = vec2(0.0);
       float lost = 0.0, wave = ripple.y, angle = wind.x;
       float octaves = clamp(1.0 + floor(log(ripple.y / ripple.z) / 0.755), 1.0, 9.0);
       float each = ripple.x * ripple.x / octaves;
+      float gain = sqrt(each / (NOISE_SLOPE_VARIANCE * (1.0 + CREST * CREST)));
       // Gusts make patches of rougher and smoother water; they do not repeat from tile to tile.
-      float gust = 0.65 + 0.5 * gradientNoise(x / (ripple.y * 24.0) + seaState.x * 0.02).x
-                        + 0.5 * gradientNoise(x / (ripple.y * 7.0) - seaState.x * 0.03).x;
-      gust = max(gust, 0.15) * 1.3;
+      vec2 patches = 1.0 - smoothstep(0.1, 0.5, footprint / (ripple.y * vec2(24.0, 7.0)));
+      float gust = GUST_MEAN + GUST_CONTRAST * (patches.x * gradientNoise(x / (ripple.y * 24.0) + seaState.x * 0.02).x
+                                              + patches.y * gradientNoise(x / (ripple.y * 7.0) - seaState.x * 0.03).x);
+      float power = GUST_MEAN * GUST_MEAN + GUST_CONTRAST * GUST_CONTRAST * NOISE_VARIANCE * dot(patches, patches);
+      gust = max(gust, 0.15) / sqrt(power);
       for (int k = 0; k < 9; k++) {
         if (float(k) >= octaves) break;
         float seen = 1.0 - smoothstep(0.12, 0.5, footprint / wave);
@@ -192,9 +223,9 @@ const WATER_GLSL = {
           vec2 d = vec2(cos(angle), sin(angle));
           float speed = sqrt(wind.y * wave / 6.2832);
           // Crests are longer across the wind than along it.
-          vec2 along = vec2(dot(x, d) - speed * seaState.x, 0.6 * dot(x, vec2(-d.y, d.x)));
+          vec2 along = vec2(dot(x, d) - speed * seaState.x, CREST * dot(x, vec2(-d.y, d.x)));
           vec3 n = gradientNoise(along / wave);
-          slope += seen * sqrt(each) * 1.6 * (n.y * d + 0.6 * n.z * vec2(-d.y, d.x));
+          slope += seen * gain * (n.y * d + CREST * n.z * vec2(-d.y, d.x));
         }
         wave *= 0.47;
         angle += (mod(float(k), 2.0) < 0.5 ? 0.9 : -1.3);
@@ -361,6 +392,8 @@ const WATER_GLSL = {
       return max(nearest, 0.0);
     }
 
+    const float GLITTER_LIMIT = 5.0; // radiance of glitter that is reduced to its half
+
     // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; flatness: 1 where
     // there is no mesh.
     vec3 shadeSea(vec3 at, vec2 rest, vec3 slopeAndFoam, float flatness) {
@@ -388,7 +421,7 @@ const WATER_GLSL = {
       float calm = mix(1.0, slickOptics.z, oil);
       fine.xyz *= vec3(calm, calm, calm * calm);
       vec2 slope = slopeAndFoam.xy * (1.0 - blur) + fine.xy;
-      float rough = blur * seaState.z;
+      float rough = (1.0 - (1.0 - blur) * (1.0 - blur)) * seaState.z; // what the slope above lacks
       // Beyond the mesh, noise of the same slope continues the swell while a pixel can show it.
       if (flatness > 0.0) {
         float wave = max(grid.z, 16.0) * 0.35;
@@ -418,13 +451,10 @@ const WATER_GLSL = {
 
       // At grazing angles one sees mostly the facets that are tilted towards the eye.
       vec2 level = V.xy / max(length(V.xy), 1e-4);
-      float graze = 1.0 - V.z;
-      vec3 N = normalize(vec3(-slope + level * sigma * 0.9 * graze * graze, 1.0));
-      float facing = clamp(dot(N, V), 0.02, 1.0);
-
-      // Fresnel over a rough surface: Bruneton, Neyret & Holzschuch 2010, eq. 18.
-      float f0 = pow((optics.x - 1.0) / (optics.x + 1.0), 2.0);
-      float F = f0 + (1.0 - f0) * pow(1.0 - facing, 5.0 * exp(-2.69 * sigma)) / (1.0 + 22.7 * pow(sigma, 1.5));
+      float facing = clamp(dot(normalize(vec3(-slope, 1.0)), V), 0.02, 1.0);
+      vec2 mirroring = roughMirror(facing, sigma, optics.x);
+      float F = mirroring.x;
+      vec3 N = normalize(vec3(-slope + level * mirroring.y, 1.0));
       vec3 mirror = vec3(F);
       if (film > 0.0) mirror *= mix(filmGain(film, facing), vec3(1.0), F);
       mirror *= optics.z;
@@ -440,7 +470,7 @@ const WATER_GLSL = {
       vec2 tilt = -H.xy / max(H.z, 0.05) - slope;
       float spread = variance + 0.0004;
       float facets = exp(-0.5 * dot(tilt, tilt) / spread) / (6.2832 * spread);
-      float glitter = schlick(f0, dot(V, H)) * facets / (4.0 * pow(max(H.z, 0.1), 4.0) * max(facing, 0.12));
+      float glitter = fresnel(max(dot(V, H), 0.0), optics.x) * facets / (4.0 * pow(max(H.z, 0.1), 4.0) * max(facing, 0.12));
       glitter *= 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z;
 
       // Light that comes out of the water: from the deep, and through crests with the sun behind them.
@@ -454,7 +484,10 @@ const WATER_GLSL = {
       // Water full of air under and around foam is bright.
       body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, slopeAndFoam.z);
 
-      vec3 color = mix(body, mirrored, mirror) + sunLight * glitter * (1.0 - foam);
+      // As in the photograph of the sky, radiances far above the rest are compressed.
+      vec3 sparkle = sunLight * glitter;
+      sparkle /= 1.0 + dot(sparkle, vec3(0.3, 0.5, 0.2)) / GLITTER_LIMIT;
+      vec3 color = mix(body, mirrored, mirror) + sparkle * (1.0 - foam);
       // Foam scatters the light of sun and sky many times. The sky is that overhead and that around.
       vec3 around = 0.5 * (horizon(sunDirection) + horizon(-sunDirection));
       vec3 M = normalize(vec3(-slope - bubbles.yz, 1.0));

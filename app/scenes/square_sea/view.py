@@ -109,7 +109,8 @@ class View:
     def material_of(self, frame: SeaFrame) -> Material:
         """The material under this sky. Its ripples have the part of Cox and Munk's slope that the mesh lacks."""
         p = frame.params
-        missing = max(min(0.003, 0.0015 * p.wind_speed) + 0.00512 * p.wind_speed - frame.slope_resolved, 0.001)
+        measured = min(0.003, 0.0015 * p.wind_speed) + 0.00512 * p.wind_speed
+        missing = max(measured - frame.slope_resolved - 2.0 * self.sky_material.roughness**2, 0.001)
         cell, g = p.length / len(frame.vertices), gravity(p)
         capillary = 2.0 * math.pi * math.sqrt(SURFACE_TENSION / (WATER_DENSITY * g))
         overcast = min(max((p.clouds - OVERCAST_FROM) / (1.0 - OVERCAST_FROM), 0.0), 1.0)
@@ -136,7 +137,7 @@ class View:
             cloud_darkness=0.25 + 0.45 * overcast,
             exposure=self.sky_material.exposure * p.daylight,
             haze_distance=p.visibility,
-            ripple_slope=round(min(math.sqrt(missing), MAX_RIPPLE_SLOPE), 2),
+            ripple_slope=round(min(math.sqrt(missing), MAX_RIPPLE_SLOPE), 3),
             ripple_length=MAX_RIPPLE_CELLS * cell,
             ripple_shortest=MIN_RIPPLE_LENGTHS * capillary,
             ripple_direction=math.radians(p.wind_direction),

@@ -19,6 +19,12 @@ def constant(name: str) -> float:
     return float(value)
 
 
+def numbers(name: str) -> Array:
+    """The value of `const vec3 name` in the shader."""
+    (values,) = re.findall(rf"const vec3 {name} = vec3\((.*)\);", SOURCE)
+    return np.array([float(value) for value in values.split(",")])
+
+
 def smoothstep(low: float | Array, high: float | Array, x: Array) -> Array:
     """GLSL's smoothstep."""
     t = np.clip((x - low) / (high - low), 0.0, 1.0)
@@ -104,3 +110,46 @@ def ring_slopes(x: Array, time: float, share: float, wavelength: float, speed: f
         size = constant("RING_SLOPE") * strength * (1.0 - w * w) ** 2 * np.sin(6.2832 * w)
         slope += (size / np.maximum(r, 1e-3))[..., None] * (d @ np.array([[c, -s], [s, c]]))
     return slope
+
+
+def ripples(x: Array, footprint: float, rms: float, longest: float, shortest: float) -> tuple[Array, Array]:
+    """Slopes (n, 2) of the ripples at points (n, 2) [m] at time 0 and wind along x, and the variance (n,) not shown."""
+    octaves = int(np.clip(1.0 + np.floor(np.log(longest / shortest) / 0.755), 1.0, 9.0))
+    each, crest = rms**2 / octaves, constant("CREST")
+    gain = np.sqrt(each / (constant("NOISE_SLOPE_VARIANCE") * (1.0 + crest**2)))
+    patches = 1.0 - smoothstep(0.1, 0.5, footprint / (longest * np.array([24.0, 7.0])))
+    mean, contrast = constant("GUST_MEAN"), constant("GUST_CONTRAST")
+    gust = mean + contrast * sum(
+        patch * gradient_noise(x / (longest * size))[:, 0] for patch, size in zip(patches, (24.0, 7.0), strict=True)
+    )
+    power = mean**2 + contrast**2 * constant("NOISE_VARIANCE") * (patches @ patches)
+    gust = np.maximum(gust, 0.15) / np.sqrt(power)
+    slope, lost, wave, angle = np.zeros(x.shape), 0.0, longest, 0.0
+    for k in range(octaves):
+        seen = 1.0 - float(smoothstep(0.12, 0.5, np.float64(footprint / wave)))
+        lost += each * (1.0 - seen * seen)
+        d, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+        n = gradient_noise(np.stack([x @ d, crest * (x @ across)], -1) / wave)
+        slope += seen * gain * (n[:, 1:2] * d + crest * n[:, 2:3] * across)
+        wave *= 0.47
+        angle += 0.9 if k % 2 == 0 else -1.3
+    return slope * gust[:, None], lost * gust**2
+
+
+def fresnel(c: Array, n: float) -> Array:
+    """Reflectance of unpolarised light at the cosine c on a fluid of index n."""
+    g = np.sqrt(n * n - 1.0 + c * c)
+    p, q = (g - c) / (g + c), (c * (g + c) - 1.0) / (c * (g - c) + 1.0)
+    return 0.5 * p * p * (1.0 + q * q)
+
+
+def rough_mirror(c: float, rms: float, n: float) -> float:
+    """Reflectance of a rough sea, as the shader sums it."""
+    level = np.sqrt(1.0 - c * c)
+    low, high = -constant("FACET_LIMIT"), min(c / max(level * rms, 1e-6), constant("FACET_LIMIT"))
+    nodes, weights = numbers("FACET_NODES"), numbers("FACET_WEIGHTS")
+    t = 0.5 * (high - low) * np.concatenate([nodes, -nodes]) + 0.5 * (high + low)
+    seen = np.maximum(c - rms * t * level, 0.0)
+    weight = np.concatenate([weights, weights]) * np.exp(-0.5 * t * t) * seen
+    mirrored = fresnel(np.minimum(seen / np.sqrt(1.0 + (rms * t) ** 2 + rms**2), 1.0), n)
+    return float((weight * mirrored).sum() / weight.sum())

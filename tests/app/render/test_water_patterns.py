@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 
 from sim.particles.rain_rings import ring_wave
-from tests.app.render.shader_twin import constant, foam_cover, foam_pattern, hash2, ring_slopes
+from tests.app.render.shader_twin import (
+    constant,
+    foam_cover,
+    foam_pattern,
+    fresnel,
+    hash2,
+    ring_slopes,
+    ripples,
+    rough_mirror,
+)  # fmt: skip
 
 POINTS = np.random.default_rng(1).uniform(-3000.0, 3000.0, (100_000, 2))
 
@@ -39,3 +48,32 @@ def test_random_numbers_of_the_shader_are_even() -> None:
     numbers = hash2(np.stack(np.meshgrid(np.arange(-300, 300), np.arange(-300, 300)), -1).astype(float))
     assert numbers.mean(axis=(0, 1)) == pytest.approx(0.5, abs=0.01)
     assert numbers.var(axis=(0, 1)) == pytest.approx(1.0 / 12.0, rel=0.02)
+
+
+@pytest.mark.parametrize("distance", [5.0, 50.0, 500.0])
+def test_ripples_seen_and_filtered_have_the_slope_that_is_asked_for(distance: float) -> None:
+    """As from 0.3 of the distance above the water, with 1080 rows over 0.65 rad; a pixel is long at a low angle."""
+    footprint = distance * 0.65 / 1080 / np.sqrt(0.3)
+    for rms, longest, shortest in ((0.2, 3.75, 0.051), (0.12, 1.6, 0.05)):
+        slope, lost = ripples(POINTS, footprint, rms, longest, shortest)
+        assert (slope**2).sum(-1).mean() + lost.mean() == pytest.approx(rms**2, rel=0.05)
+    if distance > 400.0:
+        assert lost.mean() > 0.3 * rms**2  # much of it is filtered there
+    if distance < 6.0:
+        assert lost.mean() < 0.03 * rms**2
+
+
+def test_the_sea_mirrors_as_cox_and_munk_s_facets_do_on_average() -> None:
+    """Against the sum over all slopes along both axes, of facets that the eye sees, at any angle and wind."""
+    t = np.linspace(-7.0, 7.0, 281)
+    chance = np.exp(-0.5 * t * t)
+    for index in (1.333, 1.48):
+        for degrees in (0.0, 20.0, 40.0, 50.0, 60.0, 70.0, 75.0, 80.0, 85.0, 88.0):
+            c, level = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+            for rms in (0.03, 0.1, 0.15, 0.2, 0.25):
+                along, across = rms * t[:, None], rms * t[None, :]
+                seen = np.maximum(c - along * level, 0.0)
+                weight = chance[:, None] * chance * seen
+                facets = fresnel(seen / np.sqrt(1.0 + along**2 + across**2), index)
+                expected = float((weight * facets).sum() / weight.sum())
+                assert rough_mirror(c, rms, index) == pytest.approx(expected, rel=0.03), (index, degrees, rms)

@@ -37,11 +37,11 @@ class SlickRegion:
 
 @dataclass(frozen=True)
 class Oil:
-    """Oil on the water, which lets the less light through the thicker it is (`sim/ocean/oil_film.py`)."""
+    """Oil in a slick, which lets the less light through the thicker it is (`sim/ocean/oil_film.py`)."""
 
     color: RGB  # sRGB of a thick layer, in 0..1
     refractive_index: float
-    thickness: float  # [m] of a layer on all the sea; 0: none, the oil is in a slick
+    reflection_factor: float = 1.0  # on what the oil mirrors; 1 is physics, the oil of the course lab is below
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Material:
     foam_color: RGB = (0.93, 0.95, 0.96)
     refractive_index: float = 1.333  # of the water; sets the Fresnel reflectance where no oil is on it
     roughness: float = 0.03  # rms slope of what neither the mesh nor the ripples show
-    reflection_factor: float = 1.0  # on every reflection; 1 is physics, the oil of the course lab is below
+    reflection_factor: float = 1.0  # on every reflection; 1 is physics
 
     ripple_slope: float = 0.2  # rms slope of the ripples, which are too short for the mesh
     ripple_length: float = 1.6  # [m] of the longest ripple
@@ -179,7 +179,7 @@ def uniform_table(
         "slick": nothing if slick is None else (*slick.centre, slick.radius),
         "slickOptics": nothing if slick is None else (slick.thickness, slick.roughness, slick.ripple_factor),
         "oilColor": nothing if oil is None else linear(oil.color),
-        "oilFilm": nothing if oil is None else (oil.thickness, oil.refractive_index, m.refractive_index),
+        "oilFilm": nothing if oil is None else (oil.refractive_index, m.refractive_index, oil.reflection_factor),
         "oilExtinction": EXTINCTION,
         "rainRings": m.rain_rings,
         "rainVeil": (m.rain_extinction, RAIN_HEIGHT, 0.0),

@@ -173,8 +173,7 @@ class Water:
 
     def _plain_color(self) -> tuple[int, int, int]:
         """The colour of the sea in browsers without the shader."""
-        oil = self._material.oil
-        return as_bytes(self._material.seen_color(oil.thickness if oil is not None else 0.0))
+        return as_bytes(self._material.deep_color)
 
     def _uniforms(self) -> np.ndarray:
         """The uniforms of the shader, as `material.uniform_table` orders them."""

@@ -112,7 +112,7 @@ def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(shown: tuple[Vie
 
     def blue() -> float:
         """Blue light from below by the numbers that the page holds."""
-        through = np.exp(-uniform(tab, "oilExtinction") * uniform(tab, "oilFilm")[0])
+        through = np.exp(-uniform(tab, "oilExtinction") * uniform(tab, "slickOptics")[0])
         return float((through * uniform(tab, "deepColor") + (1.0 - through) * uniform(tab, "oilColor"))[2])
 
     tab.wait(lambda: len(tab.vertices("/sea/water_material")) > 0)

@@ -129,6 +129,9 @@ const WATER_GLSL = {
     // Radiance of the haze in the direction d.
     vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), skyFold.y); }
 
+    // The mean of both sides: what is scattered where the direction is steep, and what lights from around.
+    vec3 meanHorizon() { return 0.5 * (horizon(sunDirection) + horizon(-sunDirection)); }
+
     // Radiance c of the sky in the direction d as it is seen through the rain.
     vec3 behindRain(vec3 c, vec3 d) {
       if (rainVeil.x <= 0.0) return c;
@@ -336,9 +339,9 @@ const WATER_GLSL = {
       return vec4(seen * slope, (1.0 - seen * seen) * share * RING_VARIANCE, seen * min(splash, 1.0));
     }
 
-    // Oil on the water, as a layer on all of it or as a round slick with an irregular edge.
+    // Oil on the water, as a round slick with an irregular edge.
     uniform vec3 oilColor; // of a thick layer
-    uniform vec3 oilFilm; // thickness of the layer [m] (0: none), refractive indices of the oil (0: no oil) and the water
+    uniform vec3 oilFilm; // refractive indices of the oil and the water, factor on reflections of oil
     uniform vec3 oilExtinction; // [1/m] of light that goes down and up again
     uniform vec3 slick; // centre x, y, radius [m] (0: no slick)
     uniform vec3 slickOptics; // thickness [m], roughness, factor on the slope of ripples
@@ -354,22 +357,21 @@ const WATER_GLSL = {
       return smoothstep(-0.1, 0.5, off / size + 0.8 * torn);
     }
 
-    // Thickness of the oil [m]. A layer varies along the wind; the rim of a slick thins out over all its classes of
-    // appearance, from the slick's own thickness to that of a sheen.
+    // Thickness of the oil [m]. It varies along the wind; the rim of a slick thins out over all classes of appearance,
+    // from the slick's own thickness to that of a sheen.
     float oilThickness(vec2 x, float inside) {
-      if (oilFilm.x > 0.0) {
-        vec2 d = vec2(cos(wind.x), sin(wind.x));
-        vec2 p = vec2(dot(x, d) / 23.0, dot(x, vec2(-d.y, d.x)) / 7.0);
-        return oilFilm.x * exp(0.7 * gradientNoise(p).x + 0.4 * gradientNoise(p * 3.1 + 8.0).x);
-      }
-      return inside > 0.0 ? 3e-8 * pow(max(slickOptics.x, 3e-8) / 3e-8, inside) : 0.0;
+      if (inside <= 0.0) return 0.0;
+      vec2 d = vec2(cos(wind.x), sin(wind.x));
+      vec2 p = vec2(dot(x, d) / 23.0, dot(x, vec2(-d.y, d.x)) / 7.0);
+      float streaks = exp(0.7 * gradientNoise(p).x + 0.4 * gradientNoise(p * 3.1 + 8.0).x);
+      return 3e-8 * pow(max(slickOptics.x, 3e-8) * streaks / 3e-8, inside);
     }
 
     // What a film of oil mirrors over what its upper face alone does, in red, green and blue (sim/ocean/oil_film.py).
     // facing: cosine of the angle from which it is seen.
     vec3 filmGain(float d, float facing) {
-      float n = oilFilm.y, r1 = (1.0 - n) / (1.0 + n);
-      vec3 q = (1.0 - r1 * r1) * (n - oilFilm.z) / (n + oilFilm.z) * exp(-0.5 * oilExtinction * d);
+      float n = oilFilm.x, r1 = (1.0 - n) / (1.0 + n);
+      vec3 q = (1.0 - r1 * r1) * (n - oilFilm.y) / (n + oilFilm.y) * exp(-0.5 * oilExtinction * d);
       float inOil = sqrt(1.0 - (1.0 - facing * facing) / (n * n));
       vec3 phase = 12.566371 * n * d * inOil / vec3(610e-9, 545e-9, 450e-9);
       vec3 fringes = exp(-0.5 * phase * phase * 0.002025) * cos(min(phase, 200.0));
@@ -402,14 +404,16 @@ const WATER_GLSL = {
       vec3 clear = exp(-oilExtinction * film);
       vec3 deep = mix(oilColor, deepColor, clear), scatter = mix(1.8 * oilColor, scatterColor, clear);
       vec3 optics = mix(optics, vec3(optics.x, slickOptics.y, optics.z), oil);
-      if (film > 0.0) optics.x = oilFilm.y;
+      if (film > 0.0) optics.x = oilFilm.x;
+      optics.z *= mix(1.0, oilFilm.z, oil);
       slopeAndFoam.z *= 1.0 - oil;
       vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
       vec3 toEye = eye - at;
       float far = length(toEye);
       vec3 V = toEye / far;
       float lost = 1.0 - exp(-pow(far / lens.x, 1.5));
-      vec3 haze = horizon(-V);
+      vec3 around = meanHorizon();
+      vec3 haze = mix(around, horizon(-V), smoothstep(0.1, 0.7, length(V.xy)));
       if (lost > 0.995) return haze * lens.y;
       vec2 fx = dFdx(at.xy), fy = dFdy(at.xy);
       float footprint = pow(max(dot(fx, fx) * dot(fy, fy), 1e-12), 0.25);
@@ -489,7 +493,6 @@ const WATER_GLSL = {
       sparkle /= 1.0 + dot(sparkle, vec3(0.3, 0.5, 0.2)) / GLITTER_LIMIT;
       vec3 color = mix(body, mirrored, mirror) + sparkle * (1.0 - foam);
       // Foam scatters the light of sun and sky many times. The sky is that overhead and that around.
-      vec3 around = 0.5 * (horizon(sunDirection) + horizon(-sunDirection));
       vec3 M = normalize(vec3(-slope - bubbles.yz, 1.0));
       vec3 white = foamColor * (0.65 * ambient + 0.35 * around + sunLight * 0.3183 * max(dot(M, sunDirection), 0.0));
       color = mix(color, white * bubbles.w, foam);

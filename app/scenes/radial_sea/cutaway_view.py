@@ -1,12 +1,13 @@
-"""The walls of the cutaway: a band of oil over water, and bright lines where the fluids meet."""
+"""The walls of the cutaway: a band of oil over water, bright lines where the fluids meet, a ruler and labels."""
 
 import numpy as np
 import viser
 
 from app.render.coloured_mesh import ColouredMesh
 from app.render.material import RGB, Material
-from app.scenes.radial_sea.cutaway import FAR_WALL_POINTS, Cutaway
+from app.scenes.radial_sea.cutaway import DIRECTION, FAR_WALL_POINTS, HALF_WIDTH, Cutaway
 from app.scenes.radial_sea.materials import blend, mixture_share, rgb_of
+from sim.formatting import number
 from sim.ocean.fluid_column import FluidColumn
 
 BRIGHT_WATER: RGB = (0.13, 0.50, 0.60)  # of the water under its surface, as if light came through
@@ -15,6 +16,13 @@ OIL_AGAINST_LIGHT: RGB = (0.42, 0.27, 0.10)  # what a few centimetres of oil let
 OIL_LIGHT_SHARE = 0.55  # of that colour in the drawn one
 SURFACE_LINE, INTERFACE_LINE = (235, 246, 250), (255, 196, 64)
 LINE_OFFSET = 0.02  # [m] that lines stand before the wall
+
+TICK_SPACING, TICKS_PER_NUMBER = 0.1, 5  # [m] of the ruler's ticks; every so many there is a longer one with a number
+TICK_LENGTH = 0.07  # [m] at size 1; one with a number is twice as long
+RULER_PLACE, OIL_PLACE, DRAFT_PLACE = -0.8, 0.3, 0.42  # along the far wall, in its half width
+LABEL_OFFSET = 0.06  # [m] that ruler and labels stand before the wall
+RULER_COLOUR, DRAFT_COLOUR = (235, 246, 250), (255, 236, 140)
+LABEL_SCALE = 1.1  # of a label, over viser's own size
 
 WALL_STEP = 1e-3  # [m] to which points of the walls are rounded for the page
 
@@ -46,6 +54,28 @@ class Walls:
             )
             for part, colour, thick in (("top", SURFACE_LINE, 2.0), ("interface", INTERFACE_LINE, 3.0))
         ]
+        self.half_width, self.size = cutaway.half_width, cutaway.half_width / HALF_WIDTH
+        # The ruler is made once; ruler and labels move with the middle of the far wall.
+        self.ruler = server.scene.add_line_segments(
+            f"{name}/ruler", self.ruler_lines(cutaway.floor), RULER_COLOUR, thickness=1.5, thickness_units="screen"
+        )
+        spacing = TICK_SPACING * TICKS_PER_NUMBER
+        for k in range(int(-cutaway.floor / spacing) + 1):
+            text, place = f"{-k * spacing:.1f} m" if k else "0 m", self.on_wall(RULER_PLACE, -k * spacing)
+            server.scene.add_label(f"{name}/ruler/tick_{k}", text, position=place, anchor="center-right")
+        self.labels = {
+            part: server.scene.add_label(
+                f"{name}/ruler/{part}", "", font_screen_scale=LABEL_SCALE, anchor="center-left"
+            )
+            for part in ("oil", "water", "draft")
+        }
+        self.arrow = server.scene.add_line_segments(
+            f"{name}/ruler/arrow",
+            np.zeros((3, 2, 3), np.float32),
+            DRAFT_COLOUR,
+            thickness=3.0,
+            thickness_units="screen",
+        )
 
     def vertices(self, cutaway: Cutaway) -> np.ndarray:
         """Vertices (4 n + 1, 3) [m]: rows of top, interface, interface and floor, and the middle of the floor."""
@@ -54,15 +84,68 @@ class Walls:
         middle = np.append(cutaway.points[:-1].mean(axis=0), cutaway.floor)
         return np.concatenate([*rows, middle[None]]).astype(np.float32)
 
-    def show(self, cutaway: Cutaway | None, light: Material, column: FluidColumn) -> None:
-        """Draw the walls as they are now, or hide them; call inside `server.atomic()`."""
+    def on_wall(self, along: float, height: float) -> tuple[float, float, float]:
+        """Place [m] from the middle of the far wall, a little before it; along: in half widths, to the right."""
+        x, y = DIRECTION
+        level = along * self.half_width
+        return -y * level + LABEL_OFFSET * x, x * level + LABEL_OFFSET * y, height
+
+    def ruler_lines(self, floor: float) -> np.ndarray:
+        """Segments (n, 2, 3) [m] of a ruler from the mean level of the sea down to the floor [m]."""
+        lines = [(self.on_wall(RULER_PLACE, 0.0), self.on_wall(RULER_PLACE, floor))]
+        for k in range(int(-floor / TICK_SPACING) + 1):
+            length = TICK_LENGTH * (2.0 if k % TICKS_PER_NUMBER == 0 else 1.0) * self.size / self.half_width
+            ends = RULER_PLACE, RULER_PLACE + length
+            lines.append(tuple(self.on_wall(along, -k * TICK_SPACING) for along in ends))
+        return np.array(lines, np.float32)
+
+    def show_labels(self, cutaway: Cutaway, column: FluidColumn, keel: float | None) -> None:
+        """Say what one looks at: the fluids, and how deep the lowest point of the body lies, keel [m] in height."""
+        self.ruler.position = (*cutaway.middle, 0.0)
+        right = cutaway.points[:FAR_WALL_POINTS] - cutaway.middle
+        along = right @ np.array([-DIRECTION[1], DIRECTION[0]]) / cutaway.half_width
+        at = {place: int(np.argmin(np.abs(along - place))) for place in (OIL_PLACE, DRAFT_PLACE)}
+        top, low = float(cutaway.top[at[OIL_PLACE]]), float(cutaway.interface[at[OIL_PLACE]])
+        upper = "oil and water, mixed" if column.kind == "mixed" else "oil"
+        texts = {
+            "oil": f"{upper}, {number(column.surface.density)} kg/m³"
+            + (f", {top - low:.2g} m" if cutaway.has_oil else ""),
+            "water": f"water, {number(column.water.density)} kg/m³",
+        }
+        shown = {"oil": cutaway.has_oil or column.kind == "mixed", "water": column.kind != "mixed", "draft": False}
+        places = {
+            "oil": self.on_wall(OIL_PLACE + 0.25, 0.5 * (top + low) if cutaway.has_oil else 0.3 * cutaway.floor),
+            "water": self.on_wall(OIL_PLACE + 0.25, 0.6 * cutaway.floor),
+        }
+        surface = float(cutaway.top[at[DRAFT_PLACE]])
+        if keel is not None and keel < surface:
+            shown["draft"] = True
+            texts["draft"] = f"draft {surface - keel:.2f} m"
+            places["draft"] = self.on_wall(DRAFT_PLACE + 0.03, 0.35 * surface + 0.65 * keel)
+            head = 0.05 * self.size
+            high, deep = self.on_wall(DRAFT_PLACE, surface), self.on_wall(DRAFT_PLACE, keel)
+            sides = [self.on_wall(DRAFT_PLACE + side * head / self.half_width, keel + 2.0 * head) for side in (-1, 1)]
+            self.arrow.points = np.array([(high, deep), (deep, sides[0]), (deep, sides[1])], np.float32)
+        self.arrow.visible = shown["draft"]
+        for part, label in self.labels.items():
+            label.visible = shown[part]
+            if shown[part]:
+                label.text, label.position = texts[part], places[part]
+
+    def show(self, cutaway: Cutaway | None, light: Material, column: FluidColumn, keel: float | None) -> None:
+        """Draw the walls as they are now, or hide them; call inside `server.atomic()`.
+
+        keel: height [m] of the lowest point of the body before the far wall; None where there is no body.
+        """
         visible = cutaway is not None
         if self.mesh.mesh.visible != visible:
             self.mesh.mesh.visible = visible
+        self.ruler.visible = visible
         for line in self.lines:
             line.visible = visible and (line is self.lines[0] or cutaway.has_oil)
         if cutaway is None:
             return
+        self.show_labels(cutaway, column, keel)
         colours = self.paint(light, column)
         self.mesh.set(self.vertices(cutaway), colours)
         for line, height in zip(self.lines, (cutaway.top, cutaway.interface), strict=True):

@@ -11,17 +11,17 @@ from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.well_blowout import RIG, Slick
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.oil_film import light_through
 
 LAB_SPECULAR = 0.4  # share of oil's reflection that is drawn with optics "lab"
 RIPPLE_LENGTH = 0.9  # [m] of the wave that stands for all ripples of the material, in how they decay under oil
 CALM_SLOPE, MAX_SLOPE = 0.02, 0.24  # rms slope of the ripples without wind, and the greatest
 MIN_RIPPLE_SHARE = 0.12  # of the ripples' slope that oil leaves at least, so that the sea does not turn into a mirror
 MIXTURE_SCATTER: RGB = (0.40, 0.26, 0.14)  # what an emulsion scatters
-MIXTURE_FOAM: RGB = (0.80, 0.72, 0.60)
 MIXTURE_ROUGHNESS = 0.06
 MIXTURE_BASE_SHARE = 0.35  # share of oil's colours in a mixture with hardly any oil; it grows with the fraction
-OIL_FOAM: RGB = (0.45, 0.36, 0.26)
+MIXTURE_THICKNESS = 1e-3  # [m] of a film that shows as much of its colour as a mixture does: all
+SPILL_RADIUS = 45.0  # [m] of the spill as drawn,
+SPILL_MARGIN = 25.0  # [m] and at least so far beyond the bodies
 LEG_DISTANCE, LEG_RADIUS = 14.33, 1.3  # [m] of the rig's legs at the water, from its middle (assets/make_models.py)
 HULL_CORNER = 0.1  # radius of the corners of a box over half its side
 OIL_ROUGHNESS = 0.02
@@ -72,39 +72,41 @@ def material_of(light: Material, frame: RadialFrame) -> Material:
     """The material of a frame under a sky (`app.render.skies.set_sky`), with its slick and its cutaway."""
     p, column, cutaway = frame.params, frame.column, frame.cutaway
     common = {
-        "ripple_slope": round(ripple_slope(p, column, frame.age), 3),
-        "ripple_length": 1.6 if column.kind == "water" else 2.4,
+        "ripple_slope": round(ripple_slope(p, column, 0.0), 3),
+        "ripple_length": 1.6,
         "ripple_direction": math.radians(p.wind_direction),
         "wireframe": p.grid,
-        "reflection_factor": LAB_SPECULAR if p.optics == "lab" and p.spill != "none" else 1.0,
         "clouds": min(0.15 + 0.045 * p.wind_speed, 0.9),
         "cutout": None
         if cutaway is None
         else Cutout(cutaway.middle, cutaway.half_width, cutaway.direction, cutaway.length),
     }
-    if column.kind != "water":
-        return dataclasses.replace(light, **common, **oil_look(light, column))
-    return dataclasses.replace(light, **common, **({} if frame.slick is None else slick_look(p, column, frame.slick)))
+    if column.kind == "water":
+        return dataclasses.replace(
+            light, **common, **({} if frame.slick is None else slick_look(p, column, frame.slick))
+        )
+    return dataclasses.replace(light, **common, **spill_look(frame))
 
 
-def oil_look(light: Material, column: FluidColumn) -> dict[str, Any]:
-    """What changes in a material under a layer of oil, or where oil and water are mixed: that is brown and turbid."""
-    oil = rgb_of(column.oil.colour)
+def spill_look(frame: RadialFrame) -> dict[str, Any]:
+    """What changes in a material inside a spill: a layer of oil, or oil and water mixed, which is brown and turbid.
+
+    The spill of the simulation has no end. It is drawn as a slick around the bodies, so that one sees clean water too.
+    """
+    column = frame.column
+    red, green, blue = rgb_of(column.oil.colour).tolist()
+    colour: RGB = (red, green, blue)
+    index, thickness, roughness = column.oil.refractive_index, column.thickness, OIL_ROUGHNESS
     if column.kind == "mixed":
-        share = mixture_share(column)
-        return {
-            "refractive_index": column.surface.refractive_index,
-            "deep_color": blend(light.deep_color, blend(oil, MIXTURE_SCATTER, 0.45), share),
-            "scatter_color": blend(light.scatter_color, MIXTURE_SCATTER, share),
-            "foam_color": MIXTURE_FOAM,
-            "roughness": MIXTURE_ROUGHNESS,
-        }
-    red, green, blue = oil.tolist()
-    hidden = 1.0 - float(light_through(column.thickness)[1])
+        colour = blend(Material().deep_color, blend(colour, MIXTURE_SCATTER, 0.45), mixture_share(column))
+        index, thickness, roughness = column.surface.refractive_index, MIXTURE_THICKNESS, MIXTURE_ROUGHNESS
+    farthest = float(np.hypot(frame.positions[:, 0], frame.positions[:, 1]).max(initial=0.0))
+    radius = max(SPILL_RADIUS, 5.0 * math.ceil((farthest + SPILL_MARGIN) / 5.0))
+    p = frame.params
+    calm = ripple_slope(p, column, frame.age) / ripple_slope(p, column, 0.0)
     return {
-        "oil": Oil((red, green, blue), column.oil.refractive_index, column.thickness),
-        "foam_color": blend(light.foam_color, OIL_FOAM, hidden),
-        "roughness": OIL_ROUGHNESS,
+        "oil": Oil(colour, index, LAB_SPECULAR if p.optics == "lab" else 1.0),
+        "slick": SlickRegion((0.0, 0.0), radius, thickness, roughness, round(calm, 2)),
     }
 
 
@@ -114,6 +116,6 @@ def slick_look(p: Params, column: FluidColumn, slick: Slick) -> dict[str, Any]:
     calm = ripple_slope(p, layer, p.exposure) / ripple_slope(p, column, 0.0)
     red, green, blue = rgb_of(column.oil.colour).tolist()
     return {
-        "oil": Oil((red, green, blue), column.oil.refractive_index, 0.0),
+        "oil": Oil((red, green, blue), column.oil.refractive_index),
         "slick": SlickRegion(slick.centre, round(slick.radius, 1), slick.thickness, OIL_ROUGHNESS, round(calm, 2)),
     }

@@ -106,7 +106,7 @@ class View:
         if self.walls is None and frame.cutaway is not None:
             self.walls = Walls(self.server, "/cutaway", frame.cutaway)
         if self.walls is not None:
-            self.walls.show(frame.cutaway, self.light, frame.column)
+            self.walls.show(frame.cutaway, self.light, frame.column, keel_of(frame))
         self.show_bodies(frame)
         self.show_pulls(frame)
         if self.rig.visible != p.rig:
@@ -265,6 +265,15 @@ class View:
 
     def close(self) -> None:
         """Nothing to give back: removing the nodes removes everything."""
+
+
+def keel_of(frame: RadialFrame) -> float | None:
+    """Height [m] of the lowest point of the first body; None where there is none."""
+    if not frame.kinds:
+        return None
+    w, i, j, k = frame.rotations[0].tolist()
+    up = np.array([2.0 * (i * k - w * j), 2.0 * (j * k + w * i), 1.0 - 2.0 * (i * i + j * j)])
+    return float(frame.positions[0, 2]) + float((frame.hulls[frame.kinds[0]].vertices @ up).min())
 
 
 def offset_of_view(params: Params) -> np.ndarray:

@@ -206,7 +206,7 @@ def test_the_script_is_javascript(server: FakeServer, tmp_path: Path) -> None:
 
 
 def test_every_field_of_a_material_reaches_the_uniforms() -> None:
-    slick, oil = SlickRegion((1.0, 2.0), 3.0, 0.01, 0.02, 0.7), Oil((0.1, 0.2, 0.3), 1.5, 0.1)
+    slick, oil = SlickRegion((1.0, 2.0), 3.0, 0.01, 0.02, 0.7), Oil((0.1, 0.2, 0.3), 1.5)
     others = {"oil": oil, "slick": slick, "cutout": Cutout((1.0, 2.0), 3.0, (0.6, 0.8), 4.0)}
     plain = Material()
 

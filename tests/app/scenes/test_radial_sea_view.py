@@ -1,0 +1,89 @@
+"""What the view of the radial sea makes of a frame."""
+
+import dataclasses
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+import viser
+
+from app.render.material import Material
+from app.scenes import scene_named
+from app.scenes.radial_sea.cutaway import DIRECTION
+from app.scenes.radial_sea.cutaway_view import Walls
+from app.scenes.radial_sea.materials import SPILL_RADIUS, material_of
+from app.scenes.radial_sea.view import keel_of
+
+
+@pytest.fixture
+def server() -> Iterator[viser.ViserServer]:
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    yield server
+    server.stop()
+
+
+def frame_of(**values: object):
+    kind = scene_named("radial_sea")
+    return kind.make(dataclasses.replace(kind.params(), **values)).frame()
+
+
+def test_the_labels_of_the_window_say_what_is_there(server: viser.ViserServer) -> None:
+    frame = frame_of(spill="layer", thickness=0.3, cutaway=True, waves=False)
+    assert frame.cutaway is not None
+    walls = Walls(server, "/cutaway", frame.cutaway)
+    keel = keel_of(frame)
+    assert keel is not None
+    walls.show(frame.cutaway, Material(), frame.column, keel)
+    assert walls.labels["oil"].text == "oil, 866 kg/m³, 0.3 m"
+    assert walls.labels["draft"].text == f"draft {-keel:.2f} m"
+    assert walls.labels["water"].text.startswith("water, ")
+    assert walls.labels["oil"].position[2] == pytest.approx(-0.15, abs=0.01)
+    arrow = walls.arrow.points[0]
+    assert arrow[:, 2] == pytest.approx([0.0, keel], abs=0.01)
+    # They stand before the wall, at ticks of their own heights, and move along with it.
+    before = np.asarray(arrow[0, :2]) @ np.array(DIRECTION)
+    assert 0.0 < before < 0.2
+    assert walls.ruler.position[:2] == pytest.approx(frame.cutaway.middle)
+    ticks = np.sort(walls.ruler.points[1:, 0, 2])[::-1]
+    assert ticks[:3] == pytest.approx([0.0, -0.1, -0.2])
+    walls.show(None, Material(), frame.column, None)
+    assert not walls.ruler.visible
+
+
+def test_clear_water_has_no_label_of_oil_and_no_body_has_no_draft(server: viser.ViserServer) -> None:
+    frame = frame_of(cutaway=True, waves=False, bodies=0)
+    assert frame.cutaway is not None
+    walls = Walls(server, "/cutaway", frame.cutaway)
+    walls.show(frame.cutaway, Material(), frame.column, keel_of(frame))
+    assert [part for part, label in walls.labels.items() if label.visible] == ["water"]
+    assert not walls.arrow.visible
+
+
+@pytest.mark.parametrize("name", ["Light crude spill 0.2 m", "Heavy fuel oil", "Entirely mixed", "A day after a spill"])
+def test_every_spill_has_an_edge_in_view_with_clean_water_beyond(name: str) -> None:
+    presets = scene_named("radial_sea").presets
+    frame, light = frame_of(**presets[name]), Material()
+    material = material_of(light, frame)
+    assert material.slick is not None
+    assert material.oil is not None
+    assert SPILL_RADIUS <= material.slick.radius < 100.0  # the rig, which is in view, is 111 m away
+    assert np.hypot(*frame.positions[:, :2].T).max() < material.slick.radius - 20.0
+    assert material.slick.ripple_factor <= 1.0
+    assert material.deep_color == light.deep_color
+    clean = material_of(light, frame_of(**(presets[name] | {"spill": "none"})))
+    assert material.ripple_slope == pytest.approx(clean.ripple_slope, rel=0.01)
+    assert not np.allclose(material.seen_color(material.slick.thickness), light.deep_color, atol=0.03)
+
+
+def test_only_oil_mirrors_less_with_the_lab_s_optics() -> None:
+    material = material_of(Material(), frame_of(spill="layer", optics="lab"))
+    assert material.reflection_factor == 1.0
+    assert material.oil is not None
+    assert material.oil.reflection_factor < 1.0
+
+
+def test_a_crowd_of_bodies_is_within_the_spill() -> None:
+    frame = frame_of(spill="layer", bodies=200, waves=False)
+    slick = material_of(Material(), frame).slick
+    assert slick is not None
+    assert np.hypot(*frame.positions[:, :2].T).max() < slick.radius

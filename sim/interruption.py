@@ -1,15 +1,24 @@
-"""Ends a long solve early: at Ctrl-C, or where another thread asks for it.
+"""Ends a long solve early, or lets something else have a turn in the middle of it.
 
-Kernels that may take long look at the two numbers of `stop_request` now and then. The first is set by whoever wants
-the solve to end. Where the second is set, they also ask Python for signals, which only the main thread gets.
+Kernels that may take long look at the numbers of `stop_request` now and then. The first is set by whoever wants the
+solve to end. Where the second is set, they also ask Python for signals, which only the main thread gets. Where the
+third is set, they call a function of Python's and then go on: so a solve of seconds lets its thread answer in between.
 """
 
 import contextvars
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
+# Indices into a request.
+STOP = 0  # not 0: the solve is to end
+SIGNALS = 1  # not 0: Python is to be asked for a Ctrl-C
+TURN = 2  # not 0: FUNCTION is to be called, once
+FUNCTION = 3  # address of a function without arguments, or 0
+
 REQUEST: contextvars.ContextVar[NDArray[np.int64] | None] = contextvars.ContextVar("stop request", default=None)
+GIVE_TURN: contextvars.ContextVar[Callable[[], None] | None] = contextvars.ContextVar("give turn", default=None)
 
 
 class InterruptionError(Exception):
@@ -17,27 +26,36 @@ class InterruptionError(Exception):
 
 
 def stop_request() -> NDArray[np.int64]:
-    """The two numbers (2,) that kernels called from this thread look at."""
+    """The numbers that kernels called from this thread look at."""
     request = REQUEST.get()
     if request is None:
-        request = np.array([0, 1])
+        request = np.array([0, 1, 0, 0], np.int64)
         REQUEST.set(request)
     return request
 
 
-def use_request(request: NDArray[np.int64]) -> None:
-    """Let solves of this thread end where `request[0]` is set, by any thread, to another number than 0."""
+def use_request(request: NDArray[np.int64], give_turn: Callable[[], None] | None = None) -> None:
+    """Let solves of this thread look at `request` (4,), of which any thread may set STOP and TURN.
+
+    give_turn: called where TURN is set, on this thread, in the middle of a solve; it raises nothing.
+    """
+    request[FUNCTION] = id(give_turn) if give_turn else 0
     REQUEST.set(request)
+    GIVE_TURN.set(give_turn)  # which keeps it alive
 
 
 def raise_if_stopped() -> None:
     """Raises KeyboardInterrupt after a Ctrl-C that a kernel noticed, InterruptionError where another thread asked.
 
     The request stays set in the latter case, so that nothing else of the same call begins; who set it takes it back.
+    A turn that was asked for is given first.
     """
-    request = stop_request()
-    if request[0]:
-        if request[1]:
-            request[0] = 0
+    request, give_turn = stop_request(), GIVE_TURN.get()
+    if request[TURN] and give_turn:
+        request[TURN] = 0
+        give_turn()
+    if request[STOP]:
+        if request[SIGNALS]:
+            request[STOP] = 0
             raise KeyboardInterrupt
         raise InterruptionError

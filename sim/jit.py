@@ -260,28 +260,32 @@ _take_gil = numba.types.ExternalFunction("PyGILState_Ensure", numba.types.int32(
 _give_gil = numba.types.ExternalFunction("PyGILState_Release", numba.types.void(numba.types.int32))
 _handle_signals = numba.types.ExternalFunction("PyErr_CheckSignals", numba.types.int32())
 _forget_error = numba.types.ExternalFunction("PyErr_Clear", numba.types.void())
+_call = numba.types.ExternalFunction("PyObject_CallNoArgs", numba.types.intp(numba.types.intp))
+_forget = numba.types.ExternalFunction("Py_DecRef", numba.types.void(numba.types.intp))
 
 
 def _is_stopped(request: Any) -> bool:
-    if _load(request, 0) != 0:
-        return True
-    if _load(request, 1) != 0:
+    if _load(request, 0) == 0 and (_load(request, 1) != 0 or _load(request, 2) != 0):
         held = _take_gil()
-        failed = _handle_signals() != 0
-        if failed:
+        if _load(request, 2) != 0:
+            request[2] = 0
+            answer = _call(request[3])
+            if answer == 0:
+                _forget_error()
+            _forget(answer)
+        if _load(request, 1) != 0 and _handle_signals() != 0:
             _forget_error()
             request[0] = 1
         _give_gil(held)
-        return failed
-    return False
+    return _load(request, 0) != 0
 
 
 def _is_stopped_interpreted(request: Any) -> bool:
     return bool(request[0])
 
 
-# Whether a long solve is to end, by the two numbers of `sim.interruption`: that another thread asked for it, and
-# that Python is to be asked for a Ctrl-C, in which case the first is set.
+# Whether a long solve is to end, by the numbers of `sim.interruption`: the first, set by another thread or by a Ctrl-C.
+# Where the third is set, the function of the fourth is called, which raises nothing.
 is_stopped: Any = kernel(_is_stopped_interpreted if numba.config.DISABLE_JIT else _is_stopped)  # type: ignore[attr-defined]
 
 

@@ -467,7 +467,7 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
             coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed,
         )  # fmt: skip
     return fill(
-        '<div class="springtide-panel" data-state="{}" data-snapshot="{}">{} t = {:.2f} s{}{}{}{}{}</div>',
+        '<div class="springtide-panel" data-state="{}" data-snapshot="{}">{} t = {:.2f} s{}{}{}{}{}{}</div>',
         "running" if s.running else "paused",
         snapshot.serial,  # so that one sees that it is fresh, where its words repeat
         state,
@@ -475,6 +475,7 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         fill(' · <span class="springtide-pace">{}</span>', pace) if s.running else "",
         fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
         fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
+        fill("<br>Faster: {}.", s.faster) if s.faster else "",
         fill("<br>{} browsers share this lab.", visitors) if visitors > 1 else "",
         fill('<div class="springtide-stopped" role="alert">{}</div>', s.halted) if s.halted else "",
     )

@@ -72,6 +72,11 @@ class Scene(Protocol[P, F_co, R_co]):
         """Why something else runs than the parameters ask for, or ""."""
         ...
 
+    @property
+    def faster(self) -> str:
+        """What would make it faster, for a sentence of the panel: "fewer points or a larger step"."""
+        ...
+
     def change_forces(self, params: P) -> None:
         """Take parameters. At least one that affects the forces has changed; the motion goes on.
 
@@ -89,7 +94,11 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def advance(self, steps: int) -> None:
-        """Take steps. Raises DivergenceError where the state leaves its bounds, and then keeps the last good one."""
+        """Take steps. Raises DivergenceError where the state leaves its bounds, and then keeps the last good one.
+
+        A long solve may give others a turn on this thread (`sim/interruption.py`). What the scene shows in it is then
+        that of a whole step, and what is done to it counts from the next call on.
+        """
         ...
 
     def frame(self) -> F_co:

@@ -22,12 +22,15 @@ from app.messages import (
     BaseParams,
     Command,
     DivergenceError,
+    Grab,
     Halt,
     KeptState,
     Load,
     Pause,
+    Place,
     Play,
     PlotRow,
+    Release,
     Reset,
     SceneCommand,
     Snapshot,
@@ -42,12 +45,12 @@ from app.scenes.moments import arrays_in
 from app.scenes.stepping import steps_to
 from app.server.merging import merged
 from app.server.replay import Replay
-from sim.interruption import InterruptionError, use_request
+from sim.interruption import STOP, TURN, InterruptionError, use_request
 from sim.parameters import effect_of_change
 
 SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
 PART_GROWTH = 8  # ratio of two successive parts of a frame's steps while the cost of a step is not known
-PATIENCE = 0.05  # [s] that a control waits for a solve
+PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 MAX_CATCH_UP = 0.25  # [s] of wall time that one tick makes up for
@@ -136,12 +139,16 @@ class SimLoop:
         """
         self.scene = scene
         self.commands = commands or CommandQueue()
-        self.request = np.zeros(2, np.int64)  # its first number ends the solve that runs: see sim/interruption.py
-        self.unfinished: Callable[[], None] | None = None  # what was ended early and has to be done all the same
+        self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
+        self.solving = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
+        self.may_end = False  # what runs may be ended early: steps, or a reset, which is then done again
+        self.is_late = False  # controls were answered in the middle of the last tick
+        self.turn_at = 0.0  # [s] of the clock, when controls were last answered
+        self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
         self.read_params = read_params or (lambda: (scene.params, self.loaded))
         self.audience = audience
         self.clock, self.effort = clock, effort
-        self.first: Command | None = None  # what ended a sleep, for the next tick
+        self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
         self.running = not paused
         self.halted = ""
         self.replay: Replay | None = None  # of a run that has just diverged
@@ -169,15 +176,20 @@ class SimLoop:
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
         self.wall += wall
-        self.busy_since = self.clock()
+        self.busy_since = self.turn_at = self.clock()
+        was_late, self.is_late = self.is_late, False
         params, loads = self.read_params()
         # Parameters first: a reset starts from them. A record of a `Load` that is still on the way comes with it.
         changed = loads == self.loaded and params is not self.scene.params and self.take(params)
-        changed |= self.handle_waiting()
         if self.unfinished is not None:
-            self.guarded(self.unfinished, again=True)
+            self.begin(self.unfinished)
             changed = True
-        if self.running and self.audience() and self.replay is not None:
+        changed |= self.handle_waiting()
+        if changed and was_late:
+            self.publish()  # before steps that may take long
+        if self.unfinished is not None:
+            pass  # no steps of a scene that is not made
+        elif self.running and self.audience() and self.replay is not None:
             changed |= self.play_replay(self.replay, wall)
         elif self.goal is not None and self.running and not self.audience():
             self.hurry(self.goal.until)
@@ -210,8 +222,8 @@ class SimLoop:
         if self.replay is not None:
             self.halt(self.replay.reason)
             self.replay = None
-        if effect == "forces":
-            self.guarded(lambda: self.scene.change_forces(params), again=True)
+        if effect == "forces" and self.unfinished is None:
+            self.guarded(lambda: self.scene.change_forces(params))
             self.scene.params = params  # also where the scene failed: not to be tried again in every tick
         else:
             self.scene.params = params
@@ -269,7 +281,7 @@ class SimLoop:
         Another method or more points may make a step a thousand times as expensive as the last one was.
         """
         part, spent = 1, 0.0
-        while n > 0 and part > 0 and self.running and self.replay is None and not self.request[0]:
+        while n > 0 and part > 0 and self.running and self.replay is None and not self.request[STOP]:
             part = min(part, n)
             self.pacer.cost = 0.0
             spent += self.advance(part)
@@ -292,34 +304,76 @@ class SimLoop:
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
         start = self.effort()
-        self.guarded(lambda: self.scene.advance(n))
+        self.solving = True
+        try:
+            self.guarded(lambda: self.scene.advance(n))
+        finally:
+            self.solving = False
         seconds = self.effort() - start
         self.pacer.learn(n, seconds)
         self.counts["steps"] += n
         return seconds
 
-    def give_way(self, asked: BaseParams) -> None:
-        """End a solve that keeps a control waiting; called from another thread.
+    def ask_for_turn(self) -> None:
+        """Have controls answered in the middle of a solve that takes long; called from another thread."""
+        if self.busy_since is not None and self.clock() - self.turn_at >= PATIENCE:
+            self.request[TURN] = 1
 
-        The next tick handles what was asked for, from the last good state. asked: the parameters as the panel has them.
+    def give_turn(self) -> None:
+        """Answer controls in the middle of a solve, which calls this on its own thread.
+
+        What asks for another solve ends this one; the next tick handles it, from the last good state. What does not is
+        answered at once, and the solve goes on: a look, or a drag, which counts from the next steps on.
         """
-        since = self.busy_since
-        if since is None or self.clock() - since < PATIENCE:
-            return
-        if self.commands.urgent or effect_of_change(self.scene.params, asked) in ("forces", "start"):
-            self.request[0] = 1
+        self.turn_at, self.is_late = self.clock(), True
+        try:
+            params, loads = self.read_params()
+            effect = effect_of_change(self.scene.params, params) if loads == self.loaded else None
+            if self.commands.urgent or effect in ("forces", "start"):
+                self.request[STOP] = self.may_end
+                return
+            if effect == "look":
+                self.scene.params = params
+            drags = self.drags_waiting() if self.solving else []
+            for command in drags:
+                self.scene.handle(command)
+            if drags or self.latest.params is not self.scene.params:
+                self.capped = self.solving
+                self.publish_in_solve()
+        except Exception:  # the solve knows nothing of it
+            traceback.print_exc()
+
+    def drags_waiting(self) -> list[Grab | Place | Release]:
+        """The drags among the waiting commands; the others go on waiting for the next tick."""
+        for _ in range(self.commands.qsize()):
+            self.waiting.append(self.commands.get_nowait())
+        drags = [command for command in merged(self.waiting) if isinstance(command, Grab | Place | Release)]
+        self.waiting = [command for command in self.waiting if not isinstance(command, Grab | Place | Release)]
+        return drags
+
+    def publish_in_solve(self) -> None:
+        """Hand the viewer the last whole step with the parameters as they are; where there is none, the last frame."""
+        self.counts["snapshots"] += 1
+        serial, latest = self.counts["snapshots"], self.latest
+        last = latest._replace(serial=serial, status=self.status(), params=self.scene.params, state=None)
+        try:
+            self.latest = self.collect(serial) if self.solving else last
+        except DivergenceError:  # the solve is about to find that out
+            self.latest = last
+        self.fresh.set()
 
     def guarded(self, action: Callable[[], None], *, again: bool = False) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
 
-        again: to be done once more, in this tick or the next, where it is ended early.
+        again: to be done once more where it is ended early.
         """
-        self.unfinished = None
+        self.may_end = again or self.solving
         try:
             action()
         except InterruptionError:
             self.counts["solves ended early"] += 1
-            self.unfinished = action if again else None
+            if again:
+                self.unfinished = action
         except DivergenceError as error:
             if error.moments and self.running:
                 self.replay = Replay(error.moments, str(error))
@@ -344,8 +398,7 @@ class SimLoop:
 
     def handle_waiting(self) -> bool:
         """Handle what is left of the waiting commands once they are merged; True where there was one."""
-        waiting = [] if self.first is None else [self.first]
-        self.first = None
+        waiting, self.waiting = self.waiting, []
         self.commands.urgent = False
         for _ in range(
             self.commands.qsize()
@@ -420,17 +473,24 @@ class SimLoop:
         self.running, self.halted = self.running or bool(self.halted), ""
         self.pacer.debt = 0.0
         self.replay = None
-        self.guarded(self.scene.reset, again=True)
+        self.begin(self.scene.reset)
+
+    def begin(self, reset: Callable[[], None]) -> None:
+        """Run what begins the scene again; the next tick does it where it is ended early."""
+        self.unfinished = None
+        self.guarded(reset, again=True)
 
     def resume(self, state: KeptState) -> None:
         """The scene from a state that was kept."""
-        self.halted, self.replay, self.pacer.debt = "", None, 0.0
+        self.halted, self.replay, self.unfinished, self.pacer.debt = "", None, None, 0.0
         self.history.clear()
         self.guarded(lambda: self.scene.resume(state.value))
 
     def keep_state(self) -> KeptState | None:
         """The state of a running scene, a few times a second; seldom where copying it takes long."""
-        if not self.running or self.replay is not None or self.wall < self.keep_at or not self.audience():
+        if not self.running or self.solving or self.replay is not None:
+            return None
+        if self.wall < self.keep_at or not self.audience():
             return None
         start = self.effort()
         value = self.scene.keep()
@@ -458,7 +518,7 @@ class SimLoop:
                 traceback.print_exc()
                 error = DivergenceError(f"The scene stopped with {type(error).__name__}: {error}")
             self.halt(str(error))
-            return last._replace(serial=serial, status=self.status())
+            return last._replace(serial=serial, status=self.status(), params=self.scene.params)
 
     def collect(self, serial: int) -> AnySnapshot:
         """The scene's frame, readings, work, parameters and curves; hands its plot rows over.
@@ -491,25 +551,27 @@ class SimLoop:
         while len(self.history) > 2 and self.history[0][0] < self.wall - RATE_WINDOW:
             self.history.popleft()
         elapsed = self.wall - self.history[0][0]
+        capped = self.capped and self.running
         return Status(
             running=self.running,
             time=simulated,
             steps=self.counts["steps"],
             speed=self.scene.params.speed,
             actual_speed=max(0.0, (simulated - self.history[0][1]) / elapsed) if elapsed > 0 and self.running else 0.0,
-            capped=self.capped and self.running,
+            capped=capped,
             frame_rate=(len(self.history) - 1) / elapsed if elapsed > 0 else 0.0,
             halted=self.halted,
+            faster=self.scene.faster if capped else "",
             starts=self.counts["starts"],
             replayed=None if moment is None else (moment.low, moment.high),
         )
 
     def run(self, stop: threading.Event) -> None:
         """Tick until `stop` is set, at the frame rate while there is something to do."""
-        use_request(self.request)
+        use_request(self.request, self.give_turn)
         last = self.clock()
         while True:
-            self.request[0] = 0
+            self.request[STOP] = self.request[TURN] = 0
             if stop.is_set():
                 return
             busy = self.running and (self.audience() > 0 or self.goal is not None)
@@ -534,5 +596,5 @@ class SimLoop:
             return
         start = self.clock()
         with contextlib.suppress(queue.Empty):
-            self.first = self.commands.get(timeout=seconds)
+            self.waiting.append(self.commands.get(timeout=seconds))
             stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # many commands make no more ticks than frames

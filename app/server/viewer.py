@@ -30,6 +30,7 @@ from app.server.guard import open_server, quiet
 from app.server.loop import PATIENCE, CommandQueue, SimLoop
 from app.server.replay_file import replay_html
 from app.server.transport import TransportCounters
+from sim.interruption import STOP
 
 if TYPE_CHECKING:
     from app.lab.session import Session
@@ -251,7 +252,7 @@ class Viewer:
         recorder, shown_at = self.panel.recorder, loop.clock()
         while not stop.is_set():
             woken = loop.fresh.wait(min(PATIENCE, PLAYED_INTERVAL))
-            loop.give_way(self.panel.params)
+            loop.ask_for_turn()
             if not woken and loop.clock() - shown_at < (PLAYED_INTERVAL if recorder.playing else HEARTBEAT):
                 continue
             loop.fresh.clear()
@@ -322,7 +323,7 @@ class Viewer:
         """Stop the threads of the open scene; a solve that runs is ended early."""
         self.stop.set()
         if self.is_open:
-            self.loop.request[0] = 1
+            self.loop.request[STOP] = 1
         for thread in self.threads:
             thread.join(MAX_JOIN_TIME)
         self.threads = []

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.interruption import raise_if_stopped
 from sim.springs.forces.self_contact import refresh_pairs
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos
@@ -74,6 +75,7 @@ def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
         return TOUCHING
     p, flat = net.kernel_view(1.0), np.ascontiguousarray(x).reshape(-1)
     pairs = p.pairs[: refresh_pairs(flat, p)]
+    raise_if_stopped()
     place = flat.reshape(3, -1)
     touching = pairs[np.linalg.norm(place[:, pairs[:, 0]] - place[:, pairs[:, 1]], axis=0) < net.thickness]
     return int(np.bincount(touching.ravel(), minlength=1).max())

@@ -70,6 +70,8 @@ def acceleration(net: Net, state: State, lag: float) -> NDArray[np.float64]:
     """Accelerations (3, rows, cols) [m/s^2] of the state as stored; its velocities may trail by half a step."""
     a = np.empty_like(state.x)
     set_acceleration(state.x.reshape(-1), state.v.reshape(-1), state.t, net.kernel_view(2.0 * lag), a.reshape(-1))
+    if net.thickness > 0.0:
+        raise_if_stopped()
     return a
 
 
@@ -113,18 +115,18 @@ def advance(
     ledger, p = np.array([state.dissipated, state.work]), net.kernel_view(h)
     if net.bands > 1:
         set_threads(net.bands)
-    # An even number: some methods alternate from step to step.
     cost = net.x0[0].size * integrator.evals * (CONTACT_COST if net.thickness > 0.0 else 1.0)
-    most = 2 * max(1, round(0.5 * POINT_EVALS / cost))
+    most = max(1, int(POINT_EVALS / cost))
+    may_end_within_a_step = integrator.implicit or net.thickness > 0.0
     for done in range(0, steps, most):
         count = min(most, steps - done)
         raise_if_stopped()
-        # An implicit kernel may end in mid-step.
-        before = (state.x.copy(), state.v.copy()) if integrator.implicit else None
-        evals = integrator.advance(state.x.reshape(-1), state.v.reshape(-1), ledger, state.t, h, count, p, with_account)
-        if before is not None and p.stop[0]:
-            state.x[:], state.v[:] = before
+        # A long step may be ended in its middle, or let others look at the state.
+        x, v = (state.x.copy(), state.v.copy()) if may_end_within_a_step else (state.x, state.v)
+        evals = integrator.advance(x.reshape(-1), v.reshape(-1), ledger, state.t, h, count, p, with_account)
+        if may_end_within_a_step:
             raise_if_stopped()
+            state.x[:], state.v[:] = x, v
         state.force_evals += evals
         state.t += count * h
         state.steps += count
@@ -134,7 +136,10 @@ def advance(
 
 def energy(net: Net, state: State) -> Energy:
     """Stored energies at the state's time [J]."""
-    return Energy(*energies(state.x.reshape(-1), velocities(net, state).reshape(-1), state.t, net.kernel_view(1.0)))
+    found = Energy(*energies(state.x.reshape(-1), velocities(net, state).reshape(-1), state.t, net.kernel_view(1.0)))
+    if net.thickness > 0.0:
+        raise_if_stopped()
+    return found
 
 
 def steps_for(interval: float, step: float) -> int:

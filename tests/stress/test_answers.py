@@ -19,7 +19,8 @@ from tests.stress.tally import Tally
 CHANGES = int(os.environ.get("SPRINGTIDE_STRESS_CHANGES", "10000")) // 10  # of each scene
 AT_ONCE = 6  # most parameters turned between two answers
 PAUSE = 0.15  # [s] in which a solve gets under way, at most
-MAX_SILENCE = 30.0  # [s], on a machine with other work: one force evaluation of a tangled cloth is not ended
+MAX_SILENCE = {"radial_sea": 4.0, "square_sea": 2.0}  # [s], on a machine with other work: a frame of a sea is whole
+MAX_SILENCE_OF_SPRINGS = 1.0  # [s]
 
 
 @pytest.fixture
@@ -69,4 +70,4 @@ def test_a_control_is_answered_while_a_solve_runs(name: str, viewer: Viewer, tal
         f"{name}: longest wait for an answer {longest:.2f} s, 99 of 100 below {share:.2f} s; {early} solves ended; "
         f"longest with {unusual}"
     )
-    assert longest < MAX_SILENCE
+    assert longest < MAX_SILENCE.get(name, MAX_SILENCE_OF_SPRINGS)

@@ -17,6 +17,7 @@ from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
 from app.scenes.springs.drag import Drag, PullFrame
+from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from app.scenes.springs.work_counts import SpringWorkCounts
@@ -147,6 +148,14 @@ class ClothScene:
         return "" if self.params.integrator == AUTO else self.fallback_note
 
     @property
+    def faster(self) -> str:
+        """What would make a step faster."""
+        touches_itself = self.params.thickness > 0.0
+        return faster_steps(
+            self.integrator, self.stability.stability, "rows and columns", touches_itself=touches_itself
+        )
+
+    @property
     def particles(self) -> int:
         """Number of particles."""
         return self.params.rows * self.params.cols
@@ -240,17 +249,21 @@ class ClothScene:
         if with_account and not self.account_kept:
             self.account = EnergyAccount(self.net, self.state)
         self.account_kept = with_account
-        good = self.state.copy()
-        net = self.net_during(self.state.t, duration)
+        good, state = self.state, self.state.copy()  # what is shown in the middle of the steps, and what moves
+        net = self.net_during(good.t, duration)
 
         def take(threads: int, count: int) -> None:
             shared = dataclasses.replace(net, threads=threads)
-            advance(shared, self.state, self.integrator, self.step, count, with_account=with_account)
+            advance(shared, state, self.integrator, self.step, count, with_account=with_account)
             self.counts.add("steps on two threads", count, threads == 2)
 
-        self.tuner.advance(steps, take, large=self.particles >= MIN_PARTICLES_FOR_TWO_THREADS)
-        self.counts.update(net, self.state.force_evals - good.force_evals, steps, with_account=with_account)
-        if not extremes(self.state.x, self.state.v).max_coordinate < MAX_DISTANCE:  # true of a NaN as well
+        try:
+            self.tuner.advance(steps, take, large=self.particles >= MIN_PARTICLES_FOR_TWO_THREADS)
+        finally:  # where it is ended early the steps that were taken count
+            if extremes(state.x, state.v).max_coordinate < MAX_DISTANCE:  # false of a NaN as well
+                self.state = state
+        self.counts.update(net, state.force_evals - good.force_evals, steps, with_account=with_account)
+        if self.state is good:
             self.repeat_to_divergence(net, good, steps)
             raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
         if self.integrator.implicit:
@@ -268,14 +281,16 @@ class ClothScene:
     def repeat_to_divergence(self, net: Net, good: State, steps: int) -> None:
         """Take the steps that left the bounds once more, keep a frame of each, and go back to the last good state."""
         self.state = good.copy()
-        for _ in range(steps):
-            advance(net, self.state, self.integrator, self.step, 1, with_account=False)
-            distance = extremes(self.state.x, self.state.v).max_coordinate
-            if distance < MAX_OVERSHOOT * MAX_DISTANCE:  # false of a NaN as well
-                self.frame()
-            if not distance < MAX_DISTANCE:
-                break
-        self.state = good
+        try:
+            for _ in range(steps):
+                advance(net, self.state, self.integrator, self.step, 1, with_account=False)
+                distance = extremes(self.state.x, self.state.v).max_coordinate
+                if distance < MAX_OVERSHOOT * MAX_DISTANCE:  # false of a NaN as well
+                    self.frame()
+                if not distance < MAX_DISTANCE:
+                    break
+        finally:  # it may be ended early
+            self.state = good
 
     def net_during(self, t: float, duration: float) -> Net:
         """The net with the motions of pins, sphere and pull, and the wind, over the next `duration` [s] from time t."""

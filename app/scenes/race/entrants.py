@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from app.messages import Vector
 from app.scenes.race.parameters import Params, method_of
 from app.scenes.springs.divergence import stability_number
-from sim.interruption import InterruptionError
 from sim.springs import INTEGRATORS, Integrator, Net
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
@@ -160,16 +159,18 @@ class Entrant:
         """Name of its method."""
         return self.record.name
 
-    def advance(self, net: Net, ticks: int) -> None:
-        """Take the steps of `ticks` ticks. net: with the motions of root and pull."""
+    def after(self, net: Net, ticks: int) -> tuple[State, str]:
+        """The state after `ticks` ticks, the last good one where it diverges, and why it has stopped, or "".
+
+        net: with the motions of root and pull. The entrant itself stays as it is.
+        """
         if self.failure:
-            return
-        good = self.state.copy()
-        advance(net, self.state, self.record, self.step, ticks * self.substeps, with_account=True)
-        if not extremes(self.state.x, self.state.v).reach < self.max_reach:  # true of a NaN as well
-            diverged_at = self.state.t
-            self.state = good
-            self.failure = self.failure_at(diverged_at)
+            return self.state, self.failure
+        state = self.state.copy()
+        advance(net, state, self.record, self.step, ticks * self.substeps, with_account=True)
+        if not extremes(state.x, state.v).reach < self.max_reach:  # true of a NaN as well
+            return self.state, self.failure_at(state.t)
+        return state, ""
 
     def failure_at(self, t: float) -> str:
         """Why it diverged at time t [s]."""
@@ -254,21 +255,19 @@ class Race:
     def advance(self, moving: Net, ticks: int) -> tuple[int, int]:
         """Advance all by `ticks` ticks. moving: the net of rope 1 with the motions of root and pull.
 
+        Until all have arrived the race stays as it is: a solve may be ended early, or others look at it meanwhile.
         Returns the numbers of force evaluations and steps of the ropes, without those of the reference runs.
         """
         duration = ticks * self.tick
         before = self.counts()
-        states, references = [entrant.state.copy() for entrant in self.entrants], copy.deepcopy(self.references)
-        try:
-            for entrant in self.entrants:
-                entrant.advance(dataclasses.replace(moving, families=entrant.net.families), ticks)
-            for reference, entrant in zip(self.references, self.entrants, strict=False):
-                reference.advance(dataclasses.replace(moving, families=entrant.net.families), self.t, duration)
-        except InterruptionError:
-            for entrant, state in zip(self.entrants, states, strict=True):
-                entrant.state = state
-            self.references = references
-            raise
+        nets = [dataclasses.replace(moving, families=entrant.net.families) for entrant in self.entrants]
+        arrivals = [entrant.after(net, ticks) for entrant, net in zip(self.entrants, nets, strict=True)]
+        references = copy.deepcopy(self.references)
+        for reference, net in zip(references, nets, strict=False):
+            reference.advance(net, self.t, duration)
+        for entrant, (state, failure) in zip(self.entrants, arrivals, strict=True):
+            entrant.state, entrant.failure = state, failure
+        self.references = references
         self.t += duration
         after = self.counts()
         return after[0] - before[0], after[1] - before[1]

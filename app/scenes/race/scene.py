@@ -77,6 +77,7 @@ class RaceScene:
     """The race on the simulation thread."""
 
     frame_interval = FRAME_INTERVAL
+    faster = "fewer ropes, fewer points or longer steps"
     note = ""  # a rope with a method that cannot run stops and says so; no other method runs instead
 
     def __init__(self, params: Params) -> None:

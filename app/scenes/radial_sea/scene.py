@@ -177,6 +177,11 @@ class RadialSeaScene:
         return self.params.time_step
 
     @property
+    def faster(self) -> str:
+        """What would make a step faster: its time goes into bodies, particles and waves."""
+        return "fewer bodies, fewer waves or a larger step"
+
+    @property
     def note(self) -> str:
         """Nothing else runs than the parameters ask for."""
         return ""

@@ -29,6 +29,7 @@ from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
+from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from app.scenes.springs.work_counts import SpringWorkCounts
 from sim.springs import Net, rope
@@ -168,6 +169,11 @@ class RopeScene:
         """Why another method runs than the one chosen, or ""."""
         return "" if self.params.integrator == AUTO else self.fallback_note
 
+    @property
+    def faster(self) -> str:
+        """What would make a step faster."""
+        return faster_steps(self.integrator, self.stability.stability, "points")
+
     def reset(self) -> None:
         """The rope at rest, level from its root; root and sphere where a new scene has them."""
         self.handles.restart()
@@ -245,12 +251,16 @@ class RopeScene:
 
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where the rope leaves its bounds, and keeps the last good state."""
-        good = self.state.copy()
-        net = self.handles.net_during(self.net, self.state.t, steps * self.step, self.step, self.params)
-        advance(net, self.state, self.integrator, self.step, steps, with_account=True)
-        self.counts.update(net, self.state.force_evals - good.force_evals, steps, with_account=True)
-        found = extremes(self.state.x, self.state.v)
-        if not found.reach < self.max_reach:  # true of a NaN as well
+        good, state = self.state, self.state.copy()  # what is shown in the middle of the steps, and what moves
+        net = self.handles.net_during(self.net, good.t, steps * self.step, self.step, self.params)
+        try:
+            advance(net, state, self.integrator, self.step, steps, with_account=True)
+        finally:  # where it is ended early the steps that were taken count
+            found = extremes(state.x, state.v)
+            if found.reach < self.max_reach:  # false of a NaN as well
+                self.state = state
+        self.counts.update(net, state.force_evals - good.force_evals, steps, with_account=True)
+        if self.state is good:
             self.repeat_to_divergence(net, good, steps)
             raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
         self.max_speed = found.speed
@@ -271,14 +281,16 @@ class RopeScene:
     def repeat_to_divergence(self, net: Net, good: State, steps: int) -> None:
         """Take the steps that left the bounds once more, keep a frame of each, and go back to the last good state."""
         self.state = good.copy()
-        for _ in range(steps):
-            advance(net, self.state, self.integrator, self.step, 1, with_account=True)
-            reach = extremes(self.state.x, self.state.v).reach
-            if reach < MAX_OVERSHOOT * self.max_reach:  # false of a NaN as well
-                self.frame()
-            if not reach < self.max_reach:
-                break
-        self.state = good
+        try:
+            for _ in range(steps):
+                advance(net, self.state, self.integrator, self.step, 1, with_account=True)
+                reach = extremes(self.state.x, self.state.v).reach
+                if reach < MAX_OVERSHOOT * self.max_reach:  # false of a NaN as well
+                    self.frame()
+                if not reach < self.max_reach:
+                    break
+        finally:  # it may be ended early
+            self.state = good
 
     def has_news(self) -> bool:
         """Whether the stability, or the cost of an implicit method, may have changed since the last assessment."""

@@ -114,6 +114,7 @@ class SquareSeaScene:
     """
 
     step = STEP
+    faster = "a smaller grid"
     note = ""  # it always runs what the parameters ask for
 
     def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:

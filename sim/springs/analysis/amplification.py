@@ -56,24 +56,35 @@ def limit_of_many(growth: Callable[[Any], Any]) -> float:
     return float("inf")
 
 
-def nystroem_growth(c: Any, velocity: Any, position: Any, zeta: float, z: Any) -> Any:
-    """Largest eigenvalue of a step of x'' + 2 zeta x' + x = 0 with h = z, of an explicit Nystroem method.
+def nystroem_growth(c: Any, velocity: Any, position: Any, zeta: float) -> Callable[[Any], Any]:
+    """Largest eigenvalue of a step of x'' + 2 zeta x' + x = 0, of an explicit Nystroem method, as a function of h = z.
 
-    c: (stages,) times; velocity, position: (stages + 1, stages) weights of the stages, and of the new state last.
+    c: (stages,) times; velocity, position: (stages + 1, stages) weights of the stages, and of the new state last. The
+    step matrix's entries are polynomials in z, found once: a stage adds two powers.
     """
-    z = np.asarray(z, dtype=float)
-    step = []
-    for x, v in ((1.0, 0.0), (0.0, 1.0)):
-        k = np.zeros((len(c), *z.shape))
+    one = np.zeros(2 * len(c) + 3)
+    one[0] = 1.0
+    entries = []
+    for x, v in ((one, 0.0 * one), (0.0 * one, one)):
+        k = np.zeros((len(c), len(one)))
         for i, time in enumerate(c):
-            xs = x + time * z * v + z * z * np.tensordot(position[i], k, 1)
-            vs = v + z * np.tensordot(velocity[i], k, 1)
-            k[i] = -xs - 2.0 * zeta * vs
-        step.append((x + z * v + z * z * np.tensordot(position[-1], k, 1), v + z * np.tensordot(velocity[-1], k, 1)))
-    (a, c0), (b, d) = step
-    half = 0.5 * (a + d)
-    root = np.sqrt(half * half - (a * d - b * c0) + 0j)
-    return np.maximum(abs(half + root), abs(half - root))
+            xs = x + time * times_z(v) + times_z(times_z(position[i] @ k))
+            k[i] = -xs - 2.0 * zeta * (v + times_z(velocity[i] @ k))
+        entries += [x + times_z(v) + times_z(times_z(position[-1] @ k)), v + times_z(velocity[-1] @ k)]
+    matrix = np.array(entries).T
+
+    def growth(z: Any) -> Any:
+        a, c0, b, d = np.polynomial.polynomial.polyval(z, matrix)
+        half = 0.5 * (a + d)
+        root = np.sqrt(half * half - (a * d - b * c0) + 0j)
+        return np.maximum(abs(half + root), abs(half - root))
+
+    return growth
+
+
+def times_z(coefficients: Any) -> Any:
+    """Coefficients of a polynomial, the lowest first, times z; the highest is 0."""
+    return np.concatenate(([0.0], coefficients[:-1]))
 
 
 def polynomial_of(a: tuple[tuple[float, ...], ...], b: tuple[float, ...]) -> tuple[float, ...]:

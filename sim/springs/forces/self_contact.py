@@ -9,9 +9,10 @@ import math
 
 import numpy as np
 
-from sim.jit import kernel
+from sim.jit import is_stopped, kernel
 from sim.springs.net import SKIN
 
+UNASKED = 64  # particles between two looks at whether the search is to end
 NEIGHBOURS = 2  # rows and columns apart, within which a pair is held by links and never pushes
 
 
@@ -28,7 +29,10 @@ def bucket(cx, cy, cz, mask):
 
 @kernel
 def find_pairs(x, p):
-    """Fill p.pairs with the pairs nearer than (1 + SKIN) thickness, and p.seen with the positions."""
+    """Fill p.pairs with the pairs nearer than (1 + SKIN) thickness, and p.seen with the positions.
+
+    There are none where p.stop asks for an end: who calls a kernel that may end in here looks at p.stop afterwards.
+    """
     n = p.rows * p.cols
     reach = (1.0 + SKIN) * p.thickness
     inverse = 1.0 / reach
@@ -50,6 +54,11 @@ def find_pairs(x, p):
     most = p.pairs.shape[0] - 1
     count = 0
     for a in range(n):
+        if count == most:  # of a net in one heap the search would take the square of its particles
+            break
+        if a % UNASKED == 0 and is_stopped(p.stop):
+            p.pairs[most, 0] = 0
+            return
         ia, ja = a // p.cols, a % p.cols
         ca, cb, cc = cell(x[a], inverse), cell(x[n + a], inverse), cell(x[2 * n + a], inverse)
         for near in range(27):

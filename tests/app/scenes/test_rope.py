@@ -276,8 +276,8 @@ def test_a_change_of_forces_is_booked_as_work_and_not_as_an_error(changes: dict[
     if set(changes) & {"stiffness", "gravity", "mass"}:
         assert abs(jump) > 1.0
     run(scene, 60, 80)
-    assert abs(scene.account.error(scene.net, state)) < 1e-4
-    assert state.dissipated > dissipated
+    assert abs(scene.account.error(scene.net, scene.state)) < 1e-4
+    assert scene.state.dissipated > dissipated
 
 
 def test_another_method_goes_on_with_the_same_account() -> None:

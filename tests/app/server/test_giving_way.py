@@ -1,43 +1,83 @@
-"""A solve gives way to a control that waits for it."""
+"""Controls are answered in the middle of a solve that takes long."""
 
 import dataclasses
 
+import numpy as np
 import pytest
 
-from app.messages import Grab, Pause, Play, Reset
+from app.messages import Grab, Pause, Place, Play, Reset
+from app.scenes.cloth.parameters import Params as ClothParams
+from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import RopeScene
-from app.server.loop import PATIENCE, SimLoop
-from sim.interruption import InterruptionError
+from app.server.loop import PATIENCE, CommandQueue, SimLoop
+from sim.interruption import STOP, TURN, InterruptionError, use_request
+
+
+class Asked:
+    """What the panel has now."""
+
+    def __init__(self, params):
+        self.params = params
+
+    def __call__(self):
+        return self.params, 0
 
 
 @pytest.fixture
 def busy():
-    """A loop in the middle of a tick that takes long."""
-    loop = SimLoop(RopeScene(Params(points=4)), clock=lambda: 1.0)
-    loop.busy_since = 1.0 - 2.0 * PATIENCE
+    """A loop in the middle of a step that takes long."""
+    scene = RopeScene(Params(points=4))
+    loop = SimLoop(scene, CommandQueue(), Asked(scene.params), clock=lambda: 1.0)
+    loop.busy_since = loop.turn_at = 1.0 - 2.0 * PATIENCE
+    loop.solving = loop.may_end = True
     return loop
 
 
 @pytest.mark.parametrize(("command", "ends"), [(Reset(), 1), (Pause(), 1), (Play(), 0), (Grab(1, (0.0, 0.0, 0.0)), 0)])
 def test_a_solve_ends_for_what_begins_anew_and_not_for_a_drag(busy, command, ends):
     busy.commands.put(command)
-    busy.give_way(busy.scene.params)
-    assert busy.request[0] == ends
+    busy.give_turn()
+    assert busy.request[STOP] == ends
 
 
 @pytest.mark.parametrize(("change", "ends"), [({"stiffness": 90.0}, 1), ({"points": 5}, 1), ({"speed": 0.5}, 0)])
 def test_a_solve_ends_for_other_forces_and_not_for_the_look(busy, change, ends):
-    busy.give_way(dataclasses.replace(busy.scene.params, **change))
-    assert busy.request[0] == ends
+    busy.read_params.params = dataclasses.replace(busy.scene.params, **change)
+    busy.give_turn()
+    assert busy.request[STOP] == ends
 
 
-def test_a_short_solve_and_an_idle_loop_are_left_alone(busy):
-    busy.commands.put(Reset())
-    for since in (None, 1.0 - 0.5 * PATIENCE):
-        busy.busy_since = since
-        busy.give_way(busy.scene.params)
-        assert busy.request[0] == 0
+def test_a_look_and_a_drag_show_in_the_middle_of_a_solve_and_nothing_new_does_not(busy):
+    busy.give_turn()
+    assert busy.latest.serial == 1
+    busy.read_params.params = dataclasses.replace(busy.scene.params, grid=False)
+    busy.give_turn()
+    assert busy.latest.serial == 2
+    assert not busy.latest.frame.grid
+    assert busy.latest.params is busy.read_params.params
+    busy.commands.put(Play())
+    busy.commands.put(Place("root", (0.0, 0.0, 0.5)))
+    busy.give_turn()
+    assert busy.latest.serial == 3
+    assert busy.latest.frame.root == (0.0, 0.0, 0.5)
+    assert busy.waiting == [Play()]
+
+
+def test_in_the_middle_of_a_reset_the_last_frame_stays_with_the_new_parameters(busy):
+    busy.solving = False
+    busy.scene.params = busy.read_params.params = dataclasses.replace(busy.scene.params, points=5)
+    busy.scene.frame = None  # not asked for
+    busy.give_turn()
+    assert len(busy.latest.frame.points) == 4
+    assert busy.latest.params.points == 5
+
+
+def test_a_turn_is_asked_for_after_a_while_and_not_of_an_idle_loop(busy):
+    for since, turn_at, asked in ((None, 0.0, 0), (0.0, 1.0 - 0.5 * PATIENCE, 0), (0.0, 1.0 - 1.5 * PATIENCE, 1)):
+        busy.busy_since, busy.turn_at = since, turn_at
+        busy.ask_for_turn()
+        assert busy.request[TURN] == asked
 
 
 def test_a_reset_that_was_ended_early_is_done_again_and_a_step_is_not(busy):
@@ -55,10 +95,73 @@ def test_a_reset_that_was_ended_early_is_done_again_and_a_step_is_not(busy):
     busy.scene.reset = ended_once("reset", busy.scene.reset)
     busy.commands.put(Reset())
     busy.tick(0.0)
-    assert calls == ["reset", "reset"]  # ended, then done in the same tick, before any step
+    assert busy.unfinished is not None
+    busy.commands.put(Grab(1, (0.0, 0.0, 0.0)))  # what else is asked for does not make it forget that
+    busy.tick(0.0)
+    assert calls == ["reset", "reset"]
+    assert busy.unfinished is None
     busy.scene.advance = ended_once("advance", busy.scene.advance)
     busy.tick(0.1)
     assert busy.running
     assert not busy.halted
     assert busy.unfinished is None
     assert busy.counts["solves ended early"] == 2
+
+
+def test_other_forces_after_a_reset_that_was_ended_early_begin_again(busy):
+    changed, resets = [], busy.scene.reset
+
+    def ended():
+        raise InterruptionError
+
+    busy.scene.reset, busy.scene.change_forces = ended, changed.append
+    busy.read_params.params = dataclasses.replace(busy.scene.params, root_swing=0.2)
+    busy.commands.put(Reset())
+    busy.tick(0.0)
+    busy.scene.reset = resets
+    busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
+    busy.tick(0.0)
+    assert (busy.unfinished, busy.halted) == (None, "")
+
+
+@pytest.mark.parametrize("solving", [True, False])
+def test_a_change_of_forces_is_not_ended_in_its_middle(busy, solving):
+    def change(params):
+        busy.commands.put(Reset())
+        busy.give_turn()
+        ended.append(int(busy.request[STOP]))
+
+    ended = []
+    if solving:
+        busy.scene.advance = change
+        busy.advance(1)
+    else:
+        busy.solving, busy.scene.change_forces = False, change
+        busy.take(dataclasses.replace(busy.scene.params, stiffness=90.0))
+    assert ended == [solving]
+
+
+@pytest.mark.parametrize("changes", [{"integrator": "implicit_euler", "time_step": 0.05}, {"thickness": 0.1}])
+def test_a_cloth_gives_turns_within_a_step_and_shows_the_last_whole_one(changes):
+    scene = ClothScene(ClothParams(rows=16, cols=16, **changes))
+    loop = SimLoop(scene, CommandQueue(), Asked(scene.params))
+    other = ClothScene(scene.params)
+    seen = []
+
+    def turn():
+        loop.give_turn()
+        loop.request[TURN] = len(seen) < 5
+        seen.append((scene.time, scene.state.x.copy()))
+
+    use_request(loop.request, turn)
+    try:
+        loop.request[TURN] = 1
+        start = scene.state.x.copy()
+        scene.advance(1)
+    finally:
+        use_request(np.array([0, 1, 0, 0]))
+    assert len(seen) == 6
+    assert all(t == 0.0 and np.array_equal(x, start) for t, x in seen)
+    other.advance(1)
+    assert scene.time == other.time > 0.0
+    assert np.array_equal(scene.state.x, other.state.x)  # the turns change nothing

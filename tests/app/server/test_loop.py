@@ -50,6 +50,7 @@ class Scene:
     """A scene that counts."""
 
     step = 0.01
+    faster = "fewer points"
 
     def __init__(self, clock: Clock, cost: float = 0.0) -> None:
         self.params = Params()
@@ -335,7 +336,7 @@ def test_a_command_ends_a_long_sleep_and_is_handled_after_the_parameters(seconds
     stop = threading.Event()
     threading.Timer(0.1, lambda: loop.commands.put(Reset())).start()
     loop.wait(1000.0 * seconds, stop)
-    assert loop.first == Reset()
+    assert loop.waiting == [Reset()]
     assert scene.resets == 0
     given = Params(stiffness=3.0)
     reset, seen = scene.reset, []

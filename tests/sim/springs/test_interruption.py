@@ -33,7 +33,7 @@ ENDLESS = [*(name for name, record in INTEGRATORS.items() if record.implicit), "
 @pytest.fixture
 def request_of_this_thread():
     """A request as the simulation's thread has one; what was there before comes back."""
-    before, request = stop_request(), np.zeros(2, np.int64)
+    before, request = stop_request(), np.zeros(4, np.int64)
     use_request(request)
     yield request
     use_request(before)
@@ -84,16 +84,16 @@ def test_a_race_that_is_ended_early_goes_on_from_where_all_its_ropes_were(reques
     for scene in (ended, other):
         scene.advance(3)
     second = ended.race.entrants[1]
-    first = second.advance
+    first = second.after
 
-    def advance_until_asked(net, ticks):
+    def until_asked(net, ticks):
         request_of_this_thread[0] = 1
-        first(net, ticks)
+        return first(net, ticks)
 
-    second.advance = advance_until_asked
+    second.after = until_asked
     with pytest.raises(InterruptionError):
         ended.advance(1)
-    second.advance = first
+    second.after = first
     request_of_this_thread[0] = 0
     for scene in (ended, other):
         scene.advance(2)

@@ -9,7 +9,7 @@ from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.vector_ops import add_scaled
 
 MOST = 500
-UNASKED = 16  # iterations between two looks at whether the solve is to end
+UNASKED = 4  # iterations between two looks at whether the solve is to end
 
 
 @kernel(noalias=True, inline=True)

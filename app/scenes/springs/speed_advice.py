@@ -1,0 +1,31 @@
+"""What would make the steps of a net of springs faster."""
+
+from app.scenes.springs.methods import method_name
+from sim.formatting import seconds
+from sim.springs import INTEGRATORS
+from sim.springs.integrators import Integrator
+from sim.springs.stability import Gauge
+
+CAUTION = 0.9  # of the limit of a method, up to which a step is proposed
+
+
+def faster_steps(integrator: Integrator, gauge: Gauge, points: str, *, touches_itself: bool = False) -> str:
+    """Proposals in words. gauge: of the step that is taken; points: what the net has fewer of where it is coarser."""
+    proposals = [f"fewer {points}"]
+    if touches_itself:
+        proposals.append("no self-collision")
+    if integrator.implicit:
+        proposals.append("a larger step")
+    elif gauge.h_omega < 0.5 * CAUTION * gauge.limit:
+        proposals.append(f"a larger step, up to {seconds(CAUTION * gauge.critical_step, 2)}")
+    leapfrog = INTEGRATORS["leapfrog"]
+    dearer = integrator.evals > leapfrog.evals or integrator.implicit
+    if dearer and gauge.h_omega < CAUTION * leapfrog.limit(gauge.zeta):
+        proposals.append(f"leapfrog instead of {method_name(integrator.name)}")
+    return either(proposals)
+
+
+def either(proposals: list[str]) -> str:
+    """One or more things in a sentence: a, b or c."""
+    *others, last = proposals
+    return f"{', '.join(others)} or {last}" if others else last

@@ -49,6 +49,7 @@ class TableReport(NamedTuple):
     running: Mapping[str, str] = {}  # function -> what it moves
     idle: Mapping[str, str] = {}  # function -> why the scene has no use for it just now
     differences: tuple[tuple[str, float, float, str], ...] = ()  # what, the student's, the program's, unit
+    off: bool = False  # the scene could run by them, and runs by the program's
 
 
 class LiveTables:

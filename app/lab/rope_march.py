@@ -127,7 +127,10 @@ class Functions:
         self.links = compiled.get(LINKS)
         self.step = step
         self.forces: Forces
-        self.now = 0.0  # [s] since the start of the segment, in the middle of the step
+        # Share of a step at which the sphere is taken: at the start by methods that ask there only; a step of another
+        # method does not say at which of its moments it asks.
+        self.moment = 0.0 if step in ("step_euler", "step_symplectic") else 0.5
+        self.now = 0.0  # [s] since the start of the segment, at that moment
 
     def get(self, name: str) -> Callable[..., Any]:
         """The student's function, or the reference solution."""
@@ -279,7 +282,7 @@ def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Seg
         for segment in segments:
             functions.forces = segment.forces
             for i in range(segment.steps):
-                functions.now = (i + 0.5) * segment.h  # a step does not say at which of its moments it asks
+                functions.now = (i + functions.moment) * segment.h
                 x, v = functions.advance(x, v, segment.h)
                 taken += 1
                 functions.hold(x, v, segment, i)

@@ -30,7 +30,7 @@ from app.lab.scene_values import SceneValues
 from app.lab.task import Task
 from sim.validation import argument_error
 
-SETTLE_TIME = 50  # [ms] without a further change before a save is read: editors write a file in several steps
+SETTLE_TIME = 20  # [ms] without a further change before a save is read: editors write a file in several steps
 MAX_SETTLE_TIME = 400  # [ms]
 COMPILE_DELAY = 1.0  # [s] after a save: who saves again at once is not kept waiting
 LOOK_INTERVAL = 500  # [ms] between two looks whether to end

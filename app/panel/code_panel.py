@@ -94,7 +94,8 @@ def state_of(session: Session) -> CodeState:
 def tables_of(session: Session) -> TableReport:
     """What runs by tables, and of what does not the functions that the student has begun."""
     report, begun = session.tables.report, frozenset() if session.saved is None else session.saved.begun
-    return report._replace(idle={name: why for name, why in report.idle.items() if name in begun})
+    idle = {name: why for name, why in report.idle.items() if name in begun}
+    return report._replace(idle=idle, off=bool(session.tables.tables) and not session.tables.shown)
 
 
 def place_of(error: RunError) -> str:
@@ -118,11 +119,12 @@ def headline(state: CodeState, report: StudentReport, tables: TableReport, scene
 
 def code_lines(state: CodeState, report: StudentReport, tables: TableReport, scene: str) -> Html:
     """What is saved, what stops it, and what it moves in a scene."""
-    said: list[Html] = [saved_text(state, HINTS.get(scene, ""), runs=bool(report.version or tables.running))]
+    runs = bool(report.version or tables.running)
+    said: list[Html] = [saved_text(state, HINTS.get(scene, ""), runs=runs or tables.off)]
     if state.error is not None:
         place = bold(place_of(state.error))
         said.append(fill('<div class="springtide-code-error">{}: {}</div>', place, state.error.text))
-        if report.version or tables.running:
+        if runs:
             said.append(fill("The last version that worked goes on."))
     if report.version:
         said += net_texts(state, report, scene)
@@ -132,9 +134,11 @@ def code_lines(state: CodeState, report: StudentReport, tables: TableReport, sce
 def sea_texts(tables: TableReport) -> list[Html]:
     """The functions that a sea runs by, those that it has no use for, and what differs from the program's sea."""
     said: list[Html] = []
+    if tables.off:
+        said.append(fill("The sea runs by the program's functions."))
     if tables.running:
-        what = ", ".join(f"{moved} by {name}" for name, moved in tables.running.items())
-        said.append(fill("Your sea: {}.", bold(what)))
+        what = join((fill("{} ({})", bold(name), moved) for name, moved in tables.running.items()), ", ")
+        said.append(fill("The sea runs by your {}.", what))
     for name, own, program, unit in tables.differences:
         value, reference = (f"{number(x, 3)} {unit}" if x == x else "…" for x in (own, program))
         said.append(fill("{} {} (program {})", name, bold(value), reference))
@@ -183,7 +187,8 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
     if scene == "rope" and report.method == "leapfrog" and report.difference > SAME:
         said.append(faint("The program's leapfrog takes damping exactly: a right one differs by a centimetre or so."))
     if report.restarts:
-        said.append(faint(f"Too slow: it started again from the program's {scene} {report.restarts} times."))
+        often = "once" if report.restarts == 1 else f"{report.restarts} times"
+        said.append(faint(f"Too slow: it started again from the program's {scene} {often}."))
     return said
 
 

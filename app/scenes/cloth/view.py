@@ -21,7 +21,7 @@ from sim.formatting import number
 from sim.packing import compile_packing
 
 CLOTH_COLOUR = (176, 58, 72)
-STUDENT_COLOUR, STUDENT_OPACITY = (40, 92, 170), 0.55
+STUDENT_COLOUR, STUDENT_OPACITY = (20, 150, 90), 0.7  # a colour that no strain has
 POINT_STEP = 2.0**-15  # [m] to which points are rounded for the page: no grain shows in the light on a fine cloth
 SPHERE_ROWS = 24  # of the drawn sphere, from pole to pole
 SPHERE_COLOUR = (92, 140, 190)

@@ -21,6 +21,7 @@ MAX_BEHIND = 1.0  # [s] of simulated time that the student's rope may be late; t
 MAX_MATCHED = 0.1  # [s] up to which the program's rope is drawn as late as the student's
 JOB_TIME = 0.05  # [s] that a job should take
 MAX_ROWS = 600  # kept of the course of the difference
+MAX_PART = 16  # steps of a job at least: a slow function must not seem endless where a slow machine catches up
 
 
 class Piece(NamedTuple):
@@ -28,7 +29,7 @@ class Piece(NamedTuple):
 
     segment: Segment
     time: float  # [s] at its end
-    x: NDArray[np.float64]  # (n, 3) [m] the program's net at its end
+    x: NDArray[np.float64] | None  # (n, 3) [m] the program's net at its end; None within a piece that was divided
 
 
 class StudentNet:
@@ -68,7 +69,12 @@ class StudentNet:
     def follow(self, segment: Segment, end: float, method: str, x: NDArray[np.float64], v: NDArray[np.float64]) -> None:
         """Take a segment up to the time `end` [s], at which the program's net is at x with velocities v, (n, 3)."""
         self.method = method
-        self.waiting.append(Piece(segment, end, x))
+        parts = divided(segment)
+        start = end - segment.steps * segment.h
+        for part in parts[:-1]:
+            start += part.steps * part.h
+            self.waiting.append(Piece(part, start, None))
+        self.waiting.append(Piece(parts[-1], end, x))
         if end - self.time > MAX_BEHIND and not self.left:
             restarts = self.live.report.restarts + 1
             self.begin(x, v, end)
@@ -107,9 +113,10 @@ class StudentNet:
         if not answer.version:
             self.points = self.matched = None
             self.max_speed = 0.0
+            for piece in (*pieces, *self.waiting):
+                if piece.x is not None:
+                    self.x, self.v, self.time = piece.x, np.zeros_like(piece.x), piece.time
             self.waiting.clear()
-            if pieces:
-                self.x, self.v, self.time = pieces[-1].x, np.zeros_like(pieces[-1].x), pieces[-1].time
             return
         self.cost = answer.seconds
         left = answer.left
@@ -117,10 +124,13 @@ class StudentNet:
             if np.linalg.norm(x - x[0], axis=1).max() > max_reach:
                 left = True
                 break
-            self.x, self.time, self.matched = x, piece.time, piece.x
+            self.x, self.time = x, piece.time
+            if piece.x is None:
+                continue
+            self.points, self.matched = x, piece.x
             if self.is_comparable:
                 self.rows.append((piece.time, float(np.linalg.norm(x - piece.x, axis=1).max())))
-        self.v, self.points, self.left = answer.v, self.x, left
+        self.v, self.left = answer.v, left
         self.max_speed = 0.0 if left else float(np.abs(answer.v).max())
         table = np.array(self.rows).reshape(-1, 2)
         behind = sum(piece.segment.steps * piece.segment.h for piece in self.waiting)
@@ -137,6 +147,18 @@ class StudentNet:
         if self.points is None or self.matched is None or len(self.points) != len(x):
             return None
         return self.points, self.matched if self.live.report.behind <= MAX_MATCHED and not self.left else x
+
+
+def divided(segment: Segment) -> list[Segment]:
+    """The same steps in parts of MAX_PART at most."""
+    parts: list[Segment] = []
+    forces = segment.forces
+    for first in range(0, segment.steps, MAX_PART):
+        steps = min(MAX_PART, segment.steps - first)
+        centre = np.array(forces.centre) + first * segment.h * np.array(forces.velocity)
+        x, y, z = centre.tolist()
+        parts.append(Segment(steps, segment.h, forces._replace(centre=(x, y, z)), segment.root[first : first + steps]))
+    return parts
 
 
 def forces_of(net: Net, start: float) -> Forces:

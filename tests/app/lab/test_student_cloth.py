@@ -161,3 +161,17 @@ def test_a_cloth_that_is_saved_does_not_begin_another_scene_again(right: Session
     save(right, RIGHT + "\n# changed\n", "cloth.py")
     wait_for(lambda: right.cloth.taken == right.state.version)
     assert begun == []
+
+
+def test_many_steps_at_once_are_taken_in_parts_that_end_where_they_would(right: Session) -> None:
+    scene = ClothScene(dataclasses.replace(SMALL, start="level", sphere=True, bob=0.2), right.live)
+    student = scene.student
+    assert student is not None
+    for steps in (40, 7):
+        scene.advance(steps)
+        pieces = [*student.sent, *student.waiting]
+        assert [piece.segment.steps for piece in pieces] == {40: [16, 16, 8], 7: [7]}[steps]
+        assert pieces[-1].time == pytest.approx(scene.time)
+        wait_for(lambda: scene.handle(StudentAnswer()) or not (student.sent or student.waiting))
+    assert student.time == pytest.approx(scene.time)
+    assert right.cloth.report.difference < 1e-6

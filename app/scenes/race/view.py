@@ -8,6 +8,7 @@ import numpy as np
 import viser
 
 from app.messages import Snapshot, Vector
+from app.render.cameras import all_cameras
 from app.render.colormap import rgb
 from app.render.dragging import drag
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
@@ -30,11 +31,13 @@ REFERENCE_COLOUR = (70, 76, 88)
 REFERENCE_OPACITY = 0.4
 COLOUR_SCALE = 0.6  # of a colour's numbers, so that a rope lit from all sides has the colour it has in the charts
 FAILED_OPACITY = 0.35  # of a rope that has stopped
-LABEL_SCALE = 1.25  # of a label, over viser's own size
+LABEL_SCALE = 1.6  # of a label, over viser's own size: letters 14 pixels high
 LABEL_HEIGHT = 0.19  # [m] from a root to its label, and between the heights of two labels, so that they do not overlap
 
-BEARING = math.cos(0.7), math.sin(0.7)  # of the first view, from along the row of ropes towards their side
-ELEVATION = 0.2  # [rad] of the first view
+BEARING = math.cos(0.22), math.sin(0.22)  # of the first view: from the front, and as far aside as tells ropes apart
+ELEVATION = 0.05  # [rad] of the first view
+NEAR = 1.0  # [m] from the camera, where the picture begins: nearer, and depth is too coarse for ropes that far away
+VISER_NEAR = 0.01  # [m] the same in every other scene
 SHOWN_SWING = 0.8  # share of the length of a rope to either side that the first view shows
 SHOWN_FALL = 1.45  # lengths of a rope below its root that the first view shows
 SHOWN_ASPECT = 1.25  # width over height of what the first view shows at least (`js/camera.js`)
@@ -153,13 +156,20 @@ class RopesDrawing:
 class View:
     """Draws `RaceFrame`s."""
 
-    FIELD_OF_VIEW = 0.45  # [rad], so narrow that the farthest rope looks about as large as the nearest
+    FIELD_OF_VIEW = 0.06  # [rad], from so far away that all ropes look equally large
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         self.server = server
         self.post = post
         self.surroundings = RopeSurroundings(server, post)
+        self.surroundings.surroundings.floor.fade_from = "origin"  # the camera is far away
+        self.set_near(NEAR)
         self.ropes: RopesDrawing | None = None
+
+    def set_near(self, distance: float) -> None:
+        """Begin the picture of every camera at a distance [m]."""
+        for camera in all_cameras(self.server):
+            camera.near = distance
 
     async def on_bead(self, event: Any) -> None:
         """Pull the bead that is dragged."""
@@ -204,7 +214,8 @@ class View:
         set_dark(client, dark)
 
     def close(self) -> None:
-        """Removing the nodes of the scene removes everything."""
+        """Put back what removing the nodes of the scene does not."""
+        self.set_near(VISER_NEAR)
 
 
 def warm_up() -> Pieces:

@@ -320,6 +320,16 @@ def test_the_first_view_shows_all_ropes_hanging_and_swinging_with_their_labels(c
             assert abs(seen @ np.cross(right, ahead)) < tan * depth
 
 
+def test_all_ropes_look_equally_large_from_the_front():
+    params = Params(ropes=6)
+    position, target = np.array(View.first_view(object.__new__(View), params))
+    ahead = (target - position) / np.linalg.norm(target - position)
+    depths = [(np.array([0.0, offset_of(params, number), ROOT[2]]) - position) @ ahead for number in range(6)]
+    assert max(depths) / min(depths) < 1.05
+    swing = np.array([1.0, 0.0, 0.0])  # the direction in which ropes swing is seen at full length, within 3 %
+    assert np.linalg.norm(np.cross(ahead, swing)) > 0.97
+
+
 def test_all_roots_follow_the_same_arrows():
     scene = race(ropes=2, integrator="rk4")
     scene.handle(Place("root", (0.3, 0.2, 3.4)))

@@ -1,4 +1,9 @@
-"""Counts what the viewer thread hands to viser: arrays, texts and bytes.
+"""Hands what the viewer thread draws to viser, one picture at a time, and counts it: arrays, texts and bytes.
+
+viser's own `atomic()` holds a browser's next message back while a picture is handed over. But a message that is just
+being put together may still end in the middle of a picture, or take half of one that the next replaces. Therefore a
+picture is handed over as a whole on viser's event loop, where messages are put together too: mesh and poses of one
+picture are always in one message, however slow a browser is.
 
 The names with an underscore are viser's own and a reason for the upper bound in pyproject.toml; the tests fail when
 they change.
@@ -9,7 +14,7 @@ they change.
 import collections
 import contextlib
 import threading
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from typing import cast
 
 import numpy as np
@@ -17,6 +22,8 @@ import viser
 
 from app.messages import WorkCount
 from app.render.viser_types import ViserConnection
+
+MAX_WAIT = 1.0  # [s] for viser's event loop to take a picture
 
 
 def kind_and_size(value: object) -> tuple[str, int] | None:
@@ -37,13 +44,17 @@ class TransportCounters:
     def __init__(self, server: viser.ViserServer) -> None:
         self.sent: collections.Counter[str] = collections.Counter()
         self.counting_thread: int | None = None
+        self.picture: list[object] = []  # messages of the picture that is being drawn
+        self.loop = server.get_event_loop()
         connection: ViserConnection = server._websock_server
-        send = connection.queue_message
+        self.send = connection.queue_message
 
         def queue_message(message: object) -> None:
             if threading.get_ident() == self.counting_thread:
                 self.count(message)
-            send(message)
+                self.picture.append(message)
+            else:
+                self.send(message)
 
         connection.queue_message = queue_message
 
@@ -60,12 +71,31 @@ class TransportCounters:
 
     @contextlib.contextmanager
     def counted(self) -> Generator[None]:
-        """While open, what this thread hands over is counted."""
+        """While open, what this thread hands over is counted; at the end it is handed over as one.
+
+        It has been when this ends: what is removed later must not come before it.
+        """
         self.counting_thread = threading.get_ident()
         try:
             yield
         finally:
             self.counting_thread = None
+            picture, self.picture = self.picture, []
+            if picture:
+                self.hand_over(picture)
+
+    def hand_over(self, picture: Sequence[object]) -> None:
+        """Give viser the messages of a picture on its event loop, and wait until it has them."""
+        done = threading.Event()
+
+        def send_all() -> None:
+            for message in picture:
+                self.send(message)
+            done.set()
+
+        with contextlib.suppress(RuntimeError):  # the server has ended
+            self.loop.call_soon_threadsafe(send_all)
+            done.wait(MAX_WAIT)
 
     def begin(self) -> None:
         """Count from 0: another scene."""

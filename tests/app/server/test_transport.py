@@ -1,0 +1,92 @@
+"""What a browser is sent of one picture comes in one message, however slow the browser is."""
+
+import asyncio
+import threading
+import time
+from typing import Any
+
+import msgspec
+import viser
+import websockets
+import zstandard
+from websockets.asyncio.client import connect
+
+from app.server.guard import open_server
+from app.server.transport import TransportCounters
+from tests import coroutines
+
+NODES = 12  # of the drawing, a mesh and a place each
+PICTURES = 300
+
+
+def decoded(sent: bytes) -> list[dict[str, Any]]:
+    """The messages of one websocket message of viser's."""
+    size = int.from_bytes(sent[8:16], "little")
+    inner = zstandard.ZstdDecompressor().decompress(sent[16 : 16 + size], max_output_size=100_000_000)
+    return msgspec.msgpack.decode(inner)["messages"]
+
+
+class SlowDict(dict):
+    """A dict that lets other threads run whenever it is read."""
+
+    def get(self, key: Any, default: Any = None) -> Any:
+        time.sleep(1e-4)
+        return super().get(key, default)
+
+
+async def torn_messages(port: int, ended: threading.Event) -> tuple[int, int]:
+    """How many messages have a part of a picture, and after how many of them not all nodes show the same one."""
+    protocol = websockets.Subprotocol(f"viser-v{viser.__version__}")
+    shown: dict[tuple[str, str], Any] = {}
+    whole = torn = 0
+    address = f"ws://127.0.0.1:{port}"
+    async with connect(address, subprotocols=[protocol], max_size=None, max_queue=1) as client:
+        while not ended.is_set():
+            try:
+                async with asyncio.timeout(0.5):
+                    sent = bytes(await client.recv())
+            except TimeoutError:
+                continue
+            parts = [message for message in decoded(sent) if str(message.get("name", "")).startswith("/node")]
+            for message in parts:
+                if message["type"] == "SetPositionMessage":
+                    shown[message["name"], "place"] = round(message["position"][0])
+                elif "text" in message.get("updates", {}):
+                    shown[message["name"], "mesh"] = int(message["updates"]["text"])
+            if parts and len(shown) == 2 * NODES:
+                whole += 1
+                torn += len(set(shown.values())) > 1
+    return whole, torn
+
+
+def test_mesh_and_poses_of_a_picture_come_in_one_message() -> None:
+    server, _ = open_server("127.0.0.1", 0)
+    buffer = server._websock_server.get_message_buffer()
+    buffer.window_duration_sec = 0.0
+    buffer.message_from_id = SlowDict(buffer.message_from_id)  # of which viser makes messages
+    transport = TransportCounters(server)
+    ended = threading.Event()
+    try:
+        nodes = [server.scene.add_label(f"/node_{i}", "0") for i in range(NODES)]
+
+        def draw() -> None:
+            time.sleep(0.3)
+            for picture in range(1, PICTURES):
+                with transport.counted(), server.atomic():
+                    for node in nodes:
+                        node.text = str(picture)
+                    for node in nodes:
+                        node.position = (float(picture), 0.0, 0.0)
+                time.sleep(0.002)
+            time.sleep(0.3)
+            ended.set()
+
+        painter = threading.Thread(target=draw)
+        painter.start()
+        whole, torn = coroutines.run(torn_messages(server.get_port(), ended))
+        painter.join()
+        assert whole > 10
+        assert torn == 0
+    finally:
+        ended.set()
+        server.stop()

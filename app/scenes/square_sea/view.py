@@ -11,6 +11,7 @@ import viser
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
 from app.render.material import RAIN_HEIGHT, Material
+from app.render.meshes import ball, tube_faces
 from app.render.skies import CAMERA_RANGE, set_sky
 from app.render.water import Water
 from app.scenes.contract import Pieces
@@ -42,6 +43,7 @@ MIN_RIPPLE_LENGTHS = 3.0  # shortest ripple, in capillary lengths 2 pi sqrt(tens
 FOAM_CELLS = 0.9  # size of a patch of foam, in cells of the mesh, so that it hides the facets of the mesh
 MAX_RIPPLE_SLOPE = 0.25  # rms, beyond which the shader's ripples look like noise
 RAIN_BLUR = 0.9  # of the haze's colour in rain: all of the sky is haze there, and shows the blocks of the photograph
+GAUGE_SIDES = 24  # of its cylinders
 GAUGE_COLOUR, SPAR_COLOUR = (240, 96, 32), (245, 245, 240)
 
 
@@ -61,7 +63,7 @@ class View:
         self.server, self.post = server, post
         self.water: Water | None = None
         self.rain: RainMesh | None = None
-        self.gauge: viser.FrameHandle | None = None
+        self.gauge: WaveGaugeMesh | None = None
         self.mesh_shape: tuple[int, float] = (0, DEFAULTS.length)  # vertices along a side, length [m]
         self.view = DEFAULTS.view
         self.sky: tuple[str, float] | None = None  # name of the sky and direction of the sun as shown
@@ -162,14 +164,10 @@ class View:
 
     def show_gauge(self, frame: SeaFrame) -> None:
         """Draw the wave gauge where it is shown."""
-        if frame.gauge is None:
-            if self.gauge is not None:
-                self.gauge.visible = False
-            return
-        if self.gauge is None:
-            self.gauge = add_gauge(self.server)
-        self.gauge.visible = True
-        self.gauge.position = frame.gauge
+        if self.gauge is None and frame.gauge is not None:
+            self.gauge = WaveGaugeMesh(self.server)
+        if self.gauge is not None:
+            self.gauge.show(frame.gauge)
 
     def move_cameras(self, old: float, new: float) -> None:
         """Move every camera from over a tile of side `old` [m] to as far from the middle of one of side `new` [m]."""
@@ -202,14 +200,51 @@ class View:
         self.server.scene.remove_click_callback(self.on_click)
 
 
-def add_gauge(server: viser.ViserServer) -> viser.FrameHandle:
-    """The wave gauge: a buoy with a spar and a ball, 3 m high."""
-    scene = server.scene
-    frame = scene.add_frame("/gauge", show_axes=False)
-    scene.add_cylinder("/gauge/spar", radius=0.09, height=4.2, color=SPAR_COLOUR, position=(0, 0, 0.9))
-    scene.add_cylinder("/gauge/float", radius=0.45, height=0.6, color=GAUGE_COLOUR, position=(0, 0, 0.2))
-    scene.add_icosphere("/gauge/ball", radius=0.3, color=GAUGE_COLOUR, position=(0, 0, 3.0))
-    return frame
+class WaveGaugeMesh:
+    """The wave gauge: a buoy with a spar and a ball, 3 m high.
+
+    Each part is a batch of one: a slow page places nodes before it draws the new vertices of the water, but the
+    instances of a batch together with them.
+    """
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        vertices, faces = ball(8)
+        parts = {
+            "spar": (*upright(0.09, -1.2, 3.0), SPAR_COLOUR),
+            "float": (*upright(0.45, -0.1, 0.5), GAUGE_COLOUR),
+            "ball": (0.3 * vertices + (0.0, 0.0, 3.0), faces, GAUGE_COLOUR),
+        }
+        self.parts = [
+            server.scene.add_batched_meshes_simple(
+                f"/gauge/{name}",
+                mesh.astype(np.float32),
+                triangles,
+                batched_wxyzs=np.array([[1.0, 0.0, 0.0, 0.0]], np.float32),
+                batched_positions=np.zeros((1, 3), np.float32),
+                # viser takes the colours of instances as linear ones.
+                batched_colors=(255.0 * (np.array([colour]) / 255.0) ** 2.2).astype(np.uint8),
+                lod="off",
+                flat_shading=name != "ball",
+            )
+            for name, (mesh, triangles, colour) in parts.items()
+        ]
+
+    def show(self, position: Vector | None) -> None:
+        """Draw it at a position [m]; None hides it."""
+        for part in self.parts:
+            part.visible = position is not None
+            if position is not None:
+                part.batched_positions = np.array([position], np.float32)
+
+
+def upright(radius: float, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and triangles of a cylinder of `radius` between two heights [m]."""
+    angle = 2 * math.pi / GAUGE_SIDES * np.arange(GAUGE_SIDES)
+    ring = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    heights = np.repeat([low, high], GAUGE_SIDES)[:, None]
+    sides = np.hstack([np.concatenate([ring, ring]), heights])
+    vertices = np.concatenate([sides, [[0.0, 0.0, low], [0.0, 0.0, high]]])
+    return vertices, tube_faces(2, GAUGE_SIDES)
 
 
 def warm_up() -> Pieces:

@@ -1,10 +1,12 @@
 """The view of the square sea on a viser server without a browser."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
 import viser
+from viser._messages import SetOrientationMessage, SetPositionMessage
 
 from app.scenes.square_sea.parameters import Params
 from app.scenes.square_sea.scene import SquareSeaScene
@@ -45,3 +47,20 @@ def test_another_length_takes_the_cameras_along(server: viser.ViserServer) -> No
     view.show(scene.frame())
     np.testing.assert_allclose(camera.position, (62.0, 52.0, 5.0))
     np.testing.assert_allclose(camera.look_at, (72.0, 52.0, 3.0))
+
+
+def test_the_wave_gauge_moves_with_the_vertices_of_the_water_and_not_as_a_node(server: viser.ViserServer) -> None:
+    """viser's page draws new vertices, and instances of a batch, frames after it has moved a node."""
+    view, scene = View(server, lambda command: None), SquareSeaScene(Params(size="64", mesh="32", plot_wave_gauge=True))
+    scene.advance(1)
+    view.show(scene.frame())
+    sent: list[Any] = []
+    server._websock_server.queue_message = sent.append  # type: ignore[method-assign]
+    scene.advance(30)
+    frame = scene.frame()
+    view.show(frame)
+    assert frame.gauge is not None
+    changes = {message.name: message.updates for message in sent if hasattr(message, "updates")}
+    for part in ("spar", "float", "ball"):
+        np.testing.assert_allclose(changes[f"/gauge/{part}"]["batched_positions"], [frame.gauge], atol=1e-5)
+    assert not any(isinstance(message, SetPositionMessage | SetOrientationMessage) for message in sent)

@@ -89,6 +89,12 @@ def make_parser() -> argparse.ArgumentParser:
     add_serving(parser)
     commands = parser.add_subparsers(metavar="COMMAND")
 
+    beside = commands.add_parser("beside", help="two or three set-ups side by side, on one clock")
+    words = "SCENE, SCENE:PRESET, a link, a set-up file; or alone the name of a comparison that is ready"
+    beside.add_argument("setups", nargs="+", metavar="SET-UP", help=words)
+    add_address(beside)
+    beside.set_defaults(command=serve_beside)
+
     run = commands.add_parser("run", help="run a scene without a browser, and write it to a file")
     run.add_argument("scene", metavar="SCENE", help=", ".join(NAMES))
     run.add_argument("--seconds", type=float, required=True, metavar="S", help="simulated time [s]")
@@ -158,6 +164,12 @@ def add_lab(lab: argparse.ArgumentParser) -> None:
 def add_serving(parser: argparse.ArgumentParser) -> None:
     """The options of `springtide` without a command."""
     parser.add_argument("--scene", default="rope", metavar="SCENE", help=", ".join(NAMES) + " (default: rope)")
+    add_address(parser)
+    add_parameters(parser)
+
+
+def add_address(parser: argparse.ArgumentParser) -> None:
+    """The options that say where and how the lab is served, whatever it shows."""
     parser.add_argument("--host", default="127.0.0.1", help="address to serve on; 0.0.0.0 shows the lab to the network")
     parser.add_argument("--port", type=int, default=8080, help="default: 8080; 0 for any free port")
     path = "the path at which a proxy shows the lab, where it passes it on"
@@ -168,7 +180,6 @@ def add_serving(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--paused", action="store_true", help="start paused")
     parser.add_argument("--plain-water", action="store_true", help="draw with viser's public interface only")
     parser.add_argument("--developer", action="store_true", help="show in the panel what was computed and what was not")
-    add_parameters(parser)
 
 
 def add_parameters(parser: argparse.ArgumentParser) -> None:
@@ -212,20 +223,31 @@ def serve(arguments: argparse.Namespace, session: Any = None) -> int:
     from app.commands.serve import serve_lab
     from app.lab.workbook import Workbook
 
-    return serve_lab(
-        arguments.scene,
-        params,
-        arguments.host,
-        arguments.port,
-        browser=not arguments.no_open,
-        paused=arguments.paused,
-        plain=arguments.plain_water,
-        developer=arguments.developer,
-        base_path=arguments.base_path,
-        origins=arguments.allowed_origin,
-        workbook=None if session is None else Workbook(session.tasks, session.folder),
-        session=session,
-    )
+    workbook = None if session is None else Workbook(session.tasks, session.folder)
+    return serve_lab(arguments.scene, params, **serving(arguments), workbook=workbook, session=session)
+
+
+def serve_beside(arguments: argparse.Namespace) -> int:
+    """`springtide beside`."""
+    from app.commands.serve import serve_lab
+    from app.scenes.comparisons import read_comparison
+
+    first, *others = read_comparison(arguments.setups)
+    return serve_lab(first.scene, first.params, **serving(arguments), others=others)
+
+
+def serving(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The arguments of `serve_lab` that say where and how the lab is served."""
+    return {
+        "host": arguments.host,
+        "port": arguments.port,
+        "browser": not arguments.no_open,
+        "paused": arguments.paused,
+        "plain": arguments.plain_water,
+        "developer": arguments.developer,
+        "base_path": arguments.base_path,
+        "origins": arguments.allowed_origin,
+    }
 
 
 def run_headless(arguments: argparse.Namespace) -> int:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
+from app.scenes.setups import Setup
 from app.server.access import KEY_VARIABLE, Access, read_base_path, read_key, read_origin
 from app.server.guard import is_loopback
 from app.server.viewer import Viewer
@@ -50,8 +51,11 @@ def serve_lab(
     origins: Sequence[str] = (),
     workbook: Workbook | None = None,
     session: "Session | None" = None,
+    others: Sequence[Setup] = (),
 ) -> int:
     """Print the address that is bound, open the scene, and wait. Returns the exit status. session: a student's folder.
+
+    others: set-ups to show beside it.
 
     The page is there before the scene is, and shows what is compiled. workbook: None for the guide of the course lab.
     base_path, origins: of a proxy; see `app/server/access.py`. The key is taken from the environment.
@@ -90,6 +94,8 @@ def serve_lab(
         if browser:
             webbrowser.open(address)
         viewer.open(name, params, paused=paused)
+        if others:
+            viewer.comparing.begin(others, False)
         wait_until(done)
     except KeyboardInterrupt:
         pass

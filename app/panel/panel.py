@@ -27,6 +27,7 @@ from app.messages import (
     TogglePlay,
     WorkCounts,
 )
+from app.panel.compare import Beside, Compare
 from app.panel.control import Control
 from app.panel.display import Display
 from app.panel.guide import Guide
@@ -83,15 +84,18 @@ class Panel:
         wake: Callable[[], None],
         make_replay: MakeReplay,
         session: "Session | None" = None,
+        beside: Beside | None = None,
+        changed: Callable[[BaseParams], None] = lambda params: None,
     ) -> None:
         """post: takes commands for the simulation. open_scene: takes a scene to show instead; both at once.
 
         workbook: the tasks of the lab, shown above the parameters. work: the work counts of the open scene. developer:
         show them. session: of a student's folder. wake: has the recording looked at once more. make_replay: makes the
-        page of a replay.
+        page of a replay. beside: shows other set-ups beside this one; None where this one is beside another.
+        changed: is told of parameters that were set.
         """
         self.server, self.kind, self.view, self.post, self.work = server, kind, view, post, work
-        self.open_scene = open_scene
+        self.open_scene, self.beside, self.changed = open_scene, beside, changed
         self.gui = gui = server.gui
         # Parameters as set now, and how many presets were loaded: read by another thread.
         self.state: tuple[BaseParams, int] = params, 0
@@ -151,6 +155,7 @@ class Panel:
         self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
         self.recorder = Recorder()
         self.share = Share(server, self.lab, self, self.recorder, post, wake, make_replay)
+        self.compare = None if beside is None else Compare(gui, self.buttons, self.comparable, beside)
         self.display = Display(gui, view)
         self.notes: dict[str, viser.GuiHtmlHandle] = {}
         self.work_counts: viser.GuiHtmlHandle | None = None
@@ -215,6 +220,7 @@ class Panel:
         self.state = dataclasses.replace(params, **{name: value}), number
         self.hide()
         self.show_preset()
+        self.changed(self.params)
 
     def hide(self) -> None:
         """Hide the controls that mean nothing just now, and the folders in which nothing is left."""
@@ -238,6 +244,11 @@ class Panel:
         own = self.own.get(preset)
         params = own.params if own else check_record(type(self.params), self.kind.presets[preset])
         return with_fields_of(self.params, params)
+
+    def comparable(self) -> dict[str, Setup]:
+        """What can be shown beside what is set, by name: presets, and the user's own set-ups."""
+        presets = {name: Setup(self.kind.name, self.params_of(name), {}, name) for name in self.kind.presets}
+        return {**presets, **self.own}
 
     def load(self, preset: str) -> None:
         """Every parameter as the preset has it, and the scene from its start: one command."""
@@ -305,6 +316,7 @@ class Panel:
             control.show_value(getattr(params, name))
         self.hide()
         self.show_preset()
+        self.changed(self.params)
 
     def show_preset(self) -> None:
         """The list of presets, with "(changed)" where a parameter is not as the preset has it.
@@ -386,6 +398,8 @@ class Panel:
         if self.guide is not None:
             self.guide.update(snapshot)
         self.share.update(snapshot)
+        if self.compare is not None:
+            self.compare.update()
         if self.work_counts is not None and now - self.work_at >= WORK_INTERVAL:
             self.work_at = now
             self.work_counts.content = note(work_table(self.work()))

@@ -17,6 +17,7 @@ import numpy as np
 import viser
 
 from app.messages import BaseParams, KeptState, Pause, PlotRow, Vector
+from app.panel.compare import Beside
 from app.panel.picture import take_picture
 from app.panel.recorder import RATES, Kept, Recorder
 from app.panel.recording_files import plots_csv, plots_svg, recording_npz
@@ -24,6 +25,7 @@ from app.render.cameras import place_camera
 from app.render.html import fill, note
 from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes import scene_named
+from app.scenes.comparisons import COMPARISONS, comparison_named
 from app.scenes.contract import AnyKind, AnySnapshot, PostCommand
 from app.scenes.own_setups import keep_own, remove_own
 from app.scenes.setups import MAX_NAME, MAX_NOTE, Camera, Setup, read_file, read_query, write_file, write_query
@@ -52,6 +54,7 @@ PAGE_BUTTONS = (
     '<div class="springtide-switches"><button type="button" data-springtide-clip>Record clip</button>'
     '<button type="button" data-springtide-charts>Plots as PNG</button></div>'
 )
+COMPARE = "?compare="  # begins the address of a comparison that is ready
 OPEN, LEAVE = "Open it for all", "Leave the lab as it is"
 
 # What `app/render/js/charts.js` reads the time of the line in the charts from.
@@ -65,6 +68,7 @@ class Settings(Protocol):
 
     kind: AnyKind
     loaded: str
+    beside: Beside | None
 
     @property
     def params(self) -> BaseParams:
@@ -116,7 +120,7 @@ class Share:
         self.span: tuple[float, float] = (0.0, 0.0)
         self.sent: Kept | None = None  # the frame of the recording that the viewer sent last
         self.busy = threading.Lock()  # one file at a time
-        self.waiting: tuple[Setup, int | None] | None = None  # a set-up that the visitors are asked about
+        self.waiting: Callable[[], None] | None = None  # what the visitors are asked about
         with lab:
             self.moment = gui.add_html("", visible=False)
             self.request = gui.add_html("", visible=False)
@@ -176,6 +180,9 @@ class Share:
             return
         self.inbox.value = ""  # so that the same text can come again
         try:
+            if text.startswith(COMPARE):
+                self.compare(text.removeprefix(COMPARE))
+                return
             setup = read_query(text) if text.startswith("?") else read_file(text)
         except ValueError as reason:
             self.refuse(event.client, str(reason))
@@ -197,10 +204,24 @@ class Share:
         if client is not None and setup.camera is not None:
             place_camera(client.camera, *setup.camera)
 
+    def compare(self, name: str) -> None:
+        """Show a comparison that is ready. Raises ValueError where there is none of that name."""
+        setups, beside = comparison_named(name), self.panel.beside
+        if beside is None:
+            return
+        if len(self.server.get_clients()) > 1:
+            self.ask_for(COMPARISONS[name].title, "", lambda: beside.compare(setups, True))
+        else:
+            beside.compare(setups, True)
+
     def ask(self, setup: Setup, client: int | None) -> None:
         """Ask the visitors whether a set-up may change what all of them see."""
-        self.waiting = setup, client
-        title, name = scene_named(setup.scene).title, setup.name or setup.preset
+        title = scene_named(setup.scene).title
+        self.ask_for(title, setup.name or setup.preset, lambda: self.panel.show_setup(setup, client))
+
+    def ask_for(self, title: str, name: str, show: Callable[[], None]) -> None:
+        """Ask the visitors whether something may be shown to all of them."""
+        self.waiting = show
         words = fill(
             "Another browser asks to open <b>{}</b>{}. This changes the lab for all {} browsers.",
             title,
@@ -215,7 +236,7 @@ class Share:
         waiting, self.waiting = self.waiting, None
         self.request.visible = self.decide.visible = False
         if waiting is not None and event.target.value == OPEN:
-            self.panel.show_setup(*waiting)
+            waiting()
 
     async def on_time(self, event: ViserEvent) -> None:
         """A browser has moved along the timeline: the lab pauses, and shows what was."""

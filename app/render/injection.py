@@ -43,6 +43,7 @@ SCRIPTS = ("injection.js", "packed.js", "water_shader.js", "water.js", "rain.js"
 
 _injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
 _disabled: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()
+_storage_keys: "weakref.WeakKeyDictionary[viser.ViserServer, str]" = weakref.WeakKeyDictionary()
 
 
 class ShaderInjector:
@@ -53,6 +54,7 @@ class ShaderInjector:
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = weakref.ref(server)
+        self._storage_key = _storage_keys.get(server, STORAGE_KEY)
         self._token = secrets.token_hex(8)  # tells answers to this server from those that an earlier one left behind
         self._lock = threading.Lock()  # for what follows
         self._watched: dict[str, float] = {}  # node -> since when it is watched [s]
@@ -70,7 +72,7 @@ class ShaderInjector:
         """The script as it is sent: one function scope, the constants shared with Python first, the hook last."""
         constants = {
             "TOKEN": self._token,
-            "STORAGE_KEY": STORAGE_KEY,
+            "STORAGE_KEY": self._storage_key,
             "WATER_UNIFORMS": WATER_UNIFORMS,
             "RAIN_UNIFORMS": RAIN_UNIFORMS,
             "MAX_WATERLINES": MAX_WATERLINES,
@@ -152,7 +154,7 @@ class ShaderInjector:
     def _ask(self, client: int, handle: viser.ClientHandle, now: float) -> None:
         """Ask one browser once; now [s]: the time of asking."""
         try:
-            answer = handle.local_storage.get_item(STORAGE_KEY, timeout=QUESTION_TIMEOUT)
+            answer = handle.local_storage.get_item(self._storage_key, timeout=QUESTION_TIMEOUT)
         except (RuntimeError, TimeoutError):  # it has left, or it is too busy and will be asked again
             answer = None
         with self._lock:
@@ -174,6 +176,14 @@ class ShaderInjector:
 def disable_shaders(server: viser.ViserServer) -> None:
     """Draw everything on this server by viser's public API alone; to be called before anything is drawn."""
     _disabled.add(server)
+
+
+def answer_apart(server: viser.ViserServer, name: str) -> None:
+    """Have pages of this server answer under a name of their own: two servers at one address share the local storage.
+
+    To be called before anything is drawn.
+    """
+    _storage_keys[server] = f"{STORAGE_KEY}-{name}"
 
 
 def record_shaders(server: viser.ViserServer) -> None:

@@ -225,6 +225,8 @@ class SceneKind(Generic[P, F, R]):
     needs: Callable[[P], tuple[str, ...]] | None = None  # pieces of `warm_up` to run with these parameters; None: all
     # Makes the simulation with a student's functions running beside it; None: this scene has no use for them.
     make_with_student: Callable[[P, "LiveCode"], Scene[P, F, R]] | None = None
+    # Where [m] a view of these parameters and one of others have the same in sight; None: at the origin.
+    middle: Callable[[P], tuple[float, float]] | None = None
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
 
     def opening_params(self) -> P:

@@ -101,6 +101,22 @@ def read_query(query: str) -> Setup:
     return Setup(kind.name, check_record(kind.params, values), values, preset, camera)
 
 
+def read_setup(text: str) -> Setup:
+    """The set-up that a word of a command line says: SCENE, SCENE:PRESET, a link or its query, or a set-up file.
+
+    A scene alone is as it opens where nothing is asked for. Raises ValueError for what is not allowed.
+    """
+    if "?" in text:
+        return read_query(text[text.index("?") :])
+    path = Path(text)
+    if path.suffix == ".json" or path.is_file():
+        return read_file(read_setup_text("set-up", path), f"set-up {path}")
+    scene, _, preset = text.partition(":")
+    kind = kind_named(scene)
+    preset = preset or kind.opening
+    return read_query("?" + urlencode({"scene": scene, **({"preset": preset} if preset else {})}))
+
+
 def camera_numbers(camera: Camera) -> list[float]:
     """The six numbers of a camera, rounded to a millimetre."""
     return [round(c, CAMERA_DECIMALS) + 0.0 for point in camera for c in point]
@@ -250,11 +266,15 @@ def preset_values(
     path = (folder or Path()) / preset
     if path.suffix != ".json" and not path.is_file():
         raise argument_error(option, preset, "one of " + ", ".join(kind.presets) + "; or a file FILE.json")
+    return dict(read_file(read_setup_text(option, path), f"{option} {path}", kind.name).values)
+
+
+def read_setup_text(what: str, path: Path) -> str:
+    """The text of a file. Raises ValueError, saying what the file was given as, where it cannot be read."""
     try:
         with path.open("rb") as file:
-            text = file.read(4 * MAX_LENGTH + 1).decode("utf-8")
+            return file.read(4 * MAX_LENGTH + 1).decode("utf-8")
     except OSError as error:
-        raise argument_error(option, str(path), f"a file that can be read ({error.strerror})") from None
+        raise argument_error(what, str(path), f"a file that can be read ({error.strerror})") from None
     except ValueError:
-        raise argument_error(option, str(path), "a file of JSON in UTF-8") from None
-    return dict(read_file(text, f"{option} {path}", kind.name).values)
+        raise argument_error(what, str(path), "a file of JSON in UTF-8") from None

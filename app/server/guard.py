@@ -16,6 +16,7 @@ import ipaddress
 import logging
 import math
 import socket
+import threading
 import time
 from collections.abc import Awaitable, Callable, Generator, Sequence
 from http import HTTPStatus
@@ -28,9 +29,11 @@ import websockets.asyncio.server
 from viser import _messages as vm
 from websockets.http11 import Request, Response
 
+from app.render.injection import answer_apart
 from app.render.viser_types import GuiHandle, ViserConnection, ViserMessage
-from app.server.access import OWN_PAGES_ONLY, Access, admitted
+from app.server.access import OWN_PAGES_ONLY, Access, admitted, refusal
 from app.server.page import own_answer, with_cover
+from app.server.panes import Panes
 
 MAX_NUMBER = 1e6  # any number in a message beyond this is refused
 MAX_LENGTH = 1000  # of a text, or of a list
@@ -38,6 +41,7 @@ MAX_FIELD_LENGTH = 64  # of what is typed into a field
 MAX_TEXT_LENGTH = 5000  # of what is typed into a field of several lines
 INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
 MAX_WAITING = 64  # messages of one browser that wait for their turn
+STARTING = threading.Lock()  # one server at a time: what starts it is replaced meanwhile
 
 ClientId: TypeAlias = int
 MergeKey: TypeAlias = tuple[object, ...]
@@ -97,21 +101,32 @@ def may_connect(request: Request, bound: str, access: Access) -> bool:
 
 
 @contextlib.contextmanager
-def checked_requests(bound: str, access: Access) -> Generator[None]:
-    """While open, a websocket server that starts refuses upgrades from other pages with 403."""
+def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[None]:
+    """While open, a websocket server that starts refuses upgrades from other pages with 403, and serves the panes."""
     serve = websockets.asyncio.server.serve
 
-    def guarded_serve(*args: object, process_request: ViserConnection = None, **options: object) -> object:
+    def guarded_serve(
+        handler: Callable[[ViserConnection], Awaitable[None]],
+        *address: object,
+        process_request: ViserConnection = None,
+        **options: object,
+    ) -> object:
         def check(connection: ViserConnection, sent: Request) -> object:
             request = admitted(access, sent)
             if isinstance(request, Response):
                 return request
             if not may_connect(request, bound, access):
                 return connection.respond(HTTPStatus.FORBIDDEN, "This page may not connect here.\n")
+            request = panes.read(connection, request)
+            if request is None:
+                return refusal(HTTPStatus.NOT_FOUND, "There is no set-up beside the first one.")
             answer = own_answer(request, shared=bool(access.key))
             return answer or with_cover(request, process_request(connection, request))
 
-        return serve(*args, process_request=check, **options)  # type: ignore[arg-type]
+        async def serve_pane(connection: ViserConnection) -> None:
+            await panes.serve(connection, handler)
+
+        return serve(serve_pane, *address, process_request=check, **options)  # type: ignore[arg-type]
 
     websockets.asyncio.server.serve = guarded_serve  # type: ignore[assignment]
     try:
@@ -328,22 +343,38 @@ def check_port(host: str, port: int) -> None:
         probe.bind((host, port))
 
 
-def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> tuple[viser.ViserServer, Screen]:
+def open_server(
+    host: str, port: int, access: Access = OWN_PAGES_ONLY, panes: Panes | None = None
+) -> tuple[viser.ViserServer, Screen]:
     """A viser server that only our own page may connect to and that only takes what `Screen` lets through.
 
-    access: who else may connect. Raises OSError where the port is busy or may not be bound.
+    access: who else may connect. panes: the labs that are reached through its port; none by default.
+    Raises OSError where the port is busy or may not be bound.
     """
     check_port(host, port)
     # A message that cannot be decoded ends its connection, and would print a traceback each time.
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
-    with checked_requests(host, access), quiet():
+    with STARTING, checked_requests(host, access, panes or Panes()), quiet():
         server = viser.ViserServer(host=host, port=port, label="Springtide", verbose=False)
     if port not in (0, server.get_port()):
         server.stop()
         raise OSError(f"port {port} was taken while starting")
+    return server, guarded(server)
+
+
+def open_pane(panes: Panes, number: int) -> tuple[viser.ViserServer, Screen]:
+    """The same for a pane, which is reached through the port of the first lab and protected with it."""
+    with STARTING, panes.making(number), quiet():
+        server = viser.ViserServer(port=0, label="Springtide", verbose=False)
+    answer_apart(server, str(number))
+    return server, guarded(server)
+
+
+def guarded(server: viser.ViserServer) -> Screen:
+    """Pass what browsers send to a server through a screen."""
     screen = Screen(server)
     connection: ViserConnection = server._websock_server
     for request in (vm.ShareUrlRequest, vm.ShareUrlDisconnect):
         connection.unregister_handler(request)
     put_intakes(server, screen)
-    return server, screen
+    return screen

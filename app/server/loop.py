@@ -32,7 +32,6 @@ from app.messages import (
     PlotRow,
     Release,
     Reset,
-    SceneCommand,
     Snapshot,
     Status,
     StepOnce,
@@ -43,8 +42,10 @@ from app.messages import (
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.moments import arrays_in
 from app.scenes.stepping import steps_to
+from app.server.command_queue import CommandQueue
 from app.server.merging import merged
 from app.server.replay import Replay
+from app.server.shared_clock import Seat
 from sim.interruption import STOP, TURN, InterruptionError, use_request
 from sim.parameters import effect_of_change
 
@@ -69,17 +70,6 @@ class Goal(NamedTuple):
     was_running: bool
 
 
-class CommandQueue(queue.SimpleQueue[Command]):
-    """Commands for the simulation, and whether one is among them that should not wait for a long solve."""
-
-    urgent = False
-
-    def put(self, item: Command, block: bool = True, timeout: float | None = None) -> None:
-        """Add a command. What goes on with the solve as it is can wait for it: drags, and going on."""
-        super().put(item, block, timeout)
-        self.urgent = self.urgent or not isinstance(item, SceneCommand | Play | Ask | Advance)
-
-
 class FixedStep:
     """Turns elapsed wall time into whole steps, dropping what does not fit the budget."""
 
@@ -95,13 +85,19 @@ class FixedStep:
         """
         self.debt += min(wall, MAX_CATCH_UP) * speed
         due = int(self.debt / h * (1 + 1e-9))
-        most = max(1, int(SOLVE_SHARE * max(frame, FRAME_INTERVAL) / self.cost)) if self.cost > 0 else due
+        most = self.most(due, frame)
         if due > most:
             self.debt = 0.0
             self.dropped += due - most
             return most, True
         self.debt = max(0.0, self.debt - due * h)
         return due, False
+
+    def most(self, due: int, frame: float) -> int:
+        """How many of the steps that are due fit the budget of a frame of `frame` [s]."""
+        if self.cost <= 0:
+            return due
+        return min(due, max(1, int(SOLVE_SHARE * max(frame, FRAME_INTERVAL) / self.cost)))
 
     def next_part(self, last: int, spent: float) -> int:
         """Steps to try next, after `spent` [s] of this frame and a last part of `last` steps; 0 when it is full."""
@@ -151,6 +147,7 @@ class SimLoop:
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
         self.running = not paused
         self.halted = ""
+        self.seat: Seat | None = None  # at a clock that other loops have too
         self.replay: Replay | None = None  # of a run that has just diverged
         self.cost_unknown = True  # the cost of a step with the parameters as they are is not known
         self.loaded = 0  # number of the last `Load` that was handled
@@ -194,6 +191,8 @@ class SimLoop:
         elif self.goal is not None and self.running and not self.audience():
             self.hurry(self.goal.until)
             changed = True
+        elif self.seat is not None and self.audience():
+            changed |= self.follow(self.seat, wall)
         elif self.running and self.audience():
             n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame_interval)
             if self.goal is not None:
@@ -204,11 +203,33 @@ class SimLoop:
         else:
             self.counts["idle ticks"] += 1
         self.counts["ticks"] += 1
+        if self.seat is not None:
+            self.seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
         if changed:
             self.publish()
         if self.goal is not None:
             self.settle(self.goal)
         self.busy_since = None
+
+    def join(self, seat: Seat) -> None:
+        """Follow a clock that other loops follow too, from the scene's start on; before `run`, or in a command."""
+        self.seat, self.commands.share = seat, seat.share
+        seat.note(0.0, self.scene.step, running=self.running, halted=bool(self.stopped_by))
+
+    def follow(self, seat: Seat, wall: float) -> bool:
+        """Take the steps that lead to the time of the clock, as many as fit the frame; True where there were any.
+
+        The loop of the first seat lets the clock's time pass.
+        """
+        first = seat is seat.clock.seats[0]
+        if first and self.running:
+            seat.clock.advance(min(wall, MAX_CATCH_UP), self.scene.params.speed)
+        due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
+        n = self.pacer.most(due, self.frame_interval)
+        self.capped = n < due or (first and seat.clock.late)
+        if n:
+            (self.advance_within_budget if self.cost_unknown and self.running else self.advance)(n)
+        return n > 0
 
     def take(self, params: BaseParams) -> bool:
         """Take parameters by what their change affects; False where they are those of the scene."""
@@ -227,6 +248,8 @@ class SimLoop:
             self.scene.params = params  # also where the scene failed: not to be tried again in every tick
         else:
             self.scene.params = params
+            if self.seat is not None:
+                self.seat.begin_others()
             self.reset()
         return True
 
@@ -290,7 +313,7 @@ class SimLoop:
         self.cost_unknown = False
         if n > 0 and self.running:
             self.capped, self.pacer.debt = True, 0.0
-            self.pacer.dropped += n
+            self.pacer.dropped += n if self.seat is None else 0
 
     def work(self) -> dict[str, WorkCount]:
         """What ran against what had no need to, paused or unwatched, or no time to."""
@@ -392,7 +415,9 @@ class SimLoop:
         return changed or replay.ended
 
     def halt(self, reason: str) -> None:
-        """Pause, and keep the reason for the panel."""
+        """Pause, with all on the same clock, and keep the reason for the panel."""
+        if self.seat is not None:
+            self.seat.tell_others(Pause())
         self.running = False
         self.halted = reason
 
@@ -421,7 +446,10 @@ class SimLoop:
                 self.handle(Pause() if self.running else Play())
             case StepOnce(steps):
                 self.running = False
-                self.step_by_hand(steps)
+                if self.seat is None or self.replay is not None:
+                    self.step_by_hand(steps)
+                elif self.seat is self.seat.clock.seats[0]:
+                    self.seat.clock.step_by_hand(steps)
             case Halt(reason):
                 self.halt(reason)
             case Load(params, number, state):
@@ -473,6 +501,8 @@ class SimLoop:
         self.running, self.halted = self.running or bool(self.halted), ""
         self.pacer.debt = 0.0
         self.replay = None
+        if self.seat is not None:
+            self.seat.begin()
         self.begin(self.scene.reset)
 
     def begin(self, reset: Callable[[], None]) -> None:
@@ -485,6 +515,8 @@ class SimLoop:
         self.halted, self.replay, self.unfinished, self.pacer.debt = "", None, None, 0.0
         self.history.clear()
         self.guarded(lambda: self.scene.resume(state.value))
+        if self.seat is not None:
+            self.seat.go_on_from(self.scene.time)
 
     def keep_state(self) -> KeptState | None:
         """The state of a running scene, a few times a second; seldom where copying it takes long."""

@@ -15,13 +15,19 @@ from websockets.http11 import Request, Response
 ALIVE_PATH = "/springtide-alive"  # what the page asks for, to see whether the server is still there
 TITLE = "<title>Springtide</title>"
 ADDRESS_SCRIPT = "address.js"
-SCRIPTS = ("page.js", "fields.js", "camera.js", "charts.js", "share.js", "display.js", "access.js")
+SCRIPTS = ("page.js", "fields.js", "camera.js", "charts.js", "share.js", "display.js", "access.js", "beside.js")
+PANES_PATH = "/beside"  # of the page that shows several labs side by side
 COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'
 
 
 def own_answer(request: Request, *, shared: bool) -> Response | None:
     """The answer to a request that viser knows nothing of; None for the others. shared: pages of others may read it."""
-    if request.path.partition("?")[0] != ALIVE_PATH:
+    path = request.path.partition("?")[0]
+    if path == PANES_PATH:
+        body = (resources.files("app.render") / "js" / "beside.html").read_bytes()
+        headers = Headers({"Content-Type": "text/html; charset=utf-8", "Content-Length": str(len(body))})
+        return Response(HTTPStatus.OK, "OK", headers, body)
+    if path != ALIVE_PATH:
         return None
     headers = Headers({"Content-Type": "text/plain", "Content-Length": "0"})
     if shared:

@@ -13,6 +13,7 @@ import viser
 
 from app.lab.workbook import Workbook
 from app.messages import BaseParams, Halt, Release, Reset, StudentAnswer, WorkCount
+from app.panel.compare import Beside, PaneWords
 from app.panel.display import set_theme
 from app.panel.panel import Panel, add_scene_chooser
 from app.panel.recorder import Kept
@@ -24,11 +25,15 @@ from app.scenes import NAMES, scene_named, view_named
 from app.scenes.compiling import Compiling, describe
 from app.scenes.contract import AnyKind, AnyScene, PostCommand
 from app.server.access import OWN_PAGES_ONLY, Access
+from app.server.beside import Comparing, Comparison
+from app.server.command_queue import CommandQueue
 from app.server.compile_gate import CompileGate
 from app.server.counters import Unwatched, gather, modules
-from app.server.guard import open_server, quiet
-from app.server.loop import PATIENCE, CommandQueue, SimLoop
+from app.server.guard import open_pane, open_server, quiet
+from app.server.loop import PATIENCE, SimLoop
+from app.server.panes import Panes
 from app.server.replay_file import replay_html
+from app.server.shared_clock import Seat
 from app.server.transport import TransportCounters
 from sim.interruption import STOP
 
@@ -58,20 +63,31 @@ class Viewer:
         session: "Session | None" = None,
         say: Callable[[str], None] = lambda text: None,
         access: Access = OWN_PAGES_ONLY,
+        beside: "tuple[Viewer, int] | None" = None,
     ) -> None:
         """plain: draw by viser's public API alone. developer: show the work counts in the panel.
 
         compile_ahead: while a scene runs, compile what it and the other scenes may call later. workbook: the tasks of
         the lab, which the panel of each scene shows. session: of a student's folder, with functions that the scenes
-        run. say: prints a line. access: who may connect beside a browser of this machine.
+        run. say: prints a line. access: who may connect beside a browser of this machine. beside: the lab that this
+        one is a pane of, and its number from 2: it is reached through the other's port, and `host` to `access` say
+        nothing.
 
         Raises OSError where the port cannot be bound.
         """
-        self.compiling = Compiling()
+        self.compiling = Compiling() if beside is None else beside[0].compiling
         self.compile_ahead, self.workbook, self.session, self.say = compile_ahead, workbook, session, say
         self.notice = ""  # what is compiled before something else can be shown
         self.developer = developer
-        self.server, self.screen = open_server(host, port, access)
+        self.panes = Panes()
+        if beside is None:
+            self.server, self.screen = open_server(host, port, access, self.panes)
+        else:
+            self.server, self.screen = open_pane(beside[0].panes, beside[1])
+        self.plain, self.pane_of = plain, beside
+        self.seat: Seat | None = None  # at the clock of a comparison
+        self.comparison: Comparison | None = None
+        self.comparing = Comparing(self, self.make_pane)
         if plain:
             disable_shaders(self.server)
         connection: ViserConnection = self.server._websock_server
@@ -138,11 +154,14 @@ class Viewer:
         self.panel = Panel(
             self.server, kind, self.view, params, self.gate.post, work=self.work, scenes=NAMES,
             open_scene=self.want, workbook=self.workbook, developer=self.developer, session=self.session,
-            wake=lambda: self.loop.fresh.set(), make_replay=replay_html,
+            wake=lambda: self.loop.fresh.set(), make_replay=replay_html, changed=self.share_parameters,
+            beside=None if self.pane_of else Beside(self.comparing.want, self.comparing.end, self.pane_words),
         )  # fmt: skip
         gate, read = self.gate, self.panel.read
         self.loop = SimLoop(self.scene, commands, lambda: gate.read(read()), self.audience, paused=paused)
         self.is_open = True
+        if self.comparison is not None:
+            self.comparison.seat(self)
         self.stop = threading.Event()
         self.threads = [
             threading.Thread(target=self.loop.run, args=(self.stop,), name="simulation", daemon=True),
@@ -213,6 +232,8 @@ class Viewer:
 
     def show_failure(self, name: str, error: BaseException) -> None:
         """A page that says why a scene could not be opened, and offers the scenes."""
+        if self.comparison is not None:
+            self.comparison.leave(self)
         self.close()
         self.clear()
         add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.want)
@@ -239,9 +260,29 @@ class Viewer:
                 traceback.print_exc()
             time.sleep(MIN_SCENE_TIME)
 
-    def audience(self) -> int:
-        """How many browsers look."""
+    def visitors(self) -> int:
+        """How many browsers are connected."""
         return len(self.server._connected_clients)
+
+    def audience(self) -> int:
+        """How many browsers look; at all labs, where several are side by side."""
+        comparison = self.comparison
+        return self.visitors() if comparison is None else comparison.audience()
+
+    def make_pane(self, number: int) -> "Viewer":
+        """A lab beside this one, with nothing open. number: of its pane, from 2."""
+        return Viewer("", 0, plain=self.plain, developer=self.developer, say=self.say, beside=(self, number))
+
+    def pane_words(self) -> tuple[PaneWords, ...]:
+        """What stands above each lab, where several are side by side."""
+        comparison = self.comparison
+        return () if comparison is None else comparison.words()
+
+    def share_parameters(self, params: BaseParams) -> None:
+        """Set in the labs beside this one what is the same in all."""
+        comparison = self.comparison
+        if comparison is not None:
+            comparison.share(self, params)
 
     async def on_disconnect(self, client: viser.ClientHandle) -> None:
         """A browser that is gone lets go of what it drags."""
@@ -344,7 +385,12 @@ class Viewer:
         """End: stop the threads and the server. A scene that is being opened is not waited for."""
         self.ended = True
         self.stop.set()
-        self.compiling.close()
+        if self.pane_of is not None:
+            first, number = self.pane_of
+            first.panes.remove(number)
+        else:
+            self.comparing.end_now()
+            self.compiling.close()
         if self.changing.acquire(timeout=MAX_JOIN_TIME):
             try:
                 self.close()

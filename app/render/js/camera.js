@@ -35,7 +35,8 @@
   function measure(viewer) {
     const canvas = viewer.canvas.getBoundingClientRect();
     let box = { x: canvas.left, y: canvas.top, width: canvas.width, height: canvas.height };
-    for (const panel of document.querySelectorAll(PANELS)) box = without(box, panel.getBoundingClientRect());
+    const framed = document.documentElement.classList.contains("springtide-framed"); // beside.js
+    for (const panel of framed ? [] : document.querySelectorAll(PANELS)) box = without(box, panel.getBoundingClientRect());
     const found = { x: box.x - canvas.left, y: box.y - canvas.top, width: box.width, height: box.height };
     if (free && Object.keys(found).every((key) => Math.abs(free[key] - found[key]) < 1)) return;
     free = found;

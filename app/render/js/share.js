@@ -16,7 +16,8 @@
     "darkMode", "dummyWindowDimensions", "dummyWindowTitle", "fixedDpr", "forceOrbitOriginTool", "hideViserLogo",
     "initialCameraLookAt", "initialCameraPosition", "initialCameraUp", "logCamera", "playbackPath", "showStats", "websocket",
   ]);
-  let query = new URLSearchParams(location.search).has("scene") ? location.search : "";
+  const asked = new URLSearchParams(location.search);
+  let query = asked.has("scene") || asked.has("compare") ? location.search : "";
   let pressed = -Infinity;
 
   function send(text) {
@@ -37,7 +38,7 @@
   function completeLinks() {
     for (const link of document.querySelectorAll("[data-springtide-link]:not([data-springtide-done])")) {
       link.dataset.springtideDone = "";
-      link.href = location.origin + location.pathname + link.dataset.springtideLink;
+      link.href = location.origin + location.pathname.replace(/pane\/\d\/[^/]*$/, "") + link.dataset.springtideLink;
       link.textContent = link.href;
       if (performance.now() - pressed < ASKED) navigator.clipboard?.writeText(link.href).catch(() => {});
     }

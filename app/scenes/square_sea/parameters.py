@@ -4,6 +4,7 @@ import dataclasses
 import math
 from typing import Any, NamedTuple
 
+from sim.formatting import number
 from sim.ocean.planets import RADIUS_RULES, SOLAR_SYSTEM, gravity_of
 from sim.ocean.spectra import PARAMETERS, SPECTRA
 from sim.parameters import parameter, with_parameters
@@ -15,6 +16,11 @@ SPECTRUM_TITLES = {
     name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
 }
 SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
+PLANET_TITLES = {
+    "by mass": "By mass",
+    "by gravity": "By gravity",
+    **{name: f"{name}, {number(planet.gravity)} m/s²" for name, planet in SOLAR_SYSTEM.items()},
+}
 SURFACE_TENSION = 0.0728  # [N/m] of water against air
 
 
@@ -32,9 +38,7 @@ class Params:
         group="Main",
     )
     rain: float = parameter(0.0, 0.0, 200.0, "mm/h", "Rainfall; 0 is no rain", log_from=0.1, group="Main")
-    planet: str = parameter(
-        "by mass", choices=("by mass", "by gravity", *SOLAR_SYSTEM), doc="What sets the gravity", group="Main"
-    )
+    planet: str = parameter("by mass", choices=PLANET_TITLES, doc="What sets the gravity", group="Main")
     planet_mass: float = parameter(
         1.0, 0.01, 100.0, "Earths", "Mass of the planet", log_from=0.01, group="Main", title="Mass"
     )

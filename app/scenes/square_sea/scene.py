@@ -477,4 +477,5 @@ SCENE = SceneKind(
     measures=measures,
     frame_units={"vertices": "m", "slopes": "", "foam": "0 to 1"},
     live_values=live_values,
+    middle=lambda params: (0.5 * params.length, 0.5 * params.length),
 )

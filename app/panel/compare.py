@@ -1,0 +1,80 @@
+"""The folder "Compare side by side", and what the page with the panes (`js/beside.html`) reads of a panel."""
+
+# pyright: reportPrivateUsage=false
+
+import json
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import viser
+
+from app.render.html import fill, join, note
+from app.render.viser_types import GuiHandle, ViserEvent
+from app.scenes.comparisons import COMPARISONS
+from app.scenes.setups import Setup
+
+
+class PaneWords(NamedTuple):
+    """What stands above a pane, and where its scene has its middle [m]."""
+
+    heading: str
+    middle: tuple[float, float]
+
+
+class Beside(NamedTuple):
+    """What the folder needs of the viewer. Each call returns at once."""
+
+    compare: Callable[[Sequence[Setup], bool], None]  # show set-ups beside the lab; True: the first of them in the lab
+    end: Callable[[], None]  # show the lab alone
+    panes: Callable[[], tuple[PaneWords, ...]]  # what is shown; () for a lab alone
+
+
+class Compare:
+    """The folder, and a line that only the page reads."""
+
+    def __init__(
+        self, gui: viser.GuiApi, buttons: GuiHandle, setups: Callable[[], dict[str, Setup]], beside: Beside
+    ) -> None:
+        """buttons: that play, step and reset. setups: what can be shown beside what is set, by name."""
+        self.setups, self.beside, self.buttons = setups, beside, buttons
+        self.shown: tuple[PaneWords, ...] | None = None
+        self.line = gui.add_html("")
+        self.end: GuiHandle = gui.add_button("One lab again", visible=False)
+        self.end.on_click(self.on_end)
+        with gui.add_folder("Compare side by side", expand_by_default=False):
+            self.choice = gui.add_dropdown("This beside", tuple(setups()), hint="What is set now, beside a preset")
+            self.start = gui.add_button("Show side by side")
+            self.start.on_click(self.on_start)
+            links = (
+                fill('<a target="_top" href="./?compare={}">{}</a>', name, comparison.title)
+                for name, comparison in COMPARISONS.items()
+            )
+            gui.add_html(note(fill("Ready to be opened: {}", join(links, " · "))))
+        self.update()
+
+    async def on_start(self, event: ViserEvent) -> None:
+        """Show what is set beside the chosen preset."""
+        setup = self.setups().get(str(self.choice.value))
+        if event.client_id is not None and setup is not None:
+            self.beside.compare([setup], False)
+
+    async def on_end(self, event: ViserEvent) -> None:
+        """Show the lab alone again."""
+        if event.client_id is not None:
+            self.beside.end()
+
+    def update(self) -> None:
+        """Keep the list of presets and the line for the page up to date."""
+        names = tuple(self.setups())
+        if self.choice.options != names:
+            self.choice.options = names
+        panes = self.beside.panes()
+        if panes == self.shown:
+            return
+        self.shown = panes
+        said = json.dumps([pane._asdict() for pane in panes])
+        words = fill(
+            '<span data-springtide-beside="{}" data-buttons="{}" data-end="{}"></span>',
+            said, self.buttons._impl.uuid, self.end._impl.uuid,
+        )  # fmt: skip
+        self.line.content = str(words)

@@ -1,0 +1,162 @@
+"""Two or three labs side by side: the first one, and panes with a lab each, on one clock and under one sky."""
+
+import threading
+import traceback
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from typing import TYPE_CHECKING
+
+from app.messages import Ask, BaseParams, KeptState, Reset
+from app.panel.compare import PaneWords
+from app.scenes.comparisons import check_count, headings, middle_of, shared_parameters, with_shared
+from app.scenes.moments import arrays_in
+from app.scenes.setups import Setup
+from app.server.loop import SimLoop
+from app.server.shared_clock import Seat, SharedClock
+from sim.parameters import clamp_value
+
+if TYPE_CHECKING:
+    from app.server.viewer import Viewer
+
+KEEP_TIMEOUT = 5.0  # [s] for the first lab to hand over its state, to go on from when it is alone again
+
+
+class Comparison:
+    """The labs of a comparison: the first one stays what it was, the others end with the comparison."""
+
+    def __init__(self, first: "Viewer", make_pane: Callable[[int], "Viewer"]) -> None:
+        """make_pane: makes the lab of a number from 2, with nothing open."""
+        self.first, self.make_pane = first, make_pane
+        self.viewers: tuple[Viewer, ...] = (first,)
+        self.clock = SharedClock()
+        self.left: tuple[SimLoop, BaseParams, KeptState] | None = None  # the run of the first lab, as it was before
+
+    def begin(self, others: Sequence[Setup]) -> None:
+        """Open the others, then let all begin together. Whatever fails leaves the first lab alone, and is raised."""
+        first = self.first
+        self.left = self.kept()
+        try:
+            for number, setup in enumerate(others, 2):
+                pane = self.make_pane(number)
+                self.viewers = (*self.viewers, pane)
+                pane.comparison = self
+                pane.open(setup.scene, with_shared(setup.params, first.panel.params), paused=not first.loop.running)
+        except BaseException:
+            self.end()
+            raise
+        first.comparison = self
+        self.seat(first)
+
+    def kept(self) -> tuple[SimLoop, BaseParams, KeptState] | None:
+        """The run of the first lab, to go on from later; None where it does not answer."""
+        loop = self.first.loop
+        answer: Future[object] = Future()
+        loop.commands.put(Ask(loop.scene.keep, answer))
+        try:
+            value = answer.result(KEEP_TIMEOUT)
+        except Exception:
+            return None
+        return loop, self.first.panel.params, KeptState(value, arrays_in(value))
+
+    def seat(self, viewer: "Viewer") -> None:
+        """Give the lab's loop a place at the clock, in place of that of an earlier loop of it; all begin again.
+
+        What is the same in all labs is set in this one too.
+        """
+        viewer.seat = Seat(self.clock, viewer.commands)
+        self.clock.seats = tuple(other.seat for other in self.viewers if other.seat is not None)
+        viewer.loop.join(viewer.seat)
+        viewer.commands.put(Reset())
+        if self.first.is_open:
+            self.share(self.first, self.first.panel.params)
+
+    def leave(self, viewer: "Viewer") -> None:
+        """The lab's loop is gone, or stands still for good: the others do not wait for it."""
+        viewer.seat = None
+        self.clock.seats = tuple(other.seat for other in self.viewers if other.seat is not None)
+
+    def audience(self) -> int:
+        """How many browsers see all panes: the clock stands still where one is not there yet."""
+        return min(viewer.visitors() for viewer in self.viewers)
+
+    def words(self) -> tuple[PaneWords, ...]:
+        """What the page says above each pane."""
+        viewers = [viewer for viewer in self.viewers if viewer.is_open]
+        if len(viewers) < len(self.viewers):
+            return tuple(PaneWords("", (0.0, 0.0)) for _ in self.viewers)
+        panes = [(viewer.panel.kind, viewer.panel.params) for viewer in viewers]
+        middles = [middle_of(kind.name, params) for kind, params in panes]
+        return tuple(PaneWords(*pair) for pair in zip(headings(panes), middles, strict=True))
+
+    def share(self, source: "Viewer", params: BaseParams) -> None:
+        """Set in the other labs what is the same in all, as it was set in this one."""
+        for viewer in self.viewers:
+            if viewer is source or not viewer.is_open:
+                continue
+            for name, parameter in shared_parameters(params, viewer.panel.params).items():
+                value = clamp_value(parameter, getattr(params, name))
+                if value != getattr(viewer.panel.params, name):
+                    viewer.server.get_event_loop().call_soon_threadsafe(viewer.panel.set, name, value)
+
+    def end(self) -> None:
+        """End the other labs; the first one goes on from where it was before, if it is still the same run."""
+        first, others = self.first, self.viewers[1:]
+        self.clock.seats = ()
+        self.viewers = (first,)
+        first.comparison = None
+        if first.seat is not None:
+            first.seat = None
+            first.commands.share = None
+            first.loop.seat = None
+        for viewer in others:
+            viewer.shut()
+        if self.left is not None and first.is_open and first.loop is self.left[0]:
+            _, params, state = self.left
+            first.server.get_event_loop().call_soon_threadsafe(first.panel.resume, params, state)
+
+
+class Comparing:
+    """Begins and ends comparisons, one after the other, on threads of their own."""
+
+    def __init__(self, first: "Viewer", make_pane: Callable[[int], "Viewer"]) -> None:
+        self.first, self.make_pane = first, make_pane
+        self.lock = threading.Lock()
+
+    def begin(self, setups: Sequence[Setup], with_first: bool) -> None:
+        """Show set-ups beside the first lab; with_first: the first of them in the first lab.
+
+        Raises ValueError where there are too few or too many of them.
+        """
+        check_count(setups if with_first else [*setups, *setups[:1]])
+        with self.lock:
+            if self.first.ended:
+                return
+            if self.first.comparison is not None:
+                self.first.comparison.end()
+            if with_first:
+                self.first.open(setups[0].scene, setups[0].params)
+            Comparison(self.first, self.make_pane).begin(setups[1:] if with_first else setups)
+
+    def want(self, setups: Sequence[Setup], with_first: bool) -> None:
+        """The same at once, on a thread of its own."""
+        threading.Thread(target=self.try_to, args=(lambda: self.begin(setups, with_first),), daemon=True).start()
+
+    def end(self) -> None:
+        """Show the first lab alone, on a thread of its own."""
+        threading.Thread(target=self.try_to, args=(self.end_now,), daemon=True).start()
+
+    def end_now(self) -> None:
+        """Show the first lab alone."""
+        with self.lock:
+            if self.first.comparison is not None:
+                self.first.comparison.end()
+
+    def try_to(self, action: Callable[[], None]) -> None:
+        """Do it; say on every page what went wrong."""
+        try:
+            action()
+        except Exception as error:
+            if not isinstance(error, ValueError):
+                traceback.print_exc()
+            for client in self.first.server.get_clients().values():
+                client.add_notification("Nothing was opened beside it", str(error), color="red")

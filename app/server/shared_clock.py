@@ -1,0 +1,104 @@
+"""One clock for several simulation loops: all advance by the same simulated time, and the slowest sets the pace.
+
+The clock's time rises with the wall clock, but never beyond what every loop can take: `LEAD` after the next step of the
+one that is farthest behind. Each loop takes the steps that lead to the clock's time. Once the clock stands, all come to
+it, so that their times differ by less than a step.
+
+The clock's time is written by the loop of the first seat alone. Each seat's numbers are written by its own loop.
+"""
+
+from app.messages import Command, Halt, Load, Pause, Play, Reset, StepOnce, TogglePlay
+from app.server.command_queue import CommandQueue
+
+LEAD = 0.05  # [s] of wall time by which loops may differ while they run: they draw at different moments
+MAX_DEBT = 0.25  # [s] of wall time that the clock makes up for
+MAX_HAND_STEPS = 100  # single steps that one command takes
+
+
+class Seat:
+    """A loop's place at the clock."""
+
+    def __init__(self, clock: "SharedClock", queue: CommandQueue) -> None:
+        """queue: of the commands for the loop, which runs from its start on."""
+        self.clock, self.queue = clock, queue
+        self.offset = clock.origin  # [s] of the clock, at which the scene's time was 0
+        self.reached = clock.origin  # [s] of the clock, to which the loop has come
+        self.step = 0.0  # [s] of the scene
+        self.running = True
+        self.halted = False
+
+    def due(self, time: float, step: float) -> int:
+        """How many steps [s] of a scene at `time` [s] lead to the clock's time."""
+        return max(0, int((self.clock.time - self.offset - time) / step * (1 + 1e-9) + 1e-6))
+
+    def note(self, time: float, step: float, *, running: bool, halted: bool) -> None:
+        """Say where the loop is: its scene's time and step [s]."""
+        self.running, self.halted = running, halted
+        self.reached, self.step = self.offset + time, step
+
+    def begin(self) -> None:
+        """The run has begun again, with all others: its time is 0 where the clock was then."""
+        self.offset = self.clock.origin
+
+    def go_on_from(self, time: float) -> None:
+        """The run goes on from another time [s] of its own; from here on it advances as the others do."""
+        self.offset = self.clock.time - time
+
+    def begin_others(self) -> None:
+        """Have all other runs begin again, as this one does."""
+        self.clock.origin = self.clock.time
+        self.tell_others(Reset())
+
+    def tell_others(self, command: Command) -> None:
+        """Pass a command to all other loops."""
+        for seat in self.clock.seats:
+            if seat is not self:
+                seat.queue.add(command)
+
+    def share(self, command: Command) -> Command:
+        """Pass to the other loops what concerns all; returns what this one is to do."""
+        match command:
+            case TogglePlay():
+                return self.share(Pause() if self.running else Play())
+            case Play() | Pause() | StepOnce():
+                self.tell_others(command)
+            case Halt():
+                self.tell_others(Pause())
+            case Reset():
+                self.begin_others()
+                if any(seat.halted for seat in self.clock.seats):  # which paused the others
+                    self.tell_others(Play())
+                    self.queue.add(Play())
+            case Load(state=state):
+                if state is None:
+                    self.begin_others()
+                self.tell_others(Play())
+            case _:
+                pass
+        return command
+
+
+class SharedClock:
+    """The clock. `seats` is replaced as a whole when a loop joins or leaves."""
+
+    def __init__(self) -> None:
+        self.time = 0.0  # [s] simulated
+        self.origin = 0.0  # [s] of `time`, at which the runs were last begun
+        self.debt = 0.0  # [s] simulated by which `time` is late
+        self.late = False  # whether time that could not be made up is being dropped
+        self.seats: tuple[Seat, ...] = ()
+
+    def advance(self, wall: float, speed: float) -> None:
+        """Let `wall` seconds pass at `speed`, as far as all loops can follow; called by the first seat's loop."""
+        most = MAX_DEBT * speed
+        self.debt += wall * speed
+        self.late = self.debt > most
+        room = min(seat.reached + seat.step for seat in self.seats) + LEAD * speed - self.time
+        taken = max(0.0, min(self.debt, most, room))
+        self.time += taken
+        self.debt = min(self.debt, most) - taken
+
+    def step_by_hand(self, count: int) -> None:
+        """Let all loops take single steps: at least `count` of the longest; called by the first seat's loop."""
+        self.debt = 0.0
+        self.time += min(count, MAX_HAND_STEPS) * max(seat.step for seat in self.seats)

@@ -1,0 +1,184 @@
+"""Labs side by side without a browser: one port, one sky, what differs in words, and one lab again at the end."""
+
+import asyncio
+import contextlib
+import http.client
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+import viser
+import websockets
+from websockets.asyncio.client import connect
+
+from app.messages import StepOnce
+from app.scenes.setups import read_query
+from app.server.access import OWN_PAGES_ONLY, Access
+from app.server.viewer import Viewer
+from tests import coroutines
+from tests.app.server.test_guard import say
+from tests.app.server.test_transport import decoded
+
+KEY = "k-3_" * 5
+HUB = "https://hub.example.org"
+PATH = f"/lab/{KEY}"
+
+
+def wait_for(condition: Callable[[], Any]) -> None:
+    end = time.monotonic() + 30.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
+def opened(*queries: str, access: Access = OWN_PAGES_ONLY) -> Viewer:
+    """A lab with others beside it."""
+    viewer = Viewer("127.0.0.1", 0, access=access)
+    viewer.comparing.begin([read_query(f"?scene={query}") for query in queries], True)
+    return viewer
+
+
+@pytest.fixture(scope="module")
+def pair() -> Iterator[Viewer]:
+    """Two ropes behind a proxy's path and a key."""
+    viewer = opened("rope&show_points=false", "rope&stiffness=2000", access=Access("/lab", (HUB,), KEY))
+    yield viewer
+    viewer.shut()
+
+
+def status_of(port: int, path: str) -> int:
+    connection = http.client.HTTPConnection("127.0.0.1", port)
+    connection.request("GET", path)
+    return connection.getresponse().status
+
+
+def test_panes_are_at_paths_of_the_one_port_and_protected_with_it(pair: Viewer) -> None:
+    for path in ("/", "/index.html", "/pane/2/index.html", "/pane/2/springtide-alive", "/beside"):
+        assert status_of(pair.port, PATH + path) == 200
+        assert status_of(pair.port, f"/lab{path}") == 403
+        assert status_of(pair.port, path) == 404
+    for path in ("/pane/3/index.html", "/pane/1/", "/pane/2/nothing.js", "/pane/2/../pane/2/x"):
+        assert status_of(pair.port, PATH + path) == 404
+    for path in ("/lab/pane/2/index.html", f"{PATH}/pane/3/index.html"):
+        with pytest.raises(websockets.exceptions.InvalidStatus) as refusal:
+            coroutines.run(say(pair.port, [], HUB, path))
+        assert refusal.value.response.status_code in (403, 404)
+
+
+def test_a_foreign_page_is_refused_by_a_pane_too() -> None:
+    viewer = opened("rope", "rope&stiffness=2000")
+    try:
+        with pytest.raises(websockets.exceptions.InvalidStatus) as refusal:
+            coroutines.run(say(viewer.port, [], "http://evil.example", "/pane/2/index.html"))
+        assert refusal.value.response.status_code == 403
+        coroutines.run(say(viewer.port, [], f"http://127.0.0.1:{viewer.port}", "/pane/2/index.html"))
+    finally:
+        viewer.shut()
+
+
+async def first_nodes(port: int, path: str) -> set[str]:
+    """The names of the scene nodes that a page is sent first."""
+    protocol = websockets.Subprotocol(f"viser-v{viser.__version__}")
+    address = f"ws://127.0.0.1:{port}{path}"
+    async with connect(address, origin=HUB, subprotocols=[protocol], max_size=None) as client:
+        names: set[str] = set()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(1.5):
+                while True:
+                    for message in decoded(bytes(await client.recv())):
+                        if isinstance(message.get("name"), str):
+                            names.add(message["name"])
+        return names
+
+
+def test_each_page_is_sent_its_own_lab() -> None:
+    viewer = opened("rope", "race&ropes=2", access=Access("/lab", (HUB,), KEY))
+    try:
+        first = coroutines.run(first_nodes(viewer.port, f"{PATH}/index.html"))
+        assert "/floor" in first
+        assert "/race/rope_2" not in first
+        assert "/race/rope_2" in coroutines.run(first_nodes(viewer.port, f"{PATH}/pane/2/index.html"))
+    finally:
+        viewer.shut()
+
+
+def test_one_sky_one_speed_and_only_what_differs_is_said(pair: Viewer) -> None:
+    assert pair.comparison is not None
+    first, second = pair.comparison.viewers
+    assert second.panel.params.show_points is False  # type: ignore[attr-defined]
+    assert [pane.heading for pane in pair.pane_words()] == ["Stiffness: 800 N/m", "Stiffness: 2\u202f000 N/m"]
+    run(second, lambda: second.panel.set("speed", 0.25))
+    wait_for(lambda: first.panel.params.speed == 0.25)
+    run(first, lambda: first.panel.set("grid", False))
+    wait_for(lambda: second.panel.params.grid is False)
+    run(first, lambda: first.panel.set("damping", 3.0))
+    said = ["Stiffness: 800 N/m · Damping: 3 N·s/m", "Stiffness: 2\u202f000 N/m · Damping: 7 N·s/m"]
+    assert [pane.heading for pane in pair.pane_words()] == said
+    wait_for(lambda: "Damping: 3" in line_of(pair))
+
+
+def run(viewer: Viewer, action: Callable[[], None]) -> None:
+    """Call what only viser's event loop may call."""
+    viewer.server.get_event_loop().call_soon_threadsafe(action)
+    time.sleep(0.1)
+
+
+def line_of(viewer: Viewer) -> str:
+    """What the page with the panes reads."""
+    assert viewer.panel.compare is not None
+    return viewer.panel.compare.line.content
+
+
+def test_another_scene_in_a_pane_keeps_the_clock() -> None:
+    viewer = opened("rope&grid=false", "rope&stiffness=2000", "rope&stiffness=300")
+    try:
+        assert viewer.comparison is not None
+        second = viewer.comparison.viewers[1]
+        assert len(viewer.comparison.clock.seats) == 3
+        second.open("cloth", read_query("?scene=cloth&rows=8&cols=8").params)
+        assert len(viewer.comparison.clock.seats) == 3
+        assert second.loop.seat is viewer.comparison.clock.seats[1]
+        assert [pane.heading.split(" · ")[0] for pane in viewer.pane_words()] == ["Rope", "Cloth", "Rope"]
+        wait_for(lambda: second.panel.params.grid is False)
+        with pytest.raises(ValueError, match="nothing"):
+            second.open("nothing")
+        assert len(viewer.comparison.clock.seats) == 2  # the others do not wait for it
+    finally:
+        viewer.shut()
+
+
+def test_the_lab_goes_on_from_where_it_was_when_it_is_alone_again() -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        viewer.open("rope", paused=True)
+        viewer.loop.commands.put(StepOnce(5))
+        wait_for(lambda: viewer.loop.scene.time > 0)
+        time_before = viewer.loop.scene.time
+        viewer.comparing.begin([read_query("?scene=rope&stiffness=2000")], False)
+        wait_for(lambda: viewer.loop.latest.status.time == 0.0)
+        pane = viewer.comparison.viewers[1] if viewer.comparison else None
+        viewer.comparing.end_now()
+        wait_for(lambda: viewer.loop.latest.status.time == time_before)
+        assert pane is not None
+        assert pane.ended
+        assert not viewer.panes.servers
+        assert viewer.pane_words() == ()
+        assert status_of(viewer.port, "/pane/2/index.html") == 404
+    finally:
+        viewer.shut()
+
+
+def test_what_cannot_be_opened_leaves_the_lab_alone() -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        viewer.open("rope")
+        four = [read_query("?scene=rope")] * 4
+        with pytest.raises(ValueError, match=r"^set-ups side by side: 4 is not allowed; allowed: 2 to 3$"):
+            viewer.comparing.begin(four, True)
+        with pytest.raises(ValueError, match="nothing"):
+            viewer.comparing.begin([four[0]._replace(scene="nothing")], False)
+        assert viewer.comparison is None
+        assert not viewer.panes.servers
+    finally:
+        viewer.shut()

@@ -1,0 +1,71 @@
+"""Two labs side by side in a real browser: one clock, linked cameras, words on what differs, and one lab again."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from app.scenes.setups import read_query
+from app.server.viewer import Viewer
+
+# Position and target of the camera in a frame, and its field of view.
+CAMERA = """() => { const { cameraControl: controls, camera } = window.__viserMutable, place = camera.position.clone();
+    return [...controls.getPosition(place).toArray(), ...controls.getTarget(place).toArray(), camera.fov]; }"""
+SHOWN_PANELS = "() => [...document.querySelectorAll('.springtide-lab')].filter(e => e.offsetParent !== null).length"
+
+
+@pytest.fixture
+def pair() -> Iterator[Viewer]:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("rope")
+    yield viewer
+    viewer.shut()
+
+
+def test_two_ropes_on_one_clock_with_linked_cameras(pair: Viewer, open_tab: Any) -> None:
+    tab = open_tab(pair.port, width=900, height=500)
+    page = tab.page
+    tab.wait(lambda: page.locator(".springtide-panel[data-state]").count())
+    tab.errors.clear()
+    pair.comparing.begin([read_query("?scene=rope&stiffness=2000")], False)
+    page.wait_for_url("**/beside")
+    assert pair.comparison is not None
+    second = pair.comparison.viewers[1]
+    tab.wait(lambda: pair.visitors() and second.visitors() and min(pair.scene.time, second.scene.time) > 0.3)
+    headings = [heading.strip() for heading in page.locator("h2 span").all_inner_texts()]
+    assert headings == ["Stiffness: 800 N/m", "Stiffness: 2\u202f000 N/m"]
+    left, right = (page.frames[1], page.frames[2])
+
+    # One camera drives the other, from either side.
+    tab.wait(lambda: left.evaluate(CAMERA) == pytest.approx(right.evaluate(CAMERA), abs=1e-3))
+    before = left.evaluate(CAMERA)
+    box = page.locator("iframe").nth(1).bounding_box()
+    start = box["x"] + 0.15 * box["width"], box["y"] + 0.75 * box["height"]
+    tab.drag(start, (start[0] + 80, start[1] + 20))
+    tab.release()
+    tab.wait(lambda: left.evaluate(CAMERA) != pytest.approx(before, abs=0.05))
+    tab.wait(lambda: left.evaluate(CAMERA) == pytest.approx(right.evaluate(CAMERA), abs=1e-3))
+    tab.wait(lambda: page.locator("#scale span").inner_text() in ("50 cm", "1 m", "2 m", "5 m"))
+
+    # The buttons and keys act on both, and once they stand still both show the same time.
+    page.click("#play")
+    tab.wait(lambda: not pair.loop.running and not second.loop.running)
+    tab.wait(lambda: abs(pair.scene.time - second.scene.time) < max(pair.scene.step, second.scene.step))
+    page.click("#reset")
+    tab.wait(lambda: pair.scene.time == second.scene.time == 0.0)
+    page.click("#step")
+    tab.wait(lambda: pair.scene.time > 0.0 and second.scene.time > 0.0)
+    page.keyboard.press("Space")
+    tab.wait(lambda: pair.loop.running and second.loop.running)
+
+    # A panel opens where it is asked for, and the picture stays as large.
+    assert left.evaluate(SHOWN_PANELS) == 0
+    page.locator("h2 button").first.click()
+    tab.wait(lambda: left.evaluate(SHOWN_PANELS) == 1)
+    assert right.evaluate(SHOWN_PANELS) == 0
+
+    assert tab.errors == []
+    page.click("#end")
+    page.wait_for_url(lambda address: "beside" not in address)
+    tab.wait(lambda: page.locator(".springtide-panel[data-state]").count())
+    tab.wait(lambda: pair.comparison is None and second.ended)

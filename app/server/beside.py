@@ -101,13 +101,13 @@ class Comparison:
     def end(self) -> None:
         """End the other labs; the first one goes on from where it was before, if it is still the same run."""
         first, others = self.first, self.viewers[1:]
-        self.clock.seats = ()
         self.viewers = (first,)
         first.comparison = None
         if first.seat is not None:
             first.seat = None
             first.commands.share = None
             first.loop.seat = None
+        self.clock.seats = ()
         for viewer in others:
             viewer.shut()
         if self.left is not None and first.is_open and first.loop is self.left[0]:

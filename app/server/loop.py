@@ -221,12 +221,11 @@ class SimLoop:
 
         The loop of the first seat lets the clock's time pass.
         """
-        first = seat is seat.clock.seats[0]
-        if first and self.running:
+        if seat.is_first and self.running:
             seat.clock.advance(min(wall, MAX_CATCH_UP), self.scene.params.speed)
         due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
         n = self.pacer.most(due, self.frame_interval)
-        self.capped = n < due or (first and seat.clock.late)
+        self.capped = n < due or (seat.is_first and seat.clock.late)
         if n:
             (self.advance_within_budget if self.cost_unknown and self.running else self.advance)(n)
         return n > 0
@@ -448,7 +447,7 @@ class SimLoop:
                 self.running = False
                 if self.seat is None or self.replay is not None:
                     self.step_by_hand(steps)
-                elif self.seat is self.seat.clock.seats[0]:
+                elif self.seat.is_first:
                     self.seat.clock.step_by_hand(steps)
             case Halt(reason):
                 self.halt(reason)

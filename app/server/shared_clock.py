@@ -27,6 +27,11 @@ class Seat:
         self.running = True
         self.halted = False
 
+    @property
+    def is_first(self) -> bool:
+        """Whether this loop lets the clock's time pass."""
+        return self.clock.seats[:1] == (self,)
+
     def due(self, time: float, step: float) -> int:
         """How many steps [s] of a scene at `time` [s] lead to the clock's time."""
         return max(0, int((self.clock.time - self.offset - time) / step * (1 + 1e-9) + 1e-6))

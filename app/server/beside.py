@@ -31,16 +31,22 @@ class Comparison:
         self.clock = SharedClock()
         self.left: tuple[SimLoop, BaseParams, KeptState] | None = None  # the run of the first lab, as it was before
 
-    def begin(self, others: Sequence[Setup]) -> None:
-        """Open the others, then let all begin together. Whatever fails leaves the first lab alone, and is raised."""
+    def begin(self, others: Sequence[Setup], *, resume: bool) -> None:
+        """Open the others, then let all begin together. Whatever fails leaves the first lab alone, and is raised.
+
+        resume: the run of the first lab is to go on from here when the comparison ends.
+        """
         first = self.first
-        self.left = self.kept()
+        self.left = self.kept() if resume else None
         try:
             for number, setup in enumerate(others, 2):
                 pane = self.make_pane(number)
                 self.viewers = (*self.viewers, pane)
                 pane.comparison = self
                 pane.open(setup.scene, with_shared(setup.params, first.panel.params), paused=not first.loop.running)
+                if first.ended:
+                    self.end()
+                    return
         except BaseException:
             self.end()
             raise
@@ -121,6 +127,7 @@ class Comparing:
     def __init__(self, first: "Viewer", make_pane: Callable[[int], "Viewer"]) -> None:
         self.first, self.make_pane = first, make_pane
         self.lock = threading.Lock()
+        self.latest: Comparison | None = None  # the one that was made last, also while it is being opened
 
     def begin(self, setups: Sequence[Setup], with_first: bool) -> None:
         """Show set-ups beside the first lab; with_first: the first of them in the first lab.
@@ -135,7 +142,8 @@ class Comparing:
                 self.first.comparison.end()
             if with_first:
                 self.first.open(setups[0].scene, setups[0].params)
-            Comparison(self.first, self.make_pane).begin(setups[1:] if with_first else setups)
+            self.latest = Comparison(self.first, self.make_pane)
+            self.latest.begin(setups[1:] if with_first else setups, resume=not with_first)
 
     def want(self, setups: Sequence[Setup], with_first: bool) -> None:
         """The same at once, on a thread of its own."""
@@ -145,11 +153,21 @@ class Comparing:
         """Show the first lab alone, on a thread of its own."""
         threading.Thread(target=self.try_to, args=(self.end_now,), daemon=True).start()
 
-    def end_now(self) -> None:
-        """Show the first lab alone."""
-        with self.lock:
+    def end_now(self, timeout: float = -1.0) -> None:
+        """Show the first lab alone. timeout: [s] to wait for one that is being opened; -1: as long as it takes."""
+        if not self.lock.acquire(timeout=timeout):
+            return
+        try:
             if self.first.comparison is not None:
                 self.first.comparison.end()
+        finally:
+            self.lock.release()
+
+    def stop_opening(self) -> None:
+        """Give up a comparison that waits to be compiled, as the first lab ends."""
+        if self.latest is not None:
+            for viewer in self.latest.viewers[1:]:
+                viewer.stop_opening()
 
     def try_to(self, action: Callable[[], None]) -> None:
         """Do it; say on every page what went wrong."""

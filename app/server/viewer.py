@@ -380,6 +380,7 @@ class Viewer:
     def stop_opening(self) -> None:
         """Give up a scene that is waiting to be compiled, as the lab ends; `shut` does the rest."""
         self.ended = True
+        self.comparing.stop_opening()
 
     def shut(self) -> None:
         """End: stop the threads and the server. A scene that is being opened is not waited for."""
@@ -389,7 +390,8 @@ class Viewer:
             first, number = self.pane_of
             first.panes.remove(number)
         else:
-            self.comparing.end_now()
+            self.comparing.stop_opening()
+            self.comparing.end_now(MAX_JOIN_TIME)
             self.compiling.close()
         if self.changing.acquire(timeout=MAX_JOIN_TIME):
             try:

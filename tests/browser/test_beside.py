@@ -3,9 +3,11 @@
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 
 from app.scenes.setups import read_query
+from app.scenes.square_sea.view import camera_of
 from app.server.viewer import Viewer
 
 # Position and target of the camera in a frame, and its field of view.
@@ -69,3 +71,28 @@ def test_two_ropes_on_one_clock_with_linked_cameras(pair: Viewer, open_tab: Any)
     page.wait_for_url(lambda address: "beside" not in address)
     tab.wait(lambda: page.locator(".springtide-panel[data-state]").count())
     tab.wait(lambda: pair.comparison is None and second.ended)
+
+
+def test_the_camera_over_a_sea_is_as_far_from_its_middle_in_both_panes(open_tab: Any) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        seas = [read_query(f"?scene=square_sea&size=64&mesh=32&length={length}") for length in (128, 512)]
+        viewer.comparing.begin(seas, True)
+        assert viewer.comparison is not None
+        second = viewer.comparison.viewers[1]
+        tab = open_tab(viewer.port, width=900, height=400)
+        tab.page.wait_for_url("**/beside")
+
+        def offsets() -> list[np.ndarray]:
+            """Position and target of each camera from the middle of its sea [m]."""
+            found = []
+            for lab, length in ((viewer, 128.0), (second, 512.0)):
+                for client in lab.server.get_clients().values():
+                    middle = np.array([0.5 * length, 0.5 * length, 0.0])
+                    found.append(np.array([client.camera.position, client.camera.look_at]) - middle)
+            return found
+
+        expected = np.array(camera_of("deck", 128.0)) - (64.0, 64.0, 0.0)
+        tab.wait(lambda: len(offsets()) == 2 and np.allclose(offsets(), [expected, expected], atol=0.05))
+    finally:
+        viewer.shut()

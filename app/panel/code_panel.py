@@ -93,7 +93,7 @@ def state_of(session: Session) -> CodeState:
 
 def tables_of(session: Session) -> TableReport:
     """What runs by tables, and of what does not the functions that the student has begun."""
-    report, begun = session.tables.report, frozenset() if session.saved is None else session.saved.begun
+    report, begun = session.tables.report, frozenset[str]() if session.saved is None else session.saved.begun
     idle = {name: why for name, why in report.idle.items() if name in begun}
     return report._replace(idle=idle, off=bool(session.tables.tables) and not session.tables.shown)
 

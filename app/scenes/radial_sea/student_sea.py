@@ -34,7 +34,7 @@ class StudentNumbers(NamedTuple):
 
     viscosity: float | None  # [Pa s] of the mixture
     decay: Callable[[np.ndarray], np.ndarray] | None  # rate (k) [1/s]
-    index: float | None  # refractive index of the oil
+    oil_index: float | None  # refractive index
     draft: float | None  # [m] of the box
 
 
@@ -93,7 +93,7 @@ class StudentRadialSea:
 
     def drawn(self, column: FluidColumn) -> FluidColumn:
         """The fluids as they are drawn."""
-        index = self.numbers.index
+        index = self.numbers.oil_index
         if index is None or column.kind != "layer":
             return column
         return dataclasses.replace(column, oil=column.oil._replace(refractive_index=index))
@@ -110,16 +110,20 @@ class StudentRadialSea:
             )  # fmt: skip
         if decay is not None:
             own, exact = (float(c.roots(told)[1][0]) for c in (self.column(p), program))
-            lives = (1.0 / rate if rate > 0.0 else math.inf for rate in (own, exact))
-            differences.append(("A wave of 1 m falls to 37 % in", *lives, "s"))
+            differences.append(("A wave of 1 m falls to 37 % in", lifetime(own), lifetime(exact), "s"))
         if index is not None:
-            light = (100.0 * normal_reflectance(n) for n in (index, program.oil.refractive_index))
-            differences.append(("Light that the oil mirrors straight up", *light, "%"))
+            light, reference = (100.0 * normal_reflectance(n) for n in (index, program.oil.refractive_index))
+            differences.append(("Light that the oil mirrors straight up", light, reference, "%"))
         box = box_of(bodies)
         if draft is not None and box is not None:
             differences.append(("Draft of the box", draft, bodies.prediction(box).draft, "m"))
         running = {name: WHAT[name] for name in self.taken}
         self.live.report = TableReport(running, self.live.report.idle, tuple(differences))
+
+
+def lifetime(rate: float) -> float:
+    """Time [s] in which a wave that decays at a rate [1/s] falls to 1/e."""
+    return 1.0 / rate if rate > 0.0 else math.inf
 
 
 def numbers_of(tables: dict[str, Table]) -> StudentNumbers:

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.lab.live_tables import Call, LiveTables, Table, TableReport
 from app.lab.tabulate import Range
-from app.scenes.square_sea.parameters import Params, conditions, gravity
+from app.scenes.square_sea.parameters import Params, conditions, gravity, spectrum_values
 from sim.ocean import Sea
 from sim.ocean.spectra import SPECTRA, Spectrum
 from sim.ocean.spectra.record import MIN_WIND_SPEED
@@ -108,8 +108,8 @@ def spectrum_call(p: Params, g: float) -> Call:
     x, y = (k[:, None] * np.cos(theta)).ravel(), (k[:, None] * np.sin(theta)).ravel()
     bearing = math.radians(p.wind_direction)
     wind = PHILLIPS.wind_speed(p.wind_speed) * np.array([math.cos(bearing), math.sin(bearing)])
-    n = x.size
-    columns = np.column_stack([x, y]), np.tile(wind, (n, 1)), np.full(n, p.phillips_constant), np.full(n, g)
+    n, constant = x.size, spectrum_values(p)["phillips_constant"]
+    columns = np.column_stack([x, y]), np.tile(wind, (n, 1)), np.full(n, constant), np.full(n, g)
     return Call(columns, Range(0.0, math.inf, "m⁴"))
 
 

@@ -62,8 +62,8 @@ class Folder:
     def __init__(self, path: Path) -> None:
         self.path, self.number = path, 0
         self.tables = LiveTables(TASKS, 1.0)
-        self.nets = [LiveNet(material, lambda *_: None) for material in (ROPE, CLOTH)]
-        self.live = LiveCode(*self.nets, self.tables)
+        rope, cloth = self.nets = [LiveNet(material, lambda *_: None) for material in (ROPE, CLOTH)]
+        self.live = LiveCode(rope, cloth, self.tables)
 
     def save(self, text: str, file: str = "square_sea.py") -> int:
         self.number += 1

@@ -61,10 +61,11 @@ def right(session: Session) -> Session:
 
 def run(scene: ClothScene, frames: int = 20) -> None:
     """Let a cloth run, with as much time for the student's as it needs."""
-    assert scene.student is not None
+    student = scene.student
+    assert student is not None
     for _ in range(frames):
         scene.advance(4)
-        wait_for(lambda: scene.student.answers.qsize() or not scene.student.sent)
+        wait_for(lambda: student.answers.qsize() or not student.sent)
         scene.handle(StudentAnswer())
 
 

@@ -279,6 +279,10 @@ class Intake:
         if self.turn is None:
             self.turn = asyncio.get_running_loop().create_task(self.handle_waiting(client))
 
+    def close(self) -> None:
+        """Handle nothing more: a camera that is told after its browser has gone would count as a browser for ever."""
+        self.waiting, self.handlers = {}, []
+
     async def handle_waiting(self, client: ClientId) -> None:
         """Handle what waits, in turns."""
         try:
@@ -315,7 +319,8 @@ def put_intakes(server: viser.ViserServer, screen: Screen) -> None:
         client._handle_incoming_message = ignore
 
     def leave(client: ViserConnection) -> None:
-        intakes.pop(client.client_id, None)
+        intakes.pop(client.client_id).close()
+        server._connected_clients.pop(client.client_id, None)
 
     connection._handle_incoming_message = take
     connection.on_client_connect(join)

@@ -5,6 +5,7 @@ import http.client
 import math
 import random
 import socket
+import time
 from typing import Any
 
 import msgspec
@@ -159,6 +160,32 @@ def test_2000_hostile_messages_leave_the_server_running_and_the_state_finite(lab
             assert control.parameter.low <= value <= control.parameter.high, name
     assert lab.server._share_tunnel is None
     coroutines.run(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
+
+
+async def leave_at_once(port: int) -> None:
+    """Connect, say a camera just after another message, so that it has to wait for its turn, and leave."""
+    camera = {
+        "type": "ViewerCameraMessage", "wxyz": [1.0, 0.0, 0.0, 0.0], "position": [1.0, 1.0, 1.0], "fov": 1.0,
+        "near": 0.1, "far": 10.0, "image_height": 100, "image_width": 100, "look_at": [0.0] * 3,
+        "up_direction": [0.0, 0.0, 1.0],
+    }  # fmt: skip
+    protocol = websockets.Subprotocol(f"viser-v{viser.__version__}")
+    address = f"ws://127.0.0.1:{port}"
+    async with connect(address, subprotocols=[protocol], max_size=None, max_queue=None) as client:
+        await client.send(msgspec.msgpack.encode({"type": "CommandTriggerMessage", "uuid": "none"}))
+        await asyncio.sleep(0.05)
+        await client.send(msgspec.msgpack.encode(camera))
+        await asyncio.sleep(0.05)
+
+
+def test_a_browser_that_leaves_while_its_camera_waits_is_not_counted(
+    lab: Viewer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.server.guard.INTAKE_INTERVAL", 0.3)
+    before = len(lab.server.get_clients())
+    coroutines.run(leave_at_once(lab.port))
+    time.sleep(0.5)  # until the turn of the camera would have come
+    assert len(lab.server.get_clients()) == before
 
 
 def test_the_share_tunnel_has_no_handler(lab: Viewer) -> None:

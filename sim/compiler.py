@@ -12,7 +12,8 @@ A part is compiled for the types of its arguments and never for the value of a c
 The names used here are numba's own. They are a reason for the upper bound of numba in pyproject.toml.
 """
 
-from collections.abc import Callable
+import contextlib
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -41,7 +42,34 @@ class KernelFlags(Flags):
         return self._values == other._values if isinstance(other, KernelFlags) else NotImplemented
 
 
-class PartLibrary(JITCodeLibrary):
+@contextlib.contextmanager
+def no_strength_reduction() -> Iterator[None]:
+    """Without LLVM's last rewriting of loops' addresses: half of the time of making machine code, which runs no faster.
+
+    The option is one of the process, so it is set for our kernels only.
+    """
+    llvm.set_option("springtide", "-disable-lsr=1")
+    try:
+        yield
+    finally:
+        llvm.set_option("springtide", "-disable-lsr=0")
+
+
+class KernelLibrary(JITCodeLibrary):
+    """LLVM code of a part or an entry."""
+
+    _codegen: Any
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """Optimise each function alone. numba makes a list of passes for each, even for those only declared."""
+        ll_module.data_layout = self._codegen._data_layout
+        passes, builder = self._codegen._function_pass_manager()
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                passes.run(function, builder)
+
+
+class PartLibrary(KernelLibrary):
     """LLVM code of a part: neither optimised as a whole nor made machine code."""
 
     def _optimize_final_module(self) -> None:
@@ -63,10 +91,8 @@ class PartLibrary(JITCodeLibrary):
         return False
 
 
-class EntryLibrary(JITCodeLibrary):
+class EntryLibrary(KernelLibrary):
     """LLVM code of an entry and of all its parts."""
-
-    _codegen: Any
 
     def _optimize_final_module(self) -> None:
         for function in self._final_module.functions:
@@ -75,8 +101,9 @@ class EntryLibrary(JITCodeLibrary):
         super()._optimize_final_module()
 
     def _finalize_specific(self) -> None:
-        """Tell the machine code where the environments of its parts are: the Python objects that they name."""
-        super()._finalize_specific()
+        """Make machine code, and tell it where the environments of its parts are: the Python objects that they name."""
+        with no_strength_reduction():
+            super()._finalize_specific()
         for environment in environments(self._final_module):
             self._codegen.set_env(environment.env_name, environment)
 

@@ -216,10 +216,10 @@ def set_load(fleet, water, i, t, gravity, depth, scratch):
     hulls, q, R, pressure = fleet.hulls, fleet.hull[i], scratch.R, scratch.pressure
     first, last = hulls.vertex_start[q], hulls.vertex_start[q + 1]
     first_face, last_face = hulls.face_start[q], hulls.face_start[q + 1]
-    scratch.force[:] = 0.0
-    scratch.moment[:] = 0.0
-    scratch.wetted[:] = 0.0
-    pressure[:] = 0.0
+    for e in range(3):
+        scratch.force[e] = scratch.moment[e] = scratch.wetted[e] = 0.0
+    for e in range(pressure.shape[0]):
+        pressure[e] = 0.0
     fleet.wet_volume[i] = 0.0
     dx, dy = fleet.position[i, 0] - water.at[i, 0], fleet.position[i, 1] - water.at[i, 1]
     sx, sy = water.slope[i, 0], water.slope[i, 1]

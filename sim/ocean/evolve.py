@@ -86,7 +86,8 @@ def set_real_multiple(h, row, column, radial, out):
                 out[i, 2 * j] = f * h[i, 2 * j]
                 out[i, 2 * j + 1] = f * h[i, 2 * j + 1]
         else:
-            out[i, :] = 0.0
+            for j in range(2 * half):
+                out[i, j] = 0.0
         out[i, 2 * half] = out[i, 2 * half + 1] = 0.0
 
 
@@ -102,5 +103,6 @@ def set_imaginary_multiple(h, row, column, radial, out):
                 out[i, 2 * j] = -f * h[i, 2 * j + 1]
                 out[i, 2 * j + 1] = f * h[i, 2 * j]
         else:
-            out[i, :] = 0.0
+            for j in range(2 * half):
+                out[i, j] = 0.0
         out[i, 2 * half] = out[i, 2 * half + 1] = 0.0

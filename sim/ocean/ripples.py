@@ -188,10 +188,8 @@ def add_shapes(cx, sx, cy, sy, weight, filter, cc, cs, sc, ss, h):
     """
     half, n = cx.shape[1], h.shape[0]
     for i in range(half):
-        cc[:] = 0.0
-        cs[:] = 0.0
-        sc[:] = 0.0
-        ss[:] = 0.0
+        for j in range(half):
+            cc[j] = cs[j] = sc[j] = ss[j] = 0.0
         for d in range(cx.shape[0]):
             c, s = weight[d] * cx[d, i], weight[d] * sx[d, i]
             for j in range(half):

@@ -127,12 +127,8 @@ add_forces_of_width = by_net(rope=add_no_wide_forces, grid=add_wide_forces)
 
 
 @kernel(noalias=True, inline=True)
-def accelerate(x, v, t, p, with_damping, f, a):
-    """Acceleration a of every particle at time t, 0 where pinned.
-
-    with_damping False leaves out every force that depends on v, for integrators that treat damping apart.
-    f: scratch of `make_scratch`.
-    """
+def accelerate_inline(x, v, t, p, with_damping, f, a):
+    """`accelerate` of a rope, which is over so soon that a call would count."""
     b = 1.0 if with_damping else 0.0
     accelerate_links(x, v, p, b, b * p.drag, f, a)
     add_forces_of_width(x, v, p, with_damping, f, a)
@@ -140,6 +136,17 @@ def accelerate(x, v, t, p, with_damping, f, a):
         add_contacts(x, v, t, p, with_damping, a)
     if p.grabbed >= 0:
         add_grab(x, v, p, b, a)
+
+
+@kernel(noalias=True, allocates=False)
+def accelerate_wide(x, v, t, p, with_damping, f, a):
+    """`accelerate` of any other net, compiled once for all places of a kernel that call it."""
+    accelerate_inline(x, v, t, p, with_damping, f, a)
+
+
+# Acceleration a of every particle at time t, 0 where pinned. with_damping False leaves out every force that depends on
+# v, for integrators that treat damping apart. f: scratch of `make_scratch`.
+accelerate = by_net(rope=accelerate_inline, grid=accelerate_wide)
 
 
 @kernel(inline=True)

@@ -308,11 +308,8 @@ def is_odd(t, h, s):
 
 
 @kernel(inline=True)
-def damp(x, v, t, s, decay, p, reverse):
-    """All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards.
-
-    Returns the work [J] that a moving sphere did.
-    """
+def damp_inline(x, v, t, s, decay, p, reverse):
+    """`damp` of a rope, which is over so soon that a call would count."""
     work = 0.0
     outside = p.has_floor or p.has_sphere or p.grabbed >= 0 or pushes_itself(p)
     if outside and reverse:
@@ -321,3 +318,14 @@ def damp(x, v, t, s, decay, p, reverse):
     if outside and not reverse:
         work += damp_surfaces(x, v, t, s, p, reverse)
     return work
+
+
+@kernel(allocates=False)
+def damp_wide(x, v, t, s, decay, p, reverse):
+    """`damp` of any other net, compiled once for all places of a kernel that call it."""
+    return damp_inline(x, v, t, s, decay, p, reverse)
+
+
+# All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards. Returns the work [J]
+# that a moving sphere did.
+damp = by_net(rope=damp_inline, grid=damp_wide)

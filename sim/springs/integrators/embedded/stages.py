@@ -293,7 +293,7 @@ def take_steps(method, x, v, ledger, t, h, steps, p, with_account):
     xn, vn = np.empty_like(x), np.empty_like(x)
     set_pins(x, v, t, p)
     accelerate(x, v, t, p, True, stages.f, stages.a)
-    stages.k[: x.shape[0]] = stages.a
+    copy(stages.a, np.uint64(0), np.uint64(x.shape[0]), stages.k, np.uint64(0))
     for s in range(steps):
         take_step(method, x, v, t + s * h, h, p, stages, xn, vn, ledger, with_account)
         accept(method, x, v, stages, xn, vn)

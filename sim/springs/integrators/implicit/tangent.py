@@ -198,7 +198,8 @@ def quotients(x, u, t, p):
     w = np.empty_like(x)
     set_tangent(x, u, t, p, STIFFNESS, w)
     stiffness = dot(u, w)
-    w[:] = 0.0
+    for j in range(w.shape[0]):
+        w[j] = 0.0
     add_links(x, u, p, STIFFNESS, w)
     links = dot(u, w) / p.mass
     set_tangent(x, u, t, p, DAMPING, w)

@@ -103,6 +103,19 @@ def make_parser() -> argparse.ArgumentParser:
     add_parameters(run)
     run.set_defaults(command=run_headless)
 
+    export = commands.add_parser("export", help="write a sea or a cloth as a sequence of files for artists")
+    export.add_argument("scene", metavar="SCENE", help="square_sea (EXR or PNG pictures that tile) or cloth (OBJ)")
+    export.add_argument("--seconds", type=float, required=True, metavar="S", help="simulated time [s]")
+    export.add_argument("--out", type=Path, required=True, metavar="DIR", help="a new or empty folder")
+    export.add_argument(
+        "--rate", type=float, default=30.0, metavar="HZ", help="frames a simulated second (default: 30)"
+    )
+    export.add_argument("--start", type=float, default=0.0, metavar="S", help="time of the first frame (default: 0)")
+    forms = "exr (32-bit, the sea's default), exr16, png, or obj (the cloth's)"
+    export.add_argument("--format", metavar="FORMAT", help=forms)
+    add_parameters(export)
+    export.set_defaults(command=run_export)
+
     bench = commands.add_parser("bench", help="measure run time against error, kernels, frames, start-up")
     bench.add_argument("names", nargs="*", metavar="NAME", help="the benchmarks to run (default: all)")
     bench.add_argument("--quick", action="store_true", help="fewer and shorter runs: a minute each")
@@ -257,6 +270,16 @@ def run_headless(arguments: argparse.Namespace) -> int:
     from app.commands.run import run_to_file
 
     return run_to_file(arguments.scene, scene, params, arguments.seconds, arguments.rate, arguments.out)
+
+
+def run_export(arguments: argparse.Namespace) -> int:
+    """`springtide export`."""
+    scene = scene_named(arguments.scene)
+    params = read_params(scene, arguments)
+    from app.export.command import export
+
+    a = arguments
+    return export(a.scene, params, a.seconds, a.rate, a.start, a.format, a.out)
 
 
 def run_bench(arguments: argparse.Namespace) -> int:

@@ -15,7 +15,7 @@ SOURCES = sorted(path for top in ("sim", "app", "assets", "tests") for path in (
 # Folders of app/ from left to right: none imports a folder to its left. Those of one entry do not import each other.
 ORDER = (
     ("bench",),
-    ("sweep", "stability"),
+    ("sweep", "stability", "export"),
     ("experiments",),
     ("commands", "notebook"),
     ("server",),

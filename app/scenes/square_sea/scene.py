@@ -113,13 +113,12 @@ class SquareSeaScene:
     Its waves are analytic in time: a step only moves the clock, and a frame evaluates the surface.
     """
 
-    step = STEP
     faster = "a smaller grid"
     note = ""  # it always runs what the parameters ask for
 
-    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
-        """live: runs a student's functions, where there are any."""
-        self.params = params
+    def __init__(self, params: Params, live: "LiveCode | None" = None, step: float = STEP) -> None:
+        """live: runs a student's functions, where there are any. step: of the clock [s]."""
+        self.params, self.step = params, step
         self.student: StudentSea | None = None
         if live is not None:
             from app.scenes.square_sea import student_sea  # only `springtide lab DIR` pays for it
@@ -141,7 +140,7 @@ class SquareSeaScene:
     @property
     def time(self) -> float:
         """Simulated time [s]."""
-        return self.steps * STEP
+        return self.steps * self.step
 
     @property
     def frame_interval(self) -> float:

@@ -1,0 +1,1 @@
+"""Sequences of files for programs of artists: the square sea as pictures that tile, the cloth as meshes."""

@@ -1,0 +1,35 @@
+"""What `springtide export` needs of a scene that can be written as a sequence of files."""
+
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
+
+
+class Sequence(Protocol):
+    """One run of a scene, written frame by frame into a folder."""
+
+    passes: int  # how often the run is made: work of `write`, in frames, over the number of frames
+    bytes_per_frame: int  # before anything is compressed
+
+    def write(self, folder: Path, start: float, count: int) -> Iterator[float | None]:
+        """Write `count` frames, the first at `start` [s]. Yields the time [s] of each, None for one of a first pass.
+
+        Raises DivergenceError where the run diverges: the frames before that are written. Raises OSError.
+        """
+        ...
+
+    def about(self) -> Mapping[str, Any]:
+        """What the files hold, with units, for the JSON file beside them; to be asked for after `write`."""
+        ...
+
+
+class Exporter(NamedTuple):
+    """How one scene is written."""
+
+    formats: tuple[str, ...]  # the first is the default
+    make: Callable[[Any, float, str], Sequence]  # of the parameters, the frame interval [s] and the format
+
+
+def file_name(stem: str, number: int, suffix: str) -> str:
+    """The name of a file of a sequence; numbers begin at 1."""
+    return f"{stem}.{number:04d}.{suffix}"

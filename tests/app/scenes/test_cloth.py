@@ -175,6 +175,7 @@ def test_one_step_a_frame_is_taken_while_it_takes_longer_than_a_frame_and_droppe
         assert loop.counts["steps"] - before <= 1
     assert loop.latest.status.capped
     assert "slower than real time" in status_line(loop.latest)
+    assert "Faster: fewer rows and columns" in status_line(loop.latest)
     assert loop.work()["steps"].skipped > 100
     assert "Newton iterations a step" in View.readout(object.__new__(View), loop.latest)
 

@@ -1,0 +1,33 @@
+"""What the panel proposes where a net of springs is slower than real time."""
+
+import pytest
+
+from app.scenes.springs.speed_advice import faster_steps
+from sim.springs import INTEGRATORS
+from sim.springs.stability import Gauge
+
+
+def gauge_of(name, h_omega):
+    """The gauge of a step of h_omega / 1000 s."""
+    limit = INTEGRATORS[name].limit(0.1)
+    return Gauge(1000.0, 0.1, h_omega, limit, limit / 1000.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "h_omega", "text"),
+    [
+        ("leapfrog", 1.0, "fewer points"),
+        ("leapfrog", 0.5, "fewer points or a larger step, up to 1.8 ms"),
+        ("rk4", 1.5, "fewer points or leapfrog instead of Runge-Kutta 4"),
+        ("rk4", 2.0, "fewer points"),  # with which leapfrog would not hold
+        ("implicit_euler", 1.0, "fewer points, a larger step or leapfrog instead of implicit Euler"),
+        ("implicit_euler", 5.0, "fewer points or a larger step"),
+    ],
+)
+def test_only_what_holds_and_helps_is_proposed(name, h_omega, text):
+    assert faster_steps(INTEGRATORS[name], gauge_of(name, h_omega), "points") == text
+
+
+def test_a_cloth_is_faster_without_contact_with_itself():
+    found = faster_steps(INTEGRATORS["leapfrog"], gauge_of("leapfrog", 1.5), "rows and columns", touches_itself=True)
+    assert found == "fewer rows and columns or no self-collision"

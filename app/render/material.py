@@ -18,6 +18,7 @@ WATER_UNIFORMS = (
     "deepColor", "scatterColor", "foamColor", "sunDirection", "sunLight", "optics", "lens", "ripple", "skyline",
     "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "extent", "wireColor", "slick", "slickOptics",
     "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection", "rainRings", "rainVeil",
+    "firePlace", "fireLight",
 )  # fmt: skip
 MAX_WATERLINES = 12  # that the shader of the water draws foam and shade around
 # The same for the shader of the rain, `js/rain.js`.
@@ -105,6 +106,9 @@ class Material:
     rain_rings: tuple[float, float, float] = (0.0, 0.017, 0.23)
     rain_extinction: float = 0.0  # [1/m] of light by the rain in the air
 
+    fire_place: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m] of a fire that lights the sea
+    fire_light: RGB = (0.0, 0.0, 0.0)  # its radiant intensity, linear, in units of the sun's irradiance times m2
+
     wireframe: bool = False  # draw the grid of the mesh
     wire_color: RGB = (0.95, 0.55, 0.1)
     oil: Oil | None = None
@@ -181,6 +185,8 @@ def uniform_table(
         "oilColor": nothing if oil is None else linear(oil.color),
         "oilFilm": nothing if oil is None else (oil.refractive_index, m.refractive_index, oil.reflection_factor),
         "oilExtinction": EXTINCTION,
+        "firePlace": m.fire_place,
+        "fireLight": m.fire_light,
         "rainRings": m.rain_rings,
         "rainVeil": (m.rain_extinction, RAIN_HEIGHT, 0.0),
         "cutout": nothing if cutout is None else (*cutout.centre, cutout.half_width),

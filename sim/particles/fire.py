@@ -1,13 +1,9 @@
-"""Fire and its smoke: parcels of hot gas that rise, cool, spread and drift with the wind.
+"""Fire and its smoke: parcels of hot gas that go the way of a plume (`sim/particles/plume.py`), each beside its middle.
 
-A parcel of excess heat theta, 1 at the fire, cools as e^(-t/c) and is dragged to the speed of the wind within tau:
-
-  dv/dt = b theta z - (v - wind)/tau,   theta = e^(-age/c)
-
-integrated exactly, so that any step will do. b = 23.3 m/s2 is the rise of gas in a flame (McCaffrey 1979, NBSIR
-79-1910: v = 6.83 sqrt(z), any fire), and c is the time it takes through the flame, which is as high as Heskestad says
-(1983, Fire Saf. J. 5:103). Eddies are a swirl of its own for each parcel, that grows as the plume widens.
-Limits: no gas dynamics between parcels; the plume does not entrain, it is only dragged.
+A parcel's place is a function of its age, so that any step will do. It keeps its own share of the plume's radius and
+turns about the middle; puffs, of the frequency 1.5/sqrt(D) of pool fires (Cetegen and Ahmed 1993, Combust. Flame
+93:157) and slower ones, move parcels that started together to the same side.
+Limits: no gas dynamics between parcels.
 """
 
 import math
@@ -15,26 +11,17 @@ import math
 import numpy as np
 
 from sim.jit import kernel
+from sim.particles.plume import flame_height, track
 from sim.particles.random import uniform
-from sim.validation import argument_error, check_positive
+from sim.validation import argument_error
 
-RISE = 23.3  # [m/s2] b
-DRAG_TIME = 1.2  # [s] tau
-EDDY = 0.22  # swirl speed over rise
-
-
-def flame_height(power: float, diameter: float) -> float:
-    """L [m] = 0.235 Q^(2/5) - 1.02 D, Q in kW; power [W], diameter [m] of the fire; at least its radius.
-
-    Raises ValueError where either is not above 0.
-    """
-    check_positive("power", power, "W")
-    check_positive("diameter", diameter, "m")
-    return max(0.235 * (power / 1e3) ** 0.4 - 1.02 * diameter, 0.5 * diameter)
+DRAG_TIME = 1.2  # [s] in which gas is dragged to the speed of the wind
+LEAST_LIFE, LIFE_RANGE = 0.12, 2.64  # of the mean life: most parcels are flame, few are old smoke
+MEANDER = 0.5  # of the plume's widening, by which puffs move parcels
 
 
 class Fire:
-    """Parcels of one fire. `position`, `velocity` (3, n) float32; `age`, `life` (n,) [s]; `heat` (n,) 1 to 0."""
+    """Parcels of one fire. `position` (3, n), `age`, `life` [s], `heat` 1 to 0, `spread` [m] (n,), all float32."""
 
     def __init__(
         self,
@@ -45,10 +32,9 @@ class Fire:
         life: float = 9.0,
         wind: tuple[float, float] = (0.0, 0.0),
         eddies: float = 1.0,
-        updraft: float = 0.0,
     ) -> None:
-        """position [m] of the fire's middle; power [W]; life [s] of a parcel; wind (x, y) [m/s]; eddies: 0 for none;
-        updraft [m/s]: of the air about the plume, which smoke rises with when it is cold.
+        """position [m] of the fire's middle; power [W]; life [s] of a parcel on average; wind (x, y) [m/s]; eddies:
+        how much parcels turn and meander, 0 for not at all.
 
         Parcels start spread over their lives, as if the fire had burnt for long. Raises ValueError for what is not
         allowed.
@@ -63,22 +49,19 @@ class Fire:
             raise argument_error("count", count, "a whole number from 1")
         if not (math.isfinite(eddies) and eddies >= 0.0):
             raise argument_error("eddies", eddies, "0 or above, finite")
-        if not math.isfinite(updraft):
-            raise argument_error("updraft", updraft, "a finite number")
         self.place, self.diameter, self.wind, self.eddies = position, diameter, wind, eddies
-        self.updraft = float(updraft)
         self.height = flame_height(power, diameter)
-        self.cooling = math.sqrt(2.0 * self.height / RISE)  # [s] c
+        self.track = track(power, diameter, math.hypot(*wind), (LEAST_LIFE + LIFE_RANGE) * life)
+        self.puffs = 1.5 / math.sqrt(diameter)  # [1/s]
+        self.time = 0.0  # [s]
         self.position = np.zeros((3, count), np.float32)
-        self.velocity = np.zeros((3, count), np.float32)
         self.life = np.zeros(count, np.float32)
-        self.age = np.zeros(count, np.float32)
         self.heat = np.zeros(count, np.float32)
+        self.spread = np.zeros(count, np.float32)  # radius of the plume where a parcel is
         self.turn = np.zeros(count, np.uint32)  # how often each parcel has started
         # Before the first start a parcel waits its share of a life: `age` counts up from it.
-        self.age[:] = -(np.arange(count) + 0.5) / count * life
+        self.age = (-(np.arange(count) + 0.5) / count * life).astype(np.float32)
         self.mean_life = float(life)
-        self.life[:] = 0.0
         self.started = 0
 
     def step(self, dt: float) -> None:
@@ -86,11 +69,12 @@ class Fire:
         if not 0.0 <= dt < math.inf:
             raise argument_error("dt", dt, "0 or above, finite s")
         x, y, z = self.place
+        self.time += dt
         self.started += burn(
-            self.position, self.velocity, self.age, self.life, self.heat, self.turn, np.float32(dt), np.float32(x),
-            np.float32(y), np.float32(z), np.float32(0.5 * self.diameter), np.float32(self.wind[0]),
-            np.float32(self.wind[1]), np.float32(self.cooling), np.float32(self.mean_life),
-            np.float32(EDDY * self.eddies), np.float32(self.updraft),
+            self.position, self.age, self.life, self.heat, self.spread, self.turn, np.float32(dt), self.time,
+            np.float32(x), np.float32(y), np.float32(z), np.float32(0.5 * self.diameter), np.float32(self.wind[0]),
+            np.float32(self.wind[1]), np.float32(self.track.step), self.track.height, self.track.radius,
+            self.track.heat, np.float32(self.mean_life), np.float32(self.eddies), self.puffs,
         )  # fmt: skip
 
     @property
@@ -101,53 +85,41 @@ class Fire:
 
 @kernel(noalias=True)
 def burn(
-    position, velocity, age, life, heat, turn, dt, x, y, z, radius, wind_x, wind_y, cooling, mean_life, eddy, updraft
-):
-    """One step of all parcels; returns how many started again."""
-    tau, rise = np.float32(DRAG_TIME), np.float32(RISE)
-    one, zero, tiny = np.float32(1.0), np.float32(0.0), np.float32(1e-6)
-    keep = np.exp(-dt / tau)
-    fade = np.exp(-dt / cooling)
-    # v(dt) = wind + (v - wind) e^(-dt/tau) + b theta (e^(-dt/c) - e^(-dt/tau))/(1/tau - 1/c)
-    rate = one / tau - one / cooling
-    if abs(rate) < tiny:
-        gain = rise * dt * keep
-        way = rise * tau * (tau - (tau + dt) * keep)
-    else:
-        gain = rise * (fade - keep) / rate
-        way = rise * (cooling * (one - fade) - tau * (one - keep)) / rate
-    coast = tau * (one - keep)
+    position, age, life, heat, spread, turn, dt, now, x, y, z, radius, wind_x, wind_y, step, heights, radii, heats,
+    mean_life, eddies, puffs,
+):  # fmt: skip
+    """One step of all parcels to the time `now`; returns how many started again."""
+    tau, one, half = np.float32(DRAG_TIME), np.float32(1.0), np.float32(0.5)
+    circle, last = np.float32(2.0 * math.pi), heights.size - 2
     started = 0
     for i in range(age.size):
         age[i] += dt
-        if age[i] < zero:
+        if age[i] < np.float32(0.0):
             continue
         if turn[i] == 0 or age[i] >= life[i]:
             turn[i] += np.uint32(1)
-            r = radius * np.sqrt(uniform(i, turn[i], 1))
-            angle = np.float32(2.0 * math.pi) * uniform(i, turn[i], 2)
-            position[0, i], position[1, i] = x + r * np.cos(angle), y + r * np.sin(angle)
-            position[2, i] = z
-            velocity[0, i], velocity[1, i], velocity[2, i] = zero, zero, zero
-            age[i] = zero
-            life[i] = mean_life * (np.float32(0.6) + np.float32(0.8) * uniform(i, turn[i], 3))
-            heat[i] = one
+            age[i] = np.float32(0.0)
+            share = uniform(i, turn[i], 3)
+            life[i] = mean_life * (np.float32(LEAST_LIFE) + np.float32(LIFE_RANGE) * share * share)
             started += 1
-            continue
-        theta = heat[i]
-        vx, vy, vz = velocity[0, i] - wind_x, velocity[1, i] - wind_y, velocity[2, i] - updraft
-        position[0, i] += wind_x * dt + vx * coast
-        position[1, i] += wind_y * dt + vy * coast
-        position[2, i] += updraft * dt + vz * coast + theta * way
-        velocity[0, i] = wind_x + vx * keep
-        velocity[1, i] = wind_y + vy * keep
-        velocity[2, i] = updraft + vz * keep + theta * gain
-        heat[i] = theta * fade
-        if eddy > zero:
-            # Swirl: a circle at a pace and a phase of its own, as fast as a share of the rise.
-            pace = np.float32(1.0) + np.float32(2.5) * uniform(i, turn[i], 4)
-            phase = np.float32(2.0 * math.pi) * uniform(i, turn[i], 5) + pace * age[i]
-            speed = eddy * (velocity[2, i] + np.float32(1.5)) * np.float32(2.0) * uniform(i, turn[i], 6)
-            position[0, i] += speed * np.cos(phase) * dt
-            position[1, i] += speed * np.sin(phase) * dt
+        place = age[i] / step
+        k = min(int(place), last)
+        part = place - np.float32(k)
+        height = heights[k] + part * (heights[k + 1] - heights[k])
+        width = radii[k] + part * (radii[k + 1] - radii[k])
+        heat[i] = heats[k] + part * (heats[k + 1] - heats[k])
+        spread[i] = width
+        # Along the wind by its closed form of drag: t - tau (1 - e^(-t/tau)).
+        drift = age[i] - tau * (one - np.exp(-age[i] / tau))
+        angle = circle * uniform(i, turn[i], 2)
+        angle += eddies * (uniform(i, turn[i], 4) - half) * np.float32(4.0) * np.log(one + age[i])
+        r = np.sqrt(uniform(i, turn[i], 1)) * width
+        begun = now - age[i]
+        sway = eddies * np.float32(MEANDER) * (width - radius)
+        beat = 2.0 * math.pi * puffs * begun
+        sway_x = sway * np.float32(0.5 * math.sin(beat) + 0.5 * math.sin(0.231 * beat + 1.0))
+        sway_y = sway * np.float32(0.5 * math.sin(0.83 * beat + 2.0) + 0.5 * math.sin(0.147 * beat))
+        position[0, i] = x + wind_x * drift + r * np.cos(angle) + sway_x
+        position[1, i] = y + wind_y * drift + r * np.sin(angle) + sway_y
+        position[2, i] = z + height + (uniform(i, turn[i], 5) - half) * (width - radius)
     return started

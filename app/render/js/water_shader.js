@@ -378,6 +378,18 @@ const WATER_GLSL = {
       return (r1 * r1 + q * q + 2.0 * r1 * q * fringes) / (r1 * r1);
     }
 
+    uniform vec3 firePlace; // [m]
+    uniform vec3 fireLight; // radiant intensity (0: no fire)
+
+    // Radiance mirrored from a light in direction L to the eye in direction V, over the light's irradiance: the share of
+    // facets that send it there, Gaussian in slope (Cox and Munk 1954), with this variance along each axis.
+    float mirroredFrom(vec3 L, vec3 V, vec2 slope, float variance, float facing, float index) {
+      vec3 H = normalize(V + L);
+      vec2 tilt = -H.xy / max(H.z, 0.05) - slope;
+      float facets = exp(-0.5 * dot(tilt, tilt) / variance) / (6.2832 * variance);
+      return fresnel(max(dot(V, H), 0.0), index) * facets / (4.0 * pow(max(H.z, 0.1), 4.0) * max(facing, 0.12));
+    }
+
     // What stands in the water, two vectors each: x, y, heading, then half sides and corner [m] (0: none).
     uniform vec3 waterlines[2 * MAX_WATERLINES];
 
@@ -469,17 +481,18 @@ const WATER_GLSL = {
       vec3 ambient = ambientLight();
       vec3 mirrored = behindRain(addClouds(sky(R, dim), R, max(dim, 0.1), ambient).rgb, R);
 
-      // Sun glitter: the share of facets that send the sun to the eye, Gaussian in slope (Cox & Munk 1954).
-      vec3 H = normalize(V + sunDirection);
-      vec2 tilt = -H.xy / max(H.z, 0.05) - slope;
-      float spread = variance + 0.0004;
-      float facets = exp(-0.5 * dot(tilt, tilt) / spread) / (6.2832 * spread);
-      float glitter = fresnel(max(dot(V, H), 0.0), optics.x) * facets / (4.0 * pow(max(H.z, 0.1), 4.0) * max(facing, 0.12));
-      glitter *= 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z;
+      float glitter = 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z
+                    * mirroredFrom(sunDirection, V, slope, variance + 0.0004, facing, optics.x);
+      vec3 toFire = firePlace - at;
+      float near = dot(toFire, toFire) + 1.0;
+      toFire /= sqrt(near);
+      // Flames are metres wide, which blurs their image as roughness does.
+      float image = optics.z * mirroredFrom(toFire, V, slope, variance + 0.002, facing, optics.x);
 
       // Light that comes out of the water: from the deep, and through crests with the sun behind them.
       float sunUp = max(dot(N, sunDirection), 0.0);
-      vec3 lit = ambient + sunLight * sunUp * 0.3183;
+      vec3 fire = fireLight / near;
+      vec3 lit = ambient + (sunLight * sunUp + fire * max(dot(N, toFire), 0.0)) * 0.3183;
       float crest = clamp(at.z / max(seaState.y, 0.01) + 0.15, 0.0, 1.2);
       float through = pow(clamp(dot(-V, normalize(sunDirection - 0.35 * N)) * 0.5 + 0.5, 0.0, 1.0), 3.0);
       vec3 body = deep * lit;
@@ -489,12 +502,13 @@ const WATER_GLSL = {
       body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, slopeAndFoam.z);
 
       // As in the photograph of the sky, radiances far above the rest are compressed.
-      vec3 sparkle = sunLight * glitter;
+      vec3 sparkle = sunLight * glitter + fire * image;
       sparkle /= 1.0 + dot(sparkle, vec3(0.3, 0.5, 0.2)) / GLITTER_LIMIT;
       vec3 color = mix(body, mirrored, mirror) + sparkle * (1.0 - foam);
       // Foam scatters the light of sun and sky many times. The sky is that overhead and that around.
       vec3 M = normalize(vec3(-slope - bubbles.yz, 1.0));
-      vec3 white = foamColor * (0.65 * ambient + 0.35 * around + sunLight * 0.3183 * max(dot(M, sunDirection), 0.0));
+      vec3 white = foamColor * (0.65 * ambient + 0.35 * around + 0.3183 * sunLight * max(dot(M, sunDirection), 0.0)
+                              + 0.3183 * fire * max(dot(M, toFire), 0.0));
       color = mix(color, white * bubbles.w, foam);
       color = mix(color, 0.65 * ambient + 0.35 * around, 0.5 * rings.w);
 

@@ -92,11 +92,11 @@ class Walls:
 
     def ruler_lines(self, floor: float) -> np.ndarray:
         """Segments (n, 2, 3) [m] of a ruler from the mean level of the sea down to the floor [m]."""
-        lines = [(self.on_wall(RULER_PLACE, 0.0), self.on_wall(RULER_PLACE, floor))]
+        lines = [[self.on_wall(RULER_PLACE, 0.0), self.on_wall(RULER_PLACE, floor)]]
         for k in range(int(-floor / TICK_SPACING) + 1):
             length = TICK_LENGTH * (2.0 if k % TICKS_PER_NUMBER == 0 else 1.0) * self.size / self.half_width
             ends = RULER_PLACE, RULER_PLACE + length
-            lines.append(tuple(self.on_wall(along, -k * TICK_SPACING) for along in ends))
+            lines.append([self.on_wall(along, -k * TICK_SPACING) for along in ends])
         return np.array(lines, np.float32)
 
     def show_labels(self, cutaway: Cutaway, column: FluidColumn, keel: float | None) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import viser
 
 MAX_FIRE_SPLATS, MAX_OIL_SPLATS = 2000, 900
-HEAT = (0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0)  # of a parcel, at which it has the colour below
+HEAT = (0.0, 0.15, 0.26, 0.34, 0.5, 0.8, 1.0)  # of a parcel, at which it has the colour below
 HEAT_COLOURS = (
     (52, 48, 46),
     (38, 34, 32),
@@ -17,6 +17,8 @@ HEAT_COLOURS = (
     (255, 196, 70),
     (255, 246, 190),
 )
+SPLAT_SHARE = 0.3  # standard deviation of a splat of smoke over the radius of the plume
+FULL_SMOKE_RADIUS = 30.0  # [m] of the plume, from which on smoke is thinner
 OIL_COLOUR = (34, 22, 12)
 OIL_WIDTH, OIL_HEIGHT = 0.34, 0.55  # [m] standard deviations of a splat of oil
 OIL_OPACITY = 0.9
@@ -32,9 +34,13 @@ class Flames:
             name, np.zeros((n, 3)), covariances, np.zeros((n, 3)), np.zeros((n, 1)), visible=False
         )
         self.buffer = np.array(self.handle.buffer)
+        random = np.random.default_rng(0)
+        self.variety = np.stack([random.uniform(0.5, 1.3, MAX_FIRE_SPLATS), random.uniform(0.55, 1.5, MAX_FIRE_SPLATS)])
 
     def show(self, fire: tuple[np.ndarray, np.ndarray] | None, jet: np.ndarray | None) -> None:
-        """Draw a fire, positions (3, n) [m] with heat and age over life (2, n), and a jet, positions (m, 3) [m]."""
+        """Draw a fire, positions (3, n) [m] with heat, age over life and radius of the plume [m] (3, n), and a jet,
+        positions (m, 3) [m].
+        """
         visible = fire is not None or jet is not None
         if self.handle.visible != visible:
             self.handle.visible = visible
@@ -43,14 +49,17 @@ class Flames:
         self.buffer[:, 7] = 0
         if fire is not None:
             every = max(1, -(-fire[0].shape[1] // MAX_FIRE_SPLATS))
-            x, (heat, age) = fire[0][:, ::every].T, fire[1][:, ::every]
+            x, (heat, age, spread) = fire[0][:, ::every].T, fire[1][:, ::every]
             rgb = np.stack([np.interp(heat, HEAT, [c[i] for c in HEAT_COLOURS]) for i in range(3)], axis=1)
-            # Flames are dense and small; smoke grows wider and thinner with age.
-            young = np.clip(age / 0.04, 0.0, 1.0)
-            opacity = young * np.interp(heat, (0.0, 0.08, 0.2, 1.0), (0.17, 0.3, 0.7, 0.95))
-            opacity *= (1.0 - np.clip(age, 0.0, 1.0)) ** 1.3
-            width = 0.8 + 0.9 * (1.0 - heat) + 8.5 * np.clip(age, 0.0, 1.0)
-            height = width * np.interp(heat, (0.0, 0.3, 1.0), (1.0, 1.3, 1.8))
+            # Flames are dense and small. Smoke is as wide as its plume, thinner with its width, and fades in the end;
+            # each splat has a size and a shade of its own, so that the outline is ragged.
+            size, shade = self.variety[:, : len(x)]
+            rgb = np.where((heat < HEAT[2])[:, None], rgb * shade[:, None], rgb)
+            opacity = np.interp(heat, (0.0, 0.1, 0.3, 1.0), (0.55, 0.6, 0.6, 0.8))
+            opacity *= np.minimum(1.0, FULL_SMOKE_RADIUS / np.maximum(spread, 1.0))
+            opacity *= np.clip(4.0 * (1.0 - age), 0.0, 1.0)
+            width = size * SPLAT_SHARE * spread * np.interp(heat, (0.0, 0.3, 1.0), (1.0, 0.9, 0.7))
+            height = width * np.interp(heat, (0.0, 0.3, 1.0), (0.9, 1.3, 2.0))
             self.put(0, x, width, height, rgb, np.where(age < 0.0, 0.0, opacity))
         if jet is not None and len(jet):
             chosen = jet[:: max(1, -(-len(jet) // MAX_OIL_SPLATS))]

@@ -33,7 +33,9 @@ class RadialFrame(NamedTuple):
     positions: NDArray[np.float32]  # (bodies, 3) [m]
     rotations: NDArray[np.float32]  # (bodies, 4) quaternions (w, x, y, z)
     pulls: tuple[tuple[Vector, Vector], ...]  # from each held body to where it is pulled [m]
-    fire: tuple[NDArray[np.float32], NDArray[np.float32]] | None  # (3, n) [m], (2, n) heat and age over life
+    fire: (
+        tuple[NDArray[np.float32], NDArray[np.float32]] | None
+    )  # (3, n) [m], (3, n) heat, age over life and radius of the plume [m]
     jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
     column: FluidColumn
     age: float  # [s] for which the waves have run under the oil

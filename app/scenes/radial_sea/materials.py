@@ -9,8 +9,9 @@ import numpy as np
 from app.render.material import MAX_WATERLINES, RGB, Cutout, Material, Oil, SlickRegion, Waterline
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.parameters import Params
-from app.scenes.radial_sea.well_blowout import RIG, Slick
+from app.scenes.radial_sea.well_blowout import FIRE, FIRE_WIDTH, RIG, Slick
 from sim.ocean.fluid_column import FluidColumn
+from sim.particles.plume import flame_height, radiated_light
 
 LAB_SPECULAR = 0.4  # share of oil's reflection that is drawn with optics "lab"
 RIPPLE_LENGTH = 0.9  # [m] of the wave that stands for all ripples of the material, in how they decay under oil
@@ -20,6 +21,9 @@ MIXTURE_SCATTER: RGB = (0.40, 0.26, 0.14)  # what an emulsion scatters
 MIXTURE_ROUGHNESS = 0.06
 MIXTURE_BASE_SHARE = 0.35  # share of oil's colours in a mixture with hardly any oil; it grows with the fraction
 MIXTURE_THICKNESS = 1e-3  # [m] of a film that shows as much of its colour as a mixture does: all
+FIRE_COLOUR = (1.0, 0.45, 0.12)  # of the light of flames, linear
+VISIBLE_SHARE = 0.02  # of what a flame radiates
+SUN_IRRADIANCE, SUN_STRENGTH = 450.0, 5.0  # [W/m2] of visible sunlight, and what it is in the material
 SPILL_RADIUS = 45.0  # [m] of the spill as drawn,
 SPILL_MARGIN = 25.0  # [m] and at least so far beyond the bodies
 LEG_DISTANCE, LEG_RADIUS = 14.33, 1.3  # [m] of the rig's legs at the water, from its middle (assets/make_models.py)
@@ -71,7 +75,7 @@ def waterlines_of(frame: RadialFrame) -> list[Waterline]:
 def material_of(light: Material, frame: RadialFrame) -> Material:
     """The material of a frame under a sky (`app.render.skies.set_sky`), with its slick and its cutaway."""
     p, column, cutaway = frame.params, frame.column, frame.cutaway
-    common = {
+    common: dict[str, Any] = {
         "ripple_slope": round(ripple_slope(p, column, 0.0), 3),
         "ripple_length": 1.6,
         "ripple_direction": math.radians(p.wind_direction),
@@ -81,11 +85,21 @@ def material_of(light: Material, frame: RadialFrame) -> Material:
         if cutaway is None
         else Cutout(cutaway.middle, cutaway.half_width, cutaway.direction, cutaway.length),
     }
+    if frame.fire is not None:
+        common |= fire_light(p.fire_power * 1e6)
     if column.kind == "water":
         return dataclasses.replace(
             light, **common, **({} if frame.slick is None else slick_look(p, column, frame.slick))
         )
     return dataclasses.replace(light, **common, **spill_look(frame))
+
+
+def fire_light(power: float) -> dict[str, Any]:
+    """What a fire of this power [W] on the rig changes in a material: it lights the sea."""
+    x, y, z = FIRE
+    intensity = VISIBLE_SHARE * radiated_light(power) * SUN_STRENGTH / SUN_IRRADIANCE
+    red, green, blue = (intensity * part for part in FIRE_COLOUR)
+    return {"fire_place": (x, y, z + 0.5 * flame_height(power, FIRE_WIDTH)), "fire_light": (red, green, blue)}
 
 
 def spill_look(frame: RadialFrame) -> dict[str, Any]:

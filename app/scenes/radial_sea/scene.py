@@ -455,7 +455,7 @@ class RadialSeaScene:
             if fire is None
             else (
                 fire.position.copy(),
-                np.stack([fire.heat, fire.age / np.maximum(fire.life, np.float32(1e-3))]).astype(np.float32),
+                np.stack([fire.heat, fire.age / np.maximum(fire.life, np.float32(1e-3)), fire.spread]),
             ),
             jet=None if jet is None else jet.position[:, jet.flying].T.astype(np.float32),
             column=self.column if self.student is None else self.student.drawn(self.column),

@@ -25,9 +25,8 @@ LANDING = NOZZLE[0] + JET_VELOCITY[0] * FALL_TIME, NOZZLE[1] + JET_VELOCITY[1] *
 PARCEL_RADIUS = 0.05  # [m] of the oil
 MAX_FLIGHT_TIME = 4.0  # [s] that a parcel of oil is in the air, about
 MIN_JET_PARCELS = 50
-UPDRAFT = 3.0  # [m/s] of the air that the fire draws up
-SMOKE_LIFE = 24.0  # [s] of a parcel of fire and smoke
-BURN_IN_STEP = 0.1  # [s] of the steps by which the fire burns before the scene begins
+SMOKE_LIFE = 20.0  # [s] of a parcel of fire and smoke on average
+BURN_IN_TIME, BURN_IN_STEP = 60.0, 0.2  # [s] for which the fire burns before the scene begins, and the steps of that
 CROSSING_WAVE = 1.0  # [m] length of the wave in what is said of how the slick calms waves
 SAMPLE_GRID, SAMPLE_SPACING = 16, 3.0  # points a side and their distance [m], of the sea that parcels fall into
 
@@ -108,7 +107,7 @@ class WellBlowout:
         self.points = np.column_stack([i.ravel(), j.ravel()]) * SAMPLE_SPACING + self.origin
         self.change(params)
         if self.fire is not None:  # smoke has risen for some time when the scene begins
-            for _ in range(int(SMOKE_LIFE / BURN_IN_STEP)):
+            for _ in range(int(BURN_IN_TIME / BURN_IN_STEP)):
                 self.fire.step(BURN_IN_STEP)
 
     def change(self, params: Params) -> None:
@@ -119,7 +118,7 @@ class WellBlowout:
             self.fire_settings = fire
             self.fire = None
             if fire is not None:
-                self.fire = Fire(FIRE, fire.power, FIRE_WIDTH, fire.parcels, SMOKE_LIFE, fire.wind, updraft=UPDRAFT)
+                self.fire = Fire(FIRE, fire.power, FIRE_WIDTH, fire.parcels, SMOKE_LIFE, fire.wind)
         if jet != self.jet_settings:
             self.jet_settings = jet
             self.close_jet()

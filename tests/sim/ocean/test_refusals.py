@@ -12,7 +12,7 @@ from sim.ocean.planets import gravity_of
 from sim.ocean.slick import slick_radius
 from sim.ocean.spectra import SPECTRA
 from sim.ocean.statistics import expected, measured, resolved_in_time
-from sim.particles.fire import flame_height
+from sim.particles.plume import flame_height
 from sim.particles.rain import rainfall, terminal_speed
 
 

@@ -1,0 +1,81 @@
+"""Plumes: McCaffrey's regimes, Briggs's rise, and the way of gas that joins them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sim.particles.plume import (
+    BENT_WIDENING,
+    STILL_WIDENING,
+    bent_rise,
+    buoyancy_flux,
+    centreline,
+    flame_height,
+    radiated_light,
+    track,
+)  # fmt: skip
+
+
+def test_the_flame_of_a_megawatt_pool_is_as_high_as_heskestad_says() -> None:
+    assert flame_height(1e6, 1.0) == pytest.approx(0.235 * 1000**0.4 - 1.02)  # 2.70 m
+    assert flame_height(1e3, 4.0) == 2.0
+
+
+def test_the_middle_of_a_plume_is_as_fast_and_hot_as_mccaffrey_measured() -> None:
+    """A fire of 1 MW: q = 15.85; in the flame, in the intermittent flame and in the plume."""
+    speed, rise = centreline([1.0, 2.0, 10.0], 1e6)
+    assert speed == pytest.approx([6.8, 1.9 * 1000**0.2, 1.1 * (10 / 1000**0.4) ** (-1 / 3) * 1000**0.2], rel=1e-6)
+    assert rise[0] == pytest.approx(853.0, rel=0.01)  # the same everywhere in the flame, 800 to 900 K as measured
+    assert rise[2] == pytest.approx(22.3 * (10 / 1000**0.4) ** (-5 / 3), rel=0.01)
+    below, above = centreline(0.08 * 1000**0.4 * np.array([0.9999, 1.0001]), 1e6)[0]
+    assert above == pytest.approx(below, rel=0.02)  # the fits meet
+
+
+def test_briggs_plume_rises_by_two_thirds_of_the_distance() -> None:
+    assert buoyancy_flux(1e6) == pytest.approx(0.7 * 8.84, rel=1e-2)
+    assert bent_rise(1000.0, 1e6, 5.0) == pytest.approx(1.6 * (0.7 * 8.84) ** (1 / 3) * 100.0 / 5.0, rel=1e-2)
+
+
+def test_without_wind_gas_goes_by_mccaffrey() -> None:
+    way = track(100e6, 4.0, 0.0, 20.0)
+    age = way.step * np.arange(len(way.height))
+    speed = np.gradient(way.height.astype(float), age)[5:-5]
+    assert speed == pytest.approx(centreline(way.height[5:-5], 100e6)[0], rel=0.03)
+    assert way.radius[way.height < 3.0] == pytest.approx(2.0, abs=0.02)  # a flame is as wide as the fire
+    widening = np.diff(way.radius.astype(float)) / np.diff(way.height)
+    assert widening[-200:] == pytest.approx(STILL_WIDENING, rel=0.01)
+
+
+def test_far_in_the_wind_gas_goes_by_briggs() -> None:
+    wind = 12.0
+    way = track(100e6, 4.0, wind, 600.0)
+    age = way.step * np.arange(len(way.height))
+    rise = bent_rise(wind * age[200:], 100e6, wind)
+    assert way.height[200:] == pytest.approx(rise, rel=0.12)
+    growth = np.diff(way.height[[400, 500]].astype(float)) / np.diff(rise[[200, 300]])
+    assert growth == pytest.approx(1.0, rel=0.05)
+    assert np.diff(way.radius[[400, 500]]) / np.diff(way.height[[400, 500]]) == pytest.approx(BENT_WIDENING, rel=0.06)
+
+
+def test_wind_bends_the_plume_and_gas_cools_all_the_way() -> None:
+    heights = [float(track(100e6, 4.0, wind, 30.0).height[-1]) for wind in (0.0, 3.0, 10.0)]
+    assert heights[0] > heights[1] > heights[2]
+    heat = track(100e6, 4.0, 5.0, 30.0).heat
+    assert heat[0] == pytest.approx(1.0, rel=1e-3)
+    assert (np.diff(heat) <= 1e-6).all()
+    assert heat[-1] < 0.1
+
+
+def test_light_is_that_of_a_sphere() -> None:
+    assert 4.0 * math.pi * radiated_light(1e6) == pytest.approx(0.3e6)
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [("power", (-1.0, 4.0, 5.0, 1.0)), ("diameter", (1e6, 0.0, 5.0, 1.0)), ("wind_speed", (1e6, 4.0, -1.0, 1.0)),
+     ("duration", (1e6, 4.0, 5.0, 0.0))],
+)  # fmt: skip
+def test_what_is_not_allowed_is_refused_by_name(name: str, values: tuple[float, ...]) -> None:
+    with pytest.raises(ValueError, match=name):
+        track(*values)

@@ -1,6 +1,7 @@
 """The drawing of the square sea: water, rain, wave gauge and grid."""
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable
 from typing import Any
@@ -52,6 +53,13 @@ def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
     ahead, target_height = TARGETS[view]
     x = 0.5 * length - min(CAMERA_SETBACK * length, MAX_CAMERA_SETBACK)
     return (x, 0.5 * length, VIEW_HEIGHTS[view]), (x + ahead, 0.5 * length, target_height)
+
+
+@functools.lru_cache(maxsize=8)
+def rain_look(rate: float, gravity: float) -> tuple[tuple[float, float, float], float]:
+    """The rings and the extinction [1/m] of `Material` in rain of this rate [mm/h]; they are asked for each frame."""
+    rings = (ring_flux(rate, gravity), *ring_wave(gravity, SURFACE_TENSION, WATER_DENSITY))
+    return rings, rainfall(rate, gravity).extinction
 
 
 class View:
@@ -123,8 +131,7 @@ class View:
         fold, blur, limit = self.sky_material.sky_fold
         rings, extinction, sun_left = (0.0, 1.0, 1.0), 0.0, 1.0
         if p.rain > 0.0:
-            rings = (ring_flux(p.rain, g), *ring_wave(g, SURFACE_TENSION, WATER_DENSITY))
-            extinction = rainfall(p.rain, g).extinction
+            rings, extinction = rain_look(p.rain, g)
             sun_left = math.exp(-extinction * RAIN_HEIGHT)
             blur = RAIN_BLUR
         return dataclasses.replace(

@@ -5,6 +5,7 @@ import contextlib
 import http.client
 import time
 from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -13,6 +14,8 @@ import websockets
 from websockets.asyncio.client import connect
 
 from app.messages import StepOnce
+from app.scenes.comparisons import COMPARISONS
+from app.scenes.rope.parameters import PRESETS
 from app.scenes.setups import read_query
 from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.viewer import Viewer
@@ -23,6 +26,7 @@ from tests.app.server.test_transport import decoded
 KEY = "k-3_" * 5
 HUB = "https://hub.example.org"
 PATH = f"/lab/{KEY}"
+READY = ", ".join(COMPARISONS)
 
 
 def wait_for(condition: Callable[[], Any]) -> None:
@@ -165,6 +169,41 @@ def test_the_lab_goes_on_from_where_it_was_when_it_is_alone_again() -> None:
         assert not viewer.panes.servers
         assert viewer.pane_words() == ()
         assert status_of(viewer.port, "/pane/2/index.html") == 404
+    finally:
+        viewer.shut()
+
+
+def test_an_address_and_the_panel_open_a_comparison() -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    said: list[str] = []
+    client = SimpleNamespace(add_notification=lambda title, reason, **how: said.append(reason))
+
+    def inbox(text: str) -> None:
+        event = SimpleNamespace(target=SimpleNamespace(value=text), client_id=1, client=client)
+        coroutines.run(viewer.panel.share.on_inbox(event))
+
+    try:
+        viewer.open("rope")
+        inbox("?compare=nothing")
+        inbox("?compare=<script>")
+        assert said == [
+            f"compare: '{name}' is not allowed; allowed: one of {READY}" for name in ("nothing", "<script>")
+        ]
+        assert viewer.comparison is None
+        inbox("?compare=methods")
+        wait_for(lambda: viewer.comparison is not None)
+        assert ["Leapfrog" in pane.heading for pane in viewer.pane_words()] == [True, False]
+        wait_for(lambda: "Leapfrog" in line_of(viewer))
+        compare = viewer.panel.compare
+        assert compare is not None
+        coroutines.run(compare.on_end(SimpleNamespace(client_id=1)))
+        wait_for(lambda: viewer.comparison is None and "[]" in line_of(viewer))
+        compare.choice.value = "Stiff rope"
+        coroutines.run(compare.on_start(SimpleNamespace(client_id=1)))
+        wait_for(lambda: viewer.comparison is not None)
+        assert viewer.comparison is not None
+        second = viewer.comparison.viewers[1]
+        assert second.panel.params.units == PRESETS["Stiff rope"]["units"] == "material"  # type: ignore[attr-defined]
     finally:
         viewer.shut()
 

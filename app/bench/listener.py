@@ -1,6 +1,6 @@
-"""A client that reads all messages of a lab on this machine and draws nothing, until it is ended.
+"""Clients that read all messages of a lab on this machine and draw nothing, until they are ended.
 
-`python -m app.bench.listener PORT`, in a process of its own, so that its time is not counted for the server.
+`python -m app.bench.listener PORT [CLIENTS]`, in a process of its own, so that its time is not counted for the server.
 """
 
 import asyncio
@@ -27,5 +27,10 @@ async def listen(port: int) -> None:
             pass
 
 
+async def listen_all(port: int, clients: int) -> None:
+    """Let so many clients listen at the same time."""
+    await asyncio.gather(*(listen(port) for _ in range(clients)))
+
+
 if __name__ == "__main__":
-    asyncio.run(listen(int(sys.argv[1])))
+    asyncio.run(listen_all(int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1))

@@ -174,9 +174,20 @@ class Share:
         self.line.content = note(text) if text else ""
 
     async def on_inbox(self, event: ViserEvent) -> None:
-        """A page has sent its address ("?scene=...") or a file ("{...}")."""
-        text = str(event.target.value)
-        if event.client_id is None or not text:
+        """A page has sent something."""
+        if event.client is not None:
+            self.take_inbox(event.client)
+
+    def take_early(self) -> None:
+        """Take what a page has sent before viser had counted its browser: viser calls nobody for that."""
+        clients = self.server.get_clients()
+        if clients:
+            self.take_inbox(clients[max(clients)])
+
+    def take_inbox(self, client: viser.ClientHandle) -> None:
+        """Take what a page has sent: its address ("?scene=...") or a file ("{...}"). Called on viser's event loop."""
+        text = self.inbox.value
+        if not text:
             return
         self.inbox.value = ""  # so that the same text can come again
         try:
@@ -185,14 +196,14 @@ class Share:
                 return
             setup = read_query(text) if text.startswith("?") else read_file(text)
         except ValueError as reason:
-            self.refuse(event.client, str(reason))
+            self.refuse(client, str(reason))
             return
         if setup.scene == self.panel.kind.name and setup.params == self.panel.params:
-            self.place(setup, event.client)
+            self.place(setup, client)
         elif len(self.server.get_clients()) > 1:
-            self.ask(setup, event.client_id)
+            self.ask(setup, client.client_id)
         else:
-            self.panel.show_setup(setup, event.client_id)
+            self.panel.show_setup(setup, client.client_id)
 
     def refuse(self, client: viser.ClientHandle | None, reason: str) -> None:
         """Tell one browser why a set-up was not taken."""
@@ -428,7 +439,9 @@ class Share:
         return f"springtide-{self.panel.kind.name}.html", page.encode()
 
     def update(self, snapshot: AnySnapshot) -> None:
-        """Keep the timeline up to date."""
+        """Take what waits, and keep the timeline up to date."""
+        if self.inbox.value:
+            self.server.get_event_loop().call_soon_threadsafe(self.take_early)
         now = time.monotonic()
         shown = self.recorder.shown
         if shown is None and now - self.span_at < SPAN_INTERVAL:

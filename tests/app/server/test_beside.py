@@ -176,11 +176,11 @@ def test_the_lab_goes_on_from_where_it_was_when_it_is_alone_again() -> None:
 def test_an_address_and_the_panel_open_a_comparison() -> None:
     viewer = Viewer("127.0.0.1", 0)
     said: list[str] = []
-    client = SimpleNamespace(add_notification=lambda title, reason, **how: said.append(reason))
+    client = SimpleNamespace(client_id=1, add_notification=lambda title, reason, **how: said.append(reason))
 
     def inbox(text: str) -> None:
-        event = SimpleNamespace(target=SimpleNamespace(value=text), client_id=1, client=client)
-        coroutines.run(viewer.panel.share.on_inbox(event))
+        viewer.panel.share.inbox.value = text
+        coroutines.run(viewer.panel.share.on_inbox(SimpleNamespace(client=client)))
 
     try:
         viewer.open("rope")
@@ -219,5 +219,21 @@ def test_what_cannot_be_opened_leaves_the_lab_alone() -> None:
             viewer.comparing.begin([four[0]._replace(scene="nothing")], False)
         assert viewer.comparison is None
         assert not viewer.panes.servers
+    finally:
+        viewer.shut()
+
+
+def test_an_address_that_comes_before_the_browser_is_counted_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    said: list[str] = []
+    late = SimpleNamespace(client_id=7, add_notification=lambda title, reason, **how: said.append(reason))
+    try:
+        viewer.open("rope")
+        viewer.panel.share.inbox.value = "?compare=nothing"  # as viser leaves it: it calls nobody
+        time.sleep(0.2)
+        assert not said
+        monkeypatch.setattr(viewer.server, "get_clients", lambda: {7: late})
+        wait_for(lambda: len(said) == 1)
+        assert viewer.panel.share.inbox.value == ""
     finally:
         viewer.shut()

@@ -4,6 +4,7 @@ import contextlib
 import json
 import os
 import secrets
+import socket
 import subprocess
 import sys
 import time
@@ -40,8 +41,10 @@ class Jupyter:
         end = time.monotonic() + START_TIMEOUT
         while time.monotonic() < end and self.process.poll() is None:
             for path in self.runtime.glob("jpserver-*.json"):
-                with contextlib.suppress(ValueError):  # half written
-                    return int(json.loads(path.read_text())["port"])
+                with contextlib.suppress(ValueError, OSError):  # half written, or nobody listens yet
+                    port = int(json.loads(path.read_text())["port"])
+                    socket.create_connection(("127.0.0.1", port), timeout=10).close()
+                    return port
             time.sleep(0.05)
         self.end()
         raise AssertionError((self.folder / "jupyter.log").read_text())

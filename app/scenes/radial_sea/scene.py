@@ -58,6 +58,7 @@ from sim.ocean.statistics import energy_by_wavenumber, expected
 from sim.ocean.tile_sea import TileSea
 from sim.ocean.weathering import Weathering, weather
 from sim.parameters import Value, check_record
+from sim.particles.fire import Fire
 
 if TYPE_CHECKING:
     from app.lab.live_code import LiveCode
@@ -451,12 +452,7 @@ class RadialSeaScene:
             positions=bodies.fleet.position.astype(np.float32),
             rotations=bodies.fleet.rotation.astype(np.float32),
             pulls=tuple(((x, y, z), target) for (x, y, z), target in held),
-            fire=None
-            if fire is None
-            else (
-                fire.position.copy(),
-                np.stack([fire.heat, fire.age / np.maximum(fire.life, np.float32(1e-3)), fire.spread]),
-            ),
+            fire=None if fire is None else parcels_of(fire),
             jet=None if jet is None else jet.position[:, jet.flying].T.astype(np.float32),
             column=self.column if self.student is None else self.student.drawn(self.column),
             age=self.age,
@@ -649,6 +645,12 @@ def middle_period(sea: RadialSea) -> float:
 def mean_square_slope(waves: Waves) -> float:
     """Mean square slope of waves on clean water."""
     return 0.5 * float(np.square(waves.k * waves.amplitude).sum())
+
+
+def parcels_of(fire: Fire) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """(3, n) positions [m], and (3, n) heat 1 to 0, share of the life that is over, and spread [m]."""
+    over = fire.age / np.maximum(fire.life, np.float32(1e-3))
+    return fire.position.copy(), np.stack([fire.heat, over, fire.spread], dtype=np.float32)
 
 
 SCENE = SceneKind(

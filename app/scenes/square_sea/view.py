@@ -58,8 +58,8 @@ def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
 @functools.lru_cache(maxsize=8)
 def rain_look(rate: float, gravity: float) -> tuple[tuple[float, float, float], float]:
     """The rings and the extinction [1/m] of `Material` in rain of this rate [mm/h]; they are asked for each frame."""
-    rings = (ring_flux(rate, gravity), *ring_wave(gravity, SURFACE_TENSION, WATER_DENSITY))
-    return rings, rainfall(rate, gravity).extinction
+    length, speed = ring_wave(gravity, SURFACE_TENSION, WATER_DENSITY)
+    return (ring_flux(rate, gravity), length, speed), rainfall(rate, gravity).extinction
 
 
 class View:

@@ -45,7 +45,7 @@ def export(scene: str, params: Any, seconds: float, rate: float, start: float, f
     check_number("--start", start, 0.0, MAX_DURATION, "s")
     check_folder(out)
     if form.startswith("exr") and importlib.util.find_spec("OpenEXR") is None:
-        raise ValueError("export: OpenEXR is not installed (pip install 'springtide[exr]'), or choose --format png")
+        raise ValueError("export: OpenEXR is not installed (pip install '.[exr]'), or choose --format png")
     count = max(1, round(seconds * rate))
     sequence = EXPORTERS[scene].make(params, 1.0 / rate, form)
     size = count * sequence.bytes_per_frame

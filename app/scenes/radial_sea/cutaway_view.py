@@ -120,7 +120,7 @@ class Walls:
         surface = float(cutaway.top[at[DRAFT_PLACE]])
         if keel is not None and keel < surface:
             shown["draft"] = True
-            texts["draft"] = f"draft {surface - keel:.2f} m"
+            texts["draft"] = f"lowest point {surface - keel:.2f} m deep"
             places["draft"] = self.on_wall(DRAFT_PLACE + 0.03, 0.35 * surface + 0.65 * keel)
             head = 0.05 * self.size
             high, deep = self.on_wall(DRAFT_PLACE, surface), self.on_wall(DRAFT_PLACE, keel)

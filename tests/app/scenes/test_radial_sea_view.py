@@ -35,7 +35,7 @@ def test_the_labels_of_the_window_say_what_is_there(server: viser.ViserServer) -
     assert keel is not None
     walls.show(frame.cutaway, Material(), frame.column, keel)
     assert walls.labels["oil"].text == "oil, 866 kg/m³, 0.3 m"
-    assert walls.labels["draft"].text == f"draft {-keel:.2f} m"
+    assert walls.labels["draft"].text == f"lowest point {-keel:.2f} m deep"
     assert walls.labels["water"].text.startswith("water, ")
     assert walls.labels["oil"].position[2] == pytest.approx(-0.15, abs=0.01)
     arrow = walls.arrow.points[0]

@@ -197,7 +197,9 @@ def add_address(parser: argparse.ArgumentParser) -> None:
 
 def add_parameters(parser: argparse.ArgumentParser) -> None:
     """The options that set a scene's parameters."""
-    parser.add_argument("--preset", metavar="NAME or FILE.json", help="a preset of the scene, or a file of parameters")
+    parser.add_argument(
+        "--preset", metavar="NAME or FILE", help="a preset of the scene, or a set-up file, replay or recording"
+    )
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="set parameters of the scene")
     parser.add_argument("--hull", type=Path, metavar="FILE", help="add a closed mesh to the bodies of the radial sea")
 

@@ -158,7 +158,7 @@ class Share:
             self.own.on_click(self.on_own)
             gui.add_html(
                 '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
-                '<input type="file" accept=".json" data-springtide-load></label></div>'
+                '<input type="file" accept=".json,.html,.npz" data-springtide-load></label></div>'
             )
             self.size = gui.add_dropdown("Picture size", tuple(PICTURE_SIZES))
             self.transparent = gui.add_checkbox("Transparent background", initial_value=False)

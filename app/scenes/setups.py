@@ -6,13 +6,22 @@ The address `/?scene=rope&preset=...&stiffness=2000` and the file
 
 say the same: the values of a preset (by default the scene's defaults), and those that differ from it. A number is
 written so that reading it gives the very same number. A hull from a file is no parameter, and is left out.
+
+A replay (HTML) holds such a file in a block of its own, and a recording (.npz) all parameters: both open as it does.
 """
 
+import dataclasses
+import io
 import json
+import struct
+import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 from urllib.parse import parse_qsl, urlencode
+
+import numpy as np
 
 from app.messages import BaseParams, Vector
 from app.scenes import NAMES, scene_named
@@ -27,6 +36,19 @@ MAX_NAME, MAX_NOTE = 60, 1000  # characters
 MAX_CAMERA_DISTANCE = 1e4  # [m] from the origin
 CAMERA_DECIMALS = 3  # of the camera's coordinates [m]
 OWN_KEYS = ("scene", "preset", "camera")  # of a query; all others are parameters
+MAX_REPLAY = 200_000_000  # [bytes] of a replay that is read; one of 20 s has 25 MB
+MAX_ABOUT = 100_000  # [bytes] of what a recording says of itself
+BLOCK, BLOCK_END = '<script type="application/json" id="springtide-setup">', "</script>"
+UNREADABLE = (
+    ValueError,
+    KeyError,
+    EOFError,
+    RuntimeError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+FORMS = "a set-up file (.json), a replay (.html) or a recording (.npz) of Springtide"
 FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", "name", "note")
 
 Camera = tuple[Vector, Vector]  # position and target [m]
@@ -181,6 +203,10 @@ def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Set
     A file without a version is of version 1, and one without a scene is of `scene`. Raises ValueError for what is not
     allowed.
     """
+    if text.startswith("PK"):
+        raise argument_error(where, "a recording (.npz)", "a set-up file or a replay; `--preset FILE` takes recordings")
+    if text.lstrip().startswith("<"):
+        raise argument_error(where, shortened(text), FORMS)
     check_length(where, text)
     try:
         content = json.loads(text, object_pairs_hook=unique_keys)
@@ -257,7 +283,7 @@ def preset_named(what: str, preset: object, kind: SceneKind[Any, Any, Any]) -> M
 def preset_values(
     option: str, preset: str, kind: SceneKind[Any, Any, Any], folder: Path | None = None
 ) -> dict[str, Value]:
-    """The parameters that a preset names. preset: a name, or the path of a .json file, relative to `folder`.
+    """The parameters that a preset names. preset: a name, or the path of a file, relative to `folder`.
 
     Raises ValueError, naming the option, where there is no such preset of this scene or a value is not allowed.
     """
@@ -269,12 +295,57 @@ def preset_values(
     return dict(read_file(read_setup_text(option, path), f"{option} {path}", kind.name).values)
 
 
+def setup_block(kind: AnyKind, params: BaseParams) -> str:
+    """A set-up file as a part of a page, which reads nothing else in it and runs nothing."""
+    return BLOCK + write_file(kind, params).replace("<", "\\u003c") + BLOCK_END
+
+
 def read_setup_text(what: str, path: Path) -> str:
-    """The text of a file. Raises ValueError, saying what the file was given as, where it cannot be read."""
+    """The text of a set-up file, or of the set-up that a replay or a recording holds.
+
+    what: that the file was given as. Raises ValueError where it cannot be read or holds none.
+    """
     try:
         with path.open("rb") as file:
-            return file.read(4 * MAX_LENGTH + 1).decode("utf-8")
+            start = file.read(4 * MAX_LENGTH + 1)
+            if start.startswith(b"PK"):
+                return recorded_setup(file)
+            if start.lstrip().startswith(b"<"):
+                return replayed_setup((start + file.read(MAX_REPLAY)).decode("utf-8"))
+        return start.decode("utf-8")
     except OSError as error:
         raise argument_error(what, str(path), f"a file that can be read ({error.strerror})") from None
-    except ValueError:
+    except UnicodeDecodeError:
         raise argument_error(what, str(path), "a file of JSON in UTF-8") from None
+    except UNREADABLE:
+        raise argument_error(what, str(path), FORMS) from None
+
+
+def replayed_setup(page: str) -> str:
+    """The text of the set-up file that a replay holds. Raises ValueError where it holds none."""
+    start = page.rindex(BLOCK) + len(BLOCK)
+    return page[start : page.index(BLOCK_END, start)]
+
+
+def recorded_setup(file: BinaryIO) -> str:
+    """The parameters of a recording as the text of a set-up file.
+
+    Raises ValueError, KeyError or an error of `zipfile` where the file is none.
+    """
+    with zipfile.ZipFile(file) as parts:
+        about = parts.getinfo("about.npy")
+        if about.file_size > MAX_ABOUT or about.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise ValueError("about: too long, or not as numpy packs it")
+        array = io.BytesIO(parts.read(about))
+    if np.lib.format.read_magic(array) != (1, 0):
+        raise ValueError("about: not as numpy writes a text")
+    shape, _, dtype = np.lib.format.read_array_header_1_0(array)
+    if shape != () or dtype.kind != "U":  # before an array of any size is made
+        raise ValueError("about: not a text")
+    content = json.loads(str(np.frombuffer(array.read(), dtype)[0]), object_pairs_hook=unique_keys)
+    if not isinstance(content, dict) or not isinstance(content.get("parameters"), dict):
+        raise ValueError("about: not as a recording has it")
+    kind = kind_named(content.get("scene"))
+    others = {field.name for field in dataclasses.fields(kind.params)} - set(parameters_of(kind.params))
+    values = {name: value for name, value in content["parameters"].items() if name not in others}
+    return json.dumps({"version": VERSION, "scene": kind.name, "parameters": values}, ensure_ascii=False)

@@ -1,7 +1,8 @@
 """A replay: one HTML file with frames of a scene, its parameters and plots, which opens offline in any browser.
 
 The frames are drawn by the scene's own view, on a server that nobody connects to, and recorded by viser's serialiser,
-which adds its client. Positions are rounded below what can be seen: rounded numbers take half the space.
+which adds its client. Positions are rounded below what can be seen: rounded numbers take half the space. The
+parameters are in it as a set-up file, so that it can be loaded again.
 """
 
 # pyright: reportPrivateUsage=false
@@ -21,7 +22,7 @@ from app.render.html import Html, fill, join
 from app.render.injection import record_shaders
 from app.scenes import view_named
 from app.scenes.contract import AnyKind
-from app.scenes.setups import write_value
+from app.scenes.setups import setup_block, write_value
 from app.server.guard import open_server
 from sim.packing import is_packed
 from sim.parameters import in_words, parameters_of
@@ -84,7 +85,7 @@ def replay_html(kind: AnyKind, frames: Sequence[Kept], rows: Sequence[PlotRow]) 
             server.stop()
     about = about_html(kind, params, rows, chosen[0].time, chosen[-1].time)
     return page.replace("<title>Viser</title>", str(fill("<title>Springtide: {}</title>", kind.title)), 1).replace(
-        "</body>", f"{about}</body>", 1
+        "</body>", f"{about}{setup_block(kind, params)}</body>", 1
     )
 
 

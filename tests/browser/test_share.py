@@ -11,6 +11,7 @@ import pytest
 
 from app.messages import Pause, Play, Reset
 from app.scenes import NAMES, scene_named
+from app.scenes.setups import setup_block
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
@@ -67,7 +68,8 @@ def test_a_file_is_loaded_or_refused_in_one_line(opened: tuple[Viewer, Tab], tmp
     tab.wait(lambda: vars(lab.panel.params)["points"] == 23, 20)
     for content, words in (
         ({"scene": "rope", "parameters": {"points": -4}}, "points: -4 is not allowed"),
-        ("<script>alert(1)</script>", "not a file of JSON"),
+        ("<script>alert(1)</script>", "or a recording (.npz) of Springtide"),
+        ("PK\x03\x04", "'a recording (.npz)' is not allowed"),
         ("x" * 100_000, "not a file of JSON"),
     ):
         load(tab, tmp_path / "b.json", content)
@@ -77,6 +79,10 @@ def test_a_file_is_loaded_or_refused_in_one_line(opened: tuple[Viewer, Tab], tmp
         notice.get_by_role("button").click()
         tab.wait(lambda notice=notice: notice.count() == 0, 20)
     assert vars(lab.panel.params)["points"] == 23
+    rope = scene_named("rope")
+    block = setup_block(rope, rope.params(points=24))
+    load(tab, tmp_path / "c.html", f"<!doctype html><html><body>{'x' * 100_000}{block}</body></html>")
+    tab.wait(lambda: vars(lab.panel.params)["points"] == 24, 20)
 
 
 def test_the_timeline_shows_what_was(opened: tuple[Viewer, Tab]) -> None:

@@ -1,6 +1,7 @@
 """Set-ups as addresses and as files: what is written is read back to the last bit, and nothing else is taken."""
 
 import dataclasses
+import io
 import json
 import math
 import random
@@ -21,6 +22,8 @@ from app.scenes.setups import (
     preset_values,
     read_file,
     read_query,
+    read_setup_text,
+    setup_block,
     write_file,
     write_query,
 )  # fmt: skip
@@ -134,6 +137,8 @@ def test_an_address_takes_numbers_as_people_write_them() -> None:
     [
         ("", "not a file of JSON"),
         ("[1]", "a file {"),
+        ("PK\x03\x04", "a recording (.npz)' is not allowed"),
+        ("<html>", "a replay (.html)"),
         ("{}", "a file {"),
         ('{"scene": "rope"}', "a file {"),
         ("[" * 5000, "not a file of JSON"),
@@ -248,6 +253,65 @@ def test_a_set_up_runs_as_the_record_does(name: str, values: dict[str, Any], dig
         runs.append(scene.arrays())
     for other in runs[1:]:
         assert all(np.array_equal(runs[0][key][0], other[key][0], equal_nan=True) for key in runs[0])
+
+
+def replay_of(kind: Any, params: Any) -> bytes:
+    """A page as a replay is: a client, frames, and at the end the set-up."""
+    return f"<!doctype html><html><body><script>1 < 2</script>ö{setup_block(kind, params)}</body></html>".encode()
+
+
+def recording_of(kind: Any, params: Any) -> bytes:
+    """A recording as the panel and `springtide run` write it, without its frames."""
+    content = io.BytesIO()
+    about = np.array(json.dumps({"scene": kind.name, "parameters": vars(params), "units": {"t": "s"}}))
+    np.savez_compressed(content, t=np.zeros(3), about=about)
+    return content.getvalue()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_record_survives_a_replay_and_a_recording_to_the_last_bit(name: str, tmp_path: Any) -> None:
+    rng, kind, file = random.Random(name), scene_named(name), tmp_path / "kept"
+    for _ in range(RECORDS // 4):
+        _, params = random_record(name, rng)
+        for content in (replay_of(kind, params), recording_of(kind, params)):
+            file.write_bytes(content)
+            assert read_file(read_setup_text("set-up", file)).params == params
+            assert kind.params(**preset_values("--preset", str(file), kind)) == params
+
+
+def test_hostile_replays_and_recordings_give_a_set_up_or_one_line(tmp_path: Any) -> None:
+    rng, file, rope = random.Random(9), tmp_path / "kept", scene_named("rope")
+    taken = 0
+    for _ in range(HOSTILE):
+        good = bytearray(rng.choice((replay_of, recording_of))(rope, rope.params(points=rng.randint(2, 99))))
+        for _ in range(rng.randint(1, 8)):
+            good[rng.randrange(len(good))] = rng.randrange(256)
+        file.write_bytes(good[: rng.choice((len(good), rng.randrange(len(good))))])
+        problem = ""
+        try:
+            preset_values("--preset", str(file), rope)
+        except ValueError as reason:
+            problem = str(reason)
+        else:
+            taken += 1
+        assert "\n" not in problem
+        assert len(problem) < 1000
+    assert 0 < taken < HOSTILE
+
+
+def test_a_recording_with_a_huge_or_a_pickled_text_is_refused_unread(tmp_path: Any) -> None:
+    file, rope = tmp_path / "kept.npz", scene_named("rope")
+    for about in (np.array("1" * 10_000_000), np.array([{}], object), np.zeros(3), np.array("[1]"), np.array("{")):
+        np.savez_compressed(file, about=about)
+        with pytest.raises(ValueError, match=r"^--preset: .*kept.npz' is not allowed; allowed: a set-up file"):
+            preset_values("--preset", str(file), rope)
+
+
+def test_a_set_up_in_a_page_ends_where_it_should() -> None:
+    rope = scene_named("rope")
+    block = setup_block(rope, dataclasses.replace(rope.params(), integrator="</script><script>alert(1)"))
+    assert block.count("<") == 2
+    assert json.loads(block[block.index(">") + 1 : block.rindex("<")])["parameters"]["integrator"].startswith("</scr")
 
 
 @pytest.mark.parametrize("size", [MAX_LENGTH + 1, 1_000_000])

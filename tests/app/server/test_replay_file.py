@@ -2,6 +2,7 @@
 
 import base64
 import re
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -11,6 +12,7 @@ import zstandard
 
 from app.panel.recorder import Recorder
 from app.scenes import scene_named
+from app.scenes.setups import read_setup
 from app.server.loop import SimLoop
 from app.server.replay_file import BITS, MAX_FRAMES, replay_html, rounded, thinned
 from sim.packing import pack
@@ -60,6 +62,15 @@ def test_the_page_says_what_it_shows_and_runs_no_text_of_ours(recorded: Any, pag
     assert "<td>Points</td><td>7 </td>" in about
     assert about.count("<svg") == len(kind.plots)
     assert "src=" not in about
+
+
+def test_the_page_opens_as_a_set_up(recorded: Any, page: str, tmp_path: Path) -> None:
+    kind, frames, _ = recorded
+    file = tmp_path / "rope.html"
+    file.write_text(page, "utf-8")
+    setup = read_setup(str(file))
+    assert setup.scene == kind.name
+    assert setup.params == frames[-1].params
 
 
 def test_rounding_keeps_what_is_seen_and_leaves_other_arrays() -> None:

@@ -1,5 +1,6 @@
 // Links and set-ups: what stands in the address of this page is sent to the lab once, and a file that is chosen is read
-// here and sent as text: of a replay, the set-up file that it holds. The lab checks both. A link that the lab has made is shown with this page's own address.
+// here and sent as text: of a replay, the set-up file that it holds. The lab checks both. A link that the lab has made
+// is shown with this page's own address.
 // Clips are recorded here from the canvas of the view, and plots are saved as one picture.
 //
 // Of viser this file uses window.__viserMutable (canvas, sendMessage) and window.__viserTestpoints.uplots.
@@ -9,6 +10,7 @@
   const MAX_LENGTH = 5000; // [characters] that the lab takes
   const MAX_REPLAY = 2e8; // [bytes] of a replay that is read
   const BLOCK = '<script type="application/json" id="springtide-setup">'; // holds the set-up file in a replay
+  const BLOCK_END = "<\/script>"; // this script stands in a page, which would end it at the plain word
   const CLIP_TYPES = ["video/mp4;codecs=avc1.640028", "video/webm;codecs=vp9", "video/webm"];
   const CLIP_RATE = 30; // [1/s] pictures of a clip
   const CLIP_BITS = 12e6; // [bit/s]
@@ -155,7 +157,7 @@
     let text = await file.slice(0, 4 * MAX_LENGTH).text();
     if (text.trimStart().startsWith("<") && file.size <= MAX_REPLAY) {
       const page = await file.text(), start = page.lastIndexOf(BLOCK) + BLOCK.length;
-      if (start >= BLOCK.length) text = page.slice(start, page.indexOf("</script>", start));
+      if (start >= BLOCK.length) text = page.slice(start, page.indexOf(BLOCK_END, start));
     }
     // What is too long is sent as far as the lab reads, so that the lab says what is wrong with it.
     send(text.slice(0, MAX_LENGTH) || " ");

@@ -38,6 +38,17 @@ def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
     tab.wait(lambda: lab.view.flames is not None and lab.view.flames.handle.visible)
     tab.wait(lambda: lab.view.material.slick is not None and lab.view.material.slick.radius > 3.0)
     tab.wait(lambda: uniform(tab, "slick")[2] > 3.0)
+    # The picture is shifted towards what the panel leaves free: the flames with it.
+    splats, camera = tab.page.evaluate(
+        """() => {
+          const { scene, camera } = window.__viserMutable;
+          let found = null;
+          scene.traverse((one) => { found = one.material?.uniforms?.projectionMatrixCustom ?? found; });
+          return [found.value.elements, camera.projectionMatrix.elements];
+        }"""
+    )
+    assert abs(camera[8]) + abs(camera[9]) > 0.05
+    assert splats == camera
     assert tab.errors == []
 
 

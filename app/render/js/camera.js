@@ -145,6 +145,18 @@
     if (!controls || camera !== viewer.camera) return; // the camera of a shadow or of an environment map
     keepAbove(camera, controls);
     centre(camera, viewer.canvas);
+    splats?.material.uniforms.projectionMatrixCustom.value.copy(camera.projectionMatrix);
+  }
+
+  // viser's splats have a projection of their own, which knows nothing of the shift: they get that of the camera.
+  let splats = null; // the mesh of all splats
+
+  function findSplats(scene) {
+    if (splats?.parent) return;
+    splats = null;
+    scene.traverse((object) => {
+      if (object.material?.uniforms?.projectionMatrixCustom) splats = object;
+    });
   }
 
   const hooked = new WeakSet(); // scenes
@@ -168,6 +180,7 @@
       hooked.add(viewer.scene);
       viewer.scene.onBeforeRender = makeHook(viewer.scene.onBeforeRender);
     }
+    findSplats(viewer.scene);
     measure(viewer);
   }
 

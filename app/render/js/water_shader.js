@@ -505,12 +505,14 @@ const WATER_GLSL = {
       vec3 sparkle = sunLight * glitter + fire * image;
       sparkle /= 1.0 + dot(sparkle, vec3(0.3, 0.5, 0.2)) / GLITTER_LIMIT;
       vec3 color = mix(body, mirrored, mirror) + sparkle * (1.0 - foam);
-      // Foam scatters the light of sun and sky many times. The sky is that overhead and that around.
+      // Foam scatters the light of sun and sky many times. The sky is that overhead and that around; below clouds and
+      // rain, what comes from overhead has the colour of the haze.
+      vec3 skylight = mix(0.65 * behindRain(ambient, vec3(0.0, 0.0, 1.0)) + 0.35 * around, around, clouds.x);
       vec3 M = normalize(vec3(-slope - bubbles.yz, 1.0));
-      vec3 white = foamColor * (0.65 * ambient + 0.35 * around + 0.3183 * sunLight * max(dot(M, sunDirection), 0.0)
+      vec3 white = foamColor * (skylight + 0.3183 * sunLight * max(dot(M, sunDirection), 0.0)
                               + 0.3183 * fire * max(dot(M, toFire), 0.0));
       color = mix(color, white * bubbles.w, foam);
-      color = mix(color, 0.65 * ambient + 0.35 * around, 0.5 * rings.w);
+      color = mix(color, skylight, 0.5 * rings.w);
 
       color *= 0.65 + 0.35 * smoothstep(0.0, 0.6, hull);
       return mix(color, haze, lost) * lens.y;

@@ -35,7 +35,7 @@ def stop_request() -> NDArray[np.int64]:
 
 
 def use_request(request: NDArray[np.int64], give_turn: Callable[[], None] | None = None) -> None:
-    """Let solves of this thread look at `request` (4,), of which any thread may set STOP and TURN.
+    """Let solves of this thread look at `request` (4,). Any thread may set its STOP and TURN.
 
     give_turn: called where TURN is set, on this thread, in the middle of a solve; it raises nothing.
     """

@@ -52,6 +52,26 @@ class TableReport(NamedTuple):
     off: bool = False  # the scene could run by them, and runs by the program's
 
 
+class TableUser:
+    """What a sea runs by of `LiveTables`; for the simulation thread."""
+
+    def __init__(self, live: "LiveTables") -> None:
+        self.live = live
+        self.taken: dict[str, Table] = {}  # that the sea runs by
+
+    def ask(self, calls: Mapping[str, Call], idle: Mapping[str, str]) -> None:
+        """Ask for these tables. idle: function -> why it has no use just now; its table is not taken any more."""
+        self.taken = {name: table for name, table in self.taken.items() if name in calls}
+        self.live.report = self.live.report._replace(idle=idle)
+        self.live.want(calls)
+
+    def take(self) -> dict[str, tuple[Table | None, Table | None]]:
+        """Take the tables that there are: of each function for which this changes something, those before and now."""
+        before, self.taken = self.taken, dict(self.live.tables) if self.live.shown else {}
+        pairs = {name: (before.get(name), self.taken.get(name)) for name in {*before, *self.taken}}
+        return {name: pair for name, pair in pairs.items() if pair[0] is not pair[1]}
+
+
 class LiveTables:
     """`want` is for the simulation thread; `adopt` for who loads versions; `show` for the panel."""
 

@@ -157,9 +157,8 @@ class Water:
         fields = self._fields
         np.subtract(self._vertices.reshape(-1, 3).T, self._rest, out=fields[:3])
         fields[3:] = self._slope_and_foam.reshape(-1, 3).T
-        if (
-            self._grid
-        ):  # its last row and column have the displacement of the first to the last bit, or tiles would part
+        if self._grid:
+            # Its last row and column have the displacement of the first to the last bit, or tiles would part.
             whole = fields.reshape(6, self._shape[0] + 1, self._shape[1] + 1)
             whole[:, -1] = whole[:, 0]
             whole[:, :, -1] = whole[:, :, 0]

@@ -280,7 +280,7 @@ class Intake:
             self.turn = asyncio.get_running_loop().create_task(self.handle_waiting(client))
 
     def close(self) -> None:
-        """Handle nothing more: a camera that is told after its browser has gone would count as a browser for ever."""
+        """Handle nothing more: a camera message handled after its browser has gone would count as a browser."""
         self.waiting, self.handlers = {}, []
 
     async def handle_waiting(self, client: ClientId) -> None:

@@ -43,10 +43,8 @@ class StudentCloth(StudentNet):
         self.net = build(params, sphere_home(params))
         across, down, shear, _, bend, _ = self.net.families
         pins = tuple(i * cols + j for i, j in sorted(self.net.pinned))
-        before, self.sheet = (
-            self.sheet,
-            Sheet(rows, cols, (across.rest, down.rest), shear.stiffness, bend.stiffness, pins),
-        )
+        before = self.sheet
+        self.sheet = Sheet(rows, cols, (across.rest, down.rest), shear.stiffness, bend.stiffness, pins)
         method = INTEGRATORS["symplectic_euler"]
         omega, rate = gershgorin(self.net, self.net.x0)
         self.longest = STEP_SHARE * method.limit(0.5 * rate / omega) / omega if omega > 0.0 else math.inf
@@ -122,5 +120,6 @@ class StudentCloth(StudentNet):
         if not self.is_comparable and self.side != COARSE_SIDES[-1] and answer.seconds * SLOWEST_PACE > step:
             self.side = COARSE_SIDES[-1]
             self.set_up(self.params)
-            self.begin(self.net.x0.reshape(3, -1).T.copy(), np.zeros_like(self.net.x0.reshape(3, -1).T), self.time)
+            x = self.net.x0.reshape(3, -1).T.copy()
+            self.begin(x, np.zeros_like(x), self.time)
             self.tell_grid()

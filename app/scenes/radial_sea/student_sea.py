@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.lab.live_tables import Call, LiveTables, Table, TableReport
+from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
 from app.lab.tabulate import Range
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of
 from app.scenes.radial_sea.parameters import Params, column_of
@@ -24,9 +24,9 @@ WHAT = {
     DRAFT: "depth at which the box is set down",
 }
 WAVENUMBERS = np.geomspace(1e-3, 1e3, 121)  # [rad/m] of the table of decays
-TOLD_WAVE = 2.0 * math.pi  # [rad/m] wavenumber of the wave of 1 m, the decay of which is told
+SHOWN_WAVE = 2.0 * math.pi  # [rad/m] wavenumber of the wave of 1 m; the panel shows its decay
 LOST = 0.5  # exponent of the share of a wave that is left after the time that a decay is asked for, by Lamb's law
-LEAST = 1e-12  # share of a wave that is left at least: below, a rate could not be told
+LEAST = 1e-12  # share of a wave that is left at least: below, a rate cannot be determined
 
 
 class StudentNumbers(NamedTuple):
@@ -38,12 +38,11 @@ class StudentNumbers(NamedTuple):
     draft: float | None  # [m] of the box
 
 
-class StudentRadialSea:
+class StudentRadialSea(TableUser):
     """Used by the radial sea on the simulation thread."""
 
     def __init__(self, live: LiveTables) -> None:
-        self.live = live
-        self.taken: dict[str, Table] = {}  # that the sea runs by
+        super().__init__(live)
         self.numbers = StudentNumbers(None, None, None, None)  # that they come to
 
     def want(self, p: Params, bodies: FloatingBodies) -> None:
@@ -71,18 +70,14 @@ class StudentRadialSea:
                 found = bodies.prediction(box)
                 arguments = bodies.densities[box], found.height, oil.density, column.thickness, water.density
                 calls[DRAFT] = call_of(*arguments, allowed=(0.0, 3.0 * found.height, "m"))
-        self.taken = {name: table for name, table in self.taken.items() if name in calls}
-        self.live.report = self.live.report._replace(idle=idle)
-        self.live.want(calls)
+        self.ask(calls, idle)
 
     def collect(self) -> set[str]:
-        """Take the tables that there are; the functions of which another is taken."""
-        found = dict(self.live.tables) if self.live.shown else {}
-        changed = {name for name in {*found, *self.taken} if found.get(name) is not self.taken.get(name)}
-        self.taken = found
+        """Take the tables that there are. Returns the functions with another table than before."""
+        changed = self.take()
         if changed:
-            self.numbers = numbers_of(found)
-        return changed
+            self.numbers = numbers_of(self.taken)
+        return set(changed)
 
     def column(self, p: Params) -> FluidColumn:
         """The fluids of the sea."""
@@ -101,7 +96,7 @@ class StudentRadialSea:
     def report(self, p: Params, bodies: FloatingBodies) -> None:
         """Tell the panel what runs, and what differs from the program's."""
         viscosity, decay, index, draft = self.numbers
-        program, told = column_of(p), np.array([TOLD_WAVE])
+        program, wave = column_of(p), np.array([SHOWN_WAVE])
         differences: list[tuple[str, float, float, str]] = []
         if viscosity is not None:
             differences.append(
@@ -109,7 +104,7 @@ class StudentRadialSea:
                  1e3 * program.surface.viscosity, "mPa·s")
             )  # fmt: skip
         if decay is not None:
-            own, exact = (float(c.roots(told)[1][0]) for c in (self.column(p), program))
+            own, exact = (float(c.roots(wave)[1][0]) for c in (self.column(p), program))
             differences.append(("A wave of 1 m falls to 37 % in", lifetime(own), lifetime(exact), "s"))
         if index is not None:
             light, reference = (100.0 * normal_reflectance(n) for n in (index, program.oil.refractive_index))
@@ -152,5 +147,5 @@ def call_of(*arguments: float, allowed: tuple[float, float, str]) -> Call:
 
 
 def asked_time(viscosity: float) -> np.ndarray:
-    """(n,) [s] after which a wave of each of WAVENUMBERS has fallen to e^-LOST, by Lamb's law: a rate can be told."""
+    """(n,) [s] after which a wave of each of WAVENUMBERS has fallen to e^-LOST, by Lamb's law: enough to determine a rate."""
     return LOST / (2.0 * viscosity * WAVENUMBERS**2)

@@ -19,8 +19,8 @@ def faster_steps(integrator: Integrator, gauge: Gauge, points: str, *, touches_i
     elif gauge.h_omega < 0.5 * CAUTION * gauge.limit:
         proposals.append(f"a larger step, up to {seconds(CAUTION * gauge.critical_step, 2)}")
     leapfrog = INTEGRATORS["leapfrog"]
-    dearer = integrator.evals > leapfrog.evals or integrator.implicit
-    if dearer and gauge.h_omega < CAUTION * leapfrog.limit(gauge.zeta):
+    costs_more = integrator.evals > leapfrog.evals or integrator.implicit
+    if costs_more and gauge.h_omega < CAUTION * leapfrog.limit(gauge.zeta):
         proposals.append(f"leapfrog instead of {method_name(integrator.name)}")
     return either(proposals)
 

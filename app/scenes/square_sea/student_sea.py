@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.live_tables import Call, LiveTables, Table, TableReport
+from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
 from app.lab.tabulate import Range
 from app.scenes.square_sea.parameters import Params, conditions, gravity, spectrum_values
 from sim.ocean import Sea
@@ -23,12 +23,11 @@ COMPARED_SIZE = 64  # grid points a side of the seas that are compared
 WHAT = {GRAVITY: "gravity", SPECTRUM: "heights of the waves", DISPERSION: "speeds of the waves"}
 
 
-class StudentSea:
+class StudentSea(TableUser):
     """Used by the square sea on the simulation thread."""
 
     def __init__(self, live: LiveTables) -> None:
-        self.live = live
-        self.taken: dict[str, Table] = {}  # that the sea runs by
+        super().__init__(live)
         self.spectrum: Spectrum[Any] | None = None  # of the taken table
 
     def want(self, p: Params) -> None:
@@ -46,9 +45,7 @@ class StudentSea:
         else:
             calls[SPECTRUM] = spectrum_call(p, self.gravity(p))
         calls[DISPERSION] = dispersion_call(p, self.gravity(p))
-        self.taken = {name: table for name, table in self.taken.items() if name in calls}
-        self.live.report = self.live.report._replace(idle=idle)
-        self.live.want(calls)
+        self.ask(calls, idle)
 
     def gravity(self, p: Params) -> float:
         """Gravity [m/s2] of the planet, the student's where it is taken."""
@@ -57,16 +54,12 @@ class StudentSea:
 
     def collect(self, p: Params) -> float | None:
         """Take the tables that there are. In how long [s] the sea is to adapt to them; None where nothing changed."""
-        found = dict(self.live.tables) if self.live.shown else {}
-        changed = {name for name in {*found, *self.taken} if found.get(name) is not self.taken.get(name)}
+        changed = self.take()
         if not changed:
             return None
-        same_code = all(
-            name in found and name in self.taken and found[name].version == self.taken[name].version for name in changed
-        )
-        self.taken = found
+        same_code = all(old and new and old.version == new.version for old, new in changed.values())
         if SPECTRUM in changed:
-            self.spectrum = spectrum_by(found[SPECTRUM]) if SPECTRUM in found else None
+            self.spectrum = spectrum_by(self.taken[SPECTRUM]) if SPECTRUM in self.taken else None
         return p.transition if same_code else 0.0
 
     def conditions(self, p: Params) -> dict[str, Any]:

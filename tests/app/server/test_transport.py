@@ -63,7 +63,7 @@ def test_mesh_and_poses_of_a_picture_come_in_one_message() -> None:
     server, _ = open_server("127.0.0.1", 0)
     buffer = server._websock_server.get_message_buffer()
     buffer.window_duration_sec = 0.0
-    buffer.message_from_id = SlowDict(buffer.message_from_id)  # of which viser makes messages
+    buffer.message_from_id = SlowDict(buffer.message_from_id)  # viser makes messages of it
     transport = TransportCounters(server)
     ended = threading.Event()
     try:

@@ -147,5 +147,5 @@ def call_of(*arguments: float, allowed: tuple[float, float, str]) -> Call:
 
 
 def asked_time(viscosity: float) -> np.ndarray:
-    """(n,) [s] after which a wave of each of WAVENUMBERS has fallen to e^-LOST, by Lamb's law: enough to determine a rate."""
+    """(n,) [s] after which a wave of each of WAVENUMBERS has fallen to e^-LOST, by Lamb's law."""
     return LOST / (2.0 * viscosity * WAVENUMBERS**2)

@@ -24,6 +24,7 @@ function uniformsOf(base, mesh) {
   if (!uniformsByName.has(base)) {
     const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
     for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
+    for (const name of ["wavePlaces", "waveSlopes"]) uniforms[name] = { value: null };
     uniforms.waterlines = { value: Array.from({ length: 2 * MAX_WATERLINES }, () => mesh.position.clone().set(0, 0, 0)) };
     uniformsByName.set(base, uniforms);
   }
@@ -31,7 +32,49 @@ function uniformsOf(base, mesh) {
 }
 
 function makeSea(mesh, uniforms) {
-  return { mesh, geometry: mesh.geometry, uniforms, tiles: [], levels: [], shape: "", dome: null, wire: null };
+  return { mesh, geometry: mesh.geometry, uniforms, tiles: [], levels: [], shape: "", filled: -1, dome: null, wire: null };
+}
+
+// Fill a texture with n x n x 4 numbers, and its smaller copies with their means. three binds it but does not fill it:
+// its own class is not in scope, and it takes any object with this version for one whose data needs no upload.
+function filledTexture(renderer, texture, n, numbers) {
+  const gl = renderer.getContext();
+  texture ??= { isTexture: true, version: 0 };
+  const name = (renderer.properties.get(texture).__webglTexture ??= gl.createTexture());
+  renderer.state.activeTexture(gl.TEXTURE0);
+  renderer.state.bindTexture(gl.TEXTURE_2D, name);
+  const flags = [gl.UNPACK_FLIP_Y_WEBGL, gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL];
+  const kept = flags.map((flag) => gl.getParameter(flag));
+  for (const flag of flags) gl.pixelStorei(flag, false);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, n, n, 0, gl.RGBA, gl.FLOAT, numbers);
+  flags.forEach((flag, k) => gl.pixelStorei(flag, kept[k]));
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+  gl.generateMipmap(gl.TEXTURE_2D);
+  return texture;
+}
+
+// The waves of a square tile as the textures that the shader reads (WATER_GLSL.waves), where they have changed.
+function fillWaves(sea, renderer, rest) {
+  const [rows, columns] = sea.uniforms.grid.value.toArray();
+  const { position, slopeAndFoam } = sea.geometry.attributes;
+  if (rows === 0 || sea.filled === slopeAndFoam.version) return;
+  sea.filled = slopeAndFoam.version;
+  const n = rows - 1;
+  const [places, slopes] = [new Float32Array(4 * n * n), new Float32Array(4 * n * n)];
+  for (let i = 0, to = 0; i < n; i++) {
+    for (let j = 0; j < n; j++, to += 4) {
+      const from = 3 * (i * columns + j);
+      for (let axis = 0; axis < 3; axis++) {
+        places[to + axis] = position.array[from + axis] - rest[from + axis];
+        slopes[to + axis] = slopeAndFoam.array[from + axis];
+      }
+      slopes[to + 3] = slopes[to] ** 2 + slopes[to + 1] ** 2;
+    }
+  }
+  for (const [name, numbers] of [["wavePlaces", places], ["waveSlopes", slopes]]) {
+    sea.uniforms[name].value = filledTexture(renderer, sea.uniforms[name].value, n, numbers);
+  }
 }
 
 function readMaterial(sea, data) {
@@ -163,6 +206,7 @@ shaders.push({
     }
     if (!applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array)) return null;
     readMaterial(sea, data);
+    fillWaves(sea, renderer, rest.geometry.attributes.position.array);
     const lines = meshOf(`${base}/water_lines`);
     if (lines) {
       const numbers = lines.geometry.attributes.position.array;
@@ -181,7 +225,7 @@ shaders.push({
     }
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms);
-      shader.vertexShader = WATER_GLSL.vertex;
+      shader.vertexShader = waterVertex(false);
       shader.fragmentShader = WATER_FRAGMENT;
     };
     if (!replaceShader(mesh.material, `springtide-water${base}`, edit)) {
@@ -219,13 +263,9 @@ shaders.push({
       sea.wire.visible = wireframe > 0;
       sea.wire.updateMatrixWorld();
       replaceShader(sea.wire.material, "springtide-wire", (shader) => {
-        Object.assign(shader.uniforms, { wireColor: sea.uniforms.wireColor });
-        // A little nearer to the camera than the water, so that the water does not hide it.
-        const nearer = "gl_Position = projectionMatrix * (mvPosition * vec4(vec3(0.998), 1.0));";
-        insertAfter(shader, "vertexShader", "project_vertex", nearer);
-        insertAfter(shader, "fragmentShader", "common", "uniform vec3 wireColor;");
-        const colour = "gl_FragColor = vec4(wireColor, 1.0);";
-        shader.fragmentShader = shader.fragmentShader.replace("#include <opaque_fragment>", colour);
+        Object.assign(shader.uniforms, sea.uniforms);
+        shader.vertexShader = waterVertex(true);
+        shader.fragmentShader = WIRE_FRAGMENT;
       });
     }
     // The server may add meshes for browsers without this shader (Water._draw_plain); here they are hidden.

@@ -4,28 +4,64 @@
 // and positions are those of the sea's node, z up; "world" is three's own frame.
 
 const WATER_GLSL = {
-  vertex: `
-    attribute vec3 slopeAndFoam;
-    uniform mat4 toSea;
+  // The waves of a periodic tile, as textures. Near the eye the sea is that tile, which the simulation moves. Farther
+  // away than a tile is long it is made of pieces of the tile that lie at random places, as a tile that repeats is seen
+  // from above. Pieces are blended so that the variance of heights and slopes stays the same (Heitz and Neyret 2018,
+  // Proc. ACM Comput. Graph. Interact. Tech. 1(2):31, eq. 3), and so does their spectrum within a piece.
+  waves: `
+    uniform highp sampler2D wavePlaces; // displacement [m] of the tile's vertices from where they rest
+    uniform highp sampler2D waveSlopes; // slope x, slope y, foam, sum of the squares of the slopes
     uniform vec3 grid; // rows and columns of vertices (0: no grid), side of a tile or radius of the mesh [m]
-    varying vec3 vSea;
-    varying vec2 vRest;
-    varying vec3 vSlopeAndFoam;
-    #include <common>
-    void main() {
-      #include <begin_vertex>
-      #include <project_vertex>
-      vec4 sea = toSea * modelMatrix * vec4(position, 1.0);
-      vSea = sea.xyz;
-      vSlopeAndFoam = slopeAndFoam;
-      // The position of this vertex in still water. Foam noise is a function of it, so that foam moves with the water.
-      vRest = sea.xy;
-      if (grid.x > 0.0) {
-        int columns = int(grid.y);
-        vec2 cell = vec2(grid.z) / (grid.xy - 1.0);
-        vec2 tile = (toSea * modelMatrix * vec4(0.0, 0.0, 0.0, 1.0)).xy;
-        vRest = tile + vec2(gl_VertexID / columns, gl_VertexID % columns) * cell;
+    uniform vec3 extent; // tiles along a side, whether the sky is drawn, whether the wireframe is
+    const float PIECE = 0.7; // side of the triangles that pieces are blended on, in sides of the tile
+
+    // Share of the sea at x that is made of pieces: 0 up to half a tile from the eye, 1 beyond a tile.
+    float pieceShare(vec2 x, vec3 eye) {
+      return extent.x > 1.0 ? smoothstep(0.5, 1.0, distance(vec3(x, 0.0), eye) / grid.z) : 0.0;
+    }
+
+    // The corners of the triangle around x, and its weight at each; a piece belongs to each corner.
+    vec3 cornersAround(vec2 x, out vec2 a, out vec2 b, out vec2 c) {
+      vec2 p = x / (PIECE * grid.z);
+      p = vec2(p.x - 0.57735027 * p.y, 1.15470054 * p.y);
+      vec2 i = floor(p), f = p - i;
+      bool upper = f.x + f.y > 1.0;
+      a = upper ? i + 1.0 : i;
+      b = i + (upper ? vec2(0.0, 1.0) : vec2(1.0, 0.0));
+      c = i + (upper ? vec2(1.0, 0.0) : vec2(0.0, 1.0));
+      vec3 w = upper ? vec3(f.x + f.y - 1.0, 1.0 - f.x, 1.0 - f.y) : vec3(1.0 - f.x - f.y, f);
+      return w * w * w / dot(w * w, w);
+    }
+
+    // What a texture of the tile has at x [m], as a mean over texels of 2^level cells.
+    vec4 tileAt(sampler2D tile, vec2 x, float level) {
+      return textureLod(tile, x.yx / grid.z + 0.5 / (grid.yx - 1.0), level);
+    }
+
+    // A texture of the tile at x; share: of pieces. Displacements and slopes keep their variance; foam (isSlope), which
+    // is no sum of waves, keeps its mean. The last number of the slopes is made the variance that they lack.
+    vec4 wavesAt(sampler2D tile, vec2 x, float share, float level, bool isSlope) {
+      vec4 sum = vec4(0.0);
+      float foam = 0.0;
+      vec2 corner[3];
+      vec3 weight = share > 0.0 ? cornersAround(x, corner[0], corner[1], corner[2]) : vec3(0.0);
+      float unit = share > 0.0 ? inversesqrt(dot(weight, weight)) : 0.0;
+      for (int k = 0; k < 4; k++) {
+        float part = k < 3 ? share * weight[k] : 1.0 - share, w = k < 3 ? unit * part : part;
+        if (part <= 0.001) continue;
+        vec4 wave = tileAt(tile, k < 3 ? x + grid.z * hash2(corner[k]) : x, level);
+        if (isSlope) wave.w = max(wave.w - dot(wave.xy, wave.xy), 0.0);
+        sum += vec4(w * wave.xyz, w * w * wave.w);
+        foam += part * wave.z;
       }
+      float norm = inversesqrt(1.0 - 2.0 * share * (1.0 - share));
+      return vec4(norm * sum.xy, isSlope ? foam : norm * sum.z, norm * norm * sum.w);
+    }
+
+    // How flat the water is drawn at x: 1 at the rim of the last tile, as the sea beyond it has no mesh.
+    float rimFlatness(vec2 x) {
+      vec2 outward = abs(x - 0.5 * grid.z) / (0.5 * grid.z * extent.x);
+      return extent.y > 0.0 ? smoothstep(0.8, 1.0, max(outward.x, outward.y)) : 0.0;
     }`,
 
   // One function for the sky that is seen and the sky that is mirrored, so that sea and sky meet without a line.
@@ -161,13 +197,11 @@ const WATER_GLSL = {
     }`,
 
   surface: `
-    uniform vec3 grid;
     uniform vec3 deepColor;
     uniform vec3 scatterColor;
     uniform vec3 foamColor;
     uniform vec3 optics; // refractive index, roughness (rms slope), factor on reflections
     uniform vec3 ripple; // rms slope, longest and shortest ripple [m]
-    uniform vec3 extent; // tiles along a side, whether the sky is drawn, whether the wireframe is
 
     // Fresnel reflectance of unpolarised light at the cosine c on a fluid of index n.
     float fresnel(float c, float n) {
@@ -367,6 +401,9 @@ const WATER_GLSL = {
       return 3e-8 * pow(max(slickOptics.x, 3e-8) * streaks / 3e-8, inside);
     }
 
+    // Share of the light from below that a film of oil lets through, in red, green and blue.
+    vec3 lightThrough(float d) { return exp(-oilExtinction * d); }
+
     // What a film of oil mirrors over what its upper face alone does, in red, green and blue (sim/ocean/oil_film.py).
     // facing: cosine of the angle from which it is seen.
     vec3 filmGain(float d, float facing) {
@@ -408,17 +445,16 @@ const WATER_GLSL = {
 
     const float GLITTER_LIMIT = 5.0; // radiance of glitter that is reduced to its half
 
-    // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; flatness: 1 where
-    // there is no mesh.
+    // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; slopeAndFoam: of a
+    // mesh that is no grid; flatness: 1 where such a sea has no mesh.
     vec3 shadeSea(vec3 at, vec2 rest, vec3 slopeAndFoam, float flatness) {
       float oil = slickCover(at.xy);
       float film = oilThickness(at.xy, oil);
-      vec3 clear = exp(-oilExtinction * film);
+      vec3 clear = lightThrough(film);
       vec3 deep = mix(oilColor, deepColor, clear), scatter = mix(1.8 * oilColor, scatterColor, clear);
       vec3 optics = mix(optics, vec3(optics.x, slickOptics.y, optics.z), oil);
       if (film > 0.0) optics.x = oilFilm.x;
       optics.z *= mix(1.0, oilFilm.z, oil);
-      slopeAndFoam.z *= 1.0 - oil;
       vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
       vec3 toEye = eye - at;
       float far = length(toEye);
@@ -431,14 +467,26 @@ const WATER_GLSL = {
       float footprint = pow(max(dot(fx, fx) * dot(fy, fy), 1e-12), 0.25);
 
       // Waves finer than a pixel no longer tilt it; they make it rough instead.
-      float cell = grid.z / max(grid.x, 64.0);
-      float blur = max(flatness, smoothstep(cell * 1.5, cell * 12.0, footprint));
+      vec2 slope;
+      float rough, height = at.z;
+      if (grid.x > 0.0) {
+        float level = max(log2(footprint * (grid.x - 1.0) / grid.z), 0.0), share = pieceShare(rest, eye);
+        vec4 waves = wavesAt(waveSlopes, rest, share, level, true);
+        slope = waves.xy;
+        rough = waves.w;
+        slopeAndFoam.z = waves.z;
+        height = wavesAt(wavePlaces, rest, share, level, false).z;
+      } else {
+        float cell = grid.z / 64.0, blur = max(flatness, smoothstep(cell * 1.5, cell * 12.0, footprint));
+        slope = slopeAndFoam.xy * (1.0 - blur);
+        rough = (1.0 - (1.0 - blur) * (1.0 - blur)) * seaState.z;
+      }
+      slopeAndFoam.z *= 1.0 - oil;
       vec4 fine = ripples(at.xy, footprint);
       float calm = mix(1.0, slickOptics.z, oil);
       fine.xyz *= vec3(calm, calm, calm * calm);
-      vec2 slope = slopeAndFoam.xy * (1.0 - blur) + fine.xy;
-      float rough = (1.0 - (1.0 - blur) * (1.0 - blur)) * seaState.z; // what the slope above lacks
-      // Beyond the mesh, noise of the same slope continues the swell while a pixel can show it.
+      slope += fine.xy;
+      // Beyond a mesh that is no grid, noise of the same slope continues the swell while a pixel can show it.
       if (flatness > 0.0) {
         float wave = max(grid.z, 16.0) * 0.35;
         for (int k = 0; k < 3; k++) {
@@ -493,7 +541,7 @@ const WATER_GLSL = {
       float sunUp = max(dot(N, sunDirection), 0.0);
       vec3 fire = fireLight / near;
       vec3 lit = ambient + (sunLight * sunUp + fire * max(dot(N, toFire), 0.0)) * 0.3183;
-      float crest = clamp(at.z / max(seaState.y, 0.01) + 0.15, 0.0, 1.2);
+      float crest = clamp(height / max(seaState.y, 0.01) + 0.15, 0.0, 1.2);
       float through = pow(clamp(dot(-V, normalize(sunDirection - 0.35 * N)) * 0.5 + 0.5, 0.0, 1.0), 3.0);
       vec3 body = deep * lit;
       body += scatter * (ambient * (0.10 + 0.35 * crest * crest) * facing
@@ -519,11 +567,55 @@ const WATER_GLSL = {
     }`,
 };
 
+// nearer: a little nearer to the camera than the water, so that the water does not hide it.
+const waterVertex = (nearer) => `
+  attribute vec3 slopeAndFoam;
+  uniform mat4 toSea;
+  varying vec3 vSea;
+  varying vec2 vRest;
+  varying vec3 vSlopeAndFoam;
+  ${WATER_GLSL.noise}
+  ${WATER_GLSL.waves}
+  const float MEAN_LEVEL = 0.006; // cells [m] that are averaged in heights, over the distance from the eye
+  void main() {
+    vec3 transformed = position;
+    vSea = (toSea * modelMatrix * vec4(position, 1.0)).xyz;
+    vSlopeAndFoam = slopeAndFoam;
+    // The position of this vertex in still water. Foam noise is a function of it, so that foam moves with the water.
+    vRest = vSea.xy;
+    if (grid.x > 0.0) {
+      int columns = int(grid.y);
+      vec2 cell = vec2(grid.z) / (grid.xy - 1.0);
+      vec3 tile = (toSea * modelMatrix * vec4(0.0, 0.0, 0.0, 1.0)).xyz;
+      vRest = tile.xy + vec2(gl_VertexID / columns, gl_VertexID % columns) * cell;
+      vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz, moved = vSea - vec3(vRest, 0.0);
+      float share = pieceShare(vRest, eye);
+      if (share > 0.0) {
+        // Coarser meshes of far tiles take means of as many cells as a triangle is wide.
+        float level = max(log2(MEAN_LEVEL * distance(vec3(vRest, 0.0), eye) / cell.x), 0.0);
+        vec3 pieces = wavesAt(wavePlaces, vRest, 1.0, level, false).xyz;
+        moved = ((1.0 - share) * moved + share * pieces) * inversesqrt(1.0 - 2.0 * share * (1.0 - share));
+      }
+      vSea = vec3(vRest, 0.0) + moved * (1.0 - rimFlatness(vRest));
+      transformed = vSea - tile;
+    }
+    #include <project_vertex>
+    ${nearer ? "gl_Position = projectionMatrix * (mvPosition * vec4(vec3(0.998), 1.0));" : ""}
+  }`;
+const WIRE_FRAGMENT = `
+  uniform vec3 wireColor;
+  void main() {
+    gl_FragColor = vec4(wireColor, 1.0);
+    #include <tonemapping_fragment>
+    #include <colorspace_fragment>
+  }`;
+
 const WATER_FRAGMENT = `
   #define STANDARD
   #define MAX_WATERLINES ${MAX_WATERLINES}
   uniform mat4 toSea;
   ${WATER_GLSL.noise}
+  ${WATER_GLSL.waves}
   ${WATER_GLSL.sky}
   ${WATER_GLSL.surface}
   varying vec3 vSea;
@@ -535,12 +627,8 @@ const WATER_FRAGMENT = `
     vec2 from = vSea.xy - cutout.xy;
     float across = dot(from, cutoutDirection.xy), along = dot(from, vec2(-cutoutDirection.y, cutoutDirection.x));
     if (across > 0.0 && across < cutoutDirection.z && abs(along) < cutout.z) discard;
-    // Waves become flat towards the rim of the last tile, as the sea beyond it is flat.
-    float flatness = 0.0;
-    if (extent.y > 0.0) {
-      vec2 outward = abs(vSea.xy - 0.5 * grid.z) / (0.5 * grid.z * extent.x);
-      flatness = smoothstep(0.8, 1.0, grid.x > 0.0 ? max(outward.x, outward.y) : length(vSea.xy) / grid.z);
-    }
+    // Waves of a mesh that is no grid become flat towards its rim, as the sea beyond it is flat.
+    float flatness = extent.y > 0.0 && grid.x == 0.0 ? smoothstep(0.8, 1.0, length(vSea.xy) / grid.z) : 0.0;
     gl_FragColor = vec4(shadeSea(vSea, vRest, vSlopeAndFoam * vec3(1.0, 1.0, 1.0 - flatness), flatness), 1.0);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
@@ -561,6 +649,7 @@ const DOME_FRAGMENT = `
   #define MAX_WATERLINES ${MAX_WATERLINES}
   uniform mat4 toSea;
   ${WATER_GLSL.noise}
+  ${WATER_GLSL.waves}
   ${WATER_GLSL.sky}
   ${WATER_GLSL.surface}
   varying vec3 vRay;

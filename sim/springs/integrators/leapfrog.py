@@ -3,7 +3,7 @@
 K kicks with the forces of position alone, X drifts, D is the exact damping of `sim.springs.forces.damping`, D' the
 same in reverse order, and the two change places from step to step; moving air blows before D and after D'. A symmetric
 composition: second order with damping, stable for h omega < 2 at any damping but the air's. One force evaluation a
-step, as the force at the end of a step opens the next.
+step, as the force at the end of a step opens the next. Of a rope, D' of a step and D of the next are one pass.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from sim.jit import kernel
 from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping
 from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
-from sim.springs.forces.damping import air_scratch_size, blow, damp, is_odd, make_decay
+from sim.springs.forces.damping import air_scratch_size, blow, cross_gap, damp, gaps_merge, is_odd, make_decay, make_gap
 from sim.springs.integrators import Integrator
 from sim.springs.vector_ops import add_scaled
 
@@ -26,6 +26,8 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     a = np.empty_like(x)
     f = make_scratch(p)
     decay = make_decay(p, 0.5 * h)
+    merged = gaps_merge(p) and not with_account
+    gap = make_gap(p, decay)
     spare = np.empty(air_scratch_size(x, p))
     middle = np.empty_like(spare)
     before = np.empty(account_size(x, with_account))
@@ -37,14 +39,18 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
         if with_account:
             add_power(x, v, now, p, False, 0.5 * h, ledger)
             kinetic = open_damping(v, p, before)
-        blow(x, v, 0.5 * h, p, f, spare, middle)
-        by_sphere = damp(x, v, now, 0.5 * h, decay, p, odd)
-        if with_account:
-            close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, before, ledger)
-        add_scaled(v, 0.5 * h, a)
+        if s == 0 or not merged:
+            blow(x, v, 0.5 * h, p, f, spare, middle)
+            by_sphere = damp(x, v, now, 0.5 * h, decay, p, odd)
+            if with_account:
+                close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, before, ledger)
+            add_scaled(v, 0.5 * h, a)
         add_scaled(x, h, v)
         set_pins(x, v, now + h, p)
         accelerate(x, v, now + h, p, False, f, a)
+        if merged and s + 1 < steps:
+            cross_gap(v, a, 0.5 * h, gap, p, not odd)
+            continue
         add_scaled(v, 0.5 * h, a)
         if with_account:
             kinetic = open_damping(v, p, before)

@@ -216,3 +216,25 @@ def test_the_stored_energies_are_the_formulas():
         kinetic = sum(0.5 * net.mass * vs[p] @ vs[p] for p in free)
         gravity = sum(-net.mass * np.array(net.gravity) @ xs[p] for p in free)
         assert energy(net, state) == pytest.approx((kinetic, elastic, gravity, contact), rel=1e-12)
+
+
+@pytest.mark.parametrize("drag", [0.0, 2.0])
+@pytest.mark.parametrize("points", [2, 3, 4, 5, 10, 17, 130])
+def test_leapfrog_s_steps_in_one_call_are_those_one_by_one(points, drag):
+    """In one call the damping that ends a step and that which begins the next are one pass; with an account they are
+    not. The velocities at the end of each call are damped to the end."""
+    path = PinPath(0.0, ((0.0, 0.0, 0.0), (0.3, -0.2, 0.1), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    end = (1.5, 0.5, -0.2) if points > 3 else None
+    net = rope(points, damping=7.0, drag=drag, end=end)
+    x, v = shaken(net)
+    for moving in (net, dataclasses.replace(net, pin_paths=(((0, 0), path),))):
+        states = [State(x.copy(), v.copy()) for _ in range(3)]
+        whole, single, account = states
+        for _ in range(4):
+            advance(moving, whole, INTEGRATORS["leapfrog"], 1 / 480, 9)
+            advance(moving, account, INTEGRATORS["leapfrog"], 1 / 480, 9, with_account=True)
+            for _ in range(9):
+                advance(moving, single, INTEGRATORS["leapfrog"], 1 / 480, 1)
+            for other in (single, account):
+                assert np.abs(whole.x - other.x).max() < 1e-13
+                assert np.abs(whole.v - other.v).max() < 1e-11

@@ -33,16 +33,21 @@ class Compare:
     """The folder, and a line that only the page reads."""
 
     def __init__(
-        self, gui: viser.GuiApi, buttons: GuiHandle, setups: Callable[[], dict[str, Setup]], beside: Beside
+        self,
+        gui: viser.GuiApi,
+        buttons: GuiHandle,
+        names: Callable[[], tuple[str, ...]],
+        setup_of: Callable[[str], Setup],
+        beside: Beside,
     ) -> None:
-        """buttons: that play, step and reset. setups: what can be shown beside what is set, by name."""
-        self.setups, self.beside, self.buttons = setups, beside, buttons
+        """buttons: that play, step and reset. names: of what can be shown beside what is set; setup_of: one of them."""
+        self.names, self.setup_of, self.beside, self.buttons = names, setup_of, beside, buttons
         self.shown: tuple[PaneWords, ...] | None = None
         self.line = gui.add_html("")
         self.end: GuiHandle = gui.add_button("One lab again", visible=False)
         self.end.on_click(self.on_end)
         with gui.add_folder("Compare side by side", expand_by_default=False):
-            self.choice = gui.add_dropdown("This beside", tuple(setups()), hint="What is set now, beside a preset")
+            self.choice = gui.add_dropdown("This beside", names(), hint="What is set now, beside a preset")
             self.start = gui.add_button("Show side by side")
             self.start.on_click(self.on_start)
             links = (
@@ -54,9 +59,9 @@ class Compare:
 
     async def on_start(self, event: ViserEvent) -> None:
         """Show what is set beside the chosen preset."""
-        setup = self.setups().get(str(self.choice.value))
-        if event.client_id is not None and setup is not None:
-            self.beside.compare([setup], False)
+        name = str(self.choice.value)
+        if event.client_id is not None and name in self.names():
+            self.beside.compare([self.setup_of(name)], False)
 
     async def on_end(self, event: ViserEvent) -> None:
         """Show the lab alone again."""
@@ -65,7 +70,7 @@ class Compare:
 
     def update(self) -> None:
         """Keep the list of presets and the line for the page up to date."""
-        names = tuple(self.setups())
+        names = self.names()
         if self.choice.options != names:
             self.choice.options = names
         panes = self.beside.panes()

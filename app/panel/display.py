@@ -1,4 +1,7 @@
-"""How a browser shows the lab: dark or light, and how large its text is. Each browser has its own (`js/display.js`)."""
+"""How a browser shows the lab: dark or light, how large its text is, and how finely it draws.
+
+Each browser has its own (`js/display.js`, `js/quality.js`).
+"""
 
 # pyright: reportPrivateUsage=false
 
@@ -19,7 +22,8 @@ def set_theme(gui: viser.GuiApi, *, dark: bool) -> None:
 
 
 class Display:
-    """The switches, and two hidden buttons by which a browser says whether panel and floor are to be dark.
+    """The switches, the quality of the picture, and two hidden buttons: by them a browser says whether panel and floor
+    are to be dark.
 
     They are buttons because two browsers may say the same: viser passes on only what changes the value of a checkbox.
     """
@@ -39,7 +43,11 @@ class Display:
         switches = fill(
             '<div class="springtide-switches" data-springtide-dark="{}" data-springtide-light="{}">'
             '<button type="button" data-springtide-switch="dark">Dark</button>'
-            '<button type="button" data-springtide-switch="large">Large text</button></div>',
+            '<button type="button" data-springtide-switch="large">Large text</button>'
+            "<label>Quality <select data-springtide-quality>"
+            '<option value="automatic">automatic</option><option value="high">high</option>'
+            '<option value="medium">medium</option><option value="low">low</option></select> '
+            "<span data-springtide-quality-now></span></label></div>",
             self.dark._impl.uuid,
             self.light._impl.uuid,
         )

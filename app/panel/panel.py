@@ -155,7 +155,9 @@ class Panel:
         self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
         self.recorder = Recorder()
         self.share = Share(server, self.lab, self, self.recorder, post, wake, make_replay)
-        self.compare = None if beside is None else Compare(gui, self.buttons, self.comparable, beside)
+        self.compare = (
+            None if beside is None else Compare(gui, self.buttons, self.comparable_names, self.comparable, beside)
+        )
         self.display = Display(gui, view)
         self.notes: dict[str, viser.GuiHtmlHandle] = {}
         self.work_counts: viser.GuiHtmlHandle | None = None
@@ -245,10 +247,13 @@ class Panel:
         params = own.params if own else check_record(type(self.params), self.kind.presets[preset])
         return with_fields_of(self.params, params)
 
-    def comparable(self) -> dict[str, Setup]:
-        """What can be shown beside what is set, by name: presets, and the user's own set-ups."""
-        presets = {name: Setup(self.kind.name, self.params_of(name), {}, name) for name in self.kind.presets}
-        return {**presets, **self.own}
+    def comparable_names(self) -> tuple[str, ...]:
+        """Of what can be shown beside what is set: presets, and the user's own set-ups."""
+        return (*self.kind.presets, *self.own)
+
+    def comparable(self, name: str) -> Setup:
+        """One of them."""
+        return self.own[name] if name in self.own else Setup(self.kind.name, self.params_of(name), {}, name)
 
     def load(self, preset: str) -> None:
         """Every parameter as the preset has it, and the scene from its start: one command."""

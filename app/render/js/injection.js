@@ -88,7 +88,8 @@ function answerServer(activeNodes) {
 }
 
 function beforeRender(renderer, scene, camera) {
-  window.__springtide = { memory: () => ({ ...renderer.info.memory }) }; // tests read it to find leaks
+  window.__springtide = { memory: () => ({ ...renderer.info.memory }), quality: QUALITY }; // tests read it
+  QUALITY.beforeRender(renderer);
   const nodes = window.__viserMutable.nodeRefFromName;
   const active = [];
   for (const name of Object.keys(nodes)) {

@@ -77,8 +77,8 @@ shaders.push({
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms, uniforms);
       shader.vertexShader = RAIN_VERTEX;
-      shader.fragmentShader = RAIN_FRAGMENT;
+      shader.fragmentShader = withDetails(RAIN_FRAGMENT);
     };
-    return replaceShader(mesh.material, `springtide-rain${base}`, edit) ? mesh.material : null;
+    return replaceShader(mesh.material, keyWithDetails(`springtide-rain${base}`), edit) ? mesh.material : null;
   },
 });

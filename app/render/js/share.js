@@ -81,12 +81,14 @@
       button.textContent = `Stop clip (${seconds.toFixed(0)} s)`;
       if (seconds >= MAX_CLIP) clip.stop();
     };
+    window.__springtideClip = true; // the quality of the picture stays while it is recorded
     const timer = setInterval(show, 500);
     clip.ondataavailable = (event) => parts.push(event.data);
     clip.onstop = () => {
       clearInterval(timer);
       for (const track of clip.stream.getTracks()) track.stop();
       clip = null;
+      window.__springtideClip = false;
       button.textContent = "Record clip";
       download(new Blob(parts, { type }), type.startsWith("video/mp4") ? "springtide.mp4" : "springtide.webm");
     };

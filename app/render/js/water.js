@@ -226,9 +226,9 @@ shaders.push({
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms);
       shader.vertexShader = waterVertex(false);
-      shader.fragmentShader = WATER_FRAGMENT;
+      shader.fragmentShader = withDetails(WATER_FRAGMENT);
     };
-    if (!replaceShader(mesh.material, `springtide-water${base}`, edit)) {
+    if (!replaceShader(mesh.material, keyWithDetails(`springtide-water${base}`), edit)) {
       disposeSea(sea);
       delete mesh.geometry.computeVertexNormals;
       return null;
@@ -250,12 +250,12 @@ shaders.push({
     if (drawSky && !sea.dome) sea.dome = makeDome(sea);
     if (sea.dome) {
       sea.dome.visible = drawSky > 0;
-      replaceShader(sea.dome.material, "springtide-dome", (shader) => {
+      replaceShader(sea.dome.material, keyWithDetails("springtide-dome"), (shader) => {
         // viser asks three for a reversed depth buffer; a browser without clip control has none.
         const farDepth = { value: renderer.state.buffers.depth.getReversed() ? 0 : 1 };
         Object.assign(shader.uniforms, sea.uniforms, { farDepth });
         shader.vertexShader = DOME_VERTEX;
-        shader.fragmentShader = DOME_FRAGMENT;
+        shader.fragmentShader = withDetails(DOME_FRAGMENT);
       });
     }
     if (wireframe && !sea.wire) sea.wire = makeWire(sea);

@@ -1,7 +1,8 @@
 // Water and sky in GLSL: groups of functions, and the fragment shaders made of them. Used by water.js and rain.js.
 //
 // The uniforms are named in `WATER_UNIFORMS` (app/render/material.py), which also says how each is filled. Directions
-// and positions are those of the sea's node, z up; "world" is three's own frame.
+// and positions are those of the sea's node, z up; "world" is three's own frame. DETAILS (quality.js): 2 all, 1 less,
+// 0 least. What is not shown makes the water rough instead, so that its light stays the same.
 
 const WATER_GLSL = {
   // The waves of a periodic tile, as textures. Near the eye the sea is that tile, which the simulation moves. Farther
@@ -127,7 +128,7 @@ const WATER_GLSL = {
       vec2 w = vec2(cos(wind.x), sin(wind.x));
       vec2 p = d.xy / (d.z + 0.11);
       p = vec2(dot(p, w) * 0.55 - 0.004 * seaState.x, dot(p, vec2(-w.y, w.x))) / clouds.y;
-      int octaves = blur < 0.1 ? 6 : 3;
+      int octaves = (blur < 0.1 ? 4 : 1) + DETAILS;
       float n = cloudNoise(p, octaves) + 1.3 * (clouds.x - 0.5);
       float cover = smoothstep(-0.12 - blur, 0.55 + blur, n);
       vec2 s = normalize(sunDirection.xy + 1e-4);
@@ -254,7 +255,7 @@ const WATER_GLSL = {
       gust = max(gust, 0.15) / sqrt(power);
       for (int k = 0; k < 9; k++) {
         if (float(k) >= octaves) break;
-        float seen = 1.0 - smoothstep(0.12, 0.5, footprint / wave);
+        float seen = k < 4 * DETAILS + 1 ? 1.0 - smoothstep(0.12, 0.5, footprint / wave) : 0.0;
         lost += each * (1.0 - seen * seen);
         if (seen > 0.0) {
           vec2 d = vec2(cos(angle), sin(angle));
@@ -301,8 +302,8 @@ const WATER_GLSL = {
       if (share <= 0.004) return vec4(0.0);
       vec2 d = vec2(cos(wind.x), sin(wind.x));
       vec2 p = vec2(dot(x, d) * 0.7, dot(x, vec2(-d.y, d.x))) / wind.z;
-      float seen = 1.0 - smoothstep(0.3, 0.9, footprint / wind.z);
-      float near = 1.0 - smoothstep(0.06, 0.2, footprint / wind.z);
+      float seen = DETAILS > 0 ? 1.0 - smoothstep(0.3, 0.9, footprint / wind.z) : 0.0;
+      float near = DETAILS > 1 ? 1.0 - smoothstep(0.06, 0.2, footprint / wind.z) : 0.0;
       float cover = share, grain = 0.0;
       vec2 relief = vec2(0.0);
       if (seen > 0.0) {
@@ -343,12 +344,13 @@ const WATER_GLSL = {
     vec4 rainSlopes(vec2 x, float footprint) {
       if (rainRings.x <= 0.0) return vec4(0.0);
       float life = RING_REACH * rainRings.y / rainRings.z, side = RING_CELL * rainRings.y;
-      float share = min(rainRings.x * life * side * side / float(RING_LAYERS), 1.0); // of the cells that have a ring
-      float seen = 1.0 - smoothstep(0.15, 0.6, footprint / rainRings.y);
+      int layers = DETAILS > 1 ? RING_LAYERS : RING_LAYERS / 2;
+      float share = min(rainRings.x * life * side * side / float(layers), 1.0); // of the cells that have a ring
+      float seen = DETAILS > 0 ? 1.0 - smoothstep(0.15, 0.6, footprint / rainRings.y) : 0.0;
       vec2 slope = vec2(0.0);
       float splash = 0.0;
       if (seen > 0.0) {
-        for (int k = 0; k < RING_LAYERS; k++) {
+        for (int k = 0; k < layers; k++) {
           float turned = 0.7 * float(k);
           vec2 p = mat2(cos(turned), sin(turned), -sin(turned), cos(turned)) * x / side;
           p += 0.37 * float(k);

@@ -197,6 +197,22 @@ def test_the_script_takes_the_order_of_the_uniforms_from_python(server: FakeServ
         assert quoted & {*WATER_UNIFORMS, *RAIN_UNIFORMS} <= {"slick"}
 
 
+def test_each_program_that_depends_on_the_details_has_three_variants() -> None:
+    """Those of water, dome and rain; a program whose name does not tell them apart would stay as it is."""
+    variants = {int(n) for n in re.findall(r"details: (\d)[ }]", source_of("quality.js"))}
+    assert variants == {0, 1, 2}
+    scripts = source_of("water.js") + source_of("rain.js")
+    sources = re.findall(r"fragmentShader = (.*);", scripts)
+    assert sorted(s for s in sources if "withDetails" in s) == [
+        "withDetails(DOME_FRAGMENT)",
+        "withDetails(RAIN_FRAGMENT)",
+        "withDetails(WATER_FRAGMENT)",
+    ]
+    names = [line for line in scripts.splitlines() if "replaceShader(" in line and "wire" not in line]
+    assert ["keyWithDetails(" in name for name in names] == [True] * 3
+    assert "DETAILS" in source_of("water_shader.js")
+
+
 @pytest.mark.skipif(shutil.which("node") is None, reason="no node on the search path")
 def test_the_script_is_javascript(server: FakeServer, tmp_path: Path) -> None:
     file = tmp_path / "script.js"

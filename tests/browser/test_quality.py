@@ -1,0 +1,76 @@
+"""How finely a browser draws: by the length of its frames, or as its user has chosen."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from app.server.viewer import Viewer
+from tests.browser.conftest import new_page
+
+STATE = """() => ({ ...window.__springtide?.quality?.now(), width: document.querySelector("canvas[data-engine]")?.width,
+    line: document.querySelector("#springtide-slow")?.innerText ?? "",
+    now: document.querySelector("[data-springtide-quality-now]")?.innerText ?? null,
+    detail: (window.__viserMutable?.nodeRefFromName?.["/sea"]?.children?.find(c => c.isMesh)
+        ?.material.userData.springtide ?? "") })"""
+# What the automatic choice makes of frames of these lengths [ms]: its step after each list of [length, number].
+JUDGED = """lists => { const judge = window.__springtide.quality.makeJudge();
+    return lists.map(list => { for (const [length, n] of list) for (let k = 0; k < n; k++) judge.take(length);
+                               return judge.step(); }); }"""
+
+
+# As if drawing took so long in each frame [ms], whatever this machine can do.
+SLOW_FRAMES = """const next = window.requestAnimationFrame.bind(window);
+window.requestAnimationFrame = callback => next(now => {
+    const end = performance.now() + 150;
+    callback(now);
+    while (performance.now() < end);
+});"""
+
+
+@pytest.fixture(scope="module")
+def page(chromium: Any) -> Iterator[Any]:
+    """A page without "fixedDpr", which would keep all pixels."""
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("square_sea")
+    page = new_page(chromium, 420, 300, shaded=False)
+    page.add_init_script(SLOW_FRAMES)
+    page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo")
+    page.wait_for_function("() => window.__springtide?.quality && document.querySelector('[data-springtide-quality]')")
+    yield page
+    page.close()
+    viewer.shut()
+
+
+def wait_for(page: Any, condition: str) -> dict[str, Any]:
+    """The state of the page once the condition on its state holds."""
+    page.wait_for_function(f"() => {{ const s = ({STATE})(); return {condition}; }}", timeout=120_000)
+    return page.evaluate(STATE)
+
+
+def test_frames_decide_and_quality_never_flickers(page: Any) -> None:
+    fast, middling, slow, very_slow = 16.7, 30.0, 60.0, 300.0
+    assert page.evaluate(JUDGED, [[[fast, 3000]], [[middling, 500]]]) == [0, 0]
+    # Frames after a change compile programs, and one slow window may be something else.
+    one_window = [[[2000.0, 3]], [[fast, 500]], [[slow, 34], [fast, 200]], [[slow, 80]]]
+    assert page.evaluate(JUDGED, one_window) == [0, 0, 0, 1]
+    assert page.evaluate(JUDGED, [[[very_slow, 12]], [[very_slow, 12]], [[very_slow, 99]]]) == [2, 4, 4]
+    # Up again after 20 s of fast frames; where that was too much, four times as long passes before the next try.
+    down_and_up = [[[slow, 80]], [[fast, 1100]], [[fast, 200]], [[slow, 110]], [[fast, 4000]], [[fast, 1200]]]
+    assert page.evaluate(JUDGED, down_and_up) == [1, 1, 0, 1, 1, 0]
+
+
+def test_quality_falls_where_drawing_is_slow_and_the_page_says_so(page: Any) -> None:
+    medium = wait_for(page, "s.step === 2 && s.width === 315 && s.detail.includes('details 1')")
+    assert medium["line"].startswith("Drawing is slow here, so the quality is lower.")
+    assert medium["now"] == "now medium"
+    assert "quality" not in page.evaluate("location.search")
+    page.get_by_role("button", name="Keep high quality").click()
+    high = wait_for(page, "s.width === 420 && s.detail === 'springtide-water/sea'")
+    assert (high["step"], high["line"], high["now"]) == (0, "", "")
+    assert page.locator("[data-springtide-quality]").input_value() == "high"
+    page.wait_for_timeout(4000)  # longer than the automatic choice takes to fall
+    assert page.evaluate(STATE)["step"] == 0
+    page.locator("[data-springtide-quality]").select_option("low")
+    low = wait_for(page, "s.width === 210 && s.detail.includes('details 0')")
+    assert (low["quality"], low["line"]) == ("low", "")

@@ -32,6 +32,7 @@ from websockets.http11 import Request, Response
 from app.render.injection import answer_apart
 from app.render.viser_types import GuiHandle, ViserConnection, ViserMessage
 from app.server.access import OWN_PAGES_ONLY, Access, admitted, refusal
+from app.server.pace import PACE, Pace, put_small_first
 from app.server.page import own_answer, with_cover
 from app.server.panes import Panes
 
@@ -124,6 +125,9 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[None
             return answer or with_cover(request, process_request(connection, request))
 
         async def serve_pane(connection: ViserConnection) -> None:
+            pace = Pace(connection)
+            connection.send = pace.send
+            PACE.set(pace)
             await panes.serve(connection, handler)
 
         return serve(serve_pane, *address, process_request=check, **options)  # type: ignore[arg-type]
@@ -376,10 +380,11 @@ def open_pane(panes: Panes, number: int) -> tuple[viser.ViserServer, Screen]:
 
 
 def guarded(server: viser.ViserServer) -> Screen:
-    """Pass what browsers send to a server through a screen."""
+    """Pass what browsers send to a server through a screen, and what they are sent at the pace of their lines."""
     screen = Screen(server)
     connection: ViserConnection = server._websock_server
     for request in (vm.ShareUrlRequest, vm.ShareUrlDisconnect):
         connection.unregister_handler(request)
     put_intakes(server, screen)
+    put_small_first(connection)
     return screen

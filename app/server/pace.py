@@ -1,0 +1,208 @@
+"""Sends a browser no more than its line carries, so that the answer to a control does not queue up behind pictures.
+
+viser keeps of what waits for a browser only the newest: a picture replaces the one before. But what has been handed to
+the operating system, a tunnel or a proxy can no longer be replaced, and these take megabytes: on a slow line seconds.
+Therefore a ping follows each picture. Its pong says when the picture has arrived, and from that how much the line
+carries. The next picture is sent once no more than this is on the way: what the line carries in a round trip, which
+keeps it busy, and in `QUEUE` seconds more. On a fast line that never waits. Meanwhile small updates of the panel go
+ahead of the pictures that wait.
+
+The way of BBR (Cardwell et al. 2016, ACM Queue 14(5)), with pictures for packets.
+"""
+
+import asyncio
+import collections
+import contextvars
+import math
+import statistics
+from collections.abc import AsyncGenerator, Callable, Sequence
+from typing import NamedTuple
+
+from viser import _messages as vm
+
+from app.render.viser_types import ViserConnection, ViserMessage
+from app.server.transport import kind_and_size
+
+SMALL = 8192  # [bytes] below which a message is no picture: it never waits, and no ping follows it
+QUEUE = 0.02  # [s] of the line's rate that may wait in front of it, beyond what is on the way
+MOST = 12  # pictures on the way, however much a line carries: 30 a second where a round trip takes 0.4 s
+SAMPLES = 5  # of the rate, of which the median counts: one pong may be late, and the next seem early
+PROBE_INTERVAL = 10.0  # [s] between two round trips that are measured while nothing else is on the way
+PROBES = 3  # of which the shortest counts
+PATIENCE = 1.0  # [s] beyond four times what it should take, after which a pong is no longer waited for
+FIRST_PATIENCE = 10.0  # [s] the same while the rate is not known
+
+
+class Sent(NamedTuple):
+    """A picture on the way."""
+
+    size: int  # [bytes]
+    start: float  # [s] when it was sent
+    pong: "asyncio.Future[float]"
+
+
+class Pace:
+    """The pace of one browser's messages, on the event loop of its connection."""
+
+    def __init__(self, connection: ViserConnection) -> None:
+        self.connection = connection
+        self.send_now = connection.send
+        self.loop = asyncio.get_running_loop()
+        self.clock = self.loop.time
+        self.turn = asyncio.Lock()  # pictures are sent one after the other: viser sends from two tasks
+        self.on_the_way: collections.deque[Sent] = collections.deque()
+        self.bytes_on_the_way = 0
+        self.rates: collections.deque[float] = collections.deque(maxlen=SAMPLES)  # [bytes/s]
+        self.rate = 0.0  # [bytes/s] that the line carries; 0 while that is not known
+        self.probes: collections.deque[float] = collections.deque(maxlen=PROBES)  # [s]
+        self.round_trip = 0.0  # [s] of a message with nothing in front of it; 0 while that is not known
+        self.probe_at = -math.inf  # [s] when the round trip is measured next
+        self.last_pong = -math.inf  # [s] when it came
+
+    async def send(self, data: bytes) -> None:
+        """Send a message, a picture once there is room for it. Raises ConnectionClosed where the browser has gone."""
+        if len(data) < SMALL:
+            await self.send_now(data)
+            return
+        async with self.turn:
+            await self.room()
+            start = self.clock()
+            await self.send_now(data)
+            sent = Sent(len(data), start, asyncio.ensure_future(await self.connection.ping()))
+            self.on_the_way.append(sent)
+            self.bytes_on_the_way += sent.size
+            sent.pong.add_done_callback(lambda _: self.learn(sent))
+
+    @property
+    def has_room(self) -> bool:
+        """Whether a picture would be sent at once."""
+        bound = self.rate * (self.round_trip + QUEUE)
+        return self.clock() < self.probe_at and self.bytes_on_the_way <= bound and len(self.on_the_way) < MOST
+
+    async def room(self) -> None:
+        """Wait until there is room for a picture; a pong that does not come in time is given up."""
+        while not self.has_room:
+            if not self.on_the_way:
+                await self.probe()
+                continue
+            done, _ = await asyncio.wait([self.on_the_way[0].pong], timeout=self.patience)
+            if not done:
+                self.on_the_way.clear()
+                self.bytes_on_the_way = 0
+
+    @property
+    def patience(self) -> float:
+        """How long [s] a pong is waited for."""
+        if not self.rate:
+            return FIRST_PATIENCE
+        return PATIENCE + 4.0 * (self.round_trip + self.bytes_on_the_way / self.rate)
+
+    async def probe(self) -> None:
+        """Measure the round trip while nothing is on the way."""
+        start = self.clock()
+        pong = asyncio.ensure_future(await self.connection.ping())
+        await asyncio.wait([pong], timeout=self.patience)
+        if has_come(pong):
+            self.probes.append(self.clock() - start)
+            self.round_trip = min(self.probes)
+        self.probe_at = self.clock() + PROBE_INTERVAL
+
+    def learn(self, sent: Sent) -> None:
+        """A picture has arrived, or the browser has gone."""
+        if sent in self.on_the_way:
+            self.on_the_way.remove(sent)
+            self.bytes_on_the_way -= sent.size
+        if has_come(sent.pong):
+            now = self.clock()
+            # It came to the line a round trip before its pong, at the earliest when the picture before was through.
+            began = max(self.last_pong, sent.start + self.round_trip)
+            self.rates.append(sent.size / max(now - began, 1e-3))
+            self.rate = statistics.median(self.rates)
+            self.last_pong = now
+
+    def room_from(self, loop: asyncio.AbstractEventLoop) -> "asyncio.Future[None]":
+        """`room`, to be waited for on this loop: a pane has one of its own."""
+        if loop is self.loop:
+            return asyncio.ensure_future(self.room())
+        return asyncio.wrap_future(asyncio.run_coroutine_threadsafe(self.room(), self.loop))
+
+
+def has_come(pong: "asyncio.Future[float]") -> bool:
+    """Whether a pong is there; otherwise it has not come yet, or the browser has gone."""
+    return pong.done() and not pong.cancelled() and pong.exception() is None
+
+
+PACE: contextvars.ContextVar[Pace] = contextvars.ContextVar("pace")  # of the connection that a task serves
+Window = Sequence[ViserMessage]
+Windows = AsyncGenerator[Window, None]
+
+
+def put_small_first(server_connection: ViserConnection) -> None:
+    """Have what all browsers of a server are sent wait for room, with small updates of the panel going ahead."""
+    buffer = server_connection.get_message_buffer()
+    windows: Callable[..., Windows] = buffer.window_generator
+
+    def paced_windows(*arguments: object, **options: object) -> Windows:
+        return small_first(windows(*arguments, **options), PACE.get())
+
+    buffer.window_generator = paced_windows
+
+
+async def small_first(windows: Windows, pace: Pace) -> Windows:
+    """The same messages; where there is no room only small updates of the panel, and later the newest of the others."""
+    loop = asyncio.get_running_loop()
+    held: dict[str, ViserMessage] = {}  # what waits, in order, by what supersedes it
+    more: asyncio.Future[Window] | None = None
+    room: asyncio.Future[None] | None = None
+    try:
+        while True:
+            if held:
+                more = more or asyncio.ensure_future(anext(windows))
+                room = room or pace.room_from(loop)
+                await asyncio.wait([more, room], return_when=asyncio.FIRST_COMPLETED)
+                if room.done():
+                    room.result()
+                    room, window = None, list(held.values())
+                    held.clear()
+                    yield window
+                    continue
+            try:
+                window, more = await (more or anext(windows)), None
+            except StopAsyncIteration:
+                return
+            if pace.has_room and not held:
+                yield window
+            elif ahead := hold(held, window):
+                yield ahead
+    finally:
+        for future in (more, room):
+            if future is not None:
+                future.cancel()
+                await asyncio.gather(future, return_exceptions=True)
+        await windows.aclose()
+
+
+def hold(held: dict[str, ViserMessage], window: Window) -> list[ViserMessage]:
+    """Add a window to what waits; returns what may go ahead: nothing while anything that is made or removed waits."""
+    ahead: list[ViserMessage] = []
+    for message in window:
+        key = message.redundancy_key()
+        held.pop(key, None)
+        if is_small(message) and all(is_update(other) for other in held.values()):
+            ahead.append(message)
+        else:
+            held[key] = message
+    return ahead
+
+
+def is_small(message: ViserMessage) -> bool:
+    """Whether this is an update of something in the panel that is small enough to go ahead."""
+    if not isinstance(message, vm.GuiUpdateMessage):
+        return False
+    found = [kind_and_size(value) for value in message.updates.values()]
+    return sum(size for _, size in filter(None, found)) < SMALL
+
+
+def is_update(message: ViserMessage) -> bool:
+    """Whether this changes something that is there already."""
+    return message.lifecycle_phase in ("update_dict", "update_simple")

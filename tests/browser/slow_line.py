@@ -1,0 +1,85 @@
+"""A slow line between a browser and the lab: every byte is late, and so many go through in a second."""
+
+import asyncio
+import contextlib
+import socket
+import threading
+from collections.abc import Iterator
+
+CHUNK = 4096  # [bytes] that travel as one
+WINDOW = 32768  # [bytes] that the operating system keeps at the lab's end of the line, at least
+
+
+class Line:
+    """A port that leads to the lab over a line, on an event loop of its own, in a thread."""
+
+    def __init__(self, port: int, rate: float, delay: float, buffer: int) -> None:
+        """rate: [bytes/s] each way. delay: [s] each way. buffer: [bytes] that may wait in a router before the line."""
+        self.lab, self.rate, self.delay, self.buffer = port, rate, delay, buffer
+        self.port = 0
+        self.ready = threading.Event()
+        self.thread = threading.Thread(target=lambda: asyncio.run(self.serve()), daemon=True)
+
+    async def serve(self) -> None:
+        """Serve until `stop` is set; asyncio ends what is then left of the connections."""
+        self.loop, self.stop = asyncio.get_running_loop(), asyncio.Event()
+        server = await asyncio.start_server(self.join, "127.0.0.1", 0)
+        self.port = server.sockets[0].getsockname()[1]
+        self.ready.set()
+        await self.stop.wait()
+        server.close()
+
+    async def join(self, here: asyncio.StreamReader, back: asyncio.StreamWriter) -> None:
+        """One connection, until all that both ends sent has arrived."""
+        end = socket.socket()
+        end.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, WINDOW)
+        end.setblocking(False)
+        await self.loop.sock_connect(end, ("127.0.0.1", self.lab))
+        there, on = await asyncio.open_connection(sock=end, limit=CHUNK)
+        to_browser = asyncio.ensure_future(self.carry(there, back))
+        to_lab = asyncio.ensure_future(self.carry(here, on))
+        try:
+            with contextlib.suppress(OSError):
+                await to_browser
+        finally:
+            to_lab.cancel()
+            back.close()
+            on.close()
+
+    async def carry(self, source: asyncio.StreamReader, target: asyncio.StreamWriter) -> None:
+        """One way: what comes waits in the router until the line is free, and arrives `delay` later."""
+        free = self.loop.time()  # [s] when the line has sent all that came so far
+        waiting: asyncio.Queue[tuple[float, bytes]] = asyncio.Queue()
+        delivery = asyncio.ensure_future(self.deliver(waiting, target))
+        try:
+            while part := await source.read(CHUNK):
+                free = max(free, self.loop.time()) + len(part) / self.rate
+                waiting.put_nowait((free + self.delay, part))
+                # The router takes more once this is all that waits in it.
+                await asyncio.sleep(max(0.0, free - self.buffer / self.rate - self.loop.time()))
+            waiting.put_nowait((free + self.delay, b""))
+            await delivery  # until all has arrived
+        finally:
+            delivery.cancel()
+
+    async def deliver(self, waiting: "asyncio.Queue[tuple[float, bytes]]", target: asyncio.StreamWriter) -> None:
+        """Hand over what has arrived, until the end of it."""
+        while True:
+            arrival, part = await waiting.get()
+            await asyncio.sleep(max(0.0, arrival - self.loop.time()))
+            if not part or target.is_closing():
+                return
+            target.write(part)
+
+
+@contextlib.contextmanager
+def slow_line(port: int, rate: float, delay: float, buffer: int = 65536) -> Iterator[Line]:
+    """See `Line`."""
+    line = Line(port, rate, delay, buffer)
+    line.thread.start()
+    line.ready.wait(10.0)
+    try:
+        yield line
+    finally:
+        line.loop.call_soon_threadsafe(line.stop.set)
+        line.thread.join(10.0)

@@ -11,8 +11,8 @@ import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread, as
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Everything in tests/browser needs a browser, and has a second try, since a page drawn in software can be late.
 
-    Of several processes (`-n`), one runs all tests with a browser, since two browsers would slow each other down. The
-    tests of another file share their fixtures in one process.
+    Of several processes (`-n`), one runs all tests with a browser, since two browsers would slow each other down. They
+    begin first, as no other group takes as long. The tests of another file share their fixtures in one process.
     """
     for item in items:
         if "/tests/browser/" in item.path.as_posix():
@@ -21,6 +21,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if browser:
             item.add_marker(pytest.mark.flaky(reruns=1))
         item.add_marker(pytest.mark.xdist_group("browser" if browser else item.path.as_posix()))
+    items.sort(key=lambda item: item.get_closest_marker("browser") is None)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -159,6 +159,7 @@ def test_a_scene_is_one_folder(tmp_path):
     )
 
 
+@pytest.mark.stress  # a browser of its own: without one, test_a_scene_is_one_folder opens it
 @pytest.mark.browser
 @pytest.mark.skipif(not any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), reason="no Chromium")
 def test_an_added_scene_opens_in_the_browser(tmp_path):

@@ -61,9 +61,12 @@ def frequent_questions() -> Iterator[None]:
         yield
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def chromium() -> Iterator[Any]:
-    """A running Chromium; the test is skipped where there is none."""
+    """A running Chromium; the test is skipped where there is none.
+
+    It ends with the tests of this folder, as Playwright's event loop would be in the way of others.
+    """
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     if CHROMIUM is None:
         pytest.skip("no Chromium on the search path")

@@ -59,7 +59,27 @@ CONTROLS = """() => [...document.querySelectorAll(
 FOLDED = ".mantine-Paper-root > .mantine-Paper-root[aria-expanded=false]"
 
 
-@pytest.fixture(params=NAMES)
+def test_folders_and_sliders_obey_the_keyboard(one_page: tuple[Viewer, Tab]) -> None:
+    viewer, tab = one_page
+    tab.follow(viewer, "rope")
+    slider = tab.page.get_by_role("slider", name="Stiffness [N/m]")
+    tab.wait(lambda: slider.count() == 1)
+    slider.focus()
+    tab.page.keyboard.press("ArrowRight")
+    tab.wait(lambda: viewer.panel.params.stiffness == 810.0)
+    folder = tab.page.get_by_role("button", name="Surroundings", exact=True)
+    folder.focus()
+    tab.page.keyboard.press("Enter")
+    tab.wait(lambda: folder.get_attribute("aria-expanded") == "true")
+    tab.wait(lambda: viewer.loop.running)
+    tab.page.get_by_role("button", name="Pause").focus()
+    tab.page.keyboard.press("Space")  # presses the button, and is not also the key that plays
+    tab.wait(lambda: not viewer.loop.running)
+    tab.page.wait_for_timeout(500)
+    assert not viewer.loop.running
+
+
+@pytest.fixture(scope="module", params=NAMES)
 def opened(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
     """Each scene with every folder of its panel open, paused, in a window that shows all of it."""
     viewer, tab = one_page
@@ -112,23 +132,3 @@ def test_every_control_is_reached_by_tab_and_has_a_name(opened: tuple[Viewer, Ta
     names = [name for name, _, _ in controls]
     assert "Main" in names
     assert sum("multi-slider-thumb" in kind for _, _, kind in controls) > 7
-
-
-def test_folders_and_sliders_obey_the_keyboard(one_page: tuple[Viewer, Tab]) -> None:
-    viewer, tab = one_page
-    tab.follow(viewer, "rope")
-    slider = tab.page.get_by_role("slider", name="Stiffness [N/m]")
-    tab.wait(lambda: slider.count() == 1)
-    slider.focus()
-    tab.page.keyboard.press("ArrowRight")
-    tab.wait(lambda: viewer.panel.params.stiffness == 810.0)
-    folder = tab.page.get_by_role("button", name="Surroundings", exact=True)
-    folder.focus()
-    tab.page.keyboard.press("Enter")
-    tab.wait(lambda: folder.get_attribute("aria-expanded") == "true")
-    tab.wait(lambda: viewer.loop.running)
-    tab.page.get_by_role("button", name="Pause").focus()
-    tab.page.keyboard.press("Space")  # presses the button, and is not also the key that plays
-    tab.wait(lambda: not viewer.loop.running)
-    tab.page.wait_for_timeout(500)
-    assert not viewer.loop.running

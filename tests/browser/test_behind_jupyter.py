@@ -1,6 +1,7 @@
 """All browser tests of the rope once more, through the proxy of a real Jupyter server with a token and a path."""
 
 import functools
+import importlib.util
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -12,7 +13,8 @@ from tests.browser import test_rope
 from tests.browser.conftest import Tab
 from tests.jupyter import Jupyter, jupyter
 
-pytest.importorskip("jupyter_server_proxy", reason="the extra jupyter is not installed")
+if importlib.util.find_spec("jupyter_server_proxy") is None:  # importing it takes seconds
+    pytest.skip("the extra jupyter is not installed", allow_module_level=True)
 pytestmark = [pytest.mark.stress, pytest.mark.timeout(1200)]
 OPTIONS = ("--ServerApp.jpserver_extensions={'jupyter_server_proxy': True}",)
 SCENE = test_rope.SCENE

@@ -125,6 +125,7 @@ def test_kernels_run_interpreted():
     assert python(code, NUMBA_DISABLE_JIT="1") == "18.0 3.0"
 
 
+@pytest.mark.stress  # compiles the forces on a cloth; that threads start from a kept kernel is in test_jit
 def test_a_parallel_part_of_a_kept_entry_runs(tmp_path):
     code = """
 import numpy as np

@@ -1,6 +1,7 @@
 """The lab behind the login of a real Jupyter server: who gets through, and who does not."""
 
 import http.client
+import importlib.util
 import re
 import socket
 from collections.abc import Iterator
@@ -15,7 +16,8 @@ from app.server.access import Access
 from app.server.guard import open_server, quiet
 from tests.jupyter import Jupyter, jupyter
 
-pytest.importorskip("jupyter_server_proxy", reason="the extra jupyter is not installed")
+if importlib.util.find_spec("jupyter_server_proxy") is None:  # importing it takes seconds
+    pytest.skip("the extra jupyter is not installed", allow_module_level=True)
 OPTIONS = ("--ServerApp.jpserver_extensions={'jupyter_server_proxy': True}", "--ServerApp.allow_remote_access=True")
 PAGE = "springtide/index.html"
 

@@ -1,6 +1,7 @@
 """The example notebooks, each in a kernel that a real Jupyter server has started."""
 
 import asyncio
+import importlib.util
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,9 +11,10 @@ import pytest
 
 from tests.jupyter import Jupyter, jupyter
 
-nbformat = pytest.importorskip("nbformat", reason="the extra test is not installed")
-nbclient = pytest.importorskip("nbclient", reason="the extra test is not installed")
-jupyter_client = pytest.importorskip("jupyter_client", reason="the extra test is not installed")
+# Imported by the tests, as it takes seconds and each process of the tests collects this file.
+for package in ("nbformat", "nbclient", "jupyter_client"):
+    if importlib.util.find_spec(package) is None:
+        pytest.skip("the extra test is not installed", allow_module_level=True)
 ROOT = Path(__file__).parents[3]
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
 
@@ -25,6 +27,8 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Jupyter]:
 
 def run(server: Jupyter, notebook: Any) -> Any:
     """Execute a notebook in a kernel of the server, and return it with its outputs; fails where a cell does."""
+    import jupyter_client
+    import nbclient
 
     async def execute(connection: Path) -> None:
         client = nbclient.NotebookClient(notebook, timeout=600)
@@ -51,6 +55,8 @@ def outputs(notebook: Any) -> list[Any]:
 
 
 def test_the_examples_are_there_and_are_no_other_than_what_is_tested() -> None:
+    import nbformat
+
     assert [path.stem for path in NOTEBOOKS] == ["race", "rope", "sea"]
     for path in NOTEBOOKS:
         notebook = nbformat.read(path, as_version=4)
@@ -59,6 +65,8 @@ def test_the_examples_are_there_and_are_no_other_than_what_is_tested() -> None:
 
 
 def test_two_labs_in_a_notebook_and_a_cell_that_is_run_again(server: Jupyter) -> None:
+    import nbformat
+
     code = (
         "import threading\nimport app\nrope = app.show('rope', stiffness=2000, paused=True)",
         "other = app.show('rope', paused=True)\nrope.wait(0.5)\nother.wait(0.25)",
@@ -87,6 +95,8 @@ def test_two_labs_in_a_notebook_and_a_cell_that_is_run_again(server: Jupyter) ->
 @pytest.mark.timeout(1200)
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_an_example_runs_clean(server: Jupyter, path: Path) -> None:
+    import nbformat
+
     start = time.monotonic()
     done = run(server, nbformat.read(path, as_version=4))
     print(f"{path.stem}: {time.monotonic() - start:.1f} s")
@@ -98,6 +108,8 @@ def test_an_example_runs_clean(server: Jupyter, path: Path) -> None:
 
 @pytest.mark.stress
 def test_a_kernel_that_restarts_or_ends_leaves_no_process(server: Jupyter) -> None:
+    import jupyter_client
+
     psutil = pytest.importorskip("psutil")
     kernel = server.ask("api/kernels", "POST")["id"]
     connection = server.runtime / f"kernel-{kernel}.json"

@@ -41,9 +41,9 @@ def run(scene: RadialSeaScene, seconds: float) -> RadialSeaScene:
     "changes",
     [
         {},
-        {"spill": "layer", "thickness": 0.2},
+        pytest.param({"spill": "layer", "thickness": 0.2}, marks=pytest.mark.stress),
         {"spill": "layer", "thickness": 2.0, "density": 300.0},
-        {"spill": "layer", "thickness": 0.05, "oil": "IFO 180"},
+        pytest.param({"spill": "layer", "thickness": 0.05, "oil": "IFO 180"}, marks=pytest.mark.stress),
         {"spill": "mixed", "fraction": 0.4, "oil": "Arabian Light"},
     ],
 )

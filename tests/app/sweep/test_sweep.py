@@ -100,7 +100,10 @@ def test_a_random_design_has_a_dimension_of_cases_and_its_seed(here, tmp_path):
         assert np.isfinite(data.tip_height).all()
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL], ids=["Ctrl-C", "kill"])
+@pytest.mark.parametrize(
+    "how",
+    [pytest.param(signal.SIGINT, id="Ctrl-C"), pytest.param(signal.SIGKILL, id="kill", marks=pytest.mark.stress)],
+)
 def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, tmp_path, capsys):
     (tmp_path / "s.toml").write_text(LONG)
     kept, out = tmp_path / "out.nc.cases", tmp_path / "out.nc"
@@ -187,12 +190,20 @@ def test_a_case_that_kills_its_process_fails_and_all_others_are_finished(monkeyp
     assert {outcome.end for outcome in outcomes.values()} == {FAILED, FINISHED}
 
 
-@pytest.mark.parametrize("command", ["sweep", "stability"])
-def test_ctrl_c_while_workers_start_is_quiet(command, tmp_path):
+@pytest.mark.parametrize(
+    ("command", "delays"),
+    [
+        ("sweep", (0.2,)),
+        pytest.param("sweep", (0.0, 0.1, 0.4), marks=pytest.mark.stress),
+        pytest.param("stability", (0.0, 0.1, 0.2, 0.4), marks=pytest.mark.stress),
+    ],
+)
+def test_ctrl_c_while_workers_start_is_quiet(command, delays, tmp_path):
+    """delays: [s] after the first worker is there, all along its imports."""
     (tmp_path / "s.toml").write_text(LONG)
     arguments = {"sweep": ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out.nc")]}
     given = arguments.get(command, [command, "--quick"])
-    for delay in (0.0, 0.1, 0.2, 0.4):  # [s] after the first worker is there: all along its imports
+    for delay in delays:
         with subprocess.Popen(
             [sys.executable, "-m", "app", *given], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
             start_new_session=True, preexec_fn=functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL),

@@ -41,10 +41,10 @@ def test_every_body_has_the_gravity_of_its_measured_gm_and_diameter(body):
     assert SOLAR_SYSTEM[body].gravity == pytest.approx(gm / (0.5 * diameter) ** 2, rel=2e-3)
 
 
-@pytest.mark.parametrize("gravity", [0.0981, 2.114, 9.81, 45.5, 981.0])
+@pytest.mark.parametrize("gravity", [0.0981, 45.5, 981.0])
 def test_seas_of_all_planets_are_one_sea_scaled(gravity):
     """Hs g/U^2 is the same where the tile scales as U^2/g, and so is the whole surface."""
-    here, earth = (Sea(512, 9000.0 / g, gravity=g, amplitudes="fixed", precision="double") for g in (gravity, 9.81))
+    here, earth = (Sea(256, 9000.0 / g, gravity=g, amplitudes="fixed", precision="double") for g in (gravity, 9.81))
     ratio = gravity / 9.81
     assert here.significant_height * ratio == pytest.approx(earth.significant_height, rel=1e-12)
     assert here.significant_height * gravity / 100.0 == pytest.approx(0.20925, rel=5e-3)

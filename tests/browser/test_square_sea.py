@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import pytest
 
 from app.messages import Pause, Play
 from app.scenes.square_sea.scene import Params
@@ -28,6 +29,7 @@ def heights(tab: Any) -> np.ndarray:
     return tab.vertices("/sea")[:, 2]
 
 
+@pytest.mark.stress  # compiles the sea's shaders again, as test_water does
 def test_the_water_has_its_shader_moves_and_leaves_no_console_errors(lab: Viewer, open_tab) -> None:
     tab = open_tab(lab.port, width=420, height=260, shaded=True)
     tab.wait(lambda: has_shader(lab))

@@ -9,7 +9,7 @@ WIDTH_BITS bits that say how many these are.
 
 The result is an array (rows, 3) of single precision, as the vertices of a mesh are: count, columns and fields; then
 step, offset and 0 of each field; then the bits, WORD_BITS in each number, lowest first. Words of 30 bits are numbers
-from 0 to below 2, so that nothing on the way meets a NaN. `app/render/js/packed.js` unpacks it.
+from 0 to below 2, so that nothing on the way meets a NaN. `unpack` and `app/render/js/packed.js` read it.
 """
 
 from collections.abc import Sequence
@@ -22,6 +22,8 @@ from sim.validation import argument_error
 BLOCK = 16
 WIDTH_BITS = 5
 WORD_BITS = 30
+SLOPE_STEP = 1 / 512  # to which slopes of a sea are rounded: its look shows no difference
+FOAM_STEP = 1 / 255
 MAX_QUOTIENT = 2**20  # of a value and its step: differences then have at most 23 bits
 
 
@@ -35,19 +37,32 @@ def pack(
     """
     values = np.ascontiguousarray(fields, np.float32)
     m, n = values.shape
-    largest = np.abs(values).max(axis=1)
+    largest = np.maximum(values.max(axis=1), -values.min(axis=1))
     if not np.isfinite(largest).all():
         raise argument_error("fields", float(largest[~np.isfinite(largest)][0]), "finite values")
     used = np.maximum(np.asarray(steps, np.float32), largest / np.float32(MAX_QUOTIENT))
     head = 3 + 3 * m
     blocks = -(-n // BLOCK)
-    words = np.zeros(head + m * blocks * (WIDTH_BITS + 24 * BLOCK) // WORD_BITS + 4, np.uint32)
-    count = write_bits(values, used, columns, np.empty(n, np.int32), np.empty(BLOCK, np.uint32), words[head:])
+    words = np.empty(head + m * blocks * (WIDTH_BITS + 24 * BLOCK) // WORD_BITS + 4, np.uint32)
+    words[:head] = 0
+    count = write_bits(values, used, columns, np.empty(n, np.int32), np.empty(n, np.int32), words[head:])
+    words[head + count : head + count + 2] = 0
     numbers = words.view(np.float32)
     numbers[:3] = n, columns, m
     numbers[3:head:3] = used
     numbers[4:head:3] = 0.0 if offsets is None else offsets
     return numbers[: 3 * -(-(head + count) // 3)].reshape(-1, 3)
+
+
+def unpack(numbers: np.ndarray) -> np.ndarray:
+    """(m, n) float32: the fields that `pack` wrote, each value within half a step; `numbers` as it returned them."""
+    flat = np.ascontiguousarray(numbers, np.float32).reshape(-1)
+    n, columns, m = (int(number) for number in flat[:3])
+    head = 3 + 3 * m
+    values = np.empty((m, n), np.float32)
+    steps, offsets = flat[3:head:3].copy(), flat[4:head:3].copy()
+    read_bits(flat[head:].view(np.uint32), steps, offsets, columns, np.empty(n, np.int32), values)
+    return values
 
 
 def is_packed(numbers: np.ndarray) -> bool:
@@ -60,47 +75,85 @@ def is_packed(numbers: np.ndarray) -> bool:
 
 
 @kernel(noalias=True)
-def write_bits(values, steps, columns, q, block, words):
+def write_bits(values, steps, columns, q, r, words):
     """Write the fields (m, n), rounded to steps (m,), into words; return how many of these were used.
 
-    q (n,): for the rounded values; block (BLOCK,): for one block.
+    q, r (n,): for the rounded values and their differences.
     """
     fields, n = values.shape
     at, used = 0, 0  # the word that is written, and its bits that are taken
+    bits = np.uint64(0)
     for field in range(fields):
         scale = np.float32(1.0) / steps[field]
+        value = values[field]
         for i in range(n):
-            q[i] = np.int32(np.rint(values[field, i] * scale))
+            q[i] = np.int32(np.rint(value[i] * scale))
+        for first in range(0, n, columns):  # in slices, for which the compiler uses wide instructions
+            last = min(first + columns, n)
+            left, right, difference = q[first : last - 1], q[first + 1 : last], r[first + 1 : last]
+            r[first] = q[first]
+            if first == 0:
+                for i in range(last - 1):
+                    difference[i] = right[i] - left[i]
+            else:
+                above_left, above = q[first - columns : last - columns - 1], q[first - columns + 1 : last - columns]
+                r[first] -= q[first - columns]
+                for i in range(last - first - 1):
+                    difference[i] = right[i] - left[i] - above[i] + above_left[i]
+        for i in range(n):
+            r[i] = (r[i] << 1) ^ (r[i] >> 31)
         for first in range(0, n, BLOCK):
-            size = min(BLOCK, n - first)
-            together = np.uint32(0)
-            for k in range(size):
-                i = first + k
-                r = q[i]
-                if i >= columns:
-                    r -= q[i - columns]
-                if i % columns > 0:
-                    r -= q[i - 1]
-                    if i >= columns:
-                        r += q[i - columns - 1]
-                block[k] = np.uint32((r << 1) ^ (r >> 31))
-                together |= block[k]
+            last = min(first + BLOCK, n)
+            together = np.int32(0)
+            for i in range(first, last):
+                together |= r[i]
             width = 0
-            while together >> np.uint32(width) != 0:
+            while together >> width != 0:
                 width += 1
-            for k in range(-1, size):
-                bits = np.uint64(width) if k < 0 else np.uint64(block[k])
-                length = WIDTH_BITS if k < 0 else width
-                word = (bits << np.uint64(used)) | np.uint64(words[at])
-                words[at] = np.uint32(word & np.uint64(2**WORD_BITS - 1))
+            for i in range(first - 1, last):
+                length = WIDTH_BITS if i < first else width
+                bits |= (np.uint64(width) if i < first else np.uint64(r[i])) << np.uint64(used)
                 used += length
                 if used >= WORD_BITS:
+                    words[at] = np.uint32(bits & np.uint64(2**WORD_BITS - 1))
                     at += 1
                     used -= WORD_BITS
-                    words[at] = np.uint32(word >> np.uint64(WORD_BITS))
+                    bits >>= np.uint64(WORD_BITS)
+    words[at] = np.uint32(bits)
     return at + 1
 
 
+@kernel(noalias=True)
+def read_bits(words, steps, offsets, columns, q, values):
+    """Set the fields (m, n) from words that `write_bits` wrote; q (n,): for the rounded values."""
+    fields, n = values.shape
+    at, ready = 0, 0  # the next word, and the bits of `bits` that are not read yet
+    bits = np.uint64(0)
+    for field in range(fields):
+        width = 0
+        for i in range(n):
+            number = 0
+            for k in range(0 if i % BLOCK == 0 else 1, 2):
+                length = WIDTH_BITS if k == 0 else width
+                if ready < length:
+                    bits |= np.uint64(words[at]) << np.uint64(ready)
+                    at += 1
+                    ready += WORD_BITS
+                number = np.int32(bits & ((np.uint64(1) << np.uint64(length)) - np.uint64(1)))
+                bits >>= np.uint64(length)
+                ready -= length
+                width = number if k == 0 else width
+            value = (number >> 1) ^ -(number & 1)
+            if i >= columns:
+                value += q[i - columns]
+            if i % columns > 0:
+                value += q[i - 1]
+                if i >= columns:
+                    value -= q[i - columns - 1]
+            q[i] = value
+            values[field, i] = q[i] * steps[field] + offsets[field]
+
+
 def compile_packing() -> None:
-    """Pack two points."""
-    pack(np.zeros((1, 2)), (1.0,), 2)
+    """Pack two points, and unpack them."""
+    unpack(pack(np.zeros((1, 2)), (1.0,), 2))

@@ -16,15 +16,13 @@ from app.render.cameras import lowest_camera
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import Material, Waterline, as_bytes, uniform_table, waterline_table
 from app.render.skies import CAMERA_RANGE
-from sim.packing import pack
+from sim.packing import FOAM_STEP, SLOPE_STEP, pack
 from sim.validation import argument_error
 
 RIPPLE_PERIOD = 1024.0  # [s] after which ripples start again: their phases are single precision in the browser
 MIN_STEP, MAX_STEP = 2.5e-4, 4e-3  # [m] to which displacements are rounded before they are sent
 RECORDED_STEP = 2e-3  # [m] the same where there is no camera: in a replay
 STEP_ANGLE = 7e-4  # the step over the height of the lowest camera: half a pixel at 1080 rows and 75 degrees
-SLOPE_STEP = 1 / 512
-FOAM_STEP = 1 / 255
 PLAIN_FOAM_COLOUR = (235, 240, 242)
 PLAIN_MESH_DEPTH = 0.5  # [m] below the water at which a plain mesh is hidden
 PLAIN_MESH_HEIGHT = 0.02  # [m] above the water at which it shows

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from sim.packing import BLOCK, MAX_QUOTIENT, WIDTH_BITS, WORD_BITS, is_packed, pack
+from sim.packing import BLOCK, MAX_QUOTIENT, WIDTH_BITS, WORD_BITS, is_packed, pack, unpack
 
 
-def unpack(numbers: np.ndarray) -> np.ndarray:
+def read(numbers: np.ndarray) -> np.ndarray:
     """(fields, count): one bit after the other, and one sum after the other."""
     flat = numbers.reshape(-1)
     count, columns, fields = (int(n) for n in flat[:3])
@@ -14,7 +14,7 @@ def unpack(numbers: np.ndarray) -> np.ndarray:
     bits = [(int(word) >> k) & 1 for word in flat.view(np.uint32)[head:] for k in range(WORD_BITS)]
     at = 0
 
-    def read(width: int) -> int:
+    def take(width: int) -> int:
         nonlocal at
         value = sum(bit << k for k, bit in enumerate(bits[at : at + width]))
         at += width
@@ -26,8 +26,8 @@ def unpack(numbers: np.ndarray) -> np.ndarray:
         q: list[int] = []
         for i in range(count):
             if i % BLOCK == 0:
-                width = read(WIDTH_BITS)
-            z = read(width)
+                width = take(WIDTH_BITS)
+            z = take(width)
             left = q[i - 1] if i % columns else 0
             above = q[i - columns] if i >= columns else 0
             corner = q[i - columns - 1] if i % columns and i >= columns else 0
@@ -42,14 +42,16 @@ def test_every_value_comes_back_within_half_a_step(count: int, columns: int) -> 
     random = np.random.default_rng(count * 1000 + columns)
     fields = np.array([random.normal(0.0, 3.0, count), random.uniform(-1e4, 1e4, count), np.zeros(count)])
     steps = (1e-3, 0.5, 0.1)
-    found = unpack(pack(fields, steps, columns, (10.0, -2.0, 0.0)))
+    packed = pack(fields, steps, columns, (10.0, -2.0, 0.0))
+    found = read(packed)
     error = np.abs(found - fields.astype(np.float32) - [[10.0], [-2.0], [0.0]]).max(axis=1)
     assert (error <= 0.5 * np.array(steps) * (1 + 1e-3)).all()
+    np.testing.assert_allclose(unpack(packed), found, rtol=3e-7, atol=1e-6)
 
 
 def test_a_step_too_small_for_the_values_is_made_larger() -> None:
     fields = np.array([[1e6, -1e6, 1e6, -1e6] * 20])
-    found = unpack(pack(fields, (1e-9,), 3))
+    found = read(pack(fields, (1e-9,), 3))
     assert np.abs(found - fields).max() <= 0.5 * 1e6 / MAX_QUOTIENT * (1 + 1e-6)
 
 

@@ -153,7 +153,7 @@ class Panel:
             with folder:
                 self.controls[name] = Control(gui, folder, name, parameter, self.reader(name), self.on_change)
         self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
-        self.recorder = Recorder()
+        self.recorder = Recorder(kind.packing)
         self.share = Share(server, self.lab, self, self.recorder, post, wake, make_replay)
         self.compare = (
             None if beside is None else Compare(gui, self.buttons, self.comparable_names, self.comparable, beside)

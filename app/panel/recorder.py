@@ -2,62 +2,97 @@
 
 import bisect
 import collections
+import math
 import threading
+from collections.abc import Mapping
 from typing import NamedTuple, cast
 
 import numpy as np
 
 from app.messages import BaseParams, KeptState
-from app.scenes.contract import AnySnapshot
+from app.scenes.contract import AnySnapshot, FramePacking
+from app.scenes.moments import arrays_in
 
-MAX_BYTES = 150e6  # of all frames and states that are kept
+MAX_BYTES = 150e6  # of the arrays of all frames and states that are kept
 MAX_DURATION = 180.0  # [s] of simulated time that is kept
 MAX_RATE = 30.0  # [1/s] frames kept a second of wall time, and those that have a state; the page may show more
+MIN_INTERVAL = 0.8 / MAX_RATE  # [s] of wall time between two: those of a scene at this rate do not come quite evenly
 MAX_PAUSE = 0.25  # [s] between two frames as they are played: a pause of the lab is shorter there
 RATES = (1.0, 0.5, 0.2, 0.1)  # at which a recording is played, as parts of the rate that it was recorded at
+THINNED_SHARE = 0.9  # of MAX_BYTES that is left when frames were taken out
+SPACING_GROWTH = 1.1  # factor between two spacings that are tried
+MIN_SPACING, MAX_SPACING = 1e-3, 0.25  # time between two frames over their age, where frames are taken out
+STATE_INTERVAL = 0.1  # [s] in which the next frame with a state comes, where copies of states cost little
 
 
 class Kept(NamedTuple):
     """One frame of the recording."""
 
     time: float  # [s] simulated
-    wall: float  # [s] of the clock when it was recorded
-    frame: object  # the scene's own record
+    wall: float  # [s] of a clock on which a pause of the lab lasts MAX_PAUSE at most
+    packed: object  # the scene's own record, or its packed form
     params: BaseParams
-    size: int  # [bytes] that it holds alone
+    arrays: Mapping[int, int]  # identity -> bytes of each array of frame and state; some are shared with other frames
     state: KeptState | None = None  # to go on from
+    packing: FramePacking | None = None
+
+    @property
+    def frame(self) -> object:
+        """The scene's own record; made anew at each call where it is packed."""
+        return self.packed if self.packing is None else self.packing.unpack(self.packed)
 
 
-def size_of(frame: object, last: object = None) -> int:
-    """Bytes of the arrays in a frame that are not the same objects as in the frame before."""
+def arrays_of_frame(frame: object) -> dict[int, int]:
+    """Identity -> bytes of the arrays in a frame and the tuples in it; other objects are the scene's own."""
     if isinstance(frame, np.ndarray):
-        return 0 if frame is last else frame.nbytes
+        return arrays_in(cast(object, frame))
+    found: dict[int, int] = {}
     if isinstance(frame, tuple):
-        parts, before = cast(tuple[object, ...], frame), cast(tuple[object, ...], last)
-        if not isinstance(last, tuple) or len(before) != len(parts):
-            before = (None,) * len(parts)
-        return sum(size_of(part, other) for part, other in zip(parts, before, strict=True))
-    return 0
+        for part in cast(tuple[object, ...], frame):
+            found.update(arrays_of_frame(part))
+    return found
 
 
-def size_of_state(state: KeptState | None, last: KeptState | None) -> int:
-    """Bytes of the arrays of a state that are not in the state before."""
-    if state is None:
-        return 0
-    return sum(size for owner, size in state.arrays.items() if last is None or owner not in last.arrays)
+class Memory:
+    """The bytes of arrays, of each once, however many frames share it."""
+
+    def __init__(self) -> None:
+        self.bytes = 0
+        self.holders: dict[int, int] = {}  # identity of an array -> number of frames that hold it
+
+    def add(self, arrays: Mapping[int, int]) -> None:
+        """Count what one more frame holds."""
+        for owner, size in arrays.items():
+            count = self.holders.get(owner, 0)
+            self.holders[owner] = count + 1
+            if count == 0:
+                self.bytes += size
+
+    def remove(self, arrays: Mapping[int, int]) -> None:
+        """Count what a frame held that is given up."""
+        for owner, size in arrays.items():
+            self.holders[owner] -= 1
+            if self.holders[owner] == 0:
+                del self.holders[owner]
+                self.bytes -= size
 
 
 class Recorder:
     """Records on the viewer's thread; the page's controls choose on viser's event loop. One lock for both.
 
     While a frame is chosen, the page shows it, and nothing is recorded. A run that begins again begins a new recording.
+    Where memory is short, frames are taken out, the more the older they are: the time between those that stay grows in
+    proportion to their age. Those with a state stay rather than others.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, packing: FramePacking | None = None) -> None:
+        """packing: of the scene."""
+        self.packing = packing
         self.lock = threading.Lock()
         self.frames: collections.deque[Kept] = collections.deque()
-        self.bytes = 0
-        self.last_state: KeptState | None = None
+        self.memory = Memory()
+        self.spacing = 0.0  # time between frames over their age when frames were taken out last
+        self.noted_at = 0.0  # [s] of the clock, of the last frame
         self.starts = -1
         self.was_running = False  # at the last snapshot: where a frame is chosen the lab pauses a little later
         self.position: int | None = None  # of the frame that is shown; None: the present
@@ -78,28 +113,56 @@ class Recorder:
                 self.starts = status.starts
                 self.clear()
             while self.position is None and self.frames and self.frames[-1].time > status.time:
-                self.bytes -= self.frames.pop().size  # the run has gone on from an earlier moment
+                self.forget(self.frames.pop())  # the run has gone on from an earlier moment
             if self.position is not None or (self.frames and status.time == self.frames[-1].time):
                 return
-            last = self.frames[-1] if self.frames else None
-            state = snapshot.state
-            if last is not None and state is None and wall - last.wall < 1.0 / MAX_RATE:
+            last, state = self.frames[-1] if self.frames else None, snapshot.state
+            if last is not None and state is None and wall - self.noted_at < MIN_INTERVAL:
                 return
-            size = size_of(snapshot.frame, None if last is None else last.frame)
-            if state is not None:
-                size += size_of_state(state, self.last_state)
-                self.last_state = state
-            self.frames.append(Kept(status.time, wall, snapshot.frame, snapshot.params, size, state))
-            self.bytes += size
-            while len(self.frames) > 1 and (
-                self.bytes > MAX_BYTES or self.frames[-1].time - self.frames[0].time > MAX_DURATION
-            ):
-                self.bytes -= self.frames.popleft().size
+            played = 0.0 if last is None else last.wall + min(wall - self.noted_at, MAX_PAUSE)
+            self.noted_at = wall
+            packed = snapshot.frame if self.packing is None else self.packing.pack(snapshot.frame)
+            arrays = arrays_of_frame(packed) | ({} if state is None else dict(state.arrays))
+            self.memory.add(arrays)
+            self.frames.append(Kept(status.time, played, packed, snapshot.params, arrays, state, self.packing))
+            while status.time - self.frames[0].time > MAX_DURATION:
+                self.forget(self.frames.popleft())
+            if self.memory.bytes > MAX_BYTES:
+                self.make_room()
+
+    def forget(self, kept: Kept) -> None:
+        """Give up a frame that is no longer among the others."""
+        self.memory.remove(kept.arrays)
+
+    def make_room(self) -> None:
+        """Take frames out until there is room for those of some seconds."""
+        self.spacing = max(self.spacing / SPACING_GROWTH, MIN_SPACING)
+        while self.memory.bytes > THINNED_SHARE * MAX_BYTES and len(self.frames) > 1:
+            if self.spacing < MAX_SPACING:
+                self.thin(self.spacing)
+                self.spacing *= SPACING_GROWTH
+            else:
+                self.forget(self.frames.popleft())
+
+    def thin(self, spacing: float) -> None:
+        """Take out the frames that come sooner after another than `spacing` times their age."""
+        newest, last, last_state = self.frames[-1].time, -math.inf, -math.inf
+        frames: collections.deque[Kept] = collections.deque()
+        for kept in self.frames:
+            least = spacing * (newest - kept.time)
+            wait = least if least * MAX_RATE <= 1.0 else least + STATE_INTERVAL  # for one with a state
+            if kept.time - last >= wait or (kept.state is not None and kept.time - last_state >= least):
+                frames.append(kept)
+                last = kept.time
+                last_state = last if kept.state is not None else last_state
+            else:
+                self.forget(kept)
+        self.frames = frames
 
     def clear(self) -> None:
         """Forget all frames, and show the present."""
         self.frames.clear()
-        self.bytes, self.last_state = 0, None
+        self.memory, self.spacing = Memory(), 0.0
         self.position, self.playing = None, False
 
     def span(self) -> tuple[float, float]:
@@ -154,7 +217,7 @@ class Recorder:
                 return
             self.played += min(spent, MAX_PAUSE) * self.rate
             while self.playing and self.position < len(self.frames) - 1:
-                interval = min(self.frames[self.position + 1].wall - self.frames[self.position].wall, MAX_PAUSE)
+                interval = self.frames[self.position + 1].wall - self.frames[self.position].wall
                 if self.played < interval:
                     return
                 self.played -= interval

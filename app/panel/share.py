@@ -434,8 +434,10 @@ class Share:
         self.server.flush()
 
     def replay_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
-        """The recording as one page. Raises ValueError where nothing was recorded."""
-        page = self.make_replay(self.panel.kind, self.recorder.kept(), self.panel.plot_rows())
+        """The recording up to the moment that is shown as one page. Raises ValueError where nothing was recorded."""
+        shown = self.recorder.shown
+        frames = [kept for kept in self.recorder.kept() if shown is None or kept.time <= shown.time]
+        page = self.make_replay(self.panel.kind, frames, self.panel.plot_rows())
         return f"springtide-{self.panel.kind.name}.html", page.encode()
 
     def update(self, snapshot: AnySnapshot) -> None:
@@ -457,7 +459,7 @@ class Share:
         held = now - self.moved_at < HAND_TIME and not self.recorder.playing  # what comes late would pull it back
         if not held and self.span[1] > self.span[0] and abs(self.time.value - at) > 0.5 * SLIDER_STEP:
             self.time.value = round(min(max(at, self.time.min), self.time.max), 2)
-        words = note(fill("Recorded: {:.1f} s, {:.0f} MB", high - low, self.recorder.bytes / 1e6))
+        words = note(fill("Recorded: {:.1f} s, {:.0f} MB", high - low, self.recorder.memory.bytes / 1e6))
         if self.state.content != words:
             self.state.content = words
         words = "" if shown is None else note(fill(MOMENT, shown.time, shown.time))

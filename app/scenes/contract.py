@@ -200,6 +200,13 @@ class StabilityMap(NamedTuple):
     build: Callable[..., "Net"]  # params -> the net that they describe
 
 
+class FramePacking(NamedTuple):
+    """How a recording keeps the frames of a scene in less memory. The packed form is a tuple."""
+
+    pack: Callable[..., tuple[object, ...]]  # frame -> its packed form
+    unpack: Callable[..., object]  # packed form -> a frame that looks the same
+
+
 @dataclass(frozen=True)
 class SceneKind(Generic[P, F, R]):
     """All there is to know of a scene without making one."""
@@ -221,6 +228,7 @@ class SceneKind(Generic[P, F, R]):
     live_values: Callable[..., dict[str, Measure]] | None = None  # of a snapshot, what the tasks of the lab use
     # Unit of each array of a frame that goes into a file of the recording; arrays of a record in it: "record_array".
     frame_units: Mapping[str, str] = field(default_factory=dict[str, str])
+    packing: FramePacking | None = None  # None: a recording keeps frames as they are
     stability_map: StabilityMap | None = None
     needs: Callable[[P], tuple[str, ...]] | None = None  # pieces of `warm_up` to run with these parameters; None: all
     # Makes the simulation with a student's functions running beside it; None: this scene has no use for them.

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.messages import BaseParams, PlotRow
-from app.panel.recorder import MAX_PAUSE, Kept
+from app.panel.recorder import Kept, arrays_of_frame
 from app.panel.recording_files import plot_charts
 from app.render.cameras import place_cameras
 from app.render.html import Html, fill, join
@@ -27,8 +27,10 @@ from app.server.guard import open_server
 from sim.packing import is_packed
 from sim.parameters import in_words, parameters_of
 
-MAX_FRAMES = 200  # of a replay; of more, each second or third is taken
+MAX_DURATION = 20.0  # [s] of a replay as it plays
+MAX_FRAMES = 200  # of a replay
 MAX_RAW_BYTES = 80e6  # of the arrays of all frames, before they are packed: a file of about 20 MB
+TOLERANCE = 1e-3  # [s] of the time between two frames
 BITS = 11  # kept of each coordinate, over its largest size in a frame
 STYLE = (
     "#springtide-about{position:fixed;bottom:52px;left:8px;z-index:9;max-width:600px;max-height:80vh;overflow:auto;"
@@ -50,20 +52,29 @@ def rounded(buffer: memoryview) -> memoryview:
 
 
 def thinned(frames: Sequence[Kept]) -> list[Kept]:
-    """Every n-th frame, so that they keep within `MAX_FRAMES` and `MAX_RAW_BYTES`."""
-    total = sum(kept.size for kept in frames)
-    share = max(1, -(-len(frames) // MAX_FRAMES), int(np.ceil(total / MAX_RAW_BYTES)))
-    return list(frames[::share])
+    """The frames of the last `MAX_DURATION`, evenly thinned to keep within `MAX_FRAMES` and `MAX_RAW_BYTES`.
+
+    frames: at least one.
+    """
+    last = frames[-1]
+    size = sum(arrays_of_frame(last.frame).values())
+    span = min(last.wall - frames[0].wall, MAX_DURATION)
+    interval = span / max(1, min(MAX_FRAMES, int(MAX_RAW_BYTES / max(size, 1))))
+    chosen: list[Kept] = []
+    for kept in (kept for kept in frames if last.wall - kept.wall < span + TOLERANCE):
+        if not chosen or kept.wall - chosen[-1].wall >= interval - TOLERANCE:
+            chosen.append(kept)
+    return chosen
 
 
 def replay_html(kind: AnyKind, frames: Sequence[Kept], rows: Sequence[PlotRow]) -> str:
-    """The page of a replay. frames: at least one. rows: of the plots.
+    """The page of a replay, of the last of these frames. rows: of the plots.
 
     Raises ValueError where there is no frame.
     """
-    chosen = thinned(frames)
-    if not chosen:
+    if not frames:
         raise ValueError("nothing has been recorded yet: let the scene run first")
+    chosen = thinned(frames)
     server, _ = open_server("127.0.0.1", 0)
     try:
         record_shaders(server)
@@ -73,7 +84,7 @@ def replay_html(kind: AnyKind, frames: Sequence[Kept], rows: Sequence[PlotRow]) 
         view.show(chosen[0].frame)
         recording = server.get_scene_serializer()
         for before, kept in itertools.pairwise(chosen):
-            recording.insert_sleep(min(kept.wall - before.wall, MAX_PAUSE * len(frames) / len(chosen)))
+            recording.insert_sleep(kept.wall - before.wall)
             with server.atomic():
                 view.show(kept.frame)
         server.flush()

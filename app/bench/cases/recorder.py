@@ -8,7 +8,7 @@ from app.scenes import NAMES, scene_named
 from app.scenes.moments import arrays_in
 from app.server.loop import KEEP_INTERVAL, KEEP_SHARE, SimLoop
 
-DURATION, QUICK_DURATION = 12.0, 1.0  # [s] of wall time that are recorded
+DURATION, QUICK_DURATION = 130.0, 1.0  # [s] of wall time that are recorded
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
@@ -20,7 +20,7 @@ def record(name: str, duration: float) -> dict[str, Any]:
     """Record one scene for so long [s], on a clock of its own."""
     kind = scene_named(name)
     scene = kind.make(kind.opening_params())
-    loop, recorder = SimLoop(scene), Recorder()
+    loop, recorder = SimLoop(scene), Recorder(kind.packing)
     wall = noting = keeping = 0.0
     kept = 0
     while wall < duration:
@@ -40,6 +40,6 @@ def record(name: str, duration: float) -> dict[str, Any]:
         "frames [% of a core]": 100.0 * noting / wall,
         "states [% of a core]": 100.0 * min(keeping / wall, KEEP_SHARE),
         "a state [ms]": 1e3 * keeping / max(kept, 1),
-        "memory [MB]": recorder.bytes / 1e6,
+        "memory [MB]": recorder.memory.bytes / 1e6,
         "recorded [s]": high - low,
     }

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
+from app.scenes.packed_surface import pack_surface, unpack_surface
 from app.scenes.radial_sea.bodies import BodyReading
 from app.scenes.radial_sea.cutaway import Cutaway
 from app.scenes.radial_sea.parameters import Params
@@ -39,6 +40,32 @@ class RadialFrame(NamedTuple):
     jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
     column: FluidColumn
     age: float  # [s] for which the waves have run under the oil
+
+
+class PackedFrame(NamedTuple):
+    """A frame as a recording keeps it."""
+
+    frame: RadialFrame  # without a surface and its foam
+    surface: NDArray[np.float32]
+
+
+def pack_frame(frame: RadialFrame) -> PackedFrame:
+    """A frame for the recording. Its Jacobian, which nothing draws, is left out."""
+    surface, nothing = frame.surface, np.empty(0, np.float32)
+    packed = pack_surface(surface.vertices, surface.slope, frame.foam, resting_points(frame), frame.grid.spokes)
+    return PackedFrame(frame._replace(surface=RadialSurface(nothing, nothing, nothing), foam=nothing), packed)
+
+
+def unpack_frame(packed: PackedFrame) -> RadialFrame:
+    """The frame, to draw it."""
+    frame = packed.frame
+    vertices, slope, foam = unpack_surface(packed.surface, resting_points(frame), (len(frame.grid),))
+    return frame._replace(surface=RadialSurface(vertices, slope, frame.surface.jacobian), foam=foam)
+
+
+def resting_points(frame: RadialFrame) -> NDArray[np.float32]:
+    """(2, n) [m]: where the points of the mesh are when the water rests."""
+    return np.stack([frame.grid.x, frame.grid.y]).astype(np.float32)
 
 
 class SurfaceReading(NamedTuple):

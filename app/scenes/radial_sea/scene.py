@@ -22,12 +22,12 @@ from app.messages import (
     WorkCounts,
 )
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
-from app.scenes.contract import Pieces, SceneKind
+from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
 from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.cutaway import Cutaway, cutaway_at, outline
-from app.scenes.radial_sea.frame import RadialFrame, RadialReadings, SurfaceReading
+from app.scenes.radial_sea.frame import RadialFrame, RadialReadings, SurfaceReading, pack_frame, unpack_frame
 from app.scenes.radial_sea.live_values import live_values
 from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import (
@@ -674,6 +674,7 @@ SCENE = SceneKind(
         "surface_slope": "",
         "foam": "0 to 1",
     },
+    packing=FramePacking(pack_frame, unpack_frame),
     live_values=live_values,
     needs=needs,
 )

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from app.messages import PlotRow, Point, SceneCommand, StudentAnswer, Vector, WorkCount
 from app.scenes.charts import CurveAxes, PlotAxes
-from app.scenes.contract import Pieces, SceneKind
+from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
+from app.scenes.packed_surface import pack_surface, unpack_surface
 from app.scenes.square_sea.live_values import live_values
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, Params, conditions, hidden, rain_settings
@@ -66,6 +67,35 @@ class SeaFrame(NamedTuple):
     slope_resolved: float  # mean square slope of the solved waves
     rain: RainFrame | None
     gauge: Vector | None  # [m] position of the wave gauge; None while it is not shown
+
+
+class PackedFrame(NamedTuple):
+    """A frame as a recording keeps it."""
+
+    frame: SeaFrame  # without a surface
+    side: int  # points along a side
+    surface: NDArray[np.float32]
+
+
+@functools.lru_cache(maxsize=2)
+def resting_points(length: float, side: int) -> NDArray[np.float32]:
+    """(2, side side) [m]: where the points of the mesh are when the water rests."""
+    along = np.arange(side) * (length / side)
+    return np.stack(np.meshgrid(along, along, indexing="ij")).reshape(2, -1).astype(np.float32)
+
+
+def pack_frame(frame: SeaFrame) -> PackedFrame:
+    """A frame for the recording."""
+    side, nothing = len(frame.vertices), np.empty(0, np.float32)
+    surface = pack_surface(frame.vertices, frame.slopes, frame.foam, resting_points(frame.params.length, side), side)
+    return PackedFrame(frame._replace(vertices=nothing, slopes=nothing, foam=nothing), side, surface)
+
+
+def unpack_frame(packed: PackedFrame) -> SeaFrame:
+    """The frame, to draw it."""
+    frame, side, surface = packed
+    vertices, slopes, foam = unpack_surface(surface, resting_points(frame.params.length, side), (side, side))
+    return frame._replace(vertices=vertices, slopes=slopes, foam=foam)
 
 
 class RainReadings(NamedTuple):
@@ -475,6 +505,7 @@ SCENE = SceneKind(
     curves=CURVES,
     measures=measures,
     frame_units={"vertices": "m", "slopes": "", "foam": "0 to 1"},
+    packing=FramePacking(pack_frame, unpack_frame),
     live_values=live_values,
     middle=lambda params: (0.5 * params.length, 0.5 * params.length),
 )

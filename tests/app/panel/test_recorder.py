@@ -7,7 +7,10 @@ import pytest
 
 from app.messages import KeptState, Snapshot, Status
 from app.panel import recorder as module
-from app.panel.recorder import Recorder, size_of
+from app.panel.recorder import Recorder, arrays_of_frame
+from app.panel.recording_files import arrays_of
+from app.scenes import scene_named
+from app.scenes.moments import arrays_in
 
 INTERVAL = 0.05  # [s] between two frames, of simulated and of wall time
 
@@ -113,17 +116,81 @@ def test_a_pause_adds_no_frames(filled: Recorder) -> None:
     assert len(filled.frames) == 100
 
 
-def test_memory_is_bounded_and_shared_arrays_count_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "MAX_BYTES", 5000)
+def counted(recorder: Recorder) -> int:
+    """Bytes of all arrays that are kept, by walking all that is kept."""
+    arrays: dict[int, int] = {}
+    for kept in recorder.frames:
+        arrays |= arrays_in(list(kept.packed) if isinstance(kept.packed, tuple) else [])
+        arrays |= {} if kept.state is None else arrays_in(kept.state.value)
+    return sum(arrays.values())
+
+
+def test_memory_is_bounded_and_what_is_older_is_sparser(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "MAX_BYTES", 60_000)
+    recorder, most, shared = Recorder(), 0, np.zeros(700)
+    for number in range(2400):
+        own = np.full(7, number)
+        arrays = {id(shared): shared.nbytes, id(own): own.nbytes}
+        state = KeptState([shared, own], arrays) if number % 3 == 0 else None
+        recorder.note(snapshot(number)._replace(state=state), number * INTERVAL)
+        most = max(most, recorder.memory.bytes)
+        if number % 50 == 0:
+            assert recorder.memory.bytes == counted(recorder)
+    assert most <= 60_000
+    assert recorder.memory.bytes == counted(recorder) > 45_000
+    assert recorder.span() == (0.0, 2399 * INTERVAL)
+    times = np.array([kept.time for kept in recorder.frames])
+    ages, gaps = times[-1] - times[:-1], np.diff(times)
+    assert (gaps[ages < 2.0] < 1.5 * INTERVAL).all()
+    assert 4.0 * gaps[(ages > 25.0) & (ages < 35.0)].mean() == pytest.approx(gaps[ages > 110.0].mean(), rel=0.5)
+    assert (gaps <= 2.0 * recorder.spacing * ages + 0.2).all()
+    assert all(kept.state is not None for kept in list(recorder.frames)[:50])
+    assert [kept.wall for kept in recorder.frames] == pytest.approx(times)
+
+
+def test_frames_too_large_to_be_thinned_leave_from_the_oldest_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "MAX_BYTES", 500)
     recorder = Recorder()
     for number in range(200):
         recorder.note(snapshot(number), number * INTERVAL)
-    assert recorder.bytes <= 5000
-    assert recorder.bytes == sum(kept.size for kept in recorder.frames) == 120 * len(recorder.frames)
+        assert recorder.memory.bytes == 120 * len(recorder.frames) <= 500
     assert recorder.frames[-1].time == 199 * INTERVAL
-    points = np.zeros((10, 3), np.float32)
-    assert size_of(Frame(1, points), Frame(0, points)) == 0
-    assert size_of(Frame(1, points), Frame(0, points.copy())) == 120
+
+
+def test_an_array_that_frames_share_counts_once() -> None:
+    recorder, points = Recorder(), np.zeros((10, 3), np.float32)
+    for number in range(5):
+        recorder.note(snapshot(number, points=points), number * INTERVAL)
+    assert recorder.memory.bytes == 120
+    for _ in range(4):
+        recorder.forget(recorder.frames.pop())
+    assert recorder.memory.bytes == 120
+    recorder.forget(recorder.frames.pop())
+    assert recorder.memory.bytes == 0
+
+
+def bytes_of(frame: object) -> int:
+    return sum(arrays_of_frame(frame).values())
+
+
+@pytest.mark.parametrize("name", ["square_sea", "radial_sea"])
+def test_a_sea_is_kept_in_a_quarter_of_its_memory_and_looks_the_same(name: str) -> None:
+    kind = scene_named(name)
+    scene = kind.make(kind.params())
+    scene.advance(20)
+    frame = scene.frame()
+    recorder = Recorder(kind.packing)
+    recorder.note(snapshot(1)._replace(frame=frame), 0.0)
+    kept = recorder.frames[0].frame
+    assert 4.0 * recorder.memory.bytes < bytes_of(frame)
+    assert type(kept) is type(frame)
+    limits = {"m": 5.1e-4, "": 1.01 / 1024, "0 to 1": 1.01 / 510}  # half of what each is rounded to
+    for (key, array), (_, kept_array) in zip(arrays_of(frame), arrays_of(kept), strict=True):
+        if key in kind.frame_units:
+            atol = limits.get(kind.frame_units[key], 0.0)
+            np.testing.assert_allclose(
+                np.asarray(kept_array, float), array.astype(float), rtol=2e-7, atol=atol, err_msg=key
+            )
 
 
 def test_the_duration_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -143,20 +210,21 @@ def test_frames_that_come_faster_than_the_rate_are_left_out() -> None:
 
 
 def test_a_run_that_goes_on_from_earlier_replaces_what_came_later(filled: Recorder) -> None:
-    size = filled.bytes
+    size = filled.memory.bytes
     filled.show_time(1.0)
     filled.note(snapshot(99, running=False), 5.0)
     filled.note(snapshot(21), 5.1)
     assert number_of(filled) is None
     assert [kept.time for kept in filled.frames] == [n * INTERVAL for n in range(22)]
-    assert filled.bytes == size * 22 // 100
+    assert filled.memory.bytes == size * 22 // 100
 
 
 def test_it_goes_on_from_the_last_state_up_to_the_frame_that_is_shown() -> None:
     recorder, shared, wall = Recorder(), np.zeros(1000), 0.0
     for number in range(40):
         own = np.zeros(10)
-        state = KeptState(number, {id(shared): shared.nbytes, id(own): own.nbytes}) if number % 10 == 5 else None
+        arrays = {id(shared): shared.nbytes, id(own): own.nbytes}
+        state = KeptState((number, own), arrays) if number % 10 == 5 else None
         recorder.note(snapshot(number)._replace(state=state), wall)
         wall += INTERVAL
     assert recorder.resumable() is None  # the present is shown
@@ -164,7 +232,7 @@ def test_it_goes_on_from_the_last_state_up_to_the_frame_that_is_shown() -> None:
     kept = recorder.resumable()
     assert kept is not None
     assert kept.state is not None
-    assert (kept.time, kept.state.value) == (25 * INTERVAL, 25)
+    assert (kept.time, kept.state.value[0]) == (25 * INTERVAL, 25)  # type: ignore[index]
     recorder.show_time(4 * INTERVAL)
     assert recorder.resumable() is None
-    assert recorder.bytes == 40 * 120 + 4 * 80 + shared.nbytes  # what states share is counted once
+    assert recorder.memory.bytes == 40 * 120 + 4 * 80 + shared.nbytes  # what states share is counted once

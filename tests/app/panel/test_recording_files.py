@@ -28,7 +28,7 @@ SMALL: dict[str, dict[str, Any]] = {
 def recorded(name: str, frames: int = 6) -> tuple[Any, tuple[Kept, ...], list[Any]]:
     kind = scene_named(name)
     loop = SimLoop(kind.make(kind.params(**SMALL[name])))
-    recorder, wall = Recorder(), 0.0
+    recorder, wall = Recorder(kind.packing), 0.0
     for _ in range(frames):
         loop.tick(1 / 25)
         wall += 1 / 25
@@ -58,7 +58,7 @@ def test_a_file_begins_where_the_number_of_points_changed_and_keeps_within_its_s
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     kind, frames, _ = recorded("rope", 20)
-    other = frames[3]._replace(frame=frames[3].frame._replace(points=np.zeros((9, 3), np.float32)))  # type: ignore
+    other = frames[3]._replace(packed=frames[3].frame._replace(points=np.zeros((9, 3), np.float32)))  # type: ignore
     with np.load(io.BytesIO(recording_npz(kind, (*frames[:3], other, *frames[4:])))) as file:
         assert file["t"].tolist() == [kept.time for kept in frames[4:]]
     monkeypatch.setattr(recording_files, "MAX_ARRAYS", 500)

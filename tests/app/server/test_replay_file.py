@@ -14,7 +14,7 @@ from app.panel.recorder import Recorder
 from app.scenes import scene_named
 from app.scenes.setups import read_setup
 from app.server.loop import SimLoop
-from app.server.replay_file import BITS, MAX_FRAMES, replay_html, rounded, thinned
+from app.server.replay_file import BITS, MAX_DURATION, MAX_FRAMES, MAX_RAW_BYTES, replay_html, rounded, thinned
 from sim.packing import pack
 
 DURATION = 2.0  # [s]
@@ -86,12 +86,17 @@ def test_rounding_keeps_what_is_seen_and_leaves_other_arrays() -> None:
     assert (np.asarray(rounded(faces.data)) == faces).all()
 
 
-def test_long_recordings_are_thinned_evenly(recorded: Any) -> None:
+def test_a_replay_holds_the_last_frames_evenly_thinned(recorded: Any) -> None:
     _, frames, _ = recorded
-    many = [frames[0]] * (3 * MAX_FRAMES)
-    assert len(thinned(many)) == MAX_FRAMES
-    big = [frames[0]._replace(size=1_000_000)] * 200
-    assert sum(kept.size for kept in thinned(big)) <= 80e6
+    long = [frames[0]._replace(wall=n / 30) for n in range(6000)]
+    walls = np.array([kept.wall for kept in thinned(long)])
+    assert 0.9 * MAX_FRAMES <= len(walls) <= MAX_FRAMES + 1
+    assert (walls[0], walls[-1]) == pytest.approx((walls[-1] - MAX_DURATION, long[-1].wall), abs=0.1)
+    assert np.ptp(np.diff(walls)) < 2 / 30
+    points = np.zeros(1_000_000, np.uint8)
+    big = [kept._replace(packed=frames[0].frame._replace(points=points)) for kept in long]
+    assert 70 <= len(thinned(big)) <= MAX_RAW_BYTES / points.nbytes + 1
+    assert len(thinned(long[:7])) == 7
 
 
 def test_without_a_frame_it_says_so(recorded: Any) -> None:

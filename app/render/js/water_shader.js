@@ -166,6 +166,15 @@ const WATER_GLSL = {
     // Radiance of the haze in the direction d.
     vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), skyFold.y); }
 
+    // The glow of the air around the sun, at a distance from its direction.
+    float sunGlow(float off) { return 0.30 * exp(-off * 16.0) + 0.07 * exp(-off * 4.0); }
+
+    // Radiance at the horizon in the direction d, which sea and sky have in common there.
+    vec3 horizonGlow(vec3 d) {
+      vec3 level = vec3(d.xy / max(length(d.xy), 1e-4), 0.0);
+      return horizon(d) + sunLight * sunGlow(length(level - sunDirection));
+    }
+
     // The mean of both sides: what is scattered where the direction is steep, and what lights from around.
     vec3 meanHorizon() { return 0.5 * (horizon(sunDirection) + horizon(-sunDirection)); }
 
@@ -463,7 +472,7 @@ const WATER_GLSL = {
       vec3 V = toEye / far;
       float lost = 1.0 - exp(-pow(far / lens.x, 1.5));
       vec3 around = meanHorizon();
-      vec3 haze = mix(around, horizon(-V), smoothstep(0.1, 0.7, length(V.xy)));
+      vec3 haze = mix(around, horizonGlow(-V), smoothstep(0.1, 0.7, length(V.xy)));
       if (lost > 0.995) return haze * lens.y;
       vec2 fx = dFdx(at.xy), fy = dFdy(at.xy);
       float footprint = pow(max(dot(fx, fx) * dot(fy, fy), 1e-12), 0.25);
@@ -655,9 +664,8 @@ const DOME_FRAGMENT = `
   ${WATER_GLSL.sky}
   ${WATER_GLSL.surface}
   varying vec3 vRay;
-  // The sun's disc, twice as wide as the true one, and the glow of the air around it.
+  // The sun's disc, twice as wide as the true one, and the light around it.
   float sunDisc(float off) { return 30.0 * (1.0 - smoothstep(0.006, 0.014, off)) + 2.4 * exp(-off * 60.0); }
-  float sunGlow(float off) { return 0.30 * exp(-off * 16.0) + 0.07 * exp(-off * 4.0); }
   // The colours of the photographs come in blocks of some degrees: take the brightness sharp and the hue blurred.
   vec3 clearSky(vec3 d) {
     vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
@@ -679,6 +687,8 @@ const DOME_FRAGMENT = `
       float off = length(d - sunDirection);
       vec4 layer = addClouds(clearSky(d) + sunLight * sunGlow(off), d, 0.0, ambientLight());
       float through = 1.0 - layer.a;
+      // The lowest degree of the sky passes into the haze over the far sea, or a line would part them.
+      layer.rgb = mix(horizonGlow(d), layer.rgb, smoothstep(-0.003, 0.025, d.z));
       c = behindRain(layer.rgb + sunLight * sunDisc(off) * lens.z * through * through, d) * lens.y;
     }
     gl_FragColor = vec4(c, 1.0);

@@ -165,6 +165,7 @@ class FloatingBodies:
         self.holders: dict[int, int] = {}  # body -> the browser that drags it
         self.targets: dict[int, tuple[float, float, float]] = {}  # body -> where it is pulled [m]
         self.draft = np.zeros(self.count)  # [m]
+        self.stain = np.zeros(self.count)  # [m] of the body above its lowest point that oil has wetted
         self.impulse = np.zeros(self.count)  # [N s] on the water since the scene last took it
         self.touches = 0  # pairs of bodies that touched, summed over steps
 
@@ -337,6 +338,8 @@ class FloatingBodies:
         lean = np.maximum((normal * up).sum(axis=1), MIN_COSINE)
         self.draft[:] = -(normal * keel).sum(axis=1) / lean
         self.heave_meter.update(t, self.draft, duration)
+        oiled = (self.slick > 0.0) | (self.column.kind != "water")
+        np.maximum(self.stain, np.where(oiled, self.draft, 0.0), out=self.stain)
 
     def readings(self, t: float, count: int = MAX_READINGS) -> tuple[BodyReading, ...]:
         """The first `count` bodies at time t [s], and the one from a file."""

@@ -33,6 +33,7 @@ class RadialFrame(NamedTuple):
     hulls: Mapping[str, Hull]  # kind -> its hull
     positions: NDArray[np.float32]  # (bodies, 3) [m]
     rotations: NDArray[np.float32]  # (bodies, 4) quaternions (w, x, y, z)
+    stains: NDArray[np.float32]  # (bodies,) [m] above the lowest point of each to which oil has wetted it
     pulls: tuple[tuple[Vector, Vector], ...]  # from each held body to where it is pulled [m]
     fire: (
         tuple[NDArray[np.float32], NDArray[np.float32]] | None

@@ -451,6 +451,7 @@ class RadialSeaScene:
             hulls=bodies.hulls,
             positions=bodies.fleet.position.astype(np.float32),
             rotations=bodies.fleet.rotation.astype(np.float32),
+            stains=bodies.stain.astype(np.float32),
             pulls=tuple(((x, y, z), target) for (x, y, z), target in held),
             fire=None if fire is None else parcels_of(fire),
             jet=None if jet is None else jet.position[:, jet.flying].T.astype(np.float32),

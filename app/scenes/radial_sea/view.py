@@ -26,6 +26,7 @@ from app.scenes.radial_sea.materials import material_of, waterlines_of
 from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
 from app.scenes.radial_sea.scene import GRID_RADIUS
+from app.scenes.radial_sea.stain_view import Stains
 from app.scenes.radial_sea.well_blowout import FIRE, RIG
 from sim.floating.shapes import Appearance
 from sim.ocean.radial import RadialSurface
@@ -87,6 +88,7 @@ class View:
         self.flames: Flames | None = None
         self.walls: Walls | None = None
         self.pull_lines: list[PullLine] = []
+        self.stains = Stains(server)
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: beside what is followed."""
@@ -108,6 +110,7 @@ class View:
         if self.walls is not None:
             self.walls.show(frame.cutaway, self.light, frame.column, keel_of(frame))
         self.show_bodies(frame)
+        self.stains.show(frame)
         self.show_pulls(frame)
         if self.rig.visible != p.rig:
             self.rig.visible = p.rig

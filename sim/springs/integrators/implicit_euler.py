@@ -6,15 +6,8 @@ A step that Newton's method cannot take whole is taken in halves, quarters, ...,
 
 import math
 
-import numpy as np
-
-from sim.jit import is_stopped, kernel
-from sim.springs.analysis.energy import add_power
-from sim.springs.forces.acceleration import set_pins
 from sim.springs.integrators import Integrator
-from sim.springs.integrators.implicit.newton import MOST, make_work, solve_stage
-
-FINEST = 16  # parts of a step, which are taken as they are
+from sim.springs.integrators.implicit.steps import EULER, advance_implicit
 
 
 def limit(zeta: float) -> float:
@@ -22,34 +15,8 @@ def limit(zeta: float) -> float:
     return math.inf
 
 
-@kernel
-def advance(x, v, ledger, t, h, steps, p, with_account):
-    work = make_work(p, False)
-    x0, v0 = np.empty_like(x), np.empty_like(v)
-    evals = 0
-    set_pins(x, v, t, p)
-    for s in range(steps):
-        done, size = 0, FINEST
-        while done < FINEST:
-            if is_stopped(p.stop):
-                return evals
-            part = h * size / FINEST
-            after = t + (s + (done + size) / FINEST) * h
-            for j in range(x.shape[0]):
-                x0[j], v0[j] = x[j], v[j]
-            taken, _, usable = solve_stage(x0, v0, part, after, p, x, v, work, MOST)
-            evals += taken
-            if not usable and size > 1:
-                for j in range(x.shape[0]):
-                    x[j], v[j] = x0[j], v0[j]
-                size //= 2
-                continue
-            if with_account:
-                add_power(x, v, after, p, True, part, ledger)
-            done += size
-            if taken <= MOST // 2 and done % (2 * size) == 0:
-                size *= 2
-    return evals
+def advance(*arguments):
+    return advance_implicit(EULER, *arguments)
 
 
 RECORD = Integrator(

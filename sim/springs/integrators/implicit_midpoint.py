@@ -10,16 +10,8 @@ cannot take whole is taken in halves, quarters, ..., in longer parts again after
 
 import math
 
-import numpy as np
-
-from sim.jit import is_stopped, kernel
-from sim.springs.analysis.energy import add_power
-from sim.springs.forces.acceleration import set_pins
 from sim.springs.integrators import Integrator
-from sim.springs.integrators.implicit.newton import make_work, solve_stage
-
-PATIENCE = 12  # corrections, after which halves are quicker than going on
-FINEST = 64  # parts of a step, which are taken as they are
+from sim.springs.integrators.implicit.steps import MIDPOINT, advance_implicit
 
 
 def limit(zeta: float) -> float:
@@ -27,37 +19,8 @@ def limit(zeta: float) -> float:
     return math.inf
 
 
-@kernel
-def advance(x, v, ledger, t, h, steps, p, with_account):
-    work = make_work(p, True)
-    xm, vm = np.empty_like(x), np.empty_like(v)
-    evals = 0
-    for s in range(steps):
-        done, size = 0, FINEST
-        while done < FINEST:
-            if is_stopped(p.stop):
-                return evals
-            part = h * size / FINEST
-            now = t + (s + done / FINEST) * h
-            set_pins(x, v, now, p)
-            # vm = v + part/2 a(x + part/2 vm, vm)
-            for j in range(v.shape[0]):
-                vm[j] = v[j]
-            taken, settled, _ = solve_stage(x, v, 0.5 * part, now + 0.5 * part, p, xm, vm, work, PATIENCE)
-            evals += taken
-            if not settled and size > 1:
-                size //= 2
-                continue
-            if with_account:
-                add_power(xm, vm, now + 0.5 * part, p, True, part, ledger)
-            for j in range(x.shape[0]):
-                x[j] += part * vm[j]
-                v[j] = 2.0 * vm[j] - v[j]
-            done += size
-            if taken <= PATIENCE // 2 and done % (2 * size) == 0:
-                size *= 2
-    set_pins(x, v, t + steps * h, p)
-    return evals
+def advance(*arguments):
+    return advance_implicit(MIDPOINT, *arguments)
 
 
 RECORD = Integrator(

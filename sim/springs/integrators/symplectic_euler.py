@@ -17,7 +17,11 @@ def limit(zeta: float) -> float:
 
 
 @kernel(noalias=True)
-def advance(x, v, ledger, t, h, steps, p, with_account):
+def take_euler_steps(x, v, ledger, t, h, steps, p, with_account, by_new_velocity):
+    """`advance` of an integrator. by_new_velocity: x += h v with the velocity at the end of the step, not its start.
+
+    Both methods share one kernel, as its forces take long to compile.
+    """
     a = np.empty_like(x)
     f = make_scratch(p)
     for s in range(steps):
@@ -26,10 +30,18 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
         accelerate(x, v, now, p, True, f, a)
         if with_account:
             add_power(x, v, now, p, True, h, ledger)
-        add_scaled(v, h, a)
-        add_scaled(x, h, v)
+        if by_new_velocity:
+            add_scaled(v, h, a)
+            add_scaled(x, h, v)
+        else:
+            add_scaled(x, h, v)
+            add_scaled(v, h, a)
     set_pins(x, v, t + steps * h, p)
     return steps
+
+
+def advance(*arguments):
+    return take_euler_steps(*arguments, True)
 
 
 RECORD = Integrator(

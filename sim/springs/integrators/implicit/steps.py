@@ -1,0 +1,93 @@
+"""The steps of the implicit methods: implicit Euler, the midpoint and TR-BDF2, in one kernel.
+
+Nearly all of such a kernel is Newton's method, which is the same for the three, so it is compiled once for each kind of
+net and not once for each method. Stages are solved in one place of the loop, so that the solver is expanded there: a
+call would copy hundreds of numbers, a tenth of the time that a rope of ten points takes.
+
+A step that Newton's method cannot take whole is taken in halves, quarters, ..., and in longer parts again after an
+easy one.
+"""
+
+import math
+
+import numpy as np
+
+from sim.jit import is_stopped, kernel
+from sim.springs.analysis.energy import add_power
+from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.integrators.implicit.newton import MOST, make_work, solve_stage
+
+EULER, MIDPOINT, TR_BDF2 = 0, 1, 2
+
+FINEST = 16  # parts of a step, which are taken as they are
+FINEST_MIDPOINT = 64
+PATIENCE = 12  # corrections of a midpoint, after which halves are quicker than going on
+GAMMA = 2.0 - math.sqrt(2.0)  # part of a step of TR-BDF2 that its first stage takes
+W = math.sqrt(2.0) / 4.0  # weights of the quadrature of TR-BDF2: W, W, GAMMA/2
+
+
+@kernel
+def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
+    """`advance` of an integrator, by the method EULER, MIDPOINT or TR_BDF2."""
+    finest, most = (FINEST_MIDPOINT, PATIENCE) if method == MIDPOINT else (FINEST, MOST)
+    work = make_work(p, method == MIDPOINT)
+    f = make_scratch(p)
+    a = np.empty_like(x)
+    x0, v0, x1, v1 = np.empty_like(x), np.empty_like(x), np.empty_like(x), np.empty_like(x)
+    xs, vs = np.empty_like(x), np.empty_like(x)
+    # y2 = y1/(gamma (2 - gamma)) - y (1 - gamma)^2/(gamma (2 - gamma)) + g f2
+    c1 = 1.0 / (GAMMA * (2.0 - GAMMA))
+    c0 = 1.0 - c1
+    evals = 0
+    for s in range(steps):
+        done, size = 0, finest
+        while done < finest:
+            if is_stopped(p.stop):
+                return evals
+            part = h * size / finest
+            now = t + (s + done / finest) * h
+            after = t + (s + (done + size) / finest) * h
+            set_pins(x, v, now, p)
+            # Each stage solves vs = v0 + g a(x0 + g vs, vs, then).
+            g, then = part, after
+            if method == MIDPOINT:
+                g, then = 0.5 * part, now + 0.5 * part
+            elif method == TR_BDF2:
+                # y1 = y + g (f + f1)
+                g, then = 0.5 * GAMMA * part, now + GAMMA * part
+                accelerate(x, v, now, p, True, f, a)
+                evals += 1
+            for j in range(x.shape[0]):
+                x0[j], v0[j], vs[j] = x[j], v[j], v[j]
+            if method == TR_BDF2:
+                for j in range(x.shape[0]):
+                    x0[j] += g * v[j]
+                    v0[j] += g * a[j]
+            hardest, stage, last = 0, 0, 1 if method == TR_BDF2 else 0
+            while True:
+                taken, settled, usable = solve_stage(x0, v0, g, then, p, xs, vs, work, most)
+                evals += taken
+                hardest = max(hardest, taken)
+                is_taken = size == 1 or (settled if method == MIDPOINT else usable)
+                if stage == last or not is_taken:
+                    break
+                stage, then = 1, after
+                for j in range(x.shape[0]):
+                    x1[j], v1[j] = xs[j], vs[j]
+                    x0[j] = c1 * x1[j] + c0 * x[j]
+                    v0[j] = c1 * v1[j] + c0 * v[j]
+            if not is_taken:
+                size //= 2
+                continue
+            if with_account:
+                if method == TR_BDF2:
+                    add_power(x, v, now, p, True, W * part, ledger)
+                    add_power(x1, v1, now + GAMMA * part, p, True, W * part, ledger)
+                add_power(xs, vs, then, p, True, g if method == TR_BDF2 else part, ledger)
+            for j in range(x.shape[0]):
+                x[j], v[j] = (x[j] + part * vs[j], 2.0 * vs[j] - v[j]) if method == MIDPOINT else (xs[j], vs[j])
+            done += size
+            if hardest <= most // 2 and done % (2 * size) == 0:
+                size *= 2
+    set_pins(x, v, t + steps * h, p)
+    return evals

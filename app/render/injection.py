@@ -39,7 +39,7 @@ QUESTION_TIMEOUT = 5.0  # [s] after which a question is given up, and asked agai
 MAX_QUESTIONS = 16  # open at the same time, a thread each: browsers that are stuck do not delay the others
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
 MAX_ANSWER_LENGTH = 10_000  # [characters] that are read of an answer
-SCRIPTS = ("quality.js", "injection.js", "packed.js", "water_shader.js", "water.js", "rain.js")
+SCRIPTS = ("quality.js", "injection.js", "packed.js", "water_shader.js", "water.js", "rain.js", "smoke.js")
 
 _injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
 _disabled: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()

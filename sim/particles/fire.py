@@ -51,7 +51,8 @@ class Fire:
             raise argument_error("eddies", eddies, "0 or above, finite")
         self.place, self.diameter, self.wind, self.eddies = position, diameter, wind, eddies
         self.height = flame_height(power, diameter)
-        self.track = track(power, diameter, math.hypot(*wind), (LEAST_LIFE + LIFE_RANGE) * life)
+        self.longest_life = (LEAST_LIFE + LIFE_RANGE) * life  # [s]
+        self.track = track(power, diameter, math.hypot(*wind), self.longest_life)
         self.puffs = 1.5 / math.sqrt(diameter)  # [1/s]
         self.time = 0.0  # [s]
         self.position = np.zeros((3, count), np.float32)

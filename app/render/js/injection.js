@@ -104,6 +104,7 @@ function beforeRender(renderer, scene, camera) {
     }
   }
   for (const shader of shaders) if (shader.removeUnused) shader.removeUnused();
+  dressSmoke(scene);
   answerServer(active);
 }
 

@@ -18,7 +18,9 @@ HEAT_COLOURS = (
     (255, 246, 190),
 )
 SPLAT_SHARE = 0.3  # standard deviation of a splat of smoke over the radius of the plume
+FADED_SHARE = 0.4  # of the plume's length in time, in which its end fades out
 FULL_SMOKE_RADIUS = 30.0  # [m] of the plume, from which on smoke is thinner
+SUN_STRENGTHS, SMOKE_LIGHT = (0.5, 2.5), (0.4, 1.0)  # night and dawn, and the share of its colours that smoke has then
 OIL_COLOUR = (34, 22, 12)
 OIL_WIDTH, OIL_HEIGHT = 0.34, 0.55  # [m] standard deviations of a splat of oil
 OIL_OPACITY = 0.9
@@ -37,9 +39,9 @@ class Flames:
         random = np.random.default_rng(0)
         self.variety = np.stack([random.uniform(0.5, 1.3, MAX_FIRE_SPLATS), random.uniform(0.55, 1.5, MAX_FIRE_SPLATS)])
 
-    def show(self, fire: tuple[np.ndarray, np.ndarray] | None, jet: np.ndarray | None) -> None:
-        """Draw a fire, positions (3, n) [m] with heat, age over life and radius of the plume [m] (3, n), and a jet,
-        positions (m, 3) [m].
+    def show(self, fire: tuple[np.ndarray, np.ndarray] | None, jet: np.ndarray | None, sun: float) -> None:
+        """Draw a fire, positions (3, n) [m] with heat, age over life, radius of the plume [m] and age over the longest
+        life (4, n), and a jet, positions (m, 3) [m]. sun: its strength, by which smoke is lit.
         """
         visible = fire is not None or jet is not None
         if self.handle.visible != visible:
@@ -49,15 +51,16 @@ class Flames:
         self.buffer[:, 7] = 0
         if fire is not None:
             every = max(1, -(-fire[0].shape[1] // MAX_FIRE_SPLATS))
-            x, (heat, age, spread) = fire[0][:, ::every].T, fire[1][:, ::every]
+            x, (heat, age, spread, along) = fire[0][:, ::every].T, fire[1][:, ::every]
             rgb = np.stack([np.interp(heat, HEAT, [c[i] for c in HEAT_COLOURS]) for i in range(3)], axis=1)
             # Flames are dense and small. Smoke is as wide as its plume, thinner with its width, and fades in the end;
             # each splat has a size and a shade of its own, so that the outline is ragged.
             size, shade = self.variety[:, : len(x)]
-            rgb = np.where((heat < HEAT[2])[:, None], rgb * shade[:, None], rgb)
+            light = np.interp(sun, SUN_STRENGTHS, SMOKE_LIGHT)
+            rgb = np.where((heat < HEAT[2])[:, None], rgb * (light * shade)[:, None], rgb)
             opacity = np.interp(heat, (0.0, 0.1, 0.3, 1.0), (0.55, 0.6, 0.6, 0.8))
             opacity *= np.minimum(1.0, FULL_SMOKE_RADIUS / np.maximum(spread, 1.0))
-            opacity *= np.clip(4.0 * (1.0 - age), 0.0, 1.0)
+            opacity *= np.clip(4.0 * (1.0 - age), 0.0, 1.0) * np.clip((1.0 - along) / FADED_SHARE, 0.0, 1.0)
             width = size * SPLAT_SHARE * spread * np.interp(heat, (0.0, 0.3, 1.0), (1.0, 0.9, 0.7))
             height = width * np.interp(heat, (0.0, 0.3, 1.0), (0.9, 1.3, 2.0))
             self.put(0, x, width, height, rgb, np.where(age < 0.0, 0.0, opacity))

@@ -37,7 +37,7 @@ class RadialFrame(NamedTuple):
     pulls: tuple[tuple[Vector, Vector], ...]  # from each held body to where it is pulled [m]
     fire: (
         tuple[NDArray[np.float32], NDArray[np.float32]] | None
-    )  # (3, n) [m], (3, n) heat, age over life and radius of the plume [m]
+    )  # (3, n) [m], (4, n) heat, age over life, radius of the plume [m], age over the longest life
     jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
     column: FluidColumn
     age: float  # [s] for which the waves have run under the oil

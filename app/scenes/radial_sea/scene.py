@@ -649,9 +649,11 @@ def mean_square_slope(waves: Waves) -> float:
 
 
 def parcels_of(fire: Fire) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """(3, n) positions [m], and (3, n) heat 1 to 0, share of the life that is over, and spread [m]."""
+    """(3, n) positions [m], and (4, n) heat 1 to 0, age over life, spread [m], age over the longest life."""
     over = fire.age / np.maximum(fire.life, np.float32(1e-3))
-    return fire.position.copy(), np.stack([fire.heat, over, fire.spread], dtype=np.float32)
+    return fire.position.copy(), np.stack(
+        [fire.heat, over, fire.spread, fire.age / fire.longest_life], dtype=np.float32
+    )
 
 
 SCENE = SceneKind(

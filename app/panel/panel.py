@@ -285,9 +285,12 @@ class Panel:
             self.loaded = next(iter(self.kind.presets))
         self.show_preset()
 
-    def keep_curves(self, on: bool) -> None:
-        """Keep the curves that the plots have, to be drawn beside those of the runs that follow; or drop them."""
-        self.plots.kept = tuple(self.plots.rows) if on else ()
+    def keep_curves(self, on: bool) -> float | None:
+        """Keep the curves that the plots have, to be drawn beside those of the runs that follow; or drop them.
+
+        Returns the time [s] of the last that is kept; None where nothing is.
+        """
+        return self.plots.keep(on)
 
     def plot_rows(self) -> Sequence[PlotRow]:
         """The rows of the plots that are kept."""

@@ -5,9 +5,9 @@ import collections
 import itertools
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias, cast
 
 import numpy as np
 import viser
@@ -73,6 +73,15 @@ def scale_of(low: float, high: float) -> Scale:
     return Scale(first * step, max(last, first + 1) * step, step)
 
 
+class Whole(NamedTuple):
+    """A chart that a scene makes whole."""
+
+    first: str  # label of the first column
+    lines: tuple[Line, ...]
+    columns: Columns
+    end: float | None  # of the scale of the first column, from 0; None to fit it to the data
+
+
 @dataclass
 class Dock:
     """The dock that the charts stand in, beside the picture."""
@@ -89,16 +98,29 @@ class Plots:
         self.rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_ROWS)
         self.charts: dict[str, viser.GuiUplotHandle] = {}  # by the parameter that opens it
         self.looks: dict[str, Look] = {}  # label, lines and scales of each chart
-        self.sent: dict[str, object] = {}  # the columns that each curve shows, and the last row of each plot
+        self.sent: dict[str, object] = {}  # the ends of the rows that each plot shows
+        self.sent_curves: dict[str, tuple[object, object]] = {}  # the columns that each curve shows, and the kept ones
         self.dock: Dock | None = None
         self.open: frozenset[str] = frozenset()  # parameters of the open charts
         self.kept: tuple[PlotRow, ...] = ()  # rows of an earlier run, drawn beside those of this one
+        self.curves: Mapping[str, Chart | Columns] = {}  # the whole charts as the scene made them last
+        self.kept_curves: Mapping[str, Chart | Columns] = {}  # those of an earlier run
         self.sent_at = 0.0
         self.drawn = self.skipped = 0  # charts sent again, and charts that were closed or had nothing new
 
     def work(self) -> dict[str, WorkCount]:
         """How many charts were drawn and how many did not have to be."""
         return {"charts drawn": WorkCount(self.drawn, self.skipped)}
+
+    def keep(self, on: bool) -> float | None:
+        """Keep the curves as they are, to be drawn beside those of the runs that follow, or drop them.
+
+        Returns the time [s] of the last that is kept; None where nothing is.
+        """
+        self.kept = tuple(self.rows) if on else ()
+        self.kept_curves = self.curves if on else {}
+        ends = [chart.columns[0][-1] for chart in self.kept_curves.values() if isinstance(chart, Chart)]
+        return self.kept[-1][0] if self.kept else max(map(float, ends), default=None)
 
     def update(self, snapshot: AnySnapshot, rows: list[PlotRow], moment: float | None = None) -> None:
         """Take new rows and, at a few hertz, send what is open. moment: time [s] that is to be seen; None: the last."""
@@ -109,6 +131,7 @@ class Plots:
                 while self.rows and self.rows[-1][0] >= row[0]:  # it has gone on from an earlier moment
                     self.rows.pop()
                 self.rows.append(row)
+        self.curves = cast(Mapping[str, Chart | Columns], snapshot.curves or {})
         now = time.monotonic()
         if now - self.sent_at < SEND_INTERVAL:
             return
@@ -120,7 +143,7 @@ class Plots:
             self.show(wanted)
         before = self.drawn
         if wanted:
-            self.send_curves(snapshot, wanted)
+            self.send_curves(wanted)
             self.send_plots(wanted, moment)
         self.skipped += len(names) - (self.drawn - before)
 
@@ -140,17 +163,25 @@ class Plots:
             elif name in wanted:
                 self.charts[name] = self.add(name)
 
-    def send_curves(self, snapshot: AnySnapshot, wanted: frozenset[str]) -> None:
+    def send_curves(self, wanted: frozenset[str]) -> None:
         """Send the open charts with columns that the scene has replaced."""
-        for name, columns in (snapshot.curves or {}).items():
-            if name not in wanted or self.sent.get(name) is columns:
+        for name, columns in self.curves.items():
+            kept = self.kept_curves.get(name)
+            last = self.sent_curves.get(name, (None, None))
+            if name not in wanted or (last[0] is columns and last[1] is kept):
                 continue
-            self.sent[name] = columns
-            if isinstance(columns, Chart):
-                self.send(name, columns.first, columns.lines, columns.columns, columns.end)
-            else:
-                axes = self.kind.curves[name]
-                self.send(name, axes.first, lines_of(axes.names), columns)  # type: ignore[arg-type]
+            self.sent_curves[name] = columns, kept
+            chart = self.chart_of(name, columns)
+            if kept is not None and kept is not columns:
+                chart = with_kept(chart, self.chart_of(name, kept))
+            self.send(name, *chart)
+
+    def chart_of(self, name: str, columns: Chart | Columns) -> Whole:
+        """What a scene's columns are drawn as."""
+        if isinstance(columns, Chart):
+            return Whole(columns.first, columns.lines, columns.columns, columns.end)
+        axes = self.kind.curves[name]
+        return Whole(axes.first, lines_of(axes.names), columns, None)
 
     def rows_about(self, moment: float | None) -> list[PlotRow]:
         """The rows that charts show: the last ones, or those about a moment [s], in steps of half a chart."""
@@ -251,6 +282,23 @@ def beside(shown: Sequence[PlotRow], kept: Sequence[PlotRow]) -> list[PlotRow]:
         return list(kept[:SHOWN_ROWS])
     found = [row for row in kept if row[0] >= shown[0][0]]
     return [row for i, row in enumerate(found) if i < SHOWN_ROWS or row[0] <= shown[-1][0]]
+
+
+def with_kept(chart: Whole, kept: Whole) -> Whole:
+    """A chart with the lines of an earlier one; areas are left out, which would cover one another."""
+    here, before = (np.array(one.columns, np.float64).T for one in (chart, kept))
+    places = np.union1d(here[:, 0], before[:, 0])
+    shown = [i for i, line in enumerate(kept.lines) if not line.fill]
+    return Whole(
+        chart.first,
+        (*chart.lines, *(kept_line(kept.lines[i]) for i in shown)),
+        (
+            places,
+            *(at_times(places, here, 1 + i) for i in range(len(chart.lines))),
+            *(at_times(places, before, 1 + i) for i in shown),
+        ),
+        None if chart.end is None or kept.end is None else max(chart.end, kept.end),
+    )
 
 
 def at_times(times: NDArray[np.float64], rows: NDArray[np.float64], column: int) -> NDArray[np.float64]:

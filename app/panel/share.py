@@ -87,8 +87,8 @@ class Settings(Protocol):
         """Read the user's own set-ups again. chosen: the one that the parameters are those of, if any."""
         ...
 
-    def keep_curves(self, on: bool) -> None:
-        """Keep the curves that the plots have, to be drawn beside those of the runs that follow; or drop them."""
+    def keep_curves(self, on: bool) -> float | None:
+        """Keep the curves of the plots beside those of the runs that follow, or drop them; the last time kept [s]."""
         ...
 
     def plot_rows(self) -> Sequence[PlotRow]:
@@ -313,12 +313,11 @@ class Share:
     async def on_curves(self, event: ViserEvent) -> None:
         """Keep the curves of the plots over time beside those of the next run, or drop them."""
         on = event.target.value == KEEP_CURVES
-        rows = self.panel.plot_rows()
-        if on and not rows:
-            self.say("There are no curves over time to keep.")
-            return
-        self.panel.keep_curves(on)
-        self.say(fill("Kept: the curves up to t = {:.2f} s. They are dashed.", rows[-1][0]) if on else "")
+        end = self.panel.keep_curves(on)
+        if end is None:
+            self.say("There are no curves over time to keep." if on else "")
+        else:
+            self.say(fill("Kept: the curves up to t = {:.2f} s. They are dashed.", end))
 
     async def on_own(self, event: ViserEvent) -> None:
         """Keep what is set in the list of presets under its name, or remove what has that name."""

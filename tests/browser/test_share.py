@@ -11,6 +11,7 @@ import pytest
 
 from app.messages import Pause, Play, Reset
 from app.scenes import NAMES, scene_named
+from app.scenes.own_setups import own_files
 from app.scenes.setups import setup_block
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
@@ -83,6 +84,28 @@ def test_a_file_is_loaded_or_refused_in_one_line(opened: tuple[Viewer, Tab], tmp
     block = setup_block(rope, rope.params(points=24))
     load(tab, tmp_path / "c.html", f"<!doctype html><html><body>{'x' * 100_000}{block}</body></html>")
     tab.wait(lambda: vars(lab.panel.params)["points"] == 24, 20)
+
+
+def test_an_own_preset_is_kept_listed_loaded_and_there_after_a_reload(
+    opened: tuple[Viewer, Tab], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SPRINGTIDE_DATA", str(tmp_path))
+    lab, tab = opened
+    lab.panel.set("points", 17)
+    lab.panel.share.name.value = "Seventeen beads"
+    tab.page.get_by_role("button", name="Keep as preset").click()
+    tab.wait(lambda: lab.panel.loaded == "Mine: Seventeen beads", 20)
+    assert "Seventeen beads" in own_files(lab.panel.kind)
+    # Opened anew, as by a lab that is started later: the list is read from the files.
+    tab.follow(lab, SCENE)
+    assert vars(lab.panel.params)["points"] != 17
+    tab.page.reload()
+    preset = tab.page.get_by_label("Preset")
+    tab.wait(lambda: preset.count() == 1 and preset.is_visible(), 60)
+    preset.click()
+    tab.page.get_by_role("option", name="Mine: Seventeen beads").click()
+    tab.wait(lambda: vars(lab.panel.params)["points"] == 17, 20)
+    assert preset.input_value() == "Mine: Seventeen beads"
 
 
 def test_the_timeline_shows_what_was(opened: tuple[Viewer, Tab]) -> None:

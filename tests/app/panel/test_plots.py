@@ -1,11 +1,15 @@
 """The scales of the charts."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
-from app.panel.plots import MIN_FILLED, SHOWN_ROWS, at_times, beside, scale_of
+from app.messages import Snapshot
+from app.panel.plots import KEPT_DASH, MIN_FILLED, SHOWN_ROWS, Plots, Whole, at_times, beside, scale_of, with_kept
+from app.scenes import scene_named
+from app.scenes.charts import Chart, Line
 
 
 @pytest.mark.parametrize(
@@ -45,3 +49,38 @@ def test_kept_curves_stand_at_their_times_beside_those_of_the_next_run() -> None
     np.testing.assert_array_equal(at_times(times, before, 1), [math.nan, 2.0, math.nan, math.nan, 6.0])
     assert beside([], kept) == kept
     assert len(beside([(5e3, 0.0)], [(float(t), 0.0) for t in range(10_000)])) == SHOWN_ROWS
+
+
+def test_a_whole_chart_shows_the_kept_lines_but_no_kept_areas() -> None:
+    area, line = Line("floor", "#808080", fill="#808080"), Line("rope 1", "#0072B2", 2.0, (1.0, 1.0))
+    now = Whole("t [s]", (area, line), (np.array([0.0, 1.0]), np.zeros(2), np.array([1.0, 2.0])), 2.0)
+    before = Whole("t [s]", (area, line), (np.array([0.0, 2.0, 4.0]), np.ones(3), np.array([5.0, 6.0, 7.0])), 5.0)
+    both = with_kept(now, before)
+    assert [(one.label, one.dash, one.fill) for one in both.lines] == [
+        ("floor", (), "#808080"),
+        ("rope 1", (1.0, 1.0), ""),
+        ("rope 1, kept", KEPT_DASH, ""),
+    ]
+    assert (both.first, both.end) == ("t [s]", 5.0)
+    times, floor, rope, kept = both.columns
+    np.testing.assert_array_equal(times, [0.0, 1.0, 2.0, 4.0])
+    np.testing.assert_array_equal(floor, [0.0, 0.0, math.nan, math.nan])
+    np.testing.assert_array_equal(rope, [1.0, 2.0, math.nan, math.nan])
+    np.testing.assert_array_equal(kept, [5.0, 5.5, 6.0, 7.0])
+
+
+def test_the_curves_of_a_race_are_kept_and_dropped() -> None:
+    kind = scene_named("race")
+    scene = kind.make(kind.params(ropes=2, points=5, plot_errors=False, plot_energies=False))
+    server: Any = None  # no chart is open
+    plots = Plots(server, kind)
+    for _ in range(3):
+        scene.advance(100)
+        snapshot: Any = Snapshot(1, scene.frame(), None, None, {}, scene.params, scene.curves())
+        plots.update(snapshot, [])
+    chart = plots.curves["plot_errors"]
+    assert isinstance(chart, Chart)
+    assert plots.keep(True) == chart.columns[0][-1] > 0.0
+    assert plots.kept_curves["plot_errors"] is chart
+    assert plots.keep(False) is None
+    assert not plots.kept_curves

@@ -20,7 +20,7 @@ WATER_UNIFORMS = (
     "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection", "rainRings", "rainVeil",
     "firePlace", "fireLight",
 )  # fmt: skip
-MAX_WATERLINES = 12  # that the shader of the water draws foam and shade around
+MAX_WATERLINES = 13  # that the shader of the water mirrors, and draws foam and shade around
 # The same for the shader of the rain, `js/rain.js`.
 RAIN_UNIFORMS = ("rain", "streak", "dropSizes", "dropMotion")
 
@@ -47,12 +47,15 @@ class Oil:
 
 @dataclass(frozen=True)
 class Waterline:
-    """Where something stands in the water: a rectangle with round corners, seen from above."""
+    """Something upright in or above the water: a rectangle with round corners, seen from above."""
 
     centre: tuple[float, float]  # (x, y) [m]
     heading: float  # [rad] of its first side against x
     half_sides: tuple[float, float]  # [m] without the corners
     corner: float  # radius of the corners [m]; a circle has no sides
+    top: float = 0.0  # [m] above still water
+    bottom: float = 0.0  # [m] above still water; 0 where it reaches into it
+    color: RGB = (0.5, 0.5, 0.5)  # sRGB in 0..1 of its mirror image
 
 
 @dataclass(frozen=True)
@@ -136,15 +139,16 @@ def as_bytes(color: RGB) -> tuple[int, int, int]:
 
 
 def waterline_table(waterlines: Sequence[Waterline]) -> np.ndarray:
-    """The uniforms of the waterlines, (2 MAX_WATERLINES, 3) float32: x, y, heading, then half sides and corner.
+    """The uniforms of the waterlines, (4 MAX_WATERLINES, 3) float32, as the shader declares them.
 
     A corner of 0 means none. Raises ValueError for more than MAX_WATERLINES.
     """
     if len(waterlines) > MAX_WATERLINES:
         raise argument_error("waterlines", len(waterlines), f"at most {MAX_WATERLINES}")
-    table = np.zeros((2 * MAX_WATERLINES, 3), np.float32)
+    table = np.zeros((4 * MAX_WATERLINES, 3), np.float32)
     for k, line in enumerate(waterlines):
-        table[2 * k : 2 * k + 2] = (*line.centre, line.heading), (*line.half_sides, line.corner)
+        shape = (*line.centre, line.heading), (*line.half_sides, line.corner), (line.bottom, line.top, 0.0)
+        table[4 * k : 4 * k + 4] = *shape, linear(line.color)
     return table
 
 

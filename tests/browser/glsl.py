@@ -31,7 +31,7 @@ RUN = """([constants, shader, expression, table, uniforms, tileSide, tile]) => {
         void main() { gl_Position = vec4(4 * (gl_VertexID % 2) - 1, 2 * (gl_VertexID / 2 * 2) - 1, 0, 1); }`));
     gl.attachShader(program, make(gl.FRAGMENT_SHADER, `#version 300 es
         precision highp float;
-        #define MAX_WATERLINES 12
+        #define MAX_WATERLINES 13
         #define DETAILS 2
         uniform vec3 cameraPosition;
         uniform mat4 toSea;

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.render.material import Waterline, waterline_table
 from sim.ocean.oil_film import APPEARANCES, EXTINCTION, light_through, mirrored_light
 from sim.particles.rain_rings import ring_wave
 from tests.app.render import shader_twin
@@ -98,3 +99,19 @@ def test_foam_and_rings_have_the_shares_that_they_are_told(page: Any) -> None:
         rings = evaluate(page, "rainSlopes(0.03 * p.xy, 0.0)", POINTS, uniforms)
         expected = share * shader_twin.constant("RING_VARIANCE")
         assert (rings[:, :2] ** 2).sum(-1).mean() == pytest.approx(expected, rel=0.06)
+
+
+def test_rays_from_the_water_meet_what_stands_in_it_and_above_it(page: Any) -> None:
+    """A box of 4 m by 2 m and 3 m high that is turned by a right angle, 10 m away, and a deck from 8 to 9 m over it."""
+    box = Waterline((10.0, 0.0), np.pi / 2, (1.9, 0.9), 0.1, 3.0, color=(1.0, 0.0, 0.0))
+    deck = Waterline((10.0, 0.0), 0.0, (1.9, 1.9), 0.1, 9.0, 8.0, (0.0, 0.0, 1.0))
+    uniforms = {f"waterlines[{k}]": row for k, row in enumerate(waterline_table([box, deck]))}
+    rises = {0.1: (1.0, 0.0), 0.25: (1.0, 0.0), 0.6: (0.0, 0.0), 1.05: (0.0, 1.0), 1.5: (0.0, 0.0)}  # red, blue
+    rays = np.array([(1.0, 0.0, rise) for rise in rises] + [(-1.0, 0.0, 0.1), (1.0, 0.35, 0.1), (1.0, 0.15, 0.1)])
+    expected = [*rises.values(), (0.0, 0.0), (0.0, 0.0), (1.0, 0.0)]
+    met = evaluate(page, "mirroredHulls(vec3(0.0), normalize(p.xyz), 0.002, vec3(1.0))", rays, uniforms)
+    np.testing.assert_allclose(met[:, [0, 2]], expected, atol=0.02)
+    np.testing.assert_allclose(met[:, 3], np.sum(expected, axis=1), atol=0.02)
+    # Facets that are tilted spread the rays: what is small and far is mirrored in part.
+    spread = evaluate(page, "mirroredHulls(vec3(0.0), normalize(p.xyz), 0.3, vec3(1.0))", rays[:1], uniforms)
+    assert 0.1 < spread[0, 3] < 0.95

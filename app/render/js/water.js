@@ -25,7 +25,7 @@ function uniformsOf(base, mesh) {
     const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
     for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
     for (const name of ["wavePlaces", "waveSlopes"]) uniforms[name] = { value: null };
-    uniforms.waterlines = { value: Array.from({ length: 2 * MAX_WATERLINES }, () => mesh.position.clone().set(0, 0, 0)) };
+    uniforms.waterlines = { value: Array.from({ length: 4 * MAX_WATERLINES }, () => mesh.position.clone().set(0, 0, 0)) };
     uniformsByName.set(base, uniforms);
   }
   return uniformsByName.get(base);

@@ -438,20 +438,46 @@ const WATER_GLSL = {
       return fresnel(max(dot(V, H), 0.0), index) * facets / (4.0 * pow(max(H.z, 0.1), 4.0) * max(facing, 0.12));
     }
 
-    // What stands in the water, two vectors each: x, y, heading, then half sides and corner [m] (0: none).
-    uniform vec3 waterlines[2 * MAX_WATERLINES];
+    // What stands in the water or above it, four vectors each: x, y, heading; half sides and corner [m] (0: none);
+    // bottom, top [m], unused; colour.
+    uniform vec3 waterlines[4 * MAX_WATERLINES];
 
     // Distance [m] of a point from the nearest of them; 0 inside.
     float distanceToHull(vec2 x) {
       float nearest = 1e3;
       for (int k = 0; k < MAX_WATERLINES; k++) {
-        vec3 place = waterlines[2 * k], size = waterlines[2 * k + 1];
+        vec3 place = waterlines[4 * k], size = waterlines[4 * k + 1];
         if (size.z <= 0.0) break;
+        if (waterlines[4 * k + 2].x > 0.0) continue; // above the water
         vec2 d = x - place.xy, e = vec2(cos(place.z), sin(place.z));
         d = abs(vec2(dot(d, e), dot(d, vec2(-e.y, e.x))));
         nearest = min(nearest, length(max(d - size.xy, 0.0)) - size.z);
       }
       return max(nearest, 0.0);
+    }
+
+    // What a ray from the water meets of them: (light, share of the ray). Each is taken for an upright elliptic cylinder.
+    // spread: width of the ray over its length, as the facets that mirror it are tilted; around: the light on them.
+    vec4 mirroredHulls(vec3 at, vec3 R, float spread, vec3 around) {
+      vec4 found = vec4(0.0);
+      for (int k = 0; k < MAX_WATERLINES; k++) {
+        vec3 place = waterlines[4 * k], size = waterlines[4 * k + 1], rise = waterlines[4 * k + 2];
+        if (size.z <= 0.0) break;
+        vec2 e = vec2(cos(place.z), sin(place.z)), d = at.xy - place.xy, sides = size.xy + size.z;
+        vec2 p = vec2(dot(d, e), dot(d, vec2(-e.y, e.x))) / sides;
+        vec2 r = vec2(dot(R.xy, e), dot(R.xy, vec2(-e.y, e.x))) / sides;
+        float rr = max(dot(r, r), 1e-6), nearest = -dot(p, r) / rr;
+        if (nearest <= 0.0) continue;
+        vec2 c = p + nearest * r;
+        float wide = spread * nearest + 0.02, gap = (length(c) - 1.0) * min(sides.x, sides.y);
+        float z = at.z + max(nearest - sqrt(max(1.0 - dot(c, c), 0.0) / rr), 0.0) * R.z;
+        float cover = (1.0 - smoothstep(-wide, wide, gap)) * (1.0 - smoothstep(rise.y - wide, rise.y + wide, z));
+        if (rise.x > 0.0) cover *= smoothstep(rise.x - wide, rise.x + wide, z);
+        float sunny = max(dot(-R.xy, sunDirection.xy), 0.0) / max(length(R.xy), 1e-3);
+        vec3 lit = waterlines[4 * k + 3] * (around + 0.3183 * sunLight * sunny);
+        found = mix(found, vec4(lit, 1.0), cover);
+      }
+      return found;
     }
 
     const float GLITTER_LIMIT = 5.0; // radiance of glitter that is reduced to its half
@@ -539,6 +565,10 @@ const WATER_GLSL = {
       float dim = clamp(sqrt(sigma) * 0.7, 0.0, 0.8);
       vec3 ambient = ambientLight();
       vec3 mirrored = behindRain(addClouds(sky(R, dim), R, max(dim, 0.1), ambient).rgb, R);
+      if (hull < 60.0) {
+        vec4 hulls = mirroredHulls(at, R, 1.5 * sigma, around);
+        mirrored = mix(mirrored, hulls.rgb / max(hulls.a, 1e-3), hulls.a);
+      }
 
       float glitter = 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z
                     * mirroredFrom(sunDirection, V, slope, variance + 0.0004, facing, optics.x);

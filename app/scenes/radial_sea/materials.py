@@ -27,6 +27,10 @@ SUN_IRRADIANCE, SUN_STRENGTH = 450.0, 5.0  # [W/m2] of visible sunlight, and wha
 SPILL_RADIUS = 45.0  # [m] of the spill as drawn,
 SPILL_MARGIN = 25.0  # [m] and at least so far beyond the bodies
 LEG_DISTANCE, LEG_RADIUS = 14.33, 1.3  # [m] of the rig's legs at the water, from its middle (assets/make_models.py)
+LEG_TOP, LEG_COLOUR = 15.0, "#eeb220"  # [m]
+DECK_SIDES, DECK_HEIGHTS, DECK_COLOUR = (17.0, 15.0), (14.2, 34.0), "#8a8f8c"  # half sides, bottom and top [m]
+MIRROR_COLOURS = {"buoy_red": "#c42422", "buoy_yellow": "#eeb220", "crate": "#a0763e", "ball": "#d86030"}
+HULL_COLOUR = "#4084ba"  # of other hulls
 HULL_CORNER = 0.1  # radius of the corners of a box over half its side
 OIL_ROUGHNESS = 0.02
 
@@ -34,6 +38,12 @@ OIL_ROUGHNESS = 0.02
 def rgb_of(colour: str) -> np.ndarray:
     """(3,) sRGB in 0..1 of "#rrggbb"."""
     return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
+
+
+def colour_of(colour: str) -> RGB:
+    """sRGB in 0..1 of "#rrggbb"."""
+    red, green, blue = rgb_of(colour).tolist()
+    return red, green, blue
 
 
 def blend(a: RGB | np.ndarray, b: RGB | np.ndarray, share: float) -> RGB:
@@ -56,19 +66,27 @@ def mixture_share(column: FluidColumn) -> float:
 
 
 def waterlines_of(frame: RadialFrame) -> list[Waterline]:
-    """Where the legs of the rig and the first bodies stand in the water, as from above, upright."""
+    """Where the legs of the rig and the first bodies stand in the water, upright; then the rig's decks."""
     x, y = RIG
     legs = [(x + i * LEG_DISTANCE, y + j * LEG_DISTANCE) for i in (-1, 1) for j in (-1, 1)]
-    lines = [Waterline(leg, 0.0, (0.0, 0.0), LEG_RADIUS) for leg in legs]
+    paint, bare = colour_of(LEG_COLOUR), colour_of(DECK_COLOUR)
+    lines = [Waterline(leg, 0.0, (0.0, 0.0), LEG_RADIUS, LEG_TOP, color=paint) for leg in legs if frame.params.rig]
+    room = MAX_WATERLINES - len(lines) - 1  # for bodies
     for kind, position, turn in zip(frame.kinds, frame.positions.tolist(), frame.rotations.tolist(), strict=True):
-        if len(lines) == MAX_WATERLINES:
+        if room == 0:
             break
+        room -= 1
         hull = frame.hulls[kind]
         a, b = (0.5 * np.ptp(hull.extents[:2], axis=1)).tolist()
         corner = HULL_CORNER * min(a, b) if hull.shape.collision == "box" else min(a, b)
         w, i, j, k = turn
         heading = math.atan2(2.0 * (w * k + i * j), 1.0 - 2.0 * (j * j + k * k))
-        lines.append(Waterline((position[0], position[1]), heading, (a - corner, b - corner), corner))
+        top, colour = position[2] + float(hull.extents[2, 1]), colour_of(MIRROR_COLOURS.get(kind, HULL_COLOUR))
+        sides = (a - corner, b - corner)
+        lines.append(Waterline((position[0], position[1]), heading, sides, corner, top, color=colour))
+    if frame.params.rig:
+        (a, b), (bottom, top) = DECK_SIDES, DECK_HEIGHTS
+        lines.append(Waterline(RIG, 0.0, (a - 1.0, b - 1.0), 1.0, top, bottom, bare))
     return lines
 
 

@@ -19,13 +19,22 @@ def frame_of(**values: object):
 
 def test_legs_and_bodies_stand_where_they_are() -> None:
     frame = frame_of(waves=False)
-    legs, bodies = waterlines_of(frame)[:4], waterlines_of(frame)[4:]
+    lines = waterlines_of(frame)
+    legs, bodies, deck = lines[:4], lines[4:-1], lines[-1]
     assert np.mean([leg.centre for leg in legs], axis=0) == pytest.approx(RIG)
     for line, kind, position in zip(bodies, frame.kinds, frame.positions, strict=True):
         assert line.centre == pytest.approx(tuple(position[:2]))
         width = 2.0 * (line.half_sides[0] + line.corner)
         assert width == pytest.approx(float(np.ptp(frame.hulls[kind].extents[0])))
         assert (line.half_sides == (0.0, 0.0)) == (kind != "crate")
+        assert line.top == pytest.approx(float(position[2] + frame.hulls[kind].extents[2, 1]), abs=1e-5)
+    assert deck.centre == RIG
+    assert [line.bottom > 0.0 for line in lines] == [False] * (len(lines) - 1) + [True]
+
+
+def test_without_a_rig_only_bodies_stand_in_the_water() -> None:
+    frame = frame_of(rig=False)
+    assert len(waterlines_of(frame)) == len(frame.kinds)
 
 
 def test_a_turned_body_has_a_turned_waterline() -> None:
@@ -43,6 +52,6 @@ def test_a_crowd_has_as_many_waterlines_as_the_shader_takes() -> None:
 
 
 def test_an_empty_place_has_no_corner() -> None:
-    table = waterline_table([Waterline((1.0, 2.0), 0.5, (3.0, 4.0), 5.0)])
-    assert table[:2].ravel() == pytest.approx([1.0, 2.0, 0.5, 3.0, 4.0, 5.0])
-    assert not table[2:].any()
+    table = waterline_table([Waterline((1.0, 2.0), 0.5, (3.0, 4.0), 5.0, 7.0, 6.0, (1.0, 0.0, 1.0))])
+    assert table[:4].ravel() == pytest.approx([1.0, 2.0, 0.5, 3.0, 4.0, 5.0, 6.0, 7.0, 0.0, 1.0, 0.0, 1.0])
+    assert not table[4:].any()

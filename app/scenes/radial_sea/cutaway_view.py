@@ -1,5 +1,7 @@
 """The walls of the cutaway: a band of oil over water, bright lines where the fluids meet, a ruler and labels."""
 
+import math
+
 import numpy as np
 import viser
 
@@ -23,6 +25,7 @@ RULER_PLACE, OIL_PLACE, DRAFT_PLACE = -0.8, 0.3, 0.42  # along the far wall, in 
 LABEL_OFFSET = 0.06  # [m] that ruler and labels stand before the wall
 RULER_COLOUR, DRAFT_COLOUR = (235, 246, 250), (255, 236, 140)
 LABEL_SCALE = 1.1  # of a label, over viser's own size
+LABEL_STEP = 0.01  # [m] by which ruler and labels move at least: each move is a message of its own
 
 WALL_STEP = 1e-3  # [m] to which points of the walls are rounded for the page
 
@@ -101,7 +104,9 @@ class Walls:
 
     def show_labels(self, cutaway: Cutaway, column: FluidColumn, keel: float | None) -> None:
         """Say what one looks at: the fluids, and how deep the lowest point of the body lies, keel [m] in height."""
-        self.ruler.position = (*cutaway.middle, 0.0)
+        middle = (*cutaway.middle, 0.0)
+        if math.dist(self.ruler.position, middle) > LABEL_STEP:
+            self.ruler.position = middle
         right = cutaway.points[:FAR_WALL_POINTS] - cutaway.middle
         along = right @ np.array([-DIRECTION[1], DIRECTION[0]]) / cutaway.half_width
         at = {place: int(np.argmin(np.abs(along - place))) for place in (OIL_PLACE, DRAFT_PLACE)}
@@ -126,11 +131,17 @@ class Walls:
             high, deep = self.on_wall(DRAFT_PLACE, surface), self.on_wall(DRAFT_PLACE, keel)
             sides = [self.on_wall(DRAFT_PLACE + side * head / self.half_width, keel + 2.0 * head) for side in (-1, 1)]
             self.arrow.points = np.array([(high, deep), (deep, sides[0]), (deep, sides[1])], np.float32)
-        self.arrow.visible = shown["draft"]
+        if self.arrow.visible != shown["draft"]:
+            self.arrow.visible = shown["draft"]
         for part, label in self.labels.items():
-            label.visible = shown[part]
-            if shown[part]:
-                label.text, label.position = texts[part], places[part]
+            if label.visible != shown[part]:
+                label.visible = shown[part]
+            if not shown[part]:
+                continue
+            if label.text != texts[part]:
+                label.text = texts[part]
+            if math.dist(label.position, places[part]) > LABEL_STEP:
+                label.position = places[part]
 
     def show(self, cutaway: Cutaway | None, light: Material, column: FluidColumn, keel: float | None) -> None:
         """Draw the walls as they are now, or hide them; call inside `server.atomic()`.
@@ -140,9 +151,12 @@ class Walls:
         visible = cutaway is not None
         if self.mesh.mesh.visible != visible:
             self.mesh.mesh.visible = visible
-        self.ruler.visible = visible
+        if self.ruler.visible != visible:
+            self.ruler.visible = visible
         for line in self.lines:
-            line.visible = visible and (line is self.lines[0] or cutaway.has_oil)
+            is_shown = visible and (line is self.lines[0] or cutaway.has_oil)
+            if line.visible != is_shown:
+                line.visible = is_shown
         if cutaway is None:
             return
         self.show_labels(cutaway, column, keel)

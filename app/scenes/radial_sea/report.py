@@ -1,5 +1,6 @@
 """The panel's texts of the radial sea: drafts, the lab's claims beside physics, radial beside square surface."""
 
+import functools
 import math
 
 import numpy as np
@@ -244,7 +245,13 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
             marks["continuous"] = f"{percent(column.drops)} drops of {drops_of(column)}{beyond}"
     if column.kind != "water":
         p = snapshot.frame.params
-        k = np.array([peak_wavenumber(spectrum_of(p), conditions_of(p))])
-        remaining = math.exp(-float(column.roots(k)[1][0]) * readings.age)
+        k = peak_wavenumber(spectrum_of(p), conditions_of(p))
+        remaining = math.exp(-decay_rate(column, float(k)) * readings.age)
         marks["exposure"] = f"after {seconds(readings.age)} the peak wave keeps {percent(remaining, 3)} of its height"
     return marks | budget_marks(snapshot.frame.params, readings.weathering)
+
+
+@functools.lru_cache(maxsize=4)
+def decay_rate(column: FluidColumn, k: float) -> float:
+    """Of the waves of wavenumber k [1/m], in 1/s; kept, as it is asked for in each picture."""
+    return float(column.roots(np.array([k]))[1][0])

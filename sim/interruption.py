@@ -5,8 +5,9 @@ solve to end. Where the second is set, they also ask Python for signals, which o
 third is set, they call a function of Python's and then go on: so a solve of seconds lets its thread answer in between.
 """
 
+import contextlib
 import contextvars
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ TURN = 2  # not 0: FUNCTION is to be called, once
 FUNCTION = 3  # address of a function without arguments, or 0
 
 REQUEST: contextvars.ContextVar[NDArray[np.int64] | None] = contextvars.ContextVar("stop request", default=None)
+WHOLE: contextvars.ContextVar[bool] = contextvars.ContextVar("whole", default=False)
 GIVE_TURN: contextvars.ContextVar[Callable[[], None] | None] = contextvars.ContextVar("give turn", default=None)
 
 
@@ -48,8 +50,10 @@ def raise_if_stopped() -> None:
     """Raises KeyboardInterrupt after a Ctrl-C that a kernel noticed, InterruptionError where another thread asked.
 
     The request stays set in the latter case, so that nothing else of the same call begins; who set it takes it back.
-    A turn that was asked for is given first.
+    A turn that was asked for is given first. Neither happens inside `kept_whole`.
     """
+    if WHOLE.get():
+        return
     request, give_turn = stop_request(), GIVE_TURN.get()
     if request[TURN] and give_turn:
         request[TURN] = 0
@@ -59,3 +63,13 @@ def raise_if_stopped() -> None:
             request[STOP] = 0
             raise KeyboardInterrupt
         raise InterruptionError
+
+
+@contextlib.contextmanager
+def kept_whole() -> Iterator[None]:
+    """Inside, `raise_if_stopped` does nothing: for a change of several things that must all be made, or none."""
+    before = WHOLE.set(True)
+    try:
+        yield
+    finally:
+        WHOLE.reset(before)

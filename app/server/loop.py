@@ -51,6 +51,7 @@ from sim.parameters import effect_of_change
 
 SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
 PART_GROWTH = 8  # ratio of two successive parts of a frame's steps while the cost of a step is not known
+MAX_BLIND_TIME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
 PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
@@ -140,6 +141,8 @@ class SimLoop:
         self.may_end = False  # what runs may be ended early: steps, or a reset, which is then done again
         self.is_late = False  # controls were answered in the middle of the last tick
         self.turn_at = 0.0  # [s] of the clock, when controls were last answered
+        self.is_shown = True  # the latest snapshot is of the scene as it is
+        self.whole_at = 0.0  # [s] of the clock, when one was
         self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
         self.read_params = read_params or (lambda: (scene.params, self.loaded))
         self.audience = audience
@@ -181,9 +184,10 @@ class SimLoop:
         if self.unfinished is not None:
             self.begin(self.unfinished)
             changed = True
-        changed |= self.handle_waiting()
+        changed |= self.handle_waiting() or not self.is_shown
         if changed and was_late:
             self.publish()  # before steps that may take long
+            changed = False
         if self.unfinished is not None:
             pass  # no steps of a scene that is not made
         elif self.running and self.audience() and self.replay is not None:
@@ -376,10 +380,9 @@ class SimLoop:
     def publish_in_solve(self) -> None:
         """Hand the viewer the last whole step with the parameters as they are; where there is none, the last frame."""
         self.counts["snapshots"] += 1
-        serial, latest = self.counts["snapshots"], self.latest
-        last = latest._replace(serial=serial, status=self.status(), params=self.scene.params, state=None)
+        last = self.without_frame(self.latest)
         try:
-            self.latest = self.collect(serial) if self.solving else last
+            self.latest = self.collect(last.serial) if self.solving else last
         except DivergenceError:  # the solve is about to find that out
             self.latest = last
         self.fresh.set()
@@ -404,6 +407,8 @@ class SimLoop:
         except Exception as error:
             traceback.print_exc()
             self.halt(f"The scene stopped with {type(error).__name__}: {error}")
+        finally:
+            self.may_end = False
 
     def play_replay(self, replay: Replay, wall: float) -> bool:
         """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""
@@ -536,12 +541,22 @@ class SimLoop:
         self.fresh.set()
 
     def snapshot(self) -> AnySnapshot:
-        """What there is to show now; the last good frame where the scene has none."""
+        """What there is to show now; the last good frame where the scene has none, or where controls end it."""
         self.counts["snapshots"] += 1
-        serial = self.counts["snapshots"]
+        serial, params = self.counts["snapshots"], self.scene.params
         last: AnySnapshot | None = getattr(self, "latest", None)
+        self.may_end = last is not None and self.clock() - self.whole_at < MAX_BLIND_TIME
         try:
-            return self.collect(serial)
+            if last is not None and self.unfinished is not None:
+                return self.without_frame(last)  # of a scene that is not made
+            found = self.collect(serial)
+            self.is_shown, self.whole_at = self.scene.params is params, self.clock()
+            return found._replace(serial=self.counts["snapshots"])  # controls may have been answered with others
+        except InterruptionError:
+            assert last is not None
+            self.counts["pictures ended early"] += 1
+            self.is_shown = False
+            return self.without_frame(last)
         except Exception as error:
             if last is None:
                 raise  # nothing to show instead: the scene cannot be opened
@@ -549,7 +564,14 @@ class SimLoop:
                 traceback.print_exc()
                 error = DivergenceError(f"The scene stopped with {type(error).__name__}: {error}")
             self.halt(str(error))
-            return last._replace(serial=serial, status=self.status(), params=self.scene.params)
+            return self.without_frame(last)
+        finally:
+            self.may_end = False
+
+    def without_frame(self, last: AnySnapshot) -> AnySnapshot:
+        """The last snapshot with parameters and clock as they are now."""
+        serial = self.counts["snapshots"]
+        return last._replace(serial=serial, status=self.status(), params=self.scene.params, state=None)
 
     def collect(self, serial: int) -> AnySnapshot:
         """The scene's frame, readings, work, parameters and curves; hands its plot rows over.

@@ -5,6 +5,7 @@ surface mode is excited (the interfacial one, slow and hidden, is not), and both
 """
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable
 
@@ -101,12 +102,20 @@ class FluidColumn:
             return self.omega(k), np.asarray(self.decay(k))
         if self.kind != "layer":
             return damped_root(self.omega(k), self.surface.kinematic_viscosity * k**2, self.film)
-        upper, thickness, lower, gravity, _, *tensions = self._two()
-        return viscous_two_layer(
-            k, upper, self.oil.viscosity, thickness, lower, self.water.viscosity, gravity, *tensions, film=self.film
-        )
+        omega, rate = _layer_roots(self, k.tobytes(), k.shape)
+        return omega.copy(), rate.copy()
 
     def _two(self) -> tuple[float, float, float, float, float, float, float]:
         o = self.oil
         tensions = (o.surface_tension or 0.0, o.interface_tension or 0.0)
         return (o.density, self.thickness, self.water.density, self.gravity, math.inf, *tensions)
+
+
+@functools.lru_cache(maxsize=32)
+def _layer_roots(column: FluidColumn, wavenumbers: bytes, shape: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """`FluidColumn.roots` of a layer; kept, as they are asked for again as waves decay, and take up to a second."""
+    k = np.frombuffer(wavenumbers).reshape(shape)
+    upper, thickness, lower, gravity, _, *tensions = column._two()
+    return viscous_two_layer(
+        k, upper, column.oil.viscosity, thickness, lower, column.water.viscosity, gravity, *tensions, film=column.film
+    )

@@ -15,6 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sim.interruption import raise_if_stopped
+
 NEAR = 0.15  # shift of the root, as a share of the frequency, up to which it is found at once, without steps
 START = 1e-3  # such a shift where the steps begin
 GROWTH = 0.2  # of the logarithm of the viscosities in a step
@@ -97,6 +99,7 @@ def _solved(guess: np.ndarray, share: Any, layers: Layers, film: bool) -> tuple[
     new = np.where(guess == 0.0, old + old_miss, old + 1e-4 * old)
     done = np.zeros(len(guess), bool)
     for _ in range(ITERATIONS):
+        raise_if_stopped()
         miss = _new_shift(new, share, layers, film) - new
         done = np.abs(miss) <= TOLERANCE * np.abs(new) + SMALLEST_SHIFT
         if done.all():

@@ -44,6 +44,7 @@ from app.scenes.radial_sea.parameters import (
 )
 from app.scenes.radial_sea.well_blowout import CROSSING_WAVE, WellBlowout, slick_reach
 from sim.floating import MotionCoefficients, Shape, shape_from_file
+from sim.interruption import kept_whole
 from sim.ocean import Sea
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.foam import whitecaps
@@ -345,6 +346,7 @@ class RadialSeaScene:
             case Place("camera", (x, y, _)):
                 self.camera = (x, y)
 
+    @kept_whole()
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where a body's state is no longer finite."""
         bodies, sea, h = self.bodies, self.sea, self.step

@@ -391,19 +391,19 @@ class SquareSeaScene:
         if not self.statistics_due:
             return
         p, t = self.params, self.time
-        self.measured_at = t
         changing = p.viscosity > 0.0 or t - self.changed_at < SETTLING_TRANSITIONS * self.transition
         if self.theory is None or changing:
             self.theory = theory(self.sea, t, p)
         self.report = Report(measure(self.sea, height, self.earlier_height, p, dt), self.theory, dt)
+        self.measured_at = t
         self.counts["statistics"] += 1
 
     def update_spectrum(self) -> None:
         """The spectrum at the wave gauge, where it is shown and out of date."""
         p, t = self.params, self.time
         if p.plot_wave_spectrum and abs(t - self.spectrum_at) >= STATISTICS_INTERVAL:
-            self.spectrum_at = t
             columns = self.gauge.spectrum(self.sea, t, p.amplitude)
+            self.spectrum_at = t
             self.curve_columns = {"plot_wave_spectrum": columns} if columns[0].size else None
             self.counts["gauge spectra"] += 1
 
@@ -422,9 +422,9 @@ class SquareSeaScene:
         """(Jacobian below which there is foam, how far below it foam is full)."""
         p = self.params
         if abs(t - self.paced_at) >= PACE_INTERVAL:
-            self.paced_at = t
             self.pace = pace(self.sea, t)
             self.slope_left = self.sea.slope_left(t) * min(p.amplitude, 1.0) ** 2
+            self.paced_at = t
         slope, frequency = self.pace
         deviation = self.jacobian_deviation or max(self.sea.choppiness * math.sqrt(slope), 1e-6)
         self.foam_limit = p.foam_threshold

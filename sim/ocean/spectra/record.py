@@ -8,6 +8,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from sim.interruption import raise_if_stopped
 from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
@@ -15,6 +16,7 @@ from sim.validation import as_float, check_finite, check_number
 
 WIND_HEIGHTS = {10.0: 1.0, 19.5: 1.026}  # [m] -> wind there over U10, drag coefficient 1.3e-3 (Stewart 2008, eq. 16.33)
 MIN_WIND_SPEED = 1e-3  # [m/s] below which a wind makes no waves: spectra take powers of it, which would underflow
+PIECE = 16384  # wavenumbers at a time: these stay in the cache, and others may have a turn in between
 SECOND_EXPONENT = 25.0  # s of cos2s of the second system: swell that came a short way (Goda 2010, Sec. 2.3)
 
 
@@ -131,11 +133,20 @@ class Spectrum(NamedTuple, Generic[C]):
         if not waves.any():
             return S
         x, y = kx[waves], ky[waves]
-        found = np.zeros(x.shape) if self.is_level(conditions) else self.density(x, y, conditions)
-        if conditions.second_height > 0.0:
-            found = found + second_system(x, y, conditions)
-        S[waves] = found * np.exp(-(x**2 + y**2) * conditions.low_pass**2)
+        found = np.empty(x.shape)
+        for start in range(0, x.size, PIECE):
+            raise_if_stopped()
+            piece = slice(start, start + PIECE)
+            found[piece] = self._of_waves(x[piece], y[piece], conditions)
+        S[waves] = found
         return S
+
+    def _of_waves(self, kx: np.ndarray, ky: np.ndarray, conditions: C) -> np.ndarray:
+        """The same for wavenumbers (n,) that are not 0."""
+        found = np.zeros(kx.shape) if self.is_level(conditions) else self.density(kx, ky, conditions)
+        if conditions.second_height > 0.0:
+            found = found + second_system(kx, ky, conditions)
+        return found * np.exp(-(kx**2 + ky**2) * conditions.low_pass**2)
 
 
 SpreadC = TypeVar("SpreadC", bound=SpreadConditions)

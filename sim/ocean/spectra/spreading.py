@@ -8,14 +8,14 @@ import math
 
 import numpy as np
 
+from sim.jit import kernel
+
 SPREADINGS = {  # name -> its title in a list
     "cos2": "cos² θ",
     "cos2s": "cos²ˢ θ/2",
     "hasselmann": "Hasselmann",
     "donelan_banner": "Donelan and Banner",
 }
-
-_log_gamma = np.vectorize(math.lgamma, otypes=[np.float64])
 
 
 def spread(
@@ -39,7 +39,8 @@ def spread(
 def cos2s(s: np.ndarray | float, theta: np.ndarray) -> np.ndarray:
     """2^(2s-1)/pi Gamma(s+1)^2/Gamma(2s+1) cos^2s(theta/2), by duplication Gamma(s+1)/(2 sqrt(pi) Gamma(s+1/2))."""
     s = np.asarray(s, np.float64)
-    normaliser = np.exp(_log_gamma(s + 1.0) - _log_gamma(s + 0.5)) / (2.0 * math.sqrt(math.pi))
+    normaliser = np.empty(s.shape)
+    set_normaliser(np.ascontiguousarray(s).reshape(-1), normaliser.reshape(-1))
     return normaliser * np.abs(np.cos(0.5 * theta)) ** (2.0 * s)
 
 
@@ -47,6 +48,12 @@ def hasselmann_exponent(ratio: np.ndarray, inverse_age: float) -> np.ndarray:
     """s = 6.97 p^4.06 below the peak, 9.77 p^(-2.33 - 1.45 (U/c_p - 1.17)) above it, p = omega/omega_p."""
     above = -2.33 - 1.45 * (inverse_age - 1.17)
     return np.where(ratio <= 1.0, 6.97 * np.minimum(ratio, 1.0) ** 4.06, 9.77 * np.maximum(ratio, 1.0) ** above)
+
+
+@kernel(allocates=False)
+def set_normaliser(s, normaliser):
+    for j in range(s.shape[0]):
+        normaliser[j] = math.exp(math.lgamma(s[j] + 1.0) - math.lgamma(s[j] + 0.5)) / (2.0 * math.sqrt(math.pi))
 
 
 def _cos2(ratio: np.ndarray, theta: np.ndarray) -> np.ndarray:

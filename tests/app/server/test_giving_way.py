@@ -1,5 +1,6 @@
 """Controls are answered in the middle of a solve that takes long."""
 
+import contextvars
 import dataclasses
 
 import numpy as np
@@ -10,8 +11,11 @@ from app.scenes.cloth.parameters import Params as ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import RopeScene
-from app.server.loop import PATIENCE, CommandQueue, SimLoop
-from sim.interruption import STOP, TURN, InterruptionError, use_request
+from app.server.loop import MAX_BLIND_TIME, PATIENCE, CommandQueue, SimLoop
+from sim.interruption import STOP, TURN, InterruptionError, kept_whole, use_request
+from sim.ocean.fluid_column import FluidColumn, _layer_roots
+from sim.ocean.spectra import SPECTRA
+from sim.ocean.statistics import open_sea_height
 
 
 class Asked:
@@ -165,3 +169,78 @@ def test_a_cloth_gives_turns_within_a_step_and_shows_the_last_whole_one(changes)
     other.advance(1)
     assert scene.time == other.time > 0.0
     assert np.array_equal(scene.state.x, other.state.x)  # the turns change nothing
+
+
+def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(busy):
+    def long_frame():
+        busy.give_turn()
+        ended.append(int(busy.request[STOP]))
+        if busy.request[STOP]:
+            raise InterruptionError
+        return frame()
+
+    ended, frame, earlier = [], busy.scene.frame, busy.latest.frame
+    busy.running, busy.solving, busy.scene.frame = False, False, long_frame
+    busy.read_params.params = dataclasses.replace(busy.scene.params, points=5)
+    busy.publish()
+    assert (ended, busy.is_shown, busy.halted) == ([1], False, "")
+    assert busy.latest.frame is earlier
+    busy.request[STOP] = 0
+    busy.tick(0.0)
+    assert (ended, busy.is_shown) == ([1, 0], True)
+    assert busy.latest.params is busy.read_params.params
+    assert len(busy.latest.frame.points) == 5
+    busy.whole_at -= MAX_BLIND_TIME
+    busy.read_params.params = dataclasses.replace(busy.scene.params, points=6)
+    busy.publish()
+    assert ended == [1, 0, 0]
+    assert busy.is_shown
+
+
+def test_a_picture_that_was_ended_is_made_again_by_a_paused_lab(busy):
+    busy.running, busy.solving, busy.is_shown = False, False, False
+    busy.tick(0.0)
+    assert busy.latest.serial == 2
+    busy.tick(0.0)
+    assert busy.latest.serial == 2
+
+
+def test_a_look_that_is_taken_in_the_middle_of_a_picture_is_drawn_by_the_next(busy):
+    def long_frame():
+        found = frame()
+        busy.give_turn()
+        return found
+
+    frame, busy.running, busy.solving = busy.scene.frame, False, False
+    busy.scene.frame = long_frame
+    busy.read_params.params = dataclasses.replace(busy.scene.params, grid=False)
+    busy.publish()
+    assert busy.latest.serial == 3  # the answer in between was the second
+    assert busy.latest.frame.grid
+    busy.tick(0.0)
+    assert not busy.latest.frame.grid
+
+
+@pytest.mark.parametrize(
+    "work",
+    [
+        lambda: open_sea_height.__wrapped__(SPECTRA["elfouhaily"], SPECTRA["elfouhaily"].conditions()),
+        lambda: FluidColumn(thickness=0.01, film=True).roots(np.array([0.123])),
+    ],
+)
+def test_what_a_sea_takes_long_for_gives_turns_and_can_be_ended_but_where_it_is_kept_whole(work):
+    def try_out():
+        request, turns = np.array([0, 0, 1, 0], np.int64), []
+        use_request(request, lambda: turns.append(1))
+        with kept_whole():
+            work()
+        assert turns == []
+        _layer_roots.cache_clear()
+        work()
+        assert turns == [1]
+        _layer_roots.cache_clear()
+        request[STOP] = 1
+        with pytest.raises(InterruptionError):
+            work()
+
+    contextvars.copy_context().run(try_out)

@@ -9,10 +9,7 @@
   const FLOOR_CLEARANCE = 0.1; // [m] of the camera above the floor
   const WATER_CLEARANCE = 0.25; // [m] of the camera above the water
   const MAX_WAVE_HEIGHT = 40; // [m] above the mean water, from which on no wave is looked for
-  // Width over height of what the field of view shows at least: nets hang and swing in a high picture, but what floats on a
-  // sea is spread over a wide one.
-  const MIN_ASPECT = 0.8;
-  const MIN_SEA_ASPECT = 1.1;
+  const MIN_ASPECT = 1.05; // width over height of what the field of view shows at least: that of all presets
   const MIN_FREE = 120; // [pixels] of a side of the free rectangle: a smaller one is not used
   const MEASURE_INTERVAL = 150; // [ms] between two looks at where the panels are
   const PANELS =
@@ -50,8 +47,7 @@
   function centre(camera, canvas) {
     const width = canvas.clientWidth, height = canvas.clientHeight;
     if (!free || !width || !height) return;
-    const aspect = shownNode("/sea") ? MIN_SEA_ASPECT : MIN_ASPECT;
-    const scale = Math.min(free.height, free.width / aspect) / height;
+    const scale = Math.min(free.height, free.width / MIN_ASPECT) / height;
     const full = [width * scale, height * scale];
     const offset = [full[0] / 2 - free.x - free.width / 2, full[1] / 2 - free.y - free.height / 2];
     const view = camera.view;

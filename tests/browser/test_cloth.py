@@ -62,6 +62,8 @@ def test_a_pin_is_moved_by_its_arrow(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     pin = lab.scene.state.x[:, 0, 0].copy()
     arrow = pin + (0.0, 0.0, 0.15)
+    # viser's note on drawing in software lies over the arrow.
+    tab.page.evaluate("document.querySelectorAll('.mantine-Notification-root button').forEach(close => close.click())")
 
     def drag_up() -> bool:
         tab.drag(tab.pixel(arrow), tab.pixel(arrow + (0.0, 0.0, 0.4)))

@@ -219,20 +219,19 @@ class Plots:
         scale = None if self.is_logarithmic(name) else self.scale_for(name, columns[1:])
         look = first, lines, end, scale
         handle = self.charts[name]
-        # Lines, scales and columns together: the browser must not see more of one than of the others.
-        with self.server.atomic():
-            if self.looks.get(name) != look:
-                self.looks[name] = look
-                handle.series = series_of(first, lines)
-                time_scale = uplot.Scale(time=False, auto=end is None)
-                if end is not None:  # left to itself the scale would carry on from the lines before
-                    time_scale["range"] = (0.0, end)
-                if scale is None:
-                    handle.scales = {**(handle.scales or {}), "x": time_scale}
-                else:
-                    handle.scales = {"x": time_scale, "y": uplot.Scale(auto=False, range=(scale.low, scale.high))}
-                    handle.axes = axes_of(scale.ticks, scale.words)
-            handle.data = tuple(np.asarray(column, float) for column in columns)
+        # Lines, scales and columns are handed over together: the browser must not see more of one than of the others.
+        if self.looks.get(name) != look:
+            self.looks[name] = look
+            handle.series = series_of(first, lines)
+            time_scale = uplot.Scale(time=False, auto=end is None)
+            if end is not None:  # left to itself the scale would carry on from the lines before
+                time_scale["range"] = (0.0, end)
+            if scale is None:
+                handle.scales = {**(handle.scales or {}), "x": time_scale}
+            else:
+                handle.scales = {"x": time_scale, "y": uplot.Scale(auto=False, range=(scale.low, scale.high))}
+                handle.axes = axes_of(scale.ticks, scale.words)
+        handle.data = tuple(np.asarray(column, float) for column in columns)
         self.drawn += 1
 
     def is_logarithmic(self, name: str) -> bool:

@@ -97,7 +97,7 @@ class Water:
             self._injector.watch(name)
 
     def set_surface(self, vertices: np.ndarray, slopes: np.ndarray, foam: np.ndarray, time: float = 0.0) -> None:
-        """Draw this surface; call inside `server.atomic()`. Arrays are copied.
+        """Draw this surface; call it where a picture is handed over as one. Arrays are copied.
 
         vertices: (rows, cols, 3) [m]. slopes: (rows, cols, 2), dz/dx and dz/dy of the displaced surface. foam:
         (rows, cols), 0..1. time [s] moves ripples and clouds.

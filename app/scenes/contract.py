@@ -150,7 +150,7 @@ class View(Protocol[P, F, R]):
         ...
 
     def show(self, frame: F) -> None:
-        """Assign a frame to the handles; called inside `server.atomic()`."""
+        """Assign a frame to the handles; called where a picture is handed over as one."""
         ...
 
     def readout(self, snapshot: Snapshot[P, F, R]) -> str:

@@ -1,9 +1,9 @@
 """Hands what the viewer thread draws to viser, one picture at a time, and counts it: arrays, texts and bytes.
 
 viser's own `atomic()` holds a browser's next message back while a picture is handed over. But a message that is just
-being put together may still end in the middle of a picture, or take half of one that the next replaces. Therefore a
-picture is handed over as a whole on viser's event loop, where messages are put together too: mesh and poses of one
-picture are always in one message, however slow a browser is.
+being put together then ends in the middle of a picture, or takes half of one that the next replaces. Therefore no
+`atomic()` is used here: a picture is handed over as a whole on viser's event loop, where messages are put together
+too. So mesh and poses of one picture are always in one message, however slow a browser is.
 
 The names with an underscore are viser's own and a reason for the upper bound in pyproject.toml; the tests fail when
 they change.

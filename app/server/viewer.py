@@ -314,7 +314,7 @@ class Viewer:
         recorder.note(snapshot, now)
         recorder.advance(now)
         recorded = recorder.shown
-        with self.transport.counted(), self.server.atomic():
+        with self.transport.counted():
             if recorded is not None:
                 if recorded is not self.recorded:
                     self.drawn += 1

@@ -112,7 +112,7 @@ class View:
         return self.CAMERA
 
     def show(self, frame: ClothFrame) -> None:
-        """Assign a new frame to the handles; call inside `server.atomic()`."""
+        """Assign a new frame to the handles; call it where a picture is handed over as one."""
         self.points = frame.points.reshape(-1, 3)
         if frame.points.shape[:2] != self.shape:
             self.build(frame)

@@ -123,7 +123,7 @@ class RopesDrawing:
         return poles
 
     def show(self, frame: RaceFrame) -> None:
-        """Assign a new frame; call inside `server.atomic()`."""
+        """Assign a new frame; call it where a picture is handed over as one."""
         for i, tube in enumerate(self.tubes):
             if frame.failed[i] and self.shown_failed[i]:
                 continue  # it has stopped where it is drawn
@@ -186,7 +186,7 @@ class View:
         return (x + BEARING[1] * flat, y - BEARING[0] * flat, z + distance * math.sin(ELEVATION)), target
 
     def show(self, frame: RaceFrame) -> None:
-        """Assign a new frame to the handles; call inside `server.atomic()`."""
+        """Assign a new frame to the handles; call it where a picture is handed over as one."""
         if self.ropes is not None and self.ropes.shape != frame.ropes.shape:
             self.ropes.remove()
             self.ropes = None

@@ -144,7 +144,7 @@ class Walls:
                 label.position = places[part]
 
     def show(self, cutaway: Cutaway | None, light: Material, column: FluidColumn, keel: float | None) -> None:
-        """Draw the walls as they are now, or hide them; call inside `server.atomic()`.
+        """Draw the walls as they are now, or hide them; call it where a picture is handed over as one.
 
         keel: height [m] of the lowest point of the body before the far wall; None where there is no body.
         """

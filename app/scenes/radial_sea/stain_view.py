@@ -24,7 +24,7 @@ class Stains:
         self.made_for: tuple[Any, ...] = ()
 
     def show(self, frame: RadialFrame) -> None:
-        """Draw the stains as they are; call inside `server.atomic()`."""
+        """Draw the stains as they are; call it where a picture is handed over as one."""
         made_for = frame.kinds, frame.params.size, frame.column.oil.colour
         if made_for != self.made_for:
             self.made_for = made_for

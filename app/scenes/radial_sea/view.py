@@ -98,7 +98,7 @@ class View:
         return vector_of(position), vector_of(target)
 
     def show(self, frame: RadialFrame) -> None:
-        """Assign a new frame to the handles; call inside `server.atomic()`."""
+        """Assign a new frame to the handles; call it where a picture is handed over as one."""
         p = frame.params
         if self.sky != p.sky:
             self.sky = p.sky

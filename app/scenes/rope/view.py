@@ -138,7 +138,7 @@ class View:
         return self.CAMERA
 
     def show(self, frame: RopeFrame) -> None:
-        """Assign a new frame to the handles; call inside `server.atomic()`."""
+        """Assign a new frame to the handles; call it where a picture is handed over as one."""
         if len(frame.points) != self.count:
             self.build(frame)
         assert self.tube is not None

@@ -94,7 +94,7 @@ class RainMesh:
         self.reach = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], -1)  # (CROWN_DROPS, 3) [m]
 
     def show(self, frame: RainFrame) -> None:
-        """Move everything; call inside `server.atomic()`."""
+        """Move everything; call it where a picture is handed over as one."""
         self.drops.show(frame.drops - EXPOSURE_TIME * frame.velocity, frame.drops)
         age = frame.splashes[:, 3]
         earlier = np.maximum(age - EXPOSURE_TIME, 0.0)

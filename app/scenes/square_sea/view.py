@@ -90,7 +90,7 @@ class View:
             self.post(Point(origin, direction))
 
     def show(self, frame: SeaFrame) -> None:
-        """Assign a new frame to the handles; call inside `server.atomic()`."""
+        """Assign a new frame to the handles; call it where a picture is handed over as one."""
         p = frame.params
         if self.sky != (p.sky, p.sun):
             self.sky = p.sky, p.sun

@@ -72,9 +72,10 @@ def test_mesh_and_poses_of_a_picture_come_in_one_message() -> None:
         def draw() -> None:
             time.sleep(0.3)
             for picture in range(1, PICTURES):
-                with transport.counted(), server.atomic():
+                with transport.counted():
                     for node in nodes:
                         node.text = str(picture)
+                    time.sleep(0.001)  # while a message with the picture before is put together
                     for node in nodes:
                         node.position = (float(picture), 0.0, 0.0)
                 time.sleep(0.002)

@@ -18,8 +18,7 @@ from tests.stress.served import served
 
 RATE, DELAY, BUFFER = 20e6 / 8, 0.04, 1_000_000  # [bytes/s], [s] each way, [bytes]
 CHANGES = 40
-# [s] in the median. The sea changes with the next step and picture, which the processor of a busy machine delays.
-MAX_REACTION = {"ticked": 0.25, "drawn": 0.5}
+MAX_REACTION = 0.25  # [s] in the median, on a machine with no other work
 # All of the page works but the software renderer, which would take most of the processor.
 NO_TRIANGLES = """for (const call of ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"])
     WebGL2RenderingContext.prototype[call] = () => {};"""
@@ -76,8 +75,8 @@ def test_a_key_answers_soon_over_a_slow_line(chromium: Any, scene: str) -> None:
             page.wait_for_timeout(300 + 37 * (number % 7))
         watch = page.evaluate("springtideWatch")
         page.close()
-    for what, most in MAX_REACTION.items():
+    for what in ("ticked", "drawn"):
         times = [time / 1000 for time in watch[what]]
         print(f"{scene}, {what}: median {statistics.median(times):.3f} s, 95 % below {of_95(times):.3f} s")
         assert len(times) == CHANGES
-        assert statistics.median(times) < most, json.dumps(times)
+        assert statistics.median(times) < MAX_REACTION, json.dumps(times)

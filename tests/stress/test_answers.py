@@ -19,7 +19,7 @@ from tests.stress.tally import Tally
 CHANGES = int(os.environ.get("SPRINGTIDE_STRESS_CHANGES", "10000")) // 10  # of each scene
 AT_ONCE = 6  # most parameters turned between two answers
 PAUSE = 0.15  # [s] in which a solve gets under way, at most
-MAX_SILENCE = {"radial_sea": 4.0, "square_sea": 2.0}  # [s], on a machine with other work: a frame of a sea is whole
+MAX_SILENCE = {"radial_sea": 2.0, "square_sea": 1.0}  # [s], on a machine with other work: a frame of a sea is whole
 MAX_SILENCE_OF_SPRINGS = 1.0  # [s]
 
 

@@ -64,7 +64,7 @@ def _cos2(ratio: np.ndarray, theta: np.ndarray) -> np.ndarray:
 def _donelan_banner(ratio: np.ndarray, theta: np.ndarray) -> np.ndarray:
     """beta / (2 tanh(beta pi)) sech^2(beta theta)."""
     p = np.maximum(ratio, 1e-6)
-    tail = 10.0 ** (-0.4 + 0.8393 * np.exp(-0.567 * np.log(p**2)))
+    tail = 10.0 ** (-0.4 + 0.8393 * np.exp(-0.567 * np.log(np.maximum(p, 1.6) ** 2)))  # at small p it would overflow
     beta = np.where(p < 0.95, 2.61 * np.maximum(p, 0.56) ** 1.3, np.where(p < 1.6, 2.28 * p**-1.3, tail))
     return beta / (2.0 * np.tanh(beta * math.pi)) / np.cosh(beta * theta) ** 2
 

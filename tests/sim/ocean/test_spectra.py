@@ -216,6 +216,12 @@ def test_phillips_at_the_lab_constant_has_the_height_of_pierson_moskowitz():
 
 
 @pytest.mark.parametrize("name", SPREADINGS)
+def test_spreading_far_below_the_peak_is_finite(name):
+    ratio, theta = np.logspace(-9, 0, 50)[:, None], np.linspace(-np.pi, np.pi, 16)
+    assert np.isfinite(spread(name, ratio, theta, 10.0, 0.5, 5.0)).all()
+
+
+@pytest.mark.parametrize("name", SPREADINGS)
 @pytest.mark.parametrize("swell", [0.0, 0.4, 1.0])
 def test_spreading_integrates_to_one(name, swell):
     theta = (np.arange(2000) + 0.5) * (2 * math.pi / 2000) - math.pi

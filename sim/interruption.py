@@ -21,6 +21,7 @@ FUNCTION = 3  # address of a function without arguments, or 0
 REQUEST: contextvars.ContextVar[NDArray[np.int64] | None] = contextvars.ContextVar("stop request", default=None)
 WHOLE: contextvars.ContextVar[bool] = contextvars.ContextVar("whole", default=False)
 GIVE_TURN: contextvars.ContextVar[Callable[[], None] | None] = contextvars.ContextVar("give turn", default=None)
+TURN_IS_DUE: contextvars.ContextVar[Callable[[], bool] | None] = contextvars.ContextVar("turn is due", default=None)
 
 
 class InterruptionError(Exception):
@@ -36,29 +37,33 @@ def stop_request() -> NDArray[np.int64]:
     return request
 
 
-def use_request(request: NDArray[np.int64], give_turn: Callable[[], None] | None = None) -> None:
+def use_request(
+    request: NDArray[np.int64],
+    give_turn: Callable[[], None] | None = None,
+    turn_is_due: Callable[[], bool] | None = None,
+) -> None:
     """Let solves of this thread look at `request` (4,). Any thread may set its STOP and TURN.
 
-    give_turn: called where TURN is set, on this thread, in the middle of a solve; it raises nothing.
+    give_turn: called where TURN is set, on this thread, in the middle of a solve; it raises nothing. turn_is_due: asked
+    by `raise_if_stopped`, as who sets TURN may be late.
     """
     request[FUNCTION] = id(give_turn) if give_turn else 0
     REQUEST.set(request)
     GIVE_TURN.set(give_turn)  # which keeps it alive
+    TURN_IS_DUE.set(turn_is_due)
 
 
 def raise_if_stopped() -> None:
     """Raises KeyboardInterrupt after a Ctrl-C that a kernel noticed, InterruptionError where another thread asked.
 
     The request stays set in the latter case, so that nothing else of the same call begins; who set it takes it back.
-    A turn that was asked for is given first. Neither happens inside `kept_whole`.
+    A turn that was asked for, or is due, is given first. Nothing is raised inside `kept_whole`.
     """
-    if WHOLE.get():
-        return
-    request, give_turn = stop_request(), GIVE_TURN.get()
-    if request[TURN] and give_turn:
+    request, give_turn, is_due = stop_request(), GIVE_TURN.get(), TURN_IS_DUE.get()
+    if give_turn and (request[TURN] or (is_due is not None and is_due())):
         request[TURN] = 0
         give_turn()
-    if request[STOP]:
+    if request[STOP] and not WHOLE.get():
         if request[SIGNALS]:
             request[STOP] = 0
             raise KeyboardInterrupt
@@ -67,9 +72,22 @@ def raise_if_stopped() -> None:
 
 @contextlib.contextmanager
 def kept_whole() -> Iterator[None]:
-    """Inside, `raise_if_stopped` does nothing: for a change of several things that must all be made, or none."""
+    """Inside, `raise_if_stopped` raises nothing: for a change of several things that must all be made, or none."""
     before = WHOLE.set(True)
     try:
         yield
     finally:
         WHOLE.reset(before)
+
+
+def is_kept_whole() -> bool:
+    """Whether this thread is inside `kept_whole`."""
+    return WHOLE.get()
+
+
+def pieces(count: int, size: int) -> Iterator[slice]:
+    """Slices of at most `size` that cover range(count). Before each, others may have a turn; raises as
+    `raise_if_stopped`."""
+    for start in range(0, count, size):
+        raise_if_stopped()
+        yield slice(start, min(start + size, count))

@@ -42,11 +42,11 @@ from app.messages import (
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.moments import arrays_in
 from app.scenes.stepping import steps_to
-from app.server.command_queue import CommandQueue
+from app.server.command_queue import CommandQueue, begins_anew
 from app.server.merging import merged
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
-from sim.interruption import STOP, TURN, InterruptionError, use_request
+from sim.interruption import STOP, TURN, InterruptionError, is_kept_whole, use_request
 from sim.parameters import effect_of_change
 
 SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
@@ -139,6 +139,7 @@ class SimLoop:
         self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
         self.solving = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
         self.may_end = False  # what runs may be ended early: steps, or a reset, which is then done again
+        self.may_begin = False  # what runs may be ended early where the scene begins anew after it
         self.is_late = False  # controls were answered in the middle of the last tick
         self.turn_at = 0.0  # [s] of the clock, when controls were last answered
         self.is_shown = True  # the latest snapshot is of the scene as it is
@@ -181,9 +182,6 @@ class SimLoop:
         params, loads = self.read_params()
         # Parameters first: a reset starts from them. A record of a `Load` that is still on the way comes with it.
         changed = loads == self.loaded and params is not self.scene.params and self.take(params)
-        if self.unfinished is not None:
-            self.begin(self.unfinished)
-            changed = True
         changed |= self.handle_waiting() or not self.is_shown
         if changed and was_late:
             self.publish()  # before steps that may take long
@@ -247,7 +245,7 @@ class SimLoop:
             self.halt(self.replay.reason)
             self.replay = None
         if effect == "forces" and self.unfinished is None:
-            self.guarded(lambda: self.scene.change_forces(params))
+            self.guarded(lambda: self.scene.change_forces(params), else_anew=True)
             self.scene.params = params  # also where the scene failed: not to be tried again in every tick
         else:
             self.scene.params = params
@@ -340,32 +338,43 @@ class SimLoop:
         self.counts["steps"] += n
         return seconds
 
+    def turn_is_due(self) -> bool:
+        """Whether controls have waited for a while for what runs."""
+        return self.busy_since is not None and self.clock() - self.turn_at >= PATIENCE
+
     def ask_for_turn(self) -> None:
         """Have controls answered in the middle of a solve that takes long; called from another thread."""
-        if self.busy_since is not None and self.clock() - self.turn_at >= PATIENCE:
+        if self.turn_is_due():
             self.request[TURN] = 1
 
     def give_turn(self) -> None:
         """Answer controls in the middle of a solve, which calls this on its own thread.
 
         What asks for another solve ends this one; the next tick handles it, from the last good state. What does not is
-        answered at once, and the solve goes on: a look, or a drag, which counts from the next steps on.
+        answered at once, and the solve goes on: a look, or a drag, which counts from the next steps on. Where nothing
+        may be ended, parameters are answered with the last frame, and the next tick takes them.
         """
         self.turn_at, self.is_late = self.clock(), True
         try:
             params, loads = self.read_params()
-            effect = effect_of_change(self.scene.params, params) if loads == self.loaded else None
-            if self.commands.urgent or effect in ("forces", "start"):
-                self.request[STOP] = self.may_end
+            if loads != self.loaded:  # they come with a `Load` that waits
+                params = self.scene.params
+            effect, whole = effect_of_change(self.scene.params, params), is_kept_whole()
+            anew = self.commands.begins_anew or effect == "start"
+            asked = anew or self.commands.urgent or effect == "forces"
+            if not whole and ((self.may_end and asked) or (self.may_begin and anew)):
+                self.request[STOP] = 1
                 return
             if effect == "look":
                 self.scene.params = params
-            drags = self.drags_waiting() if self.solving else []
+            within_steps = self.solving and not whole
+            drags = self.drags_waiting() if within_steps else []
             for command in drags:
                 self.scene.handle(command)
-            if drags or self.latest.params is not self.scene.params:
+            is_begun = self.latest.status.starts == self.counts["starts"]
+            if drags or self.latest.params != params or not is_begun:
                 self.capped = self.solving
-                self.publish_in_solve()
+                self.publish_in_solve(params, with_frame=within_steps)
         except Exception:  # the solve knows nothing of it
             traceback.print_exc()
 
@@ -377,28 +386,28 @@ class SimLoop:
         self.waiting = [command for command in self.waiting if not isinstance(command, Grab | Place | Release)]
         return drags
 
-    def publish_in_solve(self) -> None:
-        """Hand the viewer the last whole step with the parameters as they are; where there is none, the last frame."""
+    def publish_in_solve(self, params: BaseParams, *, with_frame: bool) -> None:
+        """Hand the viewer these parameters with the last whole step; without `with_frame`, with the last frame."""
         self.counts["snapshots"] += 1
-        last = self.without_frame(self.latest)
+        last = self.without_frame(self.latest)._replace(params=params)
         try:
-            self.latest = self.collect(last.serial) if self.solving else last
+            self.latest = self.collect(last.serial)._replace(params=params) if with_frame else last
         except DivergenceError:  # the solve is about to find that out
             self.latest = last
         self.fresh.set()
 
-    def guarded(self, action: Callable[[], None], *, again: bool = False) -> None:
+    def guarded(self, action: Callable[[], None], *, again: bool = False, else_anew: bool = False) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
 
-        again: to be done once more where it is ended early.
+        again: to be done once more where it is ended early. else_anew: ended early only where the scene begins anew.
         """
-        self.may_end = again or self.solving
+        self.may_end, self.may_begin = again or self.solving, else_anew
         try:
             action()
         except InterruptionError:
             self.counts["solves ended early"] += 1
-            if again:
-                self.unfinished = action
+            if again or else_anew:
+                self.unfinished = action if again else self.scene.reset
         except DivergenceError as error:
             if error.moments and self.running:
                 self.replay = Replay(error.moments, str(error))
@@ -408,7 +417,7 @@ class SimLoop:
             traceback.print_exc()
             self.halt(f"The scene stopped with {type(error).__name__}: {error}")
         finally:
-            self.may_end = False
+            self.may_end = self.may_begin = False
 
     def play_replay(self, replay: Replay, wall: float) -> bool:
         """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""
@@ -426,16 +435,21 @@ class SimLoop:
         self.halted = reason
 
     def handle_waiting(self) -> bool:
-        """Handle what is left of the waiting commands once they are merged; True where there was one."""
+        """Handle what is left of the waiting commands once they are merged, after a reset that was ended early, unless
+        another one waits; True where there was one."""
         waiting, self.waiting = self.waiting, []
-        self.commands.urgent = False
+        self.commands.urgent = self.commands.begins_anew = False
         for _ in range(
             self.commands.qsize()
         ):  # nobody else takes from it; what comes meanwhile waits for the next tick
             waiting.append(self.commands.get_nowait())
-        for command in merged(waiting):
+        left = merged(waiting)
+        unfinished = None if any(begins_anew(command) for command in left) else self.unfinished
+        if unfinished is not None:
+            self.begin(unfinished)
+        for command in left:
             self.handle(command)
-        return bool(waiting)
+        return bool(waiting) or unfinished is not None
 
     def handle(self, command: Command) -> None:
         """Carry out one command."""
@@ -545,7 +559,8 @@ class SimLoop:
         self.counts["snapshots"] += 1
         serial, params = self.counts["snapshots"], self.scene.params
         last: AnySnapshot | None = getattr(self, "latest", None)
-        self.may_end = last is not None and self.clock() - self.whole_at < MAX_BLIND_TIME
+        self.may_begin = last is not None
+        self.may_end = self.may_begin and self.clock() - self.whole_at < MAX_BLIND_TIME
         try:
             if last is not None and self.unfinished is not None:
                 return self.without_frame(last)  # of a scene that is not made
@@ -566,7 +581,7 @@ class SimLoop:
             self.halt(str(error))
             return self.without_frame(last)
         finally:
-            self.may_end = False
+            self.may_end = self.may_begin = False
 
     def without_frame(self, last: AnySnapshot) -> AnySnapshot:
         """The last snapshot with parameters and clock as they are now."""
@@ -621,7 +636,7 @@ class SimLoop:
 
     def run(self, stop: threading.Event) -> None:
         """Tick until `stop` is set, at the frame rate while there is something to do."""
-        use_request(self.request, self.give_turn)
+        use_request(self.request, self.give_turn, self.turn_is_due)
         last = self.clock()
         while True:
             self.request[STOP] = self.request[TURN] = 0
@@ -643,11 +658,16 @@ class SimLoop:
                 self.wait(rest, stop)
 
     def wait(self, seconds: float, stop: threading.Event) -> None:
-        """Sleep for `seconds`; a command ends a sleep that is longer than a hand should have to wait."""
-        if seconds <= MAX_DEAF_TIME:
-            stop.wait(seconds)
-            return
-        start = self.clock()
-        with contextlib.suppress(queue.Empty):
-            self.waiting.append(self.commands.get(timeout=seconds))
-            stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # many commands make no more ticks than frames
+        """Sleep for `seconds`; a command or other parameters end a sleep that is longer than a hand should have to
+        wait."""
+        start, left = self.clock(), seconds
+        while left > MAX_DEAF_TIME and not self.waiting and not stop.is_set():
+            with contextlib.suppress(queue.Empty):
+                self.waiting.append(self.commands.get(timeout=MAX_DEAF_TIME))
+                stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # not more ticks than frames
+                return
+            if self.read_params()[0] != self.scene.params:
+                return
+            left = seconds - (self.clock() - start)
+        if left > 0.0:
+            stop.wait(min(left, MAX_DEAF_TIME))

@@ -12,7 +12,7 @@ from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import RopeScene
 from app.server.loop import MAX_BLIND_TIME, PATIENCE, CommandQueue, SimLoop
-from sim.interruption import STOP, TURN, InterruptionError, kept_whole, use_request
+from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, use_request
 from sim.ocean.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA
 from sim.ocean.statistics import open_sea_height
@@ -128,21 +128,81 @@ def test_other_forces_after_a_reset_that_was_ended_early_begin_again(busy):
     assert (busy.unfinished, busy.halted) == (None, "")
 
 
-@pytest.mark.parametrize("solving", [True, False])
-def test_a_change_of_forces_is_not_ended_in_its_middle(busy, solving):
+@pytest.mark.parametrize(("command", "ends"), [(Reset(), 1), (Pause(), 0)])
+def test_a_change_of_forces_is_ended_in_its_middle_only_for_a_new_beginning(busy, command, ends):
     def change(params):
-        busy.commands.put(Reset())
+        busy.commands.put(command)
         busy.give_turn()
         ended.append(int(busy.request[STOP]))
+        if busy.request[STOP]:
+            busy.scene.net = None  # half of the change
+            raise InterruptionError
+        whole(params)
 
-    ended = []
-    if solving:
-        busy.scene.advance = change
-        busy.advance(1)
-    else:
-        busy.solving, busy.scene.change_forces = False, change
-        busy.take(dataclasses.replace(busy.scene.params, stiffness=90.0))
-    assert ended == [solving]
+    ended, resets, reset, whole = [], [], busy.scene.reset, busy.scene.change_forces
+    busy.solving, busy.scene.change_forces = False, change
+    busy.scene.reset = lambda: resets.append(reset())
+    busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
+    frame = busy.latest.frame
+    busy.take(busy.read_params.params)
+    busy.publish()
+    assert ended == [ends]
+    assert (busy.latest.frame is frame) == ends  # nothing is shown of what is half done
+    busy.request[STOP] = 0
+    busy.tick(0.0)
+    assert len(resets) == ends
+    assert (busy.unfinished, busy.halted, busy.scene.params.stiffness) == (None, "", 90.0)
+
+
+def test_where_nothing_may_be_ended_other_forces_are_answered_with_the_last_frame(busy):
+    busy.solving = busy.may_end = False
+    first = busy.latest.frame
+    busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
+    busy.give_turn()
+    assert busy.request[STOP] == 0
+    assert busy.latest.params is busy.read_params.params
+    assert busy.latest.frame is first
+    assert busy.scene.params is not busy.read_params.params  # which the next tick gives it
+    busy.tick(0.0)
+    assert busy.scene.params is busy.read_params.params
+
+
+def test_steps_that_are_kept_whole_are_neither_ended_nor_shown_half_done(busy):
+    busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
+    busy.commands.put(Reset())
+    busy.commands.put(Grab(1, (0.0, 0.0, 0.0)))
+    busy.scene.frame = None  # not asked for
+    with kept_whole():
+        busy.give_turn()
+    assert busy.request[STOP] == 0
+    assert busy.latest.params is busy.read_params.params
+    assert busy.commands.qsize() == 2
+    busy.give_turn()
+    assert busy.request[STOP] == 1
+
+
+def test_a_reset_that_takes_long_says_that_it_has_begun(busy):
+    def long_reset():
+        busy.give_turn()
+        seen.append(busy.latest.status.starts)
+        reset()
+
+    seen, reset, busy.solving = [], busy.scene.reset, False
+    busy.scene.reset = long_reset
+    busy.commands.put(Reset())
+    busy.tick(0.0)
+    assert seen == [1]
+    assert busy.request[STOP] == 0
+
+
+def test_a_turn_that_is_due_is_given_though_nobody_asks():
+    def try_out():
+        turns, due = [], iter([False, True, False])
+        use_request(np.zeros(4, np.int64), lambda: turns.append(1), lambda: next(due))
+        found = [(piece.start, piece.stop, len(turns)) for piece in pieces(5, 2)]
+        assert found == [(0, 2, 0), (2, 4, 1), (4, 5, 1)]
+
+    contextvars.copy_context().run(try_out)
 
 
 @pytest.mark.parametrize("changes", [{"integrator": "implicit_euler", "time_step": 0.05}, {"thickness": 0.1}])
@@ -232,14 +292,14 @@ def test_what_a_sea_takes_long_for_gives_turns_and_can_be_ended_but_where_it_is_
     def try_out():
         request, turns = np.array([0, 0, 1, 0], np.int64), []
         use_request(request, lambda: turns.append(1))
-        with kept_whole():
-            work()
-        assert turns == []
-        _layer_roots.cache_clear()
         work()
         assert turns == [1]
         _layer_roots.cache_clear()
-        request[STOP] = 1
+        request[STOP] = request[TURN] = 1
+        with kept_whole():
+            work()
+        assert turns == [1, 1]
+        _layer_roots.cache_clear()
         with pytest.raises(InterruptionError):
             work()
 

@@ -329,6 +329,20 @@ def test_whoever_shows_is_told_of_each_new_snapshot_and_of_nothing_else() -> Non
     assert loop.fresh.is_set()
 
 
+def test_other_parameters_end_a_long_sleep() -> None:
+    given = [Params()]
+    loop, _ = make(read_params=lambda: (given[-1], 0))
+    stop = threading.Event()
+    sleep = threading.Thread(target=loop.wait, args=(1000.0, stop))
+    sleep.start()
+    sleep.join(0.2)
+    assert sleep.is_alive()
+    given.append(Params(stiffness=3.0))
+    sleep.join(10.0)
+    stop.set()
+    assert not sleep.is_alive()
+
+
 @pytest.mark.parametrize("seconds", [IDLE_INTERVAL, 4 * FRAME_INTERVAL])
 def test_a_command_ends_a_long_sleep_and_is_handled_after_the_parameters(seconds: float) -> None:
     given = Params()

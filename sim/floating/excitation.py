@@ -19,6 +19,7 @@ from sim.floating.equilibrium import Layers, check_layers
 from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import DIRECTIONS, SEA_WATER, LinearHull, afloat, lagrange, wet_pressure
 from sim.floating.rigid import heading_of
+from sim.interruption import pieces, raise_if_stopped
 from sim.jit import kernel
 from sim.ocean.gerstner import Waves, widened
 from sim.ocean.wave_sum import fine_wave
@@ -27,6 +28,7 @@ HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of wav
 NUDGE = 1e-4  # share of the draft by which a plane is moved or tilted to find its force
 LAST_RATES = (15 / 8, -10 / 8, 3 / 8)  # weights of the last three rates of change, for that half a step after them
 CREEPING = 0.1  # of sqrt(g k), below which a wave in viscous fluids only sinks away, and does nothing upward here
+PIECE = 64  # waves at a time: others may have a turn in between
 BEYOND = 1.0  # [lengths] of 1/k over which the force fades beyond the highest frequency of a table
 
 
@@ -57,22 +59,23 @@ class HullExcitation:
 
     def __init__(self, hull: Hull, linear: LinearHull, width: float) -> None:
         """width [m]: diameter over which the plane's waves are averaged."""
+        raise_if_stopped()
         self.linear, self.width = linear, width
         self.plane = plane_force(hull, linear.draft)
 
     def tabulate(self, k: np.ndarray) -> np.ndarray:
         """X (waves, 36, 6) in directions against the hull, for wavenumbers k (waves,) [rad/m], over g."""
-        linear, found = self.linear, np.empty((len(k), len(DIRECTIONS), 6), complex)
+        linear, found = self.linear, np.empty((len(k), len(DIRECTIONS) * 6), complex)
         still = np.broadcast_to(self.plane.rise, (1, len(DIRECTIONS), 6))
         nodes = np.concatenate([[0.0], linear.frequency])
-        values = np.concatenate([still, linear.excitation])
+        values = np.concatenate([still, linear.excitation]).reshape(len(nodes), -1)
         last = float(nodes[-1])
-        for i, one in enumerate(k):
-            frequency = math.sqrt(one)
-            index, weights = lagrange(nodes, min(frequency, last))
-            fade = math.exp(-max(one - last**2, 0.0) * linear.length * BEYOND)
-            found[i] = fade * np.tensordot(weights, values[index], 1)
-        return found
+        index, weights = lagrange(nodes, np.minimum(np.sqrt(k), last))
+        for piece in pieces(len(k), PIECE):
+            for i, one in enumerate(k[piece].tolist(), start=piece.start):
+                fade = math.exp(-max(one - last**2, 0.0) * linear.length * BEYOND)
+                found[i] = fade * (weights[i] @ values[index[i]])
+        return found.reshape(len(k), len(DIRECTIONS), 6)
 
 
 class WaveExcitation:

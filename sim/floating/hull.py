@@ -20,6 +20,7 @@ from sim.floating.shapes.cylinder import cylinder
 from sim.floating.shapes.record import Appearance, Shape
 from sim.floating.shapes.sphere import SHAPE as SPHERE
 from sim.floating.shapes.sphere import sphere
+from sim.interruption import raise_if_stopped
 from sim.validation import argument_error, check_positive
 
 FILE_SHAPE = "hull"  # name of the shape that is made of a mesh file, and of its one appearance
@@ -44,6 +45,7 @@ class Hull(ClosedMesh):
         Raises ValueError for a size that makes a length that is not allowed.
         """
         check_positive("size", size, "")
+        raise_if_stopped()
         return Hull.of(shape, shape.build(*(length * size for length in shape.lengths)))
 
     @staticmethod

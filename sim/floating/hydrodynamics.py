@@ -15,12 +15,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sim.floating.closed_mesh import ClosedMesh, area_vectors
 from sim.floating.equilibrium import equilibrium_draft, upright
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import add_pressure
 from sim.floating.linear_table import LinearTable, table_of
+from sim.interruption import raise_if_stopped
 
 SEA_WATER = ((1025.0, math.inf),)  # one fluid, as `layers`
 # Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
@@ -69,6 +71,7 @@ class Memory(NamedTuple):
 
 def linear_hull(hull: Hull, draft: float) -> LinearHull:
     """The linear coefficients of a hull upright at a draft [m], which is bounded to what is tabulated."""
+    raise_if_stopped()
     low, high = (float(value) for value in hull.extents[2])
     height = high - low
     draft = min(draft, 0.98 * height)
@@ -159,17 +162,18 @@ def not_negative(damping: np.ndarray) -> np.ndarray:
     return kept * np.outer(size, size)
 
 
-def lagrange(nodes: np.ndarray, x: float) -> tuple[np.ndarray, np.ndarray]:
-    """Indices and weights of the polynomial through the four nodes about x, or through all where they are fewer."""
-    count = min(4, len(nodes))
-    first = min(max(int(np.searchsorted(nodes, x)) - 2, 0), len(nodes) - count)
-    index = np.arange(first, first + count)
+def lagrange(nodes: np.ndarray, x: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """Indices and weights (..., 4) of the polynomials through the four nodes about each x (...), or through all nodes
+    where they are fewer."""
+    x, count = np.asarray(x, np.float64), min(4, len(nodes))
+    first = np.clip(np.searchsorted(nodes, x) - 2, 0, len(nodes) - count)
+    index = first[..., None] + np.arange(count)
     points = nodes[index]
-    weights = np.ones(count)
+    weights = np.ones(points.shape)
     for a in range(count):
         for b in range(count):
             if a != b:
-                weights[a] *= (x - points[b]) / (points[a] - points[b])
+                weights[..., a] *= (x - points[..., b]) / (points[..., a] - points[..., b])
     return index, weights
 
 
@@ -198,6 +202,7 @@ def natural_frequency(linear: LinearHull, axis: int, mass: float, stiffness: flo
     if stiffness <= 0.0:
         return 0.0
     partner = {3: 1, 4: 0}.get(axis)
+    raise_if_stopped()
     frequency = math.sqrt(stiffness / (mass + added * linear.infinite[axis, axis]))
     for _ in range(MAX_TURNS):
         a, _ = linear.at(frequency)
@@ -213,6 +218,7 @@ def natural_frequency(linear: LinearHull, axis: int, mass: float, stiffness: flo
 
 def memory_of(linear: LinearHull, own_frequencies: np.ndarray) -> Memory:
     """The memory of a hull. own_frequencies (6,) [1/sqrt(m)] of free oscillations; 0 for none."""
+    raise_if_stopped()
     poles = POLES / math.sqrt(linear.length)
     s = 1j * linear.frequency[:, None]
     parts = np.concatenate([1 / (s - poles) + 1 / (s - poles.conj()), 1j / (s - poles) - 1j / (s - poles.conj())], 1)

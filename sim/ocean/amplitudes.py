@@ -9,7 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from sim.interruption import pieces
+
 KINDS = ("random", "fixed")
+PIECE = 32768  # wavenumbers at a time: others may have a turn in between
 
 # Finaliser of splitmix64 (Steele, Lea, Flood 2014) and its increment.
 _STEP, _MIX1, _MIX2 = np.uint64(0x9E3779B97F4A7C15), np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
@@ -31,15 +34,19 @@ def resolved(size: int) -> np.ndarray:
 
 def unit_amplitudes(size: int, seed: int, kind: str) -> np.ndarray:
     """(xi1 + i xi2)/2 of each wavenumber, complex (size, size); |.|^2 is 1/2 on average, or exactly for "fixed"."""
-    n = integers(size)
+    n, there = integers(size), resolved(size)
+    found = np.empty((size, size), complex)
     with np.errstate(over="ignore"):
         key = _mixed(np.uint64(seed % 2**64) + _STEP)
-        row = _mixed(key ^ n.astype(np.uint64))[:, None]
-        cell = _mixed(row + _STEP * n.astype(np.uint64)[None, :])
-        first, second = _uniform(_mixed(cell + _STEP)), _uniform(_mixed(cell + _STEP + _STEP))
-    # Box-Muller; "fixed" keeps the phase and replaces the radius by its root mean square.
-    radius = np.sqrt(-2.0 * np.log(first)) if kind == "random" else np.sqrt(2.0)
-    return np.where(resolved(size), 0.5 * radius * np.exp(2j * np.pi * second), 0.0)
+    for rows in pieces(size, max(1, PIECE // size)):
+        with np.errstate(over="ignore"):
+            row = _mixed(key ^ n[rows].astype(np.uint64))[:, None]
+            cell = _mixed(row + _STEP * n.astype(np.uint64)[None, :])
+            first, second = _uniform(_mixed(cell + _STEP)), _uniform(_mixed(cell + _STEP + _STEP))
+        # Box-Muller; "fixed" keeps the phase and replaces the radius by its root mean square.
+        radius = np.sqrt(-2.0 * np.log(first)) if kind == "random" else np.sqrt(2.0)
+        found[rows] = np.where(there[rows], 0.5 * radius * np.exp(2j * np.pi * second), 0.0)
+    return found
 
 
 def fold(h0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sim.interruption import raise_if_stopped
 from sim.ocean.viscous_layers import Layers, surface_roots
 from sim.validation import argument_error, check_not_negative, check_positive, check_wavenumbers
 
@@ -248,6 +249,7 @@ def _oscillating(theta: np.ndarray) -> Any:
     inverse = 1.0 / theta**2
     m = np.sqrt(1j / theta - 1.0)
     for _ in range(80):  # Newton: 4 to 6 turns, more only where the double root is near
+        raise_if_stopped()
         change = ((m * m + 1.0) ** 2 - 4.0 * m + inverse) / (4.0 * m * (m * m + 1.0) - 4.0)
         m = m - change
         if np.all(np.abs(change) <= 1e-15 * np.abs(m)):
@@ -262,6 +264,7 @@ def _oscillating_film(theta: np.ndarray) -> Any:
     inverse = 1.0 / theta**2
     m = np.sqrt(1j / theta) + 0.25
     for _ in range(80):
+        raise_if_stopped()
         change = (m * (m - 1.0) * (m + 1.0) ** 2 + inverse) / (((4.0 * m + 3.0) * m - 2.0) * m - 1.0)
         m = m - change
         if np.all(np.abs(change) <= 1e-15 * np.abs(m)):
@@ -275,6 +278,7 @@ def _aperiodic(theta: np.ndarray, film: bool) -> np.ndarray:
     inverse = 1.0 / theta**2
     delta = 0.25 * inverse
     for _ in range(80):
+        raise_if_stopped()
         # The quartic of `damped_root` in delta, and its derivative.
         if film:
             f = delta * (-4.0 + delta * (8.0 + delta * (-5.0 + delta))) + inverse

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.interruption import raise_if_stopped
 from sim.ocean.amplitudes import KINDS, fold, integers, resolved, unit_amplitudes
 from sim.ocean.evolve import set_heights
 from sim.ocean.medium import Medium
@@ -170,11 +171,13 @@ class Sea:
             self._ripples.check_time(t)
         before, rate = self._undecayed(t), self._rate
         medium, conditions, decay = self.medium, self.conditions, self._decay
+        raise_if_stopped()
         self._set_conditions(spectrum or self.spectrum, changes, self.medium)
         self._add_to_past(medium, conditions, decay, t - self._base)
         turns = rate * (t - self._base)
         # h0(k) e^(-i omega t): the phase so far goes into the unit amplitudes, in double.
         self._unit = self._unit * self._full(np.exp(-2j * np.pi * (turns - np.rint(turns))))
+        raise_if_stopped()
         self._start = before if relax > 0.0 else self._target
         self._base, self._relax, self._last = t, relax, max(self._last, t)
         self.version += 1
@@ -269,6 +272,7 @@ class Sea:
         if (self.spectrum, c) != self._sloped_under[0]:
             S = self.spectrum(self.k[:, None], self.k[None, :], c)
             folded = np.zeros_like(self._k)
+            raise_if_stopped()
             np.add.at(folded, np.ix_(self._folded, self._folded), S * resolved(self.size))
             self._sloped_under = (self.spectrum, c), folded * self._k**2
         slope = self._sloped_under[1]
@@ -330,12 +334,14 @@ class Sea:
         self.spectrum, self.conditions, self.medium, self._given = spectrum, conditions, medium, given
         self._rate, self._decay, self._decays = omega / (2.0 * np.pi), decay, bool(decay.any())
         self._fall = (-decay).astype(self._real)
+        raise_if_stopped()
         S = self.spectrum(self.k[:, None], self.k[None, :], conditions)
         dk = 2.0 * math.pi / self.length
         self._passed = np.exp(-((self._k * conditions.low_pass) ** 2))
         if self.spectrum.line is not None:
             self._add_line(S, self.spectrum.line(conditions), dk)
         self._target = np.sqrt(S) * dk
+        raise_if_stopped()
 
     def _add_line(self, S: np.ndarray, line: tuple[float, float, float], dk: float) -> None:
         """Give the energy of one regular wave to the tile's wave that is nearest to it, which is drawn as high as that.
@@ -388,7 +394,9 @@ class Sea:
     def _set_planes(self) -> None:
         """Fold the amplitudes into even and odd half planes: the target, and what the start lacks of it."""
         unit = self._unit * self._full(np.exp(-self._lost)) if self._lost.any() else self._unit
+        raise_if_stopped()
         self._settled = self._planes(unit * self._target)
+        raise_if_stopped()
         self._to_come = self._planes(unit * (self._start - self._target)) if self._relax > 0.0 else None
 
     def _planes(self, h0: np.ndarray) -> list[np.ndarray]:

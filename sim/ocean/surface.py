@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from sim.interruption import raise_if_stopped
 from sim.ocean.evolve import set_imaginary_multiple, set_real_multiple
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ def field(make: Callable[["Surface"], np.ndarray]) -> property:
 
     def read(surface: "Surface") -> np.ndarray:
         if make.__name__ not in surface.fields:
+            raise_if_stopped()
             surface.fields[make.__name__] = make(surface)
         return surface.fields[make.__name__]
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
-from sim.springs.forces.self_contact import refresh_pairs
+from sim.springs.forces.self_contact import count_touching
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos
 from sim.springs.net import Net
@@ -73,12 +73,10 @@ def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
     """Most others that one particle touches at x (3, rows, cols) [m]; None: as many as equal spheres can touch."""
     if x is None:
         return TOUCHING
-    p, flat = net.kernel_view(1.0), np.ascontiguousarray(x).reshape(-1)
-    pairs = p.pairs[: refresh_pairs(flat, p)]
+    touching = np.zeros(x[0].size, np.int64)
+    count_touching(np.ascontiguousarray(x).reshape(-1), net.kernel_view(1.0), touching)
     raise_if_stopped()
-    place = flat.reshape(3, -1)
-    touching = pairs[np.linalg.norm(place[:, pairs[:, 0]] - place[:, pairs[:, 1]], axis=0) < net.thickness]
-    return int(np.bincount(touching.ravel(), minlength=1).max())
+    return int(touching.max())
 
 
 def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, float]:
@@ -166,6 +164,7 @@ def along_surfaces(x: NDArray[np.float64], u: NDArray[np.float64], t: float, p: 
 def ritz(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int):
     """Lanczos from `start`: rising eigenvalues (m,) of `part` of the tangent about x; their vectors are the columns of
     the second (m, m), in terms of the rows of the third (m, 3 rows cols)."""
+    raise_if_stopped()
     basis = np.zeros((min(VECTORS, x.size), x.size))
     basis[0] = start
     diagonal, beside = np.zeros((2, len(basis)))

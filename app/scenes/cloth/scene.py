@@ -104,6 +104,7 @@ def compile_gauge() -> None:
     """All but the integrators."""
     scene = ClothScene(Params(rows=4, cols=4))
     extremes(scene.state.x, scene.state.v)
+    gershgorin(cloth(4, 4, thickness=0.1), scene.state.x)
 
 
 def needs(params: Params) -> tuple[str, ...]:

@@ -25,6 +25,7 @@ from sim.floating.excitation import LAST_RATES, WaveExcitation, rate_of_change
 from sim.floating.heave_meter import WindowMean
 from sim.floating.rotation import body_z_axes
 from sim.floating.shapes import Appearance
+from sim.interruption import raise_if_stopped
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import SurfaceAt
 
@@ -184,6 +185,7 @@ class FloatingBodies:
         slick = SLICK_RESOLUTION * round(float(self.slick[i]) / SLICK_RESOLUTION)
         key = (name, self.densities[i], slick)
         if key not in self.known_predictions:
+            raise_if_stopped()
             layers = column.layers
             if slick > 0.0 and column.kind != "mixed":
                 layers = ((column.oil.density, column.thickness + slick), (column.water.density, math.inf))

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.scenes.radial_sea.parameters import Params
+from sim.interruption import raise_if_stopped
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import RadialSea
 from sim.ocean.slick import slick_radius, slick_thickness, spreading_coefficient
@@ -108,6 +109,7 @@ class WellBlowout:
         self.change(params)
         if self.fire is not None:  # smoke has risen for some time when the scene begins
             for _ in range(int(BURN_IN_TIME / BURN_IN_STEP)):
+                raise_if_stopped()
                 self.fire.step(BURN_IN_STEP)
 
     def change(self, params: Params) -> None:

@@ -8,7 +8,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from sim.interruption import raise_if_stopped
+from sim.interruption import pieces
 from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
@@ -134,9 +134,7 @@ class Spectrum(NamedTuple, Generic[C]):
             return S
         x, y = kx[waves], ky[waves]
         found = np.empty(x.shape)
-        for start in range(0, x.size, PIECE):
-            raise_if_stopped()
-            piece = slice(start, start + PIECE)
+        for piece in pieces(x.size, PIECE):
             found[piece] = self._of_waves(x[piece], y[piece], conditions)
         S[waves] = found
         return S

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.interruption import raise_if_stopped
 from sim.ocean.fluids import Fluid, fluids, mixed_density, oil_index
 from sim.ocean.weathering import laws
 from sim.ocean.weathering.components import (
@@ -199,6 +200,7 @@ def weather(spill: Spill) -> Weathering:
     state = State(total * parts.share, 0.0, 0.0, min(first_area, largest), math.inf)
     rows = np.empty((len(times), 5))
     for i, t in enumerate(times):
+        raise_if_stopped()
         left = float(state.mass.sum())
         if left < GONE * total:
             rows[i:] = rows[i - 1]

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from sim.interruption import raise_if_stopped
+
 SCAN = 0.002  # step in z while looking for the first crossing: far below any method's limit
 FURTHEST = 64.0
 SLACK = 1e-9  # growth above 1 that is taken for round-off
@@ -49,6 +51,7 @@ def limit_of_many(growth: Callable[[Any], Any]) -> float:
     # A live display asks often: scan four units of z in one go, where most such methods have their limit.
     known, many = 0.0, round(4.0 / SCAN)
     while known < FURTHEST:
+        raise_if_stopped()
         left = growth(known + SCAN * np.arange(1, many + 1)) > 1.0 + SLACK
         if left.any():
             return limit_of(growth, known=known + SCAN * int(left.argmax()))

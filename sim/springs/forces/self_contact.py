@@ -115,6 +115,18 @@ def refresh_pairs(x, p):
     return p.pairs[last, 0]
 
 
+@kernel
+def count_touching(x, p, touching):
+    """Add to touching (rows cols,) how many others each particle touches."""
+    n = p.rows * p.cols
+    for s in range(refresh_pairs(x, p)):
+        i, j = p.pairs[s, 0], p.pairs[s, 1]
+        dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
+        if math.sqrt(dx * dx + dy * dy + dz * dz) < p.thickness:
+            touching[i] += 1
+            touching[j] += 1
+
+
 @kernel(inline=True)
 def push_apart(out, i, j, n, wi, wj, dx, dy, dz):
     """out -= wi d at particle i and += wj d at j; d = (dx, dy, dz) from i to j."""

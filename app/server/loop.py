@@ -138,7 +138,7 @@ class SimLoop:
         self.commands = commands or CommandQueue()
         self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
         self.solving = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
-        self.may_end = False  # what runs may be ended early: steps, or a reset, which is then done again
+        self.may_end = False  # what runs may be ended early: steps, or a picture
         self.may_begin = False  # what runs may be ended early where the scene begins anew after it
         self.is_late = False  # controls were answered in the middle of the last tick
         self.turn_at = 0.0  # [s] of the clock, when controls were last answered
@@ -177,8 +177,9 @@ class SimLoop:
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
         self.wall += wall
-        self.busy_since = self.turn_at = self.clock()
         was_late, self.is_late = self.is_late, False
+        self.busy_since = self.clock()
+        self.turn_at = self.busy_since - PATIENCE * was_late  # what ended the last tick has waited long enough
         params, loads = self.read_params()
         # Parameters first: a reset starts from them. A record of a `Load` that is still on the way comes with it.
         changed = loads == self.loaded and params is not self.scene.params and self.take(params)
@@ -351,8 +352,9 @@ class SimLoop:
         """Answer controls in the middle of a solve, which calls this on its own thread.
 
         What asks for another solve ends this one; the next tick handles it, from the last good state. What does not is
-        answered at once, and the solve goes on: a look, or a drag, which counts from the next steps on. Where nothing
-        may be ended, parameters are answered with the last frame, and the next tick takes them.
+        answered at once, and the solve goes on: a look, or a drag, which counts from the next steps on. A reset and a
+        change of forces are ended only where the scene begins anew; else, as in what is kept whole, parameters are
+        answered with the last frame, and the next tick takes them.
         """
         self.turn_at, self.is_late = self.clock(), True
         try:
@@ -399,9 +401,9 @@ class SimLoop:
     def guarded(self, action: Callable[[], None], *, again: bool = False, else_anew: bool = False) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
 
-        again: to be done once more where it is ended early. else_anew: ended early only where the scene begins anew.
+        again: to be done once more where it is ended early. else_anew: where it is ended early the scene begins anew.
         """
-        self.may_end, self.may_begin = again or self.solving, else_anew
+        self.may_end, self.may_begin = self.solving, again or else_anew
         try:
             action()
         except InterruptionError:

@@ -123,10 +123,12 @@ class WaveExcitation:
             self.averaged = np.array(averaged).reshape(len(self.kinds), len(k))
             self.heading[:] = np.inf
             self.weights = np.zeros((len(self.kind), 12, len(k)))
+            raise_if_stopped()
         set_weights(
             fleet.rotation, self.kind, self.is_round, self.heading, kx, ky, self.tables, self.averaged, self.planes,
             self.weights,
         )  # fmt: skip
+        raise_if_stopped()
         out = np.zeros((len(self.kind), 6))
         runs = omega > CREEPING * np.sqrt(gravity * np.hypot(kx, ky))
         inverse = np.divide(1.0, omega, out=np.zeros_like(omega), where=runs)

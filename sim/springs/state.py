@@ -16,7 +16,8 @@ from sim.springs.net import Net
 from sim.validation import argument_error
 
 # In one call of a kernel, which a Ctrl-C waits for: hundredths of a second.
-POINT_EVALS = 2e6  # force evaluations times points
+POINT_EVALS = 2e6  # force evaluations times points, of a rope
+GRID_COST = 4.0  # of a net with links in several directions, in evaluations of a rope's
 CONTACT_COST = 300.0  # of a net that touches itself, in evaluations without
 
 
@@ -115,7 +116,8 @@ def advance(
     ledger, p = np.array([state.dissipated, state.work]), net.kernel_view(h)
     if net.bands > 1:
         set_threads(net.bands)
-    cost = net.x0[0].size * integrator.evals * (CONTACT_COST if net.thickness > 0.0 else 1.0)
+    each = CONTACT_COST if net.thickness > 0.0 else 1.0 if net.is_rope else GRID_COST
+    cost = net.x0[0].size * integrator.evals * each
     most = max(1, int(POINT_EVALS / cost))
     may_end_within_a_step = integrator.implicit or net.thickness > 0.0
     for done in range(0, steps, most):

@@ -128,16 +128,15 @@ class Spectrum(NamedTuple, Generic[C]):
         The one wave of a `line` has no density and is not in it.
         """
         kx, ky = np.broadcast_arrays(np.asarray(kx, np.float64), np.asarray(ky, np.float64))
-        S = np.zeros(kx.shape)
-        waves = (kx != 0.0) | (ky != 0.0)
-        if not waves.any():
-            return S
-        x, y = kx[waves], ky[waves]
-        found = np.empty(x.shape)
-        for piece in pieces(x.size, PIECE):
-            found[piece] = self._of_waves(x[piece], y[piece], conditions)
-        S[waves] = found
-        return S
+        S, all_x, all_y = np.zeros(kx.size), kx.ravel(), ky.ravel()
+        for piece in pieces(S.size, PIECE):
+            x, y = all_x[piece], all_y[piece]
+            waves = (x != 0.0) | (y != 0.0)
+            if waves.all():
+                S[piece] = self._of_waves(x, y, conditions)
+            elif waves.any():
+                S[piece][waves] = self._of_waves(x[waves], y[waves], conditions)
+        return S.reshape(kx.shape)
 
     def _of_waves(self, kx: np.ndarray, ky: np.ndarray, conditions: C) -> np.ndarray:
         """The same for wavenumbers (n,) that are not 0."""

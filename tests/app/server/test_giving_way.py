@@ -195,6 +195,25 @@ def test_a_reset_that_takes_long_says_that_it_has_begun(busy):
     assert busy.request[STOP] == 0
 
 
+def test_a_reset_is_not_ended_by_other_forces_or_a_pause(busy):
+    def long_reset():
+        busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
+        busy.commands.put(Pause())
+        busy.give_turn()
+        ended.append(int(busy.request[STOP]))
+        reset()
+
+    ended, reset, busy.solving = [], busy.scene.reset, False
+    busy.scene.reset = long_reset
+    busy.commands.put(Reset())
+    busy.tick(0.0)
+    assert ended == [0]
+    assert busy.unfinished is None
+    busy.tick(0.0)
+    assert busy.scene.params.stiffness == 90.0
+    assert not busy.running
+
+
 def test_a_turn_that_is_due_is_given_though_nobody_asks():
     def try_out():
         turns, due = [], iter([False, True, False])

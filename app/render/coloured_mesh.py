@@ -11,6 +11,7 @@ import numpy as np
 import viser
 
 from app.render.injection import add_data_mesh, injector_of
+from app.render.node_arrays import set_arrays
 from sim.packing import pack
 from sim.validation import argument_error
 
@@ -56,9 +57,9 @@ class ColouredMesh:
         """Set the vertices (n, 3) [m], their colours (n, 3), or both."""
         self._fill(vertices, colors)
         if self._injector is not None:
-            self._packed_mesh.vertices = self._packed()
+            set_arrays(self._packed_mesh, vertices=self._packed())
         if self.has_shader is not True:
-            self.mesh.vertices = self._vertices()
+            set_arrays(self.mesh, vertices=self._vertices())
 
     @property
     def has_shader(self) -> bool | None:

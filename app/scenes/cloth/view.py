@@ -12,6 +12,7 @@ from app.render.dragging import PullLine, SurfaceDrag
 from app.render.gizmo import Gizmo
 from app.render.html import fill, join
 from app.render.meshes import ball
+from app.render.node_arrays import set_arrays
 from app.render.surroundings import Surroundings, set_dark
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.scene import ClothFrame, ClothReadings
@@ -141,7 +142,7 @@ class View:
             self.sphere.show(frame.sphere_home, -frame.sphere[3] - SPHERE_ARROW_GAP)
         if frame.sphere is not None and frame.sphere != self.shown_sphere:
             self.shown_sphere = frame.sphere
-            self.ball.vertices = (self.unit_ball * frame.sphere[3] + frame.sphere[:3]).astype(np.float32)
+            set_arrays(self.ball, vertices=self.unit_ball * frame.sphere[3] + frame.sphere[:3])
 
     def show_student(self, points: np.ndarray | None) -> None:
         """The student's cloth (rows, cols, 3) [m], translucent; None: there is none."""

@@ -12,6 +12,7 @@ from app.render.cameras import all_cameras
 from app.render.colormap import rgb
 from app.render.dragging import drag
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
+from app.render.node_arrays import set_arrays
 from app.render.surroundings import set_dark
 from app.scenes.charts import PALETTE
 from app.scenes.contract import Pieces, PostCommand
@@ -127,16 +128,16 @@ class RopesDrawing:
         for i, tube in enumerate(self.tubes):
             if frame.failed[i] and self.shown_failed[i]:
                 continue  # it has stopped where it is drawn
-            tube.vertices = tube_vertices(frame.ropes[i], self.samples, TUBE_RADIUS)
+            set_arrays(tube, vertices=tube_vertices(frame.ropes[i], self.samples, TUBE_RADIUS))
             if frame.failed[i] != self.shown_failed[i]:
                 tube.opacity = FAILED_OPACITY if frame.failed[i] else None
         self.shown_failed = frame.failed
         self.references.visible = frame.references is not None
         if frame.references is not None:
-            self.references.vertices = np.concatenate(self.tube_meshes(frame.references, REFERENCE_RADIUS))
+            set_arrays(self.references, vertices=np.concatenate(self.tube_meshes(frame.references, REFERENCE_RADIUS)))
         self.beads.visible = frame.show_points
         if frame.show_points:
-            self.beads.batched_positions = frame.ropes.reshape(-1, 3)
+            set_arrays(self.beads, batched_positions=frame.ropes.reshape(-1, 3))
         poles = self.label_poles(frame)
         if self.shown_roots is None or not np.array_equal(self.shown_roots, poles[:, 0]):
             self.shown_roots = poles[:, 0]

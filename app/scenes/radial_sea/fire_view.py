@@ -6,6 +6,8 @@ A splat is eight words: centre (3 x float32), one of the renderer's own, covaria
 import numpy as np
 import viser
 
+from app.render.node_arrays import set_arrays
+
 MAX_FIRE_SPLATS, MAX_OIL_SPLATS = 2000, 900
 HEAT = (0.0, 0.15, 0.26, 0.34, 0.5, 0.8, 1.0)  # of a parcel, at which it has the colour below
 HEAT_COLOURS = (
@@ -69,7 +71,7 @@ class Flames:
             n = len(chosen)
             colours, opacity = np.tile(OIL_COLOUR, (n, 1)), np.full(n, OIL_OPACITY)
             self.put(MAX_FIRE_SPLATS, chosen, np.full(n, OIL_WIDTH), np.full(n, OIL_HEIGHT), colours, opacity)
-        self.handle.buffer = self.buffer.copy()
+        set_arrays(self.handle, buffer=self.buffer)
 
     def put(
         self, start: int, x: np.ndarray, width: np.ndarray, height: np.ndarray, rgb: np.ndarray, opacity: np.ndarray

@@ -12,6 +12,7 @@ from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
 from app.render.gizmo import Gizmo
 from app.render.html import Html, bold, fill
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
+from app.render.node_arrays import set_arrays
 from app.render.surroundings import set_dark
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.parameters import Params
@@ -151,7 +152,7 @@ class View:
         self.tube.set(self.vertices, self.rgb if repaint else None)
         self.beads.visible = frame.show_points
         if frame.show_points:
-            self.beads.batched_positions = self.points
+            set_arrays(self.beads, batched_positions=self.points)
         held = -1 if frame.pull is None else frame.pull.particle
         if held != self.shown_pull:
             colours = np.tile(np.array(BEAD_COLOUR, np.uint8), (self.count, 1))

@@ -11,6 +11,7 @@ import viser
 
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import RAIN_UNIFORMS
+from app.render.node_arrays import set_arrays
 from app.scenes.square_sea.parameters import RainSettings
 from app.scenes.square_sea.rainfall import MAX_SPLASHES, SPLASH_DURATION, RainFrame
 from sim.particles.rain import EARTH, rainfall, slope_parameter
@@ -60,7 +61,7 @@ class StreakMesh:
         """tails, heads: (n, 3) [m]."""
         self.vertices[:, 0] = tails
         self.vertices[:, 1:] = heads[:, None] + HEAD_CORNERS
-        self.mesh.vertices = self.vertices.reshape(-1, 3)
+        set_arrays(self.mesh, vertices=self.vertices.reshape(-1, 3))
 
 
 class RainMesh:

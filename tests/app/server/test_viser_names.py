@@ -20,6 +20,7 @@ NAMES = {
     "_gui_input_handle_from_uuid",
     "_handle_incoming_message",
     "_impl",
+    "_queue_scene_message",
 }
 
 
@@ -51,5 +52,8 @@ def test_viser_has_the_inner_names(lab: Viewer) -> None:
     assert isinstance(server.get_scene_serializer()._binary_buffers, list)
     uuid, handle = next(iter(server.gui._gui_input_handle_from_uuid.items()))
     assert handle._impl.uuid == uuid
+    node = server.scene.add_frame("/named")
+    assert callable(node._impl.api._queue_scene_message)
+    assert (node._impl.name, node._impl.removed, node._impl.props.axes_length) == ("/named", False, node.axes_length)
     assert _messages.HotkeyKey
     assert _messages.RunJavascriptMessage(source="").source == ""

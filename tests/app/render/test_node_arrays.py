@@ -1,0 +1,54 @@
+"""Arrays of a node, as they are sent."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+import viser
+
+from app.render.node_arrays import set_arrays
+
+TURNS = np.array([[1.0, 0.0, 0.0, 0.0]])
+
+
+@pytest.fixture
+def server() -> Iterator[viser.ViserServer]:
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def sent(server: viser.ViserServer, monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    found: list[Any] = []
+    monkeypatch.setattr(server._websock_server, "queue_message", found.append)
+    return found
+
+
+def test_one_message_with_copies_where_something_changed(server: viser.ViserServer, sent: list[Any]) -> None:
+    vertices, faces = np.eye(3), np.array([[0, 1, 2]])
+    node = server.scene.add_batched_meshes_simple("/a", vertices, faces, TURNS, np.zeros((1, 3)))
+    sent.clear()
+    places = np.array([[1.0, 2.0, 3.0]])
+    set_arrays(node, batched_positions=places, batched_wxyzs=TURNS)
+    places[:] = 9.0
+    assert [message.name for message in sent] == ["/a"]
+    updates = sent[0].updates
+    assert {name: value.tolist() for name, value in updates.items()} == {
+        "batched_positions": [[1.0, 2.0, 3.0]],
+        "batched_wxyzs": TURNS.tolist(),
+    }
+    assert updates["batched_positions"].dtype == np.float32
+    assert node.batched_positions.tolist() == [[1.0, 2.0, 3.0]]
+    set_arrays(node, batched_positions=np.array([[1.0, 2.0, 3.0]]), batched_wxyzs=TURNS)
+    assert len(sent) == 1  # nothing changed
+    set_arrays(node, batched_positions=places, batched_wxyzs=TURNS)
+    assert updates["batched_positions"].tolist() == [[1.0, 2.0, 3.0]]  # what is on its way does not change
+
+
+def test_a_removed_node_is_refused(server: viser.ViserServer) -> None:
+    node = server.scene.add_mesh_simple("/a", np.eye(3), np.array([[0, 1, 2]]))
+    node.remove()
+    with pytest.raises(RuntimeError, match="/a has been removed"):
+        set_arrays(node, vertices=np.zeros((3, 3)))

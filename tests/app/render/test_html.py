@@ -31,6 +31,8 @@ def test_what_goes_to_viser_is_a_plain_string() -> None:
 def test_fields_of_a_template_take_formats() -> None:
     assert fill("{:.2f} {x.real:g}", 1.0 / 3.0, x=2.5) == "0.33 2.5"
     assert fill("{{}} {}", 1) == "{} 1"
+    assert fill("{0}{1:>3}{0}{{{x}}}", "a", 7, x="<") == "a  7a{&lt;}"
+    assert fill("{:.1f} {}", 0.25, "x") == fill("{:.1f} {}", 0.25, "x") == "0.2 x"  # read once, filled twice
 
 
 def test_a_table_has_a_cell_for_each_entry() -> None:

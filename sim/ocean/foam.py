@@ -7,8 +7,8 @@ The Jacobian J is 1 + Dxx + Dyy to first order, and Dxx + Dyy is Gaussian with v
 the threshold 1 - z sigma is breaking; it stays there for Rice's mean excursion, and its foam outlasts that.
 """
 
+import functools
 import math
-from statistics import NormalDist
 from typing import TYPE_CHECKING
 
 from sim.validation import check_not_negative
@@ -44,11 +44,17 @@ def threshold(coverage: float, spread: float, frequency: float, lasting: float) 
     """
     if not (spread > 0.0 and coverage > 0.0):
         return -math.inf
+    return 1.0 - excess(coverage, frequency, lasting) * spread
+
+
+@functools.lru_cache(maxsize=4)
+def excess(coverage: float, frequency: float, lasting: float) -> float:
+    """The z of `threshold`; kept, as it is asked for in each picture and seldom changes."""
     low, high, z = -4.0, 8.0, 0.0
     for _ in range(50):
         z = 0.5 * (low + high)
         rate = frequency / (2.0 * math.pi) * math.exp(-0.5 * z * z)
-        # Passages come at random, so that covered shares do not add but fill up.
-        share = 1.0 - (1.0 - NormalDist().cdf(-z)) * math.exp(-rate * lasting)
+        # Passages come at random, so that covered shares do not add but fill up. Phi(z) is erfc(-z/sqrt(2))/2.
+        share = 1.0 - 0.5 * math.erfc(-z * math.sqrt(0.5)) * math.exp(-rate * lasting)
         low, high = (z, high) if share > coverage else (low, z)
-    return 1.0 - z * spread
+    return z

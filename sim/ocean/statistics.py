@@ -121,23 +121,17 @@ def measured(
     if height.ndim != 2 or height.shape[0] != height.shape[1]:
         raise argument_error("height", height.shape, "a square field")
     n = height.shape[0]
-    k1 = np.fft.fftfreq(n, length / n) * 2.0 * math.pi
-    kx, ky = k1[:, None], k1[None, : n // 2 + 1]
-    k = np.hypot(kx, ky)
+    kx, ky, k, omega, twice = _half_plane(n, length, conditions)
     h = np.fft.rfft2(np.asarray(height, np.float64)) / n**2
-    twice = np.full(h.shape, 2.0)
-    twice[:, 0] = 1.0
-    if n % 2 == 0:
-        twice[:, -1] = 1.0
-    energy = twice * np.abs(h) ** 2
+    energy = twice * (h.real**2 + h.imag**2)
     energy[0, 0] = 0.0
-    direction, peak_period = math.nan, _peak_period(conditions.omega(k), energy)
+    direction, peak_period = math.nan, _peak_period(omega, energy)
     if earlier is not None:
         if earlier.shape != height.shape:
             raise argument_error("earlier", earlier.shape, f"a field of shape {height.shape}")
         # h = P e^(-i omega t) + Q e^(i omega t): the phase of h falls where the wave runs along k, rises against it.
         turned = twice * np.imag(np.fft.rfft2(np.asarray(earlier, np.float64)) / n**2 * np.conj(h))
-        turned *= conditions.omega(k) * interval < 0.5 * math.pi
+        turned *= omega * interval < 0.5 * math.pi
         if resolved_in_time(peak_period, interval):
             direction = _direction(float((turned * kx).sum()), float((turned * ky).sum()))
     return Statistics(
@@ -146,6 +140,21 @@ def measured(
         float((energy * k**2).sum()),
         direction,
     )
+
+
+@functools.lru_cache(maxsize=2)
+def _half_plane(
+    n: int, length: float, conditions: Conditions
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """kx, ky, k [rad/m] and omega [rad/s] of the waves of a real transform, and how many waves each stands for."""
+    k1 = np.fft.fftfreq(n, length / n) * 2.0 * math.pi
+    kx, ky = k1[:, None], k1[None, : n // 2 + 1]
+    k = np.hypot(kx, ky)
+    twice = np.full(k.shape, 2.0)
+    twice[:, 0] = 1.0
+    if n % 2 == 0:
+        twice[:, -1] = 1.0
+    return kx, ky, k, conditions.omega(k), twice
 
 
 def resolved_in_time(period: float, interval: float) -> bool:
@@ -190,7 +199,8 @@ def _peak_period(omega: np.ndarray, energy: np.ndarray) -> float:
         return math.nan
     low, high = omega[waves].min(), omega[waves].max()
     edges = np.geomspace(0.98 * low, 1.02 * high, max(int(math.log(high / low + 1.0) / 0.06), 4))
-    held, _ = np.histogram(omega[waves], edges, weights=energy[waves])
+    bins = np.searchsorted(edges, omega[waves], side="right") - 1
+    held = np.bincount(bins, energy[waves], len(edges) - 1)
     density = held / np.diff(edges)
     weight = (density / density.max()) ** 4 * np.diff(edges)
     return 2.0 * math.pi * float(weight.sum() / (weight * np.sqrt(edges[1:] * edges[:-1])).sum())

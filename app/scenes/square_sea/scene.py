@@ -218,9 +218,10 @@ class SquareSeaScene:
         self.foam_cover_before = whitecaps(p.wind_speed if start_wind is None else start_wind)
         if self.student is not None:
             self.student.want(p)
+        transition = 0.0 if start_wind is None else p.transition
         if start_wind is not None or self.student is not None:
-            self.sea.change(self.time, 0.0 if start_wind is None else p.transition, **self.conditions())
-        self.changed_at, self.transition, self.viscous_area = self.time, p.transition, 0.0
+            self.sea.change(self.time, transition, **self.conditions())
+        self.changed_at, self.transition, self.viscous_area = self.time, transition, 0.0
         self.report: Report | None = None
         self.theory: Theory | None = None
         self.clear_mesh()

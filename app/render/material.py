@@ -1,5 +1,6 @@
 """How water looks, as data: its colours, optics, ripples and sky, and how these numbers travel to the shader."""
 
+import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -127,15 +128,22 @@ class Material:
         return red, green, blue
 
 
-def linear(color: RGB) -> np.ndarray:
-    """Linear light (3,) of an sRGB colour in 0..1 (IEC 61966-2-1, to within 1 %)."""
-    return np.clip(np.asarray(color, float), 0, 1) ** 2.2
+@functools.lru_cache(maxsize=64)
+def linear(color: RGB) -> tuple[float, float, float]:
+    """Linear light of an sRGB colour in 0..1 (IEC 61966-2-1, to within 1 %)."""
+    red, green, blue = (min(max(c, 0.0), 1.0) ** 2.2 for c in color)
+    return red, green, blue
 
 
 def as_bytes(color: RGB) -> tuple[int, int, int]:
     """An sRGB colour in 0..1 as 0..255."""
     red, green, blue = (round(255 * min(max(c, 0.0), 1.0)) for c in color)
     return red, green, blue
+
+
+def as_linear_bytes(color: RGB) -> tuple[int, int, int]:
+    """An sRGB colour in 0..1 as 0..255 of linear light, as viser takes colours of instances."""
+    return as_bytes(linear(color))
 
 
 def waterline_table(waterlines: Sequence[Waterline]) -> np.ndarray:
@@ -171,7 +179,7 @@ def uniform_table(
         "scatterColor": linear(m.scatter_color),
         "foamColor": linear(m.foam_color),
         "sunDirection": sun / max(float(np.linalg.norm(sun)), 1e-9),
-        "sunLight": linear(m.sun_color) * m.sun_strength,
+        "sunLight": [c * m.sun_strength for c in linear(m.sun_color)],
         "optics": (m.refractive_index, m.roughness, m.reflection_factor),
         "lens": (1.0 / (1.0 / m.haze_distance + m.rain_extinction), m.exposure, m.sun_disc),
         "ripple": (m.ripple_slope, m.ripple_length, m.ripple_shortest),

@@ -6,6 +6,7 @@ does not take the shader is sent the vertices themselves and draws them in one c
 slick and grid.
 """
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,15 +15,17 @@ import viser
 
 from app.render.cameras import lowest_camera
 from app.render.injection import add_data_mesh, injector_of
-from app.render.material import Material, Waterline, as_bytes, uniform_table, waterline_table
+from app.render.material import WATER_UNIFORMS, Material, Waterline, as_bytes, uniform_table, waterline_table
+from app.render.node_arrays import set_arrays
 from app.render.skies import CAMERA_RANGE
-from sim.packing import FOAM_STEP, SLOPE_STEP, pack
+from sim.ocean.surface_fields import SurfaceNumbers, pack_fields, set_surface_fields
 from sim.validation import argument_error
 
 RIPPLE_PERIOD = 1024.0  # [s] after which ripples start again: their phases are single precision in the browser
 MIN_STEP, MAX_STEP = 2.5e-4, 4e-3  # [m] to which displacements are rounded before they are sent
 RECORDED_STEP = 2e-3  # [m] the same where there is no camera: in a replay
 STEP_ANGLE = 7e-4  # the step over the height of the lowest camera: half a pixel at 1080 rows and 75 degrees
+SEA_STATE = WATER_UNIFORMS.index("seaState")  # row of the table of uniforms that changes in each frame
 PLAIN_FOAM_COLOUR = (235, 240, 242)
 PLAIN_MESH_DEPTH = 0.5  # [m] below the water at which a plain mesh is hidden
 PLAIN_MESH_HEIGHT = 0.02  # [m] above the water at which it shows
@@ -74,14 +77,13 @@ class Water:
         else:
             rest = np.zeros((rows, cols, 3)) if rest is None else rest.reshape(rows, cols, 3)
             self._faces = np.asarray(faces, np.uint32)
-        self._vertices = rest.astype(np.float32)
-        self._rest = np.ascontiguousarray(self._vertices.reshape(-1, 3).T)  # x, y, z
+        points = rest.reshape(-1, 3).astype(np.float32)
+        self._rest = np.ascontiguousarray(points[:, :2].T)
         self._columns = cols + 1 if self._grid else columns
         self._fields = np.empty((6, self._rest.shape[1]), np.float32)  # displacement, slopes and foam
-        self._slope_and_foam = np.zeros_like(self._vertices)
         self.mesh = server.scene.add_mesh_simple(
             name,
-            self._vertices.reshape(-1, 3),
+            points,
             self._faces,
             color=self._plain_color(),
             cast_shadow=False,
@@ -90,9 +92,12 @@ class Water:
         self._plain_meshes: dict[str, viser.MeshHandle] = {}
         self._injector = None if plain else injector_of(server)
         if self._injector is not None:
-            add_data_mesh(server, f"{name}/water_rest", self._vertices.reshape(-1, 3))
-            self._surface_mesh = add_data_mesh(server, f"{name}/water_surface", self._packed())
-            self._material_mesh = add_data_mesh(server, f"{name}/water_material", self._uniforms())
+            add_data_mesh(server, f"{name}/water_rest", points)
+            level = np.ascontiguousarray(rest[:rows, :cols])
+            surface = self._set_fields(level, 0.0 * level[..., :2], 0.0 * level[..., 2])
+            self._surface_mesh = add_data_mesh(server, f"{name}/water_surface", self._packed(surface))
+            self._uniforms = self._uniform_table()
+            self._material_mesh = add_data_mesh(server, f"{name}/water_material", self._uniforms)
             self._waterline_mesh = add_data_mesh(server, f"{name}/water_lines", waterline_table(()))
             self._injector.watch(name)
 
@@ -102,39 +107,32 @@ class Water:
         vertices: (rows, cols, 3) [m]. slopes: (rows, cols, 2), dz/dx and dz/dy of the displaced surface. foam:
         (rows, cols), 0..1. time [s] moves ripples and clouds.
         """
-        rows, cols = self._shape
-        slope_and_foam = self._slope_and_foam
-        fields = ((self._vertices, vertices), (slope_and_foam[..., :2], slopes), (slope_and_foam[..., 2], foam))
-        for target, source in fields:
-            target[:rows, :cols] = source
-            if self._grid:
-                target[rows, :cols] = source[0]
-                target[:, cols] = target[:, 0]
-        if self._grid:
-            self._vertices[rows, :, 0] += self._length
-            self._vertices[:, cols, 1] += self._length
         active = self.has_shader
+        surface = self._set_fields(vertices, slopes, foam)
         if active is not True:
-            self.mesh.vertices = self._vertices.reshape(-1, 3)
+            points = self._points()
+            set_arrays(self.mesh, vertices=points)
+            if active is False:
+                self._draw_plain(points)
         if self._injector is not None:
-            self._surface_mesh.vertices = self._packed()
-            height = 4.0 * float(np.std(vertices[..., 2]))
-            self._sea_state = (float(time) % RIPPLE_PERIOD, height, float(np.vdot(slopes, slopes)) / (rows * cols))
-            self._material_mesh.vertices = self._uniforms()
-        if active is False:
-            self._draw_plain()
+            set_arrays(self._surface_mesh, vertices=self._packed(surface))
+            height = 4.0 * math.sqrt(surface.height_variance)
+            self._sea_state = float(time) % RIPPLE_PERIOD, height, surface.square_slope
+            self._uniforms[SEA_STATE] = self._sea_state
+            set_arrays(self._material_mesh, vertices=self._uniforms)
 
     def set_material(self, material: Material) -> None:
         """Change how it looks from the next frame on."""
         self._material = material
         self.mesh.color = self._plain_color()
         if self._injector is not None:
-            self._material_mesh.vertices = self._uniforms()
+            self._uniforms = self._uniform_table()
+            set_arrays(self._material_mesh, vertices=self._uniforms)
 
     def set_waterlines(self, waterlines: Sequence[Waterline]) -> None:
         """What stands in the water from the next frame on; browsers without the shader do not draw it."""
         if self._injector is not None:
-            self._waterline_mesh.vertices = waterline_table(waterlines)
+            set_arrays(self._waterline_mesh, vertices=waterline_table(waterlines))
 
     @property
     def has_shader(self) -> bool | None:
@@ -147,66 +145,60 @@ class Water:
             self._injector.unwatch(self.name)
         self.mesh.remove()
 
-    def _packed(self) -> np.ndarray:
+    def _set_fields(self, vertices: np.ndarray, slopes: np.ndarray, foam: np.ndarray) -> SurfaceNumbers:
+        """Keep a surface. The row and column that close a tile have the displacement of the first to the last bit."""
+        return set_surface_fields(self._fields, vertices, slopes, foam, self._rest)
+
+    def _packed(self, surface: SurfaceNumbers) -> np.ndarray:
         """Displacement, slopes and foam of all vertices, as `js/water.js` reads them.
 
         Displacements are finer the nearer a camera can be to the water: no drawn point moves by half a pixel.
         """
-        fields = self._fields
-        np.subtract(self._vertices.reshape(-1, 3).T, self._rest, out=fields[:3])
-        fields[3:] = self._slope_and_foam.reshape(-1, 3).T
-        if self._grid:
-            # Its last row and column have the displacement of the first to the last bit, or tiles would part.
-            whole = fields.reshape(6, self._shape[0] + 1, self._shape[1] + 1)
-            whole[:, -1] = whole[:, 0]
-            whole[:, :, -1] = whole[:, :, 0]
-        centre = np.round(fields[:3].mean(axis=1))  # of a mesh that has moved as a whole
-        fields[:3] -= centre[:, None]
         camera = lowest_camera(self._server)
-        above = (camera or 0.0) - float(fields[2].max() + centre[2])
+        above = (camera or 0.0) - surface.highest
         step = RECORDED_STEP if camera is None else min(max(STEP_ANGLE * above, MIN_STEP), MAX_STEP)
-        steps = (step, step, step, SLOPE_STEP, SLOPE_STEP, FOAM_STEP)
-        return pack(fields, steps, self._columns, (*centre, 0.0, 0.0, 0.0))
+        return pack_fields(self._fields, surface, step, self._columns)
+
+    def _points(self) -> np.ndarray:
+        """All vertices (n, 3) [m] of the surface that is kept."""
+        return np.stack([self._fields[0] + self._rest[0], self._fields[1] + self._rest[1], self._fields[2]], axis=1)
 
     def _plain_color(self) -> tuple[int, int, int]:
         """The colour of the sea in browsers without the shader."""
         return as_bytes(self._material.deep_color)
 
-    def _uniforms(self) -> np.ndarray:
+    def _uniform_table(self) -> np.ndarray:
         """The uniforms of the shader, as `material.uniform_table` orders them."""
         rows, cols = (self._shape[0] + 1, self._shape[1] + 1) if self._grid else (0, 0)
         return uniform_table(self._material, self._sea_state, (rows, cols, self._length), self._tiles)
 
-    def _draw_plain(self) -> None:
-        """Draw what viser's public API alone can of foam, slick, grid and far sea, where a browser has no shader."""
-        z = self._vertices[..., 2]
-        foam = self._raised(self._slope_and_foam[..., 2] > PLAIN_FOAM_LIMIT)
+    def _draw_plain(self, points: np.ndarray) -> None:
+        """Draw what viser's public API alone can of foam, slick, grid and far sea, where a browser has no shader.
+
+        points: (n, 3) [m], all vertices.
+        """
+        z = points[:, 2]
+        foam = raised(points, self._fields[5] > PLAIN_FOAM_LIMIT)
         self._set_plain_mesh("plain_foam", foam, self._faces, color=PLAIN_FOAM_COLOUR)
         slick = self._material.slick
         if slick is not None or "plain_slick" in self._plain_meshes:
             (x, y), radius = (slick.centre, slick.radius) if slick is not None else ((0.0, 0.0), 0.0)
-            inside = np.hypot(self._vertices[..., 0] - x, self._vertices[..., 1] - y) < radius
+            inside = np.hypot(points[:, 0] - x, points[:, 1] - y) < radius
             colour = as_bytes(self._material.seen_color(slick.thickness if slick is not None else 0.0))
-            self._set_plain_mesh("plain_slick", self._raised(inside), self._faces, color=colour)
+            self._set_plain_mesh("plain_slick", raised(points, inside), self._faces, color=colour)
         if self._material.wireframe or "plain_wire" in self._plain_meshes:
-            wire = self._set_plain_mesh("plain_wire", self._vertices.reshape(-1, 3), self._faces, wireframe=True)
+            wire = self._set_plain_mesh("plain_wire", points, self._faces, wireframe=True)
             wire.visible = self._material.wireframe
         if self._grid and "plain_sea" not in self._plain_meshes:
             x, y = np.array([[-1, 1, 1, -1], [-1, -1, 1, 1]]) * CAMERA_RANGE / 4
             corners = np.stack([x, y, np.full(4, 2 * float(z.min()) - PLAIN_MESH_DEPTH)], 1)
             self._set_plain_mesh("plain_sea", corners, np.array([[0, 1, 2], [0, 2, 3]]), color=self.mesh.color)
 
-    def _raised(self, shown: np.ndarray) -> np.ndarray:
-        """The surface once more, (n, 3) [m]: just above itself where `shown`, (rows, cols), is true, else below."""
-        surface = self._vertices.copy()
-        surface[..., 2] += np.where(shown, PLAIN_MESH_HEIGHT, -PLAIN_MESH_DEPTH)
-        return surface.reshape(-1, 3)
-
     def _set_plain_mesh(self, suffix: str, vertices: np.ndarray, faces: np.ndarray, **mesh: Any) -> viser.MeshHandle:
         """Make or move a mesh for browsers without shaders; the others hide it (`js/water.js`)."""
         vertices = vertices.astype(np.float32)
         if suffix in self._plain_meshes:
-            self._plain_meshes[suffix].vertices = vertices
+            set_arrays(self._plain_meshes[suffix], vertices=vertices)
         else:
             self._plain_meshes[suffix] = self._server.scene.add_mesh_simple(
                 f"{self.name}/{suffix}",
@@ -217,3 +209,10 @@ class Water:
                 **mesh,
             )
         return self._plain_meshes[suffix]
+
+
+def raised(points: np.ndarray, shown: np.ndarray) -> np.ndarray:
+    """A surface of points (n, 3) [m] once more: just above itself where `shown`, (n,), is true, else below."""
+    surface = points.copy()
+    surface[:, 2] += np.where(shown, PLAIN_MESH_HEIGHT, -PLAIN_MESH_DEPTH)
+    return surface

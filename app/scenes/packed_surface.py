@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.packing import FOAM_STEP, SLOPE_STEP, pack, unpack
+from sim.ocean.surface_fields import pack_fields, set_surface_fields
+from sim.packing import unpack
 
 DISPLACEMENT_STEP = 1e-3  # [m] to which displacements are rounded
 
@@ -21,14 +22,11 @@ def pack_surface(
     they are level when the water rests. columns: points in a row of neighbours.
     """
     fields = np.empty((6, rest.shape[1]), np.float32)
-    fields[:3] = vertices.reshape(-1, 3).T
-    fields[:2] -= rest
-    fields[3:5] = slopes.reshape(-1, 2).T
-    fields[5] = foam.reshape(-1)
-    centre = np.round(fields[:2].mean(axis=1))  # of a mesh that has moved as a whole
-    fields[:2] -= centre[:, None]
-    steps = (*[DISPLACEMENT_STEP] * 3, SLOPE_STEP, SLOPE_STEP, FOAM_STEP)
-    return pack(fields, steps, columns, (*centre, 0.0, 0.0, 0.0, 0.0)).copy()  # without the room for longer ones
+    n = rest.shape[1]
+    surface = set_surface_fields(
+        fields, vertices.reshape(1, n, 3), slopes.reshape(1, n, 2), foam.reshape(1, n), rest
+    )  # fmt: skip
+    return pack_fields(fields, surface, DISPLACEMENT_STEP, columns).copy()  # without the room for longer ones
 
 
 def unpack_surface(

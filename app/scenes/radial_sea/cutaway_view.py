@@ -1,13 +1,16 @@
 """The walls of the cutaway: a band of oil over water, bright lines where the fluids meet, a ruler and labels."""
 
 import math
+import time
 
 import numpy as np
 import viser
 
 from app.render.coloured_mesh import ColouredMesh
-from app.render.material import RGB, Material
+from app.render.material import RGB
+from app.render.node_arrays import set_arrays
 from app.scenes.radial_sea.cutaway import DIRECTION, FAR_WALL_POINTS, HALF_WIDTH, Cutaway
+from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.materials import blend, mixture_share, rgb_of
 from sim.formatting import number
 from sim.ocean.fluid_column import FluidColumn
@@ -25,7 +28,8 @@ RULER_PLACE, OIL_PLACE, DRAFT_PLACE = -0.8, 0.3, 0.42  # along the far wall, in 
 LABEL_OFFSET = 0.06  # [m] that ruler and labels stand before the wall
 RULER_COLOUR, DRAFT_COLOUR = (235, 246, 250), (255, 236, 140)
 LABEL_SCALE = 1.1  # of a label, over viser's own size
-LABEL_STEP = 0.01  # [m] by which ruler and labels move at least: each move is a message of its own
+LABEL_STEP = 0.02  # [m] by which ruler and labels move at least: each move is a message of its own
+LABEL_INTERVAL = 0.2  # [s] between two texts of a label while the sea moves: faster ones cannot be read
 
 WALL_STEP = 1e-3  # [m] to which points of the walls are rounded for the page
 
@@ -58,6 +62,8 @@ class Walls:
             for part, colour, thick in (("top", SURFACE_LINE, 2.0), ("interface", INTERFACE_LINE, 3.0))
         ]
         self.half_width, self.size = cutaway.half_width, cutaway.half_width / HALF_WIDTH
+        self.shown_time = self.said_at = -math.inf  # [s] of the frame, and of the clock when labels were written last
+        self.ruler_at = (0.0, 0.0, 0.0)  # [m]
         # The ruler is made once; ruler and labels move with the middle of the far wall.
         self.ruler = server.scene.add_line_segments(
             f"{name}/ruler", self.ruler_lines(cutaway.floor), RULER_COLOUR, thickness=1.5, thickness_units="screen"
@@ -102,14 +108,28 @@ class Walls:
             lines.append([self.on_wall(along, -k * TICK_SPACING) for along in ends])
         return np.array(lines, np.float32)
 
-    def show_labels(self, cutaway: Cutaway, column: FluidColumn, keel: float | None) -> None:
-        """Say what one looks at: the fluids, and how deep the lowest point of the body lies, keel [m] in height."""
+    def show_ruler(self, cutaway: Cutaway, keel: float | None, *, say: bool, column: FluidColumn) -> None:
+        """Draw ruler and arrow; where `say`, write on the labels what one looks at.
+
+        These are the fluids, and how deep the lowest point of the body lies; keel [m] is its height.
+        """
         middle = (*cutaway.middle, 0.0)
-        if math.dist(self.ruler.position, middle) > LABEL_STEP:
-            self.ruler.position = middle
+        if math.dist(self.ruler_at, middle) > LABEL_STEP:
+            self.ruler.position = self.ruler_at = middle
         right = cutaway.points[:FAR_WALL_POINTS] - cutaway.middle
         along = right @ np.array([-DIRECTION[1], DIRECTION[0]]) / cutaway.half_width
         at = {place: int(np.argmin(np.abs(along - place))) for place in (OIL_PLACE, DRAFT_PLACE)}
+        surface = float(cutaway.top[at[DRAFT_PLACE]])
+        is_wet = keel is not None and keel < surface
+        if keel is not None and is_wet:
+            head = 0.05 * self.size
+            high, deep = self.on_wall(DRAFT_PLACE, surface), self.on_wall(DRAFT_PLACE, keel)
+            sides = [self.on_wall(DRAFT_PLACE + side * head / self.half_width, keel + 2.0 * head) for side in (-1, 1)]
+            set_arrays(self.arrow, points=np.array([(high, deep), (deep, sides[0]), (deep, sides[1])]))
+        if self.arrow.visible != is_wet:
+            self.arrow.visible = is_wet
+        if not say:
+            return
         top, low = float(cutaway.top[at[OIL_PLACE]]), float(cutaway.interface[at[OIL_PLACE]])
         upper = "oil and water, mixed" if column.kind == "mixed" else "oil"
         texts = {
@@ -117,22 +137,14 @@ class Walls:
             + (f", {top - low:.2g} m" if cutaway.has_oil else ""),
             "water": f"water, {number(column.water.density)} kg/m³",
         }
-        shown = {"oil": cutaway.has_oil or column.kind == "mixed", "water": column.kind != "mixed", "draft": False}
+        shown = {"oil": cutaway.has_oil or column.kind == "mixed", "water": column.kind != "mixed", "draft": is_wet}
         places = {
             "oil": self.on_wall(OIL_PLACE + 0.25, 0.5 * (top + low) if cutaway.has_oil else 0.3 * cutaway.floor),
             "water": self.on_wall(OIL_PLACE + 0.25, 0.6 * cutaway.floor),
         }
-        surface = float(cutaway.top[at[DRAFT_PLACE]])
-        if keel is not None and keel < surface:
-            shown["draft"] = True
+        if keel is not None and is_wet:
             texts["draft"] = f"lowest point {surface - keel:.2f} m deep"
             places["draft"] = self.on_wall(DRAFT_PLACE + 0.03, 0.35 * surface + 0.65 * keel)
-            head = 0.05 * self.size
-            high, deep = self.on_wall(DRAFT_PLACE, surface), self.on_wall(DRAFT_PLACE, keel)
-            sides = [self.on_wall(DRAFT_PLACE + side * head / self.half_width, keel + 2.0 * head) for side in (-1, 1)]
-            self.arrow.points = np.array([(high, deep), (deep, sides[0]), (deep, sides[1])], np.float32)
-        if self.arrow.visible != shown["draft"]:
-            self.arrow.visible = shown["draft"]
         for part, label in self.labels.items():
             if label.visible != shown[part]:
                 label.visible = shown[part]
@@ -143,11 +155,22 @@ class Walls:
             if math.dist(label.position, places[part]) > LABEL_STEP:
                 label.position = places[part]
 
-    def show(self, cutaway: Cutaway | None, light: Material, column: FluidColumn, keel: float | None) -> None:
+    def labels_are_due(self, now: float, step: float) -> bool:
+        """Whether labels say what is shown at time `now` [s], or that of a moment ago: while the sea runs, some times
+        a second; paused, and with single steps [s], always."""
+        moved, self.shown_time = now - self.shown_time, now
+        wall = time.monotonic()
+        if moved > 1.5 * step and wall - self.said_at < LABEL_INTERVAL:
+            return False
+        self.said_at = wall
+        return True
+
+    def show(self, frame: RadialFrame, keel: float | None) -> None:
         """Draw the walls as they are now, or hide them; call it where a picture is handed over as one.
 
         keel: height [m] of the lowest point of the body before the far wall; None where there is no body.
         """
+        cutaway, column = frame.cutaway, frame.column
         visible = cutaway is not None
         if self.mesh.mesh.visible != visible:
             self.mesh.mesh.visible = visible
@@ -159,16 +182,17 @@ class Walls:
                 line.visible = is_shown
         if cutaway is None:
             return
-        self.show_labels(cutaway, column, keel)
-        colours = self.paint(light, column)
+        say = self.labels_are_due(frame.time, frame.params.time_step)
+        self.show_ruler(cutaway, keel, say=say, column=column)
+        colours = self.paint(column)
         self.mesh.set(self.vertices(cutaway), colours)
         for line, height in zip(self.lines, (cutaway.top, cutaway.interface), strict=True):
             at = np.column_stack(
                 [cutaway.points[:FAR_WALL_POINTS] + LINE_OFFSET * np.array(cutaway.direction), height[:FAR_WALL_POINTS]]
             )
-            line.points = np.stack([at[:-1], at[1:]], axis=1).astype(np.float32)
+            set_arrays(line, points=np.stack([at[:-1], at[1:]], axis=1))
 
-    def paint(self, light: Material, column: FluidColumn) -> np.ndarray | None:
+    def paint(self, column: FluidColumn) -> np.ndarray | None:
         """Colours (4 n + 1, 3) where they changed, else None."""
         key = (column.kind, column.oil.name, column.fraction)
         if key == self.painted:

@@ -1,5 +1,6 @@
 """What the radial sea hands to its view and to the panel: frames and readings, immutable."""
 
+import functools
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -66,7 +67,13 @@ def unpack_frame(packed: PackedFrame) -> RadialFrame:
 
 def resting_points(frame: RadialFrame) -> NDArray[np.float32]:
     """(2, n) [m]: where the points of the mesh are when the water rests."""
-    return np.stack([frame.grid.x, frame.grid.y]).astype(np.float32)
+    return resting_grid(frame.grid)
+
+
+@functools.lru_cache(maxsize=2)
+def resting_grid(grid: RadialGrid) -> NDArray[np.float32]:
+    """The same of a grid."""
+    return np.stack([grid.x, grid.y]).astype(np.float32)
 
 
 class SurfaceReading(NamedTuple):

@@ -1,6 +1,7 @@
 """How the fluids of the radial sea look: colour, index and smoothness of water, of oil, and of both mixed."""
 
 import dataclasses
+import functools
 import math
 from typing import Any
 
@@ -10,6 +11,7 @@ from app.render.material import MAX_WATERLINES, RGB, Cutout, Material, Oil, Slic
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.well_blowout import FIRE, FIRE_WIDTH, RIG, Slick
+from sim.floating import Hull
 from sim.ocean.fluid_column import FluidColumn
 from sim.particles.plume import flame_height, radiated_light
 
@@ -33,6 +35,7 @@ MIRROR_COLOURS = {"buoy_red": "#c42422", "buoy_yellow": "#eeb220", "crate": "#a0
 HULL_COLOUR = "#4084ba"  # of other hulls
 HULL_CORNER = 0.1  # radius of the corners of a box over half its side
 OIL_ROUGHNESS = 0.02
+THICKNESS_RATIO = 1.01  # of two thicknesses of a slick for which the decay of ripples is found
 
 
 def rgb_of(colour: str) -> np.ndarray:
@@ -40,10 +43,28 @@ def rgb_of(colour: str) -> np.ndarray:
     return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
 
 
+@functools.cache
 def colour_of(colour: str) -> RGB:
     """sRGB in 0..1 of "#rrggbb"."""
     red, green, blue = rgb_of(colour).tolist()
     return red, green, blue
+
+
+LEGS = tuple(
+    Waterline(
+        (RIG[0] + i * LEG_DISTANCE, RIG[1] + j * LEG_DISTANCE),
+        0.0,
+        (0.0, 0.0),
+        LEG_RADIUS,
+        LEG_TOP,
+        color=colour_of(LEG_COLOUR),
+    )
+    for i in (-1, 1)
+    for j in (-1, 1)
+)
+DECKS = Waterline(
+    RIG, 0.0, (DECK_SIDES[0] - 1.0, DECK_SIDES[1] - 1.0), 1.0, DECK_HEIGHTS[1], DECK_HEIGHTS[0], colour_of(DECK_COLOUR)
+)
 
 
 def blend(a: RGB | np.ndarray, b: RGB | np.ndarray, share: float) -> RGB:
@@ -55,9 +76,14 @@ def blend(a: RGB | np.ndarray, b: RGB | np.ndarray, share: float) -> RGB:
 def ripple_slope(p: Params, column: FluidColumn, age: float) -> float:
     """Root mean square slope of the material's ripples: Cox and Munk's (1954), decayed for `age` [s] in the fluid."""
     clean = math.sqrt(0.003 + 0.00512 * p.wind_speed) if p.waves else CALM_SLOPE
-    k = np.array([2.0 * math.pi / RIPPLE_LENGTH])
-    remaining = math.exp(-float(column.roots(k)[1][0]) * age)
+    remaining = math.exp(-ripple_decay(column) * age) if age > 0.0 else 1.0
     return min(clean, MAX_SLOPE) * max(remaining, MIN_RIPPLE_SHARE)
+
+
+@functools.lru_cache(maxsize=4)
+def ripple_decay(column: FluidColumn) -> float:
+    """Decay rate [1/s] of a wave of RIPPLE_LENGTH; kept, as it is asked for in each picture."""
+    return float(column.roots(np.array([2.0 * math.pi / RIPPLE_LENGTH]))[1][0])
 
 
 def mixture_share(column: FluidColumn) -> float:
@@ -67,27 +93,28 @@ def mixture_share(column: FluidColumn) -> float:
 
 def waterlines_of(frame: RadialFrame) -> list[Waterline]:
     """Where the legs of the rig and the first bodies stand in the water, upright; then the rig's decks."""
-    x, y = RIG
-    legs = [(x + i * LEG_DISTANCE, y + j * LEG_DISTANCE) for i in (-1, 1) for j in (-1, 1)]
-    paint, bare = colour_of(LEG_COLOUR), colour_of(DECK_COLOUR)
-    lines = [Waterline(leg, 0.0, (0.0, 0.0), LEG_RADIUS, LEG_TOP, color=paint) for leg in legs if frame.params.rig]
+    lines = list(LEGS) if frame.params.rig else []
     room = MAX_WATERLINES - len(lines) - 1  # for bodies
     for kind, position, turn in zip(frame.kinds, frame.positions.tolist(), frame.rotations.tolist(), strict=True):
         if room == 0:
             break
         room -= 1
-        hull = frame.hulls[kind]
-        a, b = (0.5 * np.ptp(hull.extents[:2], axis=1)).tolist()
-        corner = HULL_CORNER * min(a, b) if hull.shape.collision == "box" else min(a, b)
+        sides, corner, height = footprint(frame.hulls[kind])
         w, i, j, k = turn
         heading = math.atan2(2.0 * (w * k + i * j), 1.0 - 2.0 * (j * j + k * k))
-        top, colour = position[2] + float(hull.extents[2, 1]), colour_of(MIRROR_COLOURS.get(kind, HULL_COLOUR))
-        sides = (a - corner, b - corner)
-        lines.append(Waterline((position[0], position[1]), heading, sides, corner, top, color=colour))
+        colour = colour_of(MIRROR_COLOURS.get(kind, HULL_COLOUR))
+        lines.append(Waterline((position[0], position[1]), heading, sides, corner, position[2] + height, color=colour))
     if frame.params.rig:
-        (a, b), (bottom, top) = DECK_SIDES, DECK_HEIGHTS
-        lines.append(Waterline(RIG, 0.0, (a - 1.0, b - 1.0), 1.0, top, bottom, bare))
+        lines.append(DECKS)
     return lines
+
+
+@functools.lru_cache(maxsize=16)
+def footprint(hull: Hull) -> tuple[tuple[float, float], float, float]:
+    """Half sides without the corners, radius of the corners and height above the middle [m] of an upright hull."""
+    a, b = (0.5 * np.ptp(hull.extents[:2], axis=1)).tolist()
+    corner = HULL_CORNER * min(a, b) if hull.shape.collision == "box" else min(a, b)
+    return (a - corner, b - corner), corner, float(hull.extents[2, 1])
 
 
 def material_of(light: Material, frame: RadialFrame) -> Material:
@@ -144,7 +171,9 @@ def spill_look(frame: RadialFrame) -> dict[str, Any]:
 
 def slick_look(p: Params, column: FluidColumn, slick: Slick) -> dict[str, Any]:
     """What changes in a material where there is a slick of this oil."""
-    layer = dataclasses.replace(column, thickness=slick.thickness, fraction=0.0)
+    # Rounded, as the decay of ripples is found again for each thickness.
+    thickness = THICKNESS_RATIO ** round(math.log(slick.thickness) / math.log(THICKNESS_RATIO))
+    layer = dataclasses.replace(column, thickness=thickness, fraction=0.0)
     calm = ripple_slope(p, layer, p.exposure) / ripple_slope(p, column, 0.0)
     red, green, blue = rgb_of(column.oil.colour).tolist()
     return {

@@ -6,7 +6,8 @@ import numpy as np
 import viser
 from trimesh.intersections import slice_faces_plane
 
-from app.render.material import as_bytes
+from app.render.material import as_linear_bytes
+from app.render.node_arrays import set_arrays
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.materials import rgb_of
 
@@ -35,7 +36,7 @@ class Stains:
             if height > MIN_STAIN and (i not in self.drawn or height > self.drawn[i][1] + STAIN_STEP):
                 self.draw(frame, i, height)
         for i, (mesh, _) in self.drawn.items():
-            mesh.position, mesh.wxyz = frame.positions[i], frame.rotations[i]
+            set_arrays(mesh, batched_positions=frame.positions[i : i + 1], batched_wxyzs=frame.rotations[i : i + 1])
 
     def draw(self, frame: RadialFrame, i: int, height: float) -> None:
         """Draw the stain of body i up to `height` [m] above its lowest point."""
@@ -45,9 +46,11 @@ class Stains:
         if i in self.drawn:
             self.drawn[i][0].remove()
         self.drawn[i] = (
-            self.server.scene.add_mesh_simple(
-                f"/stains/{i}", vertices, faces, color=as_bytes((red, green, blue)),
-                side="double", cast_shadow=False, receive_shadow=False,
+            # A batch of one: its place and its turn are one message, and a page draws them together with the bodies'.
+            self.server.scene.add_batched_meshes_simple(
+                f"/stains/{i}", vertices, faces, batched_positions=frame.positions[i : i + 1],
+                batched_wxyzs=frame.rotations[i : i + 1], batched_colors=as_linear_bytes((red, green, blue)),
+                side="double", lod="off", cast_shadow=False, receive_shadow=False,
             ),
             height,
         )  # fmt: skip

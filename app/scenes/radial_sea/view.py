@@ -14,6 +14,7 @@ from app.render.dragging import PullLine, drag
 from app.render.follow_camera import FollowCamera
 from app.render.material import Material
 from app.render.meshes import ball
+from app.render.node_arrays import set_arrays
 from app.render.skies import set_sky
 from app.render.water import Water
 from app.scenes.contract import Pieces
@@ -31,6 +32,7 @@ from app.scenes.radial_sea.well_blowout import FIRE, RIG
 from sim.floating.shapes import Appearance
 from sim.ocean.radial import RadialSurface
 from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.surface_fields import compile_surface_fields
 from sim.packing import compile_packing
 
 SUN_BEARING = 1.25  # [rad] from +x: beyond the buoys, as seen from the first view
@@ -108,7 +110,7 @@ class View:
         if self.walls is None and frame.cutaway is not None:
             self.walls = Walls(self.server, "/cutaway", frame.cutaway)
         if self.walls is not None:
-            self.walls.show(frame.cutaway, self.light, frame.column, keel_of(frame))
+            self.walls.show(frame, None if frame.cutaway is None else keel_of(frame))
         self.show_bodies(frame)
         self.stains.show(frame)
         self.show_pulls(frame)
@@ -172,10 +174,9 @@ class View:
             self.bodies = {kind: self.add_bodies(frame, kind) for kind in sorted(set(self.kinds))}
             self.add_handles(frame)
         for handle, chosen in self.bodies.values():
-            handle.batched_positions = frame.positions[chosen]
-            handle.batched_wxyzs = frame.rotations[chosen]
+            set_arrays(handle, batched_positions=frame.positions[chosen], batched_wxyzs=frame.rotations[chosen])
         if self.handles is not None:
-            self.handles.batched_positions = frame.positions
+            set_arrays(self.handles, batched_positions=frame.positions)
 
     def add_bodies(self, frame: RadialFrame, kind: str) -> tuple[Any, np.ndarray]:
         """A batch of all bodies of a kind, as its model or else as its hull; and their numbers."""
@@ -294,4 +295,4 @@ def handle_scale(frame: RadialFrame, kind: str) -> float:
 
 def warm_up() -> Pieces:
     """What the drawing calls."""
-    return {"packing": compile_packing}
+    return {"packing": compile_packing, "fields of the surface": compile_surface_fields}

@@ -11,8 +11,9 @@ import viser
 
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
-from app.render.material import RAIN_HEIGHT, Material
+from app.render.material import RAIN_HEIGHT, Material, as_linear_bytes
 from app.render.meshes import ball, tube_faces
+from app.render.node_arrays import set_arrays
 from app.render.skies import CAMERA_RANGE, set_sky
 from app.render.water import Water
 from app.scenes.contract import Pieces
@@ -20,6 +21,7 @@ from app.scenes.square_sea import report
 from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity, rain_settings
 from app.scenes.square_sea.rain_view import RainMesh
 from app.scenes.square_sea.scene import SeaFrame
+from sim.ocean.surface_fields import compile_surface_fields
 from sim.packing import compile_packing
 from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
@@ -45,7 +47,7 @@ FOAM_CELLS = 0.9  # size of a patch of foam, in cells of the mesh, so that it hi
 MAX_RIPPLE_SLOPE = 0.25  # rms, beyond which the shader's ripples look like noise
 RAIN_BLUR = 0.9  # of the haze's colour in rain: all of the sky is haze there, and shows the blocks of the photograph
 GAUGE_SIDES = 24  # of its cylinders
-GAUGE_COLOUR, SPAR_COLOUR = (240, 96, 32), (245, 245, 240)
+GAUGE_COLOUR, SPAR_COLOUR = (0.94, 0.376, 0.125), (0.96, 0.96, 0.94)
 
 
 def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
@@ -76,6 +78,7 @@ class View:
         self.view = DEFAULTS.view
         self.sky: tuple[str, float] | None = None  # name of the sky and direction of the sun as shown
         self.sky_material = self.material = Material()
+        self.made_of: tuple[object, ...] = ()  # what the material was made of
         self.last: SeaFrame | None = None
         server.scene.on_click()(self.on_click)  # type: ignore[arg-type]  # it takes coroutines, as on_drag does
 
@@ -95,7 +98,12 @@ class View:
         if self.sky != (p.sky, p.sun):
             self.sky = p.sky, p.sun
             self.sky_material = set_sky(self.server, p.sky, math.radians(p.sun))
-        material = self.material_of(frame)
+        made_of = p, frame.slope_resolved, self.sky
+        if made_of != self.made_of:
+            self.made_of = made_of
+            material = self.material_of(frame)
+        else:
+            material = self.material
         mesh_shape = len(frame.vertices), p.length
         if self.water is None or mesh_shape != self.mesh_shape:
             if self.water is not None:
@@ -104,7 +112,7 @@ class View:
             self.water = Water(self.server, "/sea", n, n, length, tiles=TILES, material=material)
             self.move_cameras(self.mesh_shape[1], length)
             self.mesh_shape = mesh_shape
-        elif material != self.material:
+        elif material is not self.material and material != self.material:
             self.water.set_material(material)
         self.material = material
         if p.view != self.view:
@@ -228,8 +236,7 @@ class WaveGaugeMesh:
                 triangles,
                 batched_wxyzs=np.array([[1.0, 0.0, 0.0, 0.0]], np.float32),
                 batched_positions=np.zeros((1, 3), np.float32),
-                # viser takes the colours of instances as linear ones.
-                batched_colors=(255.0 * (np.array([colour]) / 255.0) ** 2.2).astype(np.uint8),
+                batched_colors=as_linear_bytes(colour),
                 lod="off",
                 flat_shading=name != "ball",
             )
@@ -241,7 +248,7 @@ class WaveGaugeMesh:
         for part in self.parts:
             part.visible = position is not None
             if position is not None:
-                part.batched_positions = np.array([position], np.float32)
+                set_arrays(part, batched_positions=np.array([position]))
 
 
 def upright(radius: float, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
@@ -256,4 +263,4 @@ def upright(radius: float, low: float, high: float) -> tuple[np.ndarray, np.ndar
 
 def warm_up() -> Pieces:
     """What the drawing calls."""
-    return {"packing": compile_packing}
+    return {"packing": compile_packing, "fields of the surface": compile_surface_fields}

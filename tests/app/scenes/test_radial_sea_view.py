@@ -9,6 +9,7 @@ import viser
 
 from app.render.material import Material
 from app.scenes import scene_named
+from app.scenes.radial_sea import cutaway_view
 from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.materials import SPILL_RADIUS, material_of
@@ -33,7 +34,7 @@ def test_the_labels_of_the_window_say_what_is_there(server: viser.ViserServer) -
     walls = Walls(server, "/cutaway", frame.cutaway)
     keel = keel_of(frame)
     assert keel is not None
-    walls.show(frame.cutaway, Material(), frame.column, keel)
+    walls.show(frame, keel)
     assert walls.labels["oil"].text == "oil, 866 kg/m³, 0.3 m"
     assert walls.labels["draft"].text == f"lowest point {-keel:.2f} m deep"
     assert walls.labels["water"].text.startswith("water, ")
@@ -46,7 +47,7 @@ def test_the_labels_of_the_window_say_what_is_there(server: viser.ViserServer) -
     assert walls.ruler.position[:2] == pytest.approx(frame.cutaway.middle)
     ticks = np.sort(walls.ruler.points[1:, 0, 2])[::-1]
     assert ticks[:3] == pytest.approx([0.0, -0.1, -0.2])
-    walls.show(None, Material(), frame.column, None)
+    walls.show(frame._replace(cutaway=None), None)
     assert not walls.ruler.visible
 
 
@@ -54,9 +55,32 @@ def test_clear_water_has_no_label_of_oil_and_no_body_has_no_draft(server: viser.
     frame = frame_of(cutaway=True, waves=False, bodies=0)
     assert frame.cutaway is not None
     walls = Walls(server, "/cutaway", frame.cutaway)
-    walls.show(frame.cutaway, Material(), frame.column, keel_of(frame))
+    walls.show(frame, keel_of(frame))
     assert [part for part, label in walls.labels.items() if label.visible] == ["water"]
     assert not walls.arrow.visible
+
+
+def test_labels_are_written_some_times_a_second_and_at_once_where_the_sea_stands(
+    server: viser.ViserServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    frame = frame_of(cutaway=True, waves=False)
+    assert frame.cutaway is not None
+    walls, clock, step = Walls(server, "/cutaway", frame.cutaway), [100.0], frame.params.time_step
+    monkeypatch.setattr(cutaway_view.time, "monotonic", lambda: clock[0])
+
+    def said(at: float, keel: float) -> bool:
+        walls.show(frame._replace(time=at), keel)
+        assert walls.arrow.points[0, 1, 2] == pytest.approx(keel)  # the arrow is of the picture
+        return walls.labels["draft"].text == f"lowest point {-keel:.2f} m deep"
+
+    assert said(0.0, -0.50)
+    assert not said(2.0 * step, -0.51)  # runs
+    clock[0] += cutaway_view.LABEL_INTERVAL
+    assert said(4.0 * step, -0.52)
+    assert not said(6.0 * step, -0.53)
+    assert said(6.0 * step, -0.53)  # paused
+    assert said(7.0 * step, -0.54)  # a single step
+    assert said(0.0, -0.55)  # begun again
 
 
 @pytest.mark.parametrize("name", ["Light crude spill 0.2 m", "Heavy fuel oil", "Entirely mixed", "A day after a spill"])

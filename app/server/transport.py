@@ -2,8 +2,8 @@
 
 viser's own `atomic()` holds a browser's next message back while a picture is handed over. But a message that is just
 being put together then ends in the middle of a picture, or takes half of one that the next replaces. Therefore no
-`atomic()` is used here: a picture is handed over as a whole on viser's event loop, where messages are put together
-too. So mesh and poses of one picture are always in one message, however slow a browser is.
+`atomic()` is used on the viewer's thread: a picture is handed over as a whole on viser's event loop, where messages are
+put together too. So mesh and poses of one picture are always in one message, however slow a browser is.
 
 The names with an underscore are viser's own and a reason for the upper bound in pyproject.toml; the tests fail when
 they change.
@@ -48,6 +48,7 @@ class TransportCounters:
         self.loop = server.get_event_loop()
         connection: ViserConnection = server._websock_server
         self.send = connection.queue_message
+        self.buffer = connection.get_message_buffer()
 
         def queue_message(message: object) -> None:
             if threading.get_ident() == self.counting_thread:
@@ -89,8 +90,12 @@ class TransportCounters:
         done = threading.Event()
 
         def send_all() -> None:
+            # Within, viser wakes its event loop once and not for each message. It cannot cut a picture in two: the loop
+            # puts no message together while this runs on it.
+            self.buffer.atomic_start()
             for message in picture:
                 self.send(message)
+            self.buffer.atomic_end()
             done.set()
 
         with contextlib.suppress(RuntimeError):  # the server has ended

@@ -14,7 +14,7 @@ from viser import _messages as vm
 from websockets.asyncio.client import connect
 
 from app.server.guard import open_server
-from app.server.pace import MOST, PATIENCE, PROBE_INTERVAL, QUEUE, SMALL, Pace, small_first
+from app.server.pace import MAX_UNASKED, MOST, PATIENCE, PROBE_INTERVAL, QUEUE, SMALL, Pace, small_first
 from tests import coroutines
 from tests.app.server.test_transport import decoded
 
@@ -131,6 +131,26 @@ def test_the_rate_follows_the_line() -> None:
 
     hurried(send_all())
     assert max(line.waiting[-30:]) < len(PICTURE)
+
+
+def test_a_quick_line_is_asked_about_some_pictures_and_about_all_once_it_is_slow() -> None:
+    line = LineTo(1e9, 0.001, pongs=1000)
+
+    async def send_all() -> tuple[int, int]:
+        connection, asked = Pace(line), []
+        for number in range(200):
+            await asyncio.sleep(INTERVAL)
+            if number == 100:
+                asked.append(1000 - line.pongs)
+                line.rate, line.round_trip = 0.25 * LINE, ROUND_TRIP
+            await connection.send(PICTURE)
+        return asked[0], 1000 - line.pongs - asked[0]
+
+    quick, slow = hurried(send_all())
+    assert quick <= 100 / (1 + MAX_UNASKED) + 3
+    assert slow > 90
+    assert max(line.waiting) <= (MOST + MAX_UNASKED) * len(PICTURE)
+    assert max(line.waiting[-80:]) < len(PICTURE)
 
 
 def test_small_messages_do_not_wait() -> None:

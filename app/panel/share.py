@@ -174,20 +174,9 @@ class Share:
         self.line.content = note(text) if text else ""
 
     async def on_inbox(self, event: ViserEvent) -> None:
-        """A page has sent something."""
-        if event.client is not None:
-            self.take_inbox(event.client)
-
-    def take_early(self) -> None:
-        """Take what a page has sent before viser had counted its browser: viser calls nobody for that."""
-        clients = self.server.get_clients()
-        if clients:
-            self.take_inbox(clients[max(clients)])
-
-    def take_inbox(self, client: viser.ClientHandle) -> None:
-        """Take what a page has sent: its address ("?scene=...") or a file ("{...}"). Called on viser's event loop."""
-        text = self.inbox.value
-        if not text:
+        """A page has sent its address ("?scene=...") or a file ("{...}")."""
+        text, client = self.inbox.value, event.client
+        if not text or client is None:
             return
         self.inbox.value = ""  # so that the same text can come again
         try:
@@ -440,9 +429,7 @@ class Share:
         return f"springtide-{self.panel.kind.name}.html", page.encode()
 
     def update(self, snapshot: AnySnapshot) -> None:
-        """Take what waits, and keep the timeline up to date."""
-        if self.inbox.value:
-            self.server.get_event_loop().call_soon_threadsafe(self.take_early)
+        """Keep the timeline up to date."""
         now = time.monotonic()
         shown = self.recorder.shown
         if shown is None and now - self.span_at < SPAN_INTERVAL:

@@ -253,11 +253,19 @@ def merge_key(message: ViserMessage) -> MergeKey | None:
             return None
 
 
+def is_camera(message: ViserMessage) -> bool:
+    """Whether a browser says with this message where its camera is."""
+    return isinstance(message, vm.ViewerCameraMessage)
+
+
 class Intake:
     """The messages of one browser on their way to viser's handlers, on viser's event loop.
 
     A message that comes alone is handled at once. What comes faster than `INTAKE_INTERVAL` waits for the next turn, and
     of messages that supersede each other only the last is handled: a browser that floods is slowed, others are not.
+
+    viser counts a browser from its first camera message on and ignores half of what it sends before. All else waits
+    until then: a page may send the link in its address first.
     """
 
     def __init__(self, screen: Callable[[ViserMessage], ViserMessage], handlers: "list[Handler]") -> None:
@@ -266,6 +274,7 @@ class Intake:
         self.unmerged = 0  # counts messages that are never merged, for keys of their own
         self.turn: asyncio.Task[None] | None = None
         self.turned_at = -math.inf  # [s] when a message was last handled
+        self.counted = False  # whether viser has had a camera message
 
     def take(self, client: ClientId, message: ViserMessage) -> None:
         """Queue a message, over one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""
@@ -294,12 +303,15 @@ class Intake:
                 pause = self.turned_at + INTAKE_INTERVAL - time.monotonic()
                 if pause > 0.0:
                     await asyncio.sleep(pause)
-                waiting, self.waiting = self.waiting, {}
-                for message in waiting.values():
+                keys = [key for key, message in self.waiting.items() if self.counted or is_camera(message)]
+                if not keys:
+                    return
+                for message in [self.waiting.pop(key) for key in keys]:
                     good = self.screen(message)
                     if good is not None:
                         for handle in self.handlers:
                             await handle(client, good)
+                        self.counted = True
                 self.turned_at = time.monotonic()
         finally:
             self.turn = None

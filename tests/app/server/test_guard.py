@@ -18,6 +18,9 @@ from websockets.asyncio.client import connect
 from app.server.guard import MAX_TEXT_LENGTH, allowed_value, is_bounded, is_own_origin, open_server
 from app.server.viewer import Viewer
 from tests import coroutines
+from tests.stress.clients import CAMERA
+
+PROTOCOL = websockets.Subprotocol(f"viser-v{viser.__version__}")
 
 
 @pytest.mark.parametrize(
@@ -47,12 +50,12 @@ async def say(port: int, messages: list[dict[str, Any]], origin: str | None = No
     It does so at a message that cannot be decoded. The next message then goes out on a new one.
     """
     address = f"ws://127.0.0.1:{port}{path}"
-    protocol = websockets.Subprotocol(f"viser-v{viser.__version__}")
     waiting = list(reversed(messages))
     cuts = 0
     while True:
-        async with connect(address, origin=origin, subprotocols=[protocol], max_size=None, max_queue=None) as client:
+        async with connect(address, origin=origin, subprotocols=[PROTOCOL], max_size=None, max_queue=None) as client:
             try:
+                await client.send(msgspec.msgpack.encode(CAMERA))  # viser counts it, and what it says is judged
                 while waiting:
                     await client.send(msgspec.msgpack.encode(waiting[-1]))
                     waiting.pop()
@@ -163,19 +166,11 @@ def test_2000_hostile_messages_leave_the_server_running_and_the_state_finite(lab
 
 
 async def leave_at_once(port: int) -> None:
-    """Connect, say a camera just after another message, so that it has to wait for its turn, and leave."""
-    camera = {
-        "type": "ViewerCameraMessage", "wxyz": [1.0, 0.0, 0.0, 0.0], "position": [1.0, 1.0, 1.0], "fov": 1.0,
-        "near": 0.1, "far": 10.0, "image_height": 100, "image_width": 100, "look_at": [0.0] * 3,
-        "up_direction": [0.0, 0.0, 1.0],
-    }  # fmt: skip
-    protocol = websockets.Subprotocol(f"viser-v{viser.__version__}")
-    address = f"ws://127.0.0.1:{port}"
-    async with connect(address, subprotocols=[protocol], max_size=None, max_queue=None) as client:
-        await client.send(msgspec.msgpack.encode({"type": "CommandTriggerMessage", "uuid": "none"}))
-        await asyncio.sleep(0.05)
-        await client.send(msgspec.msgpack.encode(camera))
-        await asyncio.sleep(0.05)
+    """Connect, say a camera just after another, so that it has to wait for its turn, and leave."""
+    async with connect(f"ws://127.0.0.1:{port}", subprotocols=[PROTOCOL], max_size=None, max_queue=None) as client:
+        for _ in range(2):
+            await client.send(msgspec.msgpack.encode(CAMERA))
+            await asyncio.sleep(0.05)
 
 
 def test_a_browser_that_leaves_while_its_camera_waits_is_not_counted(
@@ -186,6 +181,29 @@ def test_a_browser_that_leaves_while_its_camera_waits_is_not_counted(
     coroutines.run(leave_at_once(lab.port))
     time.sleep(0.5)  # until the turn of the camera would have come
     assert len(lab.server.get_clients()) == before
+
+
+async def follow_a_link_while_somebody_looks(lab: Viewer) -> None:
+    """One browser is there, and another sends the link in its address before its first camera."""
+    address, sharing = f"ws://127.0.0.1:{lab.port}", lab.panel.share
+    link = {"type": "GuiUpdateMessage", "uuid": sharing.inbox._impl.uuid, "updates": {"value": "?scene=rope&points=9"}}
+    async with (
+        connect(address, subprotocols=[PROTOCOL], max_size=None, max_queue=None) as first,
+        connect(address, subprotocols=[PROTOCOL], max_size=None, max_queue=None) as second,
+    ):
+        await first.send(msgspec.msgpack.encode(CAMERA))
+        await second.send(msgspec.msgpack.encode(link))
+        await asyncio.sleep(0.3)
+        assert sharing.waiting is None
+        await second.send(msgspec.msgpack.encode(CAMERA))
+        await asyncio.sleep(0.3)
+
+
+def test_a_link_that_comes_before_its_browser_is_counted_asks_the_others(lab: Viewer) -> None:
+    before = lab.panel.params
+    coroutines.run(follow_a_link_while_somebody_looks(lab))
+    assert lab.panel.share.waiting is not None
+    assert lab.panel.params == before
 
 
 def test_the_share_tunnel_has_no_handler(lab: Viewer) -> None:

@@ -13,15 +13,24 @@ from app.messages import Pause
 from app.server.viewer import Viewer
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
+FLAGS = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-gpu-compositing",  # the page around the picture is put together without it: a third less
+]
 PIXEL_RATIO = 0.2  # drawn pixels per pixel of the page, in each direction
-# A software renderer takes seconds to compile the shaders of a sea: where a test reads no pixel, all is one colour.
-FLAT_SHADERS = """const put = WebGL2RenderingContext.prototype.shaderSource;
+# A software renderer takes most of the processor. Where a test reads no pixel, shaders are trivial, as those of a sea
+# take seconds to compile, and nothing is drawn. The rest of the page works as ever.
+NO_PIXELS = """const put = WebGL2RenderingContext.prototype.shaderSource;
 WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
     const fragment = this.getShaderParameter(shader, this.SHADER_TYPE) === this.FRAGMENT_SHADER;
     const flat = "#version 300 es\\nout lowp vec4 color; void main() { color = vec4(0.3, 0.5, 0.6, 1.0); }";
     put.call(this, shader, fragment ? flat : source);
-};"""
+};
+for (const call of ["clear", "drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"])
+    WebGL2RenderingContext.prototype[call] = () => {};"""
 # The drawn vertices of a mesh, as the bytes of single-precision numbers in base 64: a list of 50,000 numbers takes
 # seconds to come through.
 VERTICES = """name => { const ref = window.__viserMutable?.nodeRefFromName?.[name]; let found = null;
@@ -46,10 +55,10 @@ HARMLESS_ERRORS = ("preventDefault inside passive", "computeBoundingSphere(): Co
 LATE_UPDATE = "Tried to update non-existent component"
 
 
-def new_page(chromium: Any, width: int, height: int, shaded: bool) -> Any:
+def new_page(chromium: Any, width: int, height: int, drawn: bool) -> Any:
     page = chromium.new_page(viewport={"width": width, "height": height})
-    if not shaded:
-        page.add_init_script(FLAT_SHADERS)
+    if not drawn:
+        page.add_init_script(NO_PIXELS)
     return page
 
 
@@ -83,7 +92,7 @@ def vertices_of(page: Any, node: str) -> np.ndarray:
 
 
 class Tab:
-    """One page on a server, with flat shaders or with those that users see, and the errors on it."""
+    """One page on a server, drawn or without pixels, and the errors on it."""
 
     def __init__(
         self,
@@ -91,12 +100,12 @@ class Tab:
         port: int,
         width: int = 900,
         height: int = 560,
-        shaded: bool = False,
+        drawn: bool = False,
         query: str = "",
         address: str = "",
     ) -> None:
         """address: of the page where a proxy shows it, with a "?"."""
-        self.page = new_page(chromium, width, height, shaded)
+        self.page = new_page(chromium, width, height, drawn)
         self.errors: list[str] = []
         self.followed = 0  # number of scenes that were opened for it
         self.page.on("console", self.note)

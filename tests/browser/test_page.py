@@ -28,7 +28,7 @@ def wait_for(page: Any, condition: Any, seconds: float = 60.0) -> None:
 
 def test_the_cover_goes_with_the_first_scene_and_comes_back_with_the_end(chromium: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
-    page = new_page(chromium, 640, 400, shaded=False)
+    page = new_page(chromium, 640, 400, drawn=False)
     try:
         page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo&fixedDpr=0.2", wait_until="commit")
         wait_for(page, lambda words: "Connecting" in words)  # no scene is open
@@ -43,7 +43,7 @@ def test_the_cover_goes_with_the_first_scene_and_comes_back_with_the_end(chromiu
 
 def test_without_webgl_the_page_says_so(chromium: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
-    page = new_page(chromium, 640, 400, shaded=False)
+    page = new_page(chromium, 640, 400, drawn=False)
     page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null;")
     try:
         viewer.open("rope")
@@ -59,7 +59,7 @@ def test_no_link_leads_the_page_to_another_server(chromium: Any) -> None:
     """What viser's client gets from there may be JavaScript, which would run as if it were ours."""
     key = "k" * 16
     viewer = Viewer("127.0.0.1", 0, access=Access(key=key))
-    page = new_page(chromium, 640, 400, shaded=False)
+    page = new_page(chromium, 640, 400, drawn=False)
     with socket.create_server(("127.0.0.1", 0)) as other:
         there = f"localhost:{other.getsockname()[1]}"
         asked = f"websocket=ws://{there}&playbackPath=http://{there}/x&scene=rope&stiffness=3000"

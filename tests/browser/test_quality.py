@@ -33,7 +33,7 @@ def page(chromium: Any) -> Iterator[Any]:
     """A page without "fixedDpr", which would keep all pixels."""
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("square_sea")
-    page = new_page(chromium, 420, 300, shaded=False)
+    page = new_page(chromium, 420, 300, drawn=False)
     page.add_init_script(SLOW_FRAMES)
     page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo")
     page.wait_for_function("() => window.__springtide?.quality && document.querySelector('[data-springtide-quality]')")

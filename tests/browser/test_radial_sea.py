@@ -33,7 +33,7 @@ def load(lab: Viewer, **changes: Any) -> None:
 @pytest.mark.stress  # half a minute of drawing in software
 def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
     lab.panel.load("Burning rig")
-    tab = open_tab(lab.port, width=420, height=260, shaded=True)
+    tab = open_tab(lab.port, width=420, height=260, drawn=True)
     tab.wait(lambda: drawn(lab))
     tab.wait(lambda: lab.view.flames is not None and lab.view.flames.handle.visible)
     tab.wait(lambda: lab.view.material.slick is not None and lab.view.material.slick.radius > 3.0)

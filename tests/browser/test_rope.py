@@ -17,7 +17,7 @@ def watching(viewer: Viewer) -> bool:
 
 
 def test_the_rope_is_drawn_and_swings_without_console_errors(lab: Viewer, open_tab) -> None:
-    tab = open_tab(lab.port, shaded=True)
+    tab = open_tab(lab.port, drawn=True)
     tab.wait(lambda: len(tab.vertices("/rope")) > 0)
     first = tab.vertices("/rope")
     tab.wait(lambda: np.abs(tab.vertices("/rope") - first).max() > 0.2)

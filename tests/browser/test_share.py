@@ -3,6 +3,7 @@
 import json
 import zipfile
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from urllib.parse import quote
 
@@ -142,8 +143,13 @@ def test_the_plots_show_the_moment_and_the_run_goes_on_from_it(opened: tuple[Vie
     lab.panel.set("plot_tip", False)
 
 
-def test_film_clip_and_plots_are_made_as_files(opened: tuple[Viewer, Tab], tmp_path: Path) -> None:
-    lab, tab = opened
+def test_film_clip_and_plots_are_made_as_files(
+    one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], tmp_path: Path
+) -> None:
+    lab, _ = one_page
+    tab = open_tab(lab.port, drawn=True)
+    tab.follow(lab, SCENE)
+    tab.page.get_by_role("button", name="Record and share", exact=True).click()
     lab.panel.set("plot_tip", True)
     tab.wait(lambda: len(lab.panel.recorder.frames) > 10 and "plot_tip" in lab.panel.plots.charts, 30)
     tab.page.get_by_role("button", name="Record clip").click()
@@ -167,9 +173,10 @@ def test_film_clip_and_plots_are_made_as_files(opened: tuple[Viewer, Tab], tmp_p
     lab.panel.recorder.show_frame(frames[-4])
     with zipfile.ZipFile(saved("button:has-text('Film pictures')")) as film:
         assert len(film.namelist()) == 4 + 1
-        pictures = [iio.imread(film.read(name)) for name in film.namelist()[:-1]]  # in one colour, as shaders are flat
+        pictures = [iio.imread(film.read(name)) for name in film.namelist()[:-1]]
         times = film.read("times.csv").decode().splitlines()
     assert len({picture.shape for picture in pictures}) == 1
+    assert all((before != after).any() for before, after in pairwise(pictures))  # the rope moves
     assert [float(line.split(",")[1]) for line in times[1:]] == [kept.time for kept in frames[-4:]]
     lab.panel.set("plot_tip", False)
 

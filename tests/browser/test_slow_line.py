@@ -12,16 +12,13 @@ from typing import Any
 import pytest
 
 from app.render.material import WATER_UNIFORMS
-from tests.browser.conftest import FLAT_SHADERS
+from tests.browser.conftest import new_page
 from tests.browser.slow_line import slow_line
 from tests.stress.served import served
 
 RATE, DELAY, BUFFER = 20e6 / 8, 0.04, 1_000_000  # [bytes/s], [s] each way, [bytes]
 CHANGES = 40
 MAX_REACTION = 0.25  # [s] in the median, on a machine with no other work
-# All of the page works but the software renderer, which would take most of the processor.
-NO_TRIANGLES = """for (const call of ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"])
-    WebGL2RenderingContext.prototype[call] = () => {};"""
 # In each frame of the page: whether the box "Grid" is ticked, which the server does, and whether the sea that is drawn
 # has its grid; after a key G the times [ms] until each has changed.
 WATCH = """row => {
@@ -62,8 +59,7 @@ def of_95(times: list[float]) -> float:
 @pytest.mark.parametrize("scene", ["square_sea", "radial_sea"])
 def test_a_key_answers_soon_over_a_slow_line(chromium: Any, scene: str) -> None:
     with served("--scene", scene) as lab, slow_line(lab.port, RATE, DELAY, BUFFER) as line:
-        page = chromium.new_page(viewport={"width": 480, "height": 320})
-        page.add_init_script(FLAT_SHADERS + NO_TRIANGLES)
+        page = new_page(chromium, 480, 320, drawn=False)
         page.goto(f"http://127.0.0.1:{line.port}/?hideViserLogo&fixedDpr=0.2", timeout=60_000)
         page.get_by_text("Look", exact=True).first.click(timeout=60_000)
         page.evaluate(WATCH, WATER_UNIFORMS.index("extent"))

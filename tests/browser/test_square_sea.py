@@ -31,7 +31,7 @@ def heights(tab: Any) -> np.ndarray:
 
 @pytest.mark.stress  # compiles the sea's shaders again, as test_water does
 def test_the_water_has_its_shader_moves_and_leaves_no_console_errors(lab: Viewer, open_tab) -> None:
-    tab = open_tab(lab.port, width=420, height=260, shaded=True)
+    tab = open_tab(lab.port, width=420, height=260, drawn=True)
     tab.wait(lambda: has_shader(lab))
     first = heights(tab)
     assert len(first) == 33 * 33

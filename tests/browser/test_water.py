@@ -34,9 +34,9 @@ def server() -> Iterator[viser.ViserServer]:
     server.stop()
 
 
-def visit(chromium, server: viser.ViserServer, shaded: bool = True):
+def visit(chromium, server: viser.ViserServer, drawn: bool = True):
     """A page on the server and the list that its errors go to."""
-    page = new_page(chromium, 320, 200, shaded)
+    page = new_page(chromium, 320, 200, drawn)
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
     page.on("pageerror", lambda error: errors.append(str(error)))
@@ -165,9 +165,9 @@ def test_foam_another_material_and_another_size_reach_the_pixels(chromium, serve
 
 def test_a_later_page_and_a_reloaded_one_have_the_shader_too(chromium, server):
     water = make_water(server)
-    first, _ = visit(chromium, server, shaded=False)
+    first, _ = visit(chromium, server, drawn=False)
     assert wait(first, lambda: water.has_shader is True)
-    second, errors = visit(chromium, server, shaded=False)
+    second, errors = visit(chromium, server, drawn=False)
     assert wait(second, lambda: len(server.get_clients()) == 2 and water.has_shader is True)
     second.reload()
     assert wait(second, lambda: materials(second) != {})
@@ -178,7 +178,7 @@ def test_a_later_page_and_a_reloaded_one_have_the_shader_too(chromium, server):
 
 def test_a_material_that_viser_makes_anew_gets_the_shader_again(chromium, server):
     water = make_water(server)
-    page, errors = visit(chromium, server, shaded=False)
+    page, errors = visit(chromium, server, drawn=False)
     assert wait(page, lambda: water.has_shader is True)
     page.evaluate("window.was = window.__viserMutable.nodeRefFromName['/sea'].children[0].material.uuid")
     water.mesh.side = "double"
@@ -192,7 +192,7 @@ def test_a_material_that_viser_makes_anew_gets_the_shader_again(chromium, server
 
 def test_sizes_change_live_and_nothing_is_left_behind(chromium, server):
     material = set_sky(server, "park")
-    page, errors = visit(chromium, server, shaded=False)
+    page, errors = visit(chromium, server, drawn=False)
     assert wait(page, lambda: page.evaluate("window.__viserMutable?.scene?.environment != null"))
 
     def held() -> dict[str, int]:
@@ -229,7 +229,7 @@ def test_a_mesh_of_any_shape_is_water_too(chromium, server):
     water = Water(server, "/disc", rings, spokes, 60.0, faces=faces, material=set_sky(server, "park"))
     vertices = np.stack([r * np.cos(a), r * np.sin(a), 0 * r], -1)
     water.set_surface(vertices, np.zeros((rings, spokes, 2)), np.ones((rings, spokes)))
-    page, errors = visit(chromium, server, shaded=False)
+    page, errors = visit(chromium, server, drawn=False)
     assert wait(page, lambda: water.has_shader is True)
     assert materials(page) == {"/disc": "springtide-water/disc"}
     assert errors == []
@@ -275,7 +275,7 @@ def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, monkeypatch
 
 def test_plain_water_sends_no_script(chromium, server):
     water = make_water(server, plain=True)
-    page, errors = visit(chromium, server, shaded=False)
+    page, errors = visit(chromium, server, drawn=False)
     assert wait(page, lambda: len(server.get_clients()) == 1)
     page.wait_for_timeout(2000)
     assert water.has_shader is False
@@ -288,7 +288,7 @@ def test_an_exported_page_has_the_shader_without_a_server(chromium, server, tmp_
     make_water(server, tiles=3)
     file = tmp_path / "sea.html"
     file.write_text(server.get_scene_serializer().as_html(), encoding="utf-8")
-    page = new_page(chromium, 320, 200, shaded=True)
+    page = new_page(chromium, 320, 200, drawn=True)
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
     page.goto(file.as_uri())

@@ -44,7 +44,7 @@ class Picture:
         material = dataclasses.replace(set_sky(self.server, "park"), haze_distance=1e6, sun_disc=0.0, clouds=0.0)
         water = Water(self.server, "/sea", N, N, LENGTH, tiles=5, material=material)
         water.set_surface(*waves(seed), TIME)
-        self.page = new_page(chromium, WIDTH, WIDTH, shaded=True)
+        self.page = new_page(chromium, WIDTH, WIDTH, drawn=True)
         self.page.goto(f"http://127.0.0.1:{self.server.get_port()}/?hideViserLogo&fixedDpr=1")
         assert wait(self.page, lambda: water.has_shader is True)
         self.page.add_style_tag(content=".mantine-Paper-root, [class*=Notif] { display: none !important }")

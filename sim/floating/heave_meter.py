@@ -1,5 +1,6 @@
 """Mean draft and period of heave, measured on bodies while they move."""
 
+import functools
 import math
 
 import numpy as np
@@ -25,6 +26,8 @@ class WindowMean:
         self.sum, self.filled = np.zeros((n, numbers)), 0.0  # of the sample that is being taken, and how long it is [s]
         self.count = 0  # of samples taken
         self.began = np.zeros(n, int)  # count at which the mean of a body begins
+        self.means: dict[int, np.ndarray] = {}  # by body, as they were when so many samples had been taken:
+        self.means_at = 0
 
     def update(self, values: np.ndarray, duration: float) -> None:
         """Take values (n, numbers) that hold for `duration` [s]."""
@@ -38,14 +41,26 @@ class WindowMean:
     def restart(self, i: int) -> None:
         """Start the mean of body i again."""
         self.began[i] = self.count
+        self.means.pop(i, None)
 
     def of(self, i: int) -> np.ndarray:
         """The means (numbers,) of body i; NaN before the first sample."""
         length = min(self.count - int(self.began[i]), len(self.samples))
         if length == 0:
             return np.full(self.samples.shape[2], np.nan)
-        window = np.hanning(length + 2)[1:-1]
-        return window @ self.samples[np.arange(self.count - length, self.count) % len(self.samples), i] / window.sum()
+        if self.means_at != self.count:  # else no sample was taken since
+            self.means, self.means_at = {}, self.count
+        if i not in self.means:
+            shown = np.arange(self.count - length, self.count) % len(self.samples)
+            self.means[i] = fading_window(length) @ self.samples[shown, i]
+        return self.means[i]
+
+
+@functools.lru_cache(maxsize=2)
+def fading_window(length: int) -> np.ndarray:
+    """Hann's window of so many samples; its sum is 1."""
+    window = np.hanning(length + 2)[1:-1]
+    return window / window.sum()
 
 
 class HeaveMeter:

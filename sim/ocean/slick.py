@@ -84,8 +84,7 @@ class SlickCover(NamedTuple):
         self, points: NDArray[np.float64], kx: NDArray[np.float64], ky: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Lengths (n, waves) [m] that waves (kx, ky) have come under the slick when they reach points (n, 2) [m]."""
-        x, y = points[:, 0, None] - self.centre[0], points[:, 1, None] - self.centre[1]
-        k = np.hypot(kx, ky)
-        along, across = (x * kx + y * ky) / k, (x * ky - y * kx) / k
-        half = np.sqrt(np.maximum(self.radius**2 - across**2, 0.0))
-        return np.clip(along + half, 0.0, 2.0 * half)
+        offset, direction = points - self.centre, np.stack([kx, ky]) / np.hypot(kx, ky)
+        along, across = offset @ direction, offset @ np.stack([direction[1], -direction[0]])
+        half = np.sqrt(np.maximum(self.radius**2 - across * across, 0.0))
+        return np.minimum(np.maximum(along + half, 0.0), 2.0 * half)

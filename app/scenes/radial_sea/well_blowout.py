@@ -1,5 +1,6 @@
 """A blowout of the well under the rig: it burns, and oil shoots into the sea and spreads there as a slick."""
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -156,20 +157,12 @@ class WellBlowout:
 
     def slick(self, column: FluidColumn) -> Slick | None:
         """The slick, spread by Fay's laws and drifting with the wind, or None where there is none."""
-        if self.volume <= 0.0 or self.slick_age <= 0.0:
+        volume, age = self.volume, self.slick_age
+        if volume <= 0.0 or age <= 0.0:
             return None
-        viscosity = column.water.kinematic_viscosity
-        radius = slick_radius(
-            self.volume,
-            self.slick_age,
-            column.oil.density,
-            column.water.density,
-            viscosity,
-            column.gravity,
-            spreading_coefficient(column.oil, column.water),
-        )
         x, y = LANDING[0] + self.drift[0], LANDING[1] + self.drift[1]
-        return Slick((x, y), radius, slick_thickness(self.volume, radius))
+        radius = spread_radius(volume, age, column)
+        return Slick((x, y), radius, slick_thickness(volume, radius))
 
     def oil_budget(self, column: FluidColumn) -> OilBudget:
         """Where the oil is."""
@@ -182,6 +175,21 @@ class WellBlowout:
             radius=slick.radius if slick is not None else 0.0,
             thickness=slick.thickness if slick is not None else 0.0,
         )
+
+
+@functools.lru_cache(maxsize=2)
+def spread_radius(volume: float, age: float, column: FluidColumn) -> float:
+    """Radius [m] of the slick of so much oil [m3] after `age` [s]; kept, as a frame asks for it several times."""
+    oil, water = column.oil, column.water
+    return slick_radius(
+        volume,
+        age,
+        oil.density,
+        water.density,
+        water.kinematic_viscosity,
+        column.gravity,
+        spreading_coefficient(oil, water),
+    )
 
 
 def wind_of(params: Params) -> tuple[float, float]:

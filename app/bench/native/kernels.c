@@ -74,21 +74,83 @@ static void damp_all(int n, int reverse, double *restrict v, const double *restr
             damp_drag(n, v, w, keep);
 }
 
+/* Damping that ends a step and that which begins the next, in one pass: links of every second pair from `start` on, then
+   the others, drag, and both again, each stage two points behind the one before. */
+static void damp_twice(double *restrict v, const double *restrict first, const double *restrict second,
+                       const double *restrict keep, int start, int count) {
+    double after_one = 0, after_two = 0, after_three = 0;
+    for (int k = 0; k < count; k++) {
+        int i = start + 2 * k;
+        double u = v[i], last = v[i + 1], d = last - u;
+        u += first[i] * d, last -= second[i] * d;
+        d = u - after_one;
+        double q = (after_one + first[i - 1] * d) * keep[i - 1];
+        u = (u - second[i - 1] * d) * keep[i];
+        d = q - after_two;
+        double b = after_two + first[i - 2] * d;
+        q -= second[i - 2] * d;
+        d = b - after_three;
+        v[i - 3] = after_three + first[i - 3] * d, v[i - 2] = b - second[i - 3] * d;
+        after_one = last, after_two = u, after_three = q;
+    }
+}
+
 void leapfrog(int n, double *restrict x, double *restrict v, const double *restrict w, double *restrict scratch, double k,
               double b, double rest, double gx, double gy, double gz, double c, double mass, double h, int steps) {
-    int m = 3 * n;
-    double *restrict a = scratch, *restrict f = scratch + m;
+    const int m = 3 * n, width = n + n % 2, size = 3 * width, pad = 4;
+    double *restrict a = scratch, *restrict f = a + m, *restrict y = f + m + 3;
+    double *restrict first = y + size + 2 * pad, *restrict second = first + size + 2 * pad;
+    double *restrict keep = second + size + 2 * pad;
     double load[3] = {gx, gy, gz}, inv = 1 / mass;
-    double free = -expm1(-b * inv * h) / (2 * inv), held = -expm1(-b * inv * h / 2) / inv, keep = exp(-c * inv * h / 2);
+    double free = -expm1(-b * inv * h) / (2 * inv), held = -expm1(-b * inv * h / 2) / inv, left = exp(-c * inv * h / 2);
     for (int i = 0; i < m + 3; i++) f[i] = 0;
+    for (int i = 0; i < size + 2 * pad; i++) y[i] = first[i] = second[i] = 0, keep[i] = 1;
+    for (int e = 0; e < 3; e++)
+        for (int j = 0; j < n; j++) {
+            int at = pad + e * width + j;
+            if (w[j] > 0) keep[at] = left;
+            if (j + 1 < n) {
+                double share = w[j] * w[j + 1] > 0 ? free : held;
+                first[at] = w[j] * share, second[at] = w[j + 1] * share;
+            }
+        }
     accelerate(n, x, v, w, f, a, k, 0, rest, load, 0);
+    damp_all(n, 0, v, w, free, held, left);
+    for (int i = 0; i < m; i++) v[i] += h / 2 * a[i];
     for (int s = 0; s < steps; s++) {
-        damp_all(n, s & 1, v, w, free, held, keep);
-        for (int i = 0; i < m; i++) v[i] += h / 2 * a[i];
         for (int i = 0; i < m; i++) x[i] += h * v[i];
         accelerate(n, x, v, w, f, a, k, 0, rest, load, 0);
-        for (int i = 0; i < m; i++) v[i] += h / 2 * a[i];
-        damp_all(n, 1 - (s & 1), v, w, free, held, keep);
+        int reverse = 1 - (s & 1);
+        if (s + 1 == steps) {
+            for (int i = 0; i < m; i++) v[i] += h / 2 * a[i];
+            damp_all(n, reverse, v, w, free, held, left);
+            break;
+        }
+        for (int e = 0; e < 3; e++)
+            for (int j = 0; j < n; j++) y[pad + e * width + j] = v[e * n + j] + h / 2 * a[e * n + j];
+        if (reverse && c > 0)
+            for (int i = 0; i < size + 2 * pad; i++) y[i] *= keep[i];
+        damp_twice(y, first, second, keep, reverse ? pad - 1 : pad, size / 2 + 2);
+        if (!reverse && c > 0)
+            for (int i = 0; i < size + 2 * pad; i++) y[i] *= keep[i];
+        for (int e = 0; e < 3; e++)
+            for (int j = 0; j < n; j++) v[e * n + j] = y[pad + e * width + j] + h / 2 * a[e * n + j];
+    }
+}
+
+/* Symplectic Euler; `leapfrog_lagged` takes the same steps. */
+void symplectic_euler(int n, double *restrict x, double *restrict v, const double *restrict w, double *restrict scratch,
+                      double k, double b, double rest, double gx, double gy, double gz, double c, double mass, double h,
+                      int steps) {
+    int m = 3 * n;
+    double *restrict a = scratch, *restrict f = scratch + m;
+    double load[3] = {gx, gy, gz};
+    (void)mass;
+    for (int i = 0; i < m + 3; i++) f[i] = 0;
+    for (int s = 0; s < steps; s++) {
+        accelerate(n, x, v, w, f, a, k, b, rest, load, c);
+        for (int i = 0; i < m; i++) v[i] += h * a[i];
+        for (int i = 0; i < m; i++) x[i] += h * v[i];
     }
 }
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from app.render.surroundings import before_sky
 from app.server.viewer import Viewer
 from sim.validation import argument_error, is_whole_number
 
@@ -45,14 +46,15 @@ def take_picture(viewer: Viewer, width: int, height: int, timeout: float = DRAW_
             raise RuntimeError("no browser shows this lab, so there is no picture of it; open its cell in a browser")
         time.sleep(POLL_INTERVAL)
     try:
-        pixels: NDArray[np.uint8] = clients[max(clients)].get_render(int(height), int(width), timeout=timeout)
+        client = clients[max(clients)]
+        pixels = client.get_render(int(height), int(width), transport_format="png", timeout=timeout)
     except TimeoutError:
         raise TimeoutError(f"the browser drew no picture within {timeout:g} s; the page has to be in sight") from None
-    return Still(encoded(pixels))
+    return Still(encoded(before_sky(client, pixels)))
 
 
 def encoded(pixels: NDArray[np.uint8]) -> bytes:
-    """Pixels (height, width, 3 or 4) as PNG."""
+    """Pixels (height, width, 3) as PNG."""
     import imageio.v3 as iio  # only where a picture is taken
 
     file = io.BytesIO()

@@ -4,6 +4,8 @@ import io
 
 import viser
 
+from app.render.surroundings import before_sky
+
 PICTURE_TIMEOUT = 60.0  # [s] for a browser to draw a picture
 QUALITY = 90  # of JPEG
 
@@ -24,10 +26,10 @@ def take_picture(
     picture = client.get_render(
         size[1] or round(width * camera.image_height / camera.image_width),
         width,
-        transport_format="png" if transparent else "jpeg",
+        transport_format="png",  # with transparency, and without loss
         timeout=PICTURE_TIMEOUT,
     )
     encoded = io.BytesIO()
     how = {"extension": ".jpg", "quality": QUALITY} if jpeg else {"extension": ".png"}
-    iio.imwrite(encoded, picture[..., :3] if jpeg else picture, **how)  # pyright: ignore
+    iio.imwrite(encoded, picture if transparent else before_sky(client, picture), **how)  # pyright: ignore
     return encoded.getvalue()

@@ -1,11 +1,15 @@
 """What rope, race and cloth stand in: one light and one floor, bright or dark as each browser asks.
 
 The sky is the background of the page's canvas (`js/page.css`), as these scenes draw none: it follows the browser too.
+What a browser draws as a picture has no background, so that it is put behind the picture here.
 """
 
+import weakref
 from typing import NamedTuple
 
+import numpy as np
 import viser
+from numpy.typing import NDArray
 from viser._messages import SceneNodeUpdateMessage
 
 from app.render.viser_types import ViserConnection
@@ -24,6 +28,19 @@ class FloorColours(NamedTuple):
 
 LIGHT = FloorColours((222, 227, 233), (196, 203, 212), (160, 170, 184))
 DARK = FloorColours((50, 58, 70), (64, 73, 86), (84, 95, 110))
+
+
+class SkyColours(NamedTuple):
+    """Of the sky behind rope, race and cloth, as in `js/page.css`."""
+
+    top: Colour
+    bottom: Colour  # from HORIZON on
+
+
+HORIZON = 0.45  # of the height, from above, where the sky ends
+LIGHT_SKY = SkyColours((126, 168, 214), (232, 237, 243))
+DARK_SKY = SkyColours((16, 22, 32), (62, 74, 90))
+_dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that draw dark
 
 
 class Surroundings:
@@ -57,6 +74,19 @@ class Surroundings:
 
 def set_dark(client: viser.ClientHandle, dark: bool) -> None:
     """Draw the floor dark, or light again, for one browser. The node stays that of the server."""
+    (_dark.add if dark else _dark.discard)(client)
     colours = DARK if dark else LIGHT
     connection: ViserConnection = client._websock_connection  # pyright: ignore[reportPrivateUsage]
     connection.queue_message(SceneNodeUpdateMessage(FLOOR, colours._asdict()))
+
+
+def before_sky(client: viser.ClientHandle, pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """A picture (height, width, 4) that a browser has drawn without background, before the sky that the browser shows.
+
+    Returns sRGB (height, width, 3). Where a scene draws a sky of its own, nothing of this one is seen.
+    """
+    top, bottom = (np.array(colour, float) for colour in (DARK_SKY if client in _dark else LIGHT_SKY))
+    down = (np.arange(len(pixels)) + 0.5) / len(pixels)
+    sky = top + np.minimum(down / HORIZON, 1.0)[:, None, None] * (bottom - top)
+    alpha = pixels[..., 3:] / 255.0
+    return np.rint(alpha * pixels[..., :3] + (1.0 - alpha) * sky).astype(np.uint8)

@@ -121,6 +121,9 @@ def make_parser() -> argparse.ArgumentParser:
     bench.add_argument("--quick", action="store_true", help="fewer and shorter runs: a minute each")
     bench.add_argument("--peers", action="store_true", help="compare with the other programs that are installed")
     bench.add_argument("--out", type=Path, metavar="DIR", help="write tables (CSV) and figures to this folder")
+    bench.add_argument(
+        "--compare", nargs=2, metavar=("A", "B"), help="measure two commits of this repository in turns instead"
+    )
     bench.set_defaults(command=run_bench)
 
     stability = commands.add_parser("stability", help="measure stability maps and energy drift beside theory")
@@ -286,6 +289,10 @@ def run_export(arguments: argparse.Namespace) -> int:
 
 def run_bench(arguments: argparse.Namespace) -> int:
     """`springtide bench`."""
+    if arguments.compare:
+        from app.bench.compare import compare
+
+        return compare(arguments.names, tuple(arguments.compare), arguments.quick, arguments.out)
     from app.bench.command import run
 
     return run(arguments.names, arguments.quick, arguments.peers, arguments.out)

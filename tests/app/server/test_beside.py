@@ -221,19 +221,3 @@ def test_what_cannot_be_opened_leaves_the_lab_alone() -> None:
         assert not viewer.panes.servers
     finally:
         viewer.shut()
-
-
-def test_an_address_that_comes_before_the_browser_is_counted_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
-    viewer = Viewer("127.0.0.1", 0)
-    said: list[str] = []
-    late = SimpleNamespace(client_id=7, add_notification=lambda title, reason, **how: said.append(reason))
-    try:
-        viewer.open("rope")
-        viewer.panel.share.inbox.value = "?compare=nothing"  # as viser leaves it: it calls nobody
-        time.sleep(0.2)
-        assert not said
-        monkeypatch.setattr(viewer.server, "get_clients", lambda: {7: late})
-        wait_for(lambda: len(said) == 1)
-        assert viewer.panel.share.inbox.value == ""
-    finally:
-        viewer.shut()

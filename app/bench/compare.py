@@ -105,7 +105,7 @@ def is_name(column: str, text: str) -> bool:
     return column in ("points", "links", "size")
 
 
-def ratios(runs: list[tuple[dict, dict]], commits: tuple[str, str]) -> tables.Rows:
+def ratios(runs: list[tuple[dict, dict]]) -> tables.Rows:
     """A row a time: both medians, their ratio B / A, and the least and largest ratio of a pair of runs."""
     common = [key for key in runs[0][0] if all(key in times for pair in runs for times in pair)]
     rows = []
@@ -117,14 +117,20 @@ def ratios(runs: list[tuple[dict, dict]], commits: tuple[str, str]) -> tables.Ro
             {
                 "row": f"{key[0]}: {key[1]}",
                 "time": key[2],
-                f"A {commits[0][:8]}": medians[0],
-                f"B {commits[1][:8]}": medians[1],
+                "A": medians[0],
+                "B": medians[1],
                 "B / A": medians[1] / medians[0],
                 "least": min(pairs),
                 "largest": max(pairs),
             }
         )
     return rows
+
+
+def shown(row: dict) -> dict:
+    """The row with its spread as one cell, as a table on a narrow screen has room for it."""
+    cells = {name: value for name, value in row.items() if name not in ("least", "largest")}
+    return {**cells, "of pairs": f"{row['least']:.2f} to {row['largest']:.2f}"}
 
 
 def compare(
@@ -147,10 +153,10 @@ def compare(
             found = [times_of(measure(place, names, quick, Path(results, f"{turn}-{place.name}"))) for place in places]
             if turn >= 0:
                 runs.append((found[0], found[1]))
-    rows = ratios(runs, (hashes[0], hashes[1]))
+    rows = ratios(runs)
     if not rows:
         raise ValueError(f"--compare: both commits have no time in common in {' '.join(names)}")
-    tables.show("compare", rows)
+    tables.show(f"A {hashes[0][:8]}, B {hashes[1][:8]}", [shown(row) for row in rows])
     if out is not None:
         kept = {"machine": tables.machine(), "names": names, "commits": hashes, "repeats": REPEATS, "rows": rows}
         with replacing(out / "compare.json") as draft:

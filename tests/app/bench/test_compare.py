@@ -55,7 +55,7 @@ def test_two_commits_are_compared_and_their_folders_are_gone(repository, tmp_pat
         ("tiny: rk4 10", "time [ms]", 0.25, 0.25),
         ("tiny: rk4 20", "time [ms]", 1.0, 1.0),
     ]
-    assert "B / A" in capsys.readouterr().out
+    assert "0.25 to 0.25" in capsys.readouterr().out
     assert len(git(repository, "worktree", "list").splitlines()) == 1
 
 
@@ -66,8 +66,8 @@ def test_ratios_have_a_spread_and_leave_out_what_one_commit_lacks():
         ({key: 2.0, gone: 1.0}, {key: 2.0}),
         ({key: 4.0, gone: 1.0}, {key: 4.0}),
     ]
-    (row,) = compare.ratios(runs, ("a" * 40, "b" * 40))
-    assert (row["A aaaaaaaa"], row["B bbbbbbbb"], row["B / A"]) == (2.0, 3.0, 1.5)
+    (row,) = compare.ratios(runs)
+    assert (row["A"], row["B"], row["B / A"]) == (2.0, 3.0, 1.5)
     assert (row["least"], row["largest"]) == (1.0, 3.0)
 
 

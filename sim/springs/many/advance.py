@@ -10,7 +10,7 @@ from sim.interruption import raise_if_stopped
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.integrators import integrator_named
 from sim.springs.many import kernels
-from sim.springs.many.lanes import WIDTH, LaneForces, LaneState, by_rope, pack, stop_lane
+from sim.springs.many.lanes import WIDTH, LaneForces, LaneState, by_rope, pack
 from sim.springs.net import Net
 from sim.springs.state import POINT_EVALS, State, check_net
 from sim.validation import argument_error, check_choice, check_number
@@ -91,7 +91,7 @@ def advance_many(
     found = ManyStates(
         x=np.empty((*counts.shape, *shape)),
         v=np.empty((*counts.shape, *shape)),
-        t=counts * steps_of[:, None],
+        t=counts.astype(np.float64) * steps_of[:, None],
         steps=counts,
         dissipated=np.empty(counts.shape),
         low=np.empty((*counts.shape, 3)),
@@ -100,10 +100,13 @@ def advance_many(
     )
     evals = integrator_named(integrator).evals
     most = max(1, int(POINT_EVALS / (shape[2] * WIDTH * evals)))
-    # Ropes of about as many steps side by side: lanes that have finished wait for the last one.
+    # Ropes of about as many steps side by side: a lane that has given its samples goes on until the last one has.
     order = np.argsort(counts[:, frames - 1], kind="stable")
-    for start in range(0, len(order), WIDTH):
-        advance_group(nets, METHODS[integrator], steps_of, order[start : start + WIDTH], most, found)
+    lanes = np.concatenate([order, np.repeat(order[:1], -len(order) % WIDTH)])  # an empty lane repeats the first rope
+    packed = pack([nets[rope] for rope in lanes], steps_of[lanes])
+    for group, (forces, state) in enumerate(packed):
+        ropes = order[group * WIDTH : (group + 1) * WIDTH]
+        advance_group(METHODS[integrator], forces, state, ropes, most, found)
     outside = np.maximum(np.abs(found.low), np.abs(found.high)).max(axis=2)
     total = np.abs(found.x).sum(axis=(2, 3, 4)) + np.abs(found.v).sum(axis=(2, 3, 4))
     found.diverged[:] = ~((outside < DIVERGENCE_BOUND) & np.isfinite(total))
@@ -125,9 +128,9 @@ def check_samples(samples: Any, ropes: int) -> NDArray[np.int64]:
 
 
 def advance_group(
-    nets: Sequence[Net],
     take_steps: Callable[[LaneForces, LaneState, int, int], None],
-    h: NDArray[np.float64],
+    forces: LaneForces,
+    state: LaneState,
     ropes: NDArray[np.intp],
     most: int,
     found: ManyStates,
@@ -136,13 +139,10 @@ def advance_group(
 
     most: steps in one call of a kernel, which a Ctrl-C waits for.
     """
-    lanes = np.concatenate([ropes, np.repeat(ropes[:1], WIDTH - len(ropes))])  # an empty lane repeats the first rope
-    forces, state = pack([nets[rope] for rope in lanes], h[lanes])
     events: dict[int, list[tuple[int, int]]] = {}  # number of steps -> (lane, sample) to be taken there
     for lane, rope in enumerate(ropes):
         for sample, count in enumerate(found.steps[rope].tolist()):
             events.setdefault(count, []).append((lane, sample))
-    last_sample = found.steps.shape[1] - 1
     taken = 0
     for count in sorted(events):
         while taken < count:
@@ -158,5 +158,3 @@ def advance_group(
         # The kernels look at a position when they evaluate its forces, which at the last one they have not yet done.
         found.low[at] = np.minimum(by_rope(state.low)[in_lanes], x).min(axis=(2, 3))
         found.high[at] = np.maximum(by_rope(state.high)[in_lanes], x).max(axis=(2, 3))
-        for lane in in_lanes[at_samples == last_sample]:
-            stop_lane(forces, lane)

@@ -1,7 +1,7 @@
 """The arrays of up to WIDTH ropes side by side: flat, in the order (component, point, lane), the lane fastest."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ class LaneForces(NamedTuple):
     """What moves the ropes and how long their steps are. n = points WIDTH, m = (points - 1) WIDTH."""
 
     points: int
-    h: Floats  # (n,) [s] step of each lane; 0 for a lane that has finished: its steps then change nothing
+    h: Floats  # (n,) [s] step of each lane
     inverse_masses: Floats  # (n,) [1/kg], 0 where pinned
     masses: Floats  # (n,) [kg], 0 where pinned
     weight: Floats  # (3 n,) [m/s^2] gravity, 0 where pinned
@@ -42,55 +42,67 @@ class LaneState(NamedTuple):
     stage: Floats  # (2, 3 n) scratch
 
 
-def by_lane(values: Sequence[float], count: int) -> Floats:
-    """One number for each lane, repeated for `count` points: (count WIDTH,)."""
-    return np.tile(np.asarray(values, np.float64), count)
+def by_lane(values: Floats, count: int) -> Floats:
+    """One number for each lane, (groups, WIDTH), repeated for `count` points: (groups, count WIDTH)."""
+    return np.tile(values, count)
 
 
-def pack(nets: Sequence[Net], h: Floats) -> tuple[LaneForces, LaneState]:
-    """The arrays of WIDTH ropes of equally many points, at rest. h: (WIDTH,) steps [s]."""
+def flat(values: Floats) -> Floats:
+    """Numbers (groups, WIDTH, ..., points) with the lane last: (groups, ... points WIDTH)."""
+    return np.moveaxis(values, 1, -1).reshape(len(values), -1)
+
+
+def pack(nets: Sequence[Net], h: Floats) -> list[tuple[LaneForces, LaneState]]:
+    """The arrays of ropes of equally many points at rest, WIDTH in each group. h: (ropes,) steps [s].
+
+    All groups at once, because numpy takes longer to begin than for the numbers of one group.
+    """
     points = nets[0].x0.shape[2]
-    links = np.array([net.families[0][2:] for net in nets])  # (WIDTH, 3): rest length, stiffness, damping
-    inverse = np.array([net.inverse_masses() for net in nets]).T  # (points, WIDTH)
-    free = inverse > 0.0
-    mass, drag = np.array([net.mass for net in nets]), np.array([net.drag for net in nets])
-    gravity = np.array([net.gravity for net in nets]).T  # (3, WIDTH)
-    total = inverse[1:] + inverse[:-1]
+    groups = len(nets) // WIDTH
+
+    def grouped(values: list[Any]) -> Floats:
+        return np.array(values, np.float64).reshape(groups, WIDTH, *np.shape(values[0]))
+
+    step = h.reshape(groups, WIDTH)
+    rest, k, b = np.moveaxis(grouped([net.families[0][2:] for net in nets]), -1, 0)
+    inverse = grouped([net.inverse_masses() for net in nets])  # (groups, WIDTH, points)
+    free = np.where(inverse > 0.0, 1.0, 0.0)
+    mass, drag = grouped([net.mass for net in nets]), grouped([net.drag for net in nets])
+    gravity = grouped([net.gravity for net in nets])
+    half = 0.5 * step[..., None]
+    total = inverse[..., 1:] + inverse[..., :-1]
     # exp(-b (w1 + w2) h/2), as `sim.springs.forces.damping` has it; a link between two pins moves nothing.
-    taken = -np.expm1(-links[:, 2] * total * 0.5 * h)
+    taken = -np.expm1(-b[..., None] * total * half)
     share = np.divide(taken, total, out=np.zeros_like(taken), where=total > 0.0)
-    forces = LaneForces(
-        points=points,
-        h=by_lane(h, points),
-        inverse_masses=inverse.ravel(),
-        masses=(free * mass).ravel(),
-        weight=(gravity[:, None] * free).ravel(),
-        drag=(free * drag).ravel(),
-        stiffness=by_lane(links[:, 1], points - 1),
-        tension_at_rest=by_lane(links[:, 1] * links[:, 0], points - 1),
-        damping=by_lane(links[:, 2], points - 1),
-        share=share.ravel(),
-        keep=np.exp(-drag * inverse * 0.5 * h).ravel(),
+    forces = (
+        by_lane(step, points),
+        flat(inverse),
+        flat(free * mass[..., None]),
+        flat(gravity[..., None] * free[:, :, None]),
+        flat(free * drag[..., None]),
+        by_lane(k, points - 1),
+        by_lane(k * rest, points - 1),
+        by_lane(b, points - 1),
+        flat(share),
+        flat(np.exp(-drag[..., None] * inverse * half)),
     )
-    x = np.stack([net.x0[:, 0] for net in nets], axis=-1).ravel()
-    state = LaneState(
-        x=x,
-        v=np.zeros_like(x),
-        dissipated=np.zeros(x.size // 3),
-        low=x.copy(),
-        high=x.copy(),
-        f=np.zeros(x.size + 3 * WIDTH),
-        a=np.zeros((4, x.size)),
-        stage=np.zeros((2, x.size)),
-    )
-    return forces, state
-
-
-def stop_lane(forces: LaneForces, lane: int) -> None:
-    """Make every further step of this lane one of no length."""
-    forces.h[lane::WIDTH] = 0.0
-    forces.share[lane::WIDTH] = 0.0
-    forces.keep[lane::WIDTH] = 1.0
+    x = flat(grouped([net.x0[:, 0] for net in nets]))
+    size = x.shape[1]
+    made = []
+    for group in range(groups):
+        start = x[group]
+        state = LaneState(
+            x=start,
+            v=np.zeros(size),
+            dissipated=np.zeros(size // 3),
+            low=start.copy(),
+            high=start.copy(),
+            f=np.zeros(size + 3 * WIDTH),
+            a=np.zeros((4, size)),
+            stage=np.zeros((2, size)),
+        )
+        made.append((LaneForces(points, *(values[group] for values in forces)), state))
+    return made
 
 
 def by_rope(flat: Floats) -> Floats:

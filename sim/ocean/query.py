@@ -9,22 +9,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sim.jit import kernel
+from sim.interruption import pieces, raise_if_stopped, stop_request
+from sim.jit import is_stopped, kernel
 
 if TYPE_CHECKING:
     from sim.ocean.surface import Surface
 
 TOLERANCE = 1e-9  # share of a cell at which a label counts as found
 FIXED_POINT_STEPS, NEWTON_STEPS, HALVINGS = 3, 40, 8
+PIECE = 4096  # points at a time: others may have a turn in between
 
 
 def query(surface: "Surface", points: np.ndarray, exact: bool) -> tuple[np.ndarray, np.ndarray]:
-    """(height, residual), each (n,) [m], of the surface above points (n, 2) float64 [m]."""
+    """(height, residual), each (n,) [m], of the surface above points (n, 2) float64 [m]. It may be ended early."""
     sea = surface.sea
     height, residual = np.empty(len(points)), np.empty(len(points))
     cell = sea.length / sea.size
     if surface.choppiness == 0.0 and not exact:
-        sample(points, surface.height, cell, height)
+        for piece in pieces(len(points), PIECE):
+            sample(points[piece], surface.height, cell, height[piece])
         residual[:] = 0.0
         return height, residual
     unread = np.zeros((4, 4), sea.rows["1"].dtype)
@@ -35,7 +38,10 @@ def query(surface: "Surface", points: np.ndarray, exact: bool) -> tuple[np.ndarr
         h, dx, dy = surface.height, surface.displacement[..., 0], surface.displacement[..., 1]
         spectrum = unread
     dk = 2.0 * np.pi / sea.length
-    find(points, exact, h, dx, dy, spectrum, dk, surface.choppiness, cell, height, residual)
+    for piece in pieces(len(points), PIECE):
+        find(points[piece], exact, h, dx, dy, spectrum, dk, surface.choppiness, cell, stop_request(), height[piece],
+             residual[piece])  # fmt: skip
+    raise_if_stopped()
     return height, residual
 
 
@@ -98,13 +104,18 @@ def evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x, y):
 
 
 @kernel
-def find(points, exact, h, dx, dy, spectrum, dk, choppiness, cell, height, residual):
-    """Heights and residuals of all points; `spectrum` is read where exact, the grids h, dx, dy where not."""
+def find(points, exact, h, dx, dy, spectrum, dk, choppiness, cell, stop, height, residual):
+    """Heights and residuals of all points; `spectrum` is read where exact, the grids h, dx, dy where not.
+
+    Where exact, it ends early where `stop` (4,) asks for it (sim/interruption.py): a sum over all waves may take long.
+    """
     for p in range(points.shape[0]):
         X, Y = points[p, 0], points[p, 1]
         x, y = X, Y
         z, a, b, xx, xy, yx, yy = evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x, y)
         for _ in range(FIXED_POINT_STEPS):
+            if exact and is_stopped(stop):
+                return
             x, y = X - a, Y - b
             z, a, b, xx, xy, yx, yy = evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x, y)
         fx, fy = x + a - X, y + b - Y
@@ -115,6 +126,8 @@ def find(points, exact, h, dx, dy, spectrum, dk, choppiness, cell, height, resid
             sx, sy = newton_step(fx, fy, xx, xy, yx, yy)
             better = False
             for _ in range(HALVINGS):
+                if exact and is_stopped(stop):
+                    return
                 trial = evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x + sx, y + sy)
                 gx, gy = x + sx + trial[1] - X, y + sy + trial[2] - Y
                 if np.hypot(gx, gy) < miss:

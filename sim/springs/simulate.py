@@ -93,6 +93,10 @@ def simulate(
         raise argument_error("grab.damping", net.grab.damping, f"0, as {record.name} takes no damping")
     t = np.linspace(0.0, duration, int(frames))
     if record.adaptive and step is None:
+        may_be_endless = duration * max(gershgorin(net)) > MOST_STEPS
+        longest = (may_be_endless and critical_step(net, record)) or math.inf  # 0 where no step is stable for ever
+        if duration / longest > MOST_STEPS:
+            raise argument_error("duration", duration, f"up to {MOST_STEPS:g} steps of {longest:g} s")
         return marched(net, record, t, rtol or RTOL, atol or ATOL, with_account, progress)
     if step is not None and duration / step > MOST_STEPS:
         raise argument_error("step", step, f"at least duration / {MOST_STEPS:g} = {duration / MOST_STEPS:g} s")

@@ -1,10 +1,12 @@
 """The FFT sea against the sum of its waves, its own conservation laws, and its spectrum."""
 
+import contextvars
 import math
 
 import numpy as np
 import pytest
 
+from sim.interruption import STOP, TURN, InterruptionError, use_request
 from sim.ocean import Sea
 from sim.ocean.dispersion import viscous_root
 from sim.ocean.medium import Medium
@@ -479,3 +481,24 @@ def test_the_exact_height_of_waves_in_any_direction_is_the_grid_s(direction):
     points = np.stack(np.meshgrid(x, x, indexing="ij"), -1).reshape(-1, 2)
     height, _ = sea.height_at(points, 2.0, exact=True)
     assert height.reshape(16, 16) == pytest.approx(sea.surface(2.0).height, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("points", "exact", "choppiness"), [(20_000, False, 1.0), (20_000, False, 0.0), (1, True, 1.0)]
+)
+def test_many_points_and_one_sum_of_all_waves_give_turns_and_can_be_ended(points, exact, choppiness):
+    sea, request, turns = Sea(16, 100.0, choppiness=choppiness), np.array([0, 0, 1, 0], np.int64), []
+    where = np.random.default_rng(0).uniform(0.0, 100.0, (points, 2))
+    sea.height_at(where, 0.0, exact)  # all that is made once
+
+    def turn():
+        turns.append(1)
+        request[TURN], request[STOP] = 1, len(turns) >= 3
+
+    def try_out():
+        use_request(request, turn)
+        with pytest.raises(InterruptionError):
+            sea.height_at(where, 0.0, exact)
+
+    contextvars.copy_context().run(try_out)
+    assert len(turns) <= 4  # not of every sum and not of every piece

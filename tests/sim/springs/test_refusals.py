@@ -99,7 +99,11 @@ CALLS = {  # a name in the error: calls that it is in
     "rtol": [lambda: simulate(rope(), "dopri5", rtol=1e-200), lambda: simulate(rope(), "dop853", rtol=1e-18)],
     "atol": [lambda: simulate(rope(), "dopri5", atol=1e-200)],
     "step": [lambda: simulate(rope(), step=5e-324), lambda: simulate(rope(), step=1e-300)],
-    "duration": [lambda: simulate(rope(), duration=1e308)],
+    "duration": [
+        lambda: simulate(rope(), duration=1e308),
+        lambda: simulate(rope(), "dop853", duration=1e10),
+        lambda: simulate(rope(damping=0.0, drag=0.0), "auto", duration=1e10),
+    ],
     "with_account": [lambda: simulate(rope(), with_account="no"), lambda: simulate(rope(), with_account=1)],  # type: ignore[arg-type]
     "grab.damping": [
         lambda: simulate(

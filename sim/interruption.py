@@ -17,6 +17,7 @@ STOP = 0  # not 0: the solve is to end
 SIGNALS = 1  # not 0: Python is to be asked for a Ctrl-C
 TURN = 2  # not 0: FUNCTION is to be called, once
 FUNCTION = 3  # address of a function without arguments, or 0
+ABANDON = 2  # at STOP: nothing of the solve is needed any more, so that what is kept whole ends too
 
 REQUEST: contextvars.ContextVar[NDArray[np.int64] | None] = contextvars.ContextVar("stop request", default=None)
 WHOLE: contextvars.ContextVar[bool] = contextvars.ContextVar("whole", default=False)
@@ -57,13 +58,13 @@ def raise_if_stopped() -> None:
     """Raises KeyboardInterrupt after a Ctrl-C that a kernel noticed, InterruptionError where another thread asked.
 
     The request stays set in the latter case, so that nothing else of the same call begins; who set it takes it back.
-    A turn that was asked for, or is due, is given first. Nothing is raised inside `kept_whole`.
+    A turn that was asked for, or is due, is given first. Inside `kept_whole` only ABANDON ends something.
     """
     request, give_turn, is_due = stop_request(), GIVE_TURN.get(), TURN_IS_DUE.get()
     if give_turn and (request[TURN] or (is_due is not None and is_due())):
         request[TURN] = 0
         give_turn()
-    if request[STOP] and not WHOLE.get():
+    if request[STOP] == ABANDON or (request[STOP] and not WHOLE.get()):
         if request[SIGNALS]:
             request[STOP] = 0
             raise KeyboardInterrupt
@@ -72,7 +73,8 @@ def raise_if_stopped() -> None:
 
 @contextlib.contextmanager
 def kept_whole() -> Iterator[None]:
-    """Inside, `raise_if_stopped` raises nothing: for a change of several things that must all be made, or none."""
+    """Inside, `raise_if_stopped` raises nothing but where all is abandoned: for a change of several things that must
+    all be made, or none."""
     before = WHOLE.set(True)
     try:
         yield

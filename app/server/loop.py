@@ -46,7 +46,7 @@ from app.server.command_queue import CommandQueue, begins_anew
 from app.server.merging import merged
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
-from sim.interruption import STOP, TURN, InterruptionError, is_kept_whole, use_request
+from sim.interruption import ABANDON, STOP, TURN, InterruptionError, is_kept_whole, use_request
 from sim.parameters import effect_of_change
 
 SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
@@ -352,8 +352,8 @@ class SimLoop:
         """Answer controls in the middle of a solve, which calls this on its own thread.
 
         What asks for another solve ends this one; the next tick handles it, from the last good state. What does not is
-        answered at once, and the solve goes on: a look, or a drag, which counts from the next steps on. A reset and a
-        change of forces are ended only where the scene begins anew; else, as in what is kept whole, parameters are
+        answered at once, and the solve goes on: a look, or a drag, which counts from the next steps on. A reset, a
+        change of forces, and what is kept whole are ended only where the scene begins anew; else parameters are
         answered with the last frame, and the next tick takes them.
         """
         self.turn_at, self.is_late = self.clock(), True
@@ -364,7 +364,10 @@ class SimLoop:
             effect, whole = effect_of_change(self.scene.params, params), is_kept_whole()
             anew = self.commands.begins_anew or effect == "start"
             asked = anew or self.commands.urgent or effect == "forces"
-            if not whole and ((self.may_end and asked) or (self.may_begin and anew)):
+            if anew and (self.solving or self.may_begin):
+                self.request[STOP] = ABANDON if whole else 1
+                return
+            if asked and self.may_end and not whole:
                 self.request[STOP] = 1
                 return
             if effect == "look":
@@ -408,7 +411,7 @@ class SimLoop:
             action()
         except InterruptionError:
             self.counts["solves ended early"] += 1
-            if again or else_anew:
+            if again or else_anew or self.request[STOP] == ABANDON:
                 self.unfinished = action if again else self.scene.reset
         except DivergenceError as error:
             if error.moments and self.running:

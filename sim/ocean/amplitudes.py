@@ -54,10 +54,13 @@ def fold(h0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     h(k, t) = h0(k) e^(-i omega t) + conj(h0(-k)) e^(i omega t): Hermitian whatever h0 is.
     """
-    half = h0.shape[1] // 2 + 1
-    onward = h0[:, :half]
-    backward = np.conj(np.roll(h0[::-1, ::-1], 1, axis=(0, 1))[:, :half])
-    return onward + backward, -1j * (onward - backward)
+    size, half = len(h0), h0.shape[1] // 2 + 1
+    even, odd = np.empty((2, size, half), complex)
+    opposite = -np.arange(size) % size
+    for rows in pieces(size, max(1, PIECE // size)):
+        onward, backward = h0[rows, :half], np.conj(h0[np.ix_(opposite[rows], opposite[:half])])
+        even[rows], odd[rows] = onward + backward, -1j * (onward - backward)
+    return even, odd
 
 
 def _mixed(z: Any) -> Any:

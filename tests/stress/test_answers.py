@@ -19,8 +19,8 @@ from tests.stress.tally import Tally
 CHANGES = int(os.environ.get("SPRINGTIDE_STRESS_CHANGES", "10000")) // 10  # of each scene
 AT_ONCE = 6  # most parameters turned between two answers
 PAUSE = 0.15  # [s] in which a solve gets under way, at most
-MAX_SILENCE = {"radial_sea": 2.0, "square_sea": 1.0}  # [s], on a machine with other work: a frame of a sea is whole
-MAX_SILENCE_OF_SPRINGS = 1.0  # [s]
+MAX_SILENCE = 1.0  # [s] on a machine with much other work; with none, all waits are below 0.1 s (docs/measured.md)
+MAX_WORK = 0.12  # [s] of processor time of the simulation's thread in one wait, whatever else the machine does
 
 
 @pytest.fixture
@@ -32,27 +32,33 @@ def viewer() -> Iterator[Viewer]:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_control_is_answered_while_a_solve_runs(name: str, viewer: Viewer, tally: Tally) -> None:
-    """The answer is a snapshot of the parameters as set, or of a later reset."""
+    """The answer is a snapshot of the parameters as set, or of a later reset.
+
+    What the machine does besides makes a wait longer, but not the simulation's own processor time in it.
+    """
     prepare(name)
     viewer.open(name)
     loop, panel = viewer.loop, viewer.panel
     loop.audience = lambda: 1
     rng = random.Random(f"answers {name}")
-    waits: list[tuple[float, dict[str, object]]] = []
+    thread = next(thread for thread in viewer.threads if thread.name == "simulation")
+    assert thread.ident is not None
+    processor = time.pthread_getcpuclockid(thread.ident)
+    waits: list[tuple[float, float, dict[str, object]]] = []
 
-    def answered(since: float, starts: int) -> None:
+    def answered(since: float, worked: float, starts: int) -> None:
         while not (loop.latest.params == panel.params and loop.latest.status.starts >= starts):
             assert time.monotonic() - since < 60.0, "no answer"
             time.sleep(0.001)
         unusual = {n: getattr(panel.params, n) for n, k in parameters_of(panel.params).items()
                    if getattr(panel.params, n) != k.default}  # fmt: skip
-        waits.append((time.monotonic() - since, unusual))
+        waits.append((time.monotonic() - since, time.clock_gettime(processor) - worked, unusual))
 
     changes = 0
     while changes < CHANGES:
         time.sleep(rng.uniform(0.0, PAUSE))
         starts = loop.counts["starts"]
-        since = time.monotonic()
+        since, worked = time.monotonic(), time.clock_gettime(processor)
         for _ in range(rng.randint(1, AT_ONCE)):
             chosen = rng.choice(list(panel.controls))
             parameter = parameters_of(panel.params)[chosen]
@@ -62,12 +68,14 @@ def test_a_control_is_answered_while_a_solve_runs(name: str, viewer: Viewer, tal
             loop.commands.put(Reset())
             loop.commands.put(Play())
             starts += 1
-        answered(since, starts)
-    longest, unusual = max(waits, key=lambda wait: wait[0])
-    share = sorted(wait for wait, _ in waits)[math.ceil(0.99 * len(waits)) - 1]
+        answered(since, worked, starts)
+    longest, _, unusual = max(waits, key=lambda wait: wait[0])
+    share = sorted(wait for wait, *_ in waits)[math.ceil(0.99 * len(waits)) - 1]
+    work = max(work for _, work, _ in waits)
     early = loop.counts["solves ended early"]
     tally.notes.append(
-        f"{name}: longest wait for an answer {longest:.2f} s, 99 of 100 below {share:.2f} s; {early} solves ended; "
-        f"longest with {unusual}"
+        f"{name}: {changes} changes, longest wait for an answer {longest:.3f} s, 99 of 100 below {share:.3f} s; most "
+        f"own work in a wait {work:.3f} s; {early} solves ended; longest with {unusual}"
     )
-    assert longest < MAX_SILENCE.get(name, MAX_SILENCE_OF_SPRINGS)
+    assert longest < MAX_SILENCE
+    assert work < MAX_WORK

@@ -12,7 +12,7 @@ from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import RopeScene
 from app.server.loop import MAX_BLIND_TIME, PATIENCE, CommandQueue, SimLoop
-from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, use_request
+from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, raise_if_stopped, use_request
 from sim.ocean.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA
 from sim.ocean.statistics import open_sea_height
@@ -169,7 +169,7 @@ def test_where_nothing_may_be_ended_other_forces_are_answered_with_the_last_fram
 
 def test_steps_that_are_kept_whole_are_neither_ended_nor_shown_half_done(busy):
     busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
-    busy.commands.put(Reset())
+    busy.commands.put(Pause())
     busy.commands.put(Grab(1, (0.0, 0.0, 0.0)))
     busy.scene.frame = None  # not asked for
     with kept_whole():
@@ -179,6 +179,29 @@ def test_steps_that_are_kept_whole_are_neither_ended_nor_shown_half_done(busy):
     assert busy.commands.qsize() == 2
     busy.give_turn()
     assert busy.request[STOP] == 1
+
+
+def test_steps_that_are_kept_whole_are_abandoned_for_a_new_beginning(busy):
+    def half_a_step(steps):
+        busy.commands.put(Reset())
+        with kept_whole():
+            busy.scene.net = None  # half of a step
+            raise_if_stopped()
+
+    resets, reset = [], busy.scene.reset
+    busy.scene.advance, busy.scene.reset = half_a_step, lambda: resets.append(reset())
+    use_request(busy.request, busy.give_turn, lambda: True)
+    try:
+        busy.advance(1)
+        busy.publish()
+    finally:
+        use_request(np.array([0, 1, 0, 0]))
+    assert resets == []
+    assert busy.halted == ""
+    busy.solving, busy.request[STOP] = False, 0
+    busy.tick(0.0)
+    assert len(resets) == 1
+    assert busy.halted == ""
 
 
 def test_a_reset_that_takes_long_says_that_it_has_begun(busy):

@@ -13,6 +13,8 @@ ANCHORS = np.array(
     [[62, 4, 156], [126, 3, 168], [179, 38, 131], [218, 91, 105], [248, 149, 64], [253, 197, 39], [240, 249, 33]]
 )
 SCALE = ANCHORS.astype(np.float64)  # the same numbers as the kernel takes them
+LUMA = 0.299, 0.587, 0.114  # weights of red, green and blue in how bright a colour is
+DARK_LIFT = 0.5  # share of the way to white that black goes on a dark floor; more, and the scale would not only rise
 
 
 def scale_colours(values: NDArray[np.float64], low: float, high: float) -> NDArray[np.float32]:
@@ -51,9 +53,19 @@ def set_tube_colours(tension, samples, full, anchors, sides, rgb):
                 rgb[rings * sides + 1, e] = shade
 
 
-def css_scale() -> str:
-    """The same scale as a CSS gradient."""
-    stops = ", ".join(f"rgb({r},{g},{b})" for r, g, b in ANCHORS)
+def lifted(colours: NDArray[np.floating]) -> NDArray[np.float64]:
+    """sRGB colours (n, 3) in 0..255 as they are drawn on a dark floor: brighter, the more the darker they are.
+
+    `js/dark.js` does the same to colours of vertices.
+    """
+    dark = 1.0 - colours @ np.array(LUMA) / 255.0
+    return colours + DARK_LIFT * dark[:, None] * (255.0 - colours)
+
+
+def css_scale(*, dark: bool) -> str:
+    """The same scale as a CSS gradient; dark: as it is drawn on a dark floor."""
+    anchors = lifted(SCALE) if dark else SCALE
+    stops = ", ".join(f"rgb({r:.0f},{g:.0f},{b:.0f})" for r, g, b in anchors)
     return f"linear-gradient(90deg, {stops})"
 
 

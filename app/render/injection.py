@@ -31,6 +31,7 @@ import numpy as np
 import viser
 from viser import _messages
 
+from app.render.colormap import DARK_LIFT, LUMA
 from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
 
 STORAGE_KEY = "springtide-shaders"  # of the page's local storage, under which the script answers
@@ -39,7 +40,7 @@ QUESTION_TIMEOUT = 5.0  # [s] after which a question is given up, and asked agai
 MAX_QUESTIONS = 16  # open at the same time, a thread each: browsers that are stuck do not delay the others
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
 MAX_ANSWER_LENGTH = 10_000  # [characters] that are read of an answer
-SCRIPTS = ("quality.js", "injection.js", "packed.js", "water_shader.js", "water.js", "rain.js", "smoke.js")
+SCRIPTS = ("quality.js", "injection.js", "packed.js", "water_shader.js", "water.js", "rain.js", "smoke.js", "dark.js")
 
 _injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
 _disabled: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()
@@ -76,6 +77,8 @@ class ShaderInjector:
             "WATER_UNIFORMS": WATER_UNIFORMS,
             "RAIN_UNIFORMS": RAIN_UNIFORMS,
             "MAX_WATERLINES": MAX_WATERLINES,
+            "DARK_LIFT": DARK_LIFT,
+            "LUMA": LUMA,
         }
         shared = [f"const {name} = {json.dumps(value)};" for name, value in constants.items()]
         files = [(resources.files("app.render") / "js" / name).read_text("utf-8") for name in SCRIPTS]

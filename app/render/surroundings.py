@@ -5,7 +5,7 @@ What a browser draws as a picture has no background, so that it is put behind th
 """
 
 import weakref
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import viser
@@ -27,7 +27,7 @@ class FloorColours(NamedTuple):
 
 
 LIGHT = FloorColours((222, 227, 233), (196, 203, 212), (160, 170, 184))
-DARK = FloorColours((50, 58, 70), (64, 73, 86), (84, 95, 110))
+DARK = FloorColours((36, 42, 51), (48, 56, 67), (66, 76, 90))
 
 
 class SkyColours(NamedTuple):
@@ -39,7 +39,7 @@ class SkyColours(NamedTuple):
 
 HORIZON = 0.45  # of the height, from above, where the sky ends
 LIGHT_SKY = SkyColours((126, 168, 214), (232, 237, 243))
-DARK_SKY = SkyColours((16, 22, 32), (62, 74, 90))
+DARK_SKY = SkyColours((16, 22, 32), (38, 47, 60))
 _dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that draw dark
 
 
@@ -75,9 +75,13 @@ class Surroundings:
 def set_dark(client: viser.ClientHandle, dark: bool) -> None:
     """Draw the floor dark, or light again, for one browser. The node stays that of the server."""
     (_dark.add if dark else _dark.discard)(client)
-    colours = DARK if dark else LIGHT
+    send_update(client, FLOOR, **(DARK if dark else LIGHT)._asdict())
+
+
+def send_update(client: viser.ClientHandle, node: str, **properties: Any) -> None:
+    """Give a node of the server other properties for one browser."""
     connection: ViserConnection = client._websock_connection  # pyright: ignore[reportPrivateUsage]
-    connection.queue_message(SceneNodeUpdateMessage(FLOOR, colours._asdict()))
+    connection.queue_message(SceneNodeUpdateMessage(node, properties))
 
 
 def before_sky(client: viser.ClientHandle, pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -1,5 +1,10 @@
 """The race scene in a real browser: ropes, labels and charts."""
 
+import io
+
+import numpy as np
+from PIL import Image
+
 from app.scenes.race.parameters import PRESETS, Params
 from app.scenes.springs.rope_parameters import ROOT
 from app.server.viewer import Viewer
@@ -69,4 +74,24 @@ def test_a_bead_is_dragged_and_another_preset_starts_at_once(shown: tuple[Viewer
     tab.page.keyboard.press("1")
     tab.wait(lambda: len(tab.vertices("/race/rope_3")) > 0 and len(tab.vertices("/race/rope_4")) == 0)
     assert len(lab.scene.race.entrants) == 3
+    assert tab.errors == []
+
+
+def test_labels_are_dark_in_dark_mode_and_light_again(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.follow(lab, SCENE, check_record(Params, {"plot_errors": False, "plot_energies": False}))
+
+    def brightness() -> float:
+        """Of what is behind the first label's text [0..255]; the label stands to the right of its pole and above it."""
+        x, y = tab.pixel(np.array(lab.view.ropes.labels[0].position))
+        picture = tab.page.screenshot(clip={"x": x + 4, "y": y - 16, "width": 60, "height": 12})
+        return float(np.median(np.asarray(Image.open(io.BytesIO(picture)).convert("L"))))
+
+    tab.wait(lambda: len(tab.vertices("/race/rope_1")) > 0 and brightness() > 180)
+    tab.page.emulate_media(color_scheme="dark")
+    try:
+        tab.wait(lambda: brightness() < 90)
+    finally:
+        tab.page.emulate_media(color_scheme="light")
+    tab.wait(lambda: brightness() > 180)
     assert tab.errors == []

@@ -8,7 +8,8 @@
 // before every frame, so that a new material of viser's never shows without its shader) and requestRender.
 // Of three it uses Material.onBeforeCompile and the renderer's property map, to see whether a program linked.
 //
-// app/render/injection.py puts these constants before this file: TOKEN, STORAGE_KEY, WATER_UNIFORMS, RAIN_UNIFORMS.
+// app/render/injection.py puts these constants before this file: TOKEN, STORAGE_KEY, WATER_UNIFORMS, RAIN_UNIFORMS,
+// MAX_WATERLINES, DARK_LIFT, LUMA.
 
 // Each shader: { suffix, update(context), removeUnused() }. `update` is called for each node with that suffix. It
 // returns the material that has the shader, or null. `removeUnused` (optional) disposes of what removed nodes left.
@@ -62,13 +63,16 @@ shaders.push({
   suffix: "/vertex_colors",
   update({ mesh, data }) {
     if (!applyPacked(mesh, data, "vertexColor", null)) return null;
+    const dark = isDark();
     const edit = (shader) => {
       insertAfter(shader, "vertexShader", "common", "attribute vec3 vertexColor; varying vec3 vVertexColor;");
-      insertAfter(shader, "vertexShader", "begin_vertex", "vVertexColor = pow(max(vertexColor, 0.0), vec3(2.2));");
+      insertAfter(shader, "vertexShader", "begin_vertex", `
+        vVertexColor = ${dark ? glslLifted("vertexColor") : "vertexColor"};
+        vVertexColor = pow(max(vVertexColor, 0.0), vec3(2.2));`);
       insertAfter(shader, "fragmentShader", "common", "varying vec3 vVertexColor;");
       insertAfter(shader, "fragmentShader", "color_fragment", "diffuseColor.rgb = vVertexColor;");
     };
-    return replaceShader(mesh.material, "springtide-vertex-colors", edit) ? mesh.material : null;
+    return replaceShader(mesh.material, `springtide-vertex-colors-${dark ? "dark" : "light"}`, edit) ? mesh.material : null;
   },
 });
 
@@ -105,6 +109,7 @@ function beforeRender(renderer, scene, camera) {
   }
   for (const shader of shaders) if (shader.removeUnused) shader.removeUnused();
   dressSmoke(scene);
+  darkenLabels(scene);
   answerServer(active);
 }
 

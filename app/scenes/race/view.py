@@ -1,6 +1,7 @@
 """The race as drawn: a tube for each rope in its own colour, the reference runs translucent, a label on each root."""
 
 import math
+import weakref
 from collections.abc import Callable
 from typing import Any, TypeAlias
 
@@ -11,9 +12,10 @@ from app.messages import Snapshot, Vector
 from app.render.cameras import all_cameras
 from app.render.colormap import rgb
 from app.render.dragging import drag
+from app.render.injection import injector_of
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.render.node_arrays import set_arrays
-from app.render.surroundings import set_dark
+from app.render.surroundings import send_update, set_dark
 from app.scenes.charts import PALETTE
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.race.entrants import RaceReadings
@@ -31,6 +33,7 @@ REFERENCE_RADIUS = 0.9 * TUBE_RADIUS  # [m], so that a rope without error hides 
 REFERENCE_COLOUR = (70, 76, 88)
 REFERENCE_OPACITY = 0.4
 COLOUR_SCALE = 0.6  # of a colour's numbers, so that a rope lit from all sides has the colour it has in the charts
+DARK_COLOUR_SCALE = 1.0  # the same on a dark floor, where dark blue would hardly be seen
 FAILED_OPACITY = 0.35  # of a rope that has stopped
 LABEL_SCALE = 1.6  # of a label, over viser's own size: letters 14 pixels high
 LABEL_HEIGHT = 0.19  # [m] from a root to its label, and between the heights of two labels, so that they do not overlap
@@ -46,10 +49,17 @@ SHOWN_ASPECT = 1.25  # width over height of what the first view shows at least (
 RaceSnapshot: TypeAlias = Snapshot[Params, RaceFrame, RaceReadings]
 
 
-def material_colour(index: int) -> tuple[int, int, int]:
-    """The colour of a rope's material."""
-    red, green, blue = (round(COLOUR_SCALE * part) for part in rgb(PALETTE[index]))
+def material_colour(index: int, *, dark: bool = False) -> tuple[int, int, int]:
+    """The colour of a rope's material; dark: on a dark floor."""
+    scale = DARK_COLOUR_SCALE if dark else COLOUR_SCALE
+    red, green, blue = (round(scale * part) for part in rgb(PALETTE[index]))
     return red, green, blue
+
+
+def bead_colours(count: int, points: int, *, dark: bool = False) -> np.ndarray:
+    """The colours (count points, 3) of the beads of all ropes; viser takes the colours of instances as linear ones."""
+    ropes = [255.0 * (np.array(material_colour(i, dark=dark)) / 255.0) ** 2.2 for i in range(count)]
+    return np.repeat(ropes, points, axis=0).astype(np.uint8)
 
 
 def tube_vertices(points: np.ndarray, samples: int, radius: float) -> np.ndarray:
@@ -86,8 +96,6 @@ class RopesDrawing:
             visible=False,
         )
         points = frame.ropes.reshape(-1, 3)
-        # viser takes the colours of instances as linear ones.
-        colours = np.repeat([255.0 * (np.array(material_colour(i)) / 255.0) ** 2.2 for i in range(count)], n, axis=0)
         bead_radius = min(1.5 * ROPE_RADIUS, 0.3 / n + 0.8 * ROPE_RADIUS)
         self.beads = scene.add_batched_meshes_simple(
             "/race/points",
@@ -95,7 +103,7 @@ class RopesDrawing:
             batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (len(points), 1)),
             batched_positions=points,
             batched_scales=np.full(len(points), bead_radius, np.float32),
-            batched_colors=colours.astype(np.uint8),
+            batched_colors=bead_colours(count, n),
             lod="off",
         )
         self.beads.on_drag("left")(on_drag)
@@ -148,6 +156,13 @@ class RopesDrawing:
             if label.text != text:
                 label.text = text
 
+    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
+        """Draw ropes and beads as on a dark floor, or light again, for one browser. The nodes stay the server's."""
+        count, n, _ = self.shape
+        for i, tube in enumerate(self.tubes):
+            send_update(client, tube.name, color=material_colour(i, dark=dark))
+        send_update(client, self.beads.name, batched_colors=bead_colours(count, n, dark=dark))
+
     def remove(self) -> None:
         """Take everything out of the scene."""
         for handle in (*self.tubes, *self.labels, self.references, self.beads, self.poles):
@@ -163,9 +178,11 @@ class View:
         self.server = server
         self.post = post
         self.surroundings = RopeSurroundings(server, post)
+        injector_of(server)  # its script draws labels dark where a browser asks for it (`js/dark.js`)
         self.surroundings.surroundings.floor.fade_from = "origin"  # the camera is far away
         self.set_near(NEAR)
         self.ropes: RopesDrawing | None = None
+        self.dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that draw on a dark floor
 
     def set_near(self, distance: float) -> None:
         """Begin the picture of every camera at a distance [m]."""
@@ -193,6 +210,8 @@ class View:
             self.ropes = None
         if self.ropes is None:
             self.ropes = RopesDrawing(self.server, frame, self.on_bead)
+            for client in tuple(self.dark):
+                self.ropes.set_dark(client, True)
         self.ropes.show(frame)
         root = frame.root if frame.handles else None
         self.surroundings.show(frame.floor, frame.grid, root, frame.pull, frame.ropes.reshape(-1, 3))
@@ -211,8 +230,11 @@ class View:
         return {}
 
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
-        """Draw sky and floor dark, or light again, for one browser."""
+        """Draw sky, floor and ropes dark, or light again, for one browser."""
         set_dark(client, dark)
+        (self.dark.add if dark else self.dark.discard)(client)
+        if self.ropes is not None:
+            self.ropes.set_dark(client, dark)
 
     def close(self) -> None:
         """Put back what removing the nodes of the scene does not."""

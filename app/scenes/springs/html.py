@@ -42,10 +42,11 @@ def step_mark(critical_step: float) -> str:
 def colour_scale(low: str, name: str, high: str) -> Html:
     """The colour scale with what its two ends mean, and the name of the quantity."""
     return fill(
-        '<div style="height:8px;border-radius:4px;background:{}"></div>'
+        '<div class="springtide-scale" style="--light-scale:{};--dark-scale:{}"></div>'
         '<div style="display:flex;justify-content:space-between">'
         "<span>{}</span><span>{}</span><span>{}</span></div>",
-        Html(css_scale()),
+        Html(css_scale(dark=False)),
+        Html(css_scale(dark=True)),
         low,
         name,
         high,

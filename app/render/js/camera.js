@@ -145,18 +145,19 @@
     if (!controls || camera !== viewer.camera) return; // the camera of a shadow or of an environment map
     keepAbove(camera, controls);
     centre(camera, viewer.canvas);
+    findSplats(viewer);
     splats?.material.uniforms.projectionMatrixCustom.value.copy(camera.projectionMatrix);
   }
 
   // viser's splats have a projection of their own, which knows nothing of the shift: they get that of the camera.
   let splats = null; // the mesh of all splats
 
-  function findSplats(scene) {
+  function findSplats(viewer) {
     if (splats?.parent) return;
-    splats = null;
-    scene.traverse((object) => {
-      if (object.material?.uniforms?.projectionMatrixCustom) splats = object;
-    });
+    splats = viewer.scene.children.find((child) => child.material?.uniforms?.projectionMatrixCustom) ?? null;
+    // The vertices of splats have two numbers each. three would take a third one, and compute a bounding sphere of NaN.
+    const center = viewer.camera.position.clone().set(0, 0, 0);
+    if (splats) splats.geometry.boundingSphere = { center, radius: Infinity };
   }
 
   const hooked = new WeakSet(); // scenes
@@ -173,16 +174,18 @@
     return hook;
   }
 
-  function update() {
-    const viewer = window.__viserMutable;
-    if (!viewer || !viewer.scene || !viewer.canvas) return;
-    if (!hooked.has(viewer.scene)) {
-      hooked.add(viewer.scene);
-      viewer.scene.onBeforeRender = makeHook(viewer.scene.onBeforeRender);
+  // Before the first frame of a scene.
+  function hook() {
+    const scene = window.__viserMutable?.scene;
+    if (scene && !hooked.has(scene)) {
+      hooked.add(scene);
+      scene.onBeforeRender = makeHook(scene.onBeforeRender);
     }
-    findSplats(viewer.scene);
-    measure(viewer);
+    requestAnimationFrame(hook);
   }
 
-  setInterval(update, MEASURE_INTERVAL);
+  requestAnimationFrame(hook);
+  setInterval(() => {
+    if (window.__viserMutable?.canvas) measure(window.__viserMutable);
+  }, MEASURE_INTERVAL);
 })();

@@ -31,7 +31,6 @@ function dressSmoke(scene) {
     splats = scene.children.find((child) => child.material?.uniforms?.textureT_camera_groups) ?? null;
   }
   if (!splats) return;
-  splats.frustumCulled = false; // its vertices have two numbers, of which three makes a bounding sphere of NaN
   replaceShader(splats.material, keyWithDetails("springtide-smoke"), (shader) => {
     const { vertexShader, fragmentShader } = shader;
     const known = [SPLAT_OPACITY, "in vec2 vPosition;"].every((text) => fragmentShader.includes(text));

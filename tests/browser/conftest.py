@@ -47,9 +47,8 @@ PIXEL = """point => { const viewer = window.__viserMutable, camera = viewer.came
     const box = viewer.canvas.getBoundingClientRect(), place = camera.position.clone().set(...point);
     top.parent.localToWorld(place).project(camera);
     return [box.left + box.width * (1 + place.x) / 2, box.top + box.height * (1 - place.y) / 2]; }"""
-# What viser itself logs without harm: its drag layer at each drag of a node, and its splats, because the corners of
-# their quads have two coordinates.
-HARMLESS_ERRORS = ("preventDefault inside passive", "computeBoundingSphere(): Computed radius is NaN")
+# What viser itself logs without harm: its drag layer at each drag of a node.
+HARMLESS_ERRORS = ("preventDefault inside passive",)
 # The same when one scene follows another: viser 1.1's client collects the updates of a frame and applies them after its
 # removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a removal.
 LATE_UPDATE = "Tried to update non-existent component"

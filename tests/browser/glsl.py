@@ -25,7 +25,8 @@ RUN = """([constants, shader, expression, table, uniforms, tileSide, tile]) => {
         if (!gl.getShaderParameter(made, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(made));
         return made;
     };
-    const chunks = [GLSL.noise, GLSL.waves, GLSL.sky, GLSL.surface].join("\\n").replace(/#include <.*>/g, "");
+    const names = ["noise", "waves", "sky", "surface", "dome"];
+    const chunks = names.map((name) => GLSL[name]).join("\\n").replace(/#include <.*>/g, "");
     const program = gl.createProgram();
     gl.attachShader(program, make(gl.VERTEX_SHADER, `#version 300 es
         void main() { gl_Position = vec4(4 * (gl_VertexID % 2) - 1, 2 * (gl_VertexID / 2 * 2) - 1, 0, 1); }`));

@@ -1,20 +1,36 @@
 """The functions of the water's shader, as Chromium compiles them, against closed forms and the same sums in numpy."""
 
 import itertools
+import re
 from collections.abc import Iterator
 from typing import Any
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
-from app.render.material import Waterline, waterline_table
+from app.render.material import WATER_UNIFORMS, Waterline, uniform_table, waterline_table
+from app.render.skies import set_sky
 from sim.ocean.oil_film import APPEARANCES, EXTINCTION, light_through, mirrored_light
 from sim.particles.rain_rings import ring_wave
-from tests.app.render import shader_twin
-from tests.browser.glsl import evaluate
+from tests.browser.glsl import SHADER, evaluate
 
 POINTS = np.random.default_rng(1).uniform(-300.0, 300.0, (40_000, 2))
 FOOTPRINT = 0.65 / 1080 / np.sqrt(0.3)  # over the distance, seen from 0.3 of it above the water, 1080 rows in 0.65 rad
+
+
+def constant(name: str) -> float:
+    """The value of `const float name` or `const int name` in the shader."""
+    (value,) = re.findall(rf"const (?:float|int) {name} = ([-0-9.e]+);", SHADER)
+    return float(value)
+
+
+def fresnel(c: NDArray[np.float64], n: float) -> NDArray[np.float64]:
+    """Reflectance of unpolarised light at the cosine c on a fluid of index n."""
+    g = np.sqrt(n * n - 1.0 + c * c)
+    p, q = (g - c) / (g + c), (c * (g + c) - 1.0) / (c * (g - c) + 1.0)
+    return 0.5 * p * p * (1.0 + q * q)
 
 
 @pytest.fixture(scope="module")
@@ -38,11 +54,11 @@ def test_reflectance_is_fresnel_s_averaged_over_cox_and_munk_s_facets(page: Any)
         along, across = rms * t[:, None], rms * t[None, :]
         seen = np.maximum(c - along * np.sqrt(1.0 - c * c), 0.0)
         weight = chance[:, None] * chance * seen
-        facets = shader_twin.fresnel(seen / np.sqrt(1.0 + along**2 + across**2), index)
+        facets = fresnel(seen / np.sqrt(1.0 + along**2 + across**2), index)
         expected.append(float((weight * facets).sum() / weight.sum()))
     found = evaluate(page, "vec4(roughMirror(p.x, p.y, p.z), fresnel(p.x, p.z), 0.0)", np.array(table))
     np.testing.assert_allclose(found[:, 0], expected, rtol=0.03)
-    smooth = [shader_twin.fresnel(np.float64(c), index) for c, _, index in table]
+    smooth = [fresnel(np.float64(c), index) for c, _, index in table]
     np.testing.assert_allclose(found[:, 2], smooth, rtol=1e-3)
 
 
@@ -69,6 +85,8 @@ def test_normals_drawn_and_filtered_have_the_spectrum_s_slope_variance(page: Any
         slope = evaluate(page, "ripples(p.xy, p.z)", points, uniforms)
         variance = (slope[:, :2] ** 2).sum(-1).mean() + slope[:, 2].mean()
         assert variance == pytest.approx(rms**2, rel=0.05)
+        filtered = slope[:, 2].mean() / rms**2
+        assert {5.0: filtered < 0.03, 500.0: filtered > 0.3}.get(distance, True)
     n, length = 64, 64.0
     noise = np.random.default_rng(2).normal(size=(n, n))
     k = np.fft.fftfreq(n)[:, None], np.fft.fftfreq(n)[None, :]
@@ -85,20 +103,50 @@ def test_normals_drawn_and_filtered_have_the_spectrum_s_slope_variance(page: Any
 
 
 def test_foam_and_rings_have_the_shares_that_they_are_told(page: Any) -> None:
+    """Foam from near and from where small bubbles are not seen: "Foam covers" in the panel is the mean of shares."""
     points = np.column_stack([POINTS, np.zeros(len(POINTS))])
-    for share in (0.1, 0.35, 0.7):
+    for share, footprint in itertools.product((0.05, 0.2, 0.5, 0.9), (0.01, 0.25)):
         points[:, 2] = share
-        cover = evaluate(page, "foamCover(p.xy, p.z, 0.01)", points, {"wind": (0.4, 9.81, 1.0)})[:, 0]
-        assert cover.mean() == pytest.approx(share, abs=0.015)
+        cover = evaluate(page, f"foamCover(p.xy, p.z, {footprint})", points, {"wind": (0.4, 9.81, 1.0)})[:, 0]
+        assert cover.mean() == pytest.approx(share, abs=0.02)
+        assert ((cover < 0.01) | (cover > 0.99)).mean() > 0.4  # with edges: it is no grey film
     wavelength, speed = ring_wave(9.81)
     for share in (0.3, 0.9):
-        life = shader_twin.constant("RING_REACH") * wavelength / speed
-        side = shader_twin.constant("RING_CELL") * wavelength
-        flux = share * shader_twin.constant("RING_LAYERS") / (life * side**2)
+        life = constant("RING_REACH") * wavelength / speed
+        side = constant("RING_CELL") * wavelength
+        flux = share * constant("RING_LAYERS") / (life * side**2)
         uniforms = {"rainRings": (flux, wavelength, speed), "seaState": (3.1, 0.5, 0.0)}
         rings = evaluate(page, "rainSlopes(0.03 * p.xy, 0.0)", POINTS, uniforms)
-        expected = share * shader_twin.constant("RING_VARIANCE")
+        expected = share * constant("RING_VARIANCE")
         assert (rings[:, :2] ** 2).sum(-1).mean() == pytest.approx(expected, rel=0.06)
+        assert abs(rings[:, :2].mean()) < 2e-3
+    # A ring stays within its cell, or it would end at the border as at a wall.
+    assert 0.5 * constant("RING_CELL") - constant("RING_REACH") - 1.0 >= 0.0
+
+
+def test_random_numbers_are_even(page: Any) -> None:
+    cells = np.stack(np.meshgrid(np.arange(-150.0, 150.0), np.arange(-150.0, 150.0)), -1).reshape(-1, 2)
+    found = evaluate(page, "vec4(hash2(p.xy), 0.0, 0.0)", cells)[:, :2]
+    assert found.mean(axis=0) == pytest.approx(0.5, abs=0.01)
+    assert found.var(axis=0) == pytest.approx(1.0 / 12.0, rel=0.02)
+
+
+@pytest.mark.parametrize("name", ["park", "sunset"])
+def test_sea_and_sky_meet_at_the_horizon_without_a_line(page: Any, name: str) -> None:
+    """Noon and sunset, all around: the lowest row of the sky and the highest of the water, 0.001 rad apart each way.
+
+    Without the photographs, which this program does not have: what is compared is haze and glow around the sun.
+    """
+    material = set_sky(MagicMock(), name)
+    table = uniform_table(material, (0.0, 1.0, 0.03), (0, 0, 100.0), 1)
+    uniforms = dict(zip(WATER_UNIFORMS, table, strict=True))
+    bearing = np.linspace(-np.pi, np.pi, 361) + 0.004
+    rays = np.column_stack([np.cos(bearing), np.sin(bearing), np.full(len(bearing), 0.001)])
+    sky = evaluate(page, "vec4(skyLight(normalize(p.xyz)), 0.0)", rays, uniforms)[:, :3]
+    far = "1e6 * normalize(vec3(p.xy, -p.z))"
+    sea = evaluate(page, f"vec4(shadeSea({far}, vec2(0.0), vec3(0.0), 1.0), 0.0)", rays, uniforms)[:, :3]
+    assert sea.min() > 0.01
+    np.testing.assert_allclose(sky, sea, rtol=0.03)
 
 
 def test_rays_from_the_water_meet_what_stands_in_it_and_above_it(page: Any) -> None:

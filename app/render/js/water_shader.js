@@ -167,7 +167,7 @@ const WATER_GLSL = {
     vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), skyFold.y); }
 
     // The glow of the air around the sun, at a distance from its direction.
-    float sunGlow(float off) { return 0.30 * exp(-off * 16.0) + 0.07 * exp(-off * 4.0); }
+    float sunGlow(float off) { return 0.30 * exp(-off * 16.0) + 0.07 * exp(-off * 4.0) + 2.4 * lens.z * exp(-off * 60.0); }
 
     // Radiance at the horizon in the direction d, which sea and sky have in common there.
     vec3 horizonGlow(vec3 d) {
@@ -606,6 +606,27 @@ const WATER_GLSL = {
       color *= 0.65 + 0.35 * smoothstep(0.0, 0.6, hull);
       return mix(color, haze, lost) * lens.y;
     }`,
+
+  dome: `
+    // The sun's disc, twice as wide as the true one.
+    float sunDisc(float off) { return 30.0 * (1.0 - smoothstep(0.006, 0.014, off)); }
+    // The colours of the photographs come in blocks of some degrees: take the brightness sharp and the hue blurred.
+    vec3 clearSky(vec3 d) {
+      vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
+      vec3 w = vec3(0.3, 0.5, 0.2);
+      float light = dot(sharp, w), even = dot(soft, w);
+      float detail = 0.6 * smoothstep(0.15, 0.5, abs(light - even) / even);
+      return mix(soft * (light / even), sharp, detail);
+    }
+    // The light from the sky in the direction d, above the horizon.
+    vec3 skyLight(vec3 d) {
+      float off = length(d - sunDirection);
+      vec4 layer = addClouds(clearSky(d) + sunLight * sunGlow(off), d, 0.0, ambientLight());
+      float through = 1.0 - layer.a;
+      // The lowest degree of the sky passes into the haze over the far sea, or a line would part them.
+      layer.rgb = mix(horizonGlow(d), layer.rgb, smoothstep(-0.003, 0.025, d.z));
+      return behindRain(layer.rgb + sunLight * sunDisc(off) * lens.z * through * through, d) * lens.y;
+    }`,
 };
 
 // nearer: a little nearer to the camera than the water, so that the water does not hide it.
@@ -693,17 +714,8 @@ const DOME_FRAGMENT = `
   ${WATER_GLSL.waves}
   ${WATER_GLSL.sky}
   ${WATER_GLSL.surface}
+  ${WATER_GLSL.dome}
   varying vec3 vRay;
-  // The sun's disc, twice as wide as the true one, and the light around it.
-  float sunDisc(float off) { return 30.0 * (1.0 - smoothstep(0.006, 0.014, off)) + 2.4 * exp(-off * 60.0); }
-  // The colours of the photographs come in blocks of some degrees: take the brightness sharp and the hue blurred.
-  vec3 clearSky(vec3 d) {
-    vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
-    vec3 w = vec3(0.3, 0.5, 0.2);
-    float light = dot(sharp, w), even = dot(soft, w);
-    float detail = 0.6 * smoothstep(0.15, 0.5, abs(light - even) / even);
-    return mix(soft * (light / even), sharp, detail);
-  }
   void main() {
     vec3 d = normalize(vRay);
     vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
@@ -714,12 +726,7 @@ const DOME_FRAGMENT = `
     if (d.z < 0.0) {
       c = shadeSea(at, at.xy, vec3(0.0), 1.0);
     } else {
-      float off = length(d - sunDirection);
-      vec4 layer = addClouds(clearSky(d) + sunLight * sunGlow(off), d, 0.0, ambientLight());
-      float through = 1.0 - layer.a;
-      // The lowest degree of the sky passes into the haze over the far sea, or a line would part them.
-      layer.rgb = mix(horizonGlow(d), layer.rgb, smoothstep(-0.003, 0.025, d.z));
-      c = behindRain(layer.rgb + sunLight * sunDisc(off) * lens.z * through * through, d) * lens.y;
+      c = skyLight(d);
     }
     gl_FragColor = vec4(c, 1.0);
     #include <tonemapping_fragment>

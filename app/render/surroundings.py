@@ -36,6 +36,11 @@ class SkyColours(NamedTuple):
     top: Colour
     bottom: Colour  # from HORIZON on
 
+    @property
+    def css(self) -> str:
+        """As a background in a style sheet."""
+        return f"linear-gradient(rgb{self.top}, rgb{self.bottom} {100 * HORIZON:.0f}%)"
+
 
 HORIZON = 0.45  # of the height, from above, where the sky ends
 LIGHT_SKY = SkyColours((126, 168, 214), (232, 237, 243))

@@ -20,6 +20,7 @@ from app.panel.recording_files import plot_charts
 from app.render.cameras import place_cameras
 from app.render.html import Html, fill, join
 from app.render.injection import record_shaders
+from app.render.surroundings import LIGHT_SKY
 from app.scenes import view_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import setup_block, write_value
@@ -37,6 +38,8 @@ STYLE = (
     "background:#fffffff2;color:#1b2a3a;border-radius:6px;padding:6px 10px;font:13px/1.4 sans-serif;"
     "box-shadow:0 1px 6px #0003}#springtide-about summary{cursor:pointer;font-weight:bold}"
     "#springtide-about td{padding:0 10px 0 0}"
+    f"canvas[data-engine]{{background:{LIGHT_SKY.css}}}"
+    "#springtide-slow{bottom:92px!important}"  # above the time line
 )
 
 

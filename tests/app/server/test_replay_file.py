@@ -11,6 +11,7 @@ import pytest
 import zstandard
 
 from app.panel.recorder import Recorder
+from app.render.surroundings import LIGHT_SKY
 from app.scenes import scene_named
 from app.scenes.setups import read_setup
 from app.server.loop import SimLoop
@@ -57,6 +58,7 @@ def test_the_page_holds_every_frame_and_its_time(recorded: Any, page: str) -> No
 def test_the_page_says_what_it_shows_and_runs_no_text_of_ours(recorded: Any, page: str) -> None:
     kind, frames, _ = recorded
     assert f"<title>Springtide: {kind.title}</title>" in page
+    assert LIGHT_SKY.css in page  # which has no style sheet of ours
     assert f"t = {frames[0].time:.2f} to {frames[-1].time:.2f} s" in page
     about = page[page.index("springtide-about") :]
     assert "<td>Points</td><td>7 </td>" in about

@@ -16,6 +16,14 @@ def limit(zeta: float) -> float:
     return 2.0 * (math.sqrt(1.0 + zeta * zeta) - zeta)
 
 
+@kernel(noalias=True, inline=True)
+def kick_and_drift(x, v, h, a):
+    """v += h a, then x += h v: one pass, as long ropes wait for memory."""
+    for j in range(x.shape[0]):
+        v[j] += h * a[j]
+        x[j] += h * v[j]
+
+
 @kernel(noalias=True)
 def take_euler_steps(x, v, ledger, t, h, steps, p, with_account, by_new_velocity):
     """`advance` of an integrator. by_new_velocity: x += h v with the velocity at the end of the step, not its start.
@@ -31,8 +39,7 @@ def take_euler_steps(x, v, ledger, t, h, steps, p, with_account, by_new_velocity
         if with_account:
             add_power(x, v, now, p, True, h, ledger)
         if by_new_velocity:
-            add_scaled(v, h, a)
-            add_scaled(x, h, v)
+            kick_and_drift(x, v, h, a)
         else:
             add_scaled(x, h, v)
             add_scaled(v, h, a)

@@ -134,6 +134,38 @@ def test_a_bare_rope_s_blocks_change_nothing(points):
     assert found[0] == pytest.approx(found[1], rel=1e-13, abs=1e-13)
 
 
+@pytest.mark.parametrize("module", [dopri5, dop853, rkn8], ids=lambda module: module.__name__.rpartition(".")[2])
+def test_the_estimated_error_is_the_weighted_root_mean_square_of_the_tableau_s_rows(module):
+    method, size, h, rtol, atol = module.METHOD, 15, 1e-2, 1e-3, 1e-4
+    random = np.random.default_rng(1)
+    x, v, xn, vn = random.standard_normal((4, size))
+    room = stages.make_stages(method, x, rope(5).kernel_view(1.0))
+    k = room.k.reshape(method.stages + 1, room.stride)
+    k[:, :size] = random.standard_normal((method.stages + 1, size))
+    sums = []
+    for row in range(method.stages + 1, len(method.counts)):
+        terms = method.terms[row]
+        ex, ev = h**2 * method.g[row] @ k[terms, :size], h * method.a[row] @ k[terms, :size]
+        parts = (
+            ex / (atol + rtol * np.maximum(abs(x), abs(xn))),
+            ev / (atol + rtol * np.maximum(abs(v), abs(vn))),
+        )
+        sums.append(np.mean(np.square(parts)))
+    wanted = math.sqrt(sums[0]) if len(sums) == 1 else sums[0] / math.sqrt(sums[0] + 0.01 * sums[1])
+    assert error_of(method, x, v, h, room, xn, vn, rtol, atol) == pytest.approx(wanted, rel=1e-13)
+
+
+@pytest.mark.parametrize(("name", "rtol"), [("dopri5", 1e-4), ("dop853", 1e-4), ("rkn8", 1e-6)])
+def test_steps_that_are_undone_leave_no_trace(name, rtol):
+    """Of this stiff rope some steps without an estimate are followed by one that breaks the tolerance."""
+    net = rope(129, 1.0, 1 / 129, 125568.0, 0.256, 0.2 / 129)
+    run = simulate(net, name, rtol=rtol, atol=0.01 * rtol, duration=1.0, frames=3, with_account=True)
+    truth = simulate(net, name, rtol=1e-9, atol=1e-11, duration=1.0, frames=3)
+    assert np.abs(run.x - truth.x).max() < 5e-3 * rtol
+    total = run.energy[:, :5].sum(axis=1) - run.energy[:, 5]
+    assert np.abs(total - total[0]).max() < 2.0 * rtol
+
+
 @pytest.mark.parametrize("name", ADAPTIVE)
 def test_few_steps_are_taken_in_vain_where_stability_limits_them(name):
     net = rope(40, stiffness=2e5)

@@ -21,10 +21,15 @@ from sim.springs.net import by_net
 WHOLE = 160  # points: a rope no longer than this is one block
 BLOCK = 96  # points in a block of a longer one: the rows of their stages are 30 kB
 WIDEST = 16  # terms of a row, padded
+TERMS_OF_ONE = 8  # of the error estimate of a method that has one
+TERMS_OF_TWO = 10  # of each of two
 
 
 class Tableau(NamedTuple):
-    """A method of s stages; row s of each array is the new state, rows beyond it error estimates."""
+    """A method of s stages; row s of each array is the new state, rows beyond it error estimates.
+
+    A method has one error estimate, a sum of at most TERMS_OF_ONE stages, or two, sums of the same at most TERMS_OF_TWO.
+    """
 
     c: NDArray[np.float64]  # (rows,) times of the stages
     counts: NDArray[np.int64]  # (rows,) terms of each, even
@@ -74,8 +79,10 @@ def tableau_of_rows(
     s = velocity.shape[1] - 1
     counts, terms = np.zeros(len(velocity), dtype=np.int64), np.zeros((len(velocity), WIDEST), dtype=np.uint64)
     a, g = np.zeros((2, len(velocity), WIDEST))
+    sums = (velocity != 0.0) | (position != 0.0)
+    sums[s + 1 :] = sums[s + 1 :].any(axis=0)
     for i in range(len(velocity)):
-        used = np.flatnonzero((velocity[i] != 0.0) | (position[i] != 0.0))
+        used = np.flatnonzero(sums[i])
         counts[i] = len(used) + len(used) % 2
         terms[i, : len(used)] = used
         a[i, : len(used)], g[i, : len(used)] = velocity[i, used], position[i, used]

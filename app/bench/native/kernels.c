@@ -149,8 +149,7 @@ void symplectic_euler(int n, double *restrict x, double *restrict v, const doubl
     for (int i = 0; i < m + 3; i++) f[i] = 0;
     for (int s = 0; s < steps; s++) {
         accelerate(n, x, v, w, f, a, k, b, rest, load, c);
-        for (int i = 0; i < m; i++) v[i] += h * a[i];
-        for (int i = 0; i < m; i++) x[i] += h * v[i];
+        for (int i = 0; i < m; i++) v[i] += h * a[i], x[i] += h * v[i];
     }
 }
 

@@ -28,7 +28,7 @@ TERMS_OF_TWO = 10  # of each of two
 class Tableau(NamedTuple):
     """A method of s stages; row s of each array is the new state, rows beyond it error estimates.
 
-    A method has one error estimate, a sum of at most TERMS_OF_ONE stages, or two, sums of the same at most TERMS_OF_TWO.
+    One error estimate sums at most TERMS_OF_ONE stages; two sum the same, at most TERMS_OF_TWO.
     """
 
     c: NDArray[np.float64]  # (rows,) times of the stages

@@ -139,7 +139,7 @@ def test_sea_and_sky_meet_at_the_horizon_without_a_line(page: Any, name: str) ->
     """
     material = set_sky(MagicMock(), name)
     table = uniform_table(material, (0.0, 1.0, 0.03), (0, 0, 100.0), 1)
-    uniforms = dict(zip(WATER_UNIFORMS, table, strict=True))
+    uniforms: dict[str, Any] = dict(zip(WATER_UNIFORMS, table, strict=True))
     bearing = np.linspace(-np.pi, np.pi, 361) + 0.004
     rays = np.column_stack([np.cos(bearing), np.sin(bearing), np.full(len(bearing), 0.001)])
     sky = evaluate(page, "vec4(skyLight(normalize(p.xyz)), 0.0)", rays, uniforms)[:, :3]

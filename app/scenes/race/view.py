@@ -56,9 +56,14 @@ def material_colour(index: int, *, dark: bool = False) -> tuple[int, int, int]:
     return red, green, blue
 
 
+def linear_colour(colour: tuple[int, int, int]) -> np.ndarray:
+    """An sRGB colour in linear numbers, 0 to 255: viser takes the colours of instances and of lines as such."""
+    return 255.0 * (np.array(colour) / 255.0) ** 2.2
+
+
 def bead_colours(count: int, points: int, *, dark: bool = False) -> np.ndarray:
-    """The colours (count points, 3) of the beads of all ropes; viser takes the colours of instances as linear ones."""
-    ropes = [255.0 * (np.array(material_colour(i, dark=dark)) / 255.0) ** 2.2 for i in range(count)]
+    """The colours (count points, 3) of the beads of all ropes."""
+    ropes = [linear_colour(material_colour(i, dark=dark)) for i in range(count)]
     return np.repeat(ropes, points, axis=0).astype(np.uint8)
 
 
@@ -110,7 +115,7 @@ class RopesDrawing:
         self.poles = scene.add_line_segments(
             "/race/poles",
             self.label_poles(frame),
-            colors=np.repeat([[rgb(colour)] for colour in PALETTE[:count]], 2, axis=1).astype(np.uint8),
+            colors=np.repeat([[linear_colour(rgb(colour))] for colour in PALETTE[:count]], 2, axis=1).astype(np.uint8),
             thickness=2.0,
             thickness_units="screen",
         )

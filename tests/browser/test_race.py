@@ -1,6 +1,7 @@
 """The race scene in a real browser: ropes, labels and charts."""
 
 import io
+from collections.abc import Callable
 
 import numpy as np
 from PIL import Image
@@ -77,8 +78,11 @@ def test_a_bead_is_dragged_and_another_preset_starts_at_once(shown: tuple[Viewer
     assert tab.errors == []
 
 
-def test_labels_are_dark_in_dark_mode_and_light_again(shown: tuple[Viewer, Tab]) -> None:
-    lab, tab = shown
+def test_labels_are_dark_in_dark_mode_and_light_again(
+    one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
+) -> None:
+    lab, _ = one_page
+    tab = open_tab(lab.port, drawn=True)
     tab.follow(lab, SCENE, check_record(Params, {"plot_errors": False, "plot_energies": False}))
 
     def brightness() -> float:

@@ -66,6 +66,7 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
     tab.wait(lambda: "stretch of the whole rope" in page.locator(".springtide-verdict").last.inner_text())
     page.get_by_role("button", name="Read off: ").click()
     tab.wait(lambda: isinstance(kept("stretch"), float) and kept("stretch") != 0.5625)
+    tab.wait(lambda: number.input_value() == str(kept("stretch")))  # the page shows it before the next is typed
     number.fill("0,1125")
     number.press("Enter")
     tab.wait(lambda: kept("stretch") == 0.1125)

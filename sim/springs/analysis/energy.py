@@ -7,6 +7,8 @@ Potential of gravity and kinetic energy are those of the free particles; pins tr
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from sim.jit import kernel
 from sim.springs.forces.acceleration import grab_secant
 from sim.springs.forces.contact import contact_force, surface_velocity, touches, touching
@@ -83,37 +85,72 @@ def contact_energy(x, t, p):
     return total
 
 
+@kernel(noalias=True, inline=True)
+def row_damping_power(x, v, a, b, count, n, axial):
+    """What damping of 1 N s/m takes [W] in the links (a, b), (a + 1, b + 1), ..."""
+    total = 0.0
+    if axial:
+        for j in range(count):
+            p, q = a + j, b + j
+            rx, ry, rz = x[q] - x[p], x[n + q] - x[n + p], x[n + n + q] - x[n + n + p]
+            du, dv, dw = v[q] - v[p], v[n + q] - v[n + p], v[n + n + q] - v[n + n + p]
+            closing = du * rx + dv * ry + dw * rz
+            total += closing * closing / (rx * rx + ry * ry + rz * rz + TINY)
+    else:
+        for j in range(count):
+            p, q = a + j, b + j
+            du, dv, dw = v[q] - v[p], v[n + q] - v[n + p], v[n + n + q] - v[n + n + p]
+            total += du * du + dv * dv + dw * dw
+    return total
+
+
 @kernel(allocates=False)
-def link_power(x, v, p, with_damping):
-    """(dissipated, put in by moving pins) [W] through the links."""
-    dissipated = 0.0
+def link_damping_power(x, v, p):
+    """What the links' damping takes [W]."""
+    total = 0.0
+    n = np.uint64(p.rows * p.cols)
+    for q in range(p.offsets.shape[0]):
+        di, dj, c = p.offsets[q, 0], p.offsets[q, 1], p.links[q, 2]
+        first = max(0, -dj)
+        count = max(0, p.cols - abs(dj))
+        if c == 0.0 or count == 0:
+            continue
+        for i in range(p.rows - di):
+            a = np.uint64(i * p.cols + first)
+            b = np.uint64((i + di) * p.cols + first + dj)
+            total += c * row_damping_power(x, v, a, b, np.uint64(count), n, p.axial)
+    return total
+
+
+@kernel(allocates=False)
+def moving_pins_power(x, v, p, elastic, damping):
+    """What moving pins put in [W] through the links' elastic forces, their damping, or both: 1.0 counts it, 0.0 not."""
     work = 0.0
     n = p.rows * p.cols
-    pins_move = p.pins.shape[0] > 0
+    if p.pins.shape[0] == 0:
+        return work
     for q in range(p.offsets.shape[0]):
         di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest, k, c = p.links[q, 0], p.links[q, 1], p.links[q, 2] if with_damping else 0.0
-        if c == 0.0 and not pins_move:
-            continue
+        rest, k, c = p.links[q, 0], elastic * p.links[q, 1], damping * p.links[q, 2]
         for i in range(p.rows - di):
             for j in range(max(0, -dj), p.cols - max(0, dj)):
                 a = i * p.cols + j
                 b = a + di * p.cols + dj
+                if p.inverse_masses[a] > 0.0 and p.inverse_masses[b] > 0.0:
+                    continue
                 rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
                 du, dv, dw = v[b] - v[a], v[n + b] - v[n + a], v[2 * n + b] - v[2 * n + a]
                 rr = rx * rx + ry * ry + rz * rz + TINY
                 if p.axial:
                     along = (du * rx + dv * ry + dw * rz) / rr
                     du, dv, dw = along * rx, along * ry, along * rz
-                dissipated += c * (du * du + dv * dv + dw * dw)
-                if pins_move:
-                    s = k - k * rest / math.sqrt(rr)
-                    fx, fy, fz = s * rx + c * du, s * ry + c * dv, s * rz + c * dw
-                    if p.inverse_masses[a] == 0.0:
-                        work -= fx * v[a] + fy * v[n + a] + fz * v[2 * n + a]
-                    if p.inverse_masses[b] == 0.0:
-                        work += fx * v[b] + fy * v[n + b] + fz * v[2 * n + b]
-    return dissipated, work
+                s = k - k * rest / math.sqrt(rr)
+                fx, fy, fz = s * rx + c * du, s * ry + c * dv, s * rz + c * dw
+                if p.inverse_masses[a] == 0.0:
+                    work -= fx * v[a] + fy * v[n + a] + fz * v[2 * n + a]
+                if p.inverse_masses[b] == 0.0:
+                    work += fx * v[b] + fy * v[n + b] + fz * v[2 * n + b]
+    return work
 
 
 @kernel(allocates=False)
@@ -127,6 +164,8 @@ def contact_power(x, v, t, p, with_damping):
         if not touches(x, t, p, on_sphere):
             continue
         su, sv, sw = surface_velocity(p, on_sphere)
+        if not with_damping and su == 0.0 and sv == 0.0 and sw == 0.0:
+            continue
         for j in range(n):
             depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
             if depth > 0.0 and p.inverse_masses[j] > 0.0:
@@ -152,7 +191,7 @@ def wide_power(x, v, p, with_damping):
         lost, done = wind_power(x, v, p)
         dissipated += lost
         work += done
-    if p.thickness > 0.0:
+    if p.thickness > 0.0 and (with_damping or p.pins.shape[0] > 0):
         lost, done = self_contact_power(x, v, p, with_damping)
         dissipated += lost
         work += done
@@ -163,17 +202,19 @@ power_of_width = by_net(rope=no_wide_power, grid=wide_power)
 
 
 @kernel(inline=True)
-def is_rope_driven(p):
-    """Whether a pin, or the air, moves that damping forces do work on."""
-    return p.pins.shape[0] > 0
+def no_wide_damping_work(x, v, p):
+    return 0.0
 
 
-@kernel(inline=True)
-def is_wide_driven(p):
-    return p.has_air or p.pins.shape[0] > 0
+@kernel
+def wide_damping_work(x, v, p):
+    if p.thickness > 0.0:
+        return self_contact_power(x, v, p, True)[1] - self_contact_power(x, v, p, False)[1]
+    return 0.0
 
 
-is_driven = by_net(rope=is_rope_driven, grid=is_wide_driven)
+# What moving pins put in [W] through the damping of the net's contact with itself.
+damping_work_of_width = by_net(rope=no_wide_damping_work, grid=wide_damping_work)
 
 
 @kernel(inline=True)
@@ -192,9 +233,11 @@ energy_of_own_contacts = by_net(rope=no_self_contact_energy, grid=wide_self_cont
 @kernel(allocates=False)
 def power(x, v, t, p, with_damping):
     """(dissipated, put in) [W]. with_damping False: without every force that depends on v."""
-    dissipated, work = link_power(x, v, p, with_damping)
-    if with_damping and p.drag > 0.0:
-        dissipated += 2.0 * p.drag / p.mass * kinetic_energy(v, p)
+    dissipated, work = 0.0, moving_pins_power(x, v, p, 1.0, 1.0 if with_damping else 0.0)
+    if with_damping:
+        dissipated += link_damping_power(x, v, p)
+        if p.drag > 0.0:
+            dissipated += 2.0 * p.drag / p.mass * kinetic_energy(v, p)
     lost, done = power_of_width(x, v, p, with_damping)
     dissipated += lost
     work += done
@@ -237,16 +280,14 @@ def open_damping(v, p, before):
 def close_damping(x, v, p, s, kinetic, by_sphere, before, ledger):
     """Book what damping did in a time s [s] since `open_damping`, which returned `kinetic`.
 
-    The particles' loss is exact, and so is the work of a moving sphere, `by_sphere` [J]. What pins and wind put in
+    The particles' loss is exact, and so is the work of a moving sphere, `by_sphere` [J]. What moving pins put in
     through damping forces is that at the mean velocity. All that is put in so is dissipated too.
     """
     put_in = by_sphere
-    if is_driven(p):
+    if p.pins.shape[0] > 0:
         for j in range(v.shape[0]):
             before[j] = 0.5 * (before[j] + v[j])
-        through_links = link_power(x, before, p, True)[1] - link_power(x, before, p, False)[1]
-        through_width = power_of_width(x, before, p, True)[1] - power_of_width(x, before, p, False)[1]
-        put_in += s * (through_links + through_width)
+        put_in += s * (moving_pins_power(x, before, p, 0.0, 1.0) + damping_work_of_width(x, before, p))
     ledger[0] += kinetic - kinetic_energy(v, p) + put_in
     ledger[1] += put_in
 

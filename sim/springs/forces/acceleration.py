@@ -156,12 +156,12 @@ def rope_scratch_size(p):
 
 @kernel(inline=True)
 def grid_scratch_size(p):
-    return 3 * (p.cols + 1) + wind_scratch_size(p.cols)
+    return 3 * (p.cols + 1) + wind_scratch_size(p)
 
 
 @kernel(inline=True)
 def whole_cloth_scratch_size(p):
-    return p.bands * cloth_scratch_size(p.cols) + wind_scratch_size(p.cols)
+    return p.bands * cloth_scratch_size(p.cols) + wind_scratch_size(p)
 
 
 scratch_size = by_net(rope=rope_scratch_size, grid=grid_scratch_size, cloth=whole_cloth_scratch_size)

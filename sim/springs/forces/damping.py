@@ -20,7 +20,6 @@ from sim.jit import kernel
 from sim.springs.forces.contact import surface_velocity, touches, touching
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import damp_self_contacts
-from sim.springs.forces.wind import add_wind
 from sim.springs.net import by_net
 
 PAD = 4  # numbers beside a component in the room of `cross_gap`, the width of its window
@@ -225,46 +224,6 @@ def damp_motion(x, v, decay, p, reverse):
             scale_free(v, p.inverse_masses, np.uint64(0), n, keep)
             scale_free(v, p.inverse_masses, n, n, keep)
             scale_free(v, p.inverse_masses, n + n, n, keep)
-
-
-@kernel(allocates=False)
-def blow_wide(x, v, s, p, f, a, middle):
-    """The air's push for a time s [s], by the explicit midpoint rule, where there is air.
-
-    a, middle: scratch (3 rows cols,); f: of `make_scratch`.
-    """
-    if not p.has_air:
-        return
-    for j in range(v.shape[0]):
-        a[j], middle[j] = 0.0, v[j]
-    add_wind(x, v, p, f, a)
-    for j in range(v.shape[0]):
-        middle[j] += 0.5 * s * a[j]
-        a[j] = 0.0
-    add_wind(x, middle, p, f, a)
-    for j in range(v.shape[0]):
-        v[j] += s * a[j]
-
-
-@kernel(inline=True)
-def blow_nothing(x, v, s, p, f, a, middle):
-    """A rope catches no air."""
-
-
-blow = by_net(rope=blow_nothing, grid=blow_wide)
-
-
-@kernel(inline=True)
-def no_air_scratch_size(x, p):
-    return 0
-
-
-@kernel(inline=True)
-def wide_air_scratch_size(x, p):
-    return x.shape[0] if p.has_air else 0
-
-
-air_scratch_size = by_net(rope=no_air_scratch_size, grid=wide_air_scratch_size)
 
 
 @kernel(inline=True)

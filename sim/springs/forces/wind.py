@@ -9,14 +9,22 @@ import math
 import numpy as np
 
 from sim.jit import kernel
+from sim.springs.net import by_net
+from sim.springs.vector_ops import add_scaled, set_sum
 
 STILL = 1e-300  # under the roots: no air or no area gives no force instead of 0/0
 
 
 @kernel(inline=True)
-def wind_scratch_size(cols):
-    """Numbers that a row of cells takes at the end of the scratch."""
-    return 3 * (cols + 1)
+def cell_room(p):
+    """Numbers of one component of the forces on the cells: one a particle, and zeros before and after."""
+    return p.rows * p.cols + p.cols + 1
+
+
+@kernel(inline=True)
+def wind_scratch_size(p):
+    """Numbers that the forces on the cells take at the end of the scratch."""
+    return 3 * cell_room(p) if p.has_air else 0
 
 
 @kernel(inline=True)
@@ -30,14 +38,14 @@ def cell_areas(x, a, c, n):
 
 
 @kernel(noalias=True, inline=True)
-def set_cell_forces(x, v, ia, ic, count, n, m, wind_x, wind_y, wind_z, drag, lift, f, of):
-    """Force [N] on the cells between two rows: rho/2 A s [C_D u + C_L (|u| n - s u/|u|)], with s = |u . n|.
+def set_cell_forces(x, v, cols, count, n, m, wind_x, wind_y, wind_z, drag, lift, f, of):
+    """Force [N] on the cells of the first `count` particles: rho/2 A s [C_D u + C_L (|u| n - s u/|u|)], s = |u . n|.
 
-    ia, ic: first particles of the rows; f (3, m) from `of`.
+    To f (3, m) from `of`. What begins at the last particle of a row is no cell: the caller clears it.
     """
     one = np.uint64(1)
-    for j in range(count):
-        a, c = ia + j, ic + j
+    for a in range(count):
+        c = a + cols
         b, d = a + one, c + one
         ax, ay, az = cell_areas(x, a, c, n)
         ux = wind_x - 0.25 * (v[a] + v[b] + v[c] + v[d])
@@ -49,33 +57,35 @@ def set_cell_forces(x, v, ia, ic, count, n, m, wind_x, wind_y, wind_z, drag, lif
         s = abs(flow) / area
         along = abs(flow) * (drag - lift * s / speed)
         normal = flow / area * lift * speed
-        f[of + j] = along * ux + normal * ax
-        f[of + m + j] = along * uy + normal * ay
-        f[of + m + m + j] = along * uz + normal * az
+        f[of + a] = along * ux + normal * ax
+        f[of + m + a] = along * uy + normal * ay
+        f[of + m + m + a] = along * uz + normal * az
 
 
 @kernel(noalias=True, inline=True)
-def add_quarter(f, of, count, w, ow, a, o):
-    for j in range(count):
-        a[o + j] += 0.25 * w[ow + j] * f[of + j]
+def add_quarters(f, of, cols, n, w, a, o):
+    """Give each of n particles a quarter of the force on each of its four cells."""
+    one = np.uint64(1)
+    for j in range(n):
+        i = of + j
+        a[o + j] += 0.25 * w[j] * (f[i] + f[i - one] + f[i - cols] + f[i - cols - one])
 
 
 @kernel(noalias=True, allocates=False)
 def add_wind(x, v, p, f, a):
-    """Add the accelerations by the air; f: scratch; its last (wind_scratch_size,) are free."""
-    n, m, cols = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1), np.uint64(p.cols)
-    count = np.uint64(p.cols - 1)
-    start = np.uint64(f.shape[0] - wind_scratch_size(p.cols))
-    for i in range(p.rows - 1):
-        ia = np.uint64(i * p.cols)
-        set_cell_forces(
-            x, v, ia, ia + cols, count, n, m, p.wind_x, p.wind_y, p.wind_z, p.air_drag, p.air_lift, f, start
-        )  # fmt: skip
-        for e in range(3):
-            of, o = start + np.uint64(e) * m, np.uint64(e) * n
-            for corner in range(4):
-                at = ia + np.uint64(corner % 2) + np.uint64(corner // 2) * cols
-                add_quarter(f, of, count, p.inverse_masses, at, a, o + at)
+    """Add the accelerations by the air; f: scratch; its last (wind_scratch_size,) are free, but 0 where no cell is.
+
+    All cells are worked out in one loop, as the rows of most cloths are short.
+    """
+    n, m, cols = np.uint64(p.rows * p.cols), np.uint64(cell_room(p)), np.uint64(p.cols)
+    first = np.uint64(f.shape[0] - wind_scratch_size(p) + p.cols + 1)
+    count = np.uint64((p.rows - 1) * p.cols - 1)
+    set_cell_forces(x, v, cols, count, n, m, p.wind_x, p.wind_y, p.wind_z, p.air_drag, p.air_lift, f, first)
+    for e in range(3):
+        of = first + np.uint64(e) * m
+        for i in range(1, p.rows - 1):
+            f[of + np.uint64(i * p.cols - 1)] = 0.0
+        add_quarters(f, of, cols, n, p.inverse_masses, a, np.uint64(e) * n)
 
 
 @kernel
@@ -86,10 +96,82 @@ def wind_power(x, v, p):
     """
     n = p.rows * p.cols
     a = np.zeros(v.shape[0])
-    add_wind(x, v, p, np.zeros(wind_scratch_size(p.cols)), a)
+    add_wind(x, v, p, np.zeros(wind_scratch_size(p)), a)
     work = 0.0
     gained = 0.0
     for j in range(n):
         work += p.mass * (a[j] * p.wind_x + a[n + j] * p.wind_y + a[2 * n + j] * p.wind_z)
         gained += p.mass * (a[j] * v[j] + a[n + j] * v[n + j] + a[2 * n + j] * v[2 * n + j])
     return work - gained, work
+
+
+@kernel(noalias=True, allocates=False)
+def blow_wide(x, v, s, p, f, a, middle, with_account, ledger):
+    """The air's push for a time s [s], by the explicit midpoint rule; books what it put in and what it dissipated.
+
+    The wind does the work of its force at its own speed; what the particles do not get of it is dissipated.
+    a, middle: scratch (3 rows cols,); f: of `make_scratch`.
+    """
+    if not p.has_air:
+        return
+    for j in range(v.shape[0]):
+        a[j] = 0.0
+    add_wind(x, v, p, f, a)
+    set_sum(middle, v, 0.5 * s, a)
+    for j in range(v.shape[0]):
+        a[j] = 0.0
+    add_wind(x, middle, p, f, a)
+    if not with_account:
+        add_scaled(v, s, a)
+        return
+    n = p.rows * p.cols
+    work = gained = 0.0
+    for e in range(3):
+        wind = p.wind_x if e == 0 else p.wind_y if e == 1 else p.wind_z
+        for j in range(e * n, (e + 1) * n):
+            change = s * a[j]  # 0 where pinned
+            work += change * wind
+            gained += change * (v[j] + 0.5 * change)
+            v[j] += change
+    ledger[0] += p.mass * (work - gained)
+    ledger[1] += p.mass * work
+
+
+@kernel(inline=True)
+def blow_nothing(x, v, s, p, f, a, middle, with_account, ledger):
+    """A rope catches no air."""
+
+
+blow = by_net(rope=blow_nothing, grid=blow_wide)
+
+
+@kernel(noalias=True, inline=True)
+def drift_rope(x, v, h, p, f, a, middle, with_account, ledger):
+    add_scaled(x, h, v)
+
+
+@kernel(noalias=True, inline=True)
+def drift_wide(x, v, h, p, f, a, middle, with_account, ledger):
+    if p.has_air:
+        add_scaled(x, 0.5 * h, v)
+        blow_wide(x, v, h, p, f, a, middle, with_account, ledger)
+        add_scaled(x, 0.5 * h, v)
+    else:
+        add_scaled(x, h, v)
+
+
+# x += h v; where there is air, it pushes in the middle.
+drift = by_net(rope=drift_rope, grid=drift_wide)
+
+
+@kernel(inline=True)
+def no_air_scratch_size(x, p):
+    return 0
+
+
+@kernel(inline=True)
+def wide_air_scratch_size(x, p):
+    return x.shape[0] if p.has_air else 0
+
+
+air_scratch_size = by_net(rope=no_air_scratch_size, grid=wide_air_scratch_size)

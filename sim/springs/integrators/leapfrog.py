@@ -1,7 +1,7 @@
 """Leapfrog (velocity Verlet) with damping split off: D(h/2) K(h/2) X(h) K(h/2) D'(h/2).
 
 K kicks with the forces of position alone, X drifts, D is the exact damping of `sim.springs.forces.damping`, D' the
-same in reverse order, and the two change places from step to step; moving air blows before D and after D'. A symmetric
+same in reverse order, and the two change places from step to step; air blows in the middle of X. A symmetric
 composition: second order with damping, stable for h omega < 2 at any damping but the air's. One force evaluation a
 step, as the force at the end of a step opens the next. Of a rope, D' of a step and D of the next are one pass.
 """
@@ -11,7 +11,8 @@ import numpy as np
 from sim.jit import kernel
 from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping
 from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
-from sim.springs.forces.damping import air_scratch_size, blow, cross_gap, damp, gaps_merge, is_odd, make_decay, make_gap
+from sim.springs.forces.damping import cross_gap, damp, gaps_merge, is_odd, make_decay, make_gap
+from sim.springs.forces.wind import air_scratch_size, drift
 from sim.springs.integrators import Integrator
 from sim.springs.vector_ops import add_scaled
 
@@ -40,12 +41,11 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
             add_power(x, v, now, p, False, 0.5 * h, ledger)
             kinetic = open_damping(v, p, before)
         if s == 0 or not merged:
-            blow(x, v, 0.5 * h, p, f, spare, middle)
             by_sphere = damp(x, v, now, 0.5 * h, decay, p, odd)
             if with_account:
                 close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, before, ledger)
             add_scaled(v, 0.5 * h, a)
-        add_scaled(x, h, v)
+        drift(x, v, h, p, f, spare, middle, with_account, ledger)
         set_pins(x, v, now + h, p)
         accelerate(x, v, now + h, p, False, f, a)
         if merged and s + 1 < steps:
@@ -55,7 +55,6 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
         if with_account:
             kinetic = open_damping(v, p, before)
         by_sphere = damp(x, v, now + h, 0.5 * h, decay, p, not odd)
-        blow(x, v, 0.5 * h, p, f, spare, middle)
         if with_account:
             close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, before, ledger)
             add_power(x, v, now + h, p, False, 0.5 * h, ledger)

@@ -12,7 +12,8 @@ import numpy as np
 from sim.jit import kernel
 from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping
 from sim.springs.forces.acceleration import make_scratch, set_pins
-from sim.springs.forces.damping import blow, damp, is_odd, make_decay
+from sim.springs.forces.damping import damp, is_odd, make_decay
+from sim.springs.forces.wind import air_scratch_size, blow
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.xpbd_constraints import sweep
 
@@ -47,7 +48,7 @@ def set_velocities(x, before, h, p, v):
 @kernel
 def advance(x, v, ledger, t, h, steps, p, with_account):
     before = np.empty_like(x)
-    f, spare, middle = make_scratch(p), np.empty_like(x), np.empty_like(x)
+    f, spare, middle = make_scratch(p), np.empty(air_scratch_size(x, p)), np.empty(air_scratch_size(x, p))
     decay = make_decay(p, 0.5 * h)
     undamped = np.empty(account_size(x, with_account))
     kinetic = 0.0
@@ -67,9 +68,9 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
         set_pins(x, v, after, p)
         sweep(x, after, h, p)
         set_velocities(x, before, h, p, v)
+        blow(x, v, h, p, f, spare, middle, with_account, ledger)
         if with_account:
             kinetic = open_damping(v, p, undamped)
-        blow(x, v, h, p, f, spare, middle)
         by_sphere = damp(x, v, after, 0.5 * h, decay, p, not odd)
         if with_account:
             close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, undamped, ledger)

@@ -19,7 +19,7 @@ class Params:
     integrator: str = parameter(
         "leapfrog", choices=METHODS_AND_AUTO, doc="Method of integration", group="Main", title="Method"
     )
-    time_step: float = parameter(1 / 2400, 1e-5, 0.05, "s", "Step h of the integrator", log_from=1e-5, group="Main")
+    time_step: float = parameter(1 / 1800, 1e-5, 0.05, "s", "Step h of the integrator", log_from=1e-5, group="Main")
     stiffness: float = parameter(
         800.0, 1.0, 1e5, "N/m", "Stiffness of the structural springs, to the next particle", log_from=1.0, group="Main"
     )

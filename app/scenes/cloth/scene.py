@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from app.lab.live_code import LiveCode
     from app.scenes.cloth.student_cloth import StudentCloth
 
-ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
+ASSESSMENT_INTERVAL = 1.0  # [s] of simulated time between two assessments of the stability
 MAX_ASSESSED_PARTICLES = 1100  # above this an assessment takes too long, and Gershgorin's bound is shown
 MAX_SPHERE_SPEED = 3.0  # [m/s] along an axis, however fast it is dragged: faster, it would pass through the cloth
 MIN_PARTICLES_FOR_TWO_THREADS = 2000

@@ -197,6 +197,7 @@ def test_still_air_only_takes_energy_and_wind_puts_it_in():
     assert integrated(driven("wind"), "rk4", 0.5, 1000, with_account=True).work > 0.0
 
 
+COUNTS = [200, 400, 800]
 LONG_TO_COMPILE = ("rk4", "implicit_midpoint", "symplectic_euler")  # half a minute of the forces of contact
 
 
@@ -215,3 +216,15 @@ def test_the_ledger_closes_through_a_net_s_contact_with_itself(name):
 
 def test_contact_of_a_net_with_itself_takes_nothing_without_damping():
     assert integrated(hairpin(0.0), "leapfrog", 0.3, 200, with_account=True).dissipated == 0.0
+
+
+@pytest.mark.parametrize(("name", "order"), [("leapfrog", 2), ("xpbd", 1)])
+def test_a_cloth_in_the_wind_and_its_account_converge_at_the_method_s_order(name, order):
+    """The air is a part of its own in these two methods."""
+    net = driven("wind")
+    truth = integrated(net, "rk4", 0.2, 3200).x
+    runs = [integrated(net, name, 0.2, steps, with_account=True) for steps in COUNTS]
+    start = energy(net, State.at_rest(net)).total
+    left = [abs(energy(net, run).total - start + run.dissipated - run.work) for run in runs]
+    assert slope(COUNTS, [np.abs(run.x - truth).max() for run in runs]) == pytest.approx(order, abs=0.15)
+    assert slope(COUNTS, left) > order - 0.15

@@ -87,6 +87,6 @@ def row(n: int, library: ctypes.CDLL | None, repeats: int) -> dict[str, Any]:
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """32, 64 and 128 particles square."""
+    """32, 48, 64 and 128 particles square."""
     library = build("kernels")
-    return [row(n, library, 60 if quick else 300) for n in (32, 64, 128)]
+    return [row(n, library, 60 if quick else 300) for n in (32, 48, 64, 128)]

@@ -92,10 +92,28 @@ def damp_row(x, v, w, start, cols, dj, colour, n, free, held, axial):
                 damp_set(x, v, w, a, a + np.uint64(dj), np.uint64(2 * dj), np.uint64(count), n, free, held, axial)
 
 
+@kernel(noalias=True, allocates=False)
+def damp_two_rows(ax, ay, az, bx, by, bz, wa, wb, free, held):
+    """Links (j, j) from one row of particles to another: velocities a and b, inverse masses wa and wb, (count,) each.
+
+    As arrays of their own they vectorise: LLVM does not look whether rows of one array overlap.
+    """
+    for j in range(np.uint64(ax.shape[0])):
+        share = free if wa[j] * wb[j] > 0.0 else held
+        ca, cb = share * wa[j], share * wb[j]
+        dx, dy, dz = bx[j] - ax[j], by[j] - ay[j], bz[j] - az[j]
+        ax[j] += ca * dx
+        ay[j] += ca * dy
+        az[j] += ca * dz
+        bx[j] -= cb * dx
+        by[j] -= cb * dy
+        bz[j] -= cb * dz
+
+
 @kernel(allocates=False)
 def damp_links(x, v, decay, p, reverse):
     """Every link of every family, in order or in the reverse order."""
-    n = np.uint64(p.rows * p.cols)
+    w, n = p.inverse_masses, p.rows * p.cols
     families = p.offsets.shape[0]
     for step in range(families):
         q = families - 1 - step if reverse else step
@@ -110,10 +128,19 @@ def damp_links(x, v, decay, p, reverse):
             if di == 0:
                 for turn in range(2):
                     colour = 1 - turn if reverse else turn
-                    damp_row(x, v, p.inverse_masses, i * p.cols, p.cols, dj, colour, n, free, held, p.axial)
+                    damp_row(x, v, w, i * p.cols, p.cols, dj, colour, np.uint64(n), free, held, p.axial)
+                continue
+            a, c = i * p.cols + first, (i + di) * p.cols + first + dj
+            if p.axial:
+                damp_set(
+                    x, v, w, np.uint64(a), np.uint64(c), np.uint64(1), np.uint64(count), np.uint64(n), free, held, True
+                )
             else:
-                a, b0 = np.uint64(i * p.cols + first), np.uint64((i + di) * p.cols + first + dj)
-                damp_set(x, v, p.inverse_masses, a, b0, np.uint64(1), np.uint64(count), n, free, held, p.axial)
+                damp_two_rows(
+                    v[a : a + count], v[n + a : n + a + count], v[2 * n + a : 2 * n + a + count],
+                    v[c : c + count], v[n + c : n + c + count], v[2 * n + c : 2 * n + c + count],
+                    w[a : a + count], w[c : c + count], free, held,
+                )  # fmt: skip
 
 
 @kernel(noalias=True, inline=True)

@@ -1,7 +1,8 @@
 """`springtide bench`: every module in cases/ is a benchmark, found by being there.
 
 A benchmark has `rows(quick)`, its table. It may have `findings(rows)`, a second table drawn from the first;
-`peer_rows(quick)`, run when peers are asked for; and `figures(rows)`, figures by file name.
+`peer_rows(quick)`, run when peers are asked for, and `peer_findings` and `peer_figures` of those rows; and
+`figures(rows)`, figures by file name.
 """
 
 import importlib
@@ -38,6 +39,8 @@ def run(names: list[str], quick: bool = False, peers: bool = False, out: Path | 
             found[f"{name}_findings"] = module.findings(found[name])
         if peers and hasattr(module, "peer_rows"):
             found[f"{name}_peers"] = module.peer_rows(quick)
+            if hasattr(module, "peer_findings"):
+                found[f"{name}_peers_summary"] = module.peer_findings(found[f"{name}_peers"])
         for title, rows in found.items():
             tables.show(title, rows)
             if out is not None:
@@ -45,6 +48,8 @@ def run(names: list[str], quick: bool = False, peers: bool = False, out: Path | 
         if out is not None and hasattr(module, "figures"):
             try:
                 tables.save_figures(module.figures(found[name]), out)
+                if f"{name}_peers" in found and hasattr(module, "peer_figures"):
+                    tables.save_figures(module.peer_figures(found[f"{name}_peers"]), out)
             except ModuleNotFoundError as missing:
                 print(f"no figures of {name}: {missing.name} is not installed (pip install '.[plot]')")
     if out is not None:

@@ -19,6 +19,7 @@ from rich.progress import track
 from app.bench.own_runs import RESOLUTION, OwnRuns, Reference, largest_distances
 from app.bench.peers.cloth import PEERS
 from app.bench.peers.cloth_engines import ENGINES, OTHER_TASKS
+from app.bench.peers.ladder import compared, figure, summary
 from app.bench.tasks.cloth import (
     DURATION,
     benchmark_cloth,
@@ -28,10 +29,9 @@ from app.bench.tasks.cloth import (
     run,
     step_counts,
 )
-from app.bench.timing import in_turns, processor_time
+from app.bench.timing import processor_time
 from app.experiments.tables import front
 from sim.springs import INTEGRATORS, Net
-from sim.springs.stability import critical_step
 
 METHODS = tuple(name for name, record in INTEGRATORS.items() if not record.undamped_only)
 MEASURED = ("force evaluations", "time [ms]", "least [ms]", "x real time", "error [m]", "reference good to [m]")
@@ -126,44 +126,36 @@ def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Every installed peer and our quickest run at its error or less, timed in turns; quick: the smallest size.
+    """The ladder of every installed peer against our quickest runs; quick: the smallest size, every second rung.
 
-    Times are wall times of the whole 0.25 s, the least of repeats. A peer that damps along the links only is compared
-    with the reference of that damping model. Programs that cannot be given the task are listed with the reason.
+    A peer that damps along the links only is compared with the reference of that damping model. Programs that cannot be
+    given the task are listed with the reason.
     """
     table: list[dict[str, Any]] = []
     sizes = (32,) if quick else (32, 64, 128)
     own_runs: dict[tuple[int, str], tuple[Net, OwnRuns]] = {}
     for n, peer in track([(n, peer) for n in sizes for peer in PEERS + ENGINES], "cloth peers", transient=True):
-        row: dict[str, Any] = {"task": f"C({n})", "peer": peer.name, "damping": peer.damping}
-        table.append(row)
+        task = {"task": f"C({n})"}
         if reason := peer.reason_left_out(n):
-            row["note"] = reason
+            table.append(task | {"peer": peer.name, "damping": peer.damping, "note": reason})
             continue
         if (n, peer.damping) not in own_runs:
             net = benchmark_cloth(n, peer.damping)
             own_runs[n, peer.damping] = net, OwnRuns(ladders(net), reference(net))
-        net, ours = own_runs[n, peer.damping]
-        step = peer.step or PEER_STEP * critical_step(net, "leapfrog")
-        theirs = peer.make(net, step)
-        theirs(2.0 * step)  # compiles
-        errors = largest_distances((theirs(DURATION),), ours.reference)
-        row |= {"step [us]": 1e6 * step, "error [m]": errors[0]}
-        if not errors[0] < 1.0:
-            row["note"] = "diverged"
-            continue
-        best = ours.quickest(errors)
-        calls = [functools.partial(theirs, DURATION), *([] if best is None else [best.run])]
-        peer_times, *our_times = in_turns(calls, 5 if quick else 9, max_time=10.0)
-        row["peer [ms]"] = 1e3 * min(peer_times)
-        if best is None:
-            row["note"] = "no rung of ours is as exact"
-            continue
-        row |= {
-            "ours": best.method,
-            "with": best.setting,
-            "ours [ms]": 1e3 * min(our_times[0]),
-            "our error [m]": ours.result(best).errors[0],
-            "times as long as ours": min(peer_times) / min(our_times[0]),
-        }
+        table += [task | row for row in compared(peer, *own_runs[n, peer.damping], (DURATION,), quick)]
     return table + [{"task": "another", "peer": name, "note": why} for name, why in OTHER_TASKS.items()]
+
+
+peer_findings = summary
+
+
+def peer_figures(table: list[dict[str, Any]]) -> dict[str, Any]:
+    """Error against run time of all ladders, a figure for each size."""
+    sizes = [task for task in dict.fromkeys(row["task"] for row in table) if task != "another"]
+    return {
+        f"cloth_peers_{task.strip('C()')}": figure(
+            [row for row in table if row["task"] == task],
+            f"Cloth of {task.strip('C()')} x {task.strip('C()')} particles, {DURATION:g} s",
+        )
+        for task in sizes
+    }

@@ -4,11 +4,10 @@ integrator.
 An error is the largest distance of any point from the reference at the end. The reference is dop853 at a tolerance of
 1e-12; its uncertainty is the distance to a second method, dopri5. Errors within ten times of that are left out. A run
 is one call for the whole motion, with compiled kernels; its time is the least of repeats. Runs that diverge are left
-out. With `--peers`, each peer is given the rope task (`app/bench/tasks/rope.py`) and compared with our quickest run.
+out. With `--peers`, each peer is given the rope task (`app/bench/tasks/rope.py`) at several steps or tolerances.
 """
 
 import dataclasses
-import functools
 import math
 import statistics
 import time
@@ -18,13 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.progress import track
 
-from app.bench.own_runs import RESOLUTION, OwnRuns, largest_distances
+from app.bench.own_runs import RESOLUTION, OwnRuns
+from app.bench.peers.ladder import compared, figure, summary
 from app.bench.peers.rope import PEERS
 from app.bench.tasks.rope import benchmark_rope, ladders, reference
-from app.bench.timing import in_turns
 from app.experiments.tables import front
 from sim.springs import INTEGRATORS, Net, rope
-from sim.springs.stability import critical_step
 from sim.springs.state import State, advance
 
 LONGEST_STEP = 1 / 15  # [s] of every ladder
@@ -32,8 +30,6 @@ TOLERANCES = tuple(10.0 ** (-0.5 * i) for i in range(4, 23))  # rtol; atol is a 
 REFERENCE_TOLERANCE = 1e-12  # rtol
 MAX_ERROR = 0.5  # [m] a larger one means that the run diverged, or another motion altogether
 COMPARED_ERROR = 2e-3  # [m] at which leapfrog is compared with the lab's Euler
-PEER_STEP = 0.8  # over leapfrog's critical step
-MAX_PEER_TIME = 4.0  # [s] for the repeats of a peer
 
 
 class Problem(NamedTuple):
@@ -178,41 +174,34 @@ def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Every installed peer and our quickest run at its error or less, timed in turns; quick: two sizes.
+    """The ladder of every installed peer against our quickest runs; quick: two sizes, every second rung.
 
-    Times are medians of repeats, for the whole second. A peer that damps along the links only is compared with the
-    reference of that damping model.
+    A peer that damps along the links only is compared with the reference of that damping model.
     """
     table: list[dict[str, Any]] = []
     tasks = [(links, peer) for links in ((16, 128) if quick else (16, 128, 1024)) for peer in PEERS]
     own_runs: dict[tuple[int, str], tuple[Net, OwnRuns]] = {}
     for links, peer in track(tasks, "rope peers", transient=True):
-        row: dict[str, Any] = {"task": f"R({links})", "peer": peer.name, "damping": peer.damping}
-        table.append(row)
+        task = {"task": f"R({links})"}
         if reason := peer.reason_left_out(links):
-            row["note"] = reason
+            table.append(task | {"peer": peer.name, "damping": peer.damping, "note": reason})
             continue
         if (links, peer.damping) not in own_runs:
             net = dataclasses.replace(benchmark_rope(links), damping_model=peer.damping)
             own_runs[links, peer.damping] = net, OwnRuns(ladders(net), reference(net))
-        net, ours = own_runs[links, peer.damping]
-        theirs = peer.make(net, PEER_STEP * critical_step(net, "leapfrog"))
-        limits = largest_distances((theirs(0.5), theirs(1.0)), ours.reference)
-        row |= {"error at 0.5 s [m]": limits[0], "error at 1 s [m]": limits[1]}
-        best = ours.quickest(limits)
-        whole = functools.partial(theirs, 1.0)
-        once = in_turns([whole], 1)[0][0]
-        repeats = max(1, min(5 if quick else 15, int(MAX_PEER_TIME / once)))
-        peer_times, *our_times = in_turns([whole, *([] if best is None else [best.run])], repeats)
-        row["peer [ms]"] = 1e3 * statistics.median(peer_times)
-        if best is None:
-            row["note"] = f"no step of ours is as exact; the reference is good to {ours.reference.uncertainty:.1e} m"
-            continue
-        row |= {
-            "ours": best.method,
-            "with": best.setting,
-            "ours [ms]": 1e3 * statistics.median(our_times[0]),
-            "our error at 1 s [m]": ours.result(best).errors[1],
-            "times as long as ours": statistics.median(peer_times) / statistics.median(our_times[0]),
-        }
+        table += [task | row for row in compared(peer, *own_runs[links, peer.damping], (0.5, 1.0), quick)]
     return table
+
+
+peer_findings = summary
+
+
+def peer_figures(table: list[dict[str, Any]]) -> dict[str, Any]:
+    """Error against run time of all ladders, a figure for each size."""
+    sizes = dict.fromkeys(row["task"] for row in table)
+    return {
+        f"rope_peers_{task.strip('R()')}": figure(
+            [row for row in table if row["task"] == task], f"Rope of {task.strip('R()')} links, 1 s"
+        )
+        for task in sizes
+    }

@@ -14,8 +14,8 @@ Run = Callable[[float], NDArray[np.float64]]  # simulated time [s] -> positions 
 class Peer(NamedTuple):
     """A program, and how it is given the task.
 
-    make: for ropes and cloths, takes the net and a time step [s], and gives a `Run`; for seas, takes the sea and gives
-    frame(t). What has to be compiled is compiled by the first call, which is not timed.
+    make: for ropes and cloths, takes the net and a time step [s] or a relative tolerance, and gives a `Run`; for seas,
+    takes the sea and gives frame(t). What has to be compiled is compiled by the first call, which is timed apart.
     """
 
     name: str
@@ -24,6 +24,7 @@ class Peer(NamedTuple):
     damping: str = "isotropic"  # the damping model that it can express; or "axial"
     max_size: float = math.inf  # links of a rope, rows of a cloth; larger ones take minutes, or the package gives up
     step: float = 0.0  # [s] its own time step; 0: it takes the step that it is given
+    tolerances: tuple[float, ...] = ()  # relative ones of its ladder, where it chooses its steps; a hundredth: absolute
 
     def reason_left_out(self, size: int) -> str:
         """Why the peer is not timed on a task of this size, or ""."""

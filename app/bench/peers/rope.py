@@ -1,4 +1,4 @@
-"""The rope as a user of another program would write it; with a fixed step, if it has one, of h [s]."""
+"""The rope as a user of another program would write it: with a fixed step h [s], or for a relative tolerance rtol."""
 
 import math
 from collections.abc import Callable
@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from app.bench.peers.record import Peer, Run
 from sim.springs import Net
+
+TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 
 
 def numbers(net: Net) -> tuple[float, float, float, float, float, float]:
@@ -74,8 +76,8 @@ def numpy_rk4(net: Net, h: float) -> Run:
     return run
 
 
-def scipy_method(name: str, rtol: float = 1e-6) -> Callable[[Net, float], Run]:
-    def make(net, _):
+def scipy_method(name: str) -> Callable[[Net, float], Run]:
+    def make(net, rtol):
         from scipy.integrate import solve_ivp  # type: ignore[import-not-found]
 
         acceleration = numpy_acceleration(net)
@@ -137,8 +139,8 @@ def jax_leapfrog(net: Net, h: float) -> Run:
     return run
 
 
-def diffrax_method(name: str, rtol: float = 1e-6) -> Callable[[Net, float], Run]:
-    def make(net, _):
+def diffrax_method(name: str) -> Callable[[Net, float], Run]:
+    def make(net, rtol):
         import diffrax  # type: ignore[import-not-found]
 
         jax, jnp, acceleration = jax_acceleration(net)
@@ -271,11 +273,11 @@ def mujoco_tendons(integrator: str) -> Callable[[Net, float], Run]:
 PEERS = (
     Peer("numpy leapfrog", "numpy", numpy_leapfrog),
     Peer("numpy RK4", "numpy", numpy_rk4),
-    Peer("scipy RK45 rtol=1e-6", "scipy", scipy_method("RK45")),
-    Peer("scipy DOP853 rtol=1e-6", "scipy", scipy_method("DOP853")),
+    Peer("scipy RK45", "scipy", scipy_method("RK45"), tolerances=TOLERANCES),
+    Peer("scipy DOP853", "scipy", scipy_method("DOP853"), tolerances=TOLERANCES),
     Peer("jax fori_loop leapfrog", "jax", jax_leapfrog),
-    Peer("diffrax Tsit5 rtol=1e-6", "diffrax", diffrax_method("Tsit5")),
-    Peer("diffrax Dopri8 rtol=1e-6", "diffrax", diffrax_method("Dopri8")),
+    Peer("diffrax Tsit5", "diffrax", diffrax_method("Tsit5"), tolerances=TOLERANCES),
+    Peer("diffrax Dopri8", "diffrax", diffrax_method("Dopri8"), tolerances=TOLERANCES),
     Peer("taichi leapfrog, one kernel", "taichi", taichi_leapfrog),
     Peer("pymunk DampedSpring", "pymunk", pymunk_springs, "axial"),
     Peer("mujoco Euler, tendons", "mujoco", mujoco_tendons("Euler"), "axial", 128),

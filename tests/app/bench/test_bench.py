@@ -7,7 +7,8 @@ import pytest
 from app.bench import command
 from app.bench.cases import rope
 from app.bench.own_runs import OwnRuns, largest_distances
-from app.bench.peers.record import is_installed
+from app.bench.peers.ladder import compared, rungs, summary
+from app.bench.peers.record import Peer, is_installed
 from app.bench.peers.rope import PEERS
 from app.bench.tasks import rope as rope_task
 from app.experiments import tables
@@ -95,8 +96,41 @@ def test_rungs_end_at_half_a_second_on_the_way():
 def test_peers_solve_the_same_rope(peer):
     assert is_installed(peer.package)
     net = dataclasses.replace(rope_task.benchmark_rope(16), damping_model=peer.damping)
-    run = peer.make(net, 0.8 * critical_step(net, "leapfrog"))
+    run = peer.make(net, rungs(peer, net, quick=False)[0].value)
     assert max(largest_distances((run(0.5), run(1.0)), rope_task.reference(net))) < 1e-3
+
+
+def test_a_peer_s_rungs_are_its_tolerances_or_parts_of_a_step():
+    net = rope_task.benchmark_rope(16)
+    critical = critical_step(net, "leapfrog")
+    steps = [rung.value for rung in rungs(Peer("p", "numpy", print), net, quick=False)]
+    assert steps == pytest.approx([0.8 * critical, 0.4 * critical, 0.2 * critical, 0.1 * critical])
+    own = Peer("p", "numpy", print, step=1e-3)
+    assert [rung.value for rung in rungs(own, net, quick=True)] == [1e-3, 0.25e-3]
+    adaptive = Peer("p", "numpy", print, tolerances=(1e-4, 1e-6))
+    assert [rung.label for rung in rungs(adaptive, net, quick=False)] == ["rtol 1e-04", "rtol 1e-06"]
+
+
+def test_a_peer_s_ladder_is_compared_at_its_own_errors():
+    """A peer that shifts the reference by its step: errors are the steps, and a shift of 10 m counts as diverged."""
+    net = rope_task.benchmark_rope(16)
+    truth = rope_task.reference(net)
+    ours = OwnRuns(rope_task.ladders(net), truth)
+
+    def make(_, setting):
+        return lambda t: truth.positions[0 if t == 0.5 else 1] + np.array([setting, 0.0, 0.0])[:, None, None]
+
+    table = compared(Peer("p", "numpy", make, tolerances=(10.0, 1e-3, 1e-6, 0.0)), net, ours, (0.5, 1.0), quick=False)
+    assert [row.get("note", "")[:8] for row in table] == ["diverged", "", "", "no run o"]
+    for row, error in zip(table[1:3], (1e-3, 1e-6), strict=True):
+        assert row["error at 1 s [m]"] == pytest.approx(error)
+        assert row["our error at the end [m]"] <= error
+        assert row["times as long as ours"] == pytest.approx(row["peer [ms]"] / row["ours [ms]"])
+    (found,) = summary([{"task": "R(16)"} | row for row in table])
+    ratios = [row["times as long as ours"] for row in table[1:3]]
+    assert found["rungs"] == 2
+    assert (found["least times as long"], found["greatest times as long"]) == (min(ratios), max(ratios))
+    assert found["and an error of [m]"] == pytest.approx((1e-3, 1e-6)[ratios.index(min(ratios))])
 
 
 def test_our_own_run_at_a_peer_s_error_is_within_it():

@@ -7,10 +7,10 @@ from app.bench.cases import cloth
 from app.bench.own_runs import OwnRuns, largest_distances
 from app.bench.peers import cloth as cloth_peers
 from app.bench.peers import cloth_engines
+from app.bench.peers.ladder import rungs
 from app.bench.peers.record import is_installed
 from app.bench.tasks import cloth as cloth_task
 from sim.springs.forces.acceleration import set_acceleration
-from sim.springs.stability import critical_step
 from tests.sim.springs.reference import exact
 
 
@@ -107,6 +107,5 @@ def test_engines_that_are_installed_solve_the_same_cloth(peer):
     if not is_installed(peer.package):
         pytest.skip(f"{peer.package} is not installed")
     net = cloth_task.benchmark_cloth(8, peer.damping)
-    h = peer.step or cloth.PEER_STEP * critical_step(net, "leapfrog")
-    theirs = peer.make(net, h)(cloth_task.DURATION)
+    theirs = peer.make(net, rungs(peer, net, quick=False)[0].value)(cloth_task.DURATION)
     assert largest_distances((theirs,), cloth_task.reference(net))[0] < 0.02

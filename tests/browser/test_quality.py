@@ -18,8 +18,8 @@ JUDGED = """lists => { const judge = window.__springtide.quality.makeJudge();
     return lists.map(list => { for (const [length, n] of list) for (let k = 0; k < n; k++) judge.take(length);
                                return judge.step(); }); }"""
 
-# As if drawing took so long in each frame [ms], whatever this machine can do. The page waits, as a loop that ran so long
-# would take a core.
+# As if drawing took so long in each frame [ms], whatever this machine can do. The page waits, as a loop that runs so
+# long takes a core.
 SLOW_FRAMES = """const next = window.requestAnimationFrame.bind(window);
 window.requestAnimationFrame = callback => next(() => setTimeout(() => callback(performance.now()), 150));"""
 

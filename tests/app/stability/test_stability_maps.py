@@ -13,7 +13,7 @@ from sim.springs import INTEGRATORS
 
 @pytest.fixture(scope="module")
 def maps() -> list[linear.LinearMap]:
-    return linear.measure(quick=True)
+    return linear.measure(quick=True, workers=1)
 
 
 def test_the_linear_maps_agree_with_theory_all_over(maps):

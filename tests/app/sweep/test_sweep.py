@@ -104,7 +104,7 @@ def test_a_random_design_has_a_dimension_of_cases_and_its_seed(here, tmp_path):
     "how",
     [pytest.param(signal.SIGINT, id="Ctrl-C"), pytest.param(signal.SIGKILL, id="kill", marks=pytest.mark.stress)],
 )
-def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, tmp_path, capsys):
+def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, here, tmp_path, capsys):
     (tmp_path / "s.toml").write_text(LONG)
     kept, out = tmp_path / "out.nc.cases", tmp_path / "out.nc"
     command = [sys.executable, "-m", "app", "sweep", str(tmp_path / "s.toml"), "--out", str(out)]
@@ -235,7 +235,7 @@ def test_a_sweep_without_matplotlib_has_no_figure_and_says_so(here, tmp_path, ca
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out.nc", "s.toml"]
 
 
-def test_an_out_whose_store_would_have_too_long_a_name_is_refused(tmp_path, capsys):
+def test_an_out_whose_store_would_have_too_long_a_name_is_refused(here, tmp_path, capsys):
     (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2]\n')
     for length in range(231, 256, 8):
         name = "x" * (length - 3) + ".nc"

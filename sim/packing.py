@@ -37,7 +37,9 @@ def pack(
     """
     values = np.ascontiguousarray(fields, np.float32)
     m, n = values.shape
-    largest = np.maximum(values.max(axis=1), -values.min(axis=1))
+    bits_of_largest = np.empty(m, np.int32)
+    set_largest(values.view(np.int32), bits_of_largest)
+    largest = bits_of_largest.view(np.float32)
     if not np.isfinite(largest).all():
         raise argument_error("fields", float(largest[~np.isfinite(largest)][0]), "finite values")
     used = np.maximum(np.asarray(steps, np.float32), largest / np.float32(MAX_QUOTIENT))
@@ -45,7 +47,7 @@ def pack(
     blocks = -(-n // BLOCK)
     words = np.empty(head + m * blocks * (WIDTH_BITS + 24 * BLOCK) // WORD_BITS + 4, np.uint32)
     words[:head] = 0
-    count = write_bits(values, used, columns, np.empty(n, np.int32), np.empty(n, np.int32), words[head:])
+    count = write_bits(values, used, columns, np.empty(n, np.int32), np.empty(blocks * BLOCK, np.int32), words[head:])
     words[head + count : head + count + 2] = 0
     numbers = words.view(np.float32)
     numbers[:3] = n, columns, m
@@ -74,15 +76,37 @@ def is_packed(numbers: np.ndarray) -> bool:
     return bool(((words >= 0.0) & (words < 2.0)).all())
 
 
+@kernel(inline=True)
+def emit(bits, used, words, at, number, length):
+    """Add `length` bits, at most 34, to those that wait, fewer than WORD_BITS, and write them.
+
+    Returns (bits, used, at) of the word that is not full yet.
+    """
+    bits |= number << used
+    used += length
+    words[at] = np.uint32(bits & np.uint64(2**WORD_BITS - 1))
+    if used >= np.uint64(WORD_BITS):
+        at += np.uint64(1)
+        used -= np.uint64(WORD_BITS)
+        bits >>= np.uint64(WORD_BITS)
+        words[at] = np.uint32(bits & np.uint64(2**WORD_BITS - 1))
+        if used >= np.uint64(WORD_BITS):
+            at += np.uint64(1)
+            used -= np.uint64(WORD_BITS)
+            bits >>= np.uint64(WORD_BITS)
+    return bits, used, at
+
+
 @kernel(noalias=True)
 def write_bits(values, steps, columns, q, r, words):
     """Write the fields (m, n), rounded to steps (m,), into words; return how many of these were used.
 
-    q, r (n,): for the rounded values and their differences.
+    q (n,), r (n rounded up to whole blocks,): for the rounded values and their differences.
     """
     fields, n = values.shape
-    at, used = 0, 0  # the word that is written, and its bits that are taken
-    bits = np.uint64(0)
+    at, used, bits = np.uint64(0), np.uint64(0), np.uint64(0)  # the word that is written, and its bits that are taken
+    for i in range(n, r.size):
+        r[i] = 0
     for field in range(fields):
         scale = np.float32(1.0) / steps[field]
         value = values[field]
@@ -103,24 +127,40 @@ def write_bits(values, steps, columns, q, r, words):
         for i in range(n):
             r[i] = (r[i] << 1) ^ (r[i] >> 31)
         for first in range(0, n, BLOCK):
-            last = min(first + BLOCK, n)
+            block = r[first : first + BLOCK]
             together = np.int32(0)
-            for i in range(first, last):
-                together |= r[i]
-            width = 0
+            for i in range(BLOCK):
+                together |= block[i]
+            width = np.uint64(0)
             while together >> width != 0:
-                width += 1
-            for i in range(first - 1, last):
-                length = WIDTH_BITS if i < first else width
-                bits |= (np.uint64(width) if i < first else np.uint64(r[i])) << np.uint64(used)
-                used += length
-                if used >= WORD_BITS:
-                    words[at] = np.uint32(bits & np.uint64(2**WORD_BITS - 1))
-                    at += 1
-                    used -= WORD_BITS
-                    bits >>= np.uint64(WORD_BITS)
+                width += np.uint64(1)
+            bits, used, at = emit(bits, used, words, at, width, np.uint64(WIDTH_BITS))
+            count = min(n - first, BLOCK)
+            if count < BLOCK or width > 17:
+                for i in range(count):
+                    bits, used, at = emit(bits, used, words, at, np.uint64(block[i]), width)
+            elif width > 8:  # two or four numbers at a time have 34 bits at most
+                for i in range(0, BLOCK, 2):
+                    pair = np.uint64(block[i]) | np.uint64(block[i + 1]) << width
+                    bits, used, at = emit(bits, used, words, at, pair, np.uint64(2) * width)
+            elif width > 0:
+                for i in range(0, BLOCK, 4):
+                    low = np.uint64(block[i]) | np.uint64(block[i + 1]) << width
+                    high = np.uint64(block[i + 2]) | np.uint64(block[i + 3]) << width
+                    four = low | high << np.uint64(2) * width
+                    bits, used, at = emit(bits, used, words, at, four, np.uint64(4) * width)
     words[at] = np.uint32(bits)
-    return at + 1
+    return at + np.uint64(1)
+
+
+@kernel(noalias=True)
+def set_largest(values, largest):
+    """largest (m,): the magnitudes of the fields (m, n), as bits of single precision; a NaN is above all numbers."""
+    for field in range(values.shape[0]):
+        value, most = values[field], np.int32(0)
+        for i in range(value.size):  # bits of magnitudes are in the order of the magnitudes, and compare at full width
+            most = max(most, value[i] & np.int32(0x7FFFFFFF))
+        largest[field] = most
 
 
 @kernel(noalias=True)

@@ -5,9 +5,15 @@ loops vectorise. Frequencies depend on |kx|, |ky| only: `rate` [turns/s], `fade`
 (N/2, N/2) and rows i and N - i share one sine and cosine. The Nyquist row and column are never written: they stay 0.
 """
 
+import math
+
 import numpy as np
 
 from sim.jit import kernel
+from sim.ocean.wave_sum import QUARTER
+from sim.ocean.wave_sum import sine as quarter_sine
+
+SINGLE = 4  # [bytes] of a number of single precision
 
 
 @kernel
@@ -35,16 +41,37 @@ def set_rotation(rate, fade, t, i, cosine, sine):
 
 
 @kernel(noalias=True)
-def set_heights(even, odd, rate, fade, t, cosine, sine, h):
-    """h(k, t) = fade (even cos(omega t) + odd sin(omega t)); cosine, sine: scratch (N,)."""
+def set_single_rotation(rate, fade, t, i, cosine, sine):
+    """The same within 1e-7, where nothing accumulates: in single precision once the angle is a quarter turn at most."""
+    for j in range(rate.shape[1]):
+        turns = rate[i, j] * t
+        turns -= np.rint(turns)
+        u = np.float32(abs(turns) - 0.25)
+        c = -quarter_sine(u) * fade[i, j]
+        s = math.copysign(quarter_sine(QUARTER - abs(u)), np.float32(turns)) * fade[i, j]
+        cosine[2 * j] = cosine[2 * j + 1] = c
+        sine[2 * j] = sine[2 * j + 1] = s
+
+
+@kernel(noalias=True)
+def set_heights(even, odd, rate, fade, t, cosine, sine, h, copy):
+    """h(k, t) = fade (even cos(omega t) + odd sin(omega t)), and the same in copy; cosine, sine: scratch (N,)."""
     half, n = rate.shape[0], h.shape[0]
     for i in range(half):
-        set_rotation(rate, fade, t, i, cosine, sine)
-        for j in range(2 * half):
-            h[i, j] = even[i, j] * cosine[j] + odd[i, j] * sine[j]
-        if i > 0:
+        if cosine.itemsize == SINGLE:
+            set_single_rotation(rate, fade, t, i, cosine, sine)
+        else:
+            set_rotation(rate, fade, t, i, cosine, sine)
+        for row in range(2 if i > 0 else 1):
+            m = n - i if row else i
             for j in range(2 * half):
-                h[n - i, j] = even[n - i, j] * cosine[j] + odd[n - i, j] * sine[j]
+                value = even[m, j] * cosine[j] + odd[m, j] * sine[j]
+                h[m, j] = value
+                copy[m, j] = value
+        for j in range(2 * half, 2 * half + 2):
+            copy[i, j] = copy[n - i if i > 0 else half, j] = 0.0
+    for j in range(2 * half):
+        copy[half, j] = 0.0
 
 
 @kernel(noalias=True)

@@ -71,16 +71,18 @@ def bicubic(field, u, v):
     wu, du = weights(u - i)
     wv, dv = weights(v - j)
     value, by_u, by_v = 0.0, 0.0, 0.0
+    row, first = (i - 1) % n, (j - 1) % n  # a division takes as long as the rest of a line
     for a in range(4):
-        row = (i + a - 1) % n
-        line, slope = 0.0, 0.0
+        line, slope, column = 0.0, 0.0, first
         for b in range(4):
-            f = field[row, (j + b - 1) % n]
+            f = field[row, column]
             line += wv[b] * f
             slope += dv[b] * f
+            column = column + 1 if column + 1 < n else 0
         value += wu[a] * line
         by_u += du[a] * line
         by_v += wu[a] * slope
+        row = row + 1 if row + 1 < n else 0
     return value, by_u, by_v
 
 

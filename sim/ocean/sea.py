@@ -307,11 +307,19 @@ class Sea:
             fade = self.radial["1"]
             if self._decays:
                 fade = np.exp(self._fall * self._real(t - self._base))
-            set_heights(even, odd, self._rate, fade, t - self._base, *self._scratch, self._heights)
+            copy = self.transforms.spectrum.view(self._real)
+            set_heights(even, odd, self._rate, fade, t - self._base, *self._scratch, self._heights, copy)
             if self._ripples is not None:
                 self._ripples.add_to(self._heights, t)
             self._evolved = self._key(t)
         return self._heights
+
+    def set_input(self, t: float) -> None:
+        """The transform's input as `heights_spectrum`; evolving it has left a copy there where there are no rings."""
+        before = self._evolved
+        heights = self.heights_spectrum(t)
+        if self._evolved is before or self._ripples is not None:
+            self.transforms.spectrum.view(self._real)[...] = heights
 
     def _key(self, t: float) -> tuple:
         return t, self.version, self._choppiness, self._ripples.version if self._ripples is not None else -1

@@ -47,7 +47,7 @@ class Surface:
     def height(self) -> np.ndarray:
         """Height (size, size) [m] of the surface point labelled x, y. One transform."""
         transforms = self.sea.transforms
-        transforms.spectrum.view(self.sea.rows["1"].dtype)[...] = self.sea.heights_spectrum(self.t)
+        self.sea.set_input(self.t)
         grid = transforms.grids.take(1)[0]
         transforms.set_grid(grid)
         return grid

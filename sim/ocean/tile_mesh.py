@@ -9,15 +9,70 @@ import numpy as np
 
 from sim.jit import kernel
 
-LEAST_STRETCH = 0.15  # Jacobian below which slopes are those at this value: a folded surface has no slope
-STEEPEST = 1.5  # largest slope drawn, in magnitude
+LEAST_STRETCH = np.float32(0.15)  # Jacobian below which slopes are those at this value: a folded surface has no slope
+STEEPEST = np.float32(1.5)  # largest slope drawn, in magnitude
+ZERO, ONE, EIGHT = np.float32(0.0), np.float32(1.0), np.float32(8.0)
 
 
-@kernel
-def neighbours(i, n):
-    """i - 2, i - 1, i + 1, i + 2 on a circle of n."""
-    a, b, c, d = i - 2, i - 1, i + 1, i + 2
-    return a + n if a < 0 else a, b + n if b < 0 else b, c - n if c >= n else c, d - n if d >= n else d
+@kernel(noalias=True)
+def thin(row, stride, out):
+    """out (n/stride,): every stride-th number of a row (n,)."""
+    if stride == 1:
+        for j in range(out.size):
+            out[j] = row[j]
+    elif stride == 2:  # a step that the compiler knows
+        for j in range(out.size):
+            out[j] = row[2 * j]
+    else:
+        for j in range(out.size):
+            out[j] = row[stride * j]
+
+
+@kernel(noalias=True)
+def set_differences(f, p_2, p_1, p, p1, p2, along, across):
+    """12 times the differences of a periodic field (n, n) per cell in row p, (n,) each: along its first index, from
+    the rows p_2 to p2, and across, along its second.
+
+    Of all columns: wide instructions on rows as they lie in memory are faster than numbers picked from them.
+    """
+    n = along.size
+    before2, before, row, behind, behind2 = f[p_2], f[p_1], f[p], f[p1], f[p2]
+    for j in range(n):
+        along[j] = EIGHT * (behind[j] - before[j]) - (behind2[j] - before2[j])
+    left2, left, right, right2 = row[: n - 4], row[1 : n - 3], row[3 : n - 1], row[4:]
+    inner = across[2 : n - 2]
+    for j in range(n - 4):
+        inner[j] = EIGHT * (right[j] - left[j]) - (right2[j] - left2[j])
+    for j in range(-2, 2):
+        across[j % n] = EIGHT * (row[(j + 1) % n] - row[(j - 1) % n]) - (row[(j + 2) % n] - row[(j - 2) % n])
+
+
+@kernel(noalias=True)
+def set_slopes(hx, hy, xx, xy, yy, lift, inverse, limit, sharpness, kept, foam):
+    """A row of slopes, in place of the differences hx, hy of the height, and its foam; sums of foam and (J - 1)^2."""
+    foamy, strain = np.float32(0.0), np.float32(0.0)
+    for j in range(np.uint64(hx.size)):
+        a, b, d = ONE + inverse * xx[j], inverse * xy[j], ONE + inverse * yy[j]
+        J = a * d - b * b
+        # The slope by place: (zx, zy) by label, times the inverse of the displacement's gradient.
+        by_x, by_y = lift * inverse * hx[j], lift * inverse * hy[j]
+        stretch = ONE / max(J, LEAST_STRETCH)
+        zx, zy = (d * by_x - b * by_y) * stretch, (a * by_y - b * by_x) * stretch
+        shorter = STEEPEST / max(np.sqrt(zx * zx + zy * zy), STEEPEST)
+        hx[j], hy[j] = zx * shorter, zy * shorter
+        white = max(foam[j] * kept, min(max((limit - J) * sharpness, ZERO), ONE))
+        foam[j] = white
+        foamy += white
+        strain += (J - ONE) * (J - ONE)
+    return foamy, strain
+
+
+@kernel(noalias=True)
+def set_row(x, y_step, dx, dy, z, lift, sx, sy, points, slopes):
+    """A row of the mesh that rests at x [m], its points y_step [m] apart: points (cols, 3) [m], slopes (cols, 2)."""
+    for j in range(sx.size):
+        slopes[j, 0], slopes[j, 1] = sx[j], sy[j]
+        points[j, 0], points[j, 1], points[j, 2] = x + dx[j], j * y_step + dy[j], lift * z[j]
 
 
 @kernel(noalias=True)
@@ -28,38 +83,33 @@ def set_mesh(height, dx, dy, choppy, scale, stride, cell, threshold, soft, fade,
     foam: (n/stride, n/stride), 0 to 1, kept from the last frame: times `fade`, and at least (threshold - J)/soft.
     Differences are (8 (f1 - f-1) - (f2 - f-2))/12 per cell.
     """
-    inverse, n = 1.0 / (12.0 * cell), height.shape[0]
+    rows, cols = foam.shape
+    n = height.shape[0]
+    lift, inverse = np.float32(scale), np.float32(1.0 / (12.0 * cell))
+    limit, sharpness, kept = np.float32(threshold), np.float32(1.0 / soft), np.float32(fade)
+    along, across = np.empty(n, np.float32), np.empty(n, np.float32)
+    z, X, Y = np.empty(cols, np.float32), np.zeros(cols, np.float32), np.zeros(cols, np.float32)
+    hx, hy = np.empty(cols, np.float32), np.empty(cols, np.float32)
+    xx, xy, yy = np.zeros(cols, np.float32), np.zeros(cols, np.float32), np.zeros(cols, np.float32)
     foamy, strain = 0.0, 0.0
-    for i in range(vertices.shape[0]):
+    for i in range(rows):
         p = i * stride
-        p_2, p_1, p1, p2 = neighbours(p, n)
-        for j in range(vertices.shape[1]):
-            q = j * stride
-            q_2, q_1, q1, q2 = neighbours(q, n)
-            h = height
-            z = scale * h[p, q]
-            zx = scale * inverse * (8.0 * (h[p1, q] - h[p_1, q]) - (h[p2, q] - h[p_2, q]))
-            zy = scale * inverse * (8.0 * (h[p, q1] - h[p, q_1]) - (h[p, q2] - h[p, q_2]))
-            x, y, J = p * cell, q * cell, 1.0
-            if choppy:
-                x += dx[p, q]
-                y += dy[p, q]
-                a = 1.0 + inverse * (8.0 * (dx[p1, q] - dx[p_1, q]) - (dx[p2, q] - dx[p_2, q]))
-                b = inverse * (8.0 * (dx[p, q1] - dx[p, q_1]) - (dx[p, q2] - dx[p, q_2]))
-                d = 1.0 + inverse * (8.0 * (dy[p, q1] - dy[p, q_1]) - (dy[p, q2] - dy[p, q_2]))
-                J = a * d - b * b
-                # The slope by place: (zx, zy) by label, times the inverse of the displacement's gradient.
-                J_safe = max(J, LEAST_STRETCH)
-                zx, zy = (d * zx - b * zy) / J_safe, (a * zy - b * zx) / J_safe
-            steep = np.sqrt(zx * zx + zy * zy)
-            if steep > STEEPEST:
-                zx *= STEEPEST / steep
-                zy *= STEEPEST / steep
-            vertices[i, j, 0], vertices[i, j, 1], vertices[i, j, 2] = x, y, z
-            slopes[i, j, 0], slopes[i, j, 1] = zx, zy
-            white = min(max((threshold - J) / soft, 0.0), 1.0)
-            foam[i, j] = max(foam[i, j] * fade, white)
-            foamy += foam[i, j]
-            strain += (J - 1.0) * (J - 1.0)
-    count = vertices.shape[0] * vertices.shape[1]
+        p_2, p_1, p1, p2 = (p - 2) % n, (p - 1) % n, (p + 1) % n, (p + 2) % n
+        set_differences(height, p_2, p_1, p, p1, p2, along, across)
+        thin(along, stride, hx)
+        thin(across, stride, hy)
+        thin(height[p], stride, z)
+        if choppy:
+            set_differences(dx, p_2, p_1, p, p1, p2, along, across)
+            thin(along, stride, xx)
+            thin(across, stride, xy)
+            thin(dx[p], stride, X)
+            set_differences(dy, p_2, p_1, p, p1, p2, along, across)
+            thin(across, stride, yy)
+            thin(dy[p], stride, Y)
+        row_foam, row_strain = set_slopes(hx, hy, xx, xy, yy, lift, inverse, limit, sharpness, kept, foam[i])
+        set_row(p * cell, stride * cell, X, Y, z, lift, hx, hy, vertices[i], slopes[i])
+        foamy += row_foam
+        strain += row_strain
+    count = rows * cols
     return foamy / count, np.sqrt(strain / count)

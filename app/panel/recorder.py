@@ -102,8 +102,8 @@ class Recorder:
         self.advanced_at = 0.0  # [s] of the clock
         self.played = 0.0  # [s] of wall time since the frame at `position` was shown
 
-    def note(self, snapshot: AnySnapshot, wall: float) -> None:
-        """Record a snapshot of a running scene. wall: [s] of the clock."""
+    def follow(self, snapshot: AnySnapshot) -> None:
+        """Notice from a snapshot that the lab goes on, began again, or went back: it decides what is shown."""
         with self.lock:
             status = snapshot.status
             if status.running and not self.was_running:  # the lab goes on: the present is shown
@@ -114,6 +114,15 @@ class Recorder:
                 self.clear()
             while self.position is None and self.frames and self.frames[-1].time > status.time:
                 self.forget(self.frames.pop())  # the run has gone on from an earlier moment
+
+    def note(self, snapshot: AnySnapshot, wall: float) -> None:
+        """Record a snapshot of a running scene; best once it is drawn, as what was sent need not be packed again.
+
+        wall: [s] of the clock.
+        """
+        self.follow(snapshot)
+        with self.lock:
+            status = snapshot.status
             if self.position is not None or (self.frames and status.time == self.frames[-1].time):
                 return
             last, state = self.frames[-1] if self.frames else None, snapshot.state

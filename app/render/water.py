@@ -101,13 +101,17 @@ class Water:
             self._waterline_mesh = add_data_mesh(server, f"{name}/water_lines", waterline_table(()))
             self._injector.watch(name)
 
-    def set_surface(self, vertices: np.ndarray, slopes: np.ndarray, foam: np.ndarray, time: float = 0.0) -> None:
+    def set_surface(
+        self, vertices: np.ndarray, slopes: np.ndarray, foam: np.ndarray, time: float = 0.0
+    ) -> np.ndarray | None:
         """Draw this surface; call it where a picture is handed over as one. Arrays are copied.
+
+        Returns what `pack_fields` made of it for the browsers, to be read only; None where none of them has shaders.
 
         vertices: (rows, cols, 3) [m]. slopes: (rows, cols, 2), dz/dx and dz/dy of the displaced surface. foam:
         (rows, cols), 0..1. time [s] moves ripples and clouds.
         """
-        active = self.has_shader
+        active, packed = self.has_shader, None
         surface = self._set_fields(vertices, slopes, foam)
         if active is not True:
             points = self._points()
@@ -115,11 +119,13 @@ class Water:
             if active is False:
                 self._draw_plain(points)
         if self._injector is not None:
-            set_arrays(self._surface_mesh, vertices=self._packed(surface))
+            packed = self._packed(surface)
+            set_arrays(self._surface_mesh, vertices=packed)
             height = 4.0 * math.sqrt(surface.height_variance)
             self._sea_state = float(time) % RIPPLE_PERIOD, height, surface.square_slope
             self._uniforms[SEA_STATE] = self._sea_state
             set_arrays(self._material_mesh, vertices=self._uniforms)
+        return packed
 
     def set_material(self, material: Material) -> None:
         """Change how it looks from the next frame on."""

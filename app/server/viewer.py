@@ -311,7 +311,7 @@ class Viewer:
         # All of it in one message: each wakes a thread of viser's, which costs as much as drawing the rope.
         recorder = self.panel.recorder
         now = time.monotonic()
-        recorder.note(snapshot, now)
+        recorder.follow(snapshot)
         recorder.advance(now)
         recorded = recorder.shown
         with self.transport.counted():
@@ -336,6 +336,7 @@ class Viewer:
             self.recorded = recorded
             self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
+        recorder.note(snapshot, now)
         self.panel.share.sent = recorded
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:

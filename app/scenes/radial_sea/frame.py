@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
-from app.scenes.packed_surface import pack_surface, unpack_surface
+from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
 from app.scenes.radial_sea.bodies import BodyReading
 from app.scenes.radial_sea.cutaway import Cutaway
 from app.scenes.radial_sea.parameters import Params
@@ -42,6 +42,7 @@ class RadialFrame(NamedTuple):
     jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
     column: FluidColumn
     age: float  # [s] for which the waves have run under the oil
+    sent: SentSurface
 
 
 class PackedFrame(NamedTuple):
@@ -54,15 +55,18 @@ class PackedFrame(NamedTuple):
 def pack_frame(frame: RadialFrame) -> PackedFrame:
     """A frame for the recording. Its Jacobian, which nothing draws, is left out."""
     surface, nothing = frame.surface, np.empty(0, np.float32)
-    packed = pack_surface(surface.vertices, surface.slope, frame.foam, resting_points(frame), frame.grid.spokes)
-    return PackedFrame(frame._replace(surface=RadialSurface(nothing, nothing, nothing), foam=nothing), packed)
+    rest, spokes = resting_points(frame), frame.grid.spokes
+    packed = pack_surface(surface.vertices, surface.slope, frame.foam, rest, spokes, frame.sent)
+    empty = RadialSurface(nothing, nothing, nothing)
+    return PackedFrame(frame._replace(surface=empty, foam=nothing, sent=SentSurface()), packed)
 
 
 def unpack_frame(packed: PackedFrame) -> RadialFrame:
     """The frame, to draw it."""
     frame = packed.frame
     vertices, slope, foam = unpack_surface(packed.surface, resting_points(frame), (len(frame.grid),))
-    return frame._replace(surface=RadialSurface(vertices, slope, frame.surface.jacobian), foam=foam)
+    surface = RadialSurface(vertices, slope, frame.surface.jacobian)
+    return frame._replace(surface=surface, foam=foam, sent=SentSurface())
 
 
 def resting_points(frame: RadialFrame) -> NDArray[np.float32]:

@@ -24,6 +24,7 @@ from app.messages import (
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
+from app.scenes.packed_surface import SentSurface
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
 from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.cutaway import Cutaway, cutaway_at, outline
@@ -459,6 +460,7 @@ class RadialSeaScene:
             jet=None if jet is None else jet.position[:, jet.flying].T.astype(np.float32),
             column=self.column if self.student is None else self.student.drawn(self.column),
             age=self.age,
+            sent=self.sent,
         )
 
     def update_surface(self) -> None:
@@ -479,6 +481,7 @@ class RadialSeaScene:
             for part in (slice(0, len(self.grid) - 1 if p.centre == "camera" else near), slice(-1, None)):
                 self.radiated_waves.lay(self.time, vertices[part], slopes[part], len(vertices))
         self.foam = self.make_foam()
+        self.sent = SentSurface()
         self.cutaway = self.make_cutaway() if p.cutaway else None
         radiated = p.ripples and self.radiated_waves.sea.ripples.alive
         self.counts.update({"surfaces": 1, "radiated waves": int(radiated), "cutaways": int(p.cutaway)})

@@ -149,7 +149,7 @@ class View:
         s = frame.surface
         if s is not self.surface:
             self.surface = s
-            self.water.set_surface(s.vertices[None], s.slope[None], frame.foam[None], frame.time)
+            frame.sent.numbers = self.water.set_surface(s.vertices[None], s.slope[None], frame.foam[None], frame.time)
             self.water.set_waterlines(waterlines_of(frame))
 
     def show_fire(self, frame: RadialFrame) -> None:

@@ -12,7 +12,7 @@ from app.messages import PlotRow, Point, SceneCommand, StudentAnswer, Vector, Wo
 from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
-from app.scenes.packed_surface import pack_surface, unpack_surface
+from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
 from app.scenes.square_sea.live_values import live_values
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, Params, conditions, hidden, rain_settings
@@ -67,6 +67,7 @@ class SeaFrame(NamedTuple):
     slope_resolved: float  # mean square slope of the solved waves
     rain: RainFrame | None
     gauge: Vector | None  # [m] position of the wave gauge; None while it is not shown
+    sent: SentSurface
 
 
 class PackedFrame(NamedTuple):
@@ -87,15 +88,18 @@ def resting_points(length: float, side: int) -> NDArray[np.float32]:
 def pack_frame(frame: SeaFrame) -> PackedFrame:
     """A frame for the recording."""
     side, nothing = len(frame.vertices), np.empty(0, np.float32)
-    surface = pack_surface(frame.vertices, frame.slopes, frame.foam, resting_points(frame.params.length, side), side)
-    return PackedFrame(frame._replace(vertices=nothing, slopes=nothing, foam=nothing), side, surface)
+    rest = resting_points(frame.params.length, side)
+    surface = pack_surface(frame.vertices, frame.slopes, frame.foam, rest, side, frame.sent)
+    return PackedFrame(
+        frame._replace(vertices=nothing, slopes=nothing, foam=nothing, sent=SentSurface()), side, surface
+    )
 
 
 def unpack_frame(packed: PackedFrame) -> SeaFrame:
     """The frame, to draw it."""
     frame, side, surface = packed
     vertices, slopes, foam = unpack_surface(surface, resting_points(frame.params.length, side), (side, side))
-    return frame._replace(vertices=vertices, slopes=slopes, foam=foam)
+    return frame._replace(vertices=vertices, slopes=slopes, foam=foam, sent=SentSurface())
 
 
 class RainReadings(NamedTuple):
@@ -384,7 +388,7 @@ class SquareSeaScene:
             self.sea.length / self.sea.size, limit, full_depth, math.exp(-dt / p.foam_fade), vertices, slopes,
             self.foam,
         )  # fmt: skip
-        return SeaFrame(p, self.time, vertices, slopes, self.foam, self.pace[0], None, None)
+        return SeaFrame(p, self.time, vertices, slopes, self.foam, self.pace[0], None, None, SentSurface())
 
     def update_statistics(self, height: NDArray[np.floating], dt: float) -> None:
         """Compare the drawn sea with theory, where that is shown and out of date. height: (n, n) [m]; dt [s]: since the

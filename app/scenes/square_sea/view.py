@@ -119,7 +119,7 @@ class View:
             self.view = p.view
             place_cameras(self.server, *camera_of(p.view, p.length))
         if self.last is None or frame.vertices is not self.last.vertices:
-            self.water.set_surface(frame.vertices, frame.slopes, frame.foam, frame.time)
+            frame.sent.numbers = self.water.set_surface(frame.vertices, frame.slopes, frame.foam, frame.time)
             self.show_rain(frame)
             self.show_gauge(frame)
         self.last = frame

@@ -12,7 +12,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Everything in tests/browser needs a browser, and has a second try, since a page drawn in software can be late.
 
     Of several processes (`-n`), one runs all tests with a browser, since two browsers would slow each other down. They
-    begin first, as no other group takes as long. The tests of another file share their fixtures in one process.
+    begin first, as no other group takes as long. The tests of another file share their fixtures in one process. The
+    longest file comes next, so that the last groups are short, and no process ends long before the others.
     """
     for item in items:
         if "/tests/browser/" in item.path.as_posix():
@@ -21,7 +22,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if browser:
             item.add_marker(pytest.mark.flaky(reruns=1))
         item.add_marker(pytest.mark.xdist_group("browser" if browser else item.path.as_posix()))
-    items.sort(key=lambda item: item.get_closest_marker("browser") is None)
+    items.sort(key=lambda item: (item.get_closest_marker("browser") is None, item.path.name != "test_extension.py"))
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -22,13 +22,15 @@ FLAGS = [
 ]
 PIXEL_RATIO = 0.2  # drawn pixels per pixel of the page, in each direction
 # A software renderer takes most of the processor. Where a test reads no pixel, shaders are trivial, as those of a sea
-# take seconds to compile, and nothing is drawn. The rest of the page works as ever.
-NO_PIXELS = """const put = WebGL2RenderingContext.prototype.shaderSource;
+# take seconds to compile, and nothing is drawn. The rest of the page works as ever. Where it reads the pixels of one
+# kind of thing, only fragment shaders with a word of this kind are what they are: all others give one colour.
+FLAT_SHADERS = """const put = WebGL2RenderingContext.prototype.shaderSource;
 WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
     const fragment = this.getShaderParameter(shader, this.SHADER_TYPE) === this.FRAGMENT_SHADER;
     const flat = "#version 300 es\\nout lowp vec4 color; void main() { color = vec4(0.3, 0.5, 0.6, 1.0); }";
-    put.call(this, shader, fragment ? flat : source);
-};
+    put.call(this, shader, fragment && !source.includes("WORD") ? flat : source);
+};"""
+NO_PIXELS = """
 for (const call of ["clear", "drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"])
     WebGL2RenderingContext.prototype[call] = () => {};"""
 # The drawn vertices of a mesh, as the bytes of single-precision numbers in base 64: a list of 50,000 numbers takes
@@ -54,9 +56,12 @@ HARMLESS_ERRORS = ("preventDefault inside passive",)
 LATE_UPDATE = "Tried to update non-existent component"
 
 
-def new_page(chromium: Any, width: int, height: int, drawn: bool) -> Any:
+def new_page(chromium: Any, width: int, height: int, drawn: bool | str) -> Any:
+    """drawn: whether there are pixels, or a word in the fragment shaders that are not replaced."""
     page = chromium.new_page(viewport={"width": width, "height": height})
-    if not drawn:
+    if drawn is not True:
+        page.add_init_script(FLAT_SHADERS.replace("WORD", drawn or "no shader has this"))
+    if drawn is False:
         page.add_init_script(NO_PIXELS)
     return page
 
@@ -99,11 +104,11 @@ class Tab:
         port: int,
         width: int = 900,
         height: int = 560,
-        drawn: bool = False,
+        drawn: bool | str = False,
         query: str = "",
         address: str = "",
     ) -> None:
-        """address: of the page where a proxy shows it, with a "?"."""
+        """drawn: as of `new_page`. address: of the page where a proxy shows it, with a "?"."""
         self.page = new_page(chromium, width, height, drawn)
         self.errors: list[str] = []
         self.followed = 0  # number of scenes that were opened for it

@@ -82,7 +82,7 @@ def test_labels_are_dark_in_dark_mode_and_light_again(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
 ) -> None:
     lab, _ = one_page
-    tab = open_tab(lab.port, drawn=True)
+    tab = open_tab(lab.port, drawn="vAlpha")  # of the shaders of labels
     tab.follow(lab, SCENE, check_record(Params, {"plot_errors": False, "plot_energies": False}))
 
     def brightness() -> float:

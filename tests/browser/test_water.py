@@ -186,11 +186,34 @@ def test_a_mesh_of_any_shape_is_water_too(chromium, server):
     page.close()
 
 
-def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, monkeypatch):
+@pytest.fixture
+def no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As with a viser of other inner names."""
     monkeypatch.setattr("app.render.injection.MAX_ANSWER_TIME", 1.0)
-    monkeypatch.setattr(
-        "app.render.injection.ShaderInjector.script", lambda self: "/* a viser with other inner names */"
-    )
+    monkeypatch.setattr("app.render.injection.ShaderInjector.script", lambda self: "/* a script that does nothing */")
+
+
+def test_without_an_answer_the_page_has_the_plain_foam(chromium, server, no_answer):
+    water = make_water(server)
+    page, errors = visit(chromium, server, drawn=False)
+    assert wait(page, lambda: water.has_shader is False)
+
+    def foam_height() -> float:
+        """Of the foam over the sea [m]; foam that is not shown is under it."""
+        foam, sea = (vertices_of(page, name) for name in ("/sea/plain_foam", "/sea"))
+        return float((foam - sea)[:, 2].min()) if foam.shape == sea.shape else -np.inf
+
+    assert foam_height() < 0.0
+    for amount, shown in ((1.0, True), (0.0, False)):
+        water.set_surface(*surface(foam=amount))
+        server.flush()
+        assert wait(page, lambda shown=shown: (foam_height() > 0.0) is shown)
+    assert errors == []
+    page.close()
+
+
+@pytest.mark.stress  # a page that is drawn, whose shaders take seconds to compile
+def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, no_answer):
     water = make_water(server)
     page, errors = visit(chromium, server)
     assert wait(page, lambda: water.has_shader is False)

@@ -40,7 +40,7 @@ def run(scene: RadialSeaScene, seconds: float) -> RadialSeaScene:
 @pytest.mark.parametrize(
     "changes",
     [
-        {},
+        pytest.param({}, marks=pytest.mark.stress),
         pytest.param({"spill": "layer", "thickness": 0.2}, marks=pytest.mark.stress),
         {"spill": "layer", "thickness": 2.0, "density": 300.0},
         pytest.param({"spill": "layer", "thickness": 0.05, "oil": "IFO 180"}, marks=pytest.mark.stress),

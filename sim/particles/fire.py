@@ -9,14 +9,15 @@ Limits: no gas dynamics between parcels.
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.particles.plume import flame_height, track
+from sim.particles.plume import DRAG_TIME, flame_height, track
 from sim.particles.random import uniform
 from sim.validation import argument_error
 
-DRAG_TIME = 1.2  # [s] in which gas is dragged to the speed of the wind
 LEAST_LIFE, LIFE_RANGE = 0.12, 2.64  # of the mean life: most parcels are flame, few are old smoke
+LONGEST_LIFE = LEAST_LIFE + LIFE_RANGE  # of the mean life
 MEANDER = 0.5  # of the plume's widening, by which puffs move parcels
 
 
@@ -51,7 +52,7 @@ class Fire:
             raise argument_error("eddies", eddies, "0 or above, finite")
         self.place, self.diameter, self.wind, self.eddies = position, diameter, wind, eddies
         self.height = flame_height(power, diameter)
-        self.longest_life = (LEAST_LIFE + LIFE_RANGE) * life  # [s]
+        self.longest_life = LONGEST_LIFE * life  # [s]
         self.track = track(power, diameter, math.hypot(*wind), self.longest_life)
         self.puffs = 1.5 / math.sqrt(diameter)  # [1/s]
         self.time = 0.0  # [s]
@@ -82,6 +83,11 @@ class Fire:
     def burning(self) -> np.ndarray:
         """Which parcels have started, (n,) bool."""
         return self.age >= 0.0
+
+
+def share_left(along: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Share of the parcels that live longer than this share of the longest life, (n,)."""
+    return 1.0 - np.sqrt(np.clip((LONGEST_LIFE * along - LEAST_LIFE) / LIFE_RANGE, 0.0, 1.0))
 
 
 @kernel(noalias=True)

@@ -8,9 +8,14 @@ In wind a plume bends over, and rises by Briggs's two-thirds law (1984, Atmosphe
 
     z = 1.6 F^(1/3) x^(2/3)/u,    F = g Qc/(pi rho cp T0),    r = 0.6 z.
 
+The turbulence of the wind widens it too, by Briggs's curves for neutral air over open country (1973, ATDL 79):
+
+    sy = 0.08 x/sqrt(1 + 0.0001 x),    sz = 0.06 x/sqrt(1 + 0.0015 x).
+
 A plume takes the time that both laws take together for each metre, the second from the height of the flame on; it
 widens, from the height of the flame on, by 0.15 of its rise in still air (Morton, Taylor and Turner 1956) and by
-Briggs's 0.6 where it is bent over.
+Briggs's 0.6 where it is bent over. To the square of that radius comes the square of 2 sqrt(sy sz), as a disc of even
+density is twice as wide as its standard deviation. Gas is as hot as in still air after as long a way.
 Limits: neutral air; nearer than 119 F^(2/5) [m], where Briggs's plume stops to rise.
 """
 
@@ -30,6 +35,11 @@ REGIME_ENDS = (0.08, 0.2)
 KAPPA = np.array([6.8, 1.9, 1.1])
 ETA = np.array([0.5, 0.0, -1.0 / 3.0])
 STILL_WIDENING, BENT_WIDENING = 0.15, 0.6  # of the radius over the rise
+SIDE_SPREAD, HEIGHT_SPREAD = (0.08, 1e-4), (0.06, 1.5e-3)  # sy, sz over the distance; 1/[m] at which they slow down
+DRAG_TIME = 1.2  # [s] in which gas is dragged to the speed of the wind
+SOOT_SHARE = 0.1  # kg of soot for each kg of crude that burns (Mulholland et al. 1989, Fire Saf. Sci. 2:347)
+SOOT_EXTINCTION = 8700.0  # [m2/kg] of light by soot (Mulholland and Croarkin 2000, Fire Mater. 24:227)
+COMBUSTION_HEAT = 42e6  # [J/kg] of crude
 TRACK_POINTS = 512
 
 
@@ -68,6 +78,18 @@ def bent_rise(distance: ArrayLike, power: float, wind_speed: float) -> NDArray[n
     return 1.6 * buoyancy_flux(power) ** (1.0 / 3.0) * np.asarray(distance, float) ** (2.0 / 3.0) / wind
 
 
+def turbulent_radius(distance: ArrayLike) -> NDArray[np.float64]:
+    """Radius [m] by which the wind's turbulence alone widens smoke at distances [m] downwind."""
+    x = np.asarray(distance, float)
+    sides = (share * x / np.sqrt(1.0 + slowing * x) for share, slowing in (SIDE_SPREAD, HEIGHT_SPREAD))
+    return 2.0 * np.sqrt(math.prod(sides))
+
+
+def soot_made(power: float) -> float:
+    """Area [m2/s] by which the soot of a fire of this power [W] would darken, if no part hid another."""
+    return SOOT_EXTINCTION * SOOT_SHARE * check_positive("power", power, "W") / COMBUSTION_HEAT
+
+
 class Track(NamedTuple):
     """The way of gas in the middle of a plume, at equal steps of its age; arrays (TRACK_POINTS,) float32."""
 
@@ -87,7 +109,7 @@ def track(power: float, diameter: float, wind_speed: float, duration: float) -> 
     check_positive("duration", duration, "s")
     # Time over height: 1/w is integrated from where the flame's law, z = (kappa/2)^2 t^2, gives the time itself.
     z = np.geomspace(1e-3, 30.0 * length + 60.0 * duration, 4000)
-    speed, temperature = centreline(z, power)
+    speed = centreline(z, power)[0]
     slowness, above = 1.0 / speed, 1.0 - np.exp(-((z / length) ** 2))  # above: the flame, 0 to 1
     if wind_speed > 0.0:
         # z = A t^(2/3) takes 1.5 A^(-3/2) sqrt(z) for each metre at z.
@@ -99,6 +121,12 @@ def track(power: float, diameter: float, wind_speed: float, duration: float) -> 
     time = 2.0 * math.sqrt(z[0]) / KAPPA[0] + np.append(0.0, np.cumsum(0.5 * steps * (slowness[1:] + slowness[:-1])))
     radius = 0.5 * diameter + np.append(0.0, np.cumsum(0.5 * steps * (widening[1:] + widening[:-1])))
     age = np.linspace(0.0, duration, TRACK_POINTS)
+    # Along the wind by the closed form of drag.
+    lag = DRAG_TIME * -np.expm1(-time / DRAG_TIME)
+    distance = wind_speed * (time - lag)
+    radius = np.hypot(radius, turbulent_radius(distance))
+    way = z[0] + np.append(0.0, np.cumsum(np.hypot(steps, np.diff(distance))))
+    temperature = centreline(way, power)[1]
     hottest = float(centreline(1e-3, power)[1])
     height = np.where(age < time[0], (0.5 * KAPPA[0] * age) ** 2, np.interp(age, time, z))
     values = (height, np.interp(age, time, radius), np.interp(age, time, temperature) / hottest)

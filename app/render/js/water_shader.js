@@ -305,7 +305,7 @@ const WATER_GLSL = {
     const float FOAM_2 = -13.562;
     const float FOAM_3 = 8.750;
 
-    // Foam where the simulation has a share of it: (cover, slope x, slope y of its bubbles, brightness). The mean cover
+    // Foam where the simulation has a share of it: (cover, slope x, slope y of its bubbles, shade). The mean cover
     // is the share: where pixels are too wide for the pattern, it is the cover. Fresh foam is sharp, old foam is soft.
     vec4 foamCover(vec2 x, float share, float footprint) {
       if (share <= 0.004) return vec4(0.0);
@@ -335,9 +335,7 @@ const WATER_GLSL = {
         float soft = min(mix(0.16, 0.05, share), 0.9 * min(share, 1.0 - share)) + 1e-4;
         cover = mix(share, smoothstep(-soft, soft, share - below), seen);
       }
-      // Whitecaps reflect about half of the light when they are old (Koepke 1984, Appl. Opt. 23:1816).
-      float bright = mix(0.5, 1.0, smoothstep(0.1, 0.7, share)) * (1.0 + 0.35 * grain);
-      return vec4(cover, relief, bright);
+      return vec4(cover, relief, 1.0 + 0.35 * grain);
     }
 
     // Rings of raindrops. A ring spreads at the least speed that waves have, at that wavelength; it lives until it is
@@ -543,8 +541,11 @@ const WATER_GLSL = {
       float hull = distanceToHull(at.xy);
       float wash = (1.0 - smoothstep(0.0, 0.15 + 0.35 * sqrt(seaState.y), hull)) * smoothstep(0.05, 0.6, seaState.y);
       wash *= (1.0 - oil) * (0.75 + 0.5 * gradientNoise(at.xy * 2.3 - 0.4 * seaState.x).x);
-      vec4 bubbles = foamCover(rest, clamp(max(slopeAndFoam.z, 0.8 * wash), 0.0, 1.0), footprint);
-      float foam = bubbles.x;
+      float foamShare = clamp(max(slopeAndFoam.z, 0.8 * wash), 0.0, 1.0);
+      vec4 bubbles = foamCover(rest, foamShare, footprint);
+      // Whitecaps reflect about half of the light when they are old (Koepke 1984, Appl. Opt. 23:1816): their bubbles are
+      // a thin layer, and half of what is seen there is the water.
+      float foam = bubbles.x * mix(0.5, 1.0, smoothstep(0.1, 0.7, foamShare));
       vec4 rings = rainSlopes(rest, footprint);
       slope += rings.xy;
       float variance = optics.y * optics.y + 0.5 * (rough + fine.z + rings.z);
@@ -593,12 +594,12 @@ const WATER_GLSL = {
       // As in the photograph of the sky, radiances far above the rest are compressed.
       vec3 sparkle = sunLight * glitter + fire * image;
       sparkle /= 1.0 + dot(sparkle, vec3(0.3, 0.5, 0.2)) / GLITTER_LIMIT;
-      vec3 color = mix(body, mirrored, mirror) + sparkle * (1.0 - foam);
+      vec3 color = mix(body, mirrored, mirror) + sparkle;
       // Foam scatters the light of sun and sky many times. The sky is that overhead and that around; below clouds and
-      // rain, what comes from overhead has the colour of the haze.
+      // rain, what comes from overhead has the colour of the haze. Bubbles stand up to a sun that is low.
       vec3 skylight = mix(0.65 * behindRain(ambient, vec3(0.0, 0.0, 1.0)) + 0.35 * around, around, clouds.x);
       vec3 M = normalize(vec3(-slope - bubbles.yz, 1.0));
-      vec3 white = foamColor * (skylight + 0.3183 * sunLight * max(dot(M, sunDirection), 0.0)
+      vec3 white = foamColor * (skylight + 0.3183 * sunLight * max(0.8 * dot(M, sunDirection) + 0.2, 0.0)
                               + 0.3183 * fire * max(dot(M, toFire), 0.0));
       color = mix(color, white * bubbles.w, foam);
       color = mix(color, skylight, 0.5 * rings.w);

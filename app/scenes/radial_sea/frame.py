@@ -20,6 +20,14 @@ from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.weathering import Weathering
 
 
+class JetParcels(NamedTuple):
+    """Parcels of a jet of oil that are in the air."""
+
+    position: NDArray[np.float32]  # (n, 3) [m]
+    velocity: NDArray[np.float32]  # (n, 3) [m/s]
+    number: NDArray[np.intp]  # (n,) by which a parcel is known while it is in the air
+
+
 class RadialFrame(NamedTuple):
     """What the view draws."""
 
@@ -39,7 +47,7 @@ class RadialFrame(NamedTuple):
     fire: (
         tuple[NDArray[np.float32], NDArray[np.float32]] | None
     )  # (3, n) [m], (4, n) heat, age over life, radius of the plume [m], age over the longest life
-    jet: NDArray[np.float32] | None  # (n, 3) [m] parcels in the air
+    jet: JetParcels | None  # in the air
     column: FluidColumn
     age: float  # [s] for which the waves have run under the oil
     sent: SentSurface

@@ -28,7 +28,14 @@ from app.scenes.packed_surface import SentSurface
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
 from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.cutaway import Cutaway, cutaway_at, outline
-from app.scenes.radial_sea.frame import RadialFrame, RadialReadings, SurfaceReading, pack_frame, unpack_frame
+from app.scenes.radial_sea.frame import (
+    JetParcels,
+    RadialFrame,
+    RadialReadings,
+    SurfaceReading,
+    pack_frame,
+    unpack_frame,
+)
 from app.scenes.radial_sea.live_values import live_values
 from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import (
@@ -61,6 +68,7 @@ from sim.ocean.tile_sea import TileSea
 from sim.ocean.weathering import Weathering, weather
 from sim.parameters import Value, check_record
 from sim.particles.fire import Fire
+from sim.particles.jet import Jet
 
 if TYPE_CHECKING:
     from app.lab.live_code import LiveCode
@@ -457,7 +465,7 @@ class RadialSeaScene:
             stains=bodies.stain.astype(np.float32),
             pulls=tuple(((x, y, z), target) for (x, y, z), target in held),
             fire=None if fire is None else parcels_of(fire),
-            jet=None if jet is None else jet.position[:, jet.flying].T.astype(np.float32),
+            jet=None if jet is None else flying_parcels(jet),
             column=self.column if self.student is None else self.student.drawn(self.column),
             age=self.age,
             sent=self.sent,
@@ -659,6 +667,12 @@ def parcels_of(fire: Fire) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     return fire.position.copy(), np.stack(
         [fire.heat, over, fire.spread, fire.age / fire.longest_life], dtype=np.float32
     )
+
+
+def flying_parcels(jet: Jet) -> JetParcels:
+    """The parcels of a jet that are in the air."""
+    number = np.flatnonzero(jet.flying)
+    return JetParcels(*(a[:, number].T.astype(np.float32) for a in (jet.position, jet.velocity)), number)
 
 
 SCENE = SceneKind(

@@ -157,7 +157,7 @@ class View:
         if self.flames is None and (frame.fire is not None or frame.jet is not None):
             self.flames = Flames(self.server, "/flames")
         if self.flames is not None:
-            self.flames.show(frame.fire, frame.jet, self.light.sun_strength)
+            self.flames.show(frame.fire, frame.jet, self.light, 1e6 * frame.params.fire_power)
         burning = frame.fire is not None
         if self.glow.visible != burning:
             self.glow.visible = burning

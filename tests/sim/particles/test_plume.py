@@ -7,13 +7,16 @@ import pytest
 
 from sim.particles.plume import (
     BENT_WIDENING,
+    DRAG_TIME,
     STILL_WIDENING,
     bent_rise,
     buoyancy_flux,
     centreline,
     flame_height,
     radiated_light,
+    soot_made,
     track,
+    turbulent_radius,
 )  # fmt: skip
 
 
@@ -55,7 +58,27 @@ def test_far_in_the_wind_gas_goes_by_briggs() -> None:
     assert way.height[200:] == pytest.approx(rise, rel=0.12)
     growth = np.diff(way.height[[400, 500]].astype(float)) / np.diff(rise[[200, 300]])
     assert growth == pytest.approx(1.0, rel=0.05)
-    assert np.diff(way.radius[[400, 500]]) / np.diff(way.height[[400, 500]]) == pytest.approx(BENT_WIDENING, rel=0.06)
+    own = np.sqrt(np.square(way.radius[[400, 500]]) - np.square(turbulent_radius(wind * age[[400, 500]])))
+    assert np.diff(own) / np.diff(way.height[[400, 500]]) == pytest.approx(BENT_WIDENING, rel=0.06)
+
+
+def test_wind_s_turbulence_widens_smoke_as_briggs_curves_say() -> None:
+    assert turbulent_radius(1000.0) == pytest.approx(2.0 * math.sqrt(76.28 * 37.95), rel=1e-3)
+    way = track(400e6, 9.0, 20.0, 55.2)
+    own = math.sqrt(way.radius[-1] ** 2 - turbulent_radius(20.0 * (55.2 - DRAG_TIME)) ** 2)
+    assert 0.3 < (own - 4.5) / way.height[-1] < BENT_WIDENING  # as it is not bent over at first
+
+
+def test_gas_in_the_wind_is_as_hot_as_in_still_air_after_as_long_a_way() -> None:
+    power, wind, age = 400e6, 20.0, 5.0
+    still, blown = track(power, 9.0, 0.0, 20.0), track(power, 9.0, wind, 20.0)
+    heat, height = (float(np.interp(age, blown.step * np.arange(512), v)) for v in (blown.heat, blown.height))
+    way = math.hypot(wind * (age - DRAG_TIME), height)
+    assert heat == pytest.approx(float(np.interp(way, still.height, still.heat)), rel=0.1)
+
+
+def test_soot_of_a_megawatt_darkens_twenty_square_metres_a_second() -> None:
+    assert soot_made(1e6) == pytest.approx(0.1 * 8700.0 / 42.0)
 
 
 def test_wind_bends_the_plume_and_gas_cools_all_the_way() -> None:

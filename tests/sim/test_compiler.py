@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from sim import jit
+from sim.compiler import with_room
 from sim.jit import chosen, kernel
 from tests.sim.test_jit import python
 
@@ -140,3 +141,21 @@ print(round(float(a.sum())))
     first = python(code, SPRINGTIDE_CACHE=str(tmp_path))
     assert python(code, SPRINGTIDE_CACHE=str(tmp_path)) == first
     assert first == str(round(-9.81 * (16 * 16 - 2)))
+
+
+def test_calls_at_any_depth_map_no_memory():
+    resource = pytest.importorskip("resource")
+
+    def faults_at(depth: int) -> int:
+        """New pages of memory while functions are called from this depth."""
+        if depth > 0:
+            return faults_at(depth - 1)
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+        for _ in range(1000):
+            nothing()
+        return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
+
+    def nothing() -> None:
+        pass
+
+    assert with_room(lambda: max(faults_at(depth) for depth in range(400))) < 500

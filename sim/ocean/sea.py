@@ -279,6 +279,10 @@ class Sea:
         whole = float(slope.sum())
         return float((slope * self._passed * np.exp(-2.0 * lost)).sum()) / whole if whole > 0.0 else 1.0
 
+    def is_steady(self, t: float) -> bool:
+        """Whether no wave grows or decays any more after time t [s], unless the conditions change."""
+        return not self._decays and self._share(t) == 0.0
+
     @property
     def frequencies(self) -> np.ndarray:
         """omega(k) [rad/s] as propagated, (size, size), FFT order; 0 on the mean and the Nyquist lines."""

@@ -35,7 +35,8 @@ HELP = (
 SERIES = ("wave gauge",)
 CHANGING = (  # as time passes
     "steps", "sea", "rainfall", "foam", "drawn_at", "foam_cover", "foam_correction", "foam_cover_before", "foam_limit",
-    "jacobian_deviation", "slope_left", "pace", "paced_at", "changed_at", "transition", "viscous_area", "tile_length",
+    "jacobian_deviation", "slope_left", "pace", "paced_at", "paced_of", "changed_at", "transition", "viscous_area",
+    "tile_length",
 )  # fmt: skip
 PLOTS = {"plot_wave_gauge": PlotAxes("Height at the wave gauge", "m", SERIES)}
 CURVES = {"plot_wave_spectrum": CurveAxes("Spectrum at the wave gauge [m²/Hz]", "f [Hz]", ("measured", "theory"))}
@@ -247,6 +248,7 @@ class SquareSeaScene:
         self.drawn_at = self.time
         self.slope_left = 1.0  # share of the mean square slope that damping and a small height factor leave
         self.pace = 0.0, 0.0  # mean square slope, and the frequency [rad/s] at which it changes
+        self.paced_of: tuple[int, float] | None = None  # of which waves they are, where these are steady
         self.paced_at = self.measured_at = -math.inf
         self.earlier_height: NDArray[np.floating] | None = None
         self.foam_cover, self.foam_correction, self.jacobian_deviation = 0.0, INITIAL_FOAM_CORRECTION, 0.0
@@ -427,9 +429,12 @@ class SquareSeaScene:
         """(Jacobian below which there is foam, how far below it foam is full)."""
         p = self.params
         if abs(t - self.paced_at) >= PACE_INTERVAL:
-            self.pace = pace(self.sea, t)
-            self.slope_left = self.sea.slope_left(t) * min(p.amplitude, 1.0) ** 2
-            self.paced_at = t
+            waves = (self.sea.version, p.amplitude) if self.sea.is_steady(t) else None
+            if waves is None or waves != self.paced_of:
+                self.pace = pace(self.sea, t)
+                self.slope_left = self.sea.slope_left(t) * min(p.amplitude, 1.0) ** 2
+                self.counts["paces"] += 1
+            self.paced_at, self.paced_of = t, waves
         slope, frequency = self.pace
         deviation = self.jacobian_deviation or max(self.sea.choppiness * math.sqrt(slope), 1e-6)
         self.foam_limit = p.foam_threshold

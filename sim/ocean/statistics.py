@@ -121,16 +121,17 @@ def measured(
     if height.ndim != 2 or height.shape[0] != height.shape[1]:
         raise argument_error("height", height.shape, "a square field")
     n = height.shape[0]
-    kx, ky, k, omega, twice = _half_plane(n, length, conditions)
+    kx, ky, k, omega, twice, bins = _half_plane(n, length, conditions)
     h = np.fft.rfft2(np.asarray(height, np.float64)) / n**2
     energy = twice * (h.real**2 + h.imag**2)
     energy[0, 0] = 0.0
-    direction, peak_period = math.nan, _peak_period(omega, energy)
+    direction, peak_period = math.nan, _peak_period(omega, energy, bins)
     if earlier is not None:
         if earlier.shape != height.shape:
             raise argument_error("earlier", earlier.shape, f"a field of shape {height.shape}")
         # h = P e^(-i omega t) + Q e^(i omega t): the phase of h falls where the wave runs along k, rises against it.
-        turned = twice * np.imag(np.fft.rfft2(np.asarray(earlier, np.float64)) / n**2 * np.conj(h))
+        before = np.fft.rfft2(np.asarray(earlier, np.float64)) / n**2
+        turned = twice * (before.imag * h.real - before.real * h.imag)  # the imaginary part of before conj(h)
         turned *= omega * interval < 0.5 * math.pi
         if resolved_in_time(peak_period, interval):
             direction = _direction(float((turned * kx).sum()), float((turned * ky).sum()))
@@ -145,8 +146,9 @@ def measured(
 @functools.lru_cache(maxsize=2)
 def _half_plane(
     n: int, length: float, conditions: Conditions
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """kx, ky, k [rad/m] and omega [rad/s] of the waves of a real transform, and how many waves each stands for."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, "_Bins | None"]:
+    """kx, ky, k [rad/m] and omega [rad/s] of the waves of a real transform, how many waves each stands for, and the
+    bins of all that run."""
     k1 = np.fft.fftfreq(n, length / n) * 2.0 * math.pi
     kx, ky = k1[:, None], k1[None, : n // 2 + 1]
     k = np.hypot(kx, ky)
@@ -154,7 +156,8 @@ def _half_plane(
     twice[:, 0] = 1.0
     if n % 2 == 0:
         twice[:, -1] = 1.0
-    return kx, ky, k, conditions.omega(k), twice
+    omega = conditions.omega(k)
+    return kx, ky, k, omega, twice, _bins(omega, omega > 0.0)
 
 
 def resolved_in_time(period: float, interval: float) -> bool:
@@ -192,15 +195,37 @@ def _direction(east: float, north: float) -> float:
     return math.atan2(north, east) if math.hypot(east, north) > 0.0 else math.nan
 
 
-def _peak_period(omega: np.ndarray, energy: np.ndarray) -> float:
-    """2 pi/omega_p with omega_p = sum omega S^4/sum S^4 (Young 1995, Ocean Eng. 22:669), S in bins 6 % wide."""
-    waves = (energy > 0.0) & (omega > 0.0)
+class _Bins(NamedTuple):
+    """Waves in bins of their frequency."""
+
+    waves: np.ndarray  # which waves, of all
+    number: np.ndarray  # of the bin of each of these
+    edges: np.ndarray  # [rad/s] of the bins
+
+
+def _bins(omega: np.ndarray, waves: np.ndarray) -> _Bins | None:
+    """Bins 6 % wide over the frequencies [rad/s] of these waves; None where there are none."""
     if not waves.any():
-        return math.nan
-    low, high = omega[waves].min(), omega[waves].max()
+        return None
+    running = omega[waves]
+    low, high = running.min(), running.max()
     edges = np.geomspace(0.98 * low, 1.02 * high, max(int(math.log(high / low + 1.0) / 0.06), 4))
-    bins = np.searchsorted(edges, omega[waves], side="right") - 1
-    held = np.bincount(bins, energy[waves], len(edges) - 1)
+    return _Bins(waves, np.searchsorted(edges, running, side="right") - 1, edges)
+
+
+def _peak_period(omega: np.ndarray, energy: np.ndarray, all_bins: _Bins | None = None) -> float:
+    """2 pi/omega_p with omega_p = sum omega S^4/sum S^4 (Young 1995, Ocean Eng. 22:669), S in bins 6 % wide.
+
+    all_bins: those of all waves that run, where they are known; they are used where none of these waves is without
+    energy.
+    """
+    found = all_bins if all_bins is not None and (energy[all_bins.waves] > 0.0).all() else None
+    if found is None:
+        found = _bins(omega, (energy > 0.0) & (omega > 0.0))
+    if found is None:
+        return math.nan
+    waves, number, edges = found
+    held = np.bincount(number, energy[waves], len(edges) - 1)
     density = held / np.diff(edges)
     weight = (density / density.max()) ** 4 * np.diff(edges)
     return 2.0 * math.pi * float(weight.sum() / (weight * np.sqrt(edges[1:] * edges[:-1])).sum())

@@ -15,7 +15,7 @@ from app.scenes.square_sea.rainfall import RING_STEEPNESS, Rainfall
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.server.loop import SimLoop
 from sim.ocean import Sea
-from sim.ocean.foam import whitecaps
+from sim.ocean.foam import pace, whitecaps
 from sim.ocean.spectra import SPECTRA
 from sim.parameters import effect_of_change, parameters_of
 
@@ -184,6 +184,27 @@ def test_statistics_and_spectrum_are_computed_only_where_shown_and_a_hidden_gaug
     run(shown, 30)
     assert shown.counts["gauge readings"] == 30
     assert 1 <= shown.counts["statistics"] <= 3
+
+
+def test_slope_and_frequency_of_waves_that_stay_the_same_are_found_once() -> None:
+    scene = SquareSeaScene(Params(size="64", mesh="64", viscosity=0.0))
+    for _ in range(100):
+        scene.advance(4)
+        scene.frame()
+    assert scene.counts["paces"] == 1
+    before = scene.pace
+    scene.change_forces(Params(size="64", mesh="64", viscosity=0.0, wind_speed=20.0, transition=0.2))
+    for _ in range(120):  # 8 s, or 40 transition times: the last are steady again
+        scene.advance(4)
+        scene.frame()
+    assert scene.pace != before
+    assert 3 <= scene.counts["paces"] < 14
+    assert scene.pace == pace(scene.sea, scene.time)
+    decaying = SquareSeaScene(Params(size="64", mesh="64", viscosity=1e-3))
+    for _ in range(60):  # 4 s, every half of one
+        decaying.advance(4)
+        decaying.frame()
+    assert decaying.counts["paces"] >= 7
 
 
 def test_the_rain_that_is_counted_is_the_rain_that_theory_has():

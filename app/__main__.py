@@ -119,7 +119,12 @@ def make_parser() -> argparse.ArgumentParser:
     bench = commands.add_parser("bench", help="measure run time against error, kernels, frames, start-up")
     bench.add_argument("names", nargs="*", metavar="NAME", help="the benchmarks to run (default: all)")
     bench.add_argument("--quick", action="store_true", help="fewer and shorter runs: a minute each")
-    bench.add_argument("--peers", action="store_true", help="compare with the other programs that are installed")
+    bench.add_argument(
+        "--peers",
+        nargs="*",
+        metavar="PEER",
+        help="compare with the other programs that are installed; with words of names: only with those",
+    )
     bench.add_argument("--out", type=Path, metavar="DIR", help="write tables (CSV) and figures to this folder")
     bench.add_argument(
         "--compare", nargs=2, metavar=("A", "B"), help="measure two commits of this repository in turns instead"

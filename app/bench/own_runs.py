@@ -48,10 +48,13 @@ def largest_distances(positions: Positions, reference: Reference) -> tuple[float
 
 
 class OwnRuns:
-    """All runs of one task, as ladders of one method each, from coarse to fine. Results are kept."""
+    """All runs of one task, as ladders of one method each, from coarse to fine. Results are kept.
 
-    def __init__(self, ladders: Sequence[Sequence[OwnRun]], reference: Reference) -> None:
-        self.ladders, self.reference = ladders, reference
+    equal: errors that differ by less than this factor count as equal.
+    """
+
+    def __init__(self, ladders: Sequence[Sequence[OwnRun]], reference: Reference, equal: float = 1.0) -> None:
+        self.ladders, self.reference, self.equal = ladders, reference, equal
         self.results: dict[tuple[str, str], Result] = {}
 
     def result(self, run: OwnRun, max_time: float = math.inf) -> Result:
@@ -75,7 +78,7 @@ class OwnRuns:
                 time, errors = self.result(run, max_time)
                 if time > max_time or max(errors) < RESOLUTION * self.reference.uncertainty:
                     break
-                if all(error <= limit for error, limit in zip(errors, limits, strict=True)):
+                if all(error <= self.equal * limit for error, limit in zip(errors, limits, strict=True)):
                     found.append((time, run))
                     break
         if not found:

@@ -14,17 +14,39 @@ def processor_time(call: Callable[[], Any]) -> float:
     return time.thread_time() - start
 
 
-def in_turns(calls: Sequence[Callable[[], Any]], repeats: int, max_time: float = math.inf) -> list[list[float]]:
-    """Wall times [s] of each call, taken in turns.
+def wall_time(call: Callable[[], Any]) -> float:
+    """Time that passes in a call [s]."""
+    start = time.perf_counter()
+    call()
+    return time.perf_counter() - start
 
-    Until there are `repeats` of each, or those of the first call add up to `max_time` [s].
+
+def undisturbed_time(call: Callable[[], Any]) -> float:
+    """The lesser of wall time and processor time of all threads in a call [s].
+
+    On a busy machine a long call waits for a core, and one shorter than a slice of the scheduler does not: wall times
+    would favour the short one. Several threads at once make the wall time the lesser.
+    """
+    start, used = time.perf_counter(), time.process_time()
+    call()
+    return min(time.process_time() - used, time.perf_counter() - start)
+
+
+def in_turns(
+    calls: Sequence[Callable[[], Any]],
+    repeats: int,
+    max_time: float = math.inf,
+    least: int = 1,
+    timed: Callable[[Callable[[], Any]], float] = wall_time,
+) -> list[list[float]]:
+    """Times [s] of each call by `timed`, taken in turns.
+
+    Until there are `repeats` of each, or at least `least` and those of the first call add up to `max_time` [s].
     """
     times: list[list[float]] = [[] for _ in calls]
-    while len(times[0]) < repeats and sum(times[0]) < max_time:
+    while len(times[0]) < repeats and (len(times[0]) < least or sum(times[0]) < max_time):
         for own, call in zip(times, calls, strict=True):
-            start = time.perf_counter()
-            call()
-            own.append(time.perf_counter() - start)
+            own.append(timed(call))
     return times
 
 

@@ -11,15 +11,17 @@ import functools
 import statistics
 import time
 from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from rich.progress import track
 
 from app.bench.own_runs import RESOLUTION, OwnRuns, Reference, largest_distances
-from app.bench.peers.cloth import PEERS
+from app.bench.peers.cloth import SCRIPTS
 from app.bench.peers.cloth_engines import ENGINES, OTHER_TASKS
-from app.bench.peers.ladder import compared, figure, summary
+from app.bench.peers.ladder import Task
+from app.bench.peers.ladder import tables as peer_ladders
 from app.bench.tasks.cloth import (
     DURATION,
     benchmark_cloth,
@@ -30,13 +32,13 @@ from app.bench.tasks.cloth import (
     step_counts,
 )
 from app.bench.timing import processor_time
-from app.experiments.tables import front
+from app.experiments.tables import Rows, front
 from sim.springs import INTEGRATORS, Net
 
 METHODS = tuple(name for name, record in INTEGRATORS.items() if not record.undamped_only)
 MEASURED = ("force evaluations", "time [ms]", "least [ms]", "x real time", "error [m]", "reference good to [m]")
 MAX_ERROR = 0.5  # [m] a larger one means another motion altogether
-PEER_STEP = 0.8  # over leapfrog's critical step: the step of peers that have none of their own
+PEERS = SCRIPTS + ENGINES
 
 
 def ladder(net: Net, name: str, truth: Reference, max_time: float, timing: float) -> list[dict[str, Any]]:
@@ -125,37 +127,13 @@ def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
     }
 
 
-def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
-    """The ladder of every installed peer against our quickest runs; quick: the smallest size, every second rung.
-
-    A peer that damps along the links only is compared with the reference of that damping model. Programs that cannot be
-    given the task are listed with the reason.
-    """
-    table: list[dict[str, Any]] = []
-    sizes = (32,) if quick else (32, 64, 128)
-    own_runs: dict[tuple[int, str], tuple[Net, OwnRuns]] = {}
-    for n, peer in track([(n, peer) for n in sizes for peer in PEERS + ENGINES], "cloth peers", transient=True):
-        task = {"task": f"C({n})"}
-        if reason := peer.reason_left_out(n):
-            table.append(task | {"peer": peer.name, "damping": peer.damping, "note": reason})
-            continue
-        if (n, peer.damping) not in own_runs:
-            net = benchmark_cloth(n, peer.damping)
-            own_runs[n, peer.damping] = net, OwnRuns(ladders(net), reference(net))
-        table += [task | row for row in compared(peer, *own_runs[n, peer.damping], (DURATION,), quick)]
-    return table + [{"task": "another", "peer": name, "note": why} for name, why in OTHER_TASKS.items()]
+def peer_task(n: int, damping: str) -> Task:
+    """The cloth task by this damping model, with our own runs of it."""
+    net = benchmark_cloth(n, damping)
+    return Task(net, (DURATION,), OwnRuns(ladders(net), reference(net)))
 
 
-peer_findings = summary
-
-
-def peer_figures(table: list[dict[str, Any]]) -> dict[str, Any]:
-    """Error against run time of all ladders, a figure for each size."""
-    sizes = [task for task in dict.fromkeys(row["task"] for row in table) if task != "another"]
-    return {
-        f"cloth_peers_{task.strip('C()')}": figure(
-            [row for row in table if row["task"] == task],
-            f"Cloth of {task.strip('C()')} x {task.strip('C()')} particles, {DURATION:g} s",
-        )
-        for task in sizes
-    }
+def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
+    """The ladders of peers, and programs that cannot be given the task; quick: two sizes, every second rung."""
+    table = peer_ladders("C", (32, 64, 128), PEERS, peer_task, words, quick)
+    return table + [{"task": "another", "peer": name, "note": why} for name, why in OTHER_TASKS.items() if not words]

@@ -11,6 +11,7 @@ import dataclasses
 import math
 import statistics
 import time
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,10 +19,11 @@ from numpy.typing import NDArray
 from rich.progress import track
 
 from app.bench.own_runs import RESOLUTION, OwnRuns
-from app.bench.peers.ladder import compared, figure, summary
+from app.bench.peers.ladder import Task
+from app.bench.peers.ladder import tables as peer_ladders
 from app.bench.peers.rope import PEERS
 from app.bench.tasks.rope import benchmark_rope, ladders, reference
-from app.experiments.tables import front
+from app.experiments.tables import Rows, front
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.state import State, advance
 
@@ -173,35 +175,12 @@ def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
     return drawn
 
 
-def peer_rows(quick: bool = False) -> list[dict[str, Any]]:
-    """The ladder of every installed peer against our quickest runs; quick: two sizes, every second rung.
-
-    A peer that damps along the links only is compared with the reference of that damping model.
-    """
-    table: list[dict[str, Any]] = []
-    tasks = [(links, peer) for links in ((16, 128) if quick else (16, 128, 1024)) for peer in PEERS]
-    own_runs: dict[tuple[int, str], tuple[Net, OwnRuns]] = {}
-    for links, peer in track(tasks, "rope peers", transient=True):
-        task = {"task": f"R({links})"}
-        if reason := peer.reason_left_out(links):
-            table.append(task | {"peer": peer.name, "damping": peer.damping, "note": reason})
-            continue
-        if (links, peer.damping) not in own_runs:
-            net = dataclasses.replace(benchmark_rope(links), damping_model=peer.damping)
-            own_runs[links, peer.damping] = net, OwnRuns(ladders(net), reference(net))
-        table += [task | row for row in compared(peer, *own_runs[links, peer.damping], (0.5, 1.0), quick)]
-    return table
+def peer_task(links: int, damping: str) -> Task:
+    """The rope task by this damping model, with our own runs of it."""
+    net = dataclasses.replace(benchmark_rope(links), damping_model=damping)
+    return Task(net, (0.5, 1.0), OwnRuns(ladders(net), reference(net)))
 
 
-peer_findings = summary
-
-
-def peer_figures(table: list[dict[str, Any]]) -> dict[str, Any]:
-    """Error against run time of all ladders, a figure for each size."""
-    sizes = dict.fromkeys(row["task"] for row in table)
-    return {
-        f"rope_peers_{task.strip('R()')}": figure(
-            [row for row in table if row["task"] == task], f"Rope of {task.strip('R()')} links, 1 s"
-        )
-        for task in sizes
-    }
+def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
+    """The ladders of peers; quick: two sizes, every second rung."""
+    return peer_ladders("R", (16, 128, 1024), PEERS, peer_task, words, quick)

@@ -1,17 +1,22 @@
 """A frame of the square sea against the bare transforms that it needs, in turns."""
 
-from collections.abc import Callable
+import functools
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from app.bench.peers.record import is_installed
-from app.bench.peers.sea import PEERS, student
+from app.bench.own_runs import OwnRun, OwnRuns, Reference
+from app.bench.peers.ladder import Task
+from app.bench.peers.ladder import tables as peer_ladders
+from app.bench.peers.sea import PEERS, PRECISIONS, extended
 from app.bench.timing import median_times
+from app.experiments.tables import Rows
 from sim.ocean import Sea
 from sim.ocean.transforms import Transforms
 
 QUICK_REPEATS, REPEATS = 60, 400
+PEER_TIME = 5.0  # [s] of the frame that peers compute
 
 
 def rows(quick: bool) -> list[dict[str, Any]]:
@@ -26,54 +31,33 @@ def rows(quick: bool) -> list[dict[str, Any]]:
     return found
 
 
-def peer_rows(quick: bool) -> list[dict[str, Any]]:
-    """Height and displacement at a new time, by us and by each peer that is installed, in turns.
+def peer_task(size: int, _: str) -> Task:
+    """Height and displacement of a sea at a new time, and our own frames in both precisions.
 
-    ms: median. times as long: as our single precision. error: the largest difference from a double-precision frame over
-    the standard deviation of the heights; empty for a peer that draws another sea.
+    An error is the largest distance of any point of the surface from the same sums in extended precision. It is
+    round-off, which differs a little from one order of sums to another: within a factor of two it counts as equal.
     """
-    found = []
-    for size in (256,) if quick else (256, 512):
-        sea = Sea(size=size, length=500.0, spectrum="phillips")
-        truth = student(Sea(size=size, length=500.0, spectrum="phillips", precision="double"))
-        installed = [peer for peer in PEERS if is_installed(peer.package)]
-        frames: dict[str, Callable[[float], Any]] = {"ours": lambda t, sea=sea: ours_at(sea, t)}
-        frames |= {peer.name: peer.make(sea) for peer in installed}
-        exact = truth(5.0)
-        errors = {name: error(frame(5.0), exact) for name, frame in frames.items()}
-        times = median_times(tuple(map(running, frames.values())), 12 if quick else 60)
-        for name, seconds in zip(frames, times, strict=True):
-            found.append(
-                {
-                    "peer": name,
-                    "size": size,
-                    "ms": seconds * 1e3,
-                    "times as long": seconds / times[0],
-                    "error": errors[name],
-                }
-            )
-        found += [{"peer": f"{p.name} (not installed)", "size": size} for p in PEERS if p not in installed]
-    return found
+    seas = {
+        precision: Sea(size=size, length=500.0, spectrum="phillips", precision=precision) for precision in PRECISIONS
+    }
+    truth = Reference((extended(seas["double"], PEER_TIME),), float(np.finfo(np.longdouble).eps))
+    own = [[OwnRun("frame", f"{name} precision", functools.partial(ours_at, sea))] for name, sea in seas.items()]
+    for (frame,) in own:
+        frame.run()  # plans the transforms
+    return Task(seas["double"], (PEER_TIME,), OwnRuns(own, truth, equal=2.0))
 
 
-def running(frame: Callable[[float], Any]) -> Callable[[], Any]:
-    """A call that computes the frame at a new time each time."""
-    times = iter(range(1, 10**9))
-    return lambda: frame(next(times) / 60.0)
+def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
+    """The ladders of peers; quick: one size."""
+    return peer_ladders("S", (256, 512), PEERS, peer_task, words, quick)
 
 
-def ours_at(sea: Sea, t: float) -> tuple[np.ndarray, ...]:
-    """Height and both displacements, (N, N) [m] each."""
-    surface = sea.surface(t)
+def ours_at(sea: Sea) -> tuple[np.ndarray]:
+    """Height and both displacements (3, N, N) [m] at the peers' time, computed anew."""
+    sea.surface(0.0)  # the sea keeps the fields of the latest time
+    surface = sea.surface(PEER_TIME)
     displacement = surface.displacement
-    return surface.height, displacement[..., 0], displacement[..., 1]
-
-
-def error(frame: Any, exact: np.ndarray) -> float:
-    """Largest difference from the exact fields over the standard deviation of the heights; NaN where not comparable."""
-    if frame is None:
-        return float("nan")
-    return max(float(np.abs(a - b).max()) for a, b in zip(frame, exact, strict=True)) / float(exact[0].std())
+    return (np.stack([surface.height, displacement[..., 0], displacement[..., 1]]),)
 
 
 FRAMES: dict[str, tuple[str, ...]] = {

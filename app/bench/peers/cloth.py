@@ -163,7 +163,7 @@ def warp_gather(net: Net, h: float) -> Run:
     return run
 
 
-PEERS = (
+SCRIPTS = (
     Peer("numpy slices", "numpy", numpy_slices, max_size=MAX_ROWS),
     Peer("jax slices, one loop", "jax", jax_slices, max_size=MAX_ROWS),
     Peer("taichi gather, two threads", "taichi", taichi_gather, max_size=MAX_ROWS),

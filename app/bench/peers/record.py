@@ -15,7 +15,8 @@ class Peer(NamedTuple):
     """A program, and how it is given the task.
 
     make: for ropes and cloths, takes the net and a time step [s] or a relative tolerance, and gives a `Run`; for seas,
-    takes the sea and gives frame(t). What has to be compiled is compiled by the first call, which is timed apart.
+    takes the sea and a precision, and gives frame(t), height and displacements (3, N, N) [m], or None where it draws
+    another sea. What has to be compiled is compiled by the first call, which is timed apart.
     """
 
     name: str
@@ -25,6 +26,7 @@ class Peer(NamedTuple):
     max_size: float = math.inf  # links of a rope, rows of a cloth; larger ones take minutes, or the package gives up
     step: float = 0.0  # [s] its own time step; 0: it takes the step that it is given
     tolerances: tuple[float, ...] = ()  # relative ones of its ladder, where it chooses its steps; a hundredth: absolute
+    precisions: tuple[str, ...] = ()  # of its ladder, where it takes no steps
 
     def reason_left_out(self, size: int) -> str:
         """Why the peer is not timed on a task of this size, or ""."""

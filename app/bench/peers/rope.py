@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from app.bench.peers.record import Peer, Run
 from sim.springs import Net
 
-TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+TOLERANCES = (1e-3, 1e-5, 1e-6, 1e-7, 1e-9)
 
 
 def numbers(net: Net) -> tuple[float, float, float, float, float, float]:

@@ -1,6 +1,7 @@
 """The square sea as a user of another program would write it: height and two displacements at a new time.
 
-A peer's `make(sea)` gives frame(t) -> (3, N, N) [m], or None where it draws another sea and can only be timed.
+A peer's `make(sea, precision)` gives frame(t) -> (3, N, N) [m], or None where it draws another sea and can only be
+timed.
 """
 
 from collections.abc import Callable
@@ -14,13 +15,8 @@ from sim.ocean import Sea
 Frame = Callable[[float], Any]
 
 
-def wave_numbers(sea: Sea) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """i k/|k| of each axis and the frequencies, (N, N), FFT order."""
-    n = np.fft.fftfreq(sea.size, 1.0 / sea.size)
-    kx, ky = np.meshgrid(n, n, indexing="ij")
-    k = np.hypot(kx, ky)
-    k[0, 0] = 1.0
-    return 1j * kx / k, 1j * ky / k, sea.frequencies
+PRECISIONS = ("single", "double")
+TYPES = {"single": (np.float32, np.complex64), "double": (np.float64, np.complex128)}
 
 
 def mirrored(h0: np.ndarray) -> np.ndarray:
@@ -28,36 +24,47 @@ def mirrored(h0: np.ndarray) -> np.ndarray:
     return np.conj(np.roll(h0[::-1, ::-1], 1, axis=(0, 1)))
 
 
-def student(sea: Sea) -> Frame:
-    """Complex double arrays and full inverse transforms: the formulas of the textbook, as a student writes them."""
+def planes(sea: Sea, columns: int, kind: type) -> tuple[np.ndarray, ...]:
+    """h0, conj(h0(-k)), i kx/k and i ky/k in a complex type, and the frequencies in double, (N, columns), FFT order."""
+    n = np.fft.fftfreq(sea.size, 1.0 / sea.size).astype(np.longdouble)
+    kx, ky = np.meshgrid(n, n, indexing="ij")
+    k = np.hypot(kx, ky)
+    k[0, 0] = 1.0
     h0 = sea.amplitudes_at(0.0)
-    other = mirrored(h0)
-    x, y, omega = wave_numbers(sea)
+    spectra = [a[:, :columns].astype(kind) for a in (h0, mirrored(h0), 1j * kx / k, 1j * ky / k)]
+    return (*spectra, sea.frequencies[:, :columns])
+
+
+def extended(sea: Sea, t: float) -> np.ndarray:
+    """The sums in extended precision, where the machine has one."""
+    h0, other, x, y, omega = planes(sea, sea.size, np.clongdouble)
+    turn = np.exp(-1j * (omega.astype(np.longdouble) * t))
+    h = h0 * turn + other * np.conj(turn)
+    return np.stack([np.fft.ifft2(g).real for g in (h, x * h, y * h)]) * h.size
+
+
+def student(sea: Sea, precision: str) -> Frame:
+    """Complex arrays and full inverse transforms: the formulas of the textbook, as a student writes them."""
+    kind = TYPES[precision][1]
+    h0, other, x, y, omega = planes(sea, sea.size, kind)
 
     def frame(t: float) -> np.ndarray:
-        h = h0 * np.exp(-1j * omega * t) + other * np.exp(1j * omega * t)
+        turn = np.exp(-1j * (omega * t)).astype(kind)
+        h = h0 * turn + other * np.conj(turn)
         return np.stack([np.fft.ifft2(g).real for g in (h, x * h, y * h)]) * h.size
 
     return frame
 
 
-def halves(sea: Sea) -> tuple[np.ndarray, ...]:
-    """Half planes in single precision: h0, conj(h0(-k)), i kx/k, i ky/k; and the frequencies in double."""
-    h0 = sea.amplitudes_at(0.0)
-    half = sea.size // 2 + 1
-    x, y, omega = wave_numbers(sea)
-    single = [a[:, :half].astype(np.complex64) for a in (h0, mirrored(h0), x, y)]
-    return (*single, omega[:, :half])
-
-
-def scipy_half(sea: Sea) -> Frame:
-    """scipy.fft on single-precision half planes, one worker."""
+def scipy_half(sea: Sea, precision: str) -> Frame:
+    """scipy.fft on half planes, one worker."""
     from scipy import fft  # type: ignore[import-not-found]
 
-    h0, other, x, y, omega = halves(sea)
+    kind = TYPES[precision][1]
+    h0, other, x, y, omega = planes(sea, sea.size // 2 + 1, kind)
 
     def frame(t: float) -> np.ndarray:
-        turn = np.exp(-1j * (omega * t)).astype(np.complex64)
+        turn = np.exp(-1j * (omega * t)).astype(kind)
         h = h0 * turn + other * np.conj(turn)
         fields = (fft.irfft2(g, s=(sea.size, sea.size), norm="forward") for g in (h, x * h, y * h))
         return np.stack([np.asarray(field) for field in fields])
@@ -65,28 +72,30 @@ def scipy_half(sea: Sea) -> Frame:
     return frame
 
 
-def jax_half(sea: Sea) -> Frame:
-    """jax, compiled, single precision."""
+def jax_half(sea: Sea, precision: str) -> Frame:
+    """jax on half planes, compiled."""
     import jax  # type: ignore[import-not-found]
+
+    jax.config.update("jax_enable_x64", True)
     import jax.numpy as jnp  # type: ignore[import-not-found]
 
-    h0, other, x, y, omega = (jnp.asarray(a) for a in halves(sea))
+    real, kind = TYPES[precision]
+    *spectra, omega = planes(sea, sea.size // 2 + 1, kind)
+    h0, other, x, y = (jnp.asarray(a) for a in spectra)
 
     @jax.jit
     def fields(phase):
-        turn = jnp.exp(-1j * phase).astype(jnp.complex64)
+        turn = jnp.exp(-1j * phase).astype(kind)
         h = h0 * turn + other * jnp.conj(turn)
         return jnp.stack([jnp.fft.irfft2(g, s=(sea.size, sea.size), norm="forward") for g in (h, x * h, y * h)])
 
-    turns = np.asarray(omega, dtype=np.float64)
-
     def frame(t: float) -> np.ndarray:
-        return np.asarray(fields(jnp.asarray(np.mod(turns * t, 2 * np.pi).astype(np.float32))))
+        return np.asarray(fields(jnp.asarray(np.mod(omega * t, 2 * np.pi).astype(real))))
 
     return frame
 
 
-def blender(sea: Sea) -> Frame:
+def blender(sea: Sea, _: str) -> Frame:
     """Blender's Ocean modifier of as many points, evaluated and read back. Another sea: timed only."""
     import bpy  # type: ignore[import-not-found]
 
@@ -113,8 +122,8 @@ def blender(sea: Sea) -> Frame:
 
 
 PEERS = (
-    Peer("numpy complex128, ifft2", "numpy", student),
-    Peer("scipy.fft single, half plane", "scipy", scipy_half),
-    Peer("jax single, half plane", "jax", jax_half),
-    Peer("Blender Ocean modifier", "bpy", blender),
+    Peer("numpy ifft2", "numpy", student, precisions=PRECISIONS),
+    Peer("scipy.fft half plane", "scipy", scipy_half, precisions=PRECISIONS),
+    Peer("jax half plane", "jax", jax_half, precisions=PRECISIONS),
+    Peer("Blender Ocean modifier", "bpy", blender, precisions=("its own",)),
 )

@@ -13,7 +13,7 @@ from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, steps_for
 
-FIXED_STEP_METHODS = ("symplectic_euler", "leapfrog_lagged", "leapfrog", "rk4", "dop853")
+FIXED_STEP_METHODS = ("symplectic_euler", "leapfrog_lagged", "leapfrog", "rk4", "dop853", "rkn8")
 STEP_LADDER = (0.95, 0.8, 0.6, 0.4, 0.3, 0.2, 0.1, 0.05, 0.025, 0.0125)  # time steps over the critical step
 ADAPTIVE_METHODS = ("dopri5", "dop853", "rkn8")
 TOLERANCES = tuple(10.0 ** (-0.5 * i) for i in range(8, 23))  # rtol; atol is a hundredth of it

@@ -247,8 +247,11 @@ class FloatingBodies:
         fleet = self.fleet
         offset = self.home - fleet.position[:, :2]
         distance = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), 1e-9)
-        direction = offset / distance[:, None]
         stretch = distance - MOORING_SLACK * self.size
+        if not (stretch > 0.0).any():
+            fleet.mooring[:] = 0.0
+            return
+        direction = offset / distance[:, None]
         rate = math.sqrt(MOORING_STIFFNESS * GRAVITY / self.size)  # [rad/s] of the body on its line, without added mass
         lengthening = -(fleet.velocity[:, :2] * direction).sum(axis=1)
         tension = rate * rate * stretch + 2.0 * MOORING_DAMPING * rate * lengthening  # [m/s2], of the mass

@@ -83,6 +83,8 @@ def test_labels_are_dark_in_dark_mode_and_light_again(
 ) -> None:
     lab, _ = one_page
     tab = open_tab(lab.port, drawn="vAlpha")  # of the shaders of labels
+    # viser's note on drawing in software lies over the labels.
+    tab.page.add_style_tag(content="[class*=Notif] { display: none !important }")
     tab.follow(lab, SCENE, check_record(Params, {"plot_errors": False, "plot_energies": False}))
 
     def brightness() -> float:

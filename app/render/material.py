@@ -19,7 +19,7 @@ WATER_UNIFORMS = (
     "deepColor", "scatterColor", "foamColor", "sunDirection", "sunLight", "optics", "lens", "ripple", "skyline",
     "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "extent", "wireColor", "slick", "slickOptics",
     "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection", "rainRings", "rainVeil",
-    "firePlace", "fireLight",
+    "firePlace", "fireLight", "gaugePlace",
 )  # fmt: skip
 MAX_WATERLINES = 13  # that the shader of the water mirrors, and draws foam and shade around
 # The same for the shader of the rain, `js/rain.js`.
@@ -112,6 +112,8 @@ class Material:
 
     fire_place: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m] of a fire that lights the sea
     fire_light: RGB = (0.0, 0.0, 0.0)  # its radiant intensity, linear, in units of the sun's irradiance times m2
+    # x, y [m] around which the waves drawn are those of the tile, and 1, or 0 where there is no such place.
+    gauge_place: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     wireframe: bool = False  # draw the grid of the mesh
     wire_color: RGB = (0.95, 0.55, 0.1)
@@ -199,6 +201,7 @@ def uniform_table(
         "oilExtinction": EXTINCTION,
         "firePlace": m.fire_place,
         "fireLight": m.fire_light,
+        "gaugePlace": m.gauge_place,
         "rainRings": m.rain_rings,
         "rainVeil": (m.rain_extinction, RAIN_HEIGHT, 0.0),
         "cutout": nothing if cutout is None else (*cutout.centre, cutout.half_width),

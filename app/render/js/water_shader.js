@@ -14,11 +14,14 @@ const WATER_GLSL = {
     uniform highp sampler2D waveSlopes; // slope x, slope y, foam, sum of the squares of the slopes
     uniform vec3 grid; // rows and columns of vertices (0: no grid), side of a tile or radius of the mesh [m]
     uniform vec3 extent; // tiles along a side, whether the sky is drawn, whether the wireframe is
+    uniform vec3 gaugePlace; // x, y [m] around which the sea is the tile however far it is, and whether there is such a place
     const float PIECE = 0.7; // side of the triangles that pieces are blended on, in sides of the tile
 
-    // Share of the sea at x that is made of pieces: 0 up to half a tile from the eye, 1 beyond a tile.
+    // Share of the sea at x that is made of pieces: 0 up to half a tile from the eye and near the wave gauge, 1 beyond a
+    // tile.
     float pieceShare(vec2 x, vec3 eye) {
-      return extent.x > 1.0 ? smoothstep(0.5, 1.0, distance(vec3(x, 0.0), eye) / grid.z) : 0.0;
+      float near = gaugePlace.z * (1.0 - smoothstep(0.1, 0.4, distance(x, gaugePlace.xy) / grid.z));
+      return extent.x > 1.0 ? (1.0 - near) * smoothstep(0.5, 1.0, distance(vec3(x, 0.0), eye) / grid.z) : 0.0;
     }
 
     // The corners of the triangle around x, and its weight at each; a piece belongs to each corner.

@@ -28,6 +28,7 @@ RULER_PLACE, OIL_PLACE, DRAFT_PLACE = -0.8, 0.3, 0.42  # along the far wall, in 
 LABEL_OFFSET = 0.06  # [m] that ruler and labels stand before the wall
 RULER_COLOUR, DRAFT_COLOUR = (235, 246, 250), (255, 236, 140)
 LABEL_SCALE = 1.1  # of a label, over viser's own size
+LINE_HEIGHT = 0.13  # [m] at size 1 that a label needs in a window of 480 pixels
 LABEL_STEP = 0.02  # [m] by which ruler and labels move at least: each move is a message of its own
 LABEL_INTERVAL = 0.2  # [s] between two texts of a label while the sea moves: faster ones cannot be read
 
@@ -144,7 +145,9 @@ class Walls:
         }
         if keel is not None and is_wet:
             texts["draft"] = f"lowest point {surface - keel:.2f} m deep"
-            places["draft"] = self.on_wall(DRAFT_PLACE + 0.03, 0.35 * surface + 0.65 * keel)
+            # Below the arrow, and so far below the label of the oil that lines of text have room in a small window.
+            below = min(keel, places["oil"][2] - LINE_HEIGHT * self.size) - LINE_HEIGHT * self.size
+            places["draft"] = self.on_wall(DRAFT_PLACE + 0.03, below)
         for part, label in self.labels.items():
             if label.visible != shown[part]:
                 label.visible = shown[part]

@@ -160,6 +160,7 @@ class View:
             ripple_direction=math.radians(p.wind_direction),
             gravity=g,
             foam_scale=max(FOAM_CELLS * cell, 0.4),
+            gauge_place=(0.0, 0.0, 0.0) if frame.gauge is None else (*frame.gauge[:2], 1.0),
             wireframe=p.grid,
         )
 

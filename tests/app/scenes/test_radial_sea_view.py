@@ -38,7 +38,9 @@ def test_the_labels_of_the_window_say_what_is_there(server: viser.ViserServer) -
     assert walls.labels["oil"].text == "oil, 866 kg/m³, 0.3 m"
     assert walls.labels["draft"].text == f"lowest point {-keel:.2f} m deep"
     assert walls.labels["water"].text.startswith("water, ")
-    assert walls.labels["oil"].position[2] == pytest.approx(-0.15, abs=0.01)
+    heights = [walls.labels[part].position[2] for part in ("oil", "draft", "water")]
+    assert heights[0] == pytest.approx(-0.15, abs=0.01)
+    assert -np.diff(heights) == pytest.approx(np.array([0.5, 1.0]), abs=0.2)  # no line is over another
     arrow = walls.arrow.points[0]
     assert arrow[:, 2] == pytest.approx([0.0, keel], abs=0.01)
     # They stand before the wall, at ticks of their own heights, and move along with it.

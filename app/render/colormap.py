@@ -53,13 +53,13 @@ def set_tube_colours(tension, samples, full, anchors, sides, rgb):
                 rgb[rings * sides + 1, e] = shade
 
 
-def lifted(colours: NDArray[np.floating]) -> NDArray[np.float64]:
+def lifted(colours: NDArray[np.floating], lift: float = DARK_LIFT) -> NDArray[np.float64]:
     """sRGB colours (n, 3) in 0..255 as they are drawn on a dark floor: brighter, the more the darker they are.
 
-    `js/dark.js` does the same to colours of vertices.
+    lift: share of white that black gets. `js/dark.js` does the same to colours of vertices.
     """
     dark = 1.0 - colours @ np.array(LUMA) / 255.0
-    return colours + DARK_LIFT * dark[:, None] * (255.0 - colours)
+    return colours + lift * dark[:, None] * (255.0 - colours)
 
 
 def css_scale(*, dark: bool) -> str:

@@ -10,7 +10,7 @@ import viser
 
 from app.messages import Snapshot, Vector
 from app.render.cameras import all_cameras
-from app.render.colormap import rgb
+from app.render.colormap import lifted, rgb
 from app.render.dragging import drag
 from app.render.injection import injector_of
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
@@ -23,7 +23,7 @@ from app.scenes.race.html import results_table
 from app.scenes.race.parameters import Params
 from app.scenes.race.scene import RaceFrame
 from app.scenes.springs.html import step_mark
-from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS
+from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
 from app.scenes.springs.view import RopeSurroundings
 
 RING_COUNT = 90  # rings of a drawn tube, about
@@ -33,7 +33,7 @@ REFERENCE_RADIUS = 0.9 * TUBE_RADIUS  # [m], so that a rope without error hides 
 REFERENCE_COLOUR = (70, 76, 88)
 REFERENCE_OPACITY = 0.4
 COLOUR_SCALE = 0.6  # of a colour's numbers, so that a rope lit from all sides has the colour it has in the charts
-DARK_COLOUR_SCALE = 1.0  # the same on a dark floor, where dark blue would hardly be seen
+DARK_LIFT = 0.15  # share of white that a black rope would get on a dark floor, where dark blue would hardly be seen
 FAILED_OPACITY = 0.35  # of a rope that has stopped
 LABEL_SCALE = 1.6  # of a label, over viser's own size: letters 14 pixels high
 LABEL_HEIGHT = 0.19  # [m] from a root to its label, and between the heights of two labels, so that they do not overlap
@@ -42,8 +42,10 @@ BEARING = math.cos(0.22), math.sin(0.22)  # of the first view: from the front, a
 ELEVATION = 0.05  # [rad] of the first view
 NEAR = 1.0  # [m] from the camera, where the picture begins: nearer, and depth is too coarse for ropes that far away
 VISER_NEAR = 0.01  # [m] the same in every other scene
-SHOWN_SWING = 0.8  # share of the length of a rope to either side that the first view shows
-SHOWN_FALL = 1.45  # lengths of a rope below its root that the first view shows
+SHOWN_SWING = 1.0  # share of the length of a rope to either side that the first view shows: where it starts, level
+PULL_OF_FALL = 3.0  # of a rope that falls and swings, over its weight: stretches it by as much as the first view shows
+MAX_STRETCH = 3.0  # [m] that the first view shows
+BELOW_FLOOR = 0.15  # [m] below a floor that the first view shows: a rope sinks into it, and has a radius
 SHOWN_ASPECT = 1.25  # width over height of what the first view shows at least (`js/camera.js`)
 
 RaceSnapshot: TypeAlias = Snapshot[Params, RaceFrame, RaceReadings]
@@ -51,8 +53,8 @@ RaceSnapshot: TypeAlias = Snapshot[Params, RaceFrame, RaceReadings]
 
 def material_colour(index: int, *, dark: bool = False) -> tuple[int, int, int]:
     """The colour of a rope's material; dark: on a dark floor."""
-    scale = DARK_COLOUR_SCALE if dark else COLOUR_SCALE
-    red, green, blue = (round(scale * part) for part in rgb(PALETTE[index]))
+    colour = np.array([rgb(PALETTE[index])], float)
+    red, green, blue = np.rint(lifted(colour, DARK_LIFT) if dark else COLOUR_SCALE * colour)[0].astype(int).tolist()
     return red, green, blue
 
 
@@ -202,7 +204,14 @@ class View:
         """Position and target [m] of a camera that has not been moved: all ropes, as far as they swing, and labels."""
         depth, labels = (params.ropes - 1) * params.spacing, (params.ropes + 2) * LABEL_HEIGHT
         across = BEARING[0] * 2.0 * params.length * SHOWN_SWING + BEARING[1] * depth
-        height = max(params.length * SHOWN_FALL + labels, across / SHOWN_ASPECT)
+        net = build_rope(params, ROOT)  # of rope 1, the softest
+        n = net.shape[1] - 1
+        stretch = 0.5 * n * (n + 1) * net.mass * abs(net.gravity[2]) / net.families[0].stiffness  # as it hangs
+        fall = params.length + min(PULL_OF_FALL * stretch, MAX_STRETCH)
+        if params.floor:
+            fall = min(fall, ROOT[2] + BELOW_FLOOR)
+        fall += 0.5 * depth * ELEVATION  # the nearest rope is drawn lower
+        height = max(fall + labels, across / SHOWN_ASPECT)
         distance = 0.5 * height / math.tan(0.5 * self.FIELD_OF_VIEW) + 0.5 * BEARING[0] * depth
         x, y, z = target = 0.0, 0.0, ROOT[2] + labels - 0.5 * height
         flat = distance * math.cos(ELEVATION)

@@ -23,9 +23,9 @@ def contrast(a: np.ndarray, b: np.ndarray) -> float:
 
 @pytest.mark.parametrize("behind", [DARK.plane_color, DARK_SKY.bottom])
 def test_every_colour_of_the_scale_and_of_the_race_stands_out_from_a_dark_floor(behind: tuple[int, int, int]) -> None:
-    """3 is WCAG's for what is no text; a rope of the race, which has the colour of its curve, is lit from above too."""
-    assert min(contrast(colour, behind) for colour in lifted(ANCHORS)) > 3.0
-    assert min(contrast(np.array(material_colour(i, dark=True)), behind) for i in range(6)) > 2.5
+    """3 is WCAG's for what is no text."""
+    ropes = [np.array(material_colour(i, dark=True)) for i in range(6)]
+    assert min(contrast(colour, behind) for colour in (*lifted(ANCHORS), *ropes)) > 3.0
 
 
 def test_the_scale_on_a_dark_floor_still_rises() -> None:

@@ -92,6 +92,7 @@ def test_every_number_that_is_typed_is_taken_or_refused(scene: str, one_page: tu
     for control in panel.controls.values():
         control.changed = lambda name, value: (taken.append((name, value)), change(name, value))[1]
     notations = itertools.cycle(range(5))
+    shown = declared.keys() - kind.hidden(panel.params)
     for name, parameter in declared.items():
         for value in numbers_for(parameter, rng):
             if name in kind.hidden(panel.params):
@@ -100,7 +101,7 @@ def test_every_number_that_is_typed_is_taken_or_refused(scene: str, one_page: tu
             typed += 1
             taken.clear()
             check_one(lab, tab, name, parameter, text, said, taken, rng.choice(KEY_TIMES))
-    assert typed > 0.5 * VALUES * len(declared)
+    assert typed > 0.8 * VALUES * len(shown)  # a number may hide others: no rain has no size of drops
 
 
 def check_one(

@@ -79,8 +79,8 @@ def test_a_command_has_its_sub_command_and_options(named):
             assert value.partition("=")[0] in parameters_of(scene_named(words[1]).params)
     if command == "bench":
         cases = {path.stem for path in (ROOT / "app" / "bench" / "cases").glob("*.py")}
-        out = words.index("--out") if "--out" in words else len(words)
-        assert {word for word in words[1:out] if word.islower() and not word.startswith("-")} <= cases
+        values = min((words.index(option) for option in ("--out", "--peers") if option in words), default=len(words))
+        assert {word for word in words[1:values] if word.islower() and not word.startswith("-")} <= cases
 
 
 def test_the_readme_is_short_and_has_its_two_commands():

@@ -101,7 +101,7 @@ def compared(peer: Peer, task: Task, quick: bool) -> Rows:
             }
         row |= {"turns": len(peer_times), "load": os.getloadavg()[0], "date": datetime.date.today().isoformat()}
         if 2.0 * statistics.median(peer_times) > MAX_RUN_TIME:
-            left = left[1:] if peer.tolerances else []
+            left = (left if quick else left[1:]) if peer.tolerances else []
     return table
 
 
@@ -219,15 +219,18 @@ def figure(rows: Rows, title: str) -> Any:
     drawn = Figure(figsize=(8.0, 5.6), layout="constrained")
     drawn.suptitle(f"{title}: the ladders of other programs, and our quickest run at each of their errors")
     axes = drawn.subplots()
+    colours = [colour for colour in PALETTE if colour != "#000000"]  # black is ours
     for index, ((peer,), own) in enumerate(of_each(rows, "peer")):
         axes.loglog(
             [row["peer [ms]"] for row in own], [last_error(row) for row in own], label=peer,
-            color=PALETTE[index % 8], marker=MARKERS[index % 13], markersize=5, linestyle="-" if index < 8 else "--",
+            color=colours[index % 7], marker=MARKERS[index % 13], markersize=5, linestyle="-" if index < 7 else "--",
         )  # fmt: skip
-    for (damping,), own in of_each([row for row in rows if RATIO in row], "damping"):
+    dampings = list(of_each([row for row in rows if RATIO in row], "damping"))
+    for (damping,), own in dampings:
         ours = sorted({(row["ours [ms]"], row["our error at the end [m]"]) for row in own})
         axes.loglog(
-            *zip(*ours, strict=True), label=f"Springtide, {damping} damping", color="black", linestyle="none",
+            *zip(*ours, strict=True), label=f"Springtide, {damping} damping" if len(dampings) > 1 else "Springtide",
+            color="black", linestyle="none",
             marker="o" if damping == "isotropic" else "x", markersize=6,
         )  # fmt: skip
     axes.set_xlabel("run time, median of repeats [ms]")

@@ -87,7 +87,8 @@ class Fire:
 
 def share_left(along: NDArray[np.float32]) -> NDArray[np.float32]:
     """Share of the parcels that live longer than this share of the longest life, (n,)."""
-    return 1.0 - np.sqrt(np.clip((LONGEST_LIFE * along - LEAST_LIFE) / LIFE_RANGE, 0.0, 1.0))
+    late = np.clip((LONGEST_LIFE * along - LEAST_LIFE) / LIFE_RANGE, 0.0, 1.0)
+    return (1.0 - np.sqrt(late)).astype(np.float32)
 
 
 @kernel(noalias=True)

@@ -186,6 +186,13 @@ function chooseLevels(sea, camera) {
   }
 }
 
+// Until a sea's programs are compiled, and where its mesh is made anew, the photograph behind it would show its land. The
+// page's own sky is seen there instead. Without the shader the photograph is the sky.
+function showPhotograph(scene, shown) {
+  if (!shown && scene.background) [scene.userData.photograph, scene.background] = [scene.background, null];
+  if (shown && !scene.background) scene.background = scene.userData.photograph || null;
+}
+
 shaders.push({
   suffix: "/water_material",
   removeUnused() {
@@ -195,7 +202,8 @@ shaders.push({
       seas.delete(base);
     }
   },
-  update({ base, mesh, data, renderer, camera }) {
+  update({ base, mesh, data, renderer, scene, camera }) {
+    showPhotograph(scene, false);
     const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
     if (!surface || !rest) return null;
     let sea = seas.get(base);
@@ -231,6 +239,7 @@ shaders.push({
     if (!replaceShader(mesh.material, keyWithDetails(`springtide-water${base}`), edit)) {
       disposeSea(sea);
       delete mesh.geometry.computeVertexNormals;
+      showPhotograph(scene, true);
       return null;
     }
     for (const { geometry } of sea.levels) {

@@ -44,9 +44,8 @@ class RadialFrame(NamedTuple):
     rotations: NDArray[np.float32]  # (bodies, 4) quaternions (w, x, y, z)
     stains: NDArray[np.float32]  # (bodies,) [m] above the lowest point of each to which oil has wetted it
     pulls: tuple[tuple[Vector, Vector], ...]  # from each held body to where it is pulled [m]
-    fire: (
-        tuple[NDArray[np.float32], NDArray[np.float32]] | None
-    )  # (3, n) [m], (4, n) heat, age over life, radius of the plume [m], age over the longest life
+    # (3, n) [m]; (4, n) heat, age over life, radius of the plume [m], age over the longest life
+    fire: tuple[NDArray[np.float32], NDArray[np.float32]] | None
     jet: JetParcels | None  # in the air
     column: FluidColumn
     age: float  # [s] for which the waves have run under the oil

@@ -694,7 +694,8 @@ def parcels_of(fire: Fire) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
 def flying_parcels(jet: Jet) -> JetParcels:
     """The parcels of a jet that are in the air."""
     number = np.flatnonzero(jet.flying)
-    return JetParcels(*(a[:, number].T.astype(np.float32) for a in (jet.position, jet.velocity)), number)
+    position, velocity = (a[:, number].T.astype(np.float32) for a in (jet.position, jet.velocity))
+    return JetParcels(position, velocity, number)
 
 
 SCENE = SceneKind(

@@ -93,11 +93,11 @@ def test_labels_are_dark_in_dark_mode_and_light_again(
         picture = tab.page.screenshot(clip={"x": x + 4, "y": y - 16, "width": 60, "height": 12})
         return float(np.median(np.asarray(Image.open(io.BytesIO(picture)).convert("L"))))
 
-    tab.wait(lambda: len(tab.vertices("/race/rope_1")) > 0 and brightness() > 180)
+    tab.wait(lambda: len(tab.vertices("/race/rope_1")) > 0 and brightness() > 150)
     tab.page.emulate_media(color_scheme="dark")
     try:
         tab.wait(lambda: brightness() < 90)
     finally:
         tab.page.emulate_media(color_scheme="light")
-    tab.wait(lambda: brightness() > 180)
+    tab.wait(lambda: brightness() > 150)
     assert tab.errors == []

@@ -17,7 +17,7 @@ from tests.examples import section
 MAX_README_LINES = 150
 README_COMMANDS = (
     "python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/springtide",
-    "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/python -m pytest -n 3",
+    "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/python -m pytest -n 2",
 )
 OF_ONE_MACHINE = ("/work/", "/tmp/", "/home/", "/root/", "pypi.org", "pythonhosted", "npmjs", "conda.io")
 # Added by the examples of docs/contributing.md, to a copy.

@@ -23,6 +23,9 @@ from tests.browser.test_water import wait
 N, LENGTH = 64, 256.0  # points and metres along a side of the tile
 WIDTH = 160  # [pixels] of the square picture
 FIELD_OF_VIEW = 0.65  # [rad]
+HIDDEN = (
+    ".mantine-Paper-root, [class*=Notif], #springtide-slow { display: none !important }"  # they lie over the picture
+)
 SHORT_TILE = 16  # [pixels]
 TIME = 7.0  # [s]
 RED = Material(deep_color=(0.6, 0.1, 0.1), scatter_color=(0.6, 0.1, 0.1), reflection_factor=0.0, draw_sky=False)
@@ -63,7 +66,7 @@ class Picture:
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.goto(f"http://127.0.0.1:{self.server.get_port()}/?hideViserLogo&fixedDpr=1")
         assert wait(self.page, lambda: self.water.has_shader is True)
-        self.page.add_style_tag(content=".mantine-Paper-root, [class*=Notif] { display: none !important }")
+        self.page.add_style_tag(content=HIDDEN)
 
     def from_height(self, height: float) -> np.ndarray:
         """(WIDTH, WIDTH) brightness, 0 to 255, seen from above the corner of four tiles; rows along x."""

@@ -23,9 +23,8 @@ from tests.browser.test_water import wait
 N, LENGTH = 64, 256.0  # points and metres along a side of the tile
 WIDTH = 160  # [pixels] of the square picture
 FIELD_OF_VIEW = 0.65  # [rad]
-HIDDEN = (
-    ".mantine-Paper-root, [class*=Notif], #springtide-slow { display: none !important }"  # they lie over the picture
-)
+# What lies over the picture.
+HIDDEN = ".mantine-Paper-root, [class*=Notif], #springtide-slow { display: none !important }"
 SHORT_TILE = 16  # [pixels]
 TIME = 7.0  # [s]
 RED = Material(deep_color=(0.6, 0.1, 0.1), scatter_color=(0.6, 0.1, 0.1), reflection_factor=0.0, draw_sky=False)

@@ -1,6 +1,7 @@
 """In a real Chromium: the square sea, from near and from far, shows no border of its tile, nor does it repeat.
 
-Foam, materials and colours reach the pixels. The tests share one page, as its programs take a core ten seconds.
+Foam, materials and colours reach the pixels. The tests share one page, as its programs take a core ten seconds; each
+leaves the sea as it was, as they run in any order.
 """
 
 import dataclasses
@@ -56,9 +57,9 @@ class Picture:
         self.seen: dict[float, np.ndarray] = {}  # brightness by height
         self.server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
         self.server.initial_camera.fov = FIELD_OF_VIEW
-        material = dataclasses.replace(set_sky(self.server, "park"), haze_distance=1e6, sun_disc=0.0, clouds=0.0)
-        self.water = Water(self.server, "/sea", N, N, LENGTH, tiles=5, material=material)
-        self.water.set_surface(*waves(seed), TIME)
+        sky = set_sky(self.server, "park")
+        self.material = dataclasses.replace(sky, haze_distance=1e6, sun_disc=0.0, clouds=0.0)
+        self.put_sea(seed)
         self.page = new_page(chromium, WIDTH, WIDTH, drawn=True)
         self.errors: list[str] = []
         self.page.on("console", lambda line: self.errors.append(line.text) if line.type == "error" else None)
@@ -66,6 +67,11 @@ class Picture:
         self.page.goto(f"http://127.0.0.1:{self.server.get_port()}/?hideViserLogo&fixedDpr=1")
         assert wait(self.page, lambda: self.water.has_shader is True)
         self.page.add_style_tag(content=HIDDEN)
+
+    def put_sea(self, seed: int = 1) -> None:
+        """Draw the waves of this seed."""
+        self.water = Water(self.server, "/sea", N, N, LENGTH, tiles=5, material=self.material)
+        self.water.set_surface(*waves(seed), TIME)
 
     def from_height(self, height: float) -> np.ndarray:
         """(WIDTH, WIDTH) brightness, 0 to 255, seen from above the corner of four tiles; rows along x."""
@@ -150,7 +156,7 @@ def test_the_same_seed_gives_the_same_picture(chromium: Any, picture: Picture) -
 
 
 def test_foam_another_material_and_another_size_reach_the_pixels(picture: Picture) -> None:
-    """It takes the sea away."""
+    """It puts another sea in its place, and then that of the other tests again."""
     server, water, page = picture.server, picture.water, picture.page
     vertices, slopes, foam = waves(1)
 
@@ -171,11 +177,10 @@ def test_foam_another_material_and_another_size_reach_the_pixels(picture: Pictur
     show(0.0 * foam)
     assert wait(page, lambda: brightness() < before + 10.0)
 
-    blue = water._material
     water.set_material(RED)  # without a new script
     server.flush()
     assert wait(page, lambda: picture.redness() > 20.0)
-    water.set_material(blue)
+    water.set_material(picture.material)
     server.flush()
     assert wait(page, lambda: picture.redness() < 0.0)
 
@@ -185,12 +190,17 @@ def test_foam_another_material_and_another_size_reach_the_pixels(picture: Pictur
         water.set_surface(*(field[::2, ::2] for field in (vertices, slopes, foam)), TIME)
     server.flush()
     assert wait(page, lambda: picture.redness() > 20.0)
-    water.remove()
     assert picture.errors == []  # all programs were linked, that of the sky too
+
+    water.remove()
+    picture.put_sea()
+    assert wait(page, lambda: picture.water.has_shader is True and picture.redness() < 0.0)
 
 
 def test_colours_reach_the_vertices_of_a_streaming_mesh(picture: Picture) -> None:
-    corners = LENGTH * np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]], float)
+    """It lies over the sea."""
+    picture.rise_to(20.0)
+    corners = LENGTH * np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]]) + np.array([0.0, 0.0, 10.0])
     faces = np.array([[0, 1, 2], [0, 2, 3]])
     red = np.tile([0.5, 0.0, 0.0], (4, 1))
     coloured = ColouredMesh(picture.server, "/quad", corners, faces, red, columns=2, step=1e-3, color=(0, 0, 255))
@@ -205,4 +215,5 @@ def test_colours_reach_the_vertices_of_a_streaming_mesh(picture: Picture) -> Non
         coloured.set(vertices=corners + np.array([0.0, 0.0, 1.0]), colors=np.tile([0.0, 0.5, 0.0], (4, 1)))
     picture.server.flush()
     assert wait(picture.page, lambda: excess(1, 0) > 40)
+    coloured.remove()
     assert picture.errors == []

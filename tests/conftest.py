@@ -11,18 +11,32 @@ import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread, as
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Everything in tests/browser needs a browser, and has a second try, since a page drawn in software can be late.
 
-    Of several processes (`-n`), one runs all tests with a browser, since two browsers would slow each other down. They
-    begin first, as no other group takes as long. The tests of another file share their fixtures in one process. The
-    longest file comes next, so that the last groups are short, and no process ends long before the others.
+    These tests begin first, as no other group takes as long. The longest file comes next, so that the last groups are
+    short, and no process ends long before the others.
     """
     for item in items:
         if "/tests/browser/" in item.path.as_posix():
             item.add_marker(pytest.mark.browser)
-        browser = item.get_closest_marker("browser") is not None
-        if browser:
+        if item.get_closest_marker("browser") is not None:
             item.add_marker(pytest.mark.flaky(reruns=1))
-        item.add_marker(pytest.mark.xdist_group("browser" if browser else item.path.as_posix()))
     items.sort(key=lambda item: (item.get_closest_marker("browser") is None, item.path.name != "test_extension.py"))
+
+
+@pytest.hookimpl(optionalhook=True)  # of pytest-xdist, which is asked for with `-n`
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Of several processes, one runs tests/browser, since two browsers would slow each other down.
+
+    The tests of another file share their fixtures in one process. Marks of groups would say the same, but pytest-xdist
+    3.8 does not see them with pytest 9.2 (its issue 1386).
+    """
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Groups(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = nodeid.split("::")[0]
+            return "browser" if file.startswith("tests/browser/") else file
+
+    return Groups(config, log)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -10,7 +10,7 @@ from app.scenes.race.parameters import PRESETS, Params
 from app.scenes.springs.rope_parameters import ROOT
 from app.server.viewer import Viewer
 from sim.parameters import check_record
-from tests.browser.conftest import Tab
+from tests.browser.conftest import NO_NOTES, Tab
 
 SCENE = "race"
 CHARTS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({chart}) => ({
@@ -83,8 +83,7 @@ def test_labels_are_dark_in_dark_mode_and_light_again(
 ) -> None:
     lab, _ = one_page
     tab = open_tab(lab.port, drawn="vAlpha")  # of the shaders of labels
-    # viser's note on drawing in software lies over the labels.
-    tab.page.add_style_tag(content="[class*=Notif] { display: none !important }")
+    tab.page.add_style_tag(content=NO_NOTES)
     tab.follow(lab, SCENE, check_record(Params, {"plot_errors": False, "plot_energies": False}))
 
     def brightness() -> float:

@@ -16,10 +16,11 @@ from PIL import Image
 from app.render.injection import injector_of
 from app.render.skies import set_sky
 from app.render.water import Water
-from tests.browser.conftest import new_page, vertices_of
+from tests.browser.conftest import NO_NOTES, new_page, vertices_of
 
 SIZE = 32
 LENGTH = 64.0  # [m]
+PANEL_HIDDEN = ".mantine-Paper-root { display: none !important }"
 
 
 @pytest.fixture
@@ -53,7 +54,7 @@ def wait(page, condition, seconds: float = 60.0) -> bool:
 
 def pixels(page) -> np.ndarray:
     """What the canvas shows, (height, width, 3), 0..255."""
-    page.add_style_tag(content=".mantine-Paper-root, [class*=Notif] { display: none !important }")
+    page.add_style_tag(content=NO_NOTES + PANEL_HIDDEN)
     return np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(float)
 
 

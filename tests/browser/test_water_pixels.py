@@ -18,14 +18,12 @@ from app.render.coloured_mesh import ColouredMesh
 from app.render.material import Material
 from app.render.skies import set_sky
 from app.render.water import Water
-from tests.browser.conftest import new_page
-from tests.browser.test_water import wait
+from tests.browser.conftest import NO_NOTES, new_page
+from tests.browser.test_water import PANEL_HIDDEN, wait
 
 N, LENGTH = 64, 256.0  # points and metres along a side of the tile
 WIDTH = 160  # [pixels] of the square picture
 FIELD_OF_VIEW = 0.65  # [rad]
-# What lies over the picture.
-HIDDEN = ".mantine-Paper-root, [class*=Notif], #springtide-slow { display: none !important }"
 SHORT_TILE = 16  # [pixels]
 TIME = 7.0  # [s]
 RED = Material(deep_color=(0.6, 0.1, 0.1), scatter_color=(0.6, 0.1, 0.1), reflection_factor=0.0, draw_sky=False)
@@ -66,7 +64,7 @@ class Picture:
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.goto(f"http://127.0.0.1:{self.server.get_port()}/?hideViserLogo&fixedDpr=1")
         assert wait(self.page, lambda: self.water.has_shader is True)
-        self.page.add_style_tag(content=HIDDEN)
+        self.page.add_style_tag(content=NO_NOTES + PANEL_HIDDEN)
 
     def put_sea(self, seed: int = 1) -> None:
         """Draw the waves of this seed."""

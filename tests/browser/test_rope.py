@@ -17,7 +17,7 @@ def watching(viewer: Viewer) -> bool:
 
 
 def test_the_rope_is_drawn_and_swings_without_console_errors(lab: Viewer, open_tab) -> None:
-    tab = open_tab(lab.port, drawn=True)
+    tab = open_tab(lab.port, width=420, height=260, drawn=True)
     tab.wait(lambda: len(tab.vertices("/rope")) > 0)
     first = tab.vertices("/rope")
     tab.wait(lambda: np.abs(tab.vertices("/rope") - first).max() > 0.2)
@@ -99,6 +99,8 @@ def test_keys_play_pause_and_load_presets(shown: tuple[Viewer, Tab]) -> None:
 def test_an_explosion_pauses_with_a_finite_picture_and_says_why(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     tab.page.keyboard.press("3")
+    tab.wait(lambda: lab.scene.params.integrator == "explicit_euler")
+    lab.panel.set("speed", 4.0)  # until the last second before the bounds, which is in slow motion
     tab.wait(lambda: lab.loop.halted)
     assert "explicit Euler" in lab.loop.halted
     assert "hω" in lab.loop.halted
@@ -122,6 +124,7 @@ def test_reload_and_a_second_tab_show_the_same_rope(lab: Viewer, open_tab) -> No
 
 def test_handles_are_assigned_to_and_never_added_again(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
+    lab.panel.set("speed", 4.0)
     before = set(lab.server.scene._handle_from_node_name)
     tab.wait(lambda: lab.scene.time > 2)
     assert set(lab.server.scene._handle_from_node_name) == before

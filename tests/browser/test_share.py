@@ -148,13 +148,13 @@ def test_film_clip_and_plots_are_made_as_files(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], tmp_path: Path
 ) -> None:
     lab, _ = one_page
-    tab = open_tab(lab.port, drawn=True)
+    tab = open_tab(lab.port, drawn="colorMap")  # of the picture behind the scene, of which the sky shows through
     tab.follow(lab, SCENE)
     tab.page.get_by_role("button", name="Record and share", exact=True).click()
     lab.panel.set("plot_tip", True)
     tab.wait(lambda: len(lab.panel.recorder.frames) > 10 and "plot_tip" in lab.panel.plots.charts, 30)
     tab.page.get_by_role("button", name="Record clip").click()
-    tab.page.wait_for_timeout(1500)
+    tab.page.wait_for_timeout(800)
 
     def saved(button: str) -> Path:
         with tab.page.expect_download(timeout=60_000) as download:

@@ -241,7 +241,7 @@ def test_an_exported_page_has_the_shader_without_a_server(chromium, server, tmp_
     make_water(server, tiles=3)
     file = tmp_path / "sea.html"
     file.write_text(server.get_scene_serializer().as_html(), encoding="utf-8")
-    page = new_page(chromium, 320, 200, drawn=True)
+    page = new_page(chromium, 320, 200, drawn=False)
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
     page.goto(file.as_uri())

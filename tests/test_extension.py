@@ -96,6 +96,7 @@ def test_an_integrator_is_one_file(tmp_path):
     assert parameters_in(copy / "rk2.npz")["integrator"] == "rk2"
 
 
+@pytest.mark.stress  # five processes; the other examples are tried in fewer
 def test_a_spectrum_with_new_parameters_is_one_file(tmp_path):
     copy = copy_of_sources(tmp_path)
     blocks = section("Add a spectrum")

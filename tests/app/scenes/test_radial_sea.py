@@ -44,7 +44,7 @@ def run(scene: RadialSeaScene, seconds: float) -> RadialSeaScene:
         pytest.param({"spill": "layer", "thickness": 0.2}, marks=pytest.mark.stress),
         {"spill": "layer", "thickness": 2.0, "density": 300.0},
         pytest.param({"spill": "layer", "thickness": 0.05, "oil": "IFO 180"}, marks=pytest.mark.stress),
-        {"spill": "mixed", "fraction": 0.4, "oil": "Arabian Light"},
+        pytest.param({"spill": "mixed", "fraction": 0.4, "oil": "Arabian Light"}, marks=pytest.mark.stress),
     ],
 )
 def test_bodies_let_go_too_high_settle_at_the_drafts_of_the_readout(changes: dict) -> None:

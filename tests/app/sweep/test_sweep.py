@@ -38,7 +38,7 @@ sphere = [false, true]
 # Four short cases, and two that take seconds whatever the machine: what is stopped is stopped in the midst of them.
 LONG = """
 scene = "rope"
-seconds = 40.0
+seconds = 20.0
 [set]
 points = 200
 [parameters]
@@ -133,7 +133,7 @@ def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, here, tmp_path, capsy
     assert not kept.exists()
     with xr.open_dataset(out) as data:
         found = [
-            run_case("rope", {"points": 200, "plot_energy": True, "plot_tip": True, "time_step": float(h)}, (40,))
+            run_case("rope", {"points": 200, "plot_energy": True, "plot_tip": True, "time_step": float(h)}, (20,))
             for h in data.time_step.values[[0, 3]]
         ]
         assert data.tip_height.values[[0, 3]].tolist() == [f.measures["tip_height"][0] for f in found]
@@ -237,7 +237,7 @@ def test_a_sweep_without_matplotlib_has_no_figure_and_says_so(here, tmp_path, ca
 
 def test_an_out_whose_store_would_have_too_long_a_name_is_refused(here, tmp_path, capsys):
     (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2]\n')
-    for length in range(231, 256, 8):
+    for length in (239, 247, 255):
         name = "x" * (length - 3) + ".nc"
         if main(["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / name)]) != 0:
             assert "--out" in capsys.readouterr().err

@@ -50,7 +50,14 @@ def period_of(times, values):
     return np.diff(crossing).mean()
 
 
-@pytest.mark.parametrize("layers", [WATER, SPILL, [(850.0, 3.0), (1025.0, math.inf)]])
+@pytest.mark.parametrize(
+    "layers",
+    [
+        pytest.param(WATER, marks=pytest.mark.stress),
+        SPILL,
+        pytest.param([(850.0, 3.0), (1025.0, math.inf)], marks=pytest.mark.stress),
+    ],
+)
 def test_what_is_dropped_settles_at_its_draft(layers):
     """Stable upright hulls dropped from above, tilted a little, in one fluid, at the interface and in oil only."""
     raft, buoy, ball = Hull.box(1.0, 1.5, 0.4), Hull.cylinder(0.5, 0.4), Hull.sphere(0.5)
@@ -122,7 +129,7 @@ def test_heave_between_two_fluids_has_the_period_of_both_waterplanes():
     assert period_of(FRAME_INTERVAL * np.arange(600), np.array(z)) == pytest.approx(expected, rel=0.01)
 
 
-@pytest.mark.parametrize("with_acceleration", [True, False])
+@pytest.mark.parametrize("with_acceleration", [True, pytest.param(False, marks=pytest.mark.stress)])
 def test_a_small_hull_follows_a_long_wave(with_acceleration):
     """Airy wave of 100 m and 0.5 m: heave and surge of the hull are those of the water, within 2 %.
 
@@ -194,7 +201,7 @@ def test_energy_of_undamped_heave_stays_bounded():
     assert np.mean(energy[-1000:]) == pytest.approx(np.mean(energy[:1000]), rel=0.01)
 
 
-@pytest.mark.parametrize("minutes", [3, pytest.param(10, marks=pytest.mark.stress)])
+@pytest.mark.parametrize("minutes", [2, pytest.param(10, marks=pytest.mark.stress)])
 def test_undamped_rocking_stays_bounded(minutes):
     """Tilted, spinning and bobbing at once for minutes without drag: speeds stay those of the first one."""
     hulls = [Hull.box(1.0, 1.5, 0.4), Hull.cylinder(0.5, 1.0), Hull.sphere(0.5)]
@@ -224,9 +231,9 @@ def test_the_step_is_stable_below_omega_h_of_two_and_not_above():
         assert (reach < 1e-4) == stable
 
 
-@pytest.mark.parametrize("density", [10.0, 100.0, 1000.0, 20000.0])
-@pytest.mark.parametrize("size", [0.1, 1.0, 10.0])
-@pytest.mark.parametrize("gravity", [0.1, 9.81, 981.0])
+@pytest.mark.parametrize("density", [10.0, *(pytest.param(d, marks=pytest.mark.stress) for d in (100.0, 1e3)), 2e4])
+@pytest.mark.parametrize("size", [0.1, pytest.param(1.0, marks=pytest.mark.stress), 10.0])
+@pytest.mark.parametrize("gravity", [0.1, pytest.param(9.81, marks=pytest.mark.stress), 981.0])
 def test_the_bound_of_frequency_holds_over_all_parameters(density, size, gravity):
     """The frequency of heave and of roll of every hull at every pose it may float in lies below `frequency_bound`."""
     coefficients = MotionCoefficients(gravity=gravity)

@@ -7,19 +7,23 @@ import pytest
 
 import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread, as it does when the program runs
 
+# See `pytest_collection_modifyitems`.
+EARLY = ("test_shader_functions.py", "test_water.py", "test_water_pixels.py", "test_extension.py")
+
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Everything in tests/browser needs a browser, and has a second try, since a page drawn in software can be late.
 
-    These tests begin first, as no other group takes as long. The longest file comes next, so that the last groups are
-    short, and no process ends long before the others.
+    These tests begin first, as no other group takes as long: at first those that call no kernel, so that the others
+    find kernels that another process has compiled. The longest file comes next, so that the last groups are short, and
+    no process ends long before the others.
     """
     for item in items:
         if "/tests/browser/" in item.path.as_posix():
             item.add_marker(pytest.mark.browser)
         if item.get_closest_marker("browser") is not None:
             item.add_marker(pytest.mark.flaky(reruns=1))
-    items.sort(key=lambda item: (item.get_closest_marker("browser") is None, item.path.name != "test_extension.py"))
+    items.sort(key=lambda item: (item.get_closest_marker("browser") is None, item.path.name not in EARLY))
 
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist, which is asked for with `-n`

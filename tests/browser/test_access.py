@@ -79,7 +79,13 @@ def test_folders_and_sliders_obey_the_keyboard(one_page: tuple[Viewer, Tab]) -> 
     assert not viewer.loop.running
 
 
-@pytest.fixture(scope="module", params=NAMES)
+SAMPLE = ("radial_sea", "rope")  # all scenes under -m stress
+
+
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, marks=[] if name in SAMPLE else pytest.mark.stress) for name in NAMES],
+)
 def opened(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
     """Each scene with every folder of its panel open, paused, in a window that shows all of it."""
     viewer, tab = one_page

@@ -4,6 +4,7 @@ import io
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 from PIL import Image
 
 from app.scenes.race.parameters import PRESETS, Params
@@ -18,9 +19,12 @@ CHARTS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ch
     rows: chart.data[0].length, log: chart.scales.y.distr === 3}))"""
 
 
-def test_every_race_is_drawn_with_its_charts_and_no_console_errors(shown: tuple[Viewer, Tab]) -> None:
+@pytest.mark.parametrize("presets", [list(PRESETS)[::3], pytest.param(list(PRESETS), marks=pytest.mark.stress)])
+def test_every_race_is_drawn_with_its_charts_and_no_console_errors(
+    shown: tuple[Viewer, Tab], presets: list[str]
+) -> None:
     lab, tab = shown
-    for preset in PRESETS:
+    for preset in presets:
         lab.panel.load(preset)
         params = check_record(Params, PRESETS[preset])
         ropes = params.ropes

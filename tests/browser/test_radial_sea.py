@@ -52,9 +52,10 @@ def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
     assert tab.errors == []
 
 
-def test_every_preset_is_drawn_as_water_without_console_errors(shown: tuple[Viewer, Tab]) -> None:
+@pytest.mark.parametrize("presets", [list(PRESETS)[::3], pytest.param(list(PRESETS), marks=pytest.mark.stress)])
+def test_every_preset_is_drawn_as_water_without_console_errors(shown: tuple[Viewer, Tab], presets: list[str]) -> None:
     lab, tab = shown
-    for preset in PRESETS:
+    for preset in presets:
         lab.panel.load(preset)
         tab.wait(lambda: lab.scene.params == lab.panel.params)
         tab.wait(lambda: drawn(lab) and len(tab.vertices("/sea")) == len(lab.scene.grid))

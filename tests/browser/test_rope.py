@@ -12,10 +12,6 @@ from tests.browser.conftest import Tab
 SCENE = "rope"
 
 
-def watching(viewer: Viewer) -> bool:
-    return viewer.audience() == 1 and viewer.loop.counts["steps"] > 0
-
-
 def test_the_rope_is_drawn_and_swings_without_console_errors(lab: Viewer, open_tab) -> None:
     tab = open_tab(lab.port, width=420, height=260, drawn=True)
     tab.wait(lambda: len(tab.vertices("/rope")) > 0)
@@ -32,7 +28,7 @@ def test_nothing_steps_until_somebody_looks(lab: Viewer, open_tab) -> None:
     tab.page.close()
     while lab.audience():
         lab.stop.wait(0.01)
-    lab.stop.wait(1.0)  # what was under way ends
+    lab.stop.wait(0.5)  # what was under way ends
     steps = lab.loop.counts["steps"]
     lab.stop.wait(0.5)
     assert lab.loop.counts["steps"] == steps
@@ -109,9 +105,9 @@ def test_an_explosion_pauses_with_a_finite_picture_and_says_why(shown: tuple[Vie
     assert not lab.loop.running
 
 
-def test_reload_and_a_second_tab_show_the_same_rope(lab: Viewer, open_tab) -> None:
-    first = open_tab(lab.port)
-    first.wait(lambda: watching(lab) and lab.scene.time > 1)
+def test_reload_and_a_second_tab_show_the_same_rope(shown: tuple[Viewer, Tab], open_tab) -> None:
+    lab, first = shown
+    first.wait(lambda: lab.scene.time > 1)
     lab.loop.commands.put(Pause())
     first.wait(lambda: not lab.loop.running and lab.shown == lab.loop.latest.serial)
     second = open_tab(lab.port)

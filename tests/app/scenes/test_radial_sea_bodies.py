@@ -25,7 +25,7 @@ def scene_with(**changes) -> RadialSeaScene:
 WINDOW = np.hanning(3600)[:, None] / np.hanning(3600).sum()  # a minute, its ends faded: no wave is cut
 
 
-@pytest.mark.parametrize("preset", ["Clear water", "Storm with buoys"])
+@pytest.mark.parametrize("preset", [pytest.param("Clear water", marks=pytest.mark.stress), "Storm with buoys"])
 def test_in_waves_bodies_float_on_average_as_archimedes_says(preset: str) -> None:
     """Draft within 1 mm, buoyancy within 0.1 % of the weight: over a minute, and as the page shows them.
 

@@ -53,8 +53,9 @@ PIXEL = """point => { const viewer = window.__viserMutable, camera = viewer.came
 # The notes of viser and of the lab on slow drawing, which lie over the picture.
 NO_NOTES = "[class*=Notif], #springtide-slow { display: none !important }"
 HARMLESS_ERRORS = ("preventDefault inside passive",)
-# The same when one scene follows another: viser 1.1's client collects the updates of a frame and applies them after its
-# removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a removal.
+# The same when one scene or preset follows another: viser 1.1's client collects the updates of a frame and applies them
+# after its removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a
+# removal.
 LATE_UPDATE = "Tried to update non-existent component"
 
 

@@ -34,6 +34,7 @@ TAKEN = (
     ("time_step", "0,005", 0.005),
     ("time_step", "1/60", 1 / 60),
     ("time_step", "5 ms", 0.005),
+    ("stiffness", "1e4", 1e4),
     ("stiffness", "3.7e+03", 3.7e3),
     ("stiffness", "20k", 20e3),
     ("mass", "0.25", 0.25),

@@ -1,27 +1,35 @@
-"""Every number of every scene, typed key by key; pauses, steps and plays by key and button. Long: under -m stress."""
+"""Every number of every scene, typed key by key; pauses, steps and plays by key and button. Long: under -m stress.
 
+The numbers of a scene are typed in parts of `PART` numbers, so that one part takes a few minutes: `-k "typed and rope"`
+takes those of the rope, `-k "typed and rope-2"` its third part.
+"""
+
+import dataclasses
 import itertools
 import math
 import os
 import random
+from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
 import pytest
 
-from app.messages import Pause
+from app.messages import BaseParams, Pause
 from app.panel.control import title
 from app.scenes import NAMES, scene_named
+from app.scenes.contract import AnyKind
 from app.server.viewer import Viewer
-from sim.parameters import Parameter, Value, parameters_of
+from sim.parameters import Parameter, Value, check_record, parameters_of
 from tests.browser.conftest import Tab
 
 pytestmark = [pytest.mark.stress, pytest.mark.timeout(6 * 3600)]
 
 VALUES = int(os.environ.get("SPRINGTIDE_STRESS_TYPED", "20"))  # of each parameter
 CHANGES = int(os.environ.get("SPRINGTIDE_STRESS_PAUSES", "200"))  # of each scene
-KEY_TIMES = (50, 150, 350)  # [ms] between two keys
+KEY_TIMES = tuple(map(int, os.environ.get("SPRINGTIDE_STRESS_KEY_TIMES", "50,150,350").split(",")))  # [ms], of one key
+PART = 5  # numbers that one test types
 MAX_STATE_TIME = 200  # [ms] after which the panel must be right, where the page draws fast
 # How long [ms] the page takes until the panel is right, and its longest frame [ms] meanwhile and just after.
 UNTIL_SHOWN = """([state, button]) => new Promise(done => {
@@ -70,44 +78,76 @@ def written(value: float, notation: int) -> tuple[str, float]:
             return f"{ratio.numerator}/{ratio.denominator}", float(ratio)
 
 
-@pytest.mark.parametrize("scene", NAMES)
-def test_every_number_that_is_typed_is_taken_or_refused(scene: str, one_page: tuple[Viewer, Tab]) -> None:
+def numbers_of(kind: AnyKind) -> dict[str, Parameter]:
+    """The parameters of a scene that are typed, those that are hidden at first too."""
+    return {name: p for name, p in parameters_of(kind.params).items() if not p.choices and p.kind in (int, float)}
+
+
+def parts() -> list[tuple[str, int]]:
+    """Scene and number of each part."""
+    return [(name, part) for name in NAMES for part in range(-(-len(numbers_of(scene_named(name))) // PART))]
+
+
+def one_change(kind: AnyKind, params: BaseParams) -> Iterator[BaseParams]:
+    """The same parameters, each time with another value of one of them."""
+    for name, p in parameters_of(kind.params).items():
+        few = range(int(p.low), int(min(p.low + 12, p.high)) + 1) if p.kind is int else (p.low, p.default, p.high)
+        for value in p.choices or ((False, True) if p.kind is bool else few):
+            yield dataclasses.replace(params, **{name: value})
+
+
+def params_that_show(kind: AnyKind, name: str) -> BaseParams:
+    """Parameters with which the panel shows a number: those of a preset, or of one with one change."""
+    presets = [check_record(kind.params, values) for values in kind.presets.values()]
+    changed = (params for preset in presets for params in one_change(kind, preset))
+    for params in itertools.chain(presets, changed):
+        if name not in kind.hidden(params):
+            return params
+    pytest.fail(f"{kind.name}: no set-up shows {name}")
+
+
+@pytest.mark.parametrize(("scene", "part"), parts())
+def test_every_number_that_is_typed_is_taken_or_refused(scene: str, part: int, one_page: tuple[Viewer, Tab]) -> None:
     lab, tab = one_page
     tab.follow(lab, scene)
-    lab.loop.commands.put(Pause())
-    panel, rng, typed = lab.panel, random.Random(7), 0
+    panel, kind, rng, typed, refused = lab.panel, scene_named(scene), random.Random(7 + part), 0, 0
     taken: list[tuple[str, Value]] = []
-    kind = scene_named(scene)
-    declared = {n: p for n, p in parameters_of(panel.params).items() if p.kind in (int, float)}
-    for group in dict.fromkeys(parameter.group for parameter in declared.values()):
-        hidden = kind.hidden(panel.params)
-        inside = [title(name, p) for name, p in declared.items() if p.group == group and name not in hidden]
-        if not inside:
-            continue
-        visible = [tab.page.get_by_role("textbox", name=label, exact=True).is_visible() for label in inside]
-        if not any(visible):
-            tab.page.get_by_role("button", name=group, exact=True).click()
-            tab.page.wait_for_timeout(400)
     change = panel.on_change
     for control in panel.controls.values():
         control.changed = lambda name, value: (taken.append((name, value)), change(name, value))[1]
     notations = itertools.cycle(range(5))
-    shown = declared.keys() - kind.hidden(panel.params)
-    for name, parameter in declared.items():
+    numbers = dict(list(numbers_of(kind).items())[part * PART : (part + 1) * PART])
+    for name, parameter in numbers.items():
+        show_number(lab, tab, name, parameter)
         for value in numbers_for(parameter, rng):
-            if name in kind.hidden(panel.params):
-                break
+            if name in kind.hidden(panel.params):  # a number may hide itself: 0 of what it counts
+                show_number(lab, tab, name, parameter)
             text, said = written(value, next(notations))
-            typed += 1
             taken.clear()
-            check_one(lab, tab, name, parameter, text, said, taken, rng.choice(KEY_TIMES))
-    assert typed > 0.8 * VALUES * len(shown)  # a number may hide others: no rain has no size of drops
+            refused += not check_one(lab, tab, name, parameter, text, said, taken, rng.choice(KEY_TIMES))
+            typed += 1
+    assert typed == VALUES * len(numbers)
+    print(
+        f"{scene}, part {part}: {len(numbers)} numbers, {typed} values typed, {refused} refused: {', '.join(numbers)}"
+    )
+
+
+def show_number(lab: Viewer, tab: Tab, name: str, parameter: Parameter) -> None:
+    """Have the panel show a number: by other parameters, where these hide it, in its folder."""
+    kind = lab.panel.kind
+    lab.panel.load_params(params_that_show(kind, name), next(iter(kind.presets)))
+    lab.loop.commands.put(Pause())
+    field = tab.page.get_by_role("textbox", name=title(name, parameter), exact=True)
+    tab.page.wait_for_timeout(400)
+    if not field.is_visible():
+        tab.page.get_by_role("button", name=parameter.group, exact=True).click()
+        tab.wait(field.is_visible, 20)
 
 
 def check_one(
     lab: Viewer, tab: Tab, name: str, parameter: Parameter, text: str, said: float, taken: list[Any], delay: int
-) -> None:
-    """Type a text: it is taken as it is, or refused with the range, and nothing else is ever set."""
+) -> bool:
+    """Type a text: it is taken as it is, or refused with the range, and nothing else is ever set. Returns which."""
     field = tab.page.get_by_role("textbox", name=title(name, parameter), exact=True)
     field.click()
     tab.page.keyboard.press("Control+A")
@@ -117,7 +157,8 @@ def check_one(
     tab.page.keyboard.press("Enter")
     allowed = parameter.low <= said <= parameter.high and (parameter.kind is float or said == int(said))
     if allowed:
-        tab.wait(lambda: getattr(lab.panel.params, name) == said, 20)
+        tab.wait(lambda: (name, said) in taken, 20)
+        assert getattr(lab.panel.params, name) == said
         assert {value for changed, value in taken if changed == name} <= {said}, (name, text, taken)
         assert tab.page.locator(".springtide-refusal").count() == 0
     else:
@@ -131,6 +172,7 @@ def check_one(
         tab.page.keyboard.type(f"{parameter.default}")
         tab.page.keyboard.press("Enter")
         tab.wait(lambda: tab.page.locator(".springtide-refusal").count() == 0, 20)
+    return allowed
 
 
 @pytest.mark.parametrize("scene", NAMES)

@@ -105,6 +105,7 @@ class Plots:
         self.kept: tuple[PlotRow, ...] = ()  # rows of an earlier run, drawn beside those of this one
         self.curves: Mapping[str, Chart | Columns] = {}  # the whole charts as the scene made them last
         self.kept_curves: Mapping[str, Chart | Columns] = {}  # those of an earlier run
+        self.looked = False  # at parameters, once
         self.sent_at = 0.0
         self.drawn = self.skipped = 0  # charts sent again, and charts that were closed or had nothing new
 
@@ -141,6 +142,7 @@ class Plots:
         wanted = frozenset(name for name in names if name not in hidden and getattr(snapshot.params, name))
         if wanted != self.open:
             self.show(wanted)
+        self.looked = True
         before = self.drawn
         if wanted:
             self.send_curves(wanted)
@@ -155,8 +157,9 @@ class Plots:
             self.dock = Dock(panel, panel.add_tab("Plots"))
             panel.dock_left()
         self.dock.panel.visible = bool(wanted)
-        if wanted and not was_open:
-            self.dock.panel.expand()  # where it was folded, as it is at first on a small screen
+        # A small screen folds it at first, which shows more of the picture: only where a user asks is it unfolded.
+        if wanted and not was_open and self.looked:
+            self.dock.panel.expand()
         for name in (*self.kind.plots, *self.kind.curves):
             if name in self.charts:
                 self.charts[name].visible = name in wanted

@@ -1,14 +1,14 @@
 """The layout of the page at several sizes, by measuring boxes; all presets under `-m stress`."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
 
 from app.scenes import NAMES, scene_named
 from app.server.viewer import Viewer
-from tests.browser.boxes import SIZES, faults, faults_after_change
-from tests.browser.conftest import Tab
+from tests.browser.boxes import MEASURE, SIZES, faults, faults_after_change
+from tests.browser.conftest import NO_NOTES, Tab
 
 SCENE = "rope"
 ON_TOP = "([x, y]) => document.elementFromPoint(x, y)?.tagName ?? ''"
@@ -47,6 +47,22 @@ def test_the_measure_finds_what_is_wrong(shown: tuple[Viewer, Tab], style: str, 
         tab.wait(lambda: any(words.startswith(fault) for words in faults(tab.page)), 20)
     finally:
         planted.evaluate("style => style.remove()")
+
+
+def test_a_phone_shows_the_race_first_and_its_plots_when_asked(
+    one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
+) -> None:
+    lab, _ = one_page
+    tab = open_tab(lab.port, width=390, height=844)
+    tab.page.add_style_tag(content=NO_NOTES)
+    tab.follow(lab, "race")
+    tab.wait(lambda: lab.panel.plots.open)
+    bar = tab.page.get_by_role("button", name="Expand panel Plots")
+    tab.wait(bar.is_visible, 20)
+    assert bar.bounding_box()["y"] < 5
+    tab.wait(lambda: tab.page.evaluate(MEASURE)["picture"] > 0.45, 20)
+    bar.click()
+    tab.wait(lambda: tab.page.evaluate(MEASURE)["picture"] < 0.3 and not faults(tab.page), 20)
 
 
 @pytest.mark.stress

@@ -27,8 +27,9 @@ TICK_LENGTH = 0.07  # [m] at size 1; one with a number is twice as long
 RULER_PLACE, OIL_PLACE, DRAFT_PLACE = -0.8, 0.3, 0.42  # along the far wall, in its half width
 LABEL_OFFSET = 0.06  # [m] that ruler and labels stand before the wall
 RULER_COLOUR, DRAFT_COLOUR = (235, 246, 250), (255, 236, 140)
-LABEL_SCALE = 1.1  # of a label, over viser's own size
-LINE_HEIGHT = 0.13  # [m] at size 1 that a label needs in a window of 480 pixels
+LETTER_HEIGHT = 0.12  # [m] at size 1: labels belong to the wall, and shrink with it, so that none lies over another,
+MAX_LETTER_SHARE = 0.5  # of the distance between two numbers of the ruler, but no higher than this
+LINE_HEIGHT = 0.13  # [m] at size 1 that a label needs
 LABEL_STEP = 0.02  # [m] by which ruler and labels move at least: each move is a message of its own
 LABEL_INTERVAL = 0.2  # [s] between two texts of a label while the sea moves: faster ones cannot be read
 
@@ -70,12 +71,16 @@ class Walls:
             f"{name}/ruler", self.ruler_lines(cutaway.floor), RULER_COLOUR, thickness=1.5, thickness_units="screen"
         )
         spacing = TICK_SPACING * TICKS_PER_NUMBER
+        letters = min(LETTER_HEIGHT * self.size, MAX_LETTER_SHARE * spacing)
         for k in range(int(-cutaway.floor / spacing) + 1):
             text, place = f"{-k * spacing:.1f} m" if k else "0 m", self.on_wall(RULER_PLACE, -k * spacing)
-            server.scene.add_label(f"{name}/ruler/tick_{k}", text, position=place, anchor="center-right")
+            server.scene.add_label(
+                f"{name}/ruler/tick_{k}", text, position=place, anchor="center-right", font_size_mode="scene",
+                font_scene_height=letters,
+            )  # fmt: skip
         self.labels = {
             part: server.scene.add_label(
-                f"{name}/ruler/{part}", "", font_screen_scale=LABEL_SCALE, anchor="center-left"
+                f"{name}/ruler/{part}", "", anchor="center-left", font_size_mode="scene", font_scene_height=letters
             )
             for part in ("oil", "water", "draft")
         }

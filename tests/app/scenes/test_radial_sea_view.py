@@ -53,6 +53,27 @@ def test_the_labels_of_the_window_say_what_is_there(server: viser.ViserServer) -
     assert not walls.ruler.visible
 
 
+BOX_HEIGHT = 1.6  # of a label, over the height of its letters
+
+
+@pytest.mark.parametrize("size", [1.0, 1.5, 3.0])
+def test_no_label_of_the_window_lies_over_another_however_far_the_camera_is(
+    server: viser.ViserServer, size: float
+) -> None:
+    """Their letters have a height in the scene: what is apart there is apart in the picture."""
+    frame = frame_of(spill="layer", thickness=0.2, cutaway=True, waves=False, size=size)
+    assert frame.cutaway is not None
+    walls = Walls(server, "/cutaway", frame.cutaway)
+    walls.show(frame, keel_of(frame))
+    nodes = server.scene._handle_from_node_name
+    ticks = [node for name, node in nodes.items() if name.startswith("/cutaway/ruler/tick_")]
+    for labels in (ticks, list(walls.labels.values())):
+        assert all(label.font_size_mode == "scene" for label in labels)
+        heights = np.sort([label.position[2] for label in labels])
+        assert len(labels) > 2
+        assert np.diff(heights).min() > BOX_HEIGHT * max(label.font_scene_height for label in labels)
+
+
 def test_clear_water_has_no_label_of_oil_and_no_body_has_no_draft(server: viser.ViserServer) -> None:
     frame = frame_of(cutaway=True, waves=False, bodies=0)
     assert frame.cutaway is not None

@@ -28,6 +28,7 @@ HEAT_COLOURS = np.array([
     (255, 246, 190),
 ])  # fmt: skip
 SPLAT_SHARE = 0.3  # standard deviation of a splat of smoke over the radius of the plume
+THINNEST = 0.01  # [m] radius of a plume whose parcels have not begun to rise
 FADED_SHARE = 0.6  # of the plume's length in time, in which its end fades out
 DENSEST_SMOKE = 0.75  # opacity of a splat of smoke at most
 SUN_STRENGTHS, SMOKE_LIGHT = (0.5, 2.5), (0.4, 1.0)  # night and dawn, and the share of its colours that smoke has then
@@ -87,7 +88,8 @@ class Flames:
         height = width * np.interp(heat, (0.0, 0.3, 1.0), (0.9, 1.3, 2.0))
         # A splat stands for its share of the soot. It is as opaque as that soot, spread over the splat, makes it.
         soot = soot_made(power) * SMOKE_LIFE / len(x)
-        smoke = soot / (np.maximum(share_left(along), 0.02) * 2.0 * math.pi * (SPLAT_SHARE * spread) ** 2)
+        area = 2.0 * math.pi * (SPLAT_SHARE * np.maximum(spread, THINNEST)) ** 2
+        smoke = soot / (np.maximum(share_left(along), 0.02) * area)
         opacity = np.interp(heat, (0.1, 0.3, 1.0), (0.0, 0.6, 0.8))
         opacity = np.maximum(opacity, np.minimum(1.0 - np.exp(-smoke), DENSEST_SMOKE) * (heat < HEAT[3]))
         opacity *= np.clip(4.0 * (1.0 - age), 0.0, 1.0) * np.clip((1.0 - along) / FADED_SHARE, 0.0, 1.0) ** 2

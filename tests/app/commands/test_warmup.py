@@ -38,11 +38,12 @@ def test_a_scene_is_compiled_once_and_again_after_an_edit(compiled: list[str], m
 
 
 def test_parameters_need_only_their_own_pieces(compiled: list[str]) -> None:
+    """Those of the drawing come last."""
     needed = ("rk4",)  # as parameters of this scene are its needs
-    assert warmup.missing("rope", needed) == (("drawing", True), ("rk4", False))  # type: ignore[arg-type]
+    assert warmup.missing("rope", needed) == (("rk4", False), ("drawing", True))  # type: ignore[arg-type]
     warmup.compile_piece("rope", "rk4", drawn=False)
     assert warmup.missing("rope", needed) == (("drawing", True),)  # type: ignore[arg-type]
-    assert warmup.missing("rope") == (("drawing", True), ("gauge", False))
+    assert warmup.missing("rope") == (("gauge", False), ("drawing", True))
     warmup.prepare("rope")
     assert not warmup.missing("rope")
 

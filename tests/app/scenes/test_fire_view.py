@@ -49,6 +49,11 @@ def test_smoke_of_a_small_fire_is_thinner_and_grows_thinner_with_its_width(flame
     assert large == int(0.75 * 255)
 
 
+@pytest.mark.filterwarnings("error")
+def test_smoke_of_no_width_yet_is_no_denser_than_the_densest(flames: Flames) -> None:
+    assert drawn(flames, 0.0, 5.0, spread=0.0)[0, 3] == int(0.75 * 255)
+
+
 def test_smoke_is_brighter_on_the_side_of_the_sun(flames: Flames) -> None:
     """Four parcels about one middle, far from the flames: towards the sun, away from it, and across."""
     places = 1e4 + 15.0 * np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)], np.float32).T

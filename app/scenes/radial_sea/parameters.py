@@ -270,6 +270,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         "thickness": 0.5,
         "exposure": 600.0,
         "follow": "from above",
+        "sky": "sunset",  # oil mirrors the sky: under a blue one it looks like water
     },
     "Entirely mixed": {"spill": "mixed", "oil": "Arabian Light", "fraction": 0.4, "follow": "from above"},
     "Storm with buoys": {"wind_speed": 17.0, "bodies": 12, "wave_count": 160, "size": 2.0, "follow": "from above"},
@@ -282,6 +283,7 @@ PRESETS: dict[str, dict[str, Any]] = {
         "exposure": 3600.0,
         "plot_budget": True,
         "follow": "from above",
+        "sky": "sunset",
     },
 }
 

@@ -105,7 +105,7 @@ class Plots:
         self.kept: tuple[PlotRow, ...] = ()  # rows of an earlier run, drawn beside those of this one
         self.curves: Mapping[str, Chart | Columns] = {}  # the whole charts as the scene made them last
         self.kept_curves: Mapping[str, Chart | Columns] = {}  # those of an earlier run
-        self.looked = False  # at parameters, once
+        self.has_begun = False  # parameters have been read: charts that open from now on were asked for
         self.sent_at = 0.0
         self.drawn = self.skipped = 0  # charts sent again, and charts that were closed or had nothing new
 
@@ -142,7 +142,7 @@ class Plots:
         wanted = frozenset(name for name in names if name not in hidden and getattr(snapshot.params, name))
         if wanted != self.open:
             self.show(wanted)
-        self.looked = True
+        self.has_begun = True
         before = self.drawn
         if wanted:
             self.send_curves(wanted)
@@ -157,8 +157,8 @@ class Plots:
             self.dock = Dock(panel, panel.add_tab("Plots"))
             panel.dock_left()
         self.dock.panel.visible = bool(wanted)
-        # A small screen folds it at first, which shows more of the picture: only where a user asks is it unfolded.
-        if wanted and not was_open and self.looked:
+        # A small screen folds it at first, so that the picture has more room. It is unfolded when a user asks for it.
+        if wanted and not was_open and self.has_begun:
             self.dock.panel.expand()
         for name in (*self.kind.plots, *self.kind.curves):
             if name in self.charts:

@@ -65,7 +65,7 @@ def test_quality_falls_where_drawing_is_slow_and_the_page_says_so(page: Any) -> 
     high = wait_for(page, "s.width === 420 && s.detail === 'springtide-water/sea'")
     assert (high["step"], high["line"], high["now"]) == (0, "", "")
     assert page.locator("[data-springtide-quality]").input_value() == "high"
-    page.wait_for_timeout(3000)  # longer than the automatic choice takes to fall
+    page.wait_for_timeout(4000)  # longer than the automatic choice takes to fall
     assert page.evaluate(STATE)["step"] == 0
     page.locator("[data-springtide-quality]").select_option("low")
     low = wait_for(page, "s.width === 210 && s.detail.includes('details 0')")

@@ -148,7 +148,7 @@ def test_film_clip_and_plots_are_made_as_files(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], tmp_path: Path
 ) -> None:
     lab, _ = one_page
-    tab = open_tab(lab.port, drawn="colorMap")  # of the picture behind the scene, of which the sky shows through
+    tab = open_tab(lab.port, drawn="colorMap")  # draws the background image too: its sky is checked
     tab.follow(lab, SCENE)
     tab.page.get_by_role("button", name="Record and share", exact=True).click()
     lab.panel.set("plot_tip", True)

@@ -27,8 +27,9 @@ TICK_LENGTH = 0.07  # [m] at size 1; one with a number is twice as long
 RULER_PLACE, OIL_PLACE, DRAFT_PLACE = -0.8, 0.3, 0.42  # along the far wall, in its half width
 LABEL_OFFSET = 0.06  # [m] that ruler and labels stand before the wall
 RULER_COLOUR, DRAFT_COLOUR = (235, 246, 250), (255, 236, 140)
-LETTER_HEIGHT = 0.12  # [m] at size 1: labels belong to the wall, and shrink with it, so that none lies over another,
-MAX_LETTER_SHARE = 0.5  # of the distance between two numbers of the ruler, but no higher than this
+# Labels have a size in the scene: seen from far away they shrink with the wall, and none covers another.
+LETTER_HEIGHT = 0.12  # [m] at size 1
+MAX_LETTER_SHARE = 0.5  # greatest height of a letter over the distance between two numbers of the ruler
 LINE_HEIGHT = 0.13  # [m] at size 1 that a label needs
 LABEL_STEP = 0.02  # [m] by which ruler and labels move at least: each move is a message of its own
 LABEL_INTERVAL = 0.2  # [s] between two texts of a label while the sea moves: faster ones cannot be read

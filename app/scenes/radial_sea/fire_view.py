@@ -28,7 +28,7 @@ HEAT_COLOURS = np.array([
     (255, 246, 190),
 ])  # fmt: skip
 SPLAT_SHARE = 0.3  # standard deviation of a splat of smoke over the radius of the plume
-THINNEST = 0.01  # [m] radius of a plume whose parcels have not begun to rise
+THINNEST = 0.01  # [m] least radius of the plume that opacity is calculated with: at its source the radius is 0
 FADED_SHARE = 0.6  # of the plume's length in time, in which its end fades out
 DENSEST_SMOKE = 0.75  # opacity of a splat of smoke at most
 SUN_STRENGTHS, SMOKE_LIGHT = (0.5, 2.5), (0.4, 1.0)  # night and dawn, and the share of its colours that smoke has then

@@ -158,7 +158,7 @@ def test_a_wrong_function_leaves_the_program_s_rope_alone(right: Session) -> Non
     assert np.isfinite(scene.frame().points).all()
 
 
-# How a process ends is the test of the runner.
+# The tests of the runner have these too.
 ELSEWHERE = ("__import__('os')._exit(3)", "for i in range(1_000_000): print(i)", "return 'pull'")
 
 

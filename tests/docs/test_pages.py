@@ -2,6 +2,7 @@
 
 import argparse
 import itertools
+import json
 import re
 from collections.abc import Iterator
 
@@ -9,12 +10,14 @@ import pytest
 
 from app.__main__ import make_parser
 from app.scenes import NAMES, scene_named
+from app.scenes.setups import FILE_KEYS, read_file
 from sim.parameters import parameters_of
 from sim.springs import INTEGRATORS
-from tests.docs.pages import PAGES, ROOT, TEST, commands, links, named_tests, paths, text_of
+from tests.docs.pages import PAGES, ROOT, TEST, commands, links, named_tests, paths, prose_of, text_of
 from tests.examples import section
 
-MAX_README_LINES = 150
+MAX_README_LINES = 120
+MAX_CELL_WORDS = 15
 README_COMMANDS = (
     "python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/springtide",
     "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/python -m pytest -n 2",
@@ -88,6 +91,31 @@ def test_the_readme_is_short_and_has_its_two_commands():
     assert len(readme.splitlines()) <= MAX_README_LINES
     for command in README_COMMANDS:
         assert f"```sh\n{command}\n```" in readme
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_a_table_cell_has_at_most_15_words(page):
+    for line in prose_of(page).splitlines():
+        for cell in re.split(r"(?<!\\)\|", line.strip("|")) if line.startswith("|") else ():
+            assert len(cell.split()) <= MAX_CELL_WORDS, cell
+
+
+def test_figures_of_the_readme_are_those_of_the_measurements():
+    """Each number of the list of differences stands in measured.md too."""
+    readme, measured = text_of(ROOT / "README.md"), text_of(ROOT / "docs" / "measured.md")
+    (claims,) = re.findall(r"^## What makes it different\n(.*?)^## ", readme, re.MULTILINE | re.DOTALL)
+    figures = set(
+        re.findall(r"(?<![\w.])\d[\d,.e-]*\d(?![\w.])|(?<![\w.])\d(?![\w.,])", claims.partition("All figures")[0])
+    )
+    assert len(figures) > 10
+    assert not [figure for figure in figures if not re.search(rf"(?<![\w.]){re.escape(figure)}(?![\w]|\.\d)", measured)]
+
+
+def test_the_set_up_file_of_the_page_is_read_back():
+    (block,) = re.findall(r"^```json\n(.*?)^```$", text_of(ROOT / "docs" / "share.md"), re.MULTILINE | re.DOTALL)
+    setup = read_file(block, "docs/share.md")
+    assert set(json.loads(block)) == set(FILE_KEYS)
+    assert setup.camera == ((0.5, -4.0, 2.0), (0.0, 0.0, 1.3))
 
 
 def test_the_readme_shows_the_five_scenes():

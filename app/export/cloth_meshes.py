@@ -47,7 +47,6 @@ class ClothMeshes:
             steps = steps_to(scene, start + (number - 1) * self.interval)
             if steps:
                 scene.advance(steps)
-            scene.take_plot_rows()
             text = obj_of(np.moveaxis(scene.state.x, 0, -1), self.rest)
             (folder / file_name("cloth", number, "obj")).write_text(text, "ascii")
             yield scene.time

@@ -52,13 +52,11 @@ class SeaPictures:
         for _ in range(until):
             scene.advance(1)
             scene.frame()
-            scene.take_plot_rows()
         for number in range(count):
             for _ in range(self.steps if number else 0):
                 scene.advance(1)
                 scene.frame()
             foam = scene.frame().foam
-            scene.take_plot_rows()
             surface = scene.sea.surface(scene.time)
             displacement = np.zeros((self.size, self.size, 3), np.float32)
             if scene.sea.choppiness > 0.0:

@@ -110,7 +110,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
-        """The plot rows since the last call."""
+        """The plot rows since the last call; of those that nobody takes a scene keeps the newest only."""
         ...
 
     def curves(self) -> Mapping[str, Chart | Columns] | None:

@@ -1,35 +1,49 @@
-"""The plot rows of a scene: taken at a fixed interval of simulated time, and handed over once."""
+"""The plot rows of a scene: one each interval of simulated time, handed over once."""
 
+import collections
 import math
 
 from app.messages import PlotRow
 
-ROW_INTERVAL = 1 / 30  # [s] of simulated time between two plot rows
+ROW_INTERVAL = 1 / 30  # [s] of simulated time between two plot rows of springs
+TOLERANCE = 1e-6  # of an interval: the round-off of a clock that adds up steps for hours
+MAX_WAITING_ROWS = 5400  # beyond that the oldest are dropped: a headless run takes none
+
+
+def row_number(t: float, interval: float) -> int:
+    """Number of whole intervals [s] at time t [s]. A row is due where it has grown, so rows keep their rate."""
+    return math.floor(t / interval + TOLERANCE)
 
 
 class PlotRows:
-    """Collects rows of `columns` values each."""
+    """Rows of `columns` values, one each `interval` [s] of simulated time."""
 
-    def __init__(self, columns: int) -> None:
-        self.columns = columns
-        self.waiting: list[PlotRow] = []
+    def __init__(self, columns: int, interval: float = ROW_INTERVAL) -> None:
+        self.columns, self.interval = columns, interval
+        self.waiting: collections.deque[PlotRow] = collections.deque(maxlen=MAX_WAITING_ROWS)
         self.restart()
 
     def restart(self) -> None:
         """Clear the plots, by a row without numbers (see `app/messages.py`)."""
+        self.waiting.clear()
         self.waiting.append((math.nan,) * (self.columns + 1))
-        self.last = -math.inf  # [s] time of the last row
+        self.number = 0  # of the last row; the first row comes one interval after time 0
+
+    def resume(self) -> None:
+        """Take the next row at once: the run goes on from another moment."""
+        self.number = -1
 
     def is_due(self, t: float) -> bool:
         """Whether a row is due at time t [s]."""
-        return t - self.last >= ROW_INTERVAL
+        return row_number(t, self.interval) > self.number
 
     def add(self, t: float, *values: float) -> None:
         """Add the row of time t [s]."""
         self.waiting.append((t, *values))
-        self.last = t
+        self.number = row_number(t, self.interval)
 
     def take(self) -> tuple[PlotRow, ...]:
         """The rows since the last call."""
-        rows, self.waiting = tuple(self.waiting), []
+        rows = tuple(self.waiting)
+        self.waiting.clear()
         return rows

@@ -191,7 +191,7 @@ class ClothScene:
         restore(self, kept)
         self.drag.clear()
         self.tuner.restart()
-        self.plot_rows.last = -math.inf
+        self.plot_rows.resume()
         self.last_moments.clear()
         self.assess_stability()
         if self.student is not None:

@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from app.scenes.charts import PALETTE, Chart, CurveAxes, Line
+from app.scenes.plot_rows import ROW_INTERVAL, row_number
 from app.scenes.race.entrants import Race
 from app.scenes.race.names import rope_name
 
-FIRST_ROW_INTERVAL = 1 / 30  # [s] of simulated time between two rows at the start of a race
 MAX_ROWS = 600  # a longer race keeps every second row, then every fourth, and so on
 ERROR_TICKS = (  # [m] from end to end of the error's scale
     (1e-10, "0.1 nm"), (1e-8, "10 nm"), (1e-6, "1 µm"), (1e-4, "0.1 mm"), (1e-2, "1 cm"), (1.0, "1 m"), (10.0, ""),
@@ -36,8 +36,8 @@ class RaceCharts:
         self.race = race
         self.rows = np.zeros((MAX_ROWS, 2 + 2 * len(race.entrants)))
         self.count = 0
-        self.row_interval = FIRST_ROW_INTERVAL  # [s]
-        self.next_row = 0.0  # [s]
+        self.row_interval = ROW_INTERVAL  # [s]
+        self.number = -1  # of the last row; the first is that of the first tick
         self.drawn: dict[str, Chart] = {}
         net = race.entrants[0].net
         n, weight = net.shape[1] - 1, net.mass * abs(net.gravity[2])
@@ -47,12 +47,12 @@ class RaceCharts:
     def update(self) -> None:
         """Add a row if one is due."""
         race = self.race
-        if race.t < max(self.next_row, race.tick) - 1e-9:
+        if row_number(race.t, self.row_interval) <= self.number:
             return
         if self.count == MAX_ROWS:
             self.rows[: MAX_ROWS // 2] = self.rows[::2].copy()
             self.count, self.row_interval = MAX_ROWS // 2, 2.0 * self.row_interval
-        self.next_row = race.t + self.row_interval
+        self.number = row_number(race.t, self.row_interval)
         row = self.rows[self.count]
         row[0] = race.t
         row[1] = self.error_floor()

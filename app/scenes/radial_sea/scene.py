@@ -25,6 +25,7 @@ from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
 from app.scenes.packed_surface import SentSurface
+from app.scenes.plot_rows import PlotRows
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
 from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.cutaway import Cutaway, cutaway_at, outline
@@ -186,7 +187,7 @@ class RadialSeaScene:
         self.hull_file, self.file_shape = "", None
         self.grid_choice: tuple[int, int, str] | None = None
         self.known_clean: tuple[Waves, tuple[float, float, float]] | None = None  # what `clean_waves` found, of which
-        self.plot_rows: list[PlotRow] = []
+        self.plot_rows = PlotRows(len(SERIES), PLOT_INTERVAL)
         self.counts: collections.Counter[str] = collections.Counter()
         self.reset()
 
@@ -224,10 +225,10 @@ class RadialSeaScene:
         self.spectrum_energy: tuple[WaveChoice, NDArray[np.float64], NDArray[np.float64]] | None = None
         self.decayed_height: tuple[tuple[WaveChoice, FluidColumn, float], float] | None = None  # Hs [m] of the spectrum
         self.foam_threshold = 0.0  # Jacobian below which there is foam, a running mean
-        self.compared_at = self.plotted_at = -math.inf
+        self.compared_at = -math.inf
         self.set_grid()
         self.drawn: tuple[object, ...] = ()
-        self.plot_rows.append((math.nan,) * (len(SERIES) + 1))
+        self.plot_rows.restart()
 
     def keep(self) -> dict[str, object]:
         """Waves, bodies, their waves, fire and oil, as they are now."""
@@ -245,7 +246,8 @@ class RadialSeaScene:
         restore(self, kept)
         for client in set(self.bodies.holders.values()):
             self.bodies.release(client)
-        self.tile, self.drawn, self.plotted_at = None, (), -math.inf
+        self.tile, self.drawn = None, ()
+        self.plot_rows.resume()
         self.forget_costs()
         if self.student is not None:
             self.student.taken = {}  # the sea is that of another moment
@@ -385,7 +387,7 @@ class RadialSeaScene:
                     bodies.step(at, h, slick, coefficients, waves)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
-                if self.time - self.plotted_at >= PLOT_INTERVAL:
+                if self.plot_rows.is_due(self.time):
                     self.add_plot_row(float(at.height[0]))
             self.time += h
         if self.params.ageing and self.column.kind != "water":
@@ -441,13 +443,11 @@ class RadialSeaScene:
         bodies = self.bodies
         draft = np.full(PLOTTED_BODIES, math.nan)  # of a body that is not there
         draft[: min(PLOTTED_BODIES, bodies.count)] = bodies.draft[:PLOTTED_BODIES]
-        self.plot_rows.append((self.time, *draft.tolist(), surface, float(bodies.fleet.position[0, 2])))
-        self.plotted_at = self.time
+        self.plot_rows.add(self.time, *draft.tolist(), surface, float(bodies.fleet.position[0, 2]))
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
         """The plot rows since the last call."""
-        taken, self.plot_rows = tuple(self.plot_rows), []
-        return taken
+        return self.plot_rows.take()
 
     def frame(self) -> RadialFrame:
         """What to draw."""

@@ -1,7 +1,6 @@
 """The rope of springs, part 2 of the lab: its root and its points can be dragged."""
 
 import functools
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -206,7 +205,7 @@ class RopeScene:
         restore(self, kept)
         self.handles.drag.clear()
         self.counted = self.state.force_evals, self.state.steps
-        self.plot_rows.last = -math.inf
+        self.plot_rows.resume()
         self.last_moments.clear()
         self.max_speed = np.inf
         self.assess_stability()

@@ -13,6 +13,7 @@ from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
 from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
+from app.scenes.plot_rows import PlotRows
 from app.scenes.square_sea.live_values import live_values
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, Params, conditions, hidden, rain_settings
@@ -160,7 +161,7 @@ class SquareSeaScene:
 
             self.student = student_sea.StudentSea(live.tables)
         self.counts: collections.Counter[str] = collections.Counter()
-        self.plot_rows: list[PlotRow] = []
+        self.plot_rows = PlotRows(len(SERIES), PLOT_ROW_INTERVAL)
         self.gauge = WaveGauge()
         self.gauge_placed = False  # by a click
         half = 0.5 * params.length
@@ -201,7 +202,8 @@ class SquareSeaScene:
         restore(self, kept)
         while self.gauge.trace and self.gauge.trace[-1][0] > self.time:
             self.gauge.trace.pop()
-        self.plotted_at = self.spectrum_at = self.measured_at = -math.inf
+        self.plot_rows.resume()
+        self.spectrum_at = self.measured_at = -math.inf
         self.report = self.theory = self.drawn = self.earlier_height = None
         if self.student is not None:
             self.student.taken = {}  # the sea is that of another moment
@@ -209,8 +211,8 @@ class SquareSeaScene:
 
     def begin_plots(self) -> None:
         """Clear the plots."""
-        self.plot_rows.append((math.nan,) * (len(SERIES) + 1))
-        self.plotted_at = self.spectrum_at = -math.inf
+        self.plot_rows.restart()
+        self.spectrum_at = -math.inf
         self.curve_columns: dict[str, tuple[NDArray[np.floating], ...]] | None = None
         self.gauge.trace.clear()
 
@@ -360,15 +362,14 @@ class SquareSeaScene:
             self.counts["rings"] += self.rainfall.advance(self.sea, t, dt, height, displacement, p.amplitude)
             self.counts["rainfall steps"] += 1
             rain = self.rainfall.frame()
-        gauge, row_is_due = None, t - self.plotted_at >= PLOT_ROW_INTERVAL
+        gauge, row_is_due = None, self.plot_rows.is_due(t)
         if self.gauge_shown or row_is_due:
             self.gauge.read(self.sea, t, p.amplitude)
             self.counts["gauge readings"] += 1
         if self.gauge_shown:
             gauge = (*self.gauge.at, self.gauge.height)
         if row_is_due:
-            self.plotted_at = t
-            self.plot_rows.append((t, self.gauge.height))
+            self.plot_rows.add(t, self.gauge.height)
         self.update_statistics(height, dt)
         self.update_spectrum()
         self.earlier_height = height if p.statistics else None
@@ -452,8 +453,7 @@ class SquareSeaScene:
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
         """The plot rows since the last call."""
-        rows, self.plot_rows = tuple(self.plot_rows), []
-        return rows
+        return self.plot_rows.take()
 
     def readings(self) -> SeaReadings:
         """Numbers for the panel."""

@@ -353,7 +353,6 @@ def test_a_long_race_keeps_fewer_rows_but_those_of_its_start():
     charts.row_interval = 1e-9
     assert all(chart.columns[0].size == 0 for chart in charts.charts().values())
     for _ in range(2 * MAX_ROWS + 10):
-        charts.next_row = 0.0
         scene.race.advance(scene.net, 1)
         charts.update()
     t = charts.charts()["plot_errors"].columns[0]

@@ -40,7 +40,8 @@ def threshold(coverage: float, spread: float, frequency: float, lasting: float) 
     spread: standard deviation of J, choppiness sqrt(mss); frequency [rad/s]: of `pace`; lasting [s]: for how long foam
     is seen after its crest has passed.
     Excursions of a Gaussian process below -z sigma last Phi(-z)/rate on average, with rate = (omega/2 pi) exp(-z^2/2)
-    of them a second (Rice 1944), so the covered share is Phi(-z) + rate lasting.
+    of them a second (Rice 1944). Passages come at random, so a point that is not breaking is free of foam with the
+    probability exp(-rate lasting), and the covered share is 1 - Phi(z) exp(-rate lasting).
     """
     if not (spread > 0.0 and coverage > 0.0):
         return -math.inf
@@ -54,7 +55,7 @@ def excess(coverage: float, frequency: float, lasting: float) -> float:
     for _ in range(50):
         z = 0.5 * (low + high)
         rate = frequency / (2.0 * math.pi) * math.exp(-0.5 * z * z)
-        # Passages come at random, so that covered shares do not add but fill up. Phi(z) is erfc(-z/sqrt(2))/2.
+        # Phi(z) is erfc(-z/sqrt(2))/2.
         share = 1.0 - 0.5 * math.erfc(-z * math.sqrt(0.5)) * math.exp(-rate * lasting)
         low, high = (z, high) if share > coverage else (low, z)
     return z

@@ -41,5 +41,5 @@ def ring_flux(rate: float, gravity: float = EARTH) -> float:
     """
     check_positive("rate", rate, "mm/h")
     check_positive("gravity", gravity, "m/s2")
-    D, N, step = drop_sizes(rate)
+    D, N, step = drop_sizes(rate, gravity)
     return float((N * terminal_speed(D, gravity) * step)[D >= SMALLEST_RING_DROP].sum())

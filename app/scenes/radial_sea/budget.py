@@ -58,7 +58,7 @@ def other_laws(params: Params, weathering: Weathering) -> Html:
     """What the laws of Fingas and of Stiver and Mackay have evaporate in a day."""
     is_crude = oil_records()[params.oil].is_crude
     distilled = boiled_off(params.oil, FINGAS_TEMPERATURE)
-    by_fingas = fingas(distilled, params.temperature, 60.0 * COMPARED_HOURS, is_crude=is_crude)
+    by_fingas = fingas(distilled, CELSIUS + params.temperature, 60.0 * COMPARED_HOURS, is_crude=is_crude)
     exposure, api = weathering.exposure(COMPARED_HOURS), api_gravity(params.oil)
     by_mackay = stiver_mackay(exposure, CELSIUS + params.temperature, api, is_crude=is_crude)
     return fill(

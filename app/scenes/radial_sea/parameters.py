@@ -4,11 +4,12 @@ import dataclasses
 import math
 from typing import Any
 
+from app.scenes.spectrum_parameters import SPECTRUM_PARAMETERS, spectrum_values
 from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import Fluid, fluids
 from sim.ocean.radial_grid import LAWS
-from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, Spectrum
+from sim.ocean.spectra import SPECTRA, Conditions, Spectrum
 from sim.ocean.weathering import Spill, WeatheredOil, can_weather, oil_at, weather
 from sim.parameters import parameter, with_parameters
 
@@ -25,7 +26,7 @@ SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night
 
 
 @dataclasses.dataclass(frozen=True)
-@with_parameters(PARAMETERS, group="Waves")
+@with_parameters(SPECTRUM_PARAMETERS, group="Waves")
 class Params:
     """The parameters, with those of all spectra; the defaults are clean water in a moderate breeze."""
 
@@ -308,7 +309,7 @@ def hidden(params: Params) -> set[str]:
         if not (params.rig and params.jet):
             names.add("oil")
     if not params.waves:
-        names |= {"spectrum", *PARAMETERS, "wave_count", "choppiness", "exposure", "ageing", "film"}
+        names |= {"spectrum", *SPECTRUM_PARAMETERS, "wave_count", "choppiness", "exposure", "ageing", "film"}
         if not (params.rig and params.fire):  # the wind still blows the smoke
             names |= {"wind_direction"} | ({"wind_speed"} if spill_of(params) is None else set())
     if params.bodies == 0:
@@ -401,11 +402,6 @@ def conditions_of(params: Params) -> Conditions:
     if params.waves:
         return spectrum.conditions_from(values | {"wind_speed": spectrum.wind_speed(params.wind_speed)})
     return spectrum.conditions_from(values | {"wind_speed": 0.0, "second_height": 0.0})
-
-
-def spectrum_values(params: Params) -> dict[str, Any]:
-    """The values of the parameters of all spectra."""
-    return {name: getattr(params, name) for name in PARAMETERS}
 
 
 def exposure_of(params: Params) -> float:

@@ -4,9 +4,10 @@ import dataclasses
 import math
 from typing import Any, NamedTuple
 
+from app.scenes.spectrum_parameters import SPECTRUM_PARAMETERS, spectrum_values
 from sim.formatting import number
 from sim.ocean.planets import RADIUS_RULES, SOLAR_SYSTEM, gravity_of
-from sim.ocean.spectra import PARAMETERS, SPECTRA
+from sim.ocean.spectra import SPECTRA
 from sim.parameters import parameter, with_parameters
 
 SIZES = ("64", "128", "256", "512")
@@ -25,7 +26,7 @@ SURFACE_TENSION = 0.0728  # [N/m] of water against air
 
 
 @dataclasses.dataclass(frozen=True)
-@with_parameters(PARAMETERS, group="Waves")
+@with_parameters(SPECTRUM_PARAMETERS, group="Waves")
 class Params:
     """The square sea's parameters, with those of all spectra; the defaults are the first preset."""
 
@@ -272,11 +273,6 @@ def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any
         "loop_period": params.loop_period or None,
         **spectrum_values(params),
     }
-
-
-def spectrum_values(params: Params) -> dict[str, Any]:
-    """The values of the parameters of all spectra."""
-    return {name: getattr(params, name) for name in PARAMETERS}
 
 
 def rain_settings(params: Params) -> RainSettings:

@@ -1,8 +1,8 @@
 """The fetch-limited sea of JONSWAP (Hasselmann and others 1973). Choose it for wind over a known distance.
 
-The growth law holds up to full growth, where the peak is that of Pierson and Moskowitz, omega_p = 0.877 g/U10, at the
-dimensionless fetch g F/U10^2 = 1.58e4. A longer fetch adds nothing. There the peak factor is 1; it falls to that over
-the last part of the fetch.
+The growth law holds up to full growth, where the peak is that of Pierson and Moskowitz under the same wind,
+omega_p = 0.877 g/U19.5 = 0.855 g/U10, at the dimensionless fetch g F/U10^2 = 1.70e4. A longer fetch adds nothing.
+There the peak factor is 1; it falls to that over the last part of the fetch.
 """
 
 import dataclasses
@@ -10,10 +10,11 @@ import dataclasses
 import numpy as np
 
 from sim.ocean.spectra import pierson_moskowitz
-from sim.ocean.spectra.record import Spectrum, SpreadConditions, from_frequency, peaked_integral
+from sim.ocean.spectra.record import WIND_HEIGHTS, Spectrum, SpreadConditions, from_frequency, peaked_integral
 from sim.parameters import parameter
 
-FULL_GROWTH = (22.0 / (0.8 * pierson_moskowitz.BETA) ** 0.25) ** 3  # g F/U10^2
+GROWN_PEAK = (0.8 * pierson_moskowitz.BETA) ** 0.25 / WIND_HEIGHTS[pierson_moskowitz.WIND_HEIGHT]  # omega_p U10/g
+FULL_GROWTH = (22.0 / GROWN_PEAK) ** 3  # g F/U10^2
 PEAKED_UNTIL = 0.86  # share of the fetch of full growth from which on the peak factor falls
 
 

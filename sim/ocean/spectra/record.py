@@ -41,8 +41,9 @@ class Conditions:
     )  # fmt: skip
     second_period: float = parameter(12.0, 1.0, 30.0, "s", "Peak period of the second system", title="Second system Tp")
     second_direction: float = parameter(
-        90.0, -180.0, 180.0, "°", "Where the second system goes to, from +x towards +y", title="Second system direction"
-    )
+        0.5 * math.pi, -math.pi, math.pi, "rad", "Where the second system goes to, from +x towards +y",
+        title="Second system direction",
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         # Wide, but such that no power that a spectrum takes overflows or is lost in rounding.
@@ -211,7 +212,7 @@ def second_system(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
     """S(kx, ky) [m4] of the second system: the shape of JONSWAP with gamma 3.3, spread as cos2s."""
     k = np.hypot(kx, ky)
     w = c.omega(k)
-    theta = angle_from(np.arctan2(ky, kx), math.radians(c.second_direction))
+    theta = angle_from(np.arctan2(ky, kx), c.second_direction)
     S = peaked(w, c.second_height, 2.0 * math.pi / c.second_period, 3.3)
     return S * cos2s(SECOND_EXPONENT, theta) * c.group_speed(k) / k
 

@@ -1,7 +1,8 @@
 """Directional spreading D(omega/omega_p, theta) [1/rad], with integral 1 over the circle, and Horvath's swell.
 
-Sources: cos2s and its normaliser: Longuet-Higgins, Cartwright, Smith (1963); s of Hasselmann, Dunckel, Ewing (1980);
-sech2 of Donelan, Hamilton, Hui (1985) with Banner's (1990) tail; swell: Horvath (2015), eq. 44.
+Sources: cos2s and its normaliser: Longuet-Higgins, Cartwright, Smith (1963); s of Hasselmann, Dunckel, Ewing (1980,
+J. Phys. Oceanogr. 10:1264); sech2 of Donelan, Hamilton, Hui (1985) with Banner's (1990) tail; swell: Horvath (2015),
+eq. 44.
 """
 
 import math
@@ -45,9 +46,12 @@ def cos2s(s: np.ndarray | float, theta: np.ndarray) -> np.ndarray:
 
 
 def hasselmann_exponent(ratio: np.ndarray, inverse_age: float) -> np.ndarray:
-    """s = 6.97 p^4.06 below the peak, 9.77 p^(-2.33 - 1.45 (U/c_p - 1.17)) above it, p = omega/omega_p."""
+    """s = 6.97 p^4.06 below 1.05 omega_p, 9.77 p^(-2.33 - 1.45 (U/c_p - 1.17)) above it, p = omega/omega_p.
+
+    The paper's two fits meet near 1.05 only; each is taken up to where they meet, so that s has no jump.
+    """
     above = -2.33 - 1.45 * (inverse_age - 1.17)
-    return np.where(ratio <= 1.0, 6.97 * np.minimum(ratio, 1.0) ** 4.06, 9.77 * np.maximum(ratio, 1.0) ** above)
+    return np.minimum(6.97 * ratio**4.06, 9.77 * np.maximum(ratio, 1.0) ** above)
 
 
 @kernel(allocates=False)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.ocean.emulsions import pal_rhodes_factor
-from sim.ocean.weathering.components import PseudoComponents
+from sim.ocean.weathering.components import CELSIUS, PseudoComponents
 from sim.validation import check_not_negative, check_number, check_positive, check_within
 
 GAS_CONSTANT = 8.314  # [J/(mol K)]
@@ -153,14 +153,15 @@ def drift_speed(wind_speed: float) -> float:
 def fingas(distilled: float, temperature: float, minutes: float, *, is_crude: bool = True) -> float:
     """Share evaporated by Fingas's law (2004, J. Hazard. Mater. 107:27), which knows neither wind nor thickness.
 
-    distilled: share by mass that has boiled off at 180 C; temperature [C]. In percent (0.165 D + 0.045 (T - 15)) ln t
-    and, for diesel and the like, (0.0254 D + 0.01 (T - 15)) sqrt t, t in minutes, up to five days.
+    distilled: share by mass that has boiled off at 180 C; temperature T [K]. With C = T - 273.15, in percent:
+    (0.165 D + 0.045 (C - 15)) ln t and, for diesel and the like, (0.0254 D + 0.01 (C - 15)) sqrt t, t in minutes, up
+    to five days.
     """
     percent = 100.0 * check_within("distilled", distilled, 0.0, 1.0)
     t = check_number("minutes", minutes, 0.0, math.inf, "min")
     if t <= 1.0:
         return 0.0
-    warm = temperature - 15.0
+    warm = check_positive("temperature", temperature, "K") - CELSIUS - 15.0
     if is_crude:
         lost = (0.165 * percent + 0.045 * warm) * math.log(t)
     else:

@@ -163,7 +163,7 @@ def weather(spill: Spill) -> Weathering:
     parts = pseudo_components(spill.oil)
     record, water_density = oil_records()[spill.oil], fluids()[spill.water].density
     fresh_density, viscosity = density_at(spill.oil, spill.temperature), viscosity_at(spill.oil, spill.temperature)
-    light = laws.lightness(density_at(spill.oil, 15.0), water_density)
+    light = laws.lightness(fresh_density, water_density)
     total = spill.volume * fresh_density
     largest = spill.volume / laws.least_thickness(viscosity)
     first_area, start = laws.initial_area(spill.volume, light)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, elfouhaily, jonswap
-from sim.ocean.spectra.spreading import SPREADINGS, spread
+from sim.ocean.spectra.spreading import SPREADINGS, hasselmann_exponent, spread
 from sim.ocean.statistics import theory
 from sim.parameters import parameters_of
 from tests.naive_ocean import plane_integral
@@ -49,8 +49,9 @@ def test_the_height_of_jonswap_is_exact_at_any_peak_factor(gamma):
 @pytest.mark.parametrize("gravity", [0.0981, 9.81, pytest.param(45.5, marks=pytest.mark.stress), 981.0])
 @pytest.mark.parametrize("wind", [0.5, 7.0, *(pytest.param(w, marks=pytest.mark.stress) for w in (3.0, 15.0)), 30.0])
 def test_jonswap_stops_at_full_growth(gravity, wind):
-    """The sea of Pierson and Moskowitz at the same wind, given with its published height 0.20925 U^2/g and peak."""
-    full = (22.0 / 0.87716) ** 3 * wind**2 / gravity  # [m]
+    """The sea of Pierson and Moskowitz at the same wind, given with its published height 0.20925 U19.5^2/g and peak."""
+    at_mast = 1.026 * wind  # [m/s] 19.5 m up
+    full = (22.0 / 0.87716) ** 3 * 1.026**3 * wind**2 / gravity  # [m]
 
     def of(fetch):
         return under("jonswap", wind_speed=wind, gravity=gravity, fetch=fetch)
@@ -59,16 +60,25 @@ def test_jonswap_stops_at_full_growth(gravity, wind):
         full = 5e6 if full > 5e6 else 100.0
     spectrum = SPECTRA["jonswap"]
     grown, longer = (spectrum.significant_height(of(fetch)) for fetch in (full, 2.0 * full))
-    if full * gravity / wind**2 > 1.57e4:
-        own = 4.0 * math.sqrt(0.076 * 1.5777e4**-0.22 / 5.0) / 0.87716**2  # JONSWAP's constants there, gamma 1
-        assert grown == pytest.approx(own * wind**2 / gravity, rel=1e-3)
-        assert grown == pytest.approx(0.20925 * wind**2 / gravity, rel=0.07)
+    if full * gravity / wind**2 > 1.70e4:
+        own = 4.0 * math.sqrt(0.076 * 1.704e4**-0.22 / 5.0) / 0.87716**2  # JONSWAP's constants there, gamma 1
+        assert grown == pytest.approx(own * at_mast**2 / gravity, rel=1e-3)
+        assert grown == pytest.approx(1.049 * 0.20925 * at_mast**2 / gravity, rel=2e-3)
         assert longer == pytest.approx(grown, rel=1e-3)
-        assert spectrum.peak(of(full)) == pytest.approx(0.87716 * gravity / wind, rel=1e-3)
+        assert spectrum.peak(of(full)) == pytest.approx(0.87716 * gravity / at_mast, rel=1e-3)
     else:
         assert longer > grown
     integral = plane_integral(spectrum, of(2.0 * full), k_max=2e3 * max(gravity / wind**2, 1.0))
     assert 4.0 * math.sqrt(integral) == pytest.approx(longer, rel=2e-3)
+
+
+@pytest.mark.parametrize("name", ["jonswap", "tma"])
+def test_a_full_grown_sea_has_the_peak_of_pierson_and_moskowitz_at_the_same_u10(name):
+    for u10 in (5.0, 10.0, 25.0):
+        grown = SPECTRA[name].peak(under(name, wind_speed=SPECTRA[name].wind_speed(u10), fetch=1e7))
+        pierson = SPECTRA["pierson_moskowitz"]
+        expected = pierson.peak(under("pierson_moskowitz", wind_speed=pierson.wind_speed(u10)))
+        assert grown == pytest.approx(expected, rel=1e-9)
 
 
 def test_the_peak_factor_falls_to_1_at_full_growth_and_is_as_given_before():
@@ -78,7 +88,7 @@ def test_the_peak_factor_falls_to_1_at_full_growth_and_is_as_given_before():
         x = c.gravity * fetch / 100.0
         return float(jonswap.frequency(w, c)[0] / (0.076 * x**-0.22 * c.gravity**2 * w[0] ** -5.0 * math.exp(-1.25)))
 
-    full = 1.5777e4 * 100.0 / 9.81
+    full = 1.704e4 * 100.0 / 9.81
     assert [factor(share * full) for share in (0.01, 0.5, 0.855)] == pytest.approx([3.3] * 3, rel=1e-3)
     assert 1.2 < factor(0.95 * full) < 3.0
     assert factor(full) == pytest.approx(1.0, abs=5e-3)
@@ -98,7 +108,7 @@ def test_a_sea_state_has_the_height_and_period_given():
 
 
 def test_a_second_system_adds_its_energy_and_runs_its_own_way():
-    second = {"second_height": 1.5, "second_period": 14.0, "second_direction": 120.0}
+    second = {"second_height": 1.5, "second_period": 14.0, "second_direction": math.radians(120.0)}
     for name in SPECTRA:
         spectrum, c, alone = SPECTRA[name], under(name, **second), under(name)
         both, one = theory(spectrum, c).significant_height, theory(spectrum, alone).significant_height
@@ -143,6 +153,8 @@ def test_declared_parameters_matter(name, parameter):
         assert one != other
         return
     ends = declared.choices[:2] if declared.choices else (declared.low, declared.high)
+    if parameter == "second_direction":
+        ends = declared.low, 0.0  # its two ends are one direction
     k = np.geomspace(1e-3, 10.0, 50)
     one, other = (spectrum(k, 0.3 * k, under(name, **{parameter: end}, **others)) for end in ends)
     assert not np.array_equal(one, other)
@@ -231,6 +243,18 @@ def test_spreading_integrates_to_one(name, swell):
         assert (D >= 0.0).all()
 
 
+@pytest.mark.parametrize("inverse_age", [0.84, 1.17, 2.0])
+def test_hasselmann_s_exponent_is_the_paper_s_on_both_sides_of_its_split_and_has_no_jump(inverse_age):
+    """Hasselmann, Dunckel and Ewing (1980): two fits, split at 1.05 f_p."""
+    below, above = np.linspace(0.3, 1.02, 50), np.linspace(1.08, 10.0, 50)
+    assert hasselmann_exponent(below, inverse_age) == pytest.approx(6.97 * below**4.06, rel=1e-12)
+    fit = 9.77 * above ** (-2.33 - 1.45 * (inverse_age - 1.17))
+    assert hasselmann_exponent(above, inverse_age) == pytest.approx(fit, rel=1e-12)
+    fine = hasselmann_exponent(np.linspace(0.9, 1.2, 3001), inverse_age)
+    assert np.abs(np.diff(fine)).max() < 5e-3  # steps of 1e-4 f_p; the slope is 33 at most
+    assert fine.max() == pytest.approx(8.6, abs=0.3)
+
+
 def test_swell_narrows_the_sea():
     for name in SPREADINGS:
         ahead = [spread(name, np.ones(1), np.zeros(1), 8.0, xi, 0.9)[0] for xi in (0.0, 0.5, 1.0)]
@@ -279,7 +303,3 @@ def test_elfouhaily_s_spreading_is_that_of_its_waves_speed(k):
     wind = 0.13 * elfouhaily.friction_velocity(c) / slowest
     Delta = math.tanh(0.25 * math.log(2.0) + 4.0 * (speed / fastest) ** 2.5 + wind * (slowest / speed) ** 2.5)
     assert found == pytest.approx(Delta, rel=1e-9)
-
-
-def test_the_title_of_a_spectrum_is_what_its_docstring_says_first():
-    assert {s.doc.split(":")[0] for s in SPECTRA.values()} == {s.title for s in SPECTRA.values()}

@@ -31,7 +31,7 @@ def test_an_oil_s_parts_are_those_of_adios(oil):
 
 @pytest.mark.parametrize("oil", naive_spill.OILS)
 @pytest.mark.parametrize("wind", [5.0, 7.0, 15.0])
-def test_a_spill_of_100_m3_is_pygnome_s(oil, wind):
+def test_a_spill_of_100_m3_is_that_of_plain_steps_of_pygnome_s_laws(oil, wind):
     weathering = weather(Spill(oil=oil, volume=100.0, wind_speed=wind))
     for hours in (1.0, 6.0, 24.0):
         found, expected = weathering.at(hours), naive_spill.spill(oil, 100.0, wind, hours)
@@ -159,6 +159,14 @@ def test_spreading_without_eddies_is_fay_s_square_root():
     assert laws.initial_area(volume, 0.0) == (math.inf, 0.0)
 
 
+def test_a_slick_spreads_by_the_density_at_its_temperature():
+    """A heavy oil, so that a few kg/m3 matter: Maya at 0, 15 and 30 C, on water of 1025 kg/m3."""
+    for celsius, density in ((0.0, 944.8), (15.0, 932.0), (30.0, 2 * 932.0 - 944.8)):
+        light = 1.0 - density / 1025.0
+        first = math.pi * 1.21**4 / 1.53**2 * (1e4**5 * 9.80665 * light / 1e-12) ** (1 / 6)
+        assert weather(Spill(oil="Maya", volume=1e4, temperature=celsius)).area[0] == pytest.approx(first, rel=1e-4)
+
+
 def test_a_slick_stops_to_spread_at_its_least_thickness():
     thin = [laws.least_thickness(nu) for nu in (1e-7, 1e-6, 5e-5, 1e-4, 1.0)]
     assert thin == pytest.approx([1e-5, 1e-5, 1e-5 + 0.9091 * 4.9e-5, 1e-4, 1e-4], rel=1e-4)
@@ -183,13 +191,13 @@ def test_weathered_oil_thickens_by_evaporation_and_by_water():
 
 def test_fingas_law_of_the_table():
     # D = 22.6 % at 180 C: 0.165 x 22.6 ln 1440 = 27.12 %; 5 degrees warmer, 0.225 ln 1440 more; diesel by the root.
-    assert laws.fingas(0.226, 15.0, 1440.0) == pytest.approx(0.2712, abs=1e-4)
-    assert laws.fingas(0.226, 20.0, 1440.0) == pytest.approx(0.2712 + 0.00225 * math.log(1440.0), abs=1e-4)
-    assert laws.fingas(0.268, 15.0, 1440.0, is_crude=False) == pytest.approx(0.0254 * 26.8 * 0.37947, rel=1e-4)
-    cold = laws.fingas(0.268, 5.0, 1440.0, is_crude=False)
+    assert laws.fingas(0.226, 288.15, 1440.0) == pytest.approx(0.2712, abs=1e-4)
+    assert laws.fingas(0.226, 293.15, 1440.0) == pytest.approx(0.2712 + 0.00225 * math.log(1440.0), abs=1e-4)
+    assert laws.fingas(0.268, 288.15, 1440.0, is_crude=False) == pytest.approx(0.0254 * 26.8 * 0.37947, rel=1e-4)
+    cold = laws.fingas(0.268, 278.15, 1440.0, is_crude=False)
     assert cold == pytest.approx((0.0254 * 26.8 - 0.1) * 0.37947, rel=1e-4)
-    assert laws.fingas(0.226, 15.0, 0.5) == 0.0
-    assert laws.fingas(1.0, 30.0, 7200.0) == 1.0
+    assert laws.fingas(0.226, 288.15, 0.5) == 0.0
+    assert laws.fingas(1.0, 303.15, 7200.0) == 1.0
 
 
 @pytest.mark.parametrize("is_crude", [True, False])

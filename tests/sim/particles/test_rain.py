@@ -18,26 +18,50 @@ FLAT = np.zeros((8, 8))
     [(0.5, 2.06), (1.0, 4.03), (2.0, 6.49), (3.2, 8.26), (4.0, 8.83), (5.2, 9.12), (6.0, 9.17)],
 )
 def test_speeds_are_gunn_and_kinzers(millimetres, speed):
-    assert terminal_speed(millimetres * 1e-3) == pytest.approx(speed, rel=0.02)
-    assert terminal_speed(millimetres * 1e-3, 4 * 9.81) == pytest.approx(2 * speed, rel=0.02)
+    worst = 0.02 if millimetres < 1.0 else 0.015  # of 0.5 mm 1.96 %, of the others 1.45 %
+    assert terminal_speed(millimetres * 1e-3) == pytest.approx(speed, rel=worst)
+    assert terminal_speed(millimetres * 1e-3, 4 * 9.81) == pytest.approx(2 * speed, rel=worst)
 
 
-def test_integrals_of_the_table():
-    assert slope_parameter(25.0) == pytest.approx(2086.0, abs=1.0)
-    moderate, heavy = rainfall(25.0), rainfall(100.0)
-    assert (moderate.flux, heavy.flux) == pytest.approx((5036.0, 9747.0), rel=1e-3)
-    assert moderate.water == pytest.approx(1.33e-3, rel=0.03)
-    assert moderate.rate == pytest.approx(28.2, rel=0.01)
-    assert moderate.energy == pytest.approx(0.173, rel=0.01)
-    assert heavy.energy == pytest.approx(0.806, rel=0.05)
+def moment(rate: float, power: int, decay: float = 0.0) -> float:
+    """int D^power exp(-(Lambda + decay) D) dD over the drops that count, by the recursion of partial integration."""
+    a, total = slope_parameter(rate) + decay, np.zeros(2)
+    ends = np.array([SMALLEST, LARGEST])
+    for n in range(power + 1):
+        total = -(ends**n) * np.exp(-a * ends) / a + (n / a * total if n else 0.0)
+    return float(total[1] - total[0])
 
 
-def test_rain_hides_by_what_its_drops_cover():
-    """2 pi/4 int D^2 N0 exp(-Lambda D) dD, in closed form."""
-    for rate in (1.0, 25.0, 100.0):
-        a = slope_parameter(rate)
-        low, high = (math.exp(-a * D) * (D * D / a + 2.0 * D / a**2 + 2.0 / a**3) for D in (SMALLEST, LARGEST))
-        assert rainfall(rate).extinction == pytest.approx(0.5 * math.pi * 8e6 * (low - high), rel=1e-5)
+def intercept(rate: float) -> float:
+    """N0 [1/m4] with pi/6 int D^3 v(D) N0 exp(-Lambda D) dD = rate, v = 9.65 - 10.3 exp(-600 D)."""
+    return rate / 3.6e6 / (math.pi / 6.0 * (9.65 * moment(rate, 3) - 10.3 * moment(rate, 3, 600.0)))
+
+
+@pytest.mark.parametrize("rate", [0.1, 1.0, 5.0, 25.0, 100.0, 200.0])
+def test_drops_carry_the_rate_asked_for_on_any_planet(rate):
+    assert slope_parameter(rate) == pytest.approx(4100.0 * rate**-0.21, rel=1e-12)
+    for gravity in (1.6, 9.81, 45.5):
+        rain = rainfall(rate, gravity)
+        assert rain.rate == pytest.approx(rate, rel=1e-9)
+    here, there = rainfall(rate), rainfall(rate, 4 * 9.81)  # drops twice as fast are half as many in the air
+    assert there.concentration == pytest.approx(0.5 * here.concentration, rel=1e-9)
+    assert there.flux == pytest.approx(here.flux, rel=1e-9)
+
+
+@pytest.mark.parametrize("rate", [1.0, 25.0, 100.0])
+def test_integrals_of_rain_are_their_closed_forms(rate):
+    """Where v is Atlas's formula: the largest drops are capped at 9.17 m/s, 0.5 % below it."""
+    rain, N0 = rainfall(rate), intercept(rate)
+    flux = N0 * (9.65 * moment(rate, 0) - 10.3 * moment(rate, 0, 600.0))
+    cubed = sum(c * moment(rate, 3, 600.0 * n) for n, c in enumerate((9.65**3, -3 * 9.65**2 * 10.3,
+                                                                      3 * 9.65 * 10.3**2, -(10.3**3))))  # fmt: skip
+    assert rain.concentration == pytest.approx(N0 * moment(rate, 0), rel=4e-3)
+    assert rain.flux == pytest.approx(flux, rel=4e-3)
+    assert rain.water == pytest.approx(1000.0 * math.pi / 6.0 * N0 * moment(rate, 3), rel=4e-3)
+    assert rain.energy == pytest.approx(500.0 * math.pi / 6.0 * N0 * cubed, rel=1e-2)
+    # Light: 2 pi/4 int D^2 N dD (van de Hulst).
+    assert rain.extinction == pytest.approx(0.5 * math.pi * N0 * moment(rate, 2), rel=4e-3)
+    assert 0.85 < N0 / 8e6 < 1.0  # Marshall and Palmer's, but for sizes and speeds
 
 
 def test_rings_are_the_slowest_waves_and_as_many_as_large_drops():
@@ -46,7 +70,7 @@ def test_rings_are_the_slowest_waves_and_as_many_as_large_drops():
     for factor in (0.9, 1.1):
         assert phase_speed(factor * 2.0 * math.pi / wave.length, tension=0.0728, density=998.2) > wave.speed
     # Of one speed v all drops above D0 would be N0/Lambda exp(-Lambda D0) v; their speeds are 6.5 to 9.2 m/s.
-    above = 8e6 / slope_parameter(30.0) * math.exp(-slope_parameter(30.0) * SMALLEST_RING_DROP)
+    above = intercept(30.0) / slope_parameter(30.0) * math.exp(-slope_parameter(30.0) * SMALLEST_RING_DROP)
     assert 6.5 * above < ring_flux(30.0) < 9.2 * above
 
 
@@ -73,7 +97,7 @@ def test_the_mean_drop_in_the_air_stays_the_same():
 
 def test_few_drops_are_all_drawn():
     rain = Rain(0.1, 2.0, 1.0, count=10**6)
-    assert rain.weight == pytest.approx(1.0, rel=1e-3)
+    assert rain.weight == pytest.approx(1.0, rel=0.5 / len(rain.diameter))  # their number is rounded
     assert len(rain.diameter) == round(rain.rainfall.concentration * 4.0)
 
 

@@ -9,21 +9,68 @@ can be optimised less, because their callees must stay callable from outside. He
   arguments go through them, and the whole is optimised and made machine code once.
 
 A part is compiled for the types of its arguments and never for the value of a constant argument; LLVM sees to that.
-The names used here are numba's own. They are a reason for the upper bound of numba in pyproject.toml.
+This file alone uses names of numba that are not public. `check` tries all of them; where one has changed,
+`sim.jit` compiles kernels in numba's own way.
 """
 
 import contextlib
 from collections.abc import Callable, Iterator
-from typing import Any
+from pathlib import Path
+from types import FunctionType
+from typing import Any, NamedTuple
 
 import llvmlite.binding as llvm
+import numba
+import numpy as np
 from numba.core import event, sigutils, types
-from numba.core.caching import CompileResultCacheImpl
+from numba.core.caching import CompileResultCacheImpl, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult, Flags
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.environment import lookup_environment
-from numba.core.registry import CPUDispatcher
+from numba.core.options import TargetOptions
+from numba.core.registry import CPUDispatcher, cpu_target
+
+from sim.files import locked
+
+# njit has no spelling of this flag. Without it each loop starts with run-time overlap checks on every pair of arrays, a
+# third of the time at 128 points.
+cpu_target.options.noalias = TargetOptions.Mapping("noalias")  # type: ignore[attr-defined]
+
+
+class KernelFile(IndexDataCacheFile):
+    """numba's cache file of one kernel, where neither a full disk nor rubbish ends the program: it compiles anew.
+
+    numba keeps the kernels of each checkout apart by the path and the time of the source. The folder is already named
+    by the contents, so that checkouts and environments with the same sources share their kernels.
+    """
+
+    def load(self, key: Any) -> Any:
+        try:
+            return super().load(key)
+        except Exception:  # whatever unpickling leads to
+            return None
+
+    def has(self, key: Any) -> bool:
+        """Whether it is kept, as far as the index says."""
+        try:
+            return key in self._load_index()
+        except Exception:  # whatever unpickling leads to
+            return False
+
+    def locked(self) -> contextlib.AbstractContextManager[None]:
+        """Inside, no other process compiles this kernel."""
+        return locked(Path(self._index_path).with_suffix(".lock"))
+
+    def save(self, key: Any, data: Any) -> None:
+        with contextlib.suppress(OSError):  # a full disk: kept another time
+            try:
+                super().save(key, data)
+            except OSError:
+                raise
+            except Exception:  # the index is rubbish: an empty one
+                self.flush()
+                super().save(key, data)
 
 
 class KernelFlags(Flags):
@@ -273,3 +320,81 @@ class Choice(Entry):
     def compile(self, sig: Any) -> Any:
         """Called from Python."""
         return self.variant(sigutils.normalize_signature(sig)[0]).compile(sig)
+
+
+def make_kernel(
+    function: Callable[..., Any], folder: Path | None, options: dict[str, Any], *, noalias: bool, counts: bool
+) -> Entry:
+    """numba's function of a kernel with njit's `options`, kept in `folder`, numba's cache folder just now.
+
+    noalias, counts: whether arrays that are written overlap no other, and whether array arguments are counted.
+    """
+    options = {**options, "_nrt": counts, "no_cfunc_wrapper": True, **({"noalias": True} if noalias else {})}
+    entry = compiled(function, folder, "", EntryCompiler, CompileResultCacheImpl, options)
+    part = compiled(function, folder, "-part", PartCompiler, PartResult, {**options, "no_cpython_wrapper": True})
+    entry.__class__, part.__class__ = Entry, Part
+    entry.part = part
+    return entry
+
+
+def compiled(
+    function: Callable[..., Any],
+    folder: Path | None,
+    suffix: str,
+    pipeline: type,
+    result: type,
+    options: dict[str, Any],
+) -> Any:
+    """numba's function of one form of a kernel, kept in `folder`, in files with `suffix`, as `result` says."""
+    made = numba.njit(cache=folder is not None, pipeline_class=pipeline, **options)(function)
+    made._compiler._customize_flags = KernelFlags  # type: ignore[attr-defined]
+    if folder is not None:
+        cache = made._cache  # type: ignore[attr-defined]
+        cache._cache_file = KernelFile(str(folder), cache._impl.filename_base + suffix, "")
+        cache._impl.__class__ = result
+    return made
+
+
+def choose(variants: dict[type, Any]) -> Choice:
+    """A kernel that stands for one of `variants`, by the class of a record (a NamedTuple) among its arguments."""
+    choice: Any = numba.njit(next(iter(variants.values())).py_func)
+    choice.__class__ = Choice
+    choice.variants = variants
+    return choice
+
+
+class Pair(NamedTuple):
+    """A record that `check` hands to kernels."""
+
+    x: float
+    y: float
+
+
+def added(pair: Any) -> Any:
+    return pair.x + pair.y
+
+
+def stored(pair: Any) -> Any:
+    total = np.empty(1)
+    total[0] = added(pair)
+    return total[0]
+
+
+def doubled(pair: Any) -> Any:
+    return added(pair) + added(pair)
+
+
+def check(folder: Path) -> None:
+    """Compile kernels, keep them in `folder`, numba's cache folder just now, and load them again.
+
+    Raises whatever a part of numba that has changed leads to.
+    """
+    pair = Pair(1.0, 2.0)
+    for caller, expected in ((stored, 3.0), (doubled, 6.0), (stored, 3.0)):
+        kept = len(list(folder.glob(f"*{caller.__name__}*.nbc")))  # none on a full disk
+        callee = make_kernel(added, folder, {"nogil": True}, noalias=True, counts=False)
+        function = FunctionType(caller.__code__, {"added": choose({Pair: callee}), "np": np})
+        entry = make_kernel(function, folder, {"nogil": True}, noalias=False, counts=True)
+        values = callee(pair), entry(pair), sum(entry.stats.cache_hits.values())
+        if values != (3.0, expected, kept):
+            raise RuntimeError(f"kernels give {values} instead of {(3.0, expected, kept)}")

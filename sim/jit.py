@@ -9,25 +9,22 @@ import contextlib
 import functools
 import hashlib
 import os
+import platform
 import re
 import shutil
 import tempfile
 import time
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
+import llvmlite
 import numba
 import platformdirs
 from numba import prange  # for the kernels that are parallel
-from numba.core.caching import CompileResultCacheImpl, IndexDataCacheFile
-from numba.core.compiler import Flags
-from numba.core.options import TargetOptions
-from numba.core.registry import cpu_target
-from numba.extending import intrinsic
-
-from sim.compiler import Choice, Entry, EntryCompiler, KernelFlags, Part, PartCompiler, PartResult
-from sim.files import locked
+from numba.extending import intrinsic, overload
 
 __all__ = ["CACHE", "MAX_THREADS", "chosen", "is_stopped", "kernel", "prange", "set_threads"]
 
@@ -42,12 +39,6 @@ MAX_THREADS: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
 FASTMATH = {"nsz", "arcp", "contract", "afn", "reassoc"}
 
 STALE_AFTER = 30 * 24 * 3600  # [s] a cache directory unused for this long belongs to sources long edited
-
-# numba knows this flag (numba.core.compiler.Flags) but offers no spelling of it in njit. Without it each loop
-# starts with run-time overlap checks on every pair of arrays, a third of the time at 128 points.
-_HAS_NOALIAS = hasattr(Flags, "noalias")
-if _HAS_NOALIAS:
-    cpu_target.options.noalias = TargetOptions.Mapping("noalias")  # type: ignore[attr-defined]
 
 
 def sources_hash(root: Path) -> str:
@@ -128,39 +119,48 @@ def kernel_folder(path: Path) -> Path | None:
     return folder
 
 
-class KernelFile(IndexDataCacheFile):
-    """numba's cache file of one kernel, where neither a full disk nor rubbish ends the program: it compiles anew.
+@contextlib.contextmanager
+def kept_in(folder: Path | None) -> Iterator[None]:
+    """Let kernels that are made inside keep their code in `folder`; other libraries' kernels stay where they were."""
+    previous = numba.config.CACHE_DIR  # type: ignore[attr-defined]
+    try:
+        # numba reads the setting once, when a kernel is made.
+        numba.config.CACHE_DIR = str(folder) if folder else previous  # type: ignore[attr-defined]
+        yield
+    finally:
+        numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
 
-    numba keeps the kernels of each checkout apart by the path and the time of the source. The folder is already named
-    by the contents, so that checkouts and environments with the same sources share their kernels.
-    """
 
-    def load(self, key: Any) -> Any:
-        try:
-            return super().load(key)
-        except Exception:  # whatever unpickling leads to
-            return None
+def load_compiler() -> tuple[ModuleType | None, str]:
+    """Return `sim.compiler`, or None and the reason why it does not work with the numba that is installed."""
+    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+        return None, ""
+    try:
+        from sim import compiler
+    except (AttributeError, ImportError, TypeError) as error:
+        return None, str(error)
+    try:
+        works = f"compiler-{numba.__version__}-{llvmlite.__version__}-{platform.python_version()}-{MAX_THREADS}"
+        mark = CACHE / f"{works}-{reachable_hash(Path(compiler.__file__))}" if CACHE is not None else None
+        if mark is None or not mark.exists():
+            with tempfile.TemporaryDirectory() as folder, kept_in(Path(folder)):
+                compiler.check(Path(folder))
+            if mark is not None:
+                mark.touch()
+    except OSError:  # no folder to try it in
+        return compiler, ""
+    except Exception as error:  # anything may happen where numba's inner parts have changed
+        return None, f"{type(error).__name__}: {error}".splitlines()[0]
+    return compiler, ""
 
-    def has(self, key: Any) -> bool:
-        """Whether it is kept, as far as the index says."""
-        try:
-            return key in self._load_index()
-        except Exception:  # whatever unpickling leads to
-            return False
 
-    def locked(self) -> contextlib.AbstractContextManager[None]:
-        """Inside, no other process compiles this kernel."""
-        return locked(Path(self._index_path).with_suffix(".lock"))
-
-    def save(self, key: Any, data: Any) -> None:
-        with contextlib.suppress(OSError):  # a full disk: kept another time
-            try:
-                super().save(key, data)
-            except OSError:
-                raise
-            except Exception:  # the index is rubbish: an empty one
-                self.flush()
-                super().save(key, data)
+COMPILER, MISSING = load_compiler()
+if MISSING:
+    warnings.warn(
+        f"numba {numba.__version__} has changed inside ({MISSING}): kernels are compiled in numba's own way, "
+        "which takes longer",
+        stacklevel=1,
+    )
 
 
 def kernel(
@@ -181,49 +181,20 @@ def kernel(
     """
     if function is None:
         return lambda f: kernel(f, noalias=noalias, inline=inline, allocates=allocates, parallel=parallel)
+    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+        return function
     options: dict[str, Any] = {
         "nogil": True,
         "fastmath": FASTMATH,
         "error_model": "numpy",
         "parallel": parallel,
         "forceinline": inline,
-        "_nrt": allocates and not inline,
-        "no_cfunc_wrapper": True,
     }
-    if noalias and _HAS_NOALIAS:
-        options["noalias"] = True
-    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
-        return function
     folder = kernel_folder(Path(function.__code__.co_filename).resolve())
-    entry = compiled(function, folder, "", EntryCompiler, CompileResultCacheImpl, options)
-    part = compiled(function, folder, "-part", PartCompiler, PartResult, {**options, "no_cpython_wrapper": True})
-    entry.__class__, part.__class__ = Entry, Part
-    entry.part = part
-    return entry
-
-
-def compiled(
-    function: Callable[..., Any],
-    folder: Path | None,
-    suffix: str,
-    pipeline: type,
-    result: type,
-    options: dict[str, Any],
-) -> Any:
-    """numba's function of a kernel, kept in `folder`, in files with `suffix`, as `result` says."""
-    previous = numba.config.CACHE_DIR  # type: ignore[attr-defined]
-    try:
-        # numba reads the setting once, here; other libraries' kernels stay where they were.
-        numba.config.CACHE_DIR = str(folder) if folder else previous  # type: ignore[attr-defined]
-        made = numba.njit(cache=folder is not None, pipeline_class=pipeline, **options)(function)
-    finally:
-        numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
-    made._compiler._customize_flags = KernelFlags  # type: ignore[attr-defined]
-    if folder is not None:
-        cache = made._cache  # type: ignore[attr-defined]
-        cache._cache_file = KernelFile(str(folder), cache._impl.filename_base + suffix, "")
-        cache._impl.__class__ = result
-    return made
+    with kept_in(folder):
+        if COMPILER is None:
+            return numba.njit(cache=folder is not None, **options)(function)
+        return COMPILER.make_kernel(function, folder, options, noalias=noalias, counts=allocates and not inline)
 
 
 def chosen(variants: dict[type, Any]) -> Any:
@@ -231,17 +202,21 @@ def chosen(variants: dict[type, Any]) -> Any:
 
     Which one is known as soon as the types are, so that a caller holds the code of that one and of no other.
     """
-    kernels = list(variants.values())
-    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
+    if COMPILER is not None:
+        return COMPILER.choose(variants)
 
-        def call(*args: Any) -> Any:
-            return next(variants[type(arg)] for arg in args if type(arg) in variants)(*args)
+    def call(*args: Any) -> Any:
+        return next(variants[type(arg)] for arg in args if type(arg) in variants)(*args)
 
-        return call
-    choice: Any = numba.njit(kernels[0].py_func)
-    choice.__class__ = Choice
-    choice.variants = variants
-    return choice
+    @overload(call)
+    def variant(*args):  # without annotations: numba compares the signature with that of the function it returns
+        for arg in args:
+            kernel = variants.get(getattr(arg, "instance_class", type(None)))
+            if kernel is not None:
+                return lambda *args: kernel(*args)
+        return None
+
+    return call
 
 
 def _load_of(typing: Any, array: Any, index: Any) -> Any:

@@ -4,10 +4,6 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from numba.core.caching import CompileResultCacheImpl, IndexDataCacheFile
-from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Flags
-from numba.core.registry import CPUDispatcher
 
 from app.__main__ import main
 from sim import jit
@@ -161,27 +157,6 @@ def test_a_nan_stays_visible():
 def test_kernels_let_other_threads_run():
     assert halved.targetoptions["nogil"]  # type: ignore[attr-defined]
     assert add.targetoptions["nogil"]  # type: ignore[attr-defined]
-
-
-def test_numba_has_the_inner_names_that_are_used():
-    """They are used in sim. Where one is missing, the upper bound of numba in pyproject.toml is too high."""
-    flags = {"noalias", "nrt", "no_compile", "no_cfunc_wrapper", "no_cpython_wrapper", "forceinline"}
-    assert flags <= set(Flags.options)
-    for owner, names in {
-        IndexDataCacheFile: {"load", "save", "flush"},
-        CompileResultCacheImpl: {"reduce", "rebuild"},
-        CPUDispatcher: {"compile", "get_call_template", "get_overload"},
-        JITCodeLibrary: {
-            "_optimize_final_module", "_finalize_final_module", "_finalize_specific", "_ensure_finalized",
-            "_get_module_for_linking", "get_pointer_to_function", "has_dynamic_globals", "enable_object_caching",
-        },
-    }.items():  # fmt: skip
-        assert names <= set(dir(owner)), owner
-    halved(1.0)
-    (compiled,) = halved.overloads.values()  # type: ignore[attr-defined]
-    assert isinstance(compiled.library._reload_init, set)
-    assert isinstance(halved._cache._cache_file, jit.KernelFile)  # type: ignore[attr-defined]
-    assert isinstance(halved._cache._impl.filename_base, str)  # type: ignore[attr-defined]
 
 
 INTERPRETED = """

@@ -1,0 +1,224 @@
+"""Names of numba that are not public: one file uses them, and without any of them kernels still work."""
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PUBLIC = {"llvmlite", "numba", "numba.extending", "numba.types"}
+
+# Each name that `sim/compiler.py` takes from numba's inside. Without the ones in QUIET compiling is only slower.
+NAMES = (
+    "CompileResultCacheImpl",
+    "IndexDataCacheFile",
+    "JITCodeLibrary",
+    "Compiler",
+    "CompileResult",
+    "Flags",
+    "global_compiler_lock",
+    "lookup_environment",
+    "TargetOptions",
+    "CPUDispatcher",
+    "cpu_target",
+    "event",
+    "sigutils",
+    "_load_index",
+    "_index_path",
+    "flush",
+    "_values",
+    "_codegen",
+    "_data_layout",
+    "_function_pass_manager",
+    "_finalized",
+    "_optimize_final_module",
+    "_finalize_final_module",
+    "_finalize_specific",
+    "_ensure_finalized",
+    "_final_module",
+    "_shared_module",
+    "_get_module_for_linking",
+    "_reload_init",
+    "get_pointer_to_function",
+    "has_dynamic_globals",
+    "enable_object_caching",
+    "set_env",
+    "compile_extra",
+    "no_compile",
+    "targetctx",
+    "reduce",
+    "rebuild",
+    "typemap",
+    "typing_context",
+    "insert_user_function",
+    "trigger_event",
+    "normalize_signature",
+    "unliteral",
+    "_index_key",
+    "_cache",
+    "_cache_file",
+    "_impl",
+    "filename_base",
+    "load_overload",
+    "save_overload",
+    "_customize_flags",
+    "get_call_template",
+    "get_overload",
+    "overloads",
+    "instance_class",
+    "_nrt",
+    "no_cfunc_wrapper",
+    "noalias",
+    "no_cpython_wrapper",
+    "Mapping",
+    "set_option",
+    "parse_bitcode",
+    "linkonce_odr",
+    "as_bitcode",
+    "global_variables",
+)
+QUIET = {
+    "_load_index",
+    "flush",
+    "_finalized",
+    "_optimize_final_module",
+    "_finalize_final_module",
+    "_finalize_specific",
+    "_ensure_finalized",
+    "_shared_module",
+    "get_pointer_to_function",
+    "has_dynamic_globals",
+    "compile_extra",
+    "_customize_flags",
+}
+SAMPLE = ("IndexDataCacheFile", "lookup_environment", "_values", "_nrt", "_impl", "rebuild", "flush", "instance_class")
+
+KERNELS = """
+from typing import NamedTuple
+import numpy as np
+from sim.jit import chosen, kernel
+
+class Round(NamedTuple):
+    radius: float
+
+class Square(NamedTuple):
+    side: float
+
+@kernel(allocates=False)
+def round_area(shape, scale):
+    return 3.0 * scale * shape.radius**2
+
+@kernel(inline=True)
+def square_area(shape, scale):
+    return scale * shape.side**2
+
+area = chosen({Round: round_area, Square: square_area})
+
+@kernel(noalias=True)
+def add_areas(total, shape):
+    for j in range(total.shape[0]):
+        total[j] += area(shape, 2.0)
+
+def areas():
+    total = np.zeros(3)
+    add_areas(total, Round(1.0))
+    add_areas(total, Square(2.0))
+    return total.sum() + area(Square(1.0), 1.0)
+"""
+
+# A name that numba has changed is one that our source spells in another way. Each is tried in a child of a process that
+# has imported numba.
+WITHOUT = """
+import os, sys, warnings
+import numba
+for name in sys.argv[1:]:
+    sys.stdout.flush()
+    child = os.fork()
+    if child:
+        os.waitpid(child, 0)
+        continue
+    sys.path.insert(0, name)
+    try:
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            import kernels
+        lines = [str(w.message) for w in said if "changed inside" in str(w.message)]
+        print(name, kernels.areas(), len(lines), flush=True)
+    except BaseException as error:
+        print(name, type(error).__name__, error, flush=True)
+    os._exit(0)
+"""
+
+
+def run_without(names: tuple[str, ...], tmp_path: Path) -> dict[str, tuple[float, int]]:
+    """What a few kernels compute and the number of lines about numba, with each of the names spelled in another way."""
+    compiler = (ROOT / "sim" / "compiler.py").read_text("utf-8")
+    for name in names:
+        sources = tmp_path / name / "sim"
+        sources.mkdir(parents=True)
+        for module in ("__init__", "files", "jit"):
+            (sources / f"{module}.py").write_bytes((ROOT / "sim" / f"{module}.py").read_bytes())
+        (sources / "compiler.py").write_text(re.sub(rf"\b{name}\b", f"{name}_changed", compiler))
+        (tmp_path / name / "kernels.py").write_text(KERNELS)
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT, *names],
+        cwd=tmp_path,
+        env={"SPRINGTIDE_CACHE": str(tmp_path / "cache"), "PATH": ""},
+        capture_output=True,
+        text=True,
+        timeout=280,
+        check=True,
+    )
+    rows = [line.split() for line in done.stdout.splitlines()]
+    return {row[0]: (float(row[1]), int(row[2])) if len(row) == 3 else (float("nan"), 0) for row in rows}
+
+
+@pytest.mark.parametrize(
+    "names", [SAMPLE, pytest.param(NAMES, marks=pytest.mark.stress, id="all")], ids=lambda names: names[0]
+)
+def test_without_an_inner_name_kernels_work_and_one_line_says_what_is_missing(
+    names: tuple[str, ...], tmp_path: Path
+) -> None:
+    assert run_without(names, tmp_path) == {name: (43.0, name not in QUIET) for name in names}
+
+
+def test_with_all_names_nothing_is_said(tmp_path: Path) -> None:
+    assert run_without(("unused",), tmp_path) == {"unused": (43.0, 0)}
+
+
+def test_one_file_uses_inner_names() -> None:
+    users = {
+        path.relative_to(ROOT).as_posix()
+        for top in ("sim", "app")
+        for path in (ROOT / top).rglob("*.py")
+        if modules_of_numba(path) - PUBLIC
+    }
+    assert users == {"sim/compiler.py"}
+
+
+def modules_of_numba(path: Path) -> set[str]:
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            found.add(node.module or "")
+    return {name for name in found if name.partition(".")[0] in ("numba", "llvmlite")}
+
+
+@pytest.mark.stress  # compiles in numba's own way: a minute or two each
+@pytest.mark.parametrize("scene", ["rope", "cloth", "square_sea", "radial_sea"])
+def test_without_an_inner_name_scenes_run(scene: str, tmp_path: Path) -> None:
+    code = (
+        "import sys, numba.core.environment; del numba.core.environment.lookup_environment\n"
+        "from app.__main__ import main; sys.exit(main(sys.argv[1:]))"
+    )
+    command = [sys.executable, "-c", code, "run", scene, "--seconds", "0.05", "--out", str(tmp_path / "out.npz")]
+    environment = {**os.environ, "SPRINGTIDE_CACHE": str(tmp_path)}
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True)
+    assert done.stderr.count("has changed inside") == 1
+    assert (tmp_path / "out.npz").exists()

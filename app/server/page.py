@@ -1,7 +1,7 @@
 """The page that a browser is given: viser's, with a title, a cover for while nothing is drawn, and our own script.
 
 viser serves one HTML file. The cover stands at the top of its body, so that it is seen before the client behind it has
-been read; the scripts below it are those of `SCRIPTS` in `app/render/js`. `ADDRESS_SCRIPT` runs before all others.
+been read; the scripts below it are those of `SCRIPTS` in `app/render/js`. `FIRST_SCRIPTS` run before all others.
 """
 
 import functools
@@ -14,7 +14,7 @@ from websockets.http11 import Request, Response
 
 ALIVE_PATH = "/springtide-alive"  # what the page asks for, to see whether the server is still there
 TITLE = "<title>Springtide</title>"
-ADDRESS_SCRIPT = "address.js"
+FIRST_SCRIPTS = ("address.js", "leaving.js")
 SCRIPTS = ("page.js", "fields.js", "camera.js", "charts.js", "share.js", "display.js", "access.js", "beside.js")
 PANES_PATH = "/beside"  # of the page that shows several labs side by side
 COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'
@@ -54,8 +54,8 @@ def covered(sent: bytes, zipped: bool) -> bytes:
     page = gzip.decompress(sent) if zipped else sent
     folder = resources.files("app.render") / "js"
     style = (folder / "page.css").read_text("utf-8")
-    script = "".join((folder / name).read_text("utf-8") for name in SCRIPTS)
-    first = f"<script>{(folder / ADDRESS_SCRIPT).read_text('utf-8')}</script><style>{style}</style>"
+    first, script = ("".join((folder / name).read_text("utf-8") for name in names) for names in (FIRST_SCRIPTS, SCRIPTS))
+    first = f"<script>{first}</script><style>{style}</style>"
     head, _, body = page.decode("utf-8").rpartition("<body>")
     # viser's client is one long script in the head: below the cover it does not delay it.
     start = head.index("<script")

@@ -33,6 +33,7 @@ from app.panel.display import Display
 from app.panel.guide import Guide
 from app.panel.history import History, Settings
 from app.panel.plots import Plots
+from app.panel.questions import Questions
 from app.panel.recorder import Recorder
 from app.panel.share import MakeReplay, Share
 from app.panel.work_table import work_table
@@ -86,13 +87,14 @@ class Panel:
         session: "Session | None" = None,
         beside: Beside | None = None,
         changed: Callable[[BaseParams], None] = lambda params: None,
+        questions: Questions,
     ) -> None:
         """post: takes commands for the simulation. open_scene: takes a scene to show instead; both at once.
 
         workbook: the tasks of the lab, shown above the parameters. work: the work counts of the open scene. developer:
         show them. session: of a student's folder. wake: has the recording looked at once more. make_replay: makes the
         page of a replay. beside: shows other set-ups beside this one; None where this one is beside another.
-        changed: is told of parameters that were set.
+        changed: is told of parameters that were set. questions: of visitors, which outlive the panel.
         """
         self.server, self.kind, self.view, self.post, self.work = server, kind, view, post, work
         self.open_scene, self.beside, self.changed = open_scene, beside, changed
@@ -154,7 +156,7 @@ class Panel:
                 self.controls[name] = Control(gui, folder, name, parameter, self.reader(name), self.on_change)
         self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
         self.recorder = Recorder(kind.packing)
-        self.share = Share(server, self.lab, self, self.recorder, post, wake, make_replay)
+        self.share = Share(server, self.lab, self, self.recorder, post, wake, make_replay, questions)
         self.compare = (
             None if beside is None else Compare(gui, self.buttons, self.comparable_names, self.comparable, beside)
         )

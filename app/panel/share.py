@@ -19,13 +19,13 @@ import viser
 from app.messages import BaseParams, KeptState, Pause, PlotRow, Vector
 from app.panel.compare import Beside
 from app.panel.picture import take_picture
+from app.panel.questions import Asker, Ballot, Questions, Subject
 from app.panel.recorder import RATES, Kept, Recorder
 from app.panel.recording_files import plots_csv, plots_svg, recording_npz
 from app.render.cameras import place_camera
 from app.render.html import fill, note
 from app.render.viser_types import GuiHandle, ViserEvent
-from app.scenes import scene_named
-from app.scenes.comparisons import COMPARISONS, comparison_named
+from app.scenes.comparisons import comparison_named
 from app.scenes.contract import AnyKind, AnySnapshot, PostCommand
 from app.scenes.own_setups import keep_own, remove_own
 from app.scenes.setups import MAX_NAME, MAX_NOTE, Camera, Setup, read_file, read_query, write_file, write_query
@@ -55,7 +55,6 @@ PAGE_BUTTONS = (
     '<button type="button" data-springtide-charts>Plots as PNG</button></div>'
 )
 COMPARE = "?compare="  # begins the address of a comparison that is ready
-OPEN, LEAVE = "Open it for all", "Leave the lab as it is"
 
 # What `app/render/js/charts.js` reads the time of the line in the charts from.
 MOMENT = '<b data-springtide-moment="{}">Shown: t = {:.2f} s of the recording.</b>'
@@ -108,10 +107,11 @@ class Share:
         post: PostCommand,
         wake: Callable[[], None],
         make_replay: MakeReplay,
+        questions: Questions,
     ) -> None:
         """lab: the folder that stays in sight. wake: has the viewer's thread look at the recorder.
 
-        make_replay: makes the page of a replay.
+        make_replay: makes the page of a replay. questions: those of this server.
         """
         self.server, self.panel, self.recorder, self.post = server, panel, recorder, post
         self.wake, self.make_replay = wake, make_replay
@@ -120,12 +120,10 @@ class Share:
         self.span: tuple[float, float] = (0.0, 0.0)
         self.sent: Kept | None = None  # the frame of the recording that the viewer sent last
         self.busy = threading.Lock()  # one file at a time
-        self.waiting: Callable[[], None] | None = None  # what the visitors are asked about
+        self.questions = questions
+        self.ballot = Ballot(server, lab, questions, self.show, self.refuse)
         with lab:
             self.moment = gui.add_html("", visible=False)
-            self.request = gui.add_html("", visible=False)
-            self.decide = gui.add_button_group("", (OPEN, LEAVE), visible=False)
-        self.decide.on_click(self.on_decision)
         self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
         holder = fill('<span data-springtide-inbox="{}"></span>', self.inbox._impl.uuid)
@@ -174,25 +172,39 @@ class Share:
         self.line.content = note(text) if text else ""
 
     async def on_inbox(self, event: ViserEvent) -> None:
-        """A page has sent its address ("?scene=...") or a file ("{...}")."""
-        text, client = self.inbox.value, event.client
+        """A page has sent its address ("?scene=...") or a file ("{...}"), below a line with the page's own word."""
+        (page, _, text), client = self.inbox.value.partition("\n"), event.client
         if not text or client is None:
             return
         self.inbox.value = ""  # so that the same text can come again
         try:
-            if text.startswith(COMPARE):
-                self.compare(text.removeprefix(COMPARE))
-                return
-            setup = read_query(text) if text.startswith("?") else read_file(text)
+            subject = self.read(text)
         except ValueError as reason:
             self.refuse(client, str(reason))
             return
-        if setup.scene == self.panel.kind.name and setup.params == self.panel.params:
-            self.place(setup, client)
+        if isinstance(subject, Setup) and (subject.scene, subject.params) == (self.panel.kind.name, self.panel.params):
+            self.place(subject, client)
+        elif isinstance(subject, str) and self.panel.beside is None:
+            return  # a lab beside another opens no comparison
         elif len(self.server.get_clients()) > 1:
-            self.ask(setup, client.client_id)
+            self.questions.ask(subject, Asker(client.client_id, page))
         else:
-            self.panel.show_setup(setup, client.client_id)
+            self.show(subject, client.client_id)
+
+    def read(self, text: str) -> Subject:
+        """What a page has sent. Raises ValueError for what is not allowed."""
+        if not text.startswith(COMPARE):
+            return read_query(text) if text.startswith("?") else read_file(text)
+        name = text.removeprefix(COMPARE)
+        comparison_named(name)
+        return name
+
+    def show(self, subject: Subject, client: int) -> None:
+        """Show a set-up, with its camera for one browser, or a comparison."""
+        if isinstance(subject, Setup):
+            self.panel.show_setup(subject, client)
+        elif self.panel.beside is not None:
+            self.panel.beside.compare(comparison_named(subject), True)
 
     def refuse(self, client: viser.ClientHandle | None, reason: str) -> None:
         """Tell one browser why a set-up was not taken."""
@@ -203,40 +215,6 @@ class Share:
         """Give one browser the camera of a set-up that is shown already."""
         if client is not None and setup.camera is not None:
             place_camera(client.camera, *setup.camera)
-
-    def compare(self, name: str) -> None:
-        """Show a comparison that is ready. Raises ValueError where there is none of that name."""
-        setups, beside = comparison_named(name), self.panel.beside
-        if beside is None:
-            return
-        if len(self.server.get_clients()) > 1:
-            self.ask_for(COMPARISONS[name].title, "", lambda: beside.compare(setups, True))
-        else:
-            beside.compare(setups, True)
-
-    def ask(self, setup: Setup, client: int | None) -> None:
-        """Ask the visitors whether a set-up may change what all of them see."""
-        title = scene_named(setup.scene).title
-        self.ask_for(title, setup.name or setup.preset, lambda: self.panel.show_setup(setup, client))
-
-    def ask_for(self, title: str, name: str, show: Callable[[], None]) -> None:
-        """Ask the visitors whether something may be shown to all of them."""
-        self.waiting = show
-        words = fill(
-            "Another browser asks to open <b>{}</b>{}. This changes the lab for all {} browsers.",
-            title,
-            f" ({name})" if name else "",
-            len(self.server.get_clients()),
-        )
-        self.request.content = note(words)
-        self.request.visible = self.decide.visible = True
-
-    async def on_decision(self, event: ViserEvent) -> None:
-        """A visitor has answered."""
-        waiting, self.waiting = self.waiting, None
-        self.request.visible = self.decide.visible = False
-        if waiting is not None and event.target.value == OPEN:
-            waiting()
 
     async def on_time(self, event: ViserEvent) -> None:
         """A browser has moved along the timeline: the lab pauses, and shows what was."""
@@ -429,7 +407,8 @@ class Share:
         return f"springtide-{self.panel.kind.name}.html", page.encode()
 
     def update(self, snapshot: AnySnapshot) -> None:
-        """Keep the timeline up to date."""
+        """Keep questions and timeline up to date."""
+        self.ballot.draw()
         now = time.monotonic()
         shown = self.recorder.shown
         if shown is None and now - self.span_at < SPAN_INTERVAL:

@@ -39,7 +39,7 @@ from app.server.panes import Panes
 MAX_NUMBER = 1e6  # any number in a message beyond this is refused
 MAX_LENGTH = 1000  # of a text, or of a list
 MAX_FIELD_LENGTH = 64  # of what is typed into a field
-MAX_TEXT_LENGTH = 5000  # of what is typed into a field of several lines
+MAX_TEXT_LENGTH = 5100  # of a field of several lines: a set-up file, and the word of the page that sends it
 INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
 MAX_WAITING = 64  # messages of one browser that wait for their turn
 STARTING = threading.Lock()  # one server at a time: what starts it is replaced meanwhile

@@ -54,7 +54,9 @@ def covered(sent: bytes, zipped: bool) -> bytes:
     page = gzip.decompress(sent) if zipped else sent
     folder = resources.files("app.render") / "js"
     style = (folder / "page.css").read_text("utf-8")
-    first, script = ("".join((folder / name).read_text("utf-8") for name in names) for names in (FIRST_SCRIPTS, SCRIPTS))
+    first, script = (
+        "".join((folder / name).read_text("utf-8") for name in names) for names in (FIRST_SCRIPTS, SCRIPTS)
+    )
     first = f"<script>{first}</script><style>{style}</style>"
     head, _, body = page.decode("utf-8").rpartition("<body>")
     # viser's client is one long script in the head: below the cover it does not delay it.

@@ -16,6 +16,7 @@ from app.messages import BaseParams, Halt, Release, Reset, StudentAnswer, WorkCo
 from app.panel.compare import Beside, PaneWords
 from app.panel.display import set_theme
 from app.panel.panel import Panel, add_scene_chooser
+from app.panel.questions import Questions
 from app.panel.recorder import Kept
 from app.render.cameras import ClientCamera, fit_cameras, place_cameras, place_client_camera
 from app.render.html import fill, note
@@ -96,6 +97,7 @@ class Viewer:
         self.port = self.server.get_port()
         self.commands = CommandQueue()
         self.server.on_client_disconnect(self.on_disconnect)
+        self.questions = Questions(self.server)
         self.stop = threading.Event()
         self.ended = False
         self.threads: list[threading.Thread] = []
@@ -155,6 +157,7 @@ class Viewer:
             self.server, kind, self.view, params, self.gate.post, work=self.work, scenes=NAMES,
             open_scene=self.want, workbook=self.workbook, developer=self.developer, session=self.session,
             wake=lambda: self.loop.fresh.set(), make_replay=replay_html, changed=self.share_parameters,
+            questions=self.questions,
             beside=None if self.pane_of else Beside(self.comparing.want, self.comparing.end, self.pane_words),
         )  # fmt: skip
         gate, read = self.gate, self.panel.read

@@ -1,4 +1,4 @@
-"""Links opened in one tab of a browser that keeps the pages that it left, as browsers do unless a driver starts them."""
+"""Links opened in one tab of a browser that keeps the pages it has left, as browsers do that no driver starts."""
 
 from collections.abc import Iterator
 from typing import Any

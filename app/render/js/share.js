@@ -1,6 +1,6 @@
 // Links and set-ups: what stands in the address of this page is sent to the lab once, and a file that is chosen is read
 // here and sent as text: of a replay, the set-up file that it holds. The lab checks both. A link that the lab has made
-// is shown with this page's own address.
+// is shown with this page's own address. Where all visitors are asked, the page that asks shows its own sentence.
 // Clips are recorded here from the canvas of the view, and plots are saved as one picture.
 //
 // Of viser this file uses window.__viserMutable (canvas, sendMessage) and window.__viserTestpoints.uplots.
@@ -20,6 +20,7 @@
     "darkMode", "dummyWindowDimensions", "dummyWindowTitle", "fixedDpr", "forceOrbitOriginTool", "hideViserLogo",
     "initialCameraLookAt", "initialCameraPosition", "initialCameraUp", "logCamera", "playbackPath", "showStats", "websocket",
   ]);
+  const PAGE = Math.random().toString(36).slice(2, 10); // tells what this page asks from what others ask
   const asked = new URLSearchParams(location.search);
   let query = asked.has("scene") || asked.has("compare") ? location.search : "";
   let pressed = -Infinity;
@@ -28,9 +29,14 @@
     const uuid = document.querySelector("[data-springtide-inbox]")?.dataset.springtideInbox;
     const post = window.__viserMutable?.sendMessage;
     if (!uuid || !post) return false;
-    post({ type: "GuiUpdateMessage", uuid, updates: { value: text } });
+    post({ type: "GuiUpdateMessage", uuid, updates: { value: `${PAGE}\n${text}` } });
     return true;
   }
+
+  const own = `[data-springtide-askers~="${PAGE}"]`, sentences = document.createElement("style");
+  sentences.textContent =
+    `${own} .springtide-asked, [data-springtide-askers]:not(${own}) .springtide-asker { display: none; }`;
+  document.head.append(sentences);
 
   // What viser's client itself takes from an address is not for the lab.
   function ofLab(search) {

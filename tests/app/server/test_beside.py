@@ -179,7 +179,7 @@ def test_an_address_and_the_panel_open_a_comparison() -> None:
     client = SimpleNamespace(client_id=1, add_notification=lambda title, reason, **how: said.append(reason))
 
     def inbox(text: str) -> None:
-        viewer.panel.share.inbox.value = text
+        viewer.panel.share.inbox.value = f"page\n{text}"
         coroutines.run(viewer.panel.share.on_inbox(SimpleNamespace(client=client)))
 
     try:

@@ -3,12 +3,12 @@
 import json
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from app.messages import PlotRow
-from app.scenes.charts import Chart
+from app.scenes.charts import Chart, Columns, chart_of, numbers_of
 from app.scenes.contract import AnyKind, AnyScene
 from sim.parameters import parameters_of
 
@@ -38,8 +38,8 @@ def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: st
     for name, measure in ({} if kind.measures is None else kind.measures(scene)).items():
         own = f"measured_{name}" if name in found else name
         found[own] = ((), np.array(measure.value), attributes(measure.unit, measure.meaning))
-    for parameter, chart in (scene.curves() or {}).items():
-        found.update(columns_of(kind, parameter, chart))
+    for parameter, columns in (scene.curves() or {}).items():
+        found.update(columns_of(kind, parameter, columns))
     coordinates = {
         "t": ("t", table[:, 0], attributes("s", "simulated time")),
         "now": ((), np.array(scene.time), attributes("s", "simulated time of the state")),
@@ -49,18 +49,12 @@ def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: st
     return xr.Dataset(found, coordinates, about)
 
 
-def columns_of(kind: AnyKind, parameter: str, chart: Any) -> Mapping[str, Labelled]:
+def columns_of(kind: AnyKind, parameter: str, columns: Chart | Columns) -> Mapping[str, Labelled]:
     """The columns of a chart that is not over time, as variables over its own dimension."""
-    dimension = parameter.removeprefix("plot_")
-    axes = kind.curves[parameter]
-    if isinstance(chart, Chart):
-        first, names, columns = chart.first, [line.label for line in chart.lines], chart.columns
-    else:
-        first, names, columns = axes.first, list(axes.names), chart
-    labels = [f"{axes.title}: {first}", *(f"{axes.title}: {name}" for name in names)]
+    dimension, axes = parameter.removeprefix("plot_"), kind.curves[parameter]
     return {
-        as_name(f"{dimension}_{name}"): ((dimension,), np.asarray(column), {"long_name": label})
-        for name, column, label in zip([first.partition(" [")[0], *names], columns, labels, strict=True)
+        as_name(f"{dimension}_{name}"): ((dimension,), values, attributes(unit, f"{axes.title}: {name}"))
+        for name, unit, values in numbers_of(axes, chart_of(axes, columns))
     }
 
 

@@ -6,7 +6,7 @@ cannot lose each other.
 
 import dataclasses
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeAlias, cast
 
 import viser
@@ -35,6 +35,7 @@ from app.panel.history import History, Settings
 from app.panel.plots import Plots
 from app.panel.questions import Questions
 from app.panel.recorder import Recorder
+from app.panel.recording_files import Plotted
 from app.panel.share import MakeReplay, Share
 from app.panel.work_table import work_table
 from app.render.cameras import ClientCamera, place_camera
@@ -294,9 +295,9 @@ class Panel:
         """
         return self.plots.keep(on)
 
-    def plot_rows(self) -> Sequence[PlotRow]:
-        """The rows of the plots that are kept."""
-        return tuple(self.plots.rows)
+    def plotted(self) -> Plotted:
+        """The rows of the plots that are kept, and the whole charts of now."""
+        return Plotted(tuple(self.plots.rows), self.plots.curves)
 
     def load_params(self, params: BaseParams, preset: str) -> None:
         """Take parameters, and the scene from its start: one command. preset: that they come from."""

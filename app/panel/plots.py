@@ -16,8 +16,9 @@ from viser import uplot
 
 from app.messages import PlotRow, WorkCount
 from app.panel.round_step import round_step
+from app.render.line_chart import Line
 from app.render.viser_types import GuiHandle
-from app.scenes.charts import Chart, Columns, CurveAxes, Line
+from app.scenes.charts import Chart, Columns, chart_of, lines_of
 from app.scenes.contract import AnyKind, AnySnapshot
 
 SEND_INTERVAL = 0.12  # [s] between two sends
@@ -30,7 +31,6 @@ LOGARITHMIC_TICK_WIDTH = 66.0  # [pixels] for the words at a logarithmic scale
 TICKS = 4  # about so many intervals between two ends of a scale
 MIN_SPAN = 1e-3  # of a scale, over the size of its numbers: a constant has a scale too
 MIN_FILLED = 0.3  # share of a scale that its data must fill, or the scale is made anew
-COLOURS = ("#7048e8", "#1c7ed6", "#f76707", "#12b886", "#e64980", "#868e96", "#e03131")
 KEPT_OPACITY, KEPT_DASH = "99", (5.0, 4.0)  # of the lines of an earlier run: a hexadecimal byte, [pixels]
 EMPTY = np.array([0.0, 1.0])  # the times of a chart without rows
 
@@ -71,15 +71,6 @@ def scale_of(low: float, high: float) -> Scale:
     step = round_step(rough)
     first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
     return Scale(first * step, max(last, first + 1) * step, step)
-
-
-class Whole(NamedTuple):
-    """A chart that a scene makes whole."""
-
-    first: str  # label of the first column
-    lines: tuple[Line, ...]
-    columns: Columns
-    end: float | None  # of the scale of the first column, from 0; None to fit it to the data
 
 
 @dataclass
@@ -174,17 +165,11 @@ class Plots:
             if name not in wanted or (last[0] is columns and last[1] is kept):
                 continue
             self.sent_curves[name] = columns, kept
-            chart = self.chart_of(name, columns)
+            axes = self.kind.curves[name]
+            chart = chart_of(axes, columns)
             if kept is not None and kept is not columns:
-                chart = with_kept(chart, self.chart_of(name, kept))
-            self.send(name, *chart)
-
-    def chart_of(self, name: str, columns: Chart | Columns) -> Whole:
-        """What a scene's columns are drawn as."""
-        if isinstance(columns, Chart):
-            return Whole(columns.first, columns.lines, columns.columns, columns.end)
-        axes = self.kind.curves[name]
-        return Whole(axes.first, lines_of(axes.names), columns, None)
+                chart = with_kept(chart, chart_of(axes, kept))
+            self.send(name, chart)
 
     def rows_about(self, moment: float | None) -> list[PlotRow]:
         """The rows that charts show: the last ones, or those about a moment [s], in steps of half a chart."""
@@ -213,10 +198,11 @@ class Plots:
             if kept:
                 lines = (*lines, *(kept_line(line) for line in lines))
                 columns += [at_times(times, before, row) for row in rows]
-            self.send(name, "t [s]", lines, (times, *columns))
+            self.send(name, Chart("t [s]", lines, (times, *columns)))
 
-    def send(self, name: str, first: str, lines: tuple[Line, ...], columns: Columns, end: float | None = None) -> None:
-        """Send one chart. end: of the scale of the first column, which then starts at 0; None to fit it to the data."""
+    def send(self, name: str, chart: Chart) -> None:
+        """Send one chart."""
+        first, lines, columns, end, _ = chart
         if len(columns[0]) < 2:
             columns = (EMPTY * (end or 1.0), *(np.full(2, math.nan) for _ in lines))
         scale = None if self.is_logarithmic(name) else self.scale_for(name, columns[1:])
@@ -255,23 +241,24 @@ class Plots:
         """The chart that a parameter opens, in the dock."""
         assert self.dock is not None
         if name in self.kind.curves:
-            title, first, names, ticks = self.kind.curves[name]
+            axes = self.kind.curves[name]
+            title, first, names, ticks = axes.heading, axes.first, axes.names, axes.ticks
         else:
             plot = self.kind.plots[name]
-            title, first, names, ticks = CurveAxes(f"{plot.title} [{plot.unit}]", "t [s]", plot.series)
+            title, first, names, ticks = plot.heading, "t [s]", plot.series, ()
         scales = {"x": uplot.Scale(time=False, auto=True)}
-        axes = axes_of((0.0, 1.0), ("0", "1"))
+        looks = axes_of((0.0, 1.0), ("0", "1"))
         if ticks:
             places, words = tuple(place for place, _ in ticks), tuple(word for _, word in ticks)
             scales["y"] = uplot.Scale(distr=3, log=10, range=(places[0], places[-1]), auto=False)
-            axes = axes_of(places, words, LOGARITHMIC_TICK_WIDTH)
+            looks = axes_of(places, words, LOGARITHMIC_TICK_WIDTH)
         with self.dock.tab:
             return self.server.gui.add_uplot(
                 (EMPTY, *(np.full(2, math.nan) for _ in names)),
                 series_of(first, lines_of(names)),
                 title=title,
                 scales=scales,
-                axes=axes,
+                axes=looks,
                 height=TALL_CHART_HEIGHT if ticks else CHART_HEIGHT,
                 padding=PADDING,
                 legend=uplot.Legend(live=False),  # a short key, without a column of values
@@ -286,12 +273,12 @@ def beside(shown: Sequence[PlotRow], kept: Sequence[PlotRow]) -> list[PlotRow]:
     return [row for i, row in enumerate(found) if i < SHOWN_ROWS or row[0] <= shown[-1][0]]
 
 
-def with_kept(chart: Whole, kept: Whole) -> Whole:
+def with_kept(chart: Chart, kept: Chart) -> Chart:
     """A chart with the lines of an earlier one; areas are left out, which would cover one another."""
     here, before = (np.array(one.columns, np.float64).T for one in (chart, kept))
     places = np.union1d(here[:, 0], before[:, 0])
     shown = [i for i, line in enumerate(kept.lines) if not line.fill]
-    return Whole(
+    return Chart(
         chart.first,
         (*chart.lines, *(kept_line(kept.lines[i]) for i in shown)),
         (
@@ -313,13 +300,6 @@ def at_times(times: NDArray[np.float64], rows: NDArray[np.float64], column: int)
 def kept_line(line: Line) -> Line:
     """How a line of an earlier run is drawn."""
     return Line(f"{line.label}, kept", line.colour + KEPT_OPACITY, 1.5, KEPT_DASH)
-
-
-def lines_of(names: Sequence[str]) -> tuple[Line, ...]:
-    """The lines of a chart that has them from the start; the sum of the others is drawn the widest."""
-    return tuple(
-        Line(name, colour, 3.0 if name == "total" else 2.0) for name, colour in zip(names, COLOURS, strict=False)
-    )
 
 
 def axes_of(ticks: tuple[float, ...], words: tuple[str, ...], width: float | None = None) -> tuple[uplot.Axis, ...]:

@@ -3,18 +3,22 @@
 import csv
 import dataclasses
 import io
+import itertools
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import PlotRow
 from app.panel.recorder import Kept
-from app.render.html import Html
-from app.render.line_chart import HEIGHT, WIDTH, line_chart
+from app.render.line_chart import WIDTH, Drawing, line_chart
+from app.scenes.charts import Chart, Column, Columns, chart_of, lines_of, numbers_of
 from app.scenes.contract import AnyKind
 
+TIME = "t [s]"  # label of the first column of what is plotted over simulated time
+NOTHING = "nothing has been plotted yet: let the scene run first"
 MAX_ARRAYS = 300e6  # [bytes] of all arrays of a file, before they are compressed; of more, each second or third frame
 
 
@@ -62,37 +66,80 @@ def recording_npz(kind: AnyKind, frames: Sequence[Kept]) -> bytes:
     return content.getvalue()
 
 
-def plots_csv(kind: AnyKind, rows: Sequence[PlotRow]) -> str:
-    """Plot rows as CSV: time, and each series with the unit of the plot that shows it. "nan": no value there."""
+class Plotted(NamedTuple):
+    """What the plots of a scene have: rows over time, and the charts that the scene makes whole, by their parameter."""
+
+    rows: Sequence[PlotRow]
+    curves: Mapping[str, Chart | Columns]
+
+    def between(self, start: float, end: float) -> "Plotted":
+        """What is over time, from `start` to `end` [s]; other charts as they are."""
+        curves = {name: within(chart, start, end) for name, chart in self.curves.items()}
+        return Plotted([row for row in self.rows if start <= row[0] <= end], curves)
+
+
+def within(chart: Chart | Columns, start: float, end: float) -> Chart | Columns:
+    """The part of a chart over time from `start` to `end` [s]; any other chart as it is."""
+    if not isinstance(chart, Chart) or chart.first != TIME:
+        return chart
+    shown = (chart.columns[0] >= start) & (chart.columns[0] <= end)
+    numbers = chart.numbers and tuple(column if column is None else column[shown] for column in chart.numbers)
+    return chart._replace(columns=tuple(column[shown] for column in chart.columns), end=None, numbers=numbers)
+
+
+def plots_csv(kind: AnyKind, plotted: Plotted) -> str:
+    """Plots as CSV with units, a column each; "nan": no value there.
+
+    Plots over the same first column share it. Others stand beside them, and the shorter ones end with empty cells.
+    Raises ValueError where there is nothing.
+    """
     units = {name: plot.unit for plot in kind.plots.values() for name in plot.series}
+    columns: list[tuple[str, Column]] = []
+    if plotted.rows:
+        names = [TIME, *(f"{name} [{units[name]}]" if units.get(name) else name for name in kind.series)]
+        columns += zip(names, np.array(plotted.rows, np.float64).T, strict=True)
+    first: tuple[str, Column] | None = None
+    for name, curve in plotted.curves.items():
+        axes = kind.curves[name]
+        chart = chart_of(axes, curve)
+        before, first = first, (chart.first, chart.columns[0])
+        if before is None or before[0] != first[0] or not np.array_equal(before[1], first[1]):
+            columns.append(first)
+        columns += [(f"{axes.title}: {label} [{unit}]", values) for label, unit, values in numbers_of(axes, chart)[1:]]
+    if not any(len(values) for _, values in columns):
+        raise ValueError(NOTHING)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["t [s]", *(f"{name} [{units[name]}]" if units.get(name) else name for name in kind.series)])
-    writer.writerows([repr(value) for value in row] for row in rows)
+    writer.writerow([name for name, _ in columns])
+    cells = ([repr(value) for value in values.tolist()] for _, values in columns)
+    writer.writerows(itertools.zip_longest(*cells, fillvalue=""))
     return text.getvalue()
 
 
-def plot_charts(kind: AnyKind, rows: Sequence[PlotRow]) -> list[Html]:
-    """A chart as SVG for each plot of the scene that has finite numbers in these rows."""
-    if len(rows) < 2:
-        return []
-    columns = np.array(rows, np.float64).T
-    charts = [
-        line_chart(
-            f"{plot.title} [{plot.unit}]",
-            columns[0],
-            {name: columns[1 + kind.series.index(name)] for name in plot.series},
-        )
-        for plot in kind.plots.values()
-    ]
-    return [chart for chart in charts if chart]
+def plot_charts(kind: AnyKind, plotted: Plotted) -> list[Drawing]:
+    """A chart as SVG for each plot of the scene that has finite numbers."""
+    charts: list[Drawing | None] = []
+    if len(plotted.rows) > 1:
+        table = np.array(plotted.rows, np.float64).T
+        for plot in kind.plots.values():
+            columns = [table[0], *(table[1 + kind.series.index(name)] for name in plot.series)]
+            charts.append(line_chart(plot.heading, TIME, lines_of(plot.series), columns))
+    for name, curve in plotted.curves.items():
+        axes = kind.curves[name]
+        first, lines, columns, end, _ = chart_of(axes, curve)
+        if len(columns[0]) > 1:
+            charts.append(line_chart(axes.heading, first, lines, columns, end, axes.ticks))
+    return [chart for chart in charts if chart is not None]
 
 
-def plots_svg(kind: AnyKind, rows: Sequence[PlotRow]) -> str:
+def plots_svg(kind: AnyKind, plotted: Plotted) -> str:
     """All plots of a scene in one SVG file, one below the other. Raises ValueError where there is nothing to draw."""
-    charts = plot_charts(kind, rows)
+    charts = plot_charts(kind, plotted)
     if not charts:
-        raise ValueError("nothing has been plotted yet: let the scene run first")
-    placed = "".join(f'<g transform="translate(0 {HEIGHT * i})">{chart}</g>' for i, chart in enumerate(charts))
-    size = f'width="{WIDTH}" height="{HEIGHT * len(charts)}" viewBox="0 0 {WIDTH} {HEIGHT * len(charts)}"'
+        raise ValueError(NOTHING)
+    tops = [0, *itertools.accumulate(chart.height for chart in charts)]
+    placed = "".join(
+        f'<g transform="translate(0 {top})">{chart.svg}</g>' for top, chart in zip(tops, charts, strict=False)
+    )
+    size = f'width="{WIDTH}" height="{tops[-1]}" viewBox="0 0 {WIDTH} {tops[-1]}"'
     return f'<?xml version="1.0" encoding="UTF-8"?>\n<svg xmlns="http://www.w3.org/2000/svg" {size}>{placed}</svg>\n'

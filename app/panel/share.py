@@ -16,12 +16,12 @@ from typing import Protocol
 import numpy as np
 import viser
 
-from app.messages import BaseParams, KeptState, Pause, PlotRow, Vector
+from app.messages import BaseParams, KeptState, Pause, Vector
 from app.panel.compare import Beside
 from app.panel.picture import take_picture
 from app.panel.questions import Asker, Ballot, Questions, Subject
 from app.panel.recorder import RATES, Kept, Recorder
-from app.panel.recording_files import plots_csv, plots_svg, recording_npz
+from app.panel.recording_files import Plotted, plots_csv, plots_svg, recording_npz
 from app.render.cameras import place_camera
 from app.render.html import fill, note
 from app.render.viser_types import GuiHandle, ViserEvent
@@ -59,7 +59,7 @@ COMPARE = "?compare="  # begins the address of a comparison that is ready
 # What `app/render/js/charts.js` reads the time of the line in the charts from.
 MOMENT = '<b data-springtide-moment="{}">Shown: t = {:.2f} s of the recording.</b>'
 
-MakeReplay = Callable[[AnyKind, Sequence[Kept], Sequence[PlotRow]], str]
+MakeReplay = Callable[[AnyKind, Sequence[Kept], Plotted], str]
 
 
 class Settings(Protocol):
@@ -90,8 +90,8 @@ class Settings(Protocol):
         """Keep the curves of the plots beside those of the runs that follow, or drop them; the last time kept [s]."""
         ...
 
-    def plot_rows(self) -> Sequence[PlotRow]:
-        """The rows of the plots that are kept."""
+    def plotted(self) -> Plotted:
+        """The rows of the plots that are kept, and the whole charts of now."""
         ...
 
 
@@ -338,12 +338,9 @@ class Share:
             self.busy.release()
 
     def plots_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
-        """All plot rows that are kept, as CSV with names and units. Raises ValueError where there are none."""
+        """All plots as CSV with names and units. Raises ValueError where there are none."""
         kind = self.panel.kind
-        rows = self.panel.plot_rows()
-        if not rows:
-            raise ValueError("nothing has been plotted yet: let the scene run first")
-        return f"springtide-{kind.name}.csv", plots_csv(kind, rows).encode()
+        return f"springtide-{kind.name}.csv", plots_csv(kind, self.panel.plotted()).encode()
 
     def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """What one browser shows, drawn again at the chosen size."""
@@ -353,7 +350,7 @@ class Share:
     def charts_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """All plots as SVG. Raises ValueError where there are none."""
         kind = self.panel.kind
-        return f"springtide-{kind.name}.svg", plots_svg(kind, self.panel.plot_rows()).encode()
+        return f"springtide-{kind.name}.svg", plots_svg(kind, self.panel.plotted()).encode()
 
     def arrays_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """The arrays of the recording. Raises ValueError where nothing was recorded."""
@@ -403,7 +400,7 @@ class Share:
         """The recording up to the moment that is shown as one page. Raises ValueError where nothing was recorded."""
         shown = self.recorder.shown
         frames = [kept for kept in self.recorder.kept() if shown is None or kept.time <= shown.time]
-        page = self.make_replay(self.panel.kind, frames, self.panel.plot_rows())
+        page = self.make_replay(self.panel.kind, frames, self.panel.plotted())
         return f"springtide-{self.panel.kind.name}.html", page.encode()
 
     def update(self, snapshot: AnySnapshot) -> None:

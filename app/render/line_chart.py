@@ -1,19 +1,52 @@
-"""A chart of lines over time as SVG, for files: it needs no script and no font of its own."""
+"""A chart of lines as SVG, for files: it needs no script and no font of its own."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.render.html import Html, fill, join
 
-WIDTH, HEIGHT = 560, 240  # [px]
-LEFT, RIGHT, TOP, BOTTOM = 70, 14, 30, 56  # [px] margins
-KEY_WIDTH = 110  # [px] for each line's name below the chart
+WIDTH, PLOT_HEIGHT = 560, 208  # [px] of the chart, and of it without its key
+LEFT, RIGHT, TOP, BOTTOM = 70, 14, 30, 24  # [px] margins of the axes, without the key
+KEY_HEIGHT = 20  # [px] of a row of the key
+KEY_LINE, KEY_SPACE = 24, 16  # [px] for the piece of line before a name, and between two names
+CHARACTER_WIDTH = 6.6  # [px] of a name in the key
+FIRST_LABEL_WIDTH = 40  # [px] for the label of the first column, at the end of the key's rows
 MAX_TICKS = 5  # on each axis, at most
 SPACE = 0.05  # of the range, above and below
-COLOURS = ("#7048e8", "#1c7ed6", "#e8590c", "#099268", "#d6336c", "#868e96", "#e03131")
+
+
+class Line(NamedTuple):
+    """How one column is drawn."""
+
+    label: str
+    colour: str  # CSS
+    width: float = 2.0
+    dash: tuple[float, ...] = ()
+    fill: str = ""  # CSS colour of the area below
+
+
+class Drawing(NamedTuple):
+    """An SVG element."""
+
+    svg: Html
+    height: int  # [px]
+
+
+class Axis(NamedTuple):
+    """A linear scale of pixels."""
+
+    low: float
+    high: float
+    start: float  # [px] of `low`
+    length: float  # [px] to `high`; below 0 it goes up
+
+    def at(self, value: float) -> float:
+        """Place of a value [px]; values beyond the ends are drawn there."""
+        return self.start + self.length * (min(max(value, self.low), self.high) - self.low) / (self.high - self.low)
 
 
 def ticks(low: float, high: float) -> Sequence[float]:
@@ -27,61 +60,107 @@ def ticks(low: float, high: float) -> Sequence[float]:
     return [round(step * i, 12) + 0.0 for i in range(first, last + 1)]
 
 
-def line_chart(title: str, times: NDArray[np.float64], series: Mapping[str, NDArray[np.float64]]) -> Html:
-    """An SVG element with one line for each series over `times` [s]; lines stop where a number is not finite.
+def line_chart(
+    title: str,
+    first: str,
+    lines: Sequence[Line],
+    columns: Sequence[NDArray[np.floating]],
+    end: float | None = None,
+    scale: Sequence[tuple[float, str]] = (),
+) -> Drawing | None:
+    """Lines over the first of `columns`, (n,) each, ascending; they stop where a number is not finite.
 
-    times: (n,), ascending. series: name -> (n,), in the unit that `title` names. Empty where nothing is finite.
+    first: label of the first column. end: of its axis, which then starts at 0; None to fit it to the data.
+    scale: (value, word) from end to end of a logarithmic scale. Returns None if no number is finite.
     """
-    values = np.array([*series.values()], np.float64).reshape(len(series), len(times))
+    places, values = np.asarray(columns[0], float), np.array(columns[1:], float).reshape(len(lines), -1)
+    if scale:
+        values = np.log10(values, out=np.full_like(values, math.nan), where=values > 0.0)
     finite = values[np.isfinite(values)]
     if finite.size == 0:
-        return Html()
-    low, high = float(finite.min()), float(finite.max())
-    space = SPACE * ((high - low) or abs(high) or 1.0)
-    low, high, start = low - space, high + space, float(times[0])
-    duration = float(times[-1]) - start or 1.0
-
-    def px(t: float) -> float:
-        return LEFT + (t - start) / duration * (WIDTH - LEFT - RIGHT)
-
-    def py(value: float) -> float:
-        return TOP + (high - value) / (high - low) * (HEIGHT - TOP - BOTTOM)
-
-    def path(y: NDArray[np.float64]) -> str:
-        words, on = [], False
-        for t, value in zip(times, y, strict=True):
-            if math.isfinite(value):
-                words.append(f"{'L' if on else 'M'}{px(t):.1f} {py(value):.1f}")
-            on = math.isfinite(value)
-        return "".join(words)
-
-    lines = join(
-        fill('<path d="{}" fill="none" stroke="{}" stroke-width="1.8"/>', path(y), COLOURS[i % len(COLOURS)])
-        for i, y in enumerate(values)
-    )
-    key = join(
-        fill(
-            '<path d="M{} {}h18" stroke="{}" stroke-width="3"/><text x="{}" y="{}">{}</text>',
-            LEFT + i * KEY_WIDTH, HEIGHT - 12, COLOURS[i % len(COLOURS)], LEFT + i * KEY_WIDTH + 24, HEIGHT - 8, name,
-        )
-        for i, name in enumerate(series)
-    )  # fmt: skip
-    across = join(
-        fill('<path d="M{0:.1f} {1}v5" stroke="#4d5560"/><text x="{0:.1f}" y="{2}" text-anchor="middle">{3:g}</text>',
-             px(tick), HEIGHT - BOTTOM, HEIGHT - BOTTOM + 18, tick)
-        for tick in ticks(start, start + duration)
-    )  # fmt: skip
-    up = join(
-        fill('<path d="M{0} {1:.1f}h{2}" stroke="#d8dde3"/><text x="{3}" y="{4:.1f}" text-anchor="end">{5:g}</text>',
-             LEFT, py(tick), WIDTH - LEFT - RIGHT, LEFT - 6, py(tick) + 4, tick)
-        for tick in ticks(low, high)
-    )  # fmt: skip
-    return fill(
+        return None
+    if scale:
+        marks = [(math.log10(value), word) for value, word in scale]
+        low, high = marks[0][0], marks[-1][0]
+    else:
+        low, high = float(finite.min()), float(finite.max())
+        space = SPACE * ((high - low) or abs(high) or 1.0)
+        low, high = low - space, high + space
+        marks = [(tick, f"{tick:g}") for tick in ticks(low, high)]
+    start = 0.0 if end is not None else float(places[0])
+    last = float(places[-1]) if end is None else end
+    x = Axis(start, last if last > start else start + 1.0, LEFT, WIDTH - LEFT - RIGHT)
+    y = Axis(low, high, PLOT_HEIGHT - BOTTOM, TOP + BOTTOM - PLOT_HEIGHT)
+    drawn = join(draw_line(line, places, column, x, y) for line, column in zip(lines, values, strict=True))
+    key, rows = draw_key(lines)
+    height = PLOT_HEIGHT + KEY_HEIGHT * rows
+    svg = fill(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w} {h}" width="{w}" height="{h}" role="img"'
         ' font-family="sans-serif" font-size="12" fill="#1b2a3a">'
         '<rect width="{w}" height="{h}" fill="#ffffff"/><text x="{l}" y="18" font-weight="bold">{title}</text>'
-        '<text x="{r}" y="{key_y}" text-anchor="end">t [s]</text>{up}{across}'
-        '<path d="M{l} {t}V{b}H{r}" fill="none" stroke="#4d5560"/>{lines}{key}</svg>',
-        w=WIDTH, h=HEIGHT, l=LEFT, t=TOP, b=HEIGHT - BOTTOM, r=WIDTH - RIGHT, key_y=HEIGHT - 8,
-        title=title, up=up, across=across, lines=lines, key=key,
+        '<text x="{r}" y="{first_y}" text-anchor="end">{first}</text>{axes}{drawn}{key}</svg>',
+        w=WIDTH, h=height, l=LEFT, r=WIDTH - RIGHT, first_y=PLOT_HEIGHT + KEY_HEIGHT - 6, title=title, first=first,
+        axes=draw_axes(x, y, marks), drawn=drawn, key=key,
     )  # fmt: skip
+    return Drawing(svg, height)
+
+
+def draw_line(line: Line, places: NDArray[np.float64], values: NDArray[np.float64], x: Axis, y: Axis) -> Html:
+    """One line, and the area below it if it has one."""
+    path, area, run = "", "", []
+    for place, value in [*zip(places.tolist(), values.tolist(), strict=True), (math.nan, math.nan)]:
+        if math.isfinite(value):
+            run.append((x.at(place), y.at(value)))
+        elif run:
+            along = "L".join(f"{px:.1f} {py:.1f}" for px, py in run)
+            path += f"M{along}"
+            area += f"M{run[0][0]:.1f} {y.start}L{along}L{run[-1][0]:.1f} {y.start}Z"
+            run = []
+    below = fill('<path d="{}" fill="{}"/>', area, line.fill) if line.fill else Html()
+    stroke = fill(
+        '<path d="{}" fill="none" stroke="{}" stroke-width="{:g}" stroke-dasharray="{}" stroke-linejoin="round"/>',
+        path, line.colour, line.width, dashes(line),
+    )  # fmt: skip
+    return join((below, stroke))
+
+
+def dashes(line: Line) -> str:
+    """The dashes of a line as SVG has them."""
+    return " ".join(f"{length:g}" for length in line.dash) or "none"
+
+
+def draw_axes(x: Axis, y: Axis, marks: Sequence[tuple[float, str]]) -> Html:
+    """Ticks, their words, and the two axes. marks: (value, word) of the second."""
+    base = PLOT_HEIGHT - BOTTOM
+    across = join(
+        fill('<path d="M{0:.1f} {1}v5" stroke="#4d5560"/><text x="{0:.1f}" y="{2}" text-anchor="middle">{3:g}</text>',
+             x.at(tick), base, base + 18, tick)
+        for tick in ticks(x.low, x.high)
+    )  # fmt: skip
+    up = join(
+        fill('<path d="M{0} {1:.1f}h{2}" stroke="#d8dde3"/><text x="{3}" y="{4:.1f}" text-anchor="end">{5}</text>',
+             LEFT, y.at(tick), WIDTH - LEFT - RIGHT, LEFT - 6, y.at(tick) + 4, word)
+        for tick, word in marks
+    )  # fmt: skip
+    lines = fill('<path d="M{} {}V{}H{}" fill="none" stroke="#4d5560"/>', LEFT, TOP, base, WIDTH - RIGHT)
+    return join((up, across, lines))
+
+
+def draw_key(lines: Sequence[Line]) -> tuple[Html, int]:
+    """The names of the lines below the chart, and the number of rows that they take."""
+    names: list[Html] = []
+    place, row = float(LEFT), 1
+    for line in lines:
+        width = KEY_LINE + CHARACTER_WIDTH * len(line.label)
+        if place > LEFT and place + width > WIDTH - RIGHT - FIRST_LABEL_WIDTH:
+            place, row = float(LEFT), row + 1
+        base = PLOT_HEIGHT + KEY_HEIGHT * row - 6
+        names.append(
+            fill(
+                '<path d="M{:.0f} {}h18" stroke="{}" stroke-width="3" stroke-dasharray="{}"/><text x="{:.0f}" y="{}">{}'
+                "</text>",
+                place, base - 4, line.fill or line.colour, dashes(line), place + KEY_LINE, base, line.label,
+            )
+        )  # fmt: skip
+        place += width + KEY_SPACE
+    return join(names), row

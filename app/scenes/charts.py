@@ -1,13 +1,18 @@
 """What a chart shows: of the plot rows over time, or of columns that a scene makes whole."""
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.render.line_chart import Line
+
 # Colours that can be told apart with any colour vision (Okabe and Ito, 2008); black and yellow last.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
-Columns = tuple[NDArray[np.floating], ...]  # the first is what the others stand over
+COLOURS = ("#7048e8", "#1c7ed6", "#f76707", "#12b886", "#e64980", "#868e96", "#e03131")
+Column: TypeAlias = NDArray[np.floating]
+Columns: TypeAlias = tuple[Column, ...]  # the first is what the others stand over
 
 
 class PlotAxes(NamedTuple):
@@ -17,24 +22,25 @@ class PlotAxes(NamedTuple):
     unit: str
     series: tuple[str, ...]  # names in the scene's `series`
 
+    @property
+    def heading(self) -> str:
+        """Title and unit."""
+        return f"{self.title} [{self.unit}]"
+
 
 class CurveAxes(NamedTuple):
     """A chart of columns that `Scene.curves` gives whole."""
 
     title: str
+    unit: str
     first: str  # label of the first column
     names: tuple[str, ...]  # of the others
     ticks: tuple[tuple[float, str], ...] = ()  # (value, word) from end to end of a logarithmic scale
 
-
-class Line(NamedTuple):
-    """How one column is drawn."""
-
-    label: str
-    colour: str  # CSS
-    width: float = 2.0
-    dash: tuple[float, ...] = ()
-    fill: str = ""  # CSS colour of the area below
+    @property
+    def heading(self) -> str:
+        """Title and unit; the words of a logarithmic scale have units."""
+        return self.title if self.ticks else f"{self.title} [{self.unit}]"
 
 
 class Chart(NamedTuple):
@@ -42,5 +48,38 @@ class Chart(NamedTuple):
 
     first: str  # label of the first column
     lines: tuple[Line, ...]
-    columns: tuple[NDArray[np.float64], ...]  # the first, then one a line
-    end: float  # of the first column's scale, from 0; a change replaces the chart, so it should be rare
+    columns: Columns  # the first, then one a line
+    end: float | None = None  # of the first column's scale, from 0; None to fit it to the data; a change should be rare
+    # Numbers of each line for files, if what is drawn is stacked or clipped; None for a line that is only a mark.
+    numbers: tuple[Column | None, ...] | None = None
+
+
+class Numbers(NamedTuple):
+    """One column of a chart for files."""
+
+    name: str
+    unit: str
+    values: Column
+
+
+def lines_of(names: Sequence[str]) -> tuple[Line, ...]:
+    """The lines of a chart that has them from the start; the sum of the others is drawn the widest."""
+    return tuple(
+        Line(name, colour, 3.0 if name == "total" else 2.0) for name, colour in zip(names, COLOURS, strict=False)
+    )
+
+
+def chart_of(axes: CurveAxes, columns: Chart | Columns) -> Chart:
+    """The chart that a scene's columns are drawn as."""
+    return columns if isinstance(columns, Chart) else Chart(axes.first, lines_of(axes.names), columns)
+
+
+def numbers_of(axes: CurveAxes, chart: Chart) -> list[Numbers]:
+    """The columns of a chart for files, the first column first."""
+    first, _, unit = chart.first.removesuffix("]").partition(" [")
+    values = chart.columns[1:] if chart.numbers is None else chart.numbers
+    columns = zip(chart.lines, values, strict=True)
+    return [
+        Numbers(first, unit, chart.columns[0]),
+        *(Numbers(line.label, axes.unit, column) for line, column in columns if column is not None),
+    ]

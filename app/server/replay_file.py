@@ -14,9 +14,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.messages import BaseParams, PlotRow
+from app.messages import BaseParams
 from app.panel.recorder import Kept, arrays_of_frame
-from app.panel.recording_files import plot_charts
+from app.panel.recording_files import Plotted, plot_charts
 from app.render.cameras import place_cameras
 from app.render.html import Html, fill, join
 from app.render.injection import record_shaders
@@ -70,8 +70,8 @@ def thinned(frames: Sequence[Kept]) -> list[Kept]:
     return chosen
 
 
-def replay_html(kind: AnyKind, frames: Sequence[Kept], rows: Sequence[PlotRow]) -> str:
-    """The page of a replay, of the last of these frames. rows: of the plots.
+def replay_html(kind: AnyKind, frames: Sequence[Kept], plotted: Plotted) -> str:
+    """The page of a replay, of the last of these frames. plotted: what the plots have.
 
     Raises ValueError where there is no frame.
     """
@@ -97,15 +97,15 @@ def replay_html(kind: AnyKind, frames: Sequence[Kept], rows: Sequence[PlotRow]) 
     finally:
         with contextlib.redirect_stdout(io.StringIO()):  # viser would say that a server has stopped
             server.stop()
-    about = about_html(kind, params, rows, chosen[0].time, chosen[-1].time)
+    about = about_html(kind, params, plotted, chosen[0].time, chosen[-1].time)
     return page.replace("<title>Viser</title>", str(fill("<title>Springtide: {}</title>", kind.title)), 1).replace(
         "</body>", f"{about}{setup_block(kind, params)}</body>", 1
     )
 
 
-def about_html(kind: AnyKind, params: BaseParams, rows: Sequence[PlotRow], start: float, end: float) -> Html:
+def about_html(kind: AnyKind, params: BaseParams, plotted: Plotted, start: float, end: float) -> Html:
     """What the replay shows: the scene, all of its parameters, and its plots between two times [s]."""
-    charts = join(plot_charts(kind, [row for row in rows if start <= row[0] <= end]))
+    charts = join(chart.svg for chart in plot_charts(kind, plotted.between(start, end)))
     table = join(
         fill(
             "<tr><td>{}</td><td>{} {}</td></tr>", p.title or in_words(name), write_value(getattr(params, name)), p.unit

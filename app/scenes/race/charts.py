@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from app.scenes.charts import PALETTE, Chart, CurveAxes, Line
+from app.render.line_chart import Line
+from app.scenes.charts import PALETTE, Chart, CurveAxes
 from app.scenes.plot_rows import ROW_INTERVAL, row_number
 from app.scenes.race.entrants import Race
 from app.scenes.race.names import rope_name
@@ -14,8 +15,8 @@ ERROR_TICKS = (  # [m] from end to end of the error's scale
     (1e-10, "0.1 nm"), (1e-8, "10 nm"), (1e-6, "1 µm"), (1e-4, "0.1 mm"), (1e-2, "1 cm"), (1.0, "1 m"), (10.0, ""),
 )  # fmt: skip
 CURVES = {
-    "plot_errors": CurveAxes("Distance from the reference", "t [s]", ("rope 1",), ERROR_TICKS),
-    "plot_energies": CurveAxes("Energy error [J]", "t [s]", ("rope 1",)),
+    "plot_errors": CurveAxes("Distance from the reference", "m", "t [s]", ("rope 1",), ERROR_TICKS),
+    "plot_energies": CurveAxes("Energy error", "J", "t [s]", ("rope 1",)),
 }
 FLOOR_LINE = Line("below what the reference can tell", "rgba(120,120,120,0.6)", 1.0, fill="rgba(120,120,120,0.3)")
 DASHES = ((), (10.0, 4.0), (3.0, 3.0), (12.0, 3.0, 3.0, 3.0), (6.0, 6.0), (1.0, 4.0))  # to tell lines apart in grey
@@ -57,16 +58,14 @@ class RaceCharts:
         row[0] = race.t
         row[1] = self.error_floor()
         for i, entrant in enumerate(race.entrants):
-            row[2 + 2 * i] = np.maximum(race.error(entrant), ERROR_TICKS[0][0])  # NaN stays
-            energy_error = math.nan if entrant.failure else entrant.account.error(entrant.net, entrant.state)
-            row[3 + 2 * i] = np.clip(energy_error, -self.max_energy, self.max_energy)
+            row[2 + 2 * i] = race.error(entrant)
+            row[3 + 2 * i] = math.nan if entrant.failure else entrant.account.error(entrant.net, entrant.state)
         self.count += 1
         self.drawn = {}
 
     def error_floor(self) -> float:
-        """Smallest error [m] that all reference runs can tell; above the chart where one is lost."""
-        floors = [self.race.error_floor(entrant) for entrant in self.race.entrants]
-        return FLOOR_WITHOUT_REFERENCE if any(math.isnan(floor) for floor in floors) else max(floors)
+        """Smallest error [m] that all reference runs can tell; NaN if one is lost."""
+        return float(np.max([self.race.error_floor(entrant) for entrant in self.race.entrants]))
 
     def charts(self) -> dict[str, Chart]:
         """By parameter; the same objects until there is a new row."""
@@ -77,9 +76,12 @@ class RaceCharts:
                 Line(rope_name(entrant, stiffness_differs), PALETTE[i], 2.0, DASHES[i])
                 for i, entrant in enumerate(race.entrants)
             )
-            errors, energy_errors = (table[0], table[1], *table[2::2]), (table[0], *table[3::2])
+            floor = np.where(np.isnan(table[1]), FLOOR_WITHOUT_REFERENCE, table[1])
+            errors = table[0], floor, *np.maximum(table[2::2], ERROR_TICKS[0][0])  # NaN stays
+            energies = table[0], *np.clip(table[3::2], -self.max_energy, self.max_energy)
+            end = round_up(race.t)
             self.drawn = {
-                "plot_errors": Chart("t [s]", (FLOOR_LINE, *lines), errors, round_up(race.t)),
-                "plot_energies": Chart("t [s]", lines, energy_errors, round_up(race.t)),
+                "plot_errors": Chart("t [s]", (FLOOR_LINE, *lines), errors, end, (table[1], *table[2::2])),
+                "plot_energies": Chart("t [s]", lines, energies, end, (*table[3::2],)),
             }
         return self.drawn

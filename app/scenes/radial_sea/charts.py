@@ -4,7 +4,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.scenes.charts import PALETTE, Chart, Line
+from app.render.line_chart import Line
+from app.scenes.charts import PALETTE, Chart
 from sim.ocean.weathering import Spill, weather
 from sim.ocean.weathering.spill import MAX_HOURS
 
@@ -32,5 +33,6 @@ def budget_chart(spill: Spill, hours: float) -> Chart:
     )
     now = np.where((times >= start) & (times <= end), 100.0, np.nan)
     whole = np.full(len(times), 100.0)
-    columns = (times, whole, whole - evaporated, whole - evaporated - dispersed, water, now)
-    return Chart("t [h]", BUDGET_LINES, columns, MAX_HOURS)
+    left = whole - evaporated - dispersed
+    columns = (times, whole, whole - evaporated, left, water, now)
+    return Chart("t [h]", BUDGET_LINES, columns, MAX_HOURS, (evaporated, dispersed, left, water, None))

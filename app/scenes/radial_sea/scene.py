@@ -87,9 +87,7 @@ PLOTS = {
     "plot_draft": PlotAxes("Draft", "m", BODY_SERIES),
     "plot_surface": PlotAxes(f"Surface and {BODY_SERIES[0]}", "m", HEIGHT_SERIES),
 }
-CURVES = {
-    "plot_budget": CurveAxes("Oil budget [% of the oil spilled]", "t [h]", tuple(line.label for line in BUDGET_LINES))
-}
+CURVES = {"plot_budget": CurveAxes("Oil budget", "%", "t [h]", tuple(line.label for line in BUDGET_LINES))}
 CHANGING = (  # as time passes
     "time", "age", "column", "wave_choice", "sum", "bodies", "radiated_waves", "well_blowout", "foam_threshold",
 )  # fmt: skip

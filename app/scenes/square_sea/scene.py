@@ -40,7 +40,9 @@ CHANGING = (  # as time passes
     "tile_length",
 )  # fmt: skip
 PLOTS = {"plot_wave_gauge": PlotAxes("Height at the wave gauge", "m", SERIES)}
-CURVES = {"plot_wave_spectrum": CurveAxes("Spectrum at the wave gauge [m²/Hz]", "f [Hz]", ("measured", "theory"))}
+CURVES = {
+    "plot_wave_spectrum": CurveAxes("Spectrum at the wave gauge", "m²/Hz", "f [Hz]", ("measured", "theory")),
+}
 STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
 START_WIND_SPEEDS = {"calm": 3.0, "storm": 24.0}  # [m/s] wind of the sea at a reset, by the parameter `start`
 STATISTICS_INTERVAL = 0.5  # [s] of simulated time between two updates of the statistics, or of the spectrum
@@ -487,8 +489,8 @@ class SquareSeaScene:
         }
 
     def curves(self) -> dict[str, tuple[NDArray[np.floating], ...]] | None:
-        """The columns of `CURVES`."""
-        return self.curve_columns
+        """The columns of `CURVES`, where it is open."""
+        return self.curve_columns if self.params.plot_wave_spectrum else None
 
     def arrays(self) -> dict[str, tuple[NDArray[np.floating], str]]:
         """The state for a file: name -> (array, unit)."""

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from app.messages import Snapshot
-from app.panel.plots import KEPT_DASH, MIN_FILLED, SHOWN_ROWS, Plots, Whole, at_times, beside, scale_of, with_kept
+from app.panel.plots import KEPT_DASH, MIN_FILLED, SHOWN_ROWS, Plots, at_times, beside, scale_of, with_kept
+from app.render.line_chart import Line
 from app.scenes import scene_named
-from app.scenes.charts import Chart, Line
+from app.scenes.charts import Chart
 
 
 @pytest.mark.parametrize(
@@ -53,8 +54,8 @@ def test_kept_curves_stand_at_their_times_beside_those_of_the_next_run() -> None
 
 def test_a_whole_chart_shows_the_kept_lines_but_no_kept_areas() -> None:
     area, line = Line("floor", "#808080", fill="#808080"), Line("rope 1", "#0072B2", 2.0, (1.0, 1.0))
-    now = Whole("t [s]", (area, line), (np.array([0.0, 1.0]), np.zeros(2), np.array([1.0, 2.0])), 2.0)
-    before = Whole("t [s]", (area, line), (np.array([0.0, 2.0, 4.0]), np.ones(3), np.array([5.0, 6.0, 7.0])), 5.0)
+    now = Chart("t [s]", (area, line), (np.array([0.0, 1.0]), np.zeros(2), np.array([1.0, 2.0])), 2.0)
+    before = Chart("t [s]", (area, line), (np.array([0.0, 2.0, 4.0]), np.ones(3), np.array([5.0, 6.0, 7.0])), 5.0)
     both = with_kept(now, before)
     assert [(one.label, one.dash, one.fill) for one in both.lines] == [
         ("floor", (), "#808080"),

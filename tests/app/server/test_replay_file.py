@@ -11,6 +11,7 @@ import pytest
 import zstandard
 
 from app.panel.recorder import Recorder
+from app.panel.recording_files import Plotted
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import scene_named
 from app.scenes.setups import read_setup
@@ -31,7 +32,7 @@ def recorded() -> Any:
         wall += 1 / 30 + 1e-6
         recorder.note(loop.latest, wall)
         rows += [loop.plot_rows.popleft() for _ in range(len(loop.plot_rows))]
-    return kind, recorder.kept(), rows
+    return kind, recorder.kept(), Plotted(rows, {})
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +65,19 @@ def test_the_page_says_what_it_shows_and_runs_no_text_of_ours(recorded: Any, pag
     assert "<td>Points</td><td>7 </td>" in about
     assert about.count("<svg") == len(kind.plots)
     assert "src=" not in about
+
+
+def test_the_page_of_a_race_has_its_charts() -> None:
+    kind = scene_named("race")
+    loop = SimLoop(kind.make(kind.params(points=4, ropes=2)), audience=lambda: 1)
+    recorder = Recorder()
+    for i in range(30):
+        loop.tick(1 / 30)
+        recorder.note(loop.latest, i / 30 + 1e-6)
+    page = replay_html(kind, recorder.kept(), Plotted((), loop.latest.curves or {}))  # type: ignore[arg-type]
+    about = page[page.index("springtide-about") :]
+    assert about.count("<svg") == len(kind.curves) == 2
+    assert "Distance from the reference" in about
 
 
 def test_the_page_opens_as_a_set_up(recorded: Any, page: str, tmp_path: Path) -> None:
@@ -103,4 +117,4 @@ def test_a_replay_holds_the_last_frames_evenly_thinned(recorded: Any) -> None:
 
 def test_without_a_frame_it_says_so(recorded: Any) -> None:
     with pytest.raises(ValueError, match="nothing has been recorded yet"):
-        replay_html(recorded[0], (), ())
+        replay_html(recorded[0], (), Plotted((), {}))

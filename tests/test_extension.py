@@ -5,6 +5,8 @@ The examples are those of docs/contributing.md, in its order.
 
 import json
 import shutil
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -140,6 +142,20 @@ def test_a_body_shape_is_one_file(tmp_path):
     run(copy, "-c", FLOATED)
 
 
+def test_a_task_is_two_files_and_its_solutions(tmp_path):
+    copy = copy_of_sources(tmp_path)
+    blocks = section("Add a task")
+    assert len(add(blocks, copy)) == 5
+    new, check, test = commands(blocks)
+    run_command(copy, new)
+    assert "def phase_speed(k, gravity):" in (copy / "solved" / "square_sea.py").read_text("utf-8")
+    said = run_command(copy, check)
+    assert "How fast a wave runs" in said
+    said = run_command(copy, test)
+    assert " passed" in said
+    assert " failed" not in said
+
+
 def test_a_scene_is_one_folder(tmp_path):
     copy = copy_of_sources(tmp_path)
     blocks = section("Add a scene")
@@ -158,6 +174,40 @@ def test_a_scene_is_one_folder(tmp_path):
         "-c",
         "import xarray as xr; found = xr.open_dataset('moons.nc'); assert dict(found.sizes)['gravity'] == 2, found",
     )
+
+
+@pytest.mark.skipif(shutil.which("pyright") is None, reason="pyright is not installed")
+def test_the_examples_pass_the_type_checker(tmp_path):
+    copy = copy_of_sources(tmp_path)
+    headings = (
+        "Add an integrator",
+        "Add a spectrum",
+        "Add a parameter",
+        "Add a body shape",
+        "Add a task",
+        "Add a scene",
+    )
+    touched = {path for heading in headings for path in add(section(heading), copy)}
+    sources = sorted(path for path in touched if path.endswith(".py") and not path.startswith("tests/"))
+    done = subprocess.run(
+        ["pyright", "--pythonpath", sys.executable, *sources], cwd=copy, capture_output=True, text=True, timeout=240
+    )
+    assert done.returncode == 0, done.stdout
+
+
+# What tests of all scenes ask of a new one, those that only read it.
+OF_A_NEW_SCENE = (
+    "tests/app/server/test_counters.py", "tests/app/sweep/test_case.py", "tests/app/scenes/test_first_look.py",
+    "tests/app/panel/test_recording_files.py", "tests/app/panel/test_control.py", "tests/app/scenes/test_setups.py",
+)  # fmt: skip
+
+
+def test_a_new_scene_passes_the_tests_of_all_scenes(tmp_path):
+    copy = copy_of_sources(tmp_path)
+    add(section("Add a scene"), copy)
+    said = run(copy, "-m", "pytest", *OF_A_NEW_SCENE, "-k", "pendulum", "-p", "no:cacheprovider")
+    assert " passed" in said
+    assert " failed" not in said
 
 
 @pytest.mark.stress  # a browser of its own: without one, test_a_scene_is_one_folder opens it

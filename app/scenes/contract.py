@@ -223,7 +223,7 @@ class SceneKind(Generic[P, F, R]):
 
     name: str  # of its folder
     title: str
-    help: str  # two lines on how to use it, as HTML
+    help: str  # two lines on how to use it, as HTML; one begins with "Next:" and says what to try
     params: type[P]
     presets: Mapping[str, Mapping[str, Value]]  # name -> the values that differ from the defaults
     make: Callable[[P], Scene[P, F, R]]
@@ -238,6 +238,7 @@ class SceneKind(Generic[P, F, R]):
     together: Callable[[], "Together[P, F, R]"] | None = None  # for sweeps; None: every run goes alone
     live_values: Callable[..., dict[str, Measure]] | None = None  # of a snapshot, what the tasks of the lab use
     # Unit of each array of a frame that goes into a file of the recording; arrays of a record in it: "record_array".
+    # The first one in metres is what moves.
     frame_units: Mapping[str, str] = field(default_factory=dict[str, str])
     packing: FramePacking | None = None  # None: a recording keeps frames as they are
     stability_map: StabilityMap | None = None

@@ -120,7 +120,7 @@ def test_the_set_up_file_of_the_page_is_read_back():
     assert setup.camera == ((0.5, -4.0, 2.0), (0.0, 0.0, 1.3))
 
 
-def test_the_readme_shows_the_five_scenes():
+def test_the_readme_shows_every_scene():
     readme = text_of(ROOT / "README.md")
     shown = re.findall(r"^### `(\w+)`$", readme, re.MULTILINE)
     assert sorted(shown) == sorted(NAMES)
@@ -166,6 +166,7 @@ def test_the_citation_is_valid():
     assert str(cited["version"]) == version[1]
 
 
-def test_the_changelog_begins_with_what_is_not_released():
-    headings = re.findall(r"^## (.+)$", text_of(ROOT / "CHANGELOG.md"), re.MULTILINE)
-    assert headings[0] == "[Unreleased]"
+def test_the_changelog_begins_with_this_version():
+    version = re.search(r'^version = "(.+)"$', text_of(ROOT / "pyproject.toml"), re.MULTILINE)
+    headings = re.findall(r"^## \[(.+)\] - \d{4}-\d\d-\d\d$", text_of(ROOT / "CHANGELOG.md"), re.MULTILINE)
+    assert headings[0] == version[1]

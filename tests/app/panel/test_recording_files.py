@@ -16,7 +16,7 @@ from app.panel.recording_files import Plotted, arrays_of, plots_csv, plots_svg, 
 from app.scenes import NAMES, scene_named
 from app.server.loop import SimLoop
 
-SMALL: dict[str, dict[str, Any]] = {
+SMALL: dict[str, dict[str, Any]] = {  # scene -> what makes it cheap; a new scene needs no entry
     "rope": {"points": 5},
     "race": {"ropes": 2, "points": 5},
     "cloth": {"rows": 5, "cols": 6},
@@ -27,7 +27,7 @@ SMALL: dict[str, dict[str, Any]] = {
 
 def recorded(name: str, frames: int = 6) -> tuple[Any, tuple[Kept, ...], list[Any]]:
     kind = scene_named(name)
-    loop = SimLoop(kind.make(kind.params(**SMALL[name])))
+    loop = SimLoop(kind.make(kind.params(**SMALL.get(name, {}))))
     recorder, wall = Recorder(kind.packing), 0.0
     for _ in range(frames):
         loop.tick(1 / 25)

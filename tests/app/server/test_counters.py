@@ -47,7 +47,7 @@ def test_every_scene_counts_its_work_and_never_less_than_nothing(name: str):
     counts = gather(loop.work(), loop.latest.work)
     assert counts["ticks"] == WorkCount(20, 0)
     assert counts["snapshots"].done + counts["snapshots"].skipped >= 20
-    assert len(loop.latest.work) >= 3
+    assert loop.latest.work, "the scene counts nothing"
     for what, work in counts.items():
         assert work.done >= 0, what
         assert work.skipped >= 0, what

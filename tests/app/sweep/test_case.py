@@ -15,9 +15,8 @@ from sim.parameters import parameters_of
 from sim.springs import simulate
 from sim.springs.statics import hanging_chain
 
-SMALL = {
+SMALL: dict[str, dict[str, object]] = {  # scene -> what makes it cheap; a new scene needs no entry
     "rope": {"plot_energy": True, "plot_tip": True},
-    "race": {},
     "cloth": {"rows": 6, "cols": 6, "plot_energy": True, "plot_strain": True},
     "square_sea": {"size": "64", "mesh": "32"},
     "radial_sea": {"wave_count": 16, "particles": 100},
@@ -26,10 +25,11 @@ SMALL = {
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_scene_gives_labelled_numbers_and_none_bears_the_name_of_a_parameter(name):
-    outcome = run_case(name, SMALL[name], (0.0, 0.1))
+    outcome = run_case(name, SMALL.get(name, {}), (0.0, 0.1))
     assert (outcome.end, outcome.message) == (FINISHED, "")
     assert all(len(values) == 2 for values in outcome.measures.values())
-    assert len([v for v in outcome.measures.values() if math.isfinite(v[-1])]) >= 4
+    finite = [v for v in outcome.measures.values() if math.isfinite(v[-1])]
+    assert len(finite) >= min(4, len(outcome.measures)) > 0
     assert outcome.measures.keys() == outcome.labels.keys()
     assert not outcome.measures.keys() & parameters_of(scene_named(name).params).keys()
     assert not outcome.measures.keys() & {"time", "case", "end", "message", "diverged_at", "run_time"}

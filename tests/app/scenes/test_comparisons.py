@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from app.__main__ import main
-from app.scenes import scene_named
+from app.scenes import NAMES, scene_named
 from app.scenes.comparisons import (
     COMPARISONS,
     MAX_PANES,
@@ -54,7 +54,7 @@ def test_set_ups_are_read_as_scene_preset_link_and_file(tmp_path: Path) -> None:
     [
         (["rope"], "set-ups side by side: 'rope' is not allowed; allowed: 2 to 3 set-ups, or one of planets"),
         (["rope"] * 4, "set-ups side by side: 4 is not allowed; allowed: 2 to 3"),
-        (["rope", "rop"], "scene: 'rop' is not allowed; allowed: one of cloth, race"),
+        (["rope", "rop"], f"scene: 'rop' is not allowed; allowed: one of {', '.join(sorted(NAMES))}"),
         (["rope", "rope:Nope"], "preset: 'Nope' is not allowed; allowed: one of Lab code"),
         (["rope", "?scene=rope&stiffness=-4"], "stiffness: '-4' is not allowed; allowed: 1 to 1e9 N/m"),
         (["rope", "none.json"], "set-up: 'none.json' is not allowed; allowed: a file that can be read"),

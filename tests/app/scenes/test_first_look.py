@@ -8,6 +8,7 @@ from app.scenes import NAMES, scene_named
 from app.scenes.contract import AnyKind
 
 DURATION, LATER = 30.0, 0.5  # [s] of simulated time
+LOOKS = 5  # within LATER
 SHORT = 8.0  # [s] of the cloth, which takes half as long to compute as it lasts
 MIN_MOVE = 0.01  # [m]
 
@@ -31,8 +32,11 @@ def test_the_first_look_still_moves_after_half_a_minute(name: str, duration: flo
     while scene.time < duration:
         scene.advance(max(1, round(1 / 60 / scene.step)))
     before = drawn(kind, scene.frame())
-    scene.advance(round(LATER / scene.step))
-    assert np.abs(drawn(kind, scene.frame()) - before).max() > MIN_MOVE
+    moved = []
+    for _ in range(LOOKS):  # what swings may be where it was after one of them
+        scene.advance(round(LATER / LOOKS / scene.step))
+        moved.append(np.abs(drawn(kind, scene.frame()) - before).max())
+    assert max(moved) > MIN_MOVE
 
 
 @pytest.mark.parametrize("name", NAMES)

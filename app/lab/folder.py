@@ -97,7 +97,7 @@ def readme_text(name: str, tasks: Sequence[Task]) -> str:
         "  The folder Workbook in the panel has the tasks below. It sets them up, keeps answers and takes pictures.",
         f"- `springtide lab check {quoted}` says what is right, and what is wrong and why.",
         f"- `springtide lab check {quoted} --report report.html` writes the page that you hand in.",
-        f"  It shows the pictures (PNG or JPEG) in `{PICTURES}`, with a task those that its name begins.",
+        f"  It includes the pictures (PNG or JPEG) in `{PICTURES}`; those named after a task appear in that task.",
         "",
         "Functions take and return numpy arrays and numbers. Loops are as right as array operations. You may write",
         "functions and files of your own beside those that are asked for.",

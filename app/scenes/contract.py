@@ -6,7 +6,8 @@ To add a scene, add one folder here, named as the scene is on the command line:
    each declaring what its change affects, and `PRESETS`, name -> the values that differ from the defaults; the first
    preset is the defaults.
 2. `scene.py`: the simulation, a class that satisfies `Scene`, and `SCENE = SceneKind(...)`. It imports no viewer.
-3. `view.py`: the drawing, a class `View` that satisfies `View` below and `warm_up()`. It alone imports viser.
+3. `view.py`: the drawing, a class `View` that satisfies `View` below and `warm_up()`. Only it and `*_view.py` beside it
+   import viser.
 
 The folder is found by being here: command line, panel, sweeps, benchmarks and tests take it up from there.
 """

@@ -34,6 +34,12 @@ def as_rst(app, what, name, obj, options, lines):
     lines[:] = written
 
 
+def is_left_out(app, what, name, obj, skip, options):
+    """Leave out the fields of named tuples, which their signature already shows."""
+    return True if type(obj).__name__ == "_tuplegetter" else None
+
+
 def setup(app):
-    """Register the rewriting of docstrings."""
+    """Register what is done to docstrings and members."""
     app.connect("autodoc-process-docstring", as_rst)
+    app.connect("autodoc-skip-member", is_left_out)

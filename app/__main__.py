@@ -214,12 +214,25 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
 
 def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
     """The scene's parameters from --preset and --set; raises ValueError for what is not allowed."""
-    from app.scenes.setups import preset_values
+    from app.scenes.setups import preset_setup
     from sim.parameters import check_record, parse_assignments
 
-    values = {} if arguments.preset is None else preset_values("--preset", arguments.preset, scene)
+    values = {}
+    if arguments.preset is not None:
+        setup = preset_setup("--preset", arguments.preset, scene)
+        values = dict(setup.values)
+        say_missing_hull(setup, arguments.hull)
     params = check_record(scene.params, {**values, **parse_assignments(scene.params, arguments.set)})
     return params if arguments.hull is None else with_hull(params, arguments.hull)
+
+
+def say_missing_hull(setup: Any, hull: Path | None = None) -> None:
+    """Say on the error stream which mesh a set-up had, unless `hull` gives one."""
+    from app.scenes.setups import missing_hull
+
+    text = missing_hull(setup) if hull is None else ""
+    if text:
+        print(f"springtide: {text}", file=sys.stderr)
 
 
 def with_hull(params: Any, path: Path) -> Any:
@@ -256,6 +269,8 @@ def serve_beside(arguments: argparse.Namespace) -> int:
     from app.scenes.comparisons import read_comparison
 
     first, *others = read_comparison(arguments.setups)
+    for setup in (first, *others):
+        say_missing_hull(setup)
     return serve_lab(first.scene, first.params, **serving(arguments), others=others)
 
 

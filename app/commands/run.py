@@ -11,6 +11,7 @@ from rich.progress import Progress
 from app.files import check_out_file
 from app.messages import DivergenceError
 from app.scenes.contract import Scene, SceneKind
+from app.scenes.setups import shared_values
 from app.scenes.stepping import steps_to
 from sim.files import replacing
 from sim.validation import argument_error, check_number
@@ -65,7 +66,7 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
                 arrays[key][frame] = array
             count = frame + 1
             progress.update(task, completed=frame)
-    about = {"scene": name, "parameters": vars(params), "units": units, "diverged": problem}
+    about = {"scene": name, "parameters": shared_values(params), "units": units, "diverged": problem}
     kept = {"t": times[:count], **{key: array[:count] for key, array in arrays.items()}}
     write_arrays(out, {**kept, "about": np.array(json.dumps(about))})
     print(f"{out}: {count} frames to t = {times[count - 1]:g} s, {', '.join(kept)}")

@@ -4,6 +4,7 @@ import atexit
 import contextlib
 import threading
 import time
+import warnings
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -16,7 +17,7 @@ from app.notebook.output import Output, cell_of_now
 from app.notebook.picture import Still, take_picture
 from app.scenes import scene_named
 from app.scenes.contract import AnyKind
-from app.scenes.setups import preset_values, read_query, write_query
+from app.scenes.setups import preset_setup, read_query, write_query
 from app.server.access import Access, make_key
 from app.server.viewer import Viewer
 from sim.parameters import check_record, check_value, parameters_of, unknown_parameter
@@ -271,7 +272,10 @@ def read_setup(scene: str, preset: str, parameters: Mapping[str, object]) -> tup
     else:
         kind, values = scene_named(scene), {}
     if preset:
-        values.update(preset_values("preset", preset, kind))
+        setup = preset_setup("preset", preset, kind)
+        values.update(setup.values)
+        if setup.hull:
+            warnings.warn(f"The hull {setup.hull} is not in {preset}: this lab runs without it", stacklevel=4)
     if not values and not parameters and "?" not in scene:
         return kind, kind.opening_params()
     return kind, check_record(kind.params, {**values, **parameters})

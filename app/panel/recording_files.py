@@ -1,7 +1,6 @@
 """Files of what was recorded: arrays with units, and plots as CSV and SVG."""
 
 import csv
-import dataclasses
 import io
 import itertools
 import json
@@ -16,6 +15,7 @@ from app.panel.recorder import Kept
 from app.render.line_chart import WIDTH, Drawing, line_chart
 from app.scenes.charts import Chart, Column, Columns, chart_of, lines_of, numbers_of
 from app.scenes.contract import AnyKind
+from app.scenes.setups import shared_values
 
 TIME = "t [s]"  # label of the first column of what is plotted over simulated time
 NOTHING = "nothing has been plotted yet: let the scene run first"
@@ -53,10 +53,9 @@ def recording_npz(kind: AnyKind, frames: Sequence[Kept]) -> bytes:
         for name, array in arrays_of(kept.frame):
             if name in columns:
                 columns[name].append(array)
-    params = chosen[-1].params
     about = {
         "scene": kind.name,
-        "parameters": {field.name: getattr(params, field.name) for field in dataclasses.fields(params)},
+        "parameters": shared_values(chosen[-1].params),
         "units": {"t": "s", **{name: units[name] for name in form}},
     }
     content = io.BytesIO()

@@ -28,7 +28,17 @@ from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.comparisons import comparison_named
 from app.scenes.contract import AnyKind, AnySnapshot, PostCommand
 from app.scenes.own_setups import keep_own, remove_own
-from app.scenes.setups import MAX_NAME, MAX_NOTE, Camera, Setup, read_file, read_query, write_file, write_query
+from app.scenes.setups import (
+    MAX_NAME,
+    MAX_NOTE,
+    Camera,
+    Setup,
+    missing_hull,
+    read_file,
+    read_query,
+    write_file,
+    write_query,
+)
 
 SPAN_INTERVAL = 0.5  # [s] between two updates of the timeline's ends
 SLIDER_STEP = 0.01  # [s] of the timeline
@@ -182,6 +192,9 @@ class Share:
         except ValueError as reason:
             self.refuse(client, str(reason))
             return
+        missing = missing_hull(subject, getattr(self.panel.params, "hull", "")) if isinstance(subject, Setup) else ""
+        if missing:
+            client.add_notification("A hull is missing", missing, color="orange", auto_close_seconds=30.0)
         if isinstance(subject, Setup) and (subject.scene, subject.params) == (self.panel.kind.name, self.panel.params):
             self.place(subject, client)
         elif isinstance(subject, str) and self.panel.beside is None:

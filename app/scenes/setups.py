@@ -5,7 +5,8 @@ The address `/?scene=rope&preset=...&stiffness=2000` and the file
     {"version": 1, "scene": "rope", "preset": "...", "parameters": {"stiffness": 2000}, "name": "...", "note": "..."}
 
 say the same: the values of a preset (by default the scene's defaults), and those that differ from it. A number is
-written so that reading it gives the very same number. A hull from a file is no parameter, and is left out.
+written so that reading it gives the very same number. A hull from a file is no parameter: a file has its name,
+`"hull": "boat.stl"`, and whoever reads it is told to add the mesh.
 
 A replay (HTML) holds such a file in a block of its own, and a recording (.npz) all parameters: both open as it does.
 """
@@ -17,7 +18,7 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Mapping
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Any, BinaryIO, NamedTuple
 from urllib.parse import parse_qsl, urlencode
 
@@ -30,9 +31,9 @@ from sim.parameters import Value, changed_names, check_record, parameters_of, pa
 from sim.quantities import read_number, write_number
 from sim.validation import argument_error
 
-VERSION = 1  # of the file; raised where an older program could not read it
+VERSION = 2  # of a file with a hull; others are of version 1, so that older programs can read them
 MAX_LENGTH = 5000  # characters of a query or a file
-MAX_NAME, MAX_NOTE = 60, 1000  # characters
+MAX_NAME, MAX_NOTE, MAX_FILE_NAME = 60, 1000, 255  # characters
 MAX_CAMERA_DISTANCE = 1e4  # [m] from the origin
 CAMERA_DECIMALS = 3  # of the camera's coordinates [m]
 OWN_KEYS = ("scene", "preset", "camera")  # of a query; all others are parameters
@@ -49,7 +50,7 @@ UNREADABLE = (
     zlib.error,
 )
 FORMS = "a set-up file (.json), a replay (.html) or a recording (.npz) of Springtide"
-FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", "name", "note")
+FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", "hull", "name", "note")
 
 Camera = tuple[Vector, Vector]  # position and target [m]
 
@@ -64,6 +65,27 @@ class Setup(NamedTuple):
     camera: Camera | None = None
     name: str = ""
     note: str = ""
+    hull: str = ""  # file name of a mesh that floated too; the mesh itself is in no file
+
+
+def file_name(path: str) -> str:
+    """The last part of a path of any system: no other part of it goes into a file that may be shared."""
+    return PureWindowsPath(path).name
+
+
+def shared_values(params: BaseParams) -> dict[str, Value]:
+    """All fields of a record by name, as a file may hold them: of a path its file name only."""
+    paths = {field.name for field in dataclasses.fields(params)} - set(parameters_of(params))
+    return {name: file_name(value) if name in paths else value for name, value in vars(params).items()}
+
+
+def missing_hull(setup: Setup, present: str = "") -> str:
+    """How to add the hull of a set-up, or "" if there is none or it is the one `present`, a path."""
+    if setup.hull in ("", file_name(present)):
+        return ""
+    return (
+        f"The hull {setup.hull} is missing: files hold its name only. Start with --hull {setup.hull} to add the mesh."
+    )
 
 
 def differing_values(kind: AnyKind, params: BaseParams, preset: str) -> dict[str, Value]:
@@ -184,12 +206,15 @@ def write_file(
 ) -> str:
     """The text of a file that says a set-up. Raises ValueError for a name or note that is not allowed."""
     base = nearest_preset(kind, params, preset)
-    content: dict[str, Any] = {"version": VERSION, "scene": kind.name}
+    hull = file_name(getattr(params, "hull", ""))
+    content: dict[str, Any] = {"version": VERSION if hull else 1, "scene": kind.name}
     if base:
         content["preset"] = base
     content["parameters"] = differing_values(kind, params, base)
     if camera is not None:
         content["camera"] = camera_numbers(camera)
+    if hull:
+        content["hull"] = hull
     if name:
         content["name"] = read_text("name", name, MAX_NAME)
     if note:
@@ -235,7 +260,8 @@ def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Set
     camera = read_camera(content["camera"]) if content.get("camera") is not None else None
     name = read_text(f"{where}: name", content.get("name", ""), MAX_NAME)
     note = read_text(f"{where}: note", content.get("note", ""), MAX_NOTE)
-    return Setup(kind.name, check_record(kind.params, values), values, preset, camera, name, note)
+    hull = file_name(read_text(f"{where}: hull", content.get("hull", ""), MAX_FILE_NAME))
+    return Setup(kind.name, check_record(kind.params, values), values, preset, camera, name, note, hull)
 
 
 def unique_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
@@ -283,16 +309,22 @@ def preset_named(what: str, preset: object, kind: SceneKind[Any, Any, Any]) -> M
 def preset_values(
     option: str, preset: str, kind: SceneKind[Any, Any, Any], folder: Path | None = None
 ) -> dict[str, Value]:
-    """The parameters that a preset names. preset: a name, or the path of a file, relative to `folder`.
+    """The parameters that a preset names, as of `preset_setup`."""
+    return dict(preset_setup(option, preset, kind, folder).values)
+
+
+def preset_setup(option: str, preset: str, kind: SceneKind[Any, Any, Any], folder: Path | None = None) -> Setup:
+    """The set-up that a preset names. preset: a name, or the path of a file, relative to `folder`.
 
     Raises ValueError, naming the option, where there is no such preset of this scene or a value is not allowed.
     """
     if preset in kind.presets:
-        return dict(kind.presets[preset])
+        values = kind.presets[preset]
+        return Setup(kind.name, check_record(kind.params, values), values, preset)
     path = (folder or Path()) / preset
     if path.suffix != ".json" and not path.is_file():
         raise argument_error(option, preset, "one of " + ", ".join(kind.presets) + "; or a file FILE.json")
-    return dict(read_file(read_setup_text(option, path), f"{option} {path}", kind.name).values)
+    return read_file(read_setup_text(option, path), f"{option} {path}", kind.name)
 
 
 def setup_block(kind: AnyKind, params: BaseParams) -> str:
@@ -348,4 +380,10 @@ def recorded_setup(file: BinaryIO) -> str:
     kind = kind_named(content.get("scene"))
     others = {field.name for field in dataclasses.fields(kind.params)} - set(parameters_of(kind.params))
     values = {name: value for name, value in content["parameters"].items() if name not in others}
-    return json.dumps({"version": VERSION, "scene": kind.name, "parameters": values}, ensure_ascii=False)
+    setup = {
+        "version": VERSION,
+        "scene": kind.name,
+        "parameters": values,
+        "hull": content["parameters"].get("hull", ""),
+    }
+    return json.dumps(setup, ensure_ascii=False)

@@ -13,7 +13,7 @@ import numpy as np
 
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import SceneKind
-from app.scenes.setups import preset_values
+from app.scenes.setups import file_name, preset_setup
 from app.sweep.design import MAX_CASES, Axis, Listed, Range, grid, grid_values, hypercube, size
 from sim.parameters import Parameter, check_record, check_value, parameters_of, unknown_parameter
 from sim.validation import argument_error, check_choice, check_number, is_whole_number
@@ -38,7 +38,7 @@ class Spec:
     fixed: dict[str, Any]  # parameters that are the same in every case and not their defaults
     swept: dict[str, tuple[Any, ...]]  # the values of each swept parameter: along its axis, or case by case
     cases: list[dict[str, Any]]  # the swept parameters of each case
-    text: str  # as read
+    text: str  # as read; of the path of a preset the file name only
 
     @property
     def times(self) -> tuple[float, ...]:
@@ -118,6 +118,9 @@ def make_spec(content: dict[str, Any], text: str = "", folder: Path | None = Non
         raise argument_error("frames", f"{frames} times {len(cases)} cases", f"at most {MAX_FRAMES_IN_ALL} in all")
     for parameter_name in fixed.keys() & axes.keys():
         del fixed[parameter_name]
+    preset = content.get("preset", "")
+    if preset and preset not in scene.presets:
+        text = text.replace(preset, file_name(preset))
     spec = Spec(scene.name, seconds, frames, design, seed, fixed, values, cases, text)
     check_swept_parameters_matter(spec, scene)
     return spec
@@ -128,7 +131,12 @@ def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any], f
     preset = content.get("preset")
     if preset is not None and not isinstance(preset, str):
         raise argument_error("preset", preset, "one of " + ", ".join(scene.presets) + "; or a file FILE.json")
-    from_preset = {} if preset is None else preset_values("preset", preset, scene, folder)
+    from_preset: dict[str, Any] = {}
+    if preset is not None:
+        setup = preset_setup("preset", preset, scene, folder)
+        if setup.hull:
+            raise argument_error("preset", f"{preset} with the hull {setup.hull}", "a set-up without a hull in a sweep")
+        from_preset = dict(setup.values)
     given = {**dict.fromkeys(scene.plots, True), **from_preset, **table(content, "set")}
     params = check_record(scene.params, given)
     return {name: getattr(params, name) for name in given}

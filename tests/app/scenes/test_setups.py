@@ -18,7 +18,6 @@ from app.scenes.setups import (
     MAX_LENGTH,
     MAX_NAME,
     OWN_KEYS,
-    VERSION,
     preset_values,
     read_file,
     read_query,
@@ -82,7 +81,7 @@ def test_a_record_survives_an_address_and_a_file_to_the_last_bit(name: str) -> N
 def test_the_shortest_form_names_only_what_differs(name: str) -> None:
     kind = scene_named(name)
     assert write_query(kind, kind.params()) == f"?scene={name}"
-    assert json.loads(write_file(kind, kind.params())) == {"version": VERSION, "scene": name, "parameters": {}}
+    assert json.loads(write_file(kind, kind.params())) == {"version": 1, "scene": name, "parameters": {}}
     for preset, values in kind.presets.items():
         params = kind.params(**values)
         assert write_query(kind, params, preset) == "?" + urlencode(
@@ -143,7 +142,7 @@ def test_an_address_takes_numbers_as_people_write_them() -> None:
         ('{"scene": "rope"}', "a file {"),
         ("[" * 5000, "not a file of JSON"),
         ('{"parameters": {}}', "scene: None"),
-        ('{"version": 2, "scene": "rope", "parameters": {}}', "version: 2 is not allowed"),
+        ('{"version": 3, "scene": "rope", "parameters": {}}', "version: 3 is not allowed"),
         ('{"version": true, "scene": "rope", "parameters": {}}', "version: True is not allowed"),
         ('{"version": 1.0, "scene": "rope", "parameters": {}}', "version: 1.0 is not allowed"),
         ('{"version": "1", "scene": "rope", "parameters": {}}', "version: '1' is not allowed"),

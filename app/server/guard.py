@@ -18,6 +18,7 @@ import math
 import socket
 import threading
 import time
+import traceback
 from collections.abc import Awaitable, Callable, Generator, Sequence
 from http import HTTPStatus
 from typing import TypeAlias, TypeGuard, cast
@@ -307,14 +308,22 @@ class Intake:
                 if not keys:
                     return
                 for message in [self.waiting.pop(key) for key in keys]:
-                    good = self.screen(message)
-                    if good is not None:
-                        for handle in self.handlers:
-                            await handle(client, good)
-                        self.counted = True
+                    await self.handle(client, message)
                 self.turned_at = time.monotonic()
         finally:
             self.turn = None
+
+    async def handle(self, client: ClientId, message: ViserMessage) -> None:
+        """Screen a message and call its handlers; one that fails is reported, and the others are called."""
+        good = self.screen(message)
+        if good is None:
+            return
+        for handle in self.handlers:
+            try:
+                await handle(client, good)
+            except Exception:
+                traceback.print_exc()
+        self.counted = True
 
 
 def put_intakes(server: viser.ViserServer, screen: Screen) -> None:

@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 import viser
 import websockets
+from viser import _messages as vm
 from websockets.asyncio.client import connect
 
-from app.server.guard import MAX_TEXT_LENGTH, allowed_value, is_bounded, is_own_origin, open_server
+from app.server.guard import MAX_TEXT_LENGTH, Intake, allowed_value, is_bounded, is_own_origin, open_server
 from app.server.viewer import Viewer
 from tests import coroutines
 from tests.stress.clients import CAMERA
@@ -208,6 +209,32 @@ def test_a_link_that_comes_before_its_browser_is_counted_asks_the_others(lab: Vi
     coroutines.run(follow_a_link_while_somebody_looks(lab))
     assert lab.questions.count == 1
     assert lab.panel.params == before
+
+
+def test_a_callback_that_fails_is_reported_and_loses_no_other_message(capsys: pytest.CaptureFixture) -> None:
+    handled: list[str] = []
+
+    async def on_server(client: int, message: Any) -> None:
+        if message.uuid == "bad":
+            raise ValueError("no such colour")
+        handled.append(message.uuid)
+
+    async def on_client(client: int, message: Any) -> None:
+        handled.append(f"{message.uuid} of {client}")
+
+    async def send() -> None:
+        intake = Intake(lambda message: message, [on_server, on_client])
+        intake.counted = True
+        for uuid in ("a", "bad", "b", "c"):
+            intake.take(1, vm.GuiUpdateMessage(uuid, {"value": 1.0}))
+        assert intake.turn is not None
+        await intake.turn
+
+    coroutines.run(send())
+    assert handled == ["a", "a of 1", "bad of 1", "b", "b of 1", "c", "c of 1"]
+    report = capsys.readouterr().err
+    assert report.count("Traceback") == 1
+    assert "no such colour" in report
 
 
 def test_the_share_tunnel_has_no_handler(lab: Viewer) -> None:

@@ -20,9 +20,9 @@ from app.server.viewer import Viewer
 viewer = Viewer("127.0.0.1", 0)
 viewer.open("pendulum")
 end = time.monotonic() + 30.0
-while viewer.drawn == 0 and time.monotonic() < end:
+while viewer.served.drawn == 0 and time.monotonic() < end:
     time.sleep(0.05)
-assert viewer.drawn
+assert viewer.served.drawn
 assert viewer.loop.latest.frame.bob[2] < 0.0
 assert set(viewer.panel.controls) == {"length", "gravity", "angle", "speed", "grid", "plot_swing"}
 assert not viewer.loop.halted
@@ -37,7 +37,7 @@ assert 2.7 < sea.significant_height < 3.1, sea.significant_height
 viewer = Viewer("127.0.0.1", 0)
 for name in ("square_sea", "radial_sea"):
     viewer.open(name)
-    viewer.stop_threads()
+    viewer.served.stop_threads()
     panel, loop = viewer.panel, viewer.loop
     assert not panel.controls["sea_height"].visible
     panel.set("spectrum", "bretschneider")

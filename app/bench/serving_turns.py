@@ -57,10 +57,10 @@ def serve() -> None:
                 settling, seconds = rest
                 viewer.loop.commands.put(Play())
                 time.sleep(settling)
-                spent, simulated, shown = time.process_time(), viewer.loop.latest.status.time, viewer.shown
+                spent, simulated, shown = time.process_time(), viewer.loop.latest.status.time, viewer.served.shown
                 time.sleep(seconds)
                 spent, simulated = time.process_time() - spent, viewer.loop.latest.status.time - simulated
-                answer = [spent / simulated, (viewer.shown - shown) / simulated]
+                answer = [spent / simulated, (viewer.served.shown - shown) / simulated]
             viewer.loop.commands.put(Pause())
             time.sleep(0.15)
             print(json.dumps(answer), flush=True)

@@ -19,6 +19,7 @@ from app.scenes import scene_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import preset_setup, read_query, write_query
 from app.server.access import Access, make_key
+from app.server.served_scene import ServedScene
 from app.server.viewer import Viewer
 from sim.parameters import check_record, check_value, parameters_of, unknown_parameter
 from sim.validation import argument_error, check_number, is_whole_number
@@ -98,12 +99,13 @@ class Lab:
         """
         check_number("seconds", seconds, 0.0, MAX_WAIT, "s")
         viewer = self._open
-        while viewer.gate.passed is not viewer.panel.state or viewer.loop.scene.params != viewer.panel.params:
+        while viewer.loop.scene.params != viewer.panel.params:
             time.sleep(POLL_INTERVAL)  # until what was set has been compiled and taken
             self._check_open()
         answer: Future[float] = Future()
-        viewer.commands.put(Advance(float(seconds), answer))
-        return self._result_of(answer)
+        served = viewer.served
+        served.commands.put(Advance(float(seconds), answer))
+        return self._result_of(answer, served)
 
     def reset(self) -> None:
         """Begin the run again, with the parameters as they are."""
@@ -192,18 +194,18 @@ class Lab:
     def _asked(self, read: Callable[[], T]) -> T:
         """What `read` returns between two steps of the simulation."""
         answer: Future[Any] = Future()
-        self._open.commands.put(Ask(read, answer))
-        return self._result_of(answer)
+        served = self._open.served
+        served.commands.put(Ask(read, answer))
+        return self._result_of(answer, served)
 
-    def _result_of(self, answer: "Future[T]") -> T:
-        """The answer of the open scene. Raises RuntimeError where it is closed before it has answered."""
-        loop = self._viewer.loop
+    def _result_of(self, answer: "Future[T]", served: ServedScene) -> T:
+        """The answer of a scene. Raises RuntimeError where it is closed before it has answered."""
         try:
             while True:
                 with contextlib.suppress(TimeoutError):
                     return answer.result(POLL_INTERVAL)
                 self._check_open()
-                if self._viewer.loop is not loop:
+                if not served.is_open:
                     raise RuntimeError("another scene was opened meanwhile")
         finally:
             answer.cancel()  # where the kernel was interrupted: the lab is not to wait for it

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from typing import TYPE_CHECKING
 
-from app.messages import Ask, BaseParams, KeptState, Reset
+from app.messages import Ask, BaseParams, KeptState
 from app.panel.compare import PaneWords
 from app.scenes.comparisons import check_count, headings, middle_of, shared_parameters, with_shared
 from app.scenes.moments import arrays_in
@@ -29,6 +29,8 @@ class Comparison:
         self.first, self.make_pane = first, make_pane
         self.viewers: tuple[Viewer, ...] = (first,)
         self.clock = SharedClock()
+        self.seats: dict[Viewer, Seat] = {}  # of the loops that run
+        self.changing, self.ended = threading.Lock(), False  # of `seats`
         self.left: tuple[SimLoop, BaseParams, KeptState] | None = None  # the run of the first lab, as it was before
 
     def begin(self, others: Sequence[Setup], *, resume: bool) -> None:
@@ -69,17 +71,25 @@ class Comparison:
 
         What is the same in all labs is set in this one too.
         """
-        viewer.seat = Seat(self.clock, viewer.commands)
-        self.clock.seats = tuple(other.seat for other in self.viewers if other.seat is not None)
-        viewer.loop.join(viewer.seat)
-        viewer.commands.put(Reset())
+        loop, seat = viewer.loop, Seat(self.clock)
+        with self.changing:
+            if self.ended:
+                return
+            self.seats[viewer] = seat
+            self.place()
+            loop.commands.put(Ask(lambda: loop.join(seat), Future()))
         if self.first.is_open:
             self.share(self.first, self.first.panel.params)
 
     def leave(self, viewer: "Viewer") -> None:
         """The lab's loop is gone, or stands still for good: the others do not wait for it."""
-        viewer.seat = None
-        self.clock.seats = tuple(other.seat for other in self.viewers if other.seat is not None)
+        with self.changing:
+            self.seats.pop(viewer, None)
+            self.place()
+
+    def place(self) -> None:
+        """Put the seats at the clock, in the order of the labs."""
+        self.clock.seats = tuple(self.seats[viewer] for viewer in self.viewers if viewer in self.seats)
 
     def audience(self) -> int:
         """How many browsers see all panes: the clock stands still where one is not there yet."""
@@ -109,11 +119,12 @@ class Comparison:
         first, others = self.first, self.viewers[1:]
         self.viewers = (first,)
         first.comparison = None
-        if first.seat is not None:
-            first.seat = None
-            first.commands.share = None
-            first.loop.seat = None
-        self.clock.seats = ()
+        with self.changing:
+            self.ended = True
+            self.clock.seats = ()
+            if first in self.seats:
+                loop = first.loop
+                loop.commands.put(Ask(lambda: loop.join(None), Future()))
         for viewer in others:
             viewer.shut()
         if self.left is not None and first.is_open and first.loop is self.left[0]:

@@ -10,7 +10,7 @@ import queue
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 from typing import NamedTuple
 
@@ -42,8 +42,7 @@ from app.messages import (
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.moments import arrays_in
 from app.scenes.stepping import steps_to
-from app.server.command_queue import CommandQueue, begins_anew
-from app.server.merging import merged
+from app.server.merging import begins_anew, is_urgent, merged
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
 from sim.interruption import ABANDON, STOP, TURN, InterruptionError, is_kept_whole, use_request
@@ -121,21 +120,24 @@ class SimLoop:
     def __init__(
         self,
         scene: AnyScene,
-        commands: CommandQueue | None = None,
+        commands: "queue.SimpleQueue[Command] | None" = None,
         read_params: Callable[[], tuple[BaseParams, int]] | None = None,
         audience: Callable[[], int] = lambda: 1,
         *,
+        admit: Callable[[Iterable[Command]], list[Command]] = list,
         paused: bool = False,
         clock: Callable[[], float] = time.perf_counter,
         effort: Callable[[], float] = time.thread_time,
     ) -> None:
         """read_params: the parameters as set now, and the number of the last `Load`; audience: how many browsers look.
 
+        admit: of the commands that have come, those to handle now; called before `read_params`, on the same thread.
         clock: wall time [s]. effort: what solving is charged by, this thread's processor time [s], so that a busy
         machine that takes the processor away does not make the scene look expensive.
         """
         self.scene = scene
-        self.commands = commands or CommandQueue()
+        self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
+        self.admit = admit
         self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
         self.solving = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
         self.may_end = False  # what runs may be ended early: steps, or a picture
@@ -180,7 +182,7 @@ class SimLoop:
         was_late, self.is_late = self.is_late, False
         self.busy_since = self.clock()
         self.turn_at = self.busy_since - PATIENCE * was_late  # what ended the last tick has waited long enough
-        params, loads = self.read_params()
+        params, loads = self.poll()
         # Parameters first: a reset starts from them. A record of a `Load` that is still on the way comes with it.
         changed = loads == self.loaded and params is not self.scene.params and self.take(params)
         changed |= self.handle_waiting() or not self.is_shown
@@ -214,10 +216,28 @@ class SimLoop:
             self.settle(self.goal)
         self.busy_since = None
 
-    def join(self, seat: Seat) -> None:
-        """Follow a clock that other loops follow too, from the scene's start on; before `run`, or in a command."""
-        self.seat, self.commands.share = seat, seat.share
-        seat.note(0.0, self.scene.step, running=self.running, halted=bool(self.stopped_by))
+    def poll(self) -> tuple[BaseParams, int]:
+        """Take in the commands that have come, then read the parameters: these are as new as any preset among them."""
+        self.take_in()
+        return self.read_params()
+
+    def take_in(self, *taken: Command) -> None:
+        """Have the commands wait that have come and can be handled. taken: out of the queue before."""
+        came = [*taken, *(self.commands.get_nowait() for _ in range(self.commands.qsize()))]  # nobody else takes
+        seat = self.seat
+        self.waiting += [command if seat is None else seat.share(command) for command in self.admit(came)]
+        if seat is not None:
+            self.waiting += [seat.told.get_nowait() for _ in range(seat.told.qsize())]
+
+    def join(self, seat: Seat | None) -> None:
+        """Follow a clock that other loops follow too, all from their start on; None: no longer.
+
+        Called on the simulation thread, by an `Ask`.
+        """
+        self.seat = seat
+        if seat is not None:
+            self.handle(seat.share(Reset()))
+            seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
 
     def follow(self, seat: Seat, wall: float) -> bool:
         """Take the steps that lead to the time of the clock, as many as fit the frame; True where there were any.
@@ -358,12 +378,12 @@ class SimLoop:
         """
         self.turn_at, self.is_late = self.clock(), True
         try:
-            params, loads = self.read_params()
+            params, loads = self.poll()
             if loads != self.loaded:  # they come with a `Load` that waits
                 params = self.scene.params
             effect, whole = effect_of_change(self.scene.params, params), is_kept_whole()
-            anew = self.commands.begins_anew or effect == "start"
-            asked = anew or self.commands.urgent or effect == "forces"
+            anew = any(map(begins_anew, self.waiting)) or effect == "start"
+            asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
             if anew and (self.solving or self.may_begin):
                 self.request[STOP] = ABANDON if whole else 1
                 return
@@ -385,8 +405,6 @@ class SimLoop:
 
     def drags_waiting(self) -> list[Grab | Place | Release]:
         """The drags among the waiting commands; the others go on waiting for the next tick."""
-        for _ in range(self.commands.qsize()):
-            self.waiting.append(self.commands.get_nowait())
         drags = [command for command in merged(self.waiting) if isinstance(command, Grab | Place | Release)]
         self.waiting = [command for command in self.waiting if not isinstance(command, Grab | Place | Release)]
         return drags
@@ -443,11 +461,6 @@ class SimLoop:
         """Handle what is left of the waiting commands once they are merged, after a reset that was ended early, unless
         another one waits; True where there was one."""
         waiting, self.waiting = self.waiting, []
-        self.commands.urgent = self.commands.begins_anew = False
-        for _ in range(
-            self.commands.qsize()
-        ):  # nobody else takes from it; what comes meanwhile waits for the next tick
-            waiting.append(self.commands.get_nowait())
         left = merged(waiting)
         unfinished = None if any(begins_anew(command) for command in left) else self.unfinished
         if unfinished is not None:
@@ -668,10 +681,10 @@ class SimLoop:
         start, left = self.clock(), seconds
         while left > MAX_DEAF_TIME and not self.waiting and not stop.is_set():
             with contextlib.suppress(queue.Empty):
-                self.waiting.append(self.commands.get(timeout=MAX_DEAF_TIME))
+                self.take_in(self.commands.get(timeout=MAX_DEAF_TIME))
                 stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # not more ticks than frames
                 return
-            if self.read_params()[0] != self.scene.params:
+            if self.poll()[0] != self.scene.params or self.waiting:
                 return
             left = seconds - (self.clock() - start)
         if left > 0.0:

@@ -82,6 +82,16 @@ def merged(commands: Iterable[Command]) -> list[Command]:
     return found + asked
 
 
+def begins_anew(command: Command) -> bool:
+    """Whether the scene begins from its start after this command."""
+    return isinstance(command, Reset) or (isinstance(command, Load) and command.state is None)
+
+
+def is_urgent(command: Command) -> bool:
+    """Whether a command should not wait for a long solve: all but drags, going on, and what a program waits for."""
+    return not isinstance(command, SceneCommand | Play | Ask | Advance)
+
+
 def put_last(waiting: dict[tuple[str, str | int], SceneCommand], key: tuple[str, str | int], new: SceneCommand) -> None:
     """Replace what waits under a key, and move it to the end: the order of the last ones is kept."""
     waiting.pop(key, None)

@@ -4,11 +4,13 @@ The clock's time rises with the wall clock, but never beyond what every loop can
 one that is farthest behind. Each loop takes the steps that lead to the clock's time. Once the clock stands, all come to
 it, so that their times differ by less than a step.
 
-The clock's time is written by the loop of the first seat alone. Each seat's numbers are written by its own loop.
+The clock's time is written by the loop of the first seat alone. Each seat's numbers are written by its own loop, which
+also passes on to the others what concerns all.
 """
 
-from app.messages import Command, Halt, Load, Pause, Play, Reset, StepOnce, TogglePlay
-from app.server.command_queue import CommandQueue
+import queue
+
+from app.messages import Command, Load, Pause, Play, Reset, StepOnce, TogglePlay
 
 LEAD = 0.05  # [s] of wall time by which loops may differ while they run: they draw at different moments
 MAX_DEBT = 0.25  # [s] of wall time that the clock makes up for
@@ -18,9 +20,9 @@ MAX_HAND_STEPS = 100  # single steps that one command takes
 class Seat:
     """A loop's place at the clock."""
 
-    def __init__(self, clock: "SharedClock", queue: CommandQueue) -> None:
-        """queue: of the commands for the loop, which runs from its start on."""
-        self.clock, self.queue = clock, queue
+    def __init__(self, clock: "SharedClock") -> None:
+        self.clock = clock
+        self.told: queue.SimpleQueue[Command] = queue.SimpleQueue()  # commands from the other loops
         self.offset = clock.origin  # [s] of the clock, at which the scene's time was 0
         self.reached = clock.origin  # [s] of the clock, to which the loop has come
         self.step = 0.0  # [s] of the scene
@@ -51,14 +53,17 @@ class Seat:
 
     def begin_others(self) -> None:
         """Have all other runs begin again, as this one does."""
-        self.clock.origin = self.clock.time
-        self.tell_others(Reset())
+        if self in self.clock.seats:
+            self.clock.origin = self.clock.time
+            self.tell_others(Reset())
 
     def tell_others(self, command: Command) -> None:
-        """Pass a command to all other loops."""
-        for seat in self.clock.seats:
-            if seat is not self:
-                seat.queue.add(command)
+        """Pass a command to all other loops; one that has lost its place tells nobody."""
+        seats = self.clock.seats
+        if self in seats:
+            for seat in seats:
+                if seat is not self:
+                    seat.told.put(command)
 
     def share(self, command: Command) -> Command:
         """Pass to the other loops what concerns all; returns what this one is to do."""
@@ -67,13 +72,11 @@ class Seat:
                 return self.share(Pause() if self.running else Play())
             case Play() | Pause() | StepOnce():
                 self.tell_others(command)
-            case Halt():
-                self.tell_others(Pause())
             case Reset():
                 self.begin_others()
                 if any(seat.halted for seat in self.clock.seats):  # which paused the others
                     self.tell_others(Play())
-                    self.queue.add(Play())
+                    self.told.put(Play())
             case Load(state=state):
                 if state is None:
                     self.begin_others()
@@ -84,7 +87,7 @@ class Seat:
 
 
 class SharedClock:
-    """The clock. `seats` is replaced as a whole when a loop joins or leaves."""
+    """The clock. `seats` is replaced as a whole by another thread when a loop joins or leaves, and may be empty."""
 
     def __init__(self) -> None:
         self.time = 0.0  # [s] simulated
@@ -98,7 +101,7 @@ class SharedClock:
         most = MAX_DEBT * speed
         self.debt += wall * speed
         self.late = self.debt > most
-        room = min(seat.reached + seat.step for seat in self.seats) + LEAD * speed - self.time
+        room = min((seat.reached + seat.step for seat in self.seats), default=self.time) + LEAD * speed - self.time
         taken = max(0.0, min(self.debt, most, room))
         self.time += taken
         self.debt = min(self.debt, most) - taken
@@ -106,4 +109,4 @@ class SharedClock:
     def step_by_hand(self, count: int) -> None:
         """Let all loops take single steps: at least `count` of the longest; called by the first seat's loop."""
         self.debt = 0.0
-        self.time += min(count, MAX_HAND_STEPS) * max(seat.step for seat in self.seats)
+        self.time += min(count, MAX_HAND_STEPS) * max((seat.step for seat in self.seats), default=0.0)

@@ -1,4 +1,4 @@
-"""Owns the server: opens scenes, runs the open scene's loop in a thread, and shows its latest snapshot in another."""
+"""Owns the server: opens and closes scenes, one after the other."""
 
 # pyright: reportPrivateUsage=false
 
@@ -12,45 +12,36 @@ from typing import TYPE_CHECKING
 import viser
 
 from app.lab.workbook import Workbook
-from app.messages import BaseParams, Halt, Release, Reset, StudentAnswer, WorkCount
-from app.panel.compare import Beside, PaneWords
+from app.messages import BaseParams, Command, Release, Reset, StudentAnswer
+from app.panel.compare import PaneWords
 from app.panel.display import set_theme
 from app.panel.panel import Panel, add_scene_chooser
 from app.panel.questions import Questions
-from app.panel.recorder import Kept
-from app.render.cameras import ClientCamera, fit_cameras, place_cameras, place_client_camera
+from app.render.cameras import ClientCamera, place_client_camera
 from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_scene
 from app.render.viser_types import ViserConnection
-from app.scenes import NAMES, scene_named, view_named
-from app.scenes.compiling import Compiling, describe
-from app.scenes.contract import AnyKind, AnyScene, PostCommand
+from app.scenes import NAMES, scene_named
+from app.scenes.compiling import Compiling
+from app.scenes.contract import AnyKind, AnyScene, AnyView, PostCommand
 from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.beside import Comparing, Comparison
-from app.server.command_queue import CommandQueue
-from app.server.compile_gate import CompileGate
-from app.server.counters import Unwatched, gather, modules
 from app.server.guard import open_pane, open_server, quiet
-from app.server.loop import PATIENCE, SimLoop
+from app.server.loop import SimLoop
 from app.server.panes import Panes
-from app.server.replay_file import replay_html
-from app.server.shared_clock import Seat
+from app.server.served_scene import MAX_JOIN_TIME, ServedScene
 from app.server.transport import TransportCounters
-from sim.interruption import STOP
 
 if TYPE_CHECKING:
     from app.lab.session import Session
 
-PLAYED_INTERVAL = 1 / 30  # [s] between two frames of a recording that is played
-HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
 SEND_WINDOW = 0.0  # [s] for which viser holds back what it sends, by default 17 ms: flushing each frame costs more
 MIN_SCENE_TIME = 0.3  # [s] for which a scene is shown before another is opened: long enough for its status line
 PROGRESS_INTERVAL = 0.25  # [s] between two updates of what is being compiled
-MAX_JOIN_TIME = 1.0  # [s] for which leaving a scene waits for each of its threads
 
 
 class Viewer:
-    """The lab in a browser. Everything drawn is assigned on the viewer thread, everything simulated on the loop's."""
+    """The lab in a browser."""
 
     def __init__(
         self,
@@ -86,7 +77,6 @@ class Viewer:
         else:
             self.server, self.screen = open_pane(beside[0].panes, beside[1])
         self.plain, self.pane_of = plain, beside
-        self.seat: Seat | None = None  # at the clock of a comparison
         self.comparison: Comparison | None = None
         self.comparing = Comparing(self, self.make_pane)
         if plain:
@@ -95,17 +85,10 @@ class Viewer:
         connection.get_message_buffer().window_duration_sec = SEND_WINDOW
         self.transport = TransportCounters(self.server)
         self.port = self.server.get_port()
-        self.commands = CommandQueue()
         self.server.on_client_disconnect(self.on_disconnect)
         self.questions = Questions(self.server)
-        self.stop = threading.Event()
         self.ended = False
-        self.threads: list[threading.Thread] = []
-        self.recorded: Kept | None = None  # the frame of the recording that is shown
-        self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
-        self.starts = 0  # how often the shown run was begun again
-        self.unwatched = Unwatched()
-        self.is_open = False  # whether scene, view, panel and loop are those of an open scene
+        self.current: ServedScene | None = None  # the scene that was opened last; it may be closed
         self.first_params: dict[str, BaseParams] = {}  # scene -> the parameters that it was first given
         self.changing = threading.Lock()
         # Scenes that browsers ask for, with parameters where a task or a link has them, and a link's camera.
@@ -142,39 +125,16 @@ class Viewer:
                 raise
 
     def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
-        """Make scene, view, panel and threads."""
-        name = kind.name
-        make_view = view_named(name)
+        """Make the scene and serve it."""
         self.clear()
-        commands = CommandQueue()
-        self.commands = commands
-        self.scene = self.make_scene(kind, params, commands.put)
-        self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
-        self.view = make_view(self.server, commands.put)
-        place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
-        self.gate = CompileGate(self.compiling, kind, commands.put, (params, 0))
-        self.panel = Panel(
-            self.server, kind, self.view, params, self.gate.post, work=self.work, scenes=NAMES,
-            open_scene=self.want, workbook=self.workbook, developer=self.developer, session=self.session,
-            wake=lambda: self.loop.fresh.set(), make_replay=replay_html, changed=self.share_parameters,
-            questions=self.questions,
-            beside=None if self.pane_of else Beside(self.comparing.want, self.comparing.end, self.pane_words),
-        )  # fmt: skip
-        gate, read = self.gate, self.panel.read
-        self.loop = SimLoop(self.scene, commands, lambda: gate.read(read()), self.audience, paused=paused)
-        self.is_open = True
-        if self.comparison is not None:
-            self.comparison.seat(self)
-        self.stop = threading.Event()
-        self.threads = [
-            threading.Thread(target=self.loop.run, args=(self.stop,), name="simulation", daemon=True),
-            threading.Thread(target=self.show_snapshots, args=(self.loop, self.stop), name="viewer", daemon=True),
-        ]
-        for thread in self.threads:
-            thread.start()
+        self.current = current = ServedScene(self, kind, params, paused=paused)
+        comparison = self.comparison
+        if comparison is not None:
+            comparison.seat(self)
+        current.start()
         if self.compile_ahead:
-            ahead = threading.Thread(target=self.compiling.go_on_with, args=(name,), name="compile ahead", daemon=True)
-            ahead.start()
+            ahead = self.compiling.go_on_with
+            threading.Thread(target=ahead, args=(kind.name,), name="compile ahead", daemon=True).start()
 
     def make_scene(self, kind: AnyKind, params: BaseParams, post: PostCommand) -> AnyScene:
         """The simulation, with a student's functions beside it where there are any that it has a use for."""
@@ -218,25 +178,17 @@ class Viewer:
         self.say(f"{kind.title}: compiled in {time.monotonic() - start:.1f} s")
         return True
 
-    def show_compiling(self) -> None:
-        """What is compiled while the scene runs: for what was chosen, or ahead."""
-        text = self.notice or self.gate.notice or describe(*self.compiling.progress())
-        if text != self.compile_text:
-            self.compile_text = text
-            self.compile_line.content = note(text) if text else ""
-
     def clear(self) -> None:
         """An empty panel and an empty scene."""
         self.server.gui.reset()
         reset_scene(self.server)
-        self.shown = self.drawn = self.starts = 0
         self.transport.begin()
-        self.unwatched = Unwatched()
 
     def show_failure(self, name: str, error: BaseException) -> None:
         """A page that says why a scene could not be opened, and offers the scenes."""
-        if self.comparison is not None:
-            self.comparison.leave(self)
+        comparison = self.comparison
+        if comparison is not None:
+            comparison.leave(self)
         self.close()
         self.clear()
         add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.want)
@@ -262,6 +214,43 @@ class Viewer:
             except Exception:
                 traceback.print_exc()
             time.sleep(MIN_SCENE_TIME)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a scene is open."""
+        return self.current is not None and self.current.is_open
+
+    @property
+    def served(self) -> ServedScene:
+        """The scene that was opened last. Raises RuntimeError where none was."""
+        if self.current is None:
+            raise RuntimeError("no scene has been opened")
+        return self.current
+
+    @property
+    def scene(self) -> AnyScene:
+        """Its simulation."""
+        return self.served.scene
+
+    @property
+    def view(self) -> AnyView:
+        """Its drawing."""
+        return self.served.view
+
+    @property
+    def panel(self) -> Panel:
+        """Its panel."""
+        return self.served.panel
+
+    @property
+    def loop(self) -> SimLoop:
+        """Its loop."""
+        return self.served.loop
+
+    @property
+    def commands(self) -> "queue.SimpleQueue[Command]":
+        """The queue of commands for its simulation."""
+        return self.served.commands
 
     def visitors(self) -> int:
         """How many browsers are connected."""
@@ -289,97 +278,13 @@ class Viewer:
 
     async def on_disconnect(self, client: viser.ClientHandle) -> None:
         """A browser that is gone lets go of what it drags."""
-        self.commands.put(Release(client.client_id))
+        if self.current is not None:
+            self.current.commands.put(Release(client.client_id))
 
-    def show_snapshots(self, loop: SimLoop, stop: threading.Event) -> None:
-        """Show each new snapshot once, as soon as it is there, and keep the panel's status up to date."""
-        recorder, shown_at = self.panel.recorder, loop.clock()
-        while not stop.is_set():
-            woken = loop.fresh.wait(min(PATIENCE, PLAYED_INTERVAL))
-            loop.ask_for_turn()
-            if not woken and loop.clock() - shown_at < (PLAYED_INTERVAL if recorder.playing else HEARTBEAT):
-                continue
-            loop.fresh.clear()
-            shown_at = loop.clock()
-            self.unwatched.note(self.audience())
-            if not stop.is_set():
-                self.show_latest()
-
-    def show_latest(self) -> None:
-        """Hand the latest snapshot over; without a new one only the panel."""
-        loop, snapshot = self.loop, self.loop.latest
-        rows = [loop.plot_rows.popleft() for _ in range(len(loop.plot_rows))]
-        since = loop.busy_since
-        busy = 0.0 if since is None else loop.clock() - since
-        # All of it in one message: each wakes a thread of viser's, which costs as much as drawing the rope.
-        recorder = self.panel.recorder
-        now = time.monotonic()
-        recorder.follow(snapshot)
-        recorder.advance(now)
-        recorded = recorder.shown
-        with self.transport.counted():
-            if recorded is not None:
-                if recorded is not self.recorded:
-                    self.drawn += 1
-                    self.attempt("picture", lambda: self.view.show(recorded.frame))
-                self.shown = 0  # the present is drawn anew after it
-            elif snapshot.serial != self.shown:
-                self.shown = snapshot.serial
-                self.drawn += 1
-                self.attempt("picture", lambda: self.view.show(snapshot.frame))
-                replayed = snapshot.status.replayed
-                if replayed is not None and not snapshot.status.halted:
-                    view = self.view.first_view(snapshot.params)
-                    fit_cameras(self.server, view, self.view.FIELD_OF_VIEW, replayed)
-                if snapshot.status.starts != self.starts:  # after the picture: another scene size moves cameras too
-                    self.starts = snapshot.status.starts
-                    place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)
-                    place_client_camera(self.server, self.panel.camera)
-                    self.panel.camera = None
-            self.recorded = recorded
-            self.attempt("compiling", self.show_compiling)
-            self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
-        recorder.note(snapshot, now)
-        self.panel.share.sent = recorded
-
-    def attempt(self, what: str, action: Callable[[], None]) -> None:
-        """Show something; what goes wrong halts the run once, and this thread lives to say so."""
-        try:
-            action()
-        except Exception as error:
-            if not self.loop.halted:
-                traceback.print_exc()
-                self.loop.commands.put(Halt(f"The {what} could not be drawn, {type(error).__name__}: {error}"))
-
-    def work(self) -> dict[str, WorkCount]:
-        """The work counts of the open scene."""
-        latest = self.loop.latest
-        return gather(
-            self.loop.work(),
-            {"pictures handed over": WorkCount(self.drawn, max(self.shown - self.drawn, 0))},
-            self.transport.work(),
-            self.panel.plots.work(),
-            latest.work,
-            self.unwatched.work(),
-            modules(),
-        )
-
-    def stop_threads(self) -> None:
-        """Stop the threads of the open scene; a solve that runs is ended early."""
-        self.stop.set()
-        if self.is_open:
-            self.loop.request[STOP] = 1
-        for thread in self.threads:
-            thread.join(MAX_JOIN_TIME)
-        self.threads = []
-
-    def close(self) -> None:
-        """Stop the threads of the open scene and give back what it holds."""
-        self.stop_threads()
-        if self.is_open:
-            self.is_open = False
-            self.panel.close()
-            self.view.close()
+    def close(self, picture_time: float | None = None) -> None:
+        """Close the open scene. picture_time: [s] to wait for its last picture; None: as long as it takes."""
+        if self.current is not None:
+            self.current.close(picture_time)
 
     def stop_opening(self) -> None:
         """Give up a scene that is waiting to be compiled, as the lab ends; `shut` does the rest."""
@@ -389,7 +294,8 @@ class Viewer:
     def shut(self) -> None:
         """End: stop the threads and the server. A scene that is being opened is not waited for."""
         self.ended = True
-        self.stop.set()
+        if self.current is not None:
+            self.current.stop.set()
         if self.pane_of is not None:
             first, number = self.pane_of
             first.panes.remove(number)
@@ -399,7 +305,7 @@ class Viewer:
             self.compiling.close()
         if self.changing.acquire(timeout=MAX_JOIN_TIME):
             try:
-                self.close()
+                self.close(MAX_JOIN_TIME)
             finally:
                 self.changing.release()
         self.want("")

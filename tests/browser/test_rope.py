@@ -27,10 +27,10 @@ def test_nothing_steps_until_somebody_looks(lab: Viewer, open_tab) -> None:
     tab.wait(lambda: lab.loop.counts["steps"] > 10)
     tab.page.close()
     while lab.audience():
-        lab.stop.wait(0.01)
-    lab.stop.wait(0.5)  # what was under way ends
+        lab.served.stop.wait(0.01)
+    lab.served.stop.wait(0.5)  # what was under way ends
     steps = lab.loop.counts["steps"]
-    lab.stop.wait(0.5)
+    lab.served.stop.wait(0.5)
     assert lab.loop.counts["steps"] == steps
 
 
@@ -109,7 +109,7 @@ def test_reload_and_a_second_tab_show_the_same_rope(shown: tuple[Viewer, Tab], o
     lab, first = shown
     first.wait(lambda: lab.scene.time > 1)
     lab.loop.commands.put(Pause())
-    first.wait(lambda: not lab.loop.running and lab.shown == lab.loop.latest.serial)
+    first.wait(lambda: not lab.loop.running and lab.served.shown == lab.loop.latest.serial)
     second = open_tab(lab.port)
     second.wait(lambda: len(second.vertices("/rope")) > 0)
     # A slow page may still have frames to draw from before the pause.

@@ -63,9 +63,9 @@ class Hammer:
         self.queue = self.server.queue_message
         self.server.queue_message = self.look_through  # type: ignore[method-assign]
         self.viewer.open(name)
-        self.viewer.stop_threads()  # from here on this thread does their work
+        self.viewer.served.stop_threads()  # from here on this thread does their work
         self.viewer.loop.audience = lambda: 1
-        self.viewer.attempt = lambda what, action: action()  # what goes wrong is to be seen
+        self.viewer.served.attempt = lambda what, action: action()  # what goes wrong is to be seen
         self.longest = 0.0  # [s] of processor time in a frame
 
     def look_through(self, message: Any) -> None:
@@ -94,7 +94,7 @@ class Hammer:
             start = time.process_time()
             self.loop.tick(wall)
             panel.status_at = panel.marks_at = 0.0  # write every text, every frame
-            self.viewer.show_latest()
+            self.viewer.served.show_latest()
             self.longest = max(self.longest, time.process_time() - start)
             self.check()
         self.tally.counts[self.name]["frames"] += count

@@ -42,7 +42,7 @@ def test_a_control_is_answered_while_a_solve_runs(name: str, viewer: Viewer, tal
     loop, panel = viewer.loop, viewer.panel
     loop.audience = lambda: 1
     rng = random.Random(f"answers {name}")
-    thread = next(thread for thread in viewer.threads if thread.name == "simulation")
+    thread = next(thread for thread in viewer.served.threads if thread.name == "simulation")
     assert thread.ident is not None
     processor = time.pthread_getcpuclockid(thread.ident)
     waits: list[tuple[float, float, dict[str, object]]] = []

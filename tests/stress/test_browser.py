@@ -55,6 +55,6 @@ def test_a_chromium_killed_while_it_drags(lab: Viewer, process: tuple[subprocess
         chromium.kill()
         until(lambda: lab.audience() == 0, "it is gone")
         until(lambda: lab.scene.handles.drag.hold is None, "what it held is let go")
-        assert all(thread.is_alive() for thread in lab.threads)
+        assert all(thread.is_alive() for thread in lab.served.threads)
         with contextlib.suppress(Exception):
             browser.close()

@@ -44,10 +44,10 @@ def clients(viewer: Viewer) -> Iterator[Clients]:
 def runs(viewer: Viewer) -> None:
     """Whatever came before: the scene runs on, and both threads live."""
     viewer.loop.commands.put(Play())
-    before, shown = viewer.loop.scene.time, viewer.shown
-    until(lambda: viewer.loop.scene.time > before and viewer.shown > shown + 2, "the scene runs on")
+    before, shown = viewer.loop.scene.time, viewer.served.shown
+    until(lambda: viewer.loop.scene.time > before and viewer.served.shown > shown + 2, "the scene runs on")
     assert not viewer.loop.halted
-    assert all(thread.is_alive() for thread in viewer.threads)
+    assert all(thread.is_alive() for thread in viewer.served.threads)
 
 
 def test_twenty_clients_at_once_all_are_served(viewer: Viewer, clients: Clients, tally: Tally) -> None:
@@ -72,7 +72,7 @@ def test_a_client_that_stops_reading_holds_up_nobody(viewer: Viewer, clients: Cl
         good = clients.join()
         runs(viewer)
         process = psutil.Process()
-        until(lambda: clients.received[good] > 2_000_000 or viewer.shown > 300, "some traffic", 120.0)
+        until(lambda: clients.received[good] > 2_000_000 or viewer.served.shown > 300, "some traffic", 120.0)
         gc.collect()
         before, served = process.memory_info().rss, clients.received[good]
         until(lambda: clients.received[good] > 2 * served, "as much again", 120.0)
@@ -152,6 +152,6 @@ def test_the_server_stops_under_load(viewer: Viewer, clients: Clients, tally: Ta
             clients.join(reads=number % 4 > 0)
         runs(viewer)
         viewer.shut()
-        assert viewer.threads == []
+        assert viewer.served.threads == []
         reading = [client for client in clients.open if clients.received[client] > 0]
         until(lambda: all(client.close_code is not None for client in reading), "connections are closed")

@@ -22,7 +22,7 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
     record_shaders(viewer.server)  # as to a browser that draws with them
     try:
         viewer.open(name)
-        viewer.stop_threads()
+        viewer.served.stop_threads()
         loop, scene = viewer.loop, viewer.scene
         steps = max(1, round(FRAME_INTERVAL / scene.step))
         times = []
@@ -33,9 +33,9 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
             loop.latest = loop.snapshot()
             taken = time.thread_time()
             with viewer.transport.counted():
-                viewer.show_latest()
+                viewer.served.show_latest()
             times.append((solved - start, taken - solved, time.thread_time() - taken))
-        return times, viewer.work()
+        return times, viewer.served.work()
     finally:
         viewer.shut()
 

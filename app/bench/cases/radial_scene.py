@@ -83,12 +83,12 @@ def served_rows(presets: list[str], seconds: float) -> list[dict[str, Any]]:
             time.sleep(3.0)
             if client.poll() is not None or not viewer.audience():
                 raise RuntimeError("the listening client has ended")
-            start, before, shown = time.monotonic(), os.times(), viewer.shown
+            start, before, shown = time.monotonic(), os.times(), viewer.served.shown
             time.sleep(seconds)
             after, taken = os.times(), time.monotonic() - start
             spent = after.user + after.system - before.user - before.system
-            rate = (viewer.shown - shown) / taken
-            row = {"name": f"served: {preset}", "ms": 1e3 * spent / max(viewer.shown - shown, 1)}
+            rate = (viewer.served.shown - shown) / taken
+            row = {"name": f"served: {preset}", "ms": 1e3 * spent / max(viewer.served.shown - shown, 1)}
             found.append({**row, "share of a core": spent / taken, "frames/s": rate})
         return found
     finally:

@@ -38,7 +38,7 @@ def serve(name: str, clients: int, seconds: float) -> dict[str, Any]:
             time.sleep(0.1)
         time.sleep(SETTLING)
         clock, used, simulated = time.monotonic(), os.times(), viewer.loop.latest.status.time
-        shown = viewer.shown
+        shown = viewer.served.shown
         time.sleep(seconds)
         after, wall = os.times(), time.monotonic() - clock
         return {
@@ -46,7 +46,7 @@ def serve(name: str, clients: int, seconds: float) -> dict[str, Any]:
             "clients": clients,
             "server [% of a core]": 100.0 * (after.user + after.system - used.user - used.system) / wall,
             "real-time factor": (viewer.loop.latest.status.time - simulated) / wall,
-            "frames [1/s]": (viewer.shown - shown) / wall,
+            "frames [1/s]": (viewer.served.shown - shown) / wall,
         }
     finally:
         listener.terminate()

@@ -148,7 +148,7 @@ def test_a_reset_ends_a_wait_and_an_interrupt_leaves_the_lab_as_it_was(rope: Lab
     with monkeypatch.context() as patch:
         patch.setattr(Lab, "_check_open", lambda lab: interrupt_if_waiting())
         with pytest.raises(KeyboardInterrupt):
-            rope._result_of(start(rope, 1e5))
+            rope._result_of(start(rope, 1e5), rope._viewer.served)
     while rope._viewer.loop.goal is not None:
         pass
     assert not rope.running
@@ -157,7 +157,7 @@ def test_a_reset_ends_a_wait_and_an_interrupt_leaves_the_lab_as_it_was(rope: Lab
         pass
     rope.reset()
     with pytest.raises(RuntimeError, match="begun again"):
-        rope._result_of(answer)
+        rope._result_of(answer, rope._viewer.served)
 
 
 def start(lab: Lab, seconds: float) -> "Future[float]":

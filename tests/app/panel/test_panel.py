@@ -42,14 +42,14 @@ def callbacks(viewer: Viewer) -> Iterator[Callable[..., Any]]:
 def test_every_callback_runs_on_the_one_event_loop(viewer: Viewer, name: str) -> None:
     """viser runs others in a pool of threads, where two changes of the parameters could lose each other."""
     viewer.open(name)
-    wait_for(lambda: viewer.shown > 0)
+    wait_for(lambda: viewer.served.shown > 0)
     found = list(callbacks(viewer))
     assert len(found) > 20
     assert [callback for callback in found if not inspect.iscoroutinefunction(callback)] == []
 
 
 def test_a_line_under_a_hidden_control_is_hidden_too(lab: Viewer) -> None:
-    lab.stop_threads()
+    lab.served.stop_threads()
     control = lab.panel.controls["sphere_radius"]
     assert not control.visible
     control.write("as wide as a ball")

@@ -24,11 +24,11 @@ for piece, drawn in warmup.all_pieces(name):
 before = signatures()
 viewer = Viewer("127.0.0.1", 0)
 viewer.open(name)
-viewer.stop_threads()
+viewer.served.stop_threads()
 viewer.loop.audience = lambda: 1
 for _ in range(20):
     viewer.loop.tick(1 / 60)
-    viewer.show_latest()
+    viewer.served.show_latest()
 assert viewer.loop.counts["steps"] >= 20, viewer.loop.halted
 new = sorted(signatures() - before)
 viewer.shut()

@@ -142,7 +142,8 @@ def test_another_scene_in_a_pane_keeps_the_clock() -> None:
         assert len(viewer.comparison.clock.seats) == 3
         second.open("cloth", read_query("?scene=cloth&rows=8&cols=8").params)
         assert len(viewer.comparison.clock.seats) == 3
-        assert second.loop.seat is viewer.comparison.clock.seats[1]
+        seats = viewer.comparison.clock.seats
+        wait_for(lambda: second.loop.seat is seats[1])
         assert [pane.heading.split(" · ")[0] for pane in viewer.pane_words()] == ["Rope", "Cloth", "Rope"]
         wait_for(lambda: second.panel.params.grid is False)
         with pytest.raises(ValueError, match="nothing"):

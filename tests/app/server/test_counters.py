@@ -110,7 +110,7 @@ def tube_bytes(lab: Any) -> int:
 @pytest.fixture
 def still(lab: Any) -> Any:
     """A lab without its threads, and its view, which goes on drawing for browsers with shaders."""
-    lab.stop_threads()
+    lab.served.stop_threads()
     record_shaders(lab.server)
     return lab
 

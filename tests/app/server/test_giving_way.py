@@ -11,7 +11,7 @@ from app.scenes.cloth.parameters import Params as ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import RopeScene
-from app.server.loop import MAX_BLIND_TIME, PATIENCE, CommandQueue, SimLoop
+from app.server.loop import MAX_BLIND_TIME, PATIENCE, SimLoop
 from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, raise_if_stopped, use_request
 from sim.ocean.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA
@@ -32,7 +32,7 @@ class Asked:
 def busy():
     """A loop in the middle of a step that takes long."""
     scene = RopeScene(Params(points=4))
-    loop = SimLoop(scene, CommandQueue(), Asked(scene.params), clock=lambda: 1.0)
+    loop = SimLoop(scene, None, Asked(scene.params), clock=lambda: 1.0)
     loop.busy_since = loop.turn_at = 1.0 - 2.0 * PATIENCE
     loop.solving = loop.may_end = True
     return loop
@@ -176,7 +176,7 @@ def test_steps_that_are_kept_whole_are_neither_ended_nor_shown_half_done(busy):
         busy.give_turn()
     assert busy.request[STOP] == 0
     assert busy.latest.params is busy.read_params.params
-    assert busy.commands.qsize() == 2
+    assert busy.waiting == [Pause(), Grab(1, (0.0, 0.0, 0.0))]
     busy.give_turn()
     assert busy.request[STOP] == 1
 
@@ -250,7 +250,7 @@ def test_a_turn_that_is_due_is_given_though_nobody_asks():
 @pytest.mark.parametrize("changes", [{"integrator": "implicit_euler", "time_step": 0.05}, {"thickness": 0.1}])
 def test_a_cloth_gives_turns_within_a_step_and_shows_the_last_whole_one(changes):
     scene = ClothScene(ClothParams(rows=16, cols=16, **changes))
-    loop = SimLoop(scene, CommandQueue(), Asked(scene.params))
+    loop = SimLoop(scene, None, Asked(scene.params))
     other = ClothScene(scene.params)
     seen = []
 

@@ -21,7 +21,7 @@ class Group:
         self.loops = [SimLoop(scene, effort=lambda: 0.0) for scene in scenes]
         seats: list[Seat] = []
         for loop in self.loops:
-            seat = Seat(self.clock, loop.commands)
+            seat = Seat(self.clock)
             seats.append(seat)
             self.clock.seats = tuple(seats)
             loop.join(seat)

@@ -33,8 +33,8 @@ def test_a_picture_that_cannot_be_drawn_halts_the_run_once_and_the_threads_live(
     lab.commands.put(StepOnce())
     wait_for(lambda: lab.loop.halted)
     assert lab.loop.halted == "The picture could not be drawn, ValueError: no such colour"
-    wait_for(lambda: lab.shown == lab.loop.latest.serial)
-    assert all(thread.is_alive() for thread in lab.threads)
+    wait_for(lambda: lab.served.shown == lab.loop.latest.serial)
+    assert all(thread.is_alive() for thread in lab.served.threads)
     assert capsys.readouterr().err.count("Traceback") == 1
 
 
@@ -52,7 +52,7 @@ def test_a_frame_of_the_recording_is_shown_and_then_the_present_again(
         wait_for(lambda kept=kept: len(recorder.frames) > kept)
     recorder.step(-2)
     wait_for(lambda: frames and frames[-1] is recorder.frames[-3].frame)
-    assert lab.work()["pictures handed over"].skipped >= 0
+    assert lab.served.work()["pictures handed over"].skipped >= 0
     recorder.show_present()
     wait_for(lambda: frames[-1] is lab.loop.latest.frame)
 
@@ -98,17 +98,17 @@ def test_a_scene_that_cannot_be_opened_leaves_a_page_that_says_why_and_offers_th
     if where == "scene":
         monkeypatch.setattr("app.server.viewer.scene_named", lambda name: replace(kind, make=fail))
     elif where == "view":
-        monkeypatch.setattr("app.server.viewer.view_named", lambda name: fail)
+        monkeypatch.setattr("app.server.served_scene.view_named", lambda name: fail)
     else:
         monkeypatch.setattr(type(kind.make(kind.params())), "frame", fail)
     with pytest.raises(MemoryError):
         lab.open("cloth")
-    assert lab.threads == []
+    assert lab.served.threads == []
     assert "cloth could not be opened" in panel_text(lab)
     assert "no room for a cloth" in panel_text(lab)
     monkeypatch.undo()
     lab.want("rope")
-    wait_for(lambda: lab.is_open and lab.panel.kind.name == "rope" and lab.shown > 0)
+    wait_for(lambda: lab.is_open and lab.panel.kind.name == "rope" and lab.served.shown > 0)
 
 
 def test_a_scene_comes_back_with_the_parameters_it_was_first_opened_with(lab: Viewer) -> None:
@@ -154,8 +154,7 @@ def test_ending_while_a_scene_is_opened_leaves_no_thread(monkeypatch: pytest.Mon
     compiled.set()
     opening.join(20.0)
     assert not opening.is_alive()
-    assert not viewer.is_open
-    assert viewer.threads == []
+    assert viewer.current is None
 
 
 def pretend_to_compile(viewer: Viewer, monkeypatch: pytest.MonkeyPatch, seen: list[str]) -> None:
@@ -163,7 +162,7 @@ def pretend_to_compile(viewer: Viewer, monkeypatch: pytest.MonkeyPatch, seen: li
 
     def wait(jobs: object, timeout: float) -> bool:
         if viewer.is_open:
-            viewer.show_latest()
+            viewer.served.show_latest()
         seen.append(panel_text(viewer))
         return True
 
@@ -174,7 +173,7 @@ def pretend_to_compile(viewer: Viewer, monkeypatch: pytest.MonkeyPatch, seen: li
 
 def test_a_scene_goes_on_while_another_is_compiled_and_says_so(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[str] = []
-    lab.stop_threads()
+    lab.served.stop_threads()
     pretend_to_compile(lab, monkeypatch, seen)
     lab.open("cloth")
     assert len(seen) == 1
@@ -199,7 +198,7 @@ def test_the_first_scene_covers_the_page_until_it_is_compiled(monkeypatch: pytes
 
 
 def test_plot_rows_of_snapshots_that_were_never_shown_reach_the_charts(lab: Viewer) -> None:
-    lab.stop_threads()
+    lab.served.stop_threads()
     lab.loop.audience = lambda: 1
     lab.panel.set("plot_tip", True)
     for _ in range(30):
@@ -207,7 +206,7 @@ def test_plot_rows_of_snapshots_that_were_never_shown_reach_the_charts(lab: View
     lab.loop.commands.put(Reset())
     for _ in range(20):
         lab.loop.tick(1 / 60)
-    lab.show_latest()  # the only one
+    lab.served.show_latest()  # the only one
     times = [row[0] for row in lab.panel.plots.rows]
     assert len(times) >= 5
     assert times == sorted(times)

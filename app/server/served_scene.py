@@ -1,0 +1,176 @@
+"""A scene that is open, with the two threads that serve it: one simulates, the other shows the latest snapshot."""
+
+import queue
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from app.messages import BaseParams, Command, Halt, WorkCount
+from app.panel.compare import Beside
+from app.panel.panel import Panel
+from app.panel.recorder import Kept
+from app.render.cameras import fit_cameras, place_cameras, place_client_camera
+from app.render.html import note
+from app.scenes import NAMES, view_named
+from app.scenes.compiling import describe
+from app.scenes.contract import AnyKind
+from app.server.compile_gate import CompileGate
+from app.server.counters import Unwatched, gather, modules
+from app.server.loop import PATIENCE, SimLoop
+from app.server.replay_file import replay_html
+from sim.interruption import STOP
+
+if TYPE_CHECKING:
+    from app.server.viewer import Viewer
+
+PLAYED_INTERVAL = 1 / 30  # [s] between two frames of a recording that is played
+HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
+MAX_JOIN_TIME = 1.0  # [s] for which leaving a scene waits for its last solve, and the end of the lab for a picture
+
+
+class ServedScene:
+    """Simulation, drawing, panel and threads of one open scene.
+
+    The threads know only this object, so nothing of a scene that was closed reaches the next one, however long its last
+    solve takes. Everything drawn is assigned on the viewer thread, everything simulated on the loop's.
+    """
+
+    def __init__(self, viewer: "Viewer", kind: AnyKind, params: BaseParams, *, paused: bool) -> None:
+        """viewer: the server and what scenes share. `start` runs the threads."""
+        self.viewer, self.server, self.transport = viewer, viewer.server, viewer.transport
+        self.recorded: Kept | None = None  # the frame of the recording that is shown
+        self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
+        self.starts = 0  # how often the shown run was begun again
+        self.unwatched = Unwatched()
+        self.stop = threading.Event()
+        self.is_open = True
+        self.threads: list[threading.Thread] = []
+        self.commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        self.scene = viewer.make_scene(kind, params, self.commands.put)
+        self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
+        self.view = view_named(kind.name)(self.server, self.commands.put)
+        place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
+        self.panel = Panel(
+            self.server, kind, self.view, params, self.commands.put, work=self.work, scenes=NAMES,
+            open_scene=viewer.want, workbook=viewer.workbook, developer=viewer.developer, session=viewer.session,
+            wake=lambda: self.loop.fresh.set(), make_replay=replay_html, changed=viewer.share_parameters,
+            questions=viewer.questions,
+            beside=None if viewer.pane_of else Beside(viewer.comparing.want, viewer.comparing.end, viewer.pane_words),
+        )  # fmt: skip
+        self.gate = gate = CompileGate(viewer.compiling, kind, self.panel.read())
+        read = self.panel.read
+        self.loop = SimLoop(
+            self.scene, self.commands, lambda: gate.read(read()), viewer.audience, admit=gate.admit, paused=paused
+        )
+
+    def start(self) -> None:
+        """Run the threads."""
+        self.threads = [
+            threading.Thread(target=self.loop.run, args=(self.stop,), name="simulation", daemon=True),
+            threading.Thread(target=self.show_snapshots, name="viewer", daemon=True),
+        ]
+        for thread in self.threads:
+            thread.start()
+
+    def show_snapshots(self) -> None:
+        """Show each new snapshot once, as soon as it is there, and keep the panel's status up to date."""
+        loop, recorder = self.loop, self.panel.recorder
+        shown_at = loop.clock()
+        while not self.stop.is_set():
+            woken = loop.fresh.wait(min(PATIENCE, PLAYED_INTERVAL))
+            loop.ask_for_turn()
+            if not woken and loop.clock() - shown_at < (PLAYED_INTERVAL if recorder.playing else HEARTBEAT):
+                continue
+            loop.fresh.clear()
+            shown_at = loop.clock()
+            self.unwatched.note(self.viewer.audience())
+            if not self.stop.is_set():
+                self.show_latest()
+
+    def show_latest(self) -> None:
+        """Hand the latest snapshot over; without a new one only the panel."""
+        loop, snapshot = self.loop, self.loop.latest
+        rows = [loop.plot_rows.popleft() for _ in range(len(loop.plot_rows))]
+        since = loop.busy_since
+        busy = 0.0 if since is None else loop.clock() - since
+        # All of it in one message: each wakes a thread of viser's, which costs as much as drawing the rope.
+        recorder = self.panel.recorder
+        now = time.monotonic()
+        recorder.follow(snapshot)
+        recorder.advance(now)
+        recorded = recorder.shown
+        with self.transport.counted():
+            if recorded is not None:
+                if recorded is not self.recorded:
+                    self.drawn += 1
+                    self.attempt("picture", lambda: self.view.show(recorded.frame))
+                self.shown = 0  # the present is drawn anew after it
+            elif snapshot.serial != self.shown:
+                self.shown = snapshot.serial
+                self.drawn += 1
+                self.attempt("picture", lambda: self.view.show(snapshot.frame))
+                replayed = snapshot.status.replayed
+                if replayed is not None and not snapshot.status.halted:
+                    view = self.view.first_view(snapshot.params)
+                    fit_cameras(self.server, view, self.view.FIELD_OF_VIEW, replayed)
+                if snapshot.status.starts != self.starts:  # after the picture: another scene size moves cameras
+                    self.starts = snapshot.status.starts
+                    place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)
+                    place_client_camera(self.server, self.panel.camera)
+                    self.panel.camera = None
+            self.recorded = recorded
+            self.attempt("compiling", self.show_compiling)
+            self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
+        recorder.note(snapshot, now)
+        self.panel.share.sent = recorded
+
+    def attempt(self, what: str, action: Callable[[], None]) -> None:
+        """Show something; what goes wrong halts the run once, and this thread lives to say so."""
+        try:
+            action()
+        except Exception as error:
+            if not self.loop.halted:
+                traceback.print_exc()
+                self.commands.put(Halt(f"The {what} could not be drawn, {type(error).__name__}: {error}"))
+
+    def show_compiling(self) -> None:
+        """What is compiled while the scene runs: for what was chosen, or ahead."""
+        text = self.viewer.notice or self.gate.notice or describe(*self.viewer.compiling.progress())
+        if text != self.compile_text:
+            self.compile_text = text
+            self.compile_line.content = note(text) if text else ""
+
+    def work(self) -> dict[str, WorkCount]:
+        """The work counts."""
+        latest = self.loop.latest
+        return gather(
+            self.loop.work(),
+            {"pictures handed over": WorkCount(self.drawn, max(self.shown - self.drawn, 0))},
+            self.transport.work(),
+            self.panel.plots.work(),
+            latest.work,
+            self.unwatched.work(),
+            modules(),
+        )
+
+    def stop_threads(self, picture_time: float | None = None) -> None:
+        """Stop the threads; a solve that runs is ended early, and not waited for if it takes long.
+
+        picture_time: [s] to wait for a picture that is being drawn. None: as long as it takes, because a view makes
+        nodes while it draws, and those of the next scene may have the same names.
+        """
+        self.stop.set()
+        self.loop.request[STOP] = 1
+        for thread, longest in zip(self.threads, (MAX_JOIN_TIME, picture_time), strict=False):
+            thread.join(longest)
+        self.threads = []
+
+    def close(self, picture_time: float | None = None) -> None:
+        """Stop the threads and give back what the scene holds, once."""
+        self.stop_threads(picture_time)
+        if self.is_open:
+            self.is_open = False
+            self.panel.close()
+            self.view.close()

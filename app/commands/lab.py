@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from app.files import check_out_file
@@ -73,9 +73,14 @@ def printable(text: str) -> Text:
     return Text("".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text))
 
 
+def whole_table(*names: str) -> Table:
+    """A table that folds what is too wide for the terminal and cuts nothing off."""
+    return Table(*(Column(name, overflow="fold") for name in names))
+
+
 def table_of_tasks(result: FolderResult) -> Table:
     """What the check of one folder came to."""
-    table = Table("Task", "What", "State", "Why")
+    table = whole_table("Task", "What", "State", "Why")
     for entry in result.tasks:
         name = f"{entry.task.item}{' *' if entry.task.optional else ''}"
         why = printable("; ".join(entry.messages))
@@ -86,7 +91,7 @@ def table_of_tasks(result: FolderResult) -> Table:
 
 def table_of_class(results: Sequence[FolderResult]) -> Table:
     """What the check of the folders of a class came to."""
-    table = Table("Folder", "Name", "Right", "Optional", "Not right")
+    table = whole_table("Folder", "Name", "Right", "Optional", "Not right")
     for result in results:
         (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
         rest = [entry.task.item for entry in result.tasks if entry.state != "right" and not entry.task.optional]

@@ -62,23 +62,36 @@ def written(value: Any) -> str:
 
 
 def show(title: str, rows: Rows) -> None:
-    """Print a table."""
+    """Print a table; one that is too wide for the terminal as lines "name: value unit", so that no digit is cut."""
     from rich.console import Console
     from rich.markup import escape
     from rich.table import Table
 
+    console, names = Console(), columns(rows)
+    widths = {name: max(len(written(row.get(name))) for row in rows) for name in names}
+    # Headings are folded between words, values are not.
+    needed = 1 + sum(3 + max(widths[name], *map(len, name.split())) for name in names)
+    if needed > console.width:
+        lines = [title, *(line for row in rows for line in ("", *lines_of(row)))]
+        console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)
+        return
     table = Table(title=escape(title), title_justify="left")
-    names = columns(rows)
-    for index, name in enumerate(names):
+    for name in names:
         is_number = any(isinstance(row.get(name), int | float) for row in rows)
-        # On a narrow screen words are folded, numbers are not.
-        room = max(len(written(row.get(name))) for row in rows) if is_number else None
-        table.add_column(
-            escape(name), justify="right" if is_number else "left", no_wrap=index == 0, min_width=room, overflow="fold"
-        )
+        table.add_column(escape(name), justify="right" if is_number else "left", min_width=widths[name])
     for row in rows:
         table.add_row(*(escape(written(row.get(name))) for name in names))
-    Console().print(table)
+    console.print(table)
+
+
+def lines_of(row: dict[str, Any]) -> list[str]:
+    """A row as lines "name: value unit", with the unit in brackets at the end of a name; empty cells are left out."""
+    lines: list[str] = []
+    for name, value in row.items():
+        words, bracket, unit = name.removesuffix("]").rpartition(" [") if name.endswith("]") else (name, "", "")
+        if text := written(value):
+            lines.append(f"{'  ' if lines else ''}{words}: {text}{' ' if bracket else ''}{unit}")
+    return lines
 
 
 def save_table(rows: Rows, path: Path) -> None:

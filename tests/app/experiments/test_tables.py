@@ -1,0 +1,115 @@
+"""Tables on screen are whole, however narrow the terminal is."""
+
+import csv
+import re
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from app.bench.compare import shown as shown_ratio
+from app.commands.lab import print_results
+from app.experiments import tables
+
+COMMITTED = sorted((Path(__file__).parents[3] / "assets" / "bench").glob("*.csv"))
+WIDTH = 80  # of the terminal
+LONG = 123456.789012345
+
+
+def wide_rows(number_of_columns: int) -> tables.Rows:
+    """Rows of words, numbers and a missing number, with numbers that begin alike."""
+
+    def value(row: int, i: int) -> object:
+        return (None, i / 7.0, f"word{row}-{i}", 10**9 + 17 * i + row)[(i + row) % 4]
+
+    return [{f"quantity {i} [unit{i}]": value(row, i) for i in range(number_of_columns)} for row in range(3)]
+
+
+def number_of(text: str) -> Any:
+    try:
+        return float(text)
+    except ValueError:
+        return text or None
+
+
+def read(path: Path) -> tables.Rows:
+    with path.open(newline="", encoding="utf-8") as file:
+        return [{name: number_of(cell) for name, cell in row.items()} for row in list(csv.DictReader(file))[:40]]
+
+
+def check_whole(said: str, rows: tables.Rows) -> None:
+    """Every value of the rows is a word of what was printed, with its name before it or above it."""
+    cells = re.split(r"[│┃\n]", said)
+    for row in rows:
+        for name, value in row.items():
+            text = tables.written(value)
+            if text:
+                assert any(text == cell.strip() or f": {text} " in f"{cell} " for cell in cells), (name, text)
+                assert all(word in said for word in re.sub(r"[\[\]]", " ", name).split()), name
+
+
+PRINTERS: dict[str, Callable[[], tables.Rows]] = {
+    "few columns": lambda: wide_rows(3),
+    "many columns": lambda: wide_rows(12),
+    "long words": lambda: [{"row": "a b " * 30 + "c", "error [m]": LONG}],
+    "ratios": lambda: [
+        shown_ratio(
+            {"row": "kernels: " + "cloth of many points, " * 4, "time": "ns per point and step"}
+            | {"A": LONG, "B": LONG, "B / A": 1.0, "least": 0.9, "largest": 1.1}
+        )
+    ],
+    **{path.stem: lambda path=path: read(path) for path in COMMITTED},
+}
+
+
+@pytest.mark.parametrize("name", PRINTERS)
+def test_every_value_is_whole_in_a_narrow_terminal(
+    name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(WIDTH))
+    rows = PRINTERS[name]()
+    tables.show(name, rows)
+    said = capsys.readouterr().out
+    assert "…" not in said
+    check_whole(said, rows)
+    if "│" in said:
+        assert max(map(len, said.splitlines())) <= WIDTH
+
+
+def test_a_table_that_does_not_fit_is_printed_as_lines(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    row = {"method": "rk4", "error [m]": 1.25e-9, "steps": None, "least [ms]": 3.0, "of [many] kinds": 7}
+    assert tables.lines_of(row) == ["method: rk4", "  error: 1.25e-09 m", "  least: 3 ms", "  of [many] kinds: 7"]
+    for width, is_table in ((100, True), (30, False)):
+        monkeypatch.setenv("COLUMNS", str(width))
+        tables.show("Title", [row])
+        said = capsys.readouterr().out
+        assert ("│" in said) == is_table
+        assert "Title" in said
+
+
+def test_the_results_of_the_lab_are_folded_and_not_cut(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    task = SimpleNamespace(item="2.10", optional=True, title="A long title of a task that goes on and on, and on")
+    messages = ["step_rk4(x, v) is 0.123456789012345678901234567890123456789012345678901234567890 m, not 1 m"]
+    entry = SimpleNamespace(task=task, state="not begun", messages=messages)
+    named: Any = SimpleNamespace(
+        folder=Path("a_folder_with_a_long_name_" * 4), tasks=[entry], seconds=1.0, count=lambda optional: (0, 1),
+        answers=SimpleNamespace(name="Anna-" * 20, error=""),
+    )  # fmt: skip
+    monkeypatch.setenv("COLUMNS", str(WIDTH))
+    for results, texts in (
+        ([named], [task.title, messages[0], "not begun", "2.10 *"]),
+        ([named, named], [named.folder.name, named.answers.name, "0 of 1"]),
+    ):
+        print_results(results)
+        said = capsys.readouterr().out
+        table = [re.split("[│┃]", line)[1:-1] for line in said.splitlines() if re.match("[│┃]", line)]
+        joined = ["".join(cell.strip() for cell in column).replace(" ", "") for column in zip(*table, strict=True)]
+        assert "…" not in said
+        for text in texts:
+            assert any(text.replace(" ", "") in column for column in joined), text

@@ -29,8 +29,9 @@ def grid_fields(sea: Sea, t: float) -> dict[str, np.ndarray]:
     x = np.arange(sea.size) * sea.length / sea.size
     X, Y = np.meshgrid(x, x, indexing="ij")
     f = {name: values.reshape(X.shape) for name, values in sum_of_waves(sea, t, X.ravel(), Y.ravel()).items()}
+    gathered = (f["height"] * (f["Dxx"] + f["Dyy"])).mean()  # by how much a fixed place sees the waves too low
     return {
-        "height": f["height"],
+        "height": f["height"] - gathered,
         "displacement": np.stack([f["Dx"], f["Dy"]], axis=-1),
         "slope": np.stack([f["sx"], f["sy"]], axis=-1),
         "jacobian": (1.0 + f["Dxx"]) * (1.0 + f["Dyy"]) - f["Dxy"] ** 2,

@@ -101,6 +101,22 @@ def turn(even, odd, rate, fade, t, cosine, sine):
                 odd[m, j] = o * cosine[j] - e * sine[j]
 
 
+@kernel
+def weighted_energy(h, radial):
+    """Sum of radial(|k|) |h(k)|^2 over the whole plane."""
+    half, n = radial.shape[0], h.shape[0]
+    total = 0.0
+    for i in range(n):
+        a = min(i, n - i)
+        if a < half:
+            once = radial[a, 0] * (h[i, 0] * h[i, 0] + h[i, 1] * h[i, 1])
+            twice = once - once  # ky > 0 stands for ky < 0 too
+            for j in range(1, half):
+                twice += radial[a, j] * (h[i, 2 * j] * h[i, 2 * j] + h[i, 2 * j + 1] * h[i, 2 * j + 1])
+            total += once + 2.0 * twice
+    return total
+
+
 @kernel(noalias=True)
 def set_real_multiple(h, row, column, radial, out):
     """out(k) = row(kx) column(ky) radial(|k|) h(k): second derivatives."""

@@ -42,7 +42,7 @@ def query(surface: "Surface", points: np.ndarray, exact: bool) -> tuple[np.ndarr
         find(points[piece], exact, h, dx, dy, spectrum, dk, surface.choppiness, cell, stop_request(), height[piece],
              residual[piece])  # fmt: skip
     raise_if_stopped()
-    return height, residual
+    return height + surface.mean_height if exact else height, residual
 
 
 @kernel

@@ -7,6 +7,9 @@ water = sea.at([[0.0, 0.0]], t=12.0)
 
 A wave shorter than twice the local spacing of the grid is skipped, one up to four times it is faded, so that nothing
 pops as the grid moves; `evaluated` and `skipped` count (wave, vertex) pairs. At points all waves are there.
+
+Displaced points gather at the crests, so that a fixed place sees each wave choppiness k a^2/2 too low (Lamb, Art. 251).
+All points are that much higher, the interface by its share of it: the mean level in place is that of still water.
 """
 
 import copy
@@ -173,6 +176,8 @@ class RadialSea:
         ])  # fmt: skip
         n = len(grid)
         sums = np.zeros((8, n), np.float32)
+        mean = 0.5 * self.choppiness * np.square(weight[:, : len(a)] * a) @ k
+        sums[0] = np.repeat(mean, np.diff(grid.start.astype(np.int64)))
         rows = [sums[i] for i in range(8)]
         add_waves(grid.x, grid.y, grid.start, active, weight.reshape(-1), np.uint64(weight.shape[1]), wave.reshape(-1),
                   *rows)  # fmt: skip
@@ -206,7 +211,7 @@ class RadialSea:
         self._grid = grid
 
     def at(self, points: ArrayLike, t: float, size: ArrayLike = 0.0) -> SurfaceAt:
-        """The sea above points (n, 2) [m] at time t [s].
+        """The sea above points (n, 2) [m] at time t [s]; its mean level is that of still water, see above.
 
         size [m]: one number or one a point: diameter over which the surface is averaged, as a hull of that size feels
         it. Raises ValueError for points of another shape or not finite.
@@ -225,9 +230,12 @@ class RadialSea:
         set_motion(label, kx, ky, rate, phase, amplitude, chop, weight, ratio, velocity, acceleration, interface)
         a, b, c = 1.0 + found[:, 5], 1.0 + found[:, 6], found[:, 7]
         inverse = 1.0 / np.maximum(a * b - c * c, 0.1)
+        steepness = 0.5 * chop * np.hypot(kx, ky) * np.square(amplitude)
+        height = found[:, 0] + np.square(weight) @ steepness
+        interface[:, 0] += np.square(weight) @ (ratio * steepness)
         hx, hy = found[:, 3], found[:, 4]
         slope = np.column_stack([(hx * b - hy * c) * inverse, (hy * a - hx * c) * inverse])
-        return SurfaceAt(found[:, 0].copy(), slope, velocity, acceleration, interface[:, 0].copy(),
+        return SurfaceAt(height, slope, velocity, acceleration, interface[:, 0].copy(),
                          interface[:, 1:3].copy(), interface[:, 3].copy(), label, residual)  # fmt: skip
 
     def _footprint(self, size: np.ndarray, kx: np.ndarray, ky: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from sim.interruption import raise_if_stopped
 from sim.ocean.amplitudes import KINDS, fold, integers, resolved, unit_amplitudes
-from sim.ocean.evolve import set_heights
+from sim.ocean.evolve import set_heights, weighted_energy
 from sim.ocean.medium import Medium
 from sim.ocean.query import query
 from sim.ocean.ripples import Ripples
@@ -87,6 +87,7 @@ class Sea:
         self._past: dict[tuple[Medium, Conditions], float] = {}  # [s] spent in each medium before the last change
         self.version = 0  # counts changes of the conditions
         self._evolved: tuple | None = None
+        self._mean_height: tuple[tuple | None, float] = None, 0.0  # of which time and state, and the mean [m]
         self._latest: tuple[tuple, dict[str, np.ndarray]] | None = None
         self._ripples: Ripples | None = None
 
@@ -97,6 +98,7 @@ class Sea:
         self._k = np.hypot(quarter[:, None], quarter[None, :])
         inverse = np.divide(1.0, self._k, out=np.zeros_like(self._k), where=self._k > 0.0)
         self.radial = {"1": np.ones_like(self._k, self._real), "1/k": inverse.astype(self._real)}
+        self.radial["k"] = self._k.astype(self._real)
         self.rows = {"1": np.ones(self.size, self._real), "k": self.k.astype(self._real)}
         self.rows["k2"] = (self.k**2).astype(self._real)
 
@@ -152,6 +154,8 @@ class Sea:
 
     def height_at(self, points: ArrayLike, t: float, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Height (n,) [m] of the displaced surface above points (n, 2) [m] at time t, and the residual (n,) [m].
+
+        Its mean over the tile is that of still water, 0, see `Surface.mean_height`.
 
         The residual is the horizontal miss |x + D(x) - point| of the solution found; it is at rounding wherever the
         surface does not fold, and where it stays large the surface above the point is folded. Between grid points
@@ -318,12 +322,24 @@ class Sea:
             self._evolved = self._key(t)
         return self._heights
 
+    def mean_height(self, t: float) -> float:
+        """Mean height [m] of the displaced points at time t [s], see `Surface.mean_height`. Kept until another t."""
+        if self._choppiness == 0.0:
+            return 0.0
+        key = self._key(t)
+        if self._mean_height[0] != key:
+            found = self._choppiness * float(weighted_energy(self.heights_spectrum(t), self.radial["k"]))
+            self._mean_height = key, found
+        return self._mean_height[1]
+
     def set_input(self, t: float) -> None:
-        """The transform's input as `heights_spectrum`; evolving it has left a copy there where there are no rings."""
+        """The transform's input: `heights_spectrum` and the mean height. Evolving has left a copy there where there are
+        no rings."""
         before = self._evolved
-        heights = self.heights_spectrum(t)
+        heights, there = self.heights_spectrum(t), self.transforms.spectrum.view(self._real)
         if self._evolved is before or self._ripples is not None:
-            self.transforms.spectrum.view(self._real)[...] = heights
+            there[...] = heights
+        there[0, 0] = heights[0, 0] + self.mean_height(t)  # that of rings is the water they brought
 
     def _key(self, t: float) -> tuple:
         return t, self.version, self._choppiness, self._ripples.version if self._ripples is not None else -1

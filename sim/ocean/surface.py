@@ -45,12 +45,23 @@ class Surface:
 
     @field
     def height(self) -> np.ndarray:
-        """Height (size, size) [m] of the surface point labelled x, y. One transform."""
+        """Height (size, size) [m] of the displaced point labelled x, y, with `mean_height`. One transform."""
         transforms = self.sea.transforms
         self.sea.set_input(self.t)
         grid = transforms.grids.take(1)[0]
         transforms.set_grid(grid)
         return grid
+
+    @property
+    def mean_height(self) -> float:
+        """Mean [m] of `height` over the labels but for rings, choppiness sum k |h(k)|^2: the mean level in place is 0.
+
+        Displaced points gather at the crests, so that a place sees the mean of h J, J the Jacobian. That of the waves
+        alone is lower by this sum, to third order in steepness; their spectrum has no mean. A particle's mean level is
+        higher than that of the water by the same sum (Longuet-Higgins 1986, J. Fluid Mech. 173:683, for one deep wave
+        k a^2/2). It is that of the displacement as drawn: of the waves that the tile has, at any choppiness and depth.
+        """
+        return self.sea.mean_height(self.t)
 
     @field
     def displacement(self) -> np.ndarray:

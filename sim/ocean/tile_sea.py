@@ -61,8 +61,8 @@ class TileSea:
         vertices, slopes = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32)
         jacobian = np.empty(n, np.float32)
         cell = self.sea.length / self.sea.size
-        sample_mesh(grid.x, grid.y, self._share, centre[0], centre[1], cell, surface.height, D[..., 0], D[..., 1],
-                    slope[..., 0], slope[..., 1], vertices, slopes, jacobian)  # fmt: skip
+        sample_mesh(grid.x, grid.y, self._share, centre[0], centre[1], cell, surface.mean_height, surface.height,
+                    D[..., 0], D[..., 1], slope[..., 0], slope[..., 1], vertices, slopes, jacobian)  # fmt: skip
         return RadialSurface(vertices, slopes, jacobian)
 
     def shares(self, grid: RadialGrid) -> np.ndarray:
@@ -129,8 +129,11 @@ def find_labels(points, dx, dy, cell, labels):
 
 
 @kernel
-def sample_mesh(x, y, share, x0, y0, cell, height, dx, dy, sx, sy, vertices, slopes, jacobian):
-    """The tile's fields at the points of a grid about (x0, y0), each lowered to its share, and the Jacobian."""
+def sample_mesh(x, y, share, x0, y0, cell, mean, height, dx, dy, sx, sy, vertices, slopes, jacobian):
+    """The tile's fields at the points of a grid about (x0, y0), each lowered to its share, and the Jacobian.
+
+    mean [m]: of the height; it is of second order, and falls with the square of the share.
+    """
     for i in range(x.size):
         X, Y = x[i] + x0, y[i] + y0
         u, v, s = X / cell, Y / cell, share[i]
@@ -138,6 +141,6 @@ def sample_mesh(x, y, share, x0, y0, cell, height, dx, dy, sx, sy, vertices, slo
         b, yx, yy = bicubic(dy, u, v)
         vertices[i, 0], vertices[i, 1] = X + s * a, Y + s * b
         jacobian[i] = (1.0 + s * xx / cell) * (1.0 + s * yy / cell) - s * s * xy * yx / (cell * cell)
-        vertices[i, 2] = s * bicubic(height, u, v)[0]
+        vertices[i, 2] = s * (bicubic(height, u, v)[0] - mean) + s * s * mean
         slopes[i, 0] = s * bicubic(sx, u, v)[0]
         slopes[i, 1] = s * bicubic(sy, u, v)[0]

@@ -110,6 +110,9 @@ def calm_waves(x, y, start, active, weight, waves, wave, ex, ey, loss, cx, cy, r
             if loss[w] * radius < np.float32(1e-3) or scale == zero:
                 continue
             q = np.uint64(11) * w
+            # What the wave adds to the mean height, choppiness k a^2/2: xx + yy is -choppiness k a.
+            mean = np.float32(-0.5) * scale * scale * wave[q + np.uint64(3)]
+            mean *= wave[q + np.uint64(8)] + wave[q + np.uint64(9)]
             for i in range(start[band], start[band + np.uint64(1)]):
                 u, v = x[i] - cx, y[i] - cy
                 across = u * ey[w] - v * ex[w]
@@ -120,13 +123,14 @@ def calm_waves(x, y, start, active, weight, waves, wave, ex, ey, loss, cx, cy, r
                 path = min(max(u * ex[w] + v * ey[w] + half, zero), two * half)
                 if path == zero:
                     continue
-                lost = scale * (one - math.exp(-loss[w] * path))
+                kept = math.exp(-loss[w] * path)
+                lost = scale * (one - kept)
                 t = wave[q] * x[i] + wave[q + np.uint64(1)] * y[i] + wave[q + np.uint64(2)]
                 t -= np.rint(t)
                 turn = abs(t) - QUARTER
                 cos = -sine(turn) * lost
                 sin = math.copysign(sine(QUARTER - abs(turn)), t) * lost
-                z[i] -= wave[q + np.uint64(3)] * cos
+                z[i] -= wave[q + np.uint64(3)] * cos + mean * (one - kept * kept)
                 X[i] -= wave[q + np.uint64(4)] * sin
                 Y[i] -= wave[q + np.uint64(5)] * sin
                 hx[i] -= wave[q + np.uint64(6)] * sin

@@ -42,11 +42,12 @@ const WATER_GLSL = {
       return textureLod(tile, x.yx / grid.z + 0.5 / (grid.yx - 1.0), level);
     }
 
-    // A texture of the tile at x; share: of pieces. Displacements and slopes keep their variance; foam (isSlope), which
-    // is no sum of waves, keeps its mean. The last number of the slopes is made the variance that they lack.
+    // A texture of the tile at x; share: of pieces. Displacements and slopes keep their variance about the mean height of
+    // the tile's vertices; foam (isSlope), which is no sum of waves, keeps its mean. The last number of the slopes is made
+    // the variance that they lack.
     vec4 wavesAt(sampler2D tile, vec2 x, float share, float level, bool isSlope) {
       vec4 sum = vec4(0.0);
-      float foam = 0.0;
+      float foam = 0.0, mean = isSlope || share == 0.0 ? 0.0 : tileAt(tile, x, 16.0).z; // the coarsest level
       vec2 corner[3];
       vec3 weight = share > 0.0 ? cornersAround(x, corner[0], corner[1], corner[2]) : vec3(0.0);
       float unit = share > 0.0 ? inversesqrt(dot(weight, weight)) : 0.0;
@@ -55,11 +56,11 @@ const WATER_GLSL = {
         if (part <= 0.001) continue;
         vec4 wave = tileAt(tile, k < 3 ? x + grid.z * hash2(corner[k]) : x, level);
         if (isSlope) wave.w = max(wave.w - dot(wave.xy, wave.xy), 0.0);
-        sum += vec4(w * wave.xyz, w * w * wave.w);
+        sum += vec4(w * wave.xy, w * (wave.z - mean), w * w * wave.w);
         foam += part * wave.z;
       }
       float norm = inversesqrt(1.0 - 2.0 * share * (1.0 - share));
-      return vec4(norm * sum.xy, isSlope ? foam : norm * sum.z, norm * norm * sum.w);
+      return vec4(norm * sum.xy, isSlope ? foam : mean + norm * sum.z, norm * norm * sum.w);
     }
 
     // How flat the water is drawn at x: 1 at the rim of the last tile, as the sea beyond it has no mesh.

@@ -37,7 +37,7 @@ def naive(sea: RadialSea, x: np.ndarray, y: np.ndarray, t: float, weights: np.nd
         a = sea.amplitude[i] * (1.0 if weights is None else weights[:, i])
         out[:, 0] -= sea.waves.kx[i] / k * a * np.sin(phase)
         out[:, 1] -= sea.waves.ky[i] / k * a * np.sin(phase)
-        out[:, 2] += a * np.cos(phase)
+        out[:, 2] += a * np.cos(phase) + 0.5 * k * a * a
     out[:, 0] += x
     out[:, 1] += y
     return out.astype(float)
@@ -116,11 +116,30 @@ def test_one_gerstner_wave_is_a_trochoid() -> None:
     k, a = 0.5, 0.4
     sea = RadialSea(Waves(np.array([k]), np.zeros(1), np.array([a]), np.zeros(1)))
     label = np.linspace(0.0, 2 * math.pi / k, 50)
-    x, z = label - a * np.sin(k * label), a * np.cos(k * label)
+    x, z = label - a * np.sin(k * label), a * np.cos(k * label) + 0.5 * k * a * a  # about still water: Lamb, Art. 251
     at = sea.at(np.column_stack([x, np.zeros(50)]), 0.0)
     np.testing.assert_allclose(at.height, z, atol=1e-7)
     speed = sea.rate[0] * a
     np.testing.assert_allclose(np.hypot(at.velocity[:, 0], at.velocity[:, 2]), speed, rtol=1e-6)
+
+
+@pytest.mark.parametrize("choppiness", [1.0, 0.5])
+def test_the_mean_level_of_the_sum_and_of_its_interface_is_that_of_still_water(choppiness: float) -> None:
+    """Over whole lengths of both waves, at points and on the mesh, with a hull's footprint too."""
+    k, a = np.array([0.4, 0.5]), np.array([0.3, 0.25])
+    waves = Waves(k, np.zeros(2), a, np.array([0.1, 0.3]))
+    sea = RadialSea(waves, FluidColumn(thickness=0.5), choppiness=choppiness)
+    x = (np.arange(4000) + 0.5) * 20.0 * math.pi / 4000
+    for size in (0.0, 3.0):
+        at = sea.at(np.column_stack([x, 0.0 * x]), 3.0, size)
+        assert at.height.mean() == pytest.approx(0.0, abs=1e-4)
+        assert at.interface.mean() == pytest.approx(0.0, abs=1e-4)
+    assert 0.5 * choppiness * (k * a**2).sum() > 0.01
+    grid = RadialGrid(64, 64, 0.3, 60.0)
+    surface = sea.on(grid, 3.0)
+    near = slice(0, 20 * grid.spokes)
+    points = sea.at(surface.vertices[near, :2].astype(float), 3.0)
+    np.testing.assert_allclose(points.height, surface.vertices[near, 2], atol=2e-5)
 
 
 def test_a_wave_shorter_than_two_cells_is_skipped_and_counted() -> None:
@@ -161,7 +180,8 @@ def test_waves_on_a_layer_are_the_exact_surface_mode() -> None:
     ratio = mode_ratios(k, oil.density, 0.5, 1025.0, 9.81, math.inf, *tensions).surface
     np.testing.assert_allclose(ratio, np.exp(-0.5 * k), rtol=1e-3)
     phase = sea.waves.kx * at.label[0, 0] + sea.waves.ky * at.label[0, 1] + 2 * math.pi * sea.waves.phase
-    assert at.interface[0] == pytest.approx((ratio * sea.amplitude * np.cos(phase)).sum(), abs=1e-6)
+    gathered = 0.5 * k * sea.amplitude**2
+    assert at.interface[0] == pytest.approx((ratio * (sea.amplitude * np.cos(phase) + gathered)).sum(), abs=1e-6)
 
 
 def test_on_a_thick_layer_waves_decay_at_the_exact_viscous_root() -> None:

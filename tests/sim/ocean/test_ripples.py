@@ -122,9 +122,13 @@ def test_rings_ride_on_the_sea_in_every_field():
     sea.ripples.add(1.0, [[20.0, 30.0]], 4.0, volume=5.0)
     ring = flat(32, 50.0, choppiness=1.0)
     ring.ripples.add(1.0, [[20.0, 30.0]], 4.0, volume=5.0)
-    for field in ("height", "displacement", "slope"):
-        sums = getattr(plain.surface(3.0), field) + getattr(ring.surface(3.0), field)
-        np.testing.assert_allclose(getattr(sea.surface(3.0), field), sums, atol=1e-12)
+    both, one, other = (each.surface(3.0) for each in (sea, plain, ring))
+    for field in ("displacement", "slope"):
+        np.testing.assert_allclose(getattr(both, field), getattr(one, field) + getattr(other, field), atol=1e-12)
+    heights = [each.height - each.mean_height for each in (both, one, other)]  # the mean is of second order
+    np.testing.assert_allclose(heights[0], heights[1] + heights[2], atol=1e-12)
+    # Rings bring water: 5 m3 on the tile.
+    assert float((both.height * both.jacobian).mean()) == pytest.approx(5.0 / 50.0**2, abs=2.5e-4)
 
 
 def test_ring_goes_on_when_gravity_changes():

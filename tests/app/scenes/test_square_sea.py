@@ -268,9 +268,12 @@ def test_the_amplitude_scales_heights_and_displacements_alike():
     plain, double = (SquareSeaScene(Params(**SMALL, amplitude=a, foam=False)) for a in (1.0, 2.0))
     rest = np.arange(32) * plain.params.length / 32
     flat = np.stack([*np.meshgrid(rest, rest, indexing="ij"), np.zeros((32, 32))], -1)
-    np.testing.assert_allclose(
-        double.frame().vertices - flat, 2.0 * (plain.frame().vertices - flat), rtol=1e-3, atol=1e-4
-    )
+    moved = [scene.frame().vertices - flat for scene in (plain, double)]
+    means = [a * scene.sea.surface(scene.time).mean_height for a, scene in ((1.0, plain), (2.0, double))]
+    assert means[1] == pytest.approx(4.0 * means[0], rel=1e-5)  # of second order
+    for each, mean in zip(moved, means, strict=True):
+        each[..., 2] -= mean
+    np.testing.assert_allclose(moved[1], 2.0 * moved[0], rtol=1e-3, atol=1e-4)
 
 
 def test_a_click_puts_the_wave_gauge_where_the_ray_meets_the_water():

@@ -72,6 +72,13 @@ def metres(value: float, digits: int = 3) -> str:
     return f"{number(value, digits)} m"
 
 
+def metres_above(floor: float, value: float, digits: int = 3) -> str:
+    """A length [m] that is known to `floor` [m]: "< 1 nm" if it is shorter, – if the floor is NaN."""
+    if math.isnan(floor):
+        return NO_NUMBER
+    return f"< {metres(floor, 2)}" if value < floor else metres(value, digits)
+
+
 def seconds(value: float, digits: int = 3) -> str:
     """A time [s] in the unit in which it is easily read, years to µs; – for NaN."""
     if not math.isfinite(value):

@@ -6,7 +6,7 @@ import string
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from sim.formatting import count, fixed, metres, number, percent, seconds
+from sim.formatting import count, fixed, metres, metres_above, number, percent, seconds
 from sim.validation import argument_error
 
 EASY = {"m": metres, "s": seconds}  # unit -> what writes a number in an easily read multiple of it
@@ -20,6 +20,7 @@ class LiveNumber(NamedTuple):
     value: float
     unit: str = ""
     meaning: str = ""
+    floor: float = 0.0  # of a length, to which it is known; NaN: it is not known
 
     def __format__(self, spec: str) -> str:
         """The number with its unit. spec: how many significant digits, 3 by default, or one of these.
@@ -30,6 +31,8 @@ class LiveNumber(NamedTuple):
             return percent(self.value, 3)
         if spec == "n":
             return count(self.value)
+        if self.floor != 0.0:
+            return metres_above(self.floor, self.value)
         is_small = not spec and 0.0 < abs(self.value) < MAX_SMALL
         if spec.endswith("u") or is_small:
             spec = spec[:-1]

@@ -22,7 +22,6 @@ from app.scenes.contract import AnyKind, AnySnapshot
 from sim.formatting import number
 from sim.parameters import Value, in_words, parameters_of
 
-REFRESH_INTERVAL = 0.5  # [s] between two updates of live values, and two looks at answers.toml
 TYPING_PAUSE = 1.0  # [s] after the last keystroke, after which a text is kept
 UNANSWERED = "Choose …"  # in the list of choices
 SET_UP, SHOW, HIDE = "Set this up", "Show the answer", "Hide the answer"
@@ -44,7 +43,7 @@ def live_values(kind: AnyKind, snapshot: AnySnapshot) -> LiveValues:
     found["time"] = LiveNumber(status.time, "s", "Time")
     found["diverged"] = bool(status.halted) or status.replayed is not None
     if kind.live_values is not None:
-        found |= {name: LiveNumber(m.value, m.unit, m.meaning) for name, m in kind.live_values(snapshot).items()}
+        found |= {name: LiveNumber(*m) for name, m in kind.live_values(snapshot).items()}
     return found
 
 
@@ -156,7 +155,6 @@ class Guide:
         """set_up: shows a set-up of a task; raises ValueError where it does not exist."""
         self.gui, self.kind, self.workbook, self.set_up = gui, kind, workbook, set_up
         self.values: LiveValues = {}
-        self.refreshed_at = 0.0
         self.stale = True  # whether something other than live values is to be shown anew
         self.revision: int = workbook.revision
         self.refusal = ""  # why the last thing that was asked for was not possible
@@ -251,14 +249,15 @@ class Guide:
 
     # ----- what is shown
 
-    def update(self, snapshot: AnySnapshot) -> None:
-        """Show what has changed; live values a few times a second. Called on the viewer's thread."""
+    def update(self, snapshot: AnySnapshot, refresh: bool) -> None:
+        """Show what has changed. Called on the viewer's thread.
+
+        refresh: show the live values of this snapshot, as the panel shows its readout: both say the same.
+        """
         now = time.monotonic()
         for widgets in self.questions:
             widgets.flush(now)
-        refresh = now - self.refreshed_at >= REFRESH_INTERVAL
         if refresh:
-            self.refreshed_at = now
             self.workbook.refresh()
             self.values = live_values(self.kind, snapshot)
             if self.is_set_up_here:

@@ -390,7 +390,8 @@ class Panel:
         if visitors != self.visitors:
             self.visitors = visitors
             self.status_at = 0.0
-        if now - self.status_at >= STATUS_INTERVAL:
+        refresh = now - self.status_at >= STATUS_INTERVAL
+        if refresh:
             self.status_at = now
             self.status.content = str(status_line(snapshot, busy, visitors))
             readout = self.view.readout(snapshot)
@@ -407,7 +408,7 @@ class Panel:
             if self.map is not None:
                 self.map.draw()
         if self.guide is not None:
-            self.guide.update(snapshot)
+            self.guide.update(snapshot, refresh)
         self.share.update(snapshot)
         if self.compare is not None:
             self.compare.update()

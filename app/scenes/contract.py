@@ -46,6 +46,7 @@ class Measure(NamedTuple):
     value: float
     unit: str
     meaning: str
+    floor: float = 0.0  # of a length, to which it is known; NaN: it is not known
 
 
 class Scene(Protocol[P, F_co, R_co]):

@@ -7,7 +7,7 @@ from app.scenes.charts import PALETTE
 from app.scenes.race.entrants import RaceReadings, Result
 from app.scenes.race.names import rope_name
 from app.scenes.springs.divergence import stability_number
-from sim.formatting import NO_NUMBER, metres, number, seconds
+from sim.formatting import metres, metres_above, number, seconds
 
 MIN_SHOWN_ENERGY = 1e-10  # [J]: less is round-off and is shown as 0
 HEAD = (("error", ""), ("energy error", "J"), ("hω", "of limit"), ("forces", "1/s"), ("time", "a step"))
@@ -15,11 +15,8 @@ HEAD = (("error", ""), ("energy error", "J"), ("hω", "of limit"), ("forces", "1
 
 def error_text(result: Result) -> Html:
     """The distance from the reference run, as far as the reference can tell it."""
-    if math.isnan(result.error_floor):
-        return escape(NO_NUMBER)
-    if result.error < result.error_floor:
-        return fill("&lt; {}", metres(result.error_floor, 2))
-    return bold(metres(result.error))
+    text = metres_above(result.error_floor, result.error)
+    return bold(text) if result.error >= result.error_floor else escape(text)
 
 
 def energy_text(result: Result) -> str:

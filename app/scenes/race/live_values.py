@@ -16,7 +16,7 @@ def live_values(snapshot: Snapshot) -> dict[str, Measure]:
     for r in readings.results:
         n = r.number
         found |= {
-            f"error_{n}": Measure(r.error, "m", f"Error of rope {n}"),
+            f"error_{n}": Measure(r.error, "m", f"Error of rope {n}", r.error_floor),
             f"energy_error_{n}": Measure(-r.numerical_dissipation, "J", f"Energy that the method of rope {n} added"),
             f"h_omega_{n}": Measure(r.gauge.h_omega, "1", f"hω of rope {n}"),
             f"limit_{n}": Measure(r.gauge.limit, "1", f"Limit of hω of rope {n}"),

@@ -1,5 +1,7 @@
 """The lab guide and the workbook in the panel, on a viser server without a browser."""
 
+import math
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -9,9 +11,13 @@ import pytest
 
 from app.lab.answers import FILE, read_answers
 from app.lab.folder import PICTURES, make_folder
+from app.lab.live_values import LiveNumber
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
 from app.panel.guide import HIDE, PICTURE, SET_UP, SHOW, UNANSWERED, Guide, QuestionWidgets
+from app.panel.panel import Panel
+from app.render.html import escape
+from app.scenes.race.html import error_text
 from app.server.viewer import Viewer
 from tests import coroutines
 from tests.app.server.test_viewer import wait_for
@@ -227,3 +233,38 @@ def test_the_name_is_kept_and_refused(student: Viewer, folder: Path) -> None:
     does(guide.on_name, "x" * 101)
     wait_for(lambda: "A name has at most" in guide.answer.content)
     assert read_answers(folder).name == "Ada"
+
+
+def test_the_guide_says_the_errors_of_a_race_as_its_table_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both are read after each update of the panel while the race runs."""
+    seen: list[tuple[list[str], list[str]]] = []
+    update = Panel.update
+
+    def spy(panel: Panel, *arguments: Any) -> None:
+        update(panel, *arguments)
+        if panel.guide is not None and panel.kind.name == "race":
+            table = re.findall(r"<tr><td>(?:<b>)?(.*?)(?:</b>)?</td>", panel.readout.content)
+            now = re.findall(r"Error of rope \d: <b>(.*?)</b>", panel.guide.text.content)
+            if now and table:
+                seen.append((now, table[: len(now)]))
+
+    monkeypatch.setattr(Panel, "update", spy)
+    viewer = opened(Workbook(TASKS), "race")
+    try:
+        show(viewer, "compare_methods")
+        viewer.loop.audience = lambda: 1
+        wait_for(lambda: len({tuple(now) for now, _ in seen}) >= 6)
+    finally:
+        viewer.shut()
+    for now, table in seen:
+        assert now == table
+
+
+@pytest.mark.parametrize(
+    ("error", "floor", "said"),
+    [(8.88e-16, 1e-9, "< 1 nm"), (1.84e-9, 1e-9, "1.84 nm"), (0.153, 1e-9, "153 mm"), (0.1, math.nan, "–")],
+)
+def test_an_error_is_written_as_in_the_table(error: float, floor: float, said: str) -> None:
+    result: Any = SimpleNamespace(error=error, error_floor=floor)
+    assert format(LiveNumber(error, "m", "Error of rope 1", floor), "u") == said
+    assert re.sub("</?b>", "", error_text(result)) == escape(said)

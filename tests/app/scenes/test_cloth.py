@@ -11,6 +11,7 @@ from app.panel.panel import status_line
 from app.scenes.cloth.parameters import PRESETS, Params, hidden
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
 from app.scenes.cloth.view import View, faces
+from app.scenes.contract import Measure
 from app.scenes.measures import plotted
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
@@ -280,9 +281,9 @@ def test_a_pull_is_as_stiff_as_the_step_allows(step):
 
 def test_plot_rows_are_measures_with_the_units_of_their_charts():
     found = plotted(SCENE, (0.5, *range(1, 8)))
-    assert found["kinetic"] == (2, "J", "Energy: kinetic")
-    assert found["gravity_energy"] == (4, "J", "Energy: gravity")  # not the parameter
-    assert found["largest_strain"] == (7, "%", "largest strain")
+    assert found["kinetic"] == Measure(2, "J", "Energy: kinetic")
+    assert found["gravity_energy"] == Measure(4, "J", "Energy: gravity")  # not the parameter
+    assert found["largest_strain"] == Measure(7, "%", "largest strain")
 
 
 def test_gusts_blow_along_across_and_up_by_their_shares():

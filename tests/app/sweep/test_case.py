@@ -8,6 +8,7 @@ import pytest
 
 import app.scenes.rope.scene
 from app.scenes import NAMES, scene_named
+from app.scenes.contract import Measure
 from app.scenes.measures import plotted
 from app.sweep.case import DIVERGED, FAILED, FINISHED, key_together, run_case, run_together
 from sim.floating import Hull, equilibrium_draft
@@ -99,7 +100,7 @@ def test_a_scene_without_measures_gives_its_plot_rows():
     assert scene.measures is None
     row = (0.5, *range(len(scene.series)))
     found = plotted(scene, row)
-    assert found["gravity_energy"] == (3, "J", "Energy: gravity")
+    assert found["gravity_energy"] == Measure(3, "J", "Energy: gravity")
     assert found["largest_strain"].unit == "%"
     assert all(math.isnan(measure.value) for measure in plotted(scene, ()).values())
 

@@ -37,7 +37,6 @@ SERIES = ("wave gauge",)
 CHANGING = (  # as time passes
     "steps", "sea", "rainfall", "foam", "drawn_at", "foam_cover", "foam_correction", "foam_cover_before", "foam_limit",
     "jacobian_deviation", "slope_left", "pace", "paced_at", "paced_of", "changed_at", "transition", "viscous_area",
-    "tile_length",
 )  # fmt: skip
 PLOTS = {"plot_wave_gauge": PlotAxes("Height at the wave gauge", "m", SERIES)}
 CURVES = {
@@ -106,6 +105,15 @@ def unpack_frame(packed: PackedFrame) -> SeaFrame:
     return frame._replace(vertices=vertices, slopes=slopes, foam=foam, sent=SentSurface())
 
 
+def gauge_home(length: float) -> tuple[float, float]:
+    """Where the wave gauge stands [m] on a tile of this length [m] until a click places it."""
+    x, y = (
+        math.copysign(min(abs(share) * length, limit), share)
+        for share, limit in zip(GAUGE_OFFSET_SHARE, MAX_GAUGE_OFFSET, strict=True)
+    )
+    return 0.5 * length + x, 0.5 * length + y
+
+
 class RainReadings(NamedTuple):
     """How much of the rain is drawn."""
 
@@ -165,14 +173,6 @@ class SquareSeaScene:
         self.counts: collections.Counter[str] = collections.Counter()
         self.plot_rows = PlotRows(len(SERIES), PLOT_ROW_INTERVAL)
         self.gauge = WaveGauge()
-        self.gauge_placed = False  # by a click
-        half = 0.5 * params.length
-        x, y = (
-            math.copysign(min(abs(share) * params.length, limit), share)
-            for share, limit in zip(GAUGE_OFFSET_SHARE, MAX_GAUGE_OFFSET, strict=True)
-        )
-        self.gauge.put((half + x, half + y))
-        self.tile_length = params.length  # [m] of the tile that the gauge stands on
         self.reset()
 
     @property
@@ -186,12 +186,10 @@ class SquareSeaScene:
         return 1.0 / self.params.frame_rate
 
     def reset(self) -> None:
-        """The sea at time 0. On a tile of another length the gauge keeps its distance from the middle."""
+        """The sea at time 0, with the wave gauge where a new scene has it."""
         self.steps = 0
-        x, y = self.gauge.at
-        shift = 0.5 * (self.params.length - self.tile_length)
-        self.gauge.put((x + shift, y + shift))
-        self.tile_length = self.params.length
+        self.gauge.put(gauge_home(self.params.length))
+        self.gauge_placed = False  # by a click
         self.begin_plots()
         self.make_sea()
 

@@ -145,14 +145,16 @@ def test_a_paused_sea_shows_its_wave_gauge_and_statistics_as_soon_as_they_are_wa
     assert scene.frame() is scene.frame()
 
 
-def test_another_length_starts_the_sea_again_with_the_wave_gauge_as_far_from_the_middle():
+def test_another_length_starts_the_sea_again_with_the_wave_gauge_where_a_new_scene_has_it():
     scene = SquareSeaScene(Params(**SMALL, length=64.0))
-    scene.gauge.put((40.0, 30.0))
+    scene.handle(Point((40.0, 60.0, 8.0), (0.9, 0.3, -0.12)))
+    assert scene.gauge_placed
     scene.advance(5)
     change_parameters(scene, length=128.0)
     assert scene.time == 0.0
     assert scene.sea.length == 128.0
-    assert scene.gauge.at == (72.0, 62.0)
+    assert scene.gauge.at == SquareSeaScene(scene.params).gauge.at
+    assert not scene.gauge_placed
 
 
 def test_nobody_looking_costs_nothing():

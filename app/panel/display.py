@@ -22,8 +22,7 @@ def set_theme(gui: viser.GuiApi, *, dark: bool) -> None:
 
 
 class Display:
-    """The switches, the quality of the picture, and two hidden buttons: by them a browser says whether panel and floor
-    are to be dark.
+    """The switches, and two hidden buttons: by them a browser says whether panel and floor are to be dark.
 
     They are buttons because two browsers may say the same: viser passes on only what changes the value of a checkbox.
     """
@@ -41,14 +40,20 @@ class Display:
                     view.set_dark(event.client, dark)
 
         switches = fill(
-            '<div class="springtide-switches" data-springtide-dark="{}" data-springtide-light="{}">'
+            '<div class="springtide-switches springtide-display" data-springtide-dark="{}" data-springtide-light="{}">'
             '<button type="button" data-springtide-switch="dark">Dark</button>'
-            '<button type="button" data-springtide-switch="large">Large text</button>'
-            "<label>Quality <select data-springtide-quality>"
-            '<option value="automatic">automatic</option><option value="high">high</option>'
-            '<option value="medium">medium</option><option value="low">low</option></select> '
-            "<span data-springtide-quality-now></span></label></div>",
+            '<button type="button" data-springtide-switch="large">Large text</button></div>',
             self.dark._impl.uuid,
             self.light._impl.uuid,
         )
         gui.add_html(str(switches))
+
+
+def add_quality(gui: viser.GuiApi) -> None:
+    """The choice of how finely this browser draws."""
+    gui.add_html(
+        '<div class="springtide-switches"><label>Quality <select data-springtide-quality>'
+        '<option value="automatic">automatic</option><option value="high">high</option>'
+        '<option value="medium">medium</option><option value="low">low</option></select> '
+        "<span data-springtide-quality-now></span></label></div>"
+    )

@@ -29,7 +29,7 @@ from app.messages import (
 )
 from app.panel.compare import Beside, Compare
 from app.panel.control import Control
-from app.panel.display import Display
+from app.panel.display import Display, add_quality
 from app.panel.guide import Guide
 from app.panel.history import History, Settings
 from app.panel.plots import Plots
@@ -107,6 +107,8 @@ class Panel:
         self.visitors = 0
         self.history = History()
         self.plots = Plots(server, kind)
+        # Who needs dark or large text finds the switches first.
+        self.display = Display(gui, view)
         # The block stays in sight while the rest is scrolled (page.css): what says "springtide-panel" is in it.
         with gui.add_folder("Lab") as self.lab:
             self.add_chooser(scenes)
@@ -161,7 +163,7 @@ class Panel:
         self.compare = (
             None if beside is None else Compare(gui, self.buttons, self.comparable_names, self.comparable, beside)
         )
-        self.display = Display(gui, view)
+        add_quality(gui)
         self.notes: dict[str, viser.GuiHtmlHandle] = {}
         self.work_counts: viser.GuiHtmlHandle | None = None
         if developer:

@@ -1,4 +1,7 @@
-"""The panel for everyone: texts of enough contrast, light and dark; controls that Tab reaches, and that have a name."""
+"""The panel for everyone: texts of enough contrast, light and dark; controls that Tab reaches, and that have a name.
+
+With large text a mouse reaches the last control, too.
+"""
 
 from collections.abc import Iterator
 from typing import Any
@@ -56,6 +59,16 @@ CONTROLS = """() => [...document.querySelectorAll(
     element.getAttribute("aria-label") || [...(element.labels ?? [])].map((label) => label.textContent).join(" ") ||
       element.textContent.trim(),
     element.tabIndex, element.tagName + "." + element.className])"""
+# The last control of the panel, where it is [pixels], and whether the mouse would press it there.
+LAST_CONTROL = """() => {
+  const content = document.querySelector(".mantine-ScrollArea-content:has(.springtide-panel)");
+  const last = [...content.querySelectorAll("button, select, input, [role=button]")]
+    .filter((element) => !element.closest("[inert], .mantine-Tabs-root")) // on a phone the bar of the plots is in it
+    .filter((element) => element.checkVisibility() && element.offsetHeight > 0).at(-1);
+  const { left, right, top, bottom } = last.getBoundingClientRect();
+  const seen = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
+  return { top, bottom, inside: top >= 0 && bottom <= innerHeight, pressed: Boolean(seen) && last.contains(seen) }; }"""
+SCROLLED = """() => [...document.querySelectorAll(".mantine-ScrollArea-viewport")].map((area) => area.scrollTop)"""
 FOLDED = ".mantine-Paper-root > .mantine-Paper-root[aria-expanded=false]"
 
 
@@ -77,6 +90,50 @@ def test_folders_and_sliders_obey_the_keyboard(one_page: tuple[Viewer, Tab]) -> 
     tab.wait(lambda: not viewer.loop.running)
     tab.page.wait_for_timeout(500)
     assert not viewer.loop.running
+
+
+def scroll(tab: Tab, by: float) -> None:
+    """Turn the mouse wheel over the panel until it moves nothing any more."""
+    width, height = (tab.page.viewport_size[side] for side in ("width", "height"))
+    tab.page.mouse.move(width - 60, height - 40)
+    before = None
+    while (now := tab.page.evaluate(SCROLLED)) != before:
+        before = now
+        tab.page.mouse.wheel(0, by)
+        tab.page.wait_for_timeout(100)
+
+
+def check_both_ends(tab: Tab) -> None:
+    """At the start both switches can be pressed; the wheel brings the last control to where it can be."""
+    scroll(tab, -3000)
+    for switch in ("dark", "large"):
+        tab.page.locator(f"[data-springtide-switch={switch}]").click(trial=True, timeout=5000)
+    assert not any(tab.page.evaluate(SCROLLED))  # the trial has scrolled nothing
+    scroll(tab, 3000)
+    last = tab.page.evaluate(LAST_CONTROL)
+    assert last["inside"], last
+    assert last["pressed"], last
+
+
+@pytest.mark.parametrize("scene", NAMES)
+def test_the_wheel_reaches_the_last_control_with_large_text(one_page: tuple[Viewer, Tab], scene: str) -> None:
+    viewer, tab = one_page
+    size = tab.page.viewport_size
+    tab.follow(viewer, scene)
+    viewer.loop.commands.put(Pause())
+    switches = [tab.page.locator(f"[data-springtide-switch={name}]") for name in ("large", "dark")]
+    try:
+        for width, height in ((1280, 800), (390, 844)):
+            tab.page.set_viewport_size({"width": width, "height": height})
+            tab.wait(lambda: tab.page.locator(".springtide-panel").count())
+            for switch in switches * 2:  # large; large and dark; dark; neither
+                check_both_ends(tab)
+                scroll(tab, -3000)
+                switch.click()
+    finally:
+        tab.page.evaluate("localStorage.clear()")
+        tab.page.reload()
+        tab.page.set_viewport_size(size)
 
 
 SAMPLE = ("radial_sea", "rope")  # all scenes under -m stress

@@ -8,6 +8,7 @@ import viser
 
 from app.messages import Vector
 
+NEAR, FAR = 0.01, 1000.0  # [m] from the camera, where the picture begins and ends: viser's own
 FIT_MARGIN = 1.1  # room around what a camera shows
 Camera = viser.CameraHandle | viser.InitialCameraConfig
 
@@ -31,6 +32,12 @@ def lowest_camera(server: viser.ViserServer) -> float | None:
     """Height [m] of the lowest camera of a browser; None where there is no browser."""
     heights = [float(client.camera.position[2]) for client in server.get_clients().values()]
     return min((height for height in heights if math.isfinite(height)), default=None)
+
+
+def set_clipping(server: viser.ViserServer, near: float = NEAR, far: float = FAR) -> None:
+    """Draw from `near` to `far` [m] from every camera: viser keeps the distances of the scene before."""
+    for camera in all_cameras(server):
+        camera.near, camera.far = near, far
 
 
 def place_cameras(

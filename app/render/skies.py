@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import viser
 
+from app.render.cameras import set_clipping
 from app.render.material import HAZE_DISTANCE, RGB, Material
 
 CAMERA_RANGE = 20_000.0  # [m] at which the camera's view ends; viser's own 1000 m would cut the horizon off
@@ -106,7 +107,7 @@ def set_sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Mater
     server.scene.configure_default_lights(enabled=True, cast_shadow=False)
     # This haze is for everything but the water, which has its own.
     server.scene.configure_fog(0.1 * HAZE_DISTANCE, 1.6 * HAZE_DISTANCE, color=photo.horizon)
-    server.initial_camera.far = CAMERA_RANGE
+    set_clipping(server, far=CAMERA_RANGE)
     elevation = drawn_elevation(photo)
     level = math.cos(elevation)
     return Material(

@@ -1,4 +1,4 @@
-"""What rope, race and cloth stand in: one light and one floor, bright or dark as each browser asks.
+"""Light and floor of rope, race and cloth, bright or dark as each browser asks.
 
 The sky is the background of the page's canvas (`js/page.css`), as these scenes draw none: it follows the browser too.
 What a browser draws as a picture has no background, so that it is put behind the picture here.
@@ -12,10 +12,12 @@ import viser
 from numpy.typing import NDArray
 from viser._messages import SceneNodeUpdateMessage
 
+from app.render.cameras import NEAR, set_clipping
 from app.render.viser_types import ViserConnection
 
 Colour = tuple[int, int, int]  # sRGB, 0 to 255
 FLOOR = "/floor"
+NO_FOG = 10.0, 50.0  # [m] where it would begin and be dense: viser's own numbers
 
 
 class FloorColours(NamedTuple):
@@ -51,9 +53,16 @@ _dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that 
 class Surroundings:
     """The handles of light and floor."""
 
-    def __init__(self, server: viser.ViserServer) -> None:
+    def __init__(self, server: viser.ViserServer, near: float = NEAR) -> None:
+        """near: [m] from the camera, where the picture begins."""
         scene = server.scene
+        # viser keeps the light and the fog of the scene before, here those of a sea.
         scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
+        scene.configure_default_lights(enabled=True, cast_shadow=True)
+        scene.configure_fog(*NO_FOG, enabled=False)
+        set_clipping(server, near)
+        for client in server.get_clients().values():
+            _dark.discard(client)  # the floor begins light: js/display.js asks for a dark one
         self.shown: tuple[bool, bool] | None = None
         self.floor = scene.add_grid(
             FLOOR,

@@ -110,14 +110,16 @@ class Tab:
         drawn: bool | str = False,
         query: str = "",
         address: str = "",
+        ratio: float = PIXEL_RATIO,
     ) -> None:
-        """drawn: as of `new_page`. address: of the page where a proxy shows it, with a "?"."""
+        """drawn: as of `new_page`. address: of the page where a proxy shows it, with a "?". ratio: drawn pixels per
+        pixel of the page, in each direction."""
         self.page = new_page(chromium, width, height, drawn)
         self.errors: list[str] = []
         self.followed = 0  # number of scenes that were opened for it
         self.page.on("console", self.note)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.goto(f"{address or f'http://127.0.0.1:{port}/?'}&hideViserLogo&fixedDpr={PIXEL_RATIO}{query}")
+        self.page.goto(f"{address or f'http://127.0.0.1:{port}/?'}&hideViserLogo&fixedDpr={ratio:g}{query}")
 
     def note(self, message: Any) -> None:
         if message.type == "error" and not any(harmless in message.text for harmless in HARMLESS_ERRORS):
@@ -136,6 +138,10 @@ class Tab:
     def follow(self, viewer: Viewer, scene: str, params: Any = None) -> None:
         """Open a scene instead of the open one, and wait until the page has all of it, its keys too."""
         viewer.open(scene, params)
+        self.wait_for_panel(viewer)
+
+    def wait_for_panel(self, viewer: Viewer) -> None:
+        """Wait until the page has all of the open scene."""
         self.followed += 1
         mark = viewer.server.gui.add_html(f'<i class="springtide-mark-{self.followed}"></i>')
         self.wait(lambda: self.page.locator(f".springtide-mark-{self.followed}").count())

@@ -9,7 +9,6 @@ import numpy as np
 import viser
 
 from app.messages import Snapshot, Vector
-from app.render.cameras import all_cameras
 from app.render.colormap import lifted, rgb
 from app.render.dragging import drag
 from app.render.injection import injector_of
@@ -41,7 +40,6 @@ LABEL_HEIGHT = 0.19  # [m] from a root to its label, and between the heights of 
 BEARING = math.cos(0.22), math.sin(0.22)  # of the first view: from the front, and as far aside as tells ropes apart
 ELEVATION = 0.05  # [rad] of the first view
 NEAR = 1.0  # [m] from the camera, where the picture begins: nearer, and depth is too coarse for ropes that far away
-VISER_NEAR = 0.01  # [m] the same in every other scene
 SHOWN_SWING = 1.0  # share of the length of a rope to either side that the first view shows: where it starts, level
 PULL_OF_FALL = 3.0  # of a rope that falls and swings, over its weight: stretches it by as much as the first view shows
 MAX_STRETCH = 3.0  # [m] that the first view shows
@@ -184,17 +182,11 @@ class View:
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         self.server = server
         self.post = post
-        self.surroundings = RopeSurroundings(server, post)
+        self.surroundings = RopeSurroundings(server, post, NEAR)
         injector_of(server)  # its script draws labels dark where a browser asks for it (`js/dark.js`)
         self.surroundings.surroundings.floor.fade_from = "origin"  # the camera is far away
-        self.set_near(NEAR)
         self.ropes: RopesDrawing | None = None
         self.dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that draw on a dark floor
-
-    def set_near(self, distance: float) -> None:
-        """Begin the picture of every camera at a distance [m]."""
-        for camera in all_cameras(self.server):
-            camera.near = distance
 
     async def on_bead(self, event: Any) -> None:
         """Pull the bead that is dragged."""
@@ -251,8 +243,7 @@ class View:
             self.ropes.set_dark(client, dark)
 
     def close(self) -> None:
-        """Put back what removing the nodes of the scene does not."""
-        self.set_near(VISER_NEAR)
+        """Removing the nodes of the scene removes everything."""
 
 
 def warm_up() -> Pieces:

@@ -4,6 +4,7 @@ import numpy as np
 import viser
 
 from app.messages import Vector
+from app.render.cameras import NEAR
 from app.render.dragging import PullLine
 from app.render.gizmo import Gizmo
 from app.render.surroundings import Surroundings
@@ -17,8 +18,9 @@ ROOT_ARROW_LENGTH = 0.34  # [m]
 class RopeSurroundings:
     """The handles of all that is drawn around ropes."""
 
-    def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
-        self.surroundings = Surroundings(server)
+    def __init__(self, server: viser.ViserServer, post: PostCommand, near: float = NEAR) -> None:
+        """near: [m] from the camera, where the picture begins."""
+        self.surroundings = Surroundings(server, near)
         self.root = Gizmo(server, post, "root", ROOT_ARROW_LENGTH, position=ROOT)
         self.pull = PullLine(server)
 

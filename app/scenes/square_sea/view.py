@@ -14,7 +14,7 @@ from app.render.cameras import all_cameras, place_cameras
 from app.render.material import RAIN_HEIGHT, Material, as_linear_bytes
 from app.render.meshes import ball, tube_faces
 from app.render.node_arrays import set_arrays
-from app.render.skies import CAMERA_RANGE, set_sky
+from app.render.skies import set_sky
 from app.render.water import Water
 from app.scenes.contract import Pieces
 from app.scenes.square_sea import report
@@ -188,7 +188,6 @@ class View:
     def move_cameras(self, old: float, new: float) -> None:
         """Move every camera from over a tile of side `old` [m] to as far from the middle of one of side `new` [m]."""
         for camera in all_cameras(self.server):
-            camera.far = CAMERA_RANGE
             if old != new:
                 position, target = np.asarray(camera.position), np.asarray(camera.look_at)
                 place = 0.5 * new + np.clip(position[:2] - 0.5 * old, -new, new)

@@ -1,0 +1,89 @@
+"""Scenes that are opened after each other on one page look as in a fresh start: light, shadow, haze, floor, labels."""
+
+import io
+import itertools
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from app.scenes import NAMES, scene_named
+from app.server.viewer import Viewer
+from sim.parameters import check_record
+from tests.browser.conftest import NO_NOTES, Tab
+from tests.browser.test_water import PANEL_HIDDEN
+
+WIDTH, HEIGHT = 240, 160  # [pixels]
+SMALL: dict[str, dict[str, Any]] = {
+    "square_sea": {"size": "64", "mesh": "32"},
+    "radial_sea": {"rings": 32, "spokes": 32, "cutaway": True},  # it has labels
+    "cloth": {"rows": 8, "cols": 8},
+}
+SAMPLE = ("rope", "radial_sea", "rope", "race", "rope")
+MAX_DIFFERENCE = 0.02  # mean of all pixels, of 255: without its shadow and light the rope differs by 0.09
+
+
+def all_orders() -> list[str]:
+    """A walk through the scenes that goes from each to each other one exactly once (Hierholzer's method)."""
+    left = {name: [other for other in NAMES if other != name] for name in NAMES}
+    path, walk = [NAMES[0]], list[str]()
+    while path:
+        if left[path[-1]]:
+            path.append(left[path[-1]].pop())
+        else:
+            walk.append(path.pop())
+    return walk[::-1]
+
+
+class Page:
+    """A server and a page of its own, in which scenes are opened one after the other."""
+
+    def __init__(self, open_tab: Callable[..., Tab]) -> None:
+        self.lab = Viewer("127.0.0.1", 0)
+        self.tab = open_tab(self.lab.port, width=WIDTH, height=HEIGHT, drawn=True, ratio=1.0)
+        self.tab.page.add_style_tag(content=NO_NOTES + PANEL_HIDDEN)
+
+    def open(self, scene: str) -> np.ndarray:
+        """The picture (HEIGHT, WIDTH, 3) of a scene at its start, 0 to 255."""
+        self.lab.open(scene, check_record(scene_named(scene).params, SMALL.get(scene, {})), paused=True)
+        self.tab.wait_for_panel(self.lab)
+        self.tab.page.mouse.move(1, 1)
+        shots: list[np.ndarray] = []
+
+        def unchanged() -> bool:
+            self.tab.page.wait_for_timeout(700)
+            png = self.tab.page.screenshot()
+            shots.append(np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(float))
+            return len(shots) > 2 and bool((shots[-1] == shots[-2]).all() and (shots[-1] == shots[-3]).all())
+
+        self.tab.wait(unchanged)
+        return shots[-1]
+
+
+@pytest.fixture
+def new(open_tab: Callable[..., Tab]) -> Iterator[Callable[[], Page]]:
+    """Opens pages with servers, and ends these after the test."""
+    pages: list[Page] = []
+
+    def make() -> Page:
+        pages.append(Page(open_tab))
+        return pages[-1]
+
+    yield make
+    for page in pages:
+        page.lab.shut()
+
+
+@pytest.mark.parametrize("walk", [SAMPLE, pytest.param(all_orders(), marks=pytest.mark.stress)], ids=["few", "all"])
+def test_a_scene_after_another_looks_as_in_a_fresh_start(new: Callable[[], Page], walk: list[str]) -> None:
+    page = new()
+    fresh = {walk[0]: page.open(walk[0])}
+    found = {}
+    for before, scene in itertools.pairwise(walk):
+        if scene not in fresh:
+            fresh[scene] = new().open(scene)
+        found[before, scene] = float(np.abs(page.open(scene) - fresh[scene]).mean())
+    assert all(shown.std() > 5.0 for shown in fresh.values())  # there is something to see
+    assert {pair: value for pair, value in found.items() if value > MAX_DIFFERENCE} == {}

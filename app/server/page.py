@@ -15,7 +15,9 @@ from websockets.http11 import Request, Response
 ALIVE_PATH = "/springtide-alive"  # what the page asks for, to see whether the server is still there
 TITLE = "<title>Springtide</title>"
 FIRST_SCRIPTS = ("address.js", "leaving.js")
-SCRIPTS = ("page.js", "fields.js", "camera.js", "charts.js", "share.js", "display.js", "access.js", "beside.js")
+SCRIPTS = (
+    "page.js", "fields.js", "camera.js", "reach.js", "charts.js", "share.js", "display.js", "access.js", "beside.js",
+)  # fmt: skip
 PANES_PATH = "/beside"  # of the page that shows several labs side by side
 COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'
 

@@ -215,7 +215,7 @@ class RaceScene:
 SCENE = SceneKind(
     name="race",
     title="Race of ropes",
-    help="The same rope by different methods. <b>Drag a bead</b> to pull all ropes alike. Next: press <b>2</b> to see "
+    help="The same rope by different methods. <b>Drag a rope</b> to pull all alike. Next: press <b>2</b> to see "
     "which stiffness Euler's method survives, and <b>3</b> for Runge-Kutta 4 at the same values.",
     params=Params,
     presets=PRESETS,

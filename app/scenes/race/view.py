@@ -10,7 +10,7 @@ import viser
 
 from app.messages import Snapshot, Vector
 from app.render.colormap import lifted, rgb
-from app.render.dragging import drag
+from app.render.dragging import SurfaceDrag, drag
 from app.render.injection import injector_of
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.render.node_arrays import set_arrays
@@ -79,8 +79,17 @@ def tube_vertices(points: np.ndarray, samples: int, radius: float) -> np.ndarray
 class RopesDrawing:
     """The handles of all ropes, made for their number and their points, then assigned to."""
 
-    def __init__(self, server: viser.ViserServer, frame: RaceFrame, on_drag: Callable[[Any], Any]) -> None:
-        """on_drag: called with viser's event for a bead; its instance is numbered through, rope after rope."""
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        frame: RaceFrame,
+        on_bead: Callable[[Any], Any],
+        on_tube: Callable[[Any], Any],
+    ) -> None:
+        """on_bead: called with viser's event for a bead; its instance is numbered through, rope after rope.
+
+        on_tube: called with viser's event for a tube.
+        """
         count, n, _ = self.shape = frame.ropes.shape
         self.samples = max(1, RING_COUNT // (n - 1))
         faces = tube_faces((n - 1) * self.samples + 1, SIDES)
@@ -90,6 +99,8 @@ class RopesDrawing:
             scene.add_mesh_simple(f"/race/rope_{i + 1}", tube, faces, color=material_colour(i), side="double")
             for i, tube in enumerate(tubes)
         ]
+        for tube in self.tubes:
+            tube.on_drag("left")(on_tube)
         each = len(tubes[0])
         self.references = scene.add_mesh_simple(
             "/race/references",
@@ -111,7 +122,7 @@ class RopesDrawing:
             batched_colors=bead_colours(count, n),
             lod="off",
         )
-        self.beads.on_drag("left")(on_drag)
+        self.beads.on_drag("left")(on_bead)
         self.poles = scene.add_line_segments(
             "/race/poles",
             self.label_poles(frame),
@@ -186,11 +197,16 @@ class View:
         injector_of(server)  # its script draws labels dark where a browser asks for it (`js/dark.js`)
         self.surroundings.surroundings.floor.fade_from = "origin"  # the camera is far away
         self.ropes: RopesDrawing | None = None
+        self.tube_drag = SurfaceDrag(post)
         self.dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that draw on a dark floor
 
     async def on_bead(self, event: Any) -> None:
         """Pull the bead that is dragged."""
         drag(self.post, event, event.instance_index)
+
+    async def on_tube(self, event: Any) -> None:
+        """Pull the point nearest to where the drag began."""
+        self.tube_drag.handle(event, self.points)
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: all ropes, as far as they swing, and labels."""
@@ -211,16 +227,17 @@ class View:
 
     def show(self, frame: RaceFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
+        self.points = frame.ropes.reshape(-1, 3)
         if self.ropes is not None and self.ropes.shape != frame.ropes.shape:
             self.ropes.remove()
             self.ropes = None
         if self.ropes is None:
-            self.ropes = RopesDrawing(self.server, frame, self.on_bead)
+            self.ropes = RopesDrawing(self.server, frame, self.on_bead, self.on_tube)
             for client in tuple(self.dark):
                 self.ropes.set_dark(client, True)
         self.ropes.show(frame)
         root = frame.root if frame.handles else None
-        self.surroundings.show(frame.floor, frame.grid, root, frame.pull, frame.ropes.reshape(-1, 3))
+        self.surroundings.show(frame.floor, frame.grid, root, frame.pull, self.points)
 
     def readout(self, snapshot: RaceSnapshot) -> str:
         """The table of results, as HTML."""

@@ -400,7 +400,7 @@ class RopeScene:
 SCENE = SceneKind(
     name="rope",
     title="Rope",
-    help="<b>Drag a bead</b> to pull the rope, or the arrows to move its root. Next: raise the stiffness until hω "
+    help="<b>Drag the rope</b> to pull it, or the arrows to move its root. Next: raise the stiffness until hω "
     "reaches its limit, or press <b>3</b> to see Euler's method explode.",
     params=Params,
     presets=PRESETS,

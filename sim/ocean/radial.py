@@ -14,6 +14,7 @@ All points are that much higher, the interface by its share of it: the mean leve
 
 import copy
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -58,7 +59,10 @@ class RadialSea:
         self, waves: Waves, column: FluidColumn = CLEAN, exposure: float = 0.0, choppiness: float = 1.0
     ) -> None:
         """exposure [s]: how long the waves have run on this medium, and decayed; choppiness: factor on Gerstner's
-        horizontal motion. Raises ValueError for a negative one."""
+        horizontal motion. Raises ValueError for a negative one.
+
+        `past` [s] is the time spent on each medium. What waves have lost there they do not get back elsewhere.
+        """
         self.evaluated = self.skipped = 0  # (wave, vertex) pairs
         self.choppiness = check_not_negative("choppiness", choppiness, "")
         self._base, self._fade = 0.0, 0.0
@@ -66,7 +70,9 @@ class RadialSea:
         self._grid: RadialGrid | None = None
         self.slick: SlickCover | None = None  # what calms the waves under it
         self._loss: tuple[FluidColumn, np.ndarray, np.ndarray] | None = None  # of the fluids in the slick, k [1/m]
-        self._set(waves, column, check_not_negative("exposure", exposure, "s"), waves.phase)
+        self.past: dict[FluidColumn, float] = {}
+        self._set(waves, column, waves.phase, np.zeros(len(waves.kx)))
+        self.expose(exposure)
 
     def __deepcopy__(self, memo: object) -> "RadialSea":
         """The same waves, which go on by themselves: nothing is changed in place but kept results."""
@@ -77,21 +83,29 @@ class RadialSea:
         fade: float = 2.0,
     ) -> None:  # fmt: skip
         """From time t [s] on another medium, or other waves: phases go on without a jump, and other waves take over
-        the energy of the old ones within `fade` [s]."""
+        the energy of the old ones within `fade` [s].
+
+        What has been lost stays lost, by other waves of the same length too. exposure [s]: forget that, and let the
+        waves have run so long on the new medium alone. Raises ValueError for a negative one.
+        """
         t, fade = check_finite("t", t, "s"), check_not_negative("fade", fade, "s")
+        past = self.past
+        if exposure is not None:
+            exposure, past = check_not_negative("exposure", exposure, "s"), {}
         turned = self.phases(t)
         if waves is None:
             n = len(self.waves.kx)
             self._old = None if self._share(t) >= 1.0 else self._old
             self._turn_old(t)
-            self._set(
-                self.waves, column or self.column, self.exposure if exposure is None else exposure, turned[-n:], t
-            )
-            return
-        n = len(self.waves.kx)
-        self._old = (self.waves.kx, self.waves.ky, self.amplitude, self.rate, turned[-n:], self.ratio)
-        self._set(waves, column or self.column, self.exposure if exposure is None else exposure, waves.phase, t)
-        self._began, self._fade = t, fade
+            loss = self._lost if exposure is None else np.zeros(n)
+            self._set(self.waves, column or self.column, turned[-n:], loss, t)
+        else:
+            n = len(self.waves.kx)
+            self._old = (self.waves.kx, self.waves.ky, self.amplitude, self.rate, turned[-n:], self.ratio)
+            self._set(waves, column or self.column, waves.phase, lost(past, waves.k), t)
+            self._began, self._fade = t, fade
+        self.past = past
+        self.expose(exposure or 0.0)
 
     def _turn_old(self, t: float) -> None:
         """Bring the phases of the waves that fade out to time t."""
@@ -99,20 +113,26 @@ class RadialSea:
             kx, ky, amplitude, rate, phase, ratio = self._old
             self._old = (kx, ky, amplitude, rate, turn(phase, rate, t - self._base), ratio)
 
-    def _set(self, waves: Waves, column: FluidColumn, exposure: float, phase: np.ndarray, t: float = 0.0) -> None:
-        self.waves, self.column, self.exposure, self._base = waves, column, exposure, t
+    def _set(self, waves: Waves, column: FluidColumn, phase: np.ndarray, loss: np.ndarray, t: float = 0.0) -> None:
+        """loss (n,): -ln of the share of their amplitude that the waves have left."""
+        self.waves, self.column, self._base, self._lost = waves, column, t, loss
         k = waves.k
-        omega, decay = column.roots(k)
-        self.rate, self.decay, self.ratio = omega, decay, column.interface_ratio(k)
-        self.amplitude = waves.amplitude * np.exp(-decay * exposure)
+        self.rate, self.decay = column.roots(k)
+        self.ratio = column.interface_ratio(k)
+        self.amplitude = waves.amplitude * np.exp(-loss)
         self._phase = phase
         self._grid = self._loss = None
         self._weights: dict[bytes, np.ndarray] = {}
 
-    def age(self, exposure: float) -> None:
-        """The same waves, grown older: they have now run `exposure` [s] in all on this medium, and decayed."""
-        self.exposure = check_not_negative("exposure", exposure, "s")
-        self.amplitude = self.waves.amplitude * np.exp(-self.decay * self.exposure)
+    def expose(self, duration: float) -> None:
+        """Let the waves decay at once as they would in `duration` [s] on this medium; phases stay as they are.
+
+        Raises ValueError for a negative one.
+        """
+        if check_not_negative("duration", duration, "s") > 0.0:
+            self.past = self.past | {self.column: self.past.get(self.column, 0.0) + duration}
+            self._lost = self._lost + self.decay * duration
+            self.amplitude = self.waves.amplitude * np.exp(-self._lost)
 
     @property
     def significant_height(self) -> float:
@@ -248,6 +268,11 @@ class RadialSea:
             unique, which = np.unique(size, return_inverse=True)
             self._weights[key] = np.array([widened(probe, float(s)) for s in unique]).reshape(-1, len(kx))[which]
         return self._weights[key]
+
+
+def lost(past: Mapping[FluidColumn, float], k: np.ndarray) -> np.ndarray:
+    """-ln of the share of the amplitude that waves of wavenumber k [rad/m] keep after the times [s] on these media."""
+    return sum((column.roots(k)[1] * duration for column, duration in past.items()), np.zeros(k.shape))
 
 
 def turn(phase: np.ndarray, omega: np.ndarray, t: float) -> np.ndarray:

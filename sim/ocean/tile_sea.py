@@ -6,6 +6,7 @@ of the energy that the rings can show.
 """
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +18,7 @@ from sim.ocean.query import bicubic, sample
 from sim.ocean.radial import RadialSurface, SurfaceAt
 from sim.ocean.radial_grid import FADE, RadialGrid
 from sim.ocean.sea import Sea
-from sim.validation import argument_error, check_positions
+from sim.validation import check_positions
 
 INSTANT = 1 / 60  # [s] between the three heights from which rise and acceleration are differences
 REACH = 0.05  # [m] of the differences that give the slope at a point
@@ -27,27 +28,21 @@ STEPS = 12  # towards a label: where the surface does not nearly fold, each leav
 class TileSea:
     """A `Sea` with the questions of `RadialSea`."""
 
-    def __init__(self, sea: Sea, column: FluidColumn | None = None, exposure: float = 0.0) -> None:
-        """column: what takes energy from the waves, by default nothing does; exposure [s]: for how long they have run
-        on it and decayed. Raises ValueError for a negative one."""
+    def __init__(self, sea: Sea, past: Mapping[FluidColumn, float] | None = None) -> None:
+        """past: the time [s] that the waves have spent on each medium, and decayed, as `RadialSea.past`."""
         self.sea = sea
-        self.medium = None if column is None else Medium(decay=lambda k: column.roots(k)[1])
-        self.exposure = 0.0
-        self.age(exposure)
         self.evaluated = self.skipped = 0  # (wave, vertex) pairs: a transform has no such thing
         self._grid: RadialGrid | None = None
         self._share = np.zeros(0, np.float32)
+        self._media: dict[FluidColumn, Medium] = {}
+        for column, duration in (past or {}).items():
+            self.expose(duration, column)
 
-    def age(self, exposure: float) -> None:
-        """The same waves, grown older: they have now run `exposure` [s] in all on this medium, and decayed.
-
-        Raises ValueError where that is less than before.
-        """
-        if not self.exposure <= exposure < math.inf:
-            raise argument_error("exposure", exposure, f"{self.exposure:g} or above, finite s")
-        if self.medium is not None:
-            self.sea.expose(exposure - self.exposure, self.medium)
-        self.exposure = exposure
+    def expose(self, duration: float, column: FluidColumn) -> None:
+        """Let the waves decay at once as they would in `duration` [s] on a medium. Raises ValueError for a negative
+        one."""
+        medium = self._media.setdefault(column, Medium(decay=lambda k: column.roots(k)[1]))
+        self.sea.expose(duration, medium)
         self._grid = None  # the shares of the grid's rings follow the energy
 
     def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:

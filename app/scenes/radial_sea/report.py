@@ -246,12 +246,12 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
     if column.kind != "water":
         p = snapshot.frame.params
         k = peak_wavenumber(spectrum_of(p), conditions_of(p))
-        remaining = math.exp(-decay_rate(column, float(k)) * readings.age)
+        remaining = math.exp(-sum(decay_rate(fluids, float(k)) * time for fluids, time in readings.past.items()))
         marks["exposure"] = f"after {seconds(readings.age)} the peak wave keeps {percent(remaining, 3)} of its height"
     return marks | budget_marks(snapshot.frame.params, readings.weathering)
 
 
-@functools.lru_cache(maxsize=4)
+@functools.lru_cache(maxsize=64)
 def decay_rate(column: FluidColumn, k: float) -> float:
     """Of the waves of wavenumber k [1/m], in 1/s; kept, as it is asked for in each picture."""
     return float(column.roots(np.array([k]))[1][0])

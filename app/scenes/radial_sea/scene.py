@@ -58,7 +58,7 @@ from sim.ocean import Sea
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.foam import whitecaps
 from sim.ocean.gerstner import Waves, draw_waves
-from sim.ocean.radial import CLEAN, RadialSea, RadialSurface
+from sim.ocean.radial import CLEAN, RadialSea, RadialSurface, lost
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.radiated_waves import LENGTH as RADIATED_WAVES_LENGTH
 from sim.ocean.radiated_waves import RadiatedWaves
@@ -221,7 +221,7 @@ class RadialSeaScene:
         self.well_blowout = WellBlowout(p)
         self.camera = (0.0, 0.0)  # [m] where the browser's camera is
         self.spectrum_energy: tuple[WaveChoice, NDArray[np.float64], NDArray[np.float64]] | None = None
-        self.decayed_height: tuple[tuple[WaveChoice, FluidColumn, float], float] | None = None  # Hs [m] of the spectrum
+        self.decayed_height: tuple[tuple[object, ...], float] | None = None  # Hs [m] of the spectrum
         self.foam_threshold = 0.0  # Jacobian below which there is foam, a running mean
         self.compared_at = -math.inf
         self.set_grid()
@@ -284,7 +284,7 @@ class RadialSeaScene:
             frequency=lambda k: column.roots(k)[0],
             **{field.name: getattr(conditions, field.name) for field in dataclasses.fields(conditions)},
         )
-        return TileSea(sea, column, self.age)
+        return TileSea(sea, self.sum.past)
 
     def tile_now(self) -> TileSea:
         """The square sea, made where it is not there."""
@@ -304,10 +304,16 @@ class RadialSeaScene:
         other_fluids = column != self.column or exposure_of(params) != exposure_of(old)
         other_waves = choice != self.wave_choice
         self.column, self.wave_choice = column, choice
-        if other_fluids:
-            self.age = exposure_of(params)
+        # What oil took stays taken; only another age at the start, set by hand, begins anew.
+        set_anew = params.spill != "none" and params.exposure != old.exposure
         if other_waves or other_fluids:
-            self.sum.change(self.time, draw(choice) if other_waves else None, column, self.age)
+            waves = draw(choice) if other_waves else None
+            self.sum.change(self.time, waves, column, params.exposure if set_anew else None)
+        if set_anew:
+            self.age = params.exposure
+        elif old.spill == "none" and params.spill != "none":
+            self.sum.expose(params.exposure)
+            self.age += params.exposure
         if other_waves or other_fluids or params.choppiness != self.sum.choppiness:
             self.tile = None
         self.sum.choppiness = params.choppiness
@@ -334,7 +340,7 @@ class RadialSeaScene:
         column = self.fluids(self.params)
         if changed & {"mixture_viscosity", "wave_decay"}:
             self.column, self.tile = column, None
-            self.sum.change(self.time, None, column, self.age)
+            self.sum.change(self.time, None, column, self.age)  # by the law of the student, as if from the start
             self.bodies.set_fluids(self.params.density, column, own_densities_of(self.params))
         if "draft" in changed:
             self.set_down_box(student)
@@ -420,9 +426,11 @@ class RadialSeaScene:
     def age_waves(self, duration: float) -> None:
         """Let the waves decay under the oil for `duration` [s] more."""
         self.age += duration
-        for sea in (self.sum, self.tile):
-            if sea is not None and self.age - sea.exposure >= AGEING_INTERVAL:
-                sea.age(self.age)
+        due = self.age - sum(self.sum.past.values())
+        if due >= AGEING_INTERVAL:
+            self.sum.expose(due)
+            if self.tile is not None:
+                self.tile.expose(due, self.column)
 
     def slick_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Thickness (n,) [m] of the slick at points (n, 2) [m]. It grows from its edge over `SLICK_EDGE`."""
@@ -574,6 +582,7 @@ class RadialSeaScene:
             oil_budget=self.well_blowout.oil_budget(self.column)._replace(wave_left=self.wave_left()),
             surfaces=self.compared_surfaces() if self.params.compare else {},
             age=self.age,
+            past=self.sum.past,
             weathering=self.weathering,
         )
 
@@ -610,14 +619,14 @@ class RadialSeaScene:
 
     def spectrum_height(self) -> float:
         """Hs [m] of the whole spectrum after the decay of the sum of waves: an integral over all wavenumbers."""
-        key = self.wave_choice, self.column, self.sum.exposure
+        key = self.wave_choice, tuple(self.sum.past.items())
         if self.decayed_height is None or self.decayed_height[0] != key:
             if self.spectrum_energy is None or self.spectrum_energy[0] != self.wave_choice:
                 choice = self.wave_choice
                 self.spectrum_energy = choice, *energy_by_wavenumber(SPECTRA[choice.spectrum], choice.conditions)
             _, k, energy = self.spectrum_energy
             some = energy > NEGLIGIBLE_ENERGY * energy.max()
-            kept = np.exp(-2.0 * self.column.roots(k[some])[1] * self.sum.exposure)
+            kept = np.exp(-2.0 * lost(self.sum.past, k[some]))
             self.decayed_height = key, 4.0 * math.sqrt(float((energy[some] * kept).sum()))
         return self.decayed_height[1]
 

@@ -5,6 +5,7 @@ import importlib.resources
 import io
 import itertools
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +17,13 @@ from app.__main__ import main
 from app.messages import Grab, Place, Release
 from app.scenes.radial_sea.bodies import BODY_KINDS, kind_of, place_of
 from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden
+from app.scenes.radial_sea.report import marks_of
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import LANDING, WellBlowout, slick_reach
+from app.server.loop import SimLoop
 from sim.floating import Hull, equilibrium_draft, heave_period
 from sim.ocean.fluids import fluids
+from sim.ocean.gerstner import peak_wavenumber
 from sim.ocean.radial import RadialSea
 from sim.ocean.spectra import SPECTRA
 from sim.parameters import check_record, clamp, effect_of_change, parameters_of
@@ -457,6 +461,41 @@ def test_a_spill_ages_and_its_parameter_sets_its_age_anew(surface: str) -> None:
     assert scene.readings().age == 20.0
     still = RadialSeaScene(with_parameters(**heavy, ageing=False))
     assert run(still, 5.0).readings().age == 10.0
+
+
+@pytest.mark.parametrize("surface", ["sum", "fft"])
+def test_what_oil_took_of_the_waves_stays_taken_and_the_panel_says_how_much_is_left(surface: str) -> None:
+    still = {"bodies": 0, "surface": surface, "ageing": False, "wind_speed": 4.0}
+    oil = {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 1200.0}
+    scene = RadialSeaScene(with_parameters(**still, **oil))
+    fresh = RadialSeaScene(with_parameters(**still)).readings().height
+    heights = [(scene.readings().height, scene.tile_now().significant_height)]
+    for changes in (
+        {"spill": "none"},
+        {"spill": "none", "wind_direction": 50.0},
+        {"thickness": 0.3},
+        {"thickness": 0.31},
+    ):
+        scene.change_forces(with_parameters(**{**still, **oil, **changes}))
+        scene.advance(90)
+        heights.append((scene.readings().height, scene.tile_now().significant_height))
+        assert scene.readings().clean_height == pytest.approx(fresh, rel=2e-3)
+    for sum_height, tile_height in heights:
+        assert tile_height == pytest.approx(sum_height, rel=0.01)
+    left = np.array(heights)[:, 0]
+    assert left[0] < 0.9 * fresh
+    assert left[1:3] == pytest.approx(left[0], rel=2e-3)  # clean water; other waves of another wind
+    # Oil again: another 1200 s at once; a change of its thickness takes nothing and gives nothing back.
+    assert left[3] < 0.98 * left[0]
+    assert left[4] == pytest.approx(left[3], rel=1e-9)
+    first, second = (dataclasses.replace(scene.column, thickness=thickness) for thickness in (0.5, 0.3))
+    assert scene.sum.past == {first: 1200.0, second: 1200.0}
+    loop = SimLoop(scene)
+    loop.tick(0.1)
+    said = marks_of(loop.latest)["exposure"].replace("\u202f", "")
+    k = np.array([peak_wavenumber(SPECTRA[scene.wave_choice.spectrum], scene.wave_choice.conditions)])
+    share = math.exp(-1200.0 * float((first.roots(k)[1] + second.roots(k)[1])[0]))
+    assert float(re.findall(r"keeps ([\d.]+)", said)[0]) == pytest.approx(100.0 * share, rel=0.01)
 
 
 def write_boat(path: Path, *, closed: bool = True) -> Path:

@@ -274,15 +274,39 @@ def test_what_is_not_allowed_is_refused_by_name(make, word: str) -> None:
         make()
 
 
-def test_growing_older_is_having_run_longer() -> None:
+def test_exposure_adds_up_and_is_that_of_having_run_longer() -> None:
     waves, oil = draw_waves(SPECTRA["jonswap"], WIND, 64), FluidColumn(oil=fluids()["IFO 180"], thickness=0.3)
     grown, longer = RadialSea(waves, oil, exposure=10.0), RadialSea(waves, oil, exposure=300.0)
-    grown.age(300.0)
-    np.testing.assert_array_equal(grown.amplitude, longer.amplitude)
+    grown.expose(290.0)
+    np.testing.assert_allclose(grown.amplitude, longer.amplitude, rtol=1e-12)
+    assert grown.past == longer.past == {oil: 300.0}
     assert grown.significant_height < RadialSea(waves, oil, exposure=10.0).significant_height
     np.testing.assert_allclose(grown.at([[1.0, 2.0]], 7.0).height, longer.at([[1.0, 2.0]], 7.0).height, atol=1e-12)
-    with pytest.raises(ValueError, match="exposure"):
-        grown.age(-1.0)
+    with pytest.raises(ValueError, match="duration"):
+        grown.expose(-1.0)
+
+
+def test_what_oil_took_stays_taken_when_the_water_or_the_waves_change() -> None:
+    """-ln of what is left adds up over the media; other waves of the same length have lost as much."""
+    wind = SPECTRA["jonswap"].conditions(wind_speed=5.0, fetch=3e3)
+    waves, oil = draw_waves(SPECTRA["jonswap"], wind, 64), FluidColumn(oil=fluids()["IFO 180"], thickness=0.5)
+    thin, clean = FluidColumn(oil=fluids()["Maya"], thickness=0.05), FluidColumn()
+    sea = RadialSea(waves, oil, exposure=1200.0)
+    left = sea.significant_height
+    assert left < 0.6 * waves.significant_height
+    sea.change(10.0, column=clean)
+    assert sea.significant_height == pytest.approx(left, rel=1e-12)
+    sea.change(20.0, column=thin)
+    sea.expose(300.0)
+    lost = 1200.0 * oil.roots(waves.k)[1] + 300.0 * thin.roots(waves.k)[1]
+    np.testing.assert_allclose(sea.amplitude, waves.amplitude * np.exp(-lost), rtol=1e-9)
+    other = draw_waves(SPECTRA["jonswap"], dataclasses.replace(wind, wind_direction=1.0), 32)
+    sea.change(30.0, other, clean, fade=0.0)
+    lost = 1200.0 * oil.roots(other.k)[1] + 300.0 * thin.roots(other.k)[1]
+    np.testing.assert_allclose(sea.amplitude, other.amplitude * np.exp(-lost), rtol=1e-9)
+    sea.change(40.0, column=oil, exposure=60.0)  # set anew
+    np.testing.assert_allclose(sea.amplitude, other.amplitude * np.exp(-60.0 * oil.roots(other.k)[1]), rtol=1e-9)
+    assert sea.past == {oil: 60.0}
 
 
 @pytest.mark.parametrize("name", [name for name, s in SPECTRA.items() if s.line is None])

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
+from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.fluids import fluids
+from sim.ocean.gerstner import draw_waves
+from sim.ocean.radial import RadialSea
 from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.spectra import SPECTRA
 from sim.ocean.tile_sea import TileSea, sample_mesh
 
 
@@ -61,6 +66,35 @@ def test_the_mean_level_of_the_mesh_is_that_of_still_water_also_where_it_is_lowe
                     D[..., 0], D[..., 1], vertices, slopes, jacobian)  # fmt: skip
         # Between grid points the waves of a few cells are too flat, and gather less.
         assert float((vertices[:, 2] * jacobian).mean()) == pytest.approx(0.0, abs=0.08 * share**2 * mean)
+
+
+def test_oil_that_has_passed_leaves_the_same_height_on_the_radial_and_the_fft_sea() -> None:
+    """Within 1 %, and never above what was left, when clean water comes back and when the wind changes."""
+    jonswap = SPECTRA["jonswap"]
+    wind = jonswap.conditions(wind_speed=6.0, fetch=5e3)
+    oil = FluidColumn(oil=fluids()["IFO 180"], thickness=0.5)
+    radial = RadialSea(draw_waves(jonswap, wind, 400))
+    fft = Sea(256, 100.0, "jonswap", wind_speed=6.0, fetch=5e3, amplitudes="fixed")
+    assert fft.significant_height == pytest.approx(radial.significant_height, rel=0.01)
+    radial.change(5.0, column=oil)
+    radial.expose(600.0)
+    fft.change(5.0, decay=lambda k: oil.roots(k)[1])
+    fft.expose(600.0)
+    left = radial.significant_height
+    assert left < 0.6 * radial.waves.significant_height
+    assert fft.significant_height_at(5.0) == pytest.approx(left, rel=0.01)
+    radial.change(6.0, column=FluidColumn())
+    fft.change(6.0, decay=None)
+    assert radial.significant_height <= left * (1.0 + 1e-12)
+    # A second of oil passed on the clock of the FFT sea, and none of the sum's.
+    assert fft.significant_height_at(6.0) == pytest.approx(left, rel=0.01)
+    tile = TileSea(Sea(256, 100.0, "jonswap", wind_speed=6.0, fetch=5e3, amplitudes="fixed"), radial.past)
+    assert tile.significant_height == pytest.approx(left, rel=0.01)
+    turned = jonswap.conditions(wind_speed=6.0, fetch=5e3, wind_direction=2.0)
+    radial.change(7.0, draw_waves(jonswap, turned, 400), fade=0.0)
+    fft.change(7.0, wind_direction=2.0)
+    assert radial.significant_height == pytest.approx(left, rel=0.01)
+    assert fft.significant_height_at(7.0) == pytest.approx(left, rel=0.01)
 
 
 def test_the_mean_square_slope_is_that_of_the_surface() -> None:

@@ -1,15 +1,25 @@
-"""The cameras of all browsers."""
+"""The cameras of all browsers.
+
+A slow page reports an old place of its camera long after it was sent a new one, and viser takes each report for the
+truth: it sends no place at which it believes the camera to be. Therefore a camera that was placed is placed again
+after each report of another place, until the page has reported this one.
+"""
 
 import math
+import threading
+import weakref
 from collections.abc import Iterator
 from typing import NamedTuple
 
+import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from app.messages import Vector
 
 NEAR, FAR = 0.01, 1000.0  # [m] from the camera, where the picture begins and ends: viser's own
 FIT_MARGIN = 1.1  # room around what a camera shows
+SAME_PLACE = 0.02  # [m] within which a camera, or its target, is where it was put
 Camera = viser.CameraHandle | viser.InitialCameraConfig
 
 
@@ -40,12 +50,18 @@ def set_clipping(server: viser.ViserServer, near: float = NEAR, far: float = FAR
         camera.near, camera.far = near, far
 
 
+_wanted: weakref.WeakKeyDictionary[viser.CameraHandle, NDArray[np.float64]] = weakref.WeakKeyDictionary()  # (2, 3) [m]
+_watched: weakref.WeakSet[viser.CameraHandle] = weakref.WeakSet()  # the reports of these are looked at
+_placing = threading.Lock()  # viewer thread, callbacks and changes of the scene place cameras
+
+
 def place_cameras(
     server: viser.ViserServer, position: Vector, target: Vector, field_of_view: float | None = None
 ) -> None:
     """Place every camera at `position` [m], looking at `target` [m]; field_of_view: vertical [rad], None to keep it."""
-    for camera in all_cameras(server):
-        place_camera(camera, position, target, field_of_view)
+    set_camera(server.initial_camera, position, target, field_of_view)
+    for client in server.get_clients().values():
+        place_camera(client.camera, position, target, field_of_view)
 
 
 def fit_cameras(
@@ -64,11 +80,59 @@ def fit_cameras(
         place_camera(client.camera, (x, y, z), target)
 
 
-def place_camera(camera: Camera, position: Vector, target: Vector, field_of_view: float | None = None) -> None:
-    """The same for one camera."""
+def set_camera(camera: Camera, position: Vector, target: Vector, field_of_view: float | None = None) -> None:
+    """Set one camera; viser shifts the target along with the position, so that the target comes second."""
     camera.position, camera.look_at = position, target
     if field_of_view is not None:
         camera.fov = field_of_view
+
+
+def place_camera(
+    camera: viser.CameraHandle, position: Vector, target: Vector, field_of_view: float | None = None
+) -> None:
+    """Place the camera of one browser, and see to it that the page takes it (`on_report`)."""
+    place = np.array([position, target], float)
+    with _placing:
+        if camera not in _watched:
+            _watched.add(camera)
+            camera.on_update(on_report)
+        is_there = camera not in _wanted and bool((np.abs(place_of(camera) - place) <= SAME_PLACE).all())
+        set_camera(camera, position, target, field_of_view)
+        if not is_there:  # otherwise there would be nothing to report
+            _wanted[camera] = place
+
+
+def place_of(camera: viser.CameraHandle) -> NDArray[np.float64]:
+    """(2, 3) [m] of a camera and its target, as last reported or set."""
+    return np.array([camera.position, camera.look_at], float)
+
+
+def is_waiting(camera: viser.CameraHandle) -> bool:
+    """Whether the page of a camera that was placed has not reported that it is there."""
+    return camera in _wanted
+
+
+def has_taken(wanted: NDArray[np.float64], reported: NDArray[np.float64]) -> bool:
+    """Whether a page that reports a place (2, 3) [m] has taken the wanted one; its user may be turning it already."""
+    off = reported - wanted
+    # The page lifts a camera that would be under the floor or the water (js/camera.js).
+    if np.abs(off[:, :2]).max() <= SAME_PLACE and off[:, 2].min() >= -SAME_PLACE:
+        return True
+    change = np.linalg.norm(reported[0] - reported[1]) - np.linalg.norm(wanted[0] - wanted[1])
+    return bool(np.abs(off[1]).max() <= SAME_PLACE and abs(change) <= SAME_PLACE)
+
+
+async def on_report(camera: viser.CameraHandle) -> None:
+    """A page has reported its camera: place it again where it is not where it was placed."""
+    with _placing:
+        wanted = _wanted.get(camera)
+        if wanted is None:
+            return
+        if has_taken(wanted, place_of(camera)):
+            del _wanted[camera]
+        else:
+            position, target = wanted
+            set_camera(camera, position, target)
 
 
 def place_client_camera(server: viser.ViserServer, camera: ClientCamera | None) -> None:

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
+from app.render.cameras import SAME_PLACE, is_waiting, place_camera, place_of, set_camera
 
-SAME_PLACE = 0.02  # [m] within which a camera, or its target, is where it was put
 HAND_TIME = 0.4  # [s] for which a camera is left alone after its user moved it
-START_TIME = 1.5  # [s] after a camera was first placed, for which its page may still report an earlier place
 MIN_BODY_MOTION = 0.02  # [m] that the body moves before the cameras follow
 MAX_PLACES = 900  # places that are remembered, for half a minute: a slow page may still report one of them
 
@@ -22,7 +21,6 @@ class FollowedView:
     """The camera of one browser beside the body. Places are (2, 3) [m]: camera and target."""
 
     offset: NDArray[np.float64]  # (2, 3) [m] camera and target from the body, as the user has put them
-    first_placed: float  # [s]
     hand_moved: float = -np.inf  # when the user last moved the camera [s]
     places: NDArray[np.float64] = field(default_factory=lambda: np.full((MAX_PLACES, 2, 3), np.inf))  # the last ones
     next_place: int = 0  # index in `places` of the oldest one
@@ -43,27 +41,25 @@ class FollowedView:
     def put(self, camera: Any, body: NDArray[np.float64]) -> None:
         """Put the camera beside the body at `body` (3,) [m]."""
         place = body + self.offset
-        camera.position, camera.look_at = place
+        set_camera(camera, *place)
         self.remember(place)
 
 
 class FollowCamera:
     """Keeps the camera of each browser where its user has put it beside a body.
 
-    A page reports the place of its camera late. A reported place counts as moved by the user only if it is none of the
-    last places where this class has put it.
+    A page reports the place of its camera late. A reported place counts as moved by the user only once the page has
+    taken the first one, and only if it is none of the last places where this class has put it.
     """
 
     def __init__(self) -> None:
         self.body = np.zeros(3)  # [m] where the cameras last followed to
         self.start_offset = np.zeros((2, 3))  # [m] of a new view
-        self.start_place = np.zeros((2, 3))  # [m] where a new page puts its camera, maybe late
         self.views: dict[int, FollowedView] = {}  # by client
 
     def start(self, body: NDArray[np.float64], offset: Iterable[Vector]) -> None:
         """Start beside a body at `body` (3,) [m]; offset: camera and target from it [m]."""
         self.body, self.start_offset = body, np.array(list(offset))
-        self.start_place = body + self.start_offset
         self.views = {}
 
     def follow(self, body: NDArray[np.float64], cameras: Mapping[int, Any], now: float | None = None) -> None:
@@ -73,19 +69,20 @@ class FollowCamera:
         for client in self.views.keys() - cameras.keys():
             del self.views[client]
         for client, camera in cameras.items():
-            place = np.array([camera.position, camera.look_at], float)
             view = self.views.get(client)
             if view is None:
-                view = self.views[client] = FollowedView(self.start_offset, now)
+                view = self.views[client] = FollowedView(self.start_offset)
+                place = body + view.offset
+                place_camera(camera, *place)
                 view.remember(place)
-                view.remember(self.start_place)
-                view.put(camera, body)
+            if is_waiting(camera):
                 continue
+            place = place_of(camera)
             elsewhere = not view.is_own(place)
-            if elsewhere and now - view.first_placed > START_TIME:
+            if elsewhere:
                 view.offset, view.hand_moved = place - body, now
                 view.remember(place)
-            elif (body_moved or elsewhere) and now - view.hand_moved > HAND_TIME:
+            elif body_moved and now - view.hand_moved > HAND_TIME:
                 view.put(camera, body)
         if body_moved:
             self.body = body

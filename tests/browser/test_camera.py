@@ -5,6 +5,8 @@ import random
 import numpy as np
 import pytest
 
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
 from app.scenes import scene_named
 from app.server.viewer import Viewer
 from sim.parameters import check_record
@@ -38,6 +40,16 @@ RECORD_HEIGHTS = """() => { const viewer = window.__viserMutable, scene = viewer
         }
         return below;
     } }"""
+
+# Frames run only as often as the test lets them.
+HOLD_FRAMES = """() => { window.held = []; window.realFrame = window.requestAnimationFrame;
+    window.requestAnimationFrame = (callback) => window.held.push(callback); }"""
+ONE_FRAME = """() => new Promise((done) => window.realFrame.call(window, (now) => {
+    for (const callback of window.held.splice(0)) callback(now);
+    done(); }))"""
+ALL_FRAMES = """() => { window.requestAnimationFrame = window.realFrame;
+    for (const callback of window.held.splice(0)) window.requestAnimationFrame(callback); }"""
+PAGE_CAMERA = """() => { const { x, y, z } = window.__viserMutable.camera.position; return [-z, -x, y]; }"""
 
 
 def view_of(viewer: Viewer) -> np.ndarray:
@@ -92,3 +104,30 @@ def test_the_camera_stays_above_the_waves_of_a_storm(shown: tuple[Viewer, Tab], 
     tab.wait(lambda: np.abs(view_of(lab) - first).max() > 1.0)
     assert tab.page.evaluate("window.lowest") > 0.0
     assert not tab.errors
+
+
+def test_set_this_up_on_a_slow_page_shows_what_the_task_is_about(shown: tuple[Viewer, Tab]) -> None:
+    """The page reports the camera of the scene before, long after the server has placed that of the task."""
+    lab, tab = shown
+    tab.follow(lab, "race")
+    tab.wait(lambda: tab.page.evaluate(PAGE_CAMERA)[1] < -50.0)  # the ropes are seen from far away
+    workbook = Workbook(load_tasks(with_checks=False))
+    task = next(task for task in workbook.tasks if task.item == "1.1-2")
+    tab.page.evaluate(HOLD_FRAMES)
+    try:
+        lab.panel.set_up(workbook.set_up_of(task))
+        tab.wait(lambda: lab.is_open and lab.panel.kind.name == "radial_sea" and lab.loop.scene.time > 2.0)
+        tab.page.evaluate(ONE_FRAME)  # takes the messages; the field of view has the page report its camera
+        tab.page.wait_for_timeout(1000)
+    finally:
+        tab.page.evaluate(ALL_FRAMES)
+
+    def distance() -> float:
+        """[m] of the page's camera from where it should be, beside a body that drifts."""
+        return float(
+            np.linalg.norm(tab.page.evaluate(PAGE_CAMERA) - np.array(lab.view.first_view(lab.panel.params)[0]))
+        )
+
+    tab.wait(lambda: distance() < 1.0, 30)
+    tab.page.wait_for_timeout(1000)
+    assert distance() < 2.0  # and it stays with the body

@@ -106,11 +106,11 @@ class View:
             material = self.material
         mesh_shape = len(frame.vertices), p.length
         if self.water is None or mesh_shape != self.mesh_shape:
+            n, length = mesh_shape
             if self.water is not None:
                 self.water.remove()
-            n, length = mesh_shape
+                self.move_cameras(self.mesh_shape[1], length)
             self.water = Water(self.server, "/sea", n, n, length, tiles=TILES, material=material)
-            self.move_cameras(self.mesh_shape[1], length)
             self.mesh_shape = mesh_shape
         elif material is not self.material and material != self.material:
             self.water.set_material(material)

@@ -11,6 +11,7 @@ from app.scenes.rope.scene import RopeScene
 from app.server.loop import SimLoop
 from app.server.replay import MOMENT_INTERVAL, Replay
 from sim.parameters import check_record
+from tests.app.render.test_cameras import FakeCamera
 
 MOMENTS = tuple(Moment(0.1 * k, k, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)) for k in range(4))
 
@@ -117,13 +118,9 @@ def test_a_step_by_hand_that_diverges_halts_at_once() -> None:
     assert loop.replay is None
 
 
-class Camera:
-    position = look_at = None
-
-
 class Client:
     def __init__(self) -> None:
-        self.camera = Camera()
+        self.camera = FakeCamera()
 
 
 class Server:
@@ -139,7 +136,7 @@ def test_a_camera_is_fitted_by_moving_away_and_never_nearer(size: float, moves: 
     server, view, angle = Server(), ((0.0, -4.0, 2.0), (0.0, 0.0, 2.0)), 1.3
     fit_cameras(server, view, angle, ((-size, -size, 2.0 - size), (size, size, 2.0 + size)))
     position, target = np.array(server.client.camera.position), np.array(server.client.camera.look_at)
-    assert tuple(target) == view[1]
+    np.testing.assert_allclose(target, view[1])
     distance = np.linalg.norm(position - target)
     assert (distance > 4.0) == moves
     corners = np.array(np.meshgrid(*[[-size, size]] * 3)).reshape(3, -1).T

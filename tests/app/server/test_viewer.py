@@ -6,6 +6,7 @@ import time
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from app.messages import Grab, Reset, StepOnce
@@ -13,6 +14,7 @@ from app.panel.recorder import MAX_RATE
 from app.scenes import scene_named
 from app.scenes.compiling import Job
 from app.server.viewer import Viewer
+from sim.parameters import check_record
 from tests import coroutines
 
 
@@ -61,6 +63,15 @@ def test_what_is_handed_over_is_not_held_back(lab: Viewer) -> None:
     buffer = lab.server._websock_server.get_message_buffer()
     assert "window_duration_sec" in {field.name for field in dataclasses.fields(buffer)}  # as viser names it
     assert buffer.window_duration_sec == 0.0
+
+
+def test_the_first_picture_of_a_sea_of_another_size_leaves_the_camera_where_it_was_placed(lab: Viewer) -> None:
+    kind = scene_named("square_sea")
+    params = check_record(kind.params, {**kind.presets["Storm over"], "size": "64", "mesh": "32"})
+    lab.open("square_sea", params, paused=True)
+    wait_for(lambda: lab.view.last is not None)
+    camera = lab.server.initial_camera
+    np.testing.assert_allclose([camera.position, camera.look_at], lab.view.first_view(params))
 
 
 class Client:

@@ -11,13 +11,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.lab.rope_march import Functions, Segment, Unfit, fitting
+from app.lab.rope_march import Functions, Unfit, fitting
 from app.lab.tasks.cloth_forces import cloth_forces
 from app.lab.tasks.cloth_links import cloth_links
 from app.lab.tasks.step_euler import step_euler
 from app.lab.tasks.step_rk4 import step_rk4
 
 FILE = "cloth.py"  # where the tasks have these functions
+# Fractions of a step at which each method asks for the acceleration.
+MOMENTS = {"step_euler": (0.0,), "step_symplectic": (0.0,), "step_rk4": (0.0, 0.5, 0.5, 1.0)}
 
 
 def step_symplectic(x: Any, v: Any, h: float, acceleration: Callable[..., Any]) -> tuple[Any, Any]:
@@ -37,7 +39,7 @@ class Sheet(NamedTuple):
     spacing: tuple[float, float]  # [m] at rest, along a row and along a column
     shear: float  # [N/m] of the links across a cell
     bend: float  # [N/m] of the links to the next point but one
-    pins: tuple[int, ...]  # numbers of the points that are held; a segment's `root` says where
+    pins: tuple[int, ...]  # numbers of the points that are held; a segment's `path` says where
 
 
 class ClothFunctions(Functions):
@@ -71,6 +73,14 @@ class ClothFunctions(Functions):
         a = total / f.mass
         a[:, 2] -= f.gravity
         return a
+
+    def start_clock(self, x: np.ndarray, v: np.ndarray) -> None:
+        """Start a step. The steps of a cloth are the program's: when they ask for the acceleration is known."""
+        self.moments = iter(MOMENTS[self.step])
+
+    def time_in_step(self, x: np.ndarray) -> float:
+        """Time [s] since the start of the step."""
+        return next(self.moments) * self.segment.h
 
     def acceleration(self, x: Any, v: Any) -> np.ndarray:
         """The accelerations [m/s2], shape (n, 3), that a step asks for."""
@@ -106,11 +116,6 @@ class ClothFunctions(Functions):
         if "cloth_forces" in self.own and np.isnan(self.link_forces(x, v, self.kind >= 0, self.forces.stiffness)).any():
             text = "cloth_forces returns NaN (not a number): look for a division by 0 or the root of a negative number"
             raise Unfit("NaN", text, self.own["cloth_forces"])
-
-    def hold(self, x: np.ndarray, v: np.ndarray, segment: Segment, i: int) -> None:
-        """Put the pins where they are after step i."""
-        if len(segment.root):
-            x[self.pins], v[self.pins] = np.moveaxis(segment.root[i].reshape(len(self.pins), 2, 3), 1, 0)
 
 
 def corners(of: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

@@ -80,6 +80,7 @@ class StudentReport(NamedTuple):
     restarts: int = 0  # how often it was too late and started again from the program's rope
     left_at: float = math.nan  # [s] when it left its bounds
     difference: float = math.nan  # [m] largest distance between the same points of both; NaN where they have others
+    unlike: tuple[str, ...] = ()  # why a right solution differs from the program's, beginning with the parameter
     grid: tuple[int, int] = (0, 0)  # rows and columns of the student's cloth, where it is coarser than the program's
     times: NDArray[np.float64] = np.zeros(0)  # (rows,) [s]
     differences: NDArray[np.float64] = np.zeros(0)  # (rows,) [m]
@@ -104,6 +105,7 @@ class Material(NamedTuple):
     """What tells a rope from a cloth."""
 
     file: str  # of the student's functions
+    exact: frozenset[str]  # methods by which a right solution moves as the program's, to rounding
     step_of: Callable[[str], str]  # method -> the function that takes its steps
     own_of: Callable[..., frozenset[str]]  # version, method, sphere -> the student's functions that move it
     attempt: Callable[..., None]  # runner, version, method, sphere: takes a few steps, and raises RunError
@@ -130,7 +132,7 @@ def try_cloth(runner: Runner, saved: Saved, method: str, *, sphere: bool) -> Non
     )  # fmt: skip
     sheet = Sheet(rows, cols, (spacing, spacing), 100.0, 3.0, (0, cols - 1))
     own = own_of_cloth(saved, method, sphere=sphere)
-    runner.march(own, step_of_cloth(method), x, 0.1 * x, [Segment(3, 1 / 480, forces, np.zeros((0, 12)))], sheet)
+    runner.march(own, step_of_cloth(method), x, 0.1 * x, [Segment(3, 1 / 480, forces, np.zeros((0, 4, 3)))], sheet)
 
 
 def try_rope(runner: Runner, saved: Saved, method: str, *, sphere: bool) -> None:
@@ -145,11 +147,13 @@ def try_rope(runner: Runner, saved: Saved, method: str, *, sphere: bool) -> None
         (0.0, 0.0, 0.0), 0.0, 0.0, 1.0,
     )  # fmt: skip
     own = own_of(saved, method, sphere=sphere)
-    runner.march(own, step_of(method), x, v, [Segment(3, 1 / 480, forces, np.zeros((0, 6)))])
+    runner.march(own, step_of(method), x, v, [Segment(3, 1 / 480, forces, np.zeros((0, 4, 3)))])
 
 
-ROPE = Material(ROPE_FILE, step_of, own_of, try_rope)
-CLOTH = Material(CLOTH_FILE, step_of_cloth, own_of_cloth, try_cloth)
+ROPE = Material(ROPE_FILE, frozenset({"explicit_euler", "rk4"}), step_of, own_of, try_rope)
+CLOTH = Material(
+    CLOTH_FILE, frozenset({"explicit_euler", "rk4", "symplectic_euler"}), step_of_cloth, own_of_cloth, try_cloth
+)
 
 
 class LiveNet:

@@ -1,7 +1,8 @@
 """Advances a rope with a student's functions, in the process that runs them.
 
 What the student has not written yet, the reference solutions do. Floor, friction and the pull of the mouse, which are
-no task, are the program's laws (`sim/springs/forces`), in numpy. Only numpy is imported here, so that the process
+no task, are the program's laws (`sim/springs/forces`), in numpy. A parameter that acts here otherwise than on the
+program's rope is named in the panel (`unlike` in `student_rope.py` and `student_cloth.py`). Only numpy is imported here, so that the process
 starts fast.
 """
 
@@ -39,7 +40,7 @@ class Forces(NamedTuple):
     gravity: float  # [m/s2], downwards
     floor: float  # [m] where points meet it; -inf: none
     radius: float  # [m] at which points meet the sphere; 0: none
-    centre: tuple[float, float, float]  # [m] of the sphere at the start
+    centre: tuple[float, float, float]  # [m] of the sphere at time 0 of the segment
     velocity: tuple[float, float, float]  # [m/s] of the sphere
     contact_stiffness: float  # [N/m]
     contact_damping: float  # [N s/m]
@@ -61,9 +62,10 @@ class Segment(NamedTuple):
     steps: int
     h: float  # [s]
     forces: Forces
-    # (steps, 6 p) position [m] and velocity [m/s] of each of the p points that are held, after each step; (0, 6 p)
-    # where they rest. A rope has one, its root.
-    root: np.ndarray
+    # (p, 4, 3) cubic path c0 + c1 t + c2 t^2 + c3 t^3 [m] of each of the p points that are held; (0, 4, 3) where they
+    # rest. A rope has one, its root.
+    path: np.ndarray
+    since: float = 0.0  # time t [s] of the first step, for the path and the sphere
 
 
 class March(NamedTuple):
@@ -126,11 +128,9 @@ class Functions:
         self.own = {name: function for name, function in found.items() if callable(function)}
         self.links = compiled.get(LINKS)
         self.step = step
-        self.forces: Forces
-        # Share of a step at which the sphere is taken: at the start by methods that ask there only; a step of another
-        # method does not say at which of its moments it asks.
-        self.moment = 0.0 if step in ("step_euler", "step_symplectic") else 0.5
-        self.now = 0.0  # [s] since the start of the segment, at that moment
+        self.pins = np.zeros(1, int)
+        self.segment: Segment
+        self.start = self.now = 0.0  # times t [s] of the segment: of the step's start, and of the acceleration
 
     def get(self, name: str) -> Callable[..., Any]:
         """The student's function, or the reference solution."""
@@ -148,11 +148,36 @@ class Functions:
         if x.ndim != 2 or x.shape[1] != 3 or x.shape != v.shape:
             text = f"{self.step} calls acceleration(x, v) with shapes {x.shape} and {v.shape}; both must be (n, 3)"
             raise Unfit("wrong shape", text, self.get(self.step))
+        self.now = self.start + self.time_in_step(x)
+        if len(self.segment.path):
+            x, v = self.held(x, v, self.now)
         a = self.inner(x, v)
         self.add_surroundings(x, v, a)
         if np.isnan(a.sum()) and np.isfinite(x).all() and np.isfinite(v).all() and np.isnan(a).any():
             self.name_nan(x, v)
         return a
+
+    def time_in_step(self, x: np.ndarray) -> float:
+        """Time [s] since the start of the step at which it asks for the acceleration at x.
+
+        A root that moves is the clock, see `advance`. Otherwise it is not known; then the sphere is taken at the start
+        by Euler's method, and else in the middle.
+        """
+        if len(self.segment.path):
+            return float(x[0, 0])
+        return 0.0 if self.step == "step_euler" else 0.5 * self.segment.h
+
+    def held(self, x: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Positions and velocities with the points on their path at time t [s] of the segment."""
+        c0, c1, c2, c3 = self.segment.path.transpose(1, 0, 2)
+        x, v = x.copy(), v.copy()
+        x[self.pins], v[self.pins] = c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + t * 3.0 * c3)
+        return x, v
+
+    @property
+    def forces(self) -> Forces:
+        """Material and surroundings."""
+        return self.segment.forces
 
     def inner(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Springs, air and gravity: by `rope_acceleration`, or by `spring_force` at each link."""
@@ -199,19 +224,21 @@ class Functions:
             a[f.held] += (k * gap - f.pull_damping * v[f.held]) / f.mass
 
     def sphere_now(self) -> tuple[np.ndarray, np.ndarray]:
-        """Centre [m] and velocity [m/s] of the sphere in the middle of the step."""
+        """Centre [m] and velocity [m/s] of the sphere."""
         velocity = np.array(self.forces.velocity)
         return np.array(self.forces.centre) + self.now * velocity, velocity
 
     def sphere(self, x: np.ndarray, v: np.ndarray, centre: np.ndarray, distance: float) -> np.ndarray:
-        """The force [N], shape (3,), of the sphere on a point; the student's is without friction."""
+        """The force [N], shape (3,), of the sphere on a point; the program's friction acts by the student's push."""
         f = self.forces
+        normal = (x - centre) / distance if distance else np.array([0.0, 0.0, 1.0])
         if "sphere_force" not in self.own:
-            normal = (x - centre) / distance if distance else np.array([0.0, 0.0, 1.0])
             return self.contact(f.radius - distance, normal, v, f.radius - distance)
         numbers = f.radius, f.contact_stiffness, f.contact_damping
         value = self.own["sphere_force"](x.copy(), v.copy(), centre.copy(), *numbers)
-        return self.fit("sphere_force", value, (3,))
+        force = self.fit("sphere_force", value, (3,))
+        push = float(force @ normal)
+        return force if f.lab_contact or not push > 0.0 else force - self.grip(push, normal, v)
 
     def contact(self, depth: float, normal: np.ndarray, v: np.ndarray, lab_scale: float) -> np.ndarray:
         """The program's law of contact (`sim/springs/forces/contact.py`): force [N], shape (3,).
@@ -221,19 +248,18 @@ class Functions:
         f = self.forces
         if f.lab_contact:
             return f.contact_stiffness * depth * normal - f.contact_damping * lab_scale * v
-        leaving = float(v @ normal)
-        push = max(0.0, f.contact_stiffness * depth - f.contact_damping * leaving)
-        sliding = v - leaving * normal
+        push = max(0.0, f.contact_stiffness * depth - f.contact_damping * float(v @ normal))
+        return push * normal - self.grip(push, normal, v)
+
+    def grip(self, push: float, normal: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Coulomb friction [N], shape (3,), against the motion of a point that is pushed [N] along the normal."""
+        f = self.forces
+        sliding = v - float(v @ normal) * normal
         speed = float(np.linalg.norm(sliding))
-        grip = f.mass / self.h
+        grip = f.mass / self.segment.h
         if f.friction * push < grip * speed:
             grip = f.friction * push / speed
-        return push * normal - (grip if f.friction else 0.0) * sliding
-
-    def hold(self, x: np.ndarray, v: np.ndarray, segment: Segment, i: int) -> None:
-        """Put the root where it is after step i."""
-        if len(segment.root):
-            x[0], v[0] = segment.root[i, :3], segment.root[i, 3:]
+        return (grip if f.friction else 0.0) * sliding
 
     def name_nan(self, x: np.ndarray, v: np.ndarray) -> None:
         """Raises Unfit for the function that returns NaN at this state."""
@@ -254,10 +280,17 @@ class Functions:
                 text = f"{name} returns NaN (not a number): look for a division by 0 or the root of a negative number"
                 raise Unfit("NaN", text, self.own[name])
 
-    def advance(self, x: np.ndarray, v: np.ndarray, h: float) -> tuple[np.ndarray, np.ndarray]:
-        """One step. Raises Unfit."""
-        self.h = h
-        value = self.get(self.step)(x.copy(), v.copy(), h, self.acceleration)
+    def advance(self, x: np.ndarray, v: np.ndarray, start: float) -> tuple[np.ndarray, np.ndarray]:
+        """One step from time `start` [s] of the segment. Raises Unfit.
+
+        A step does not say at which time it asks for an acceleration. A root that moves tells: it is given to the step
+        as a clock, at x = 0 with 1 m/s, and is where it should be wherever a force is computed.
+        """
+        h = self.segment.h
+        self.start = start
+        x, v = x.copy(), v.copy()
+        self.start_clock(x, v)
+        value = self.get(self.step)(x, v, h, self.acceleration)
         if value is None:
             text = f"{self.step} returns nothing: the last line must be return ..."
             raise Unfit("returns nothing", text, self.get(self.step))
@@ -270,7 +303,12 @@ class Functions:
         if np.isnan(x_new.sum() + v_new.sum()) and (np.isnan(x_new).any() or np.isnan(v_new).any()):
             text = f"{self.step} returns NaN (not a number): look for a division by 0 or the root of a negative number"
             raise Unfit("NaN", text, self.get(self.step))
-        return x_new, v_new
+        return self.held(x_new, v_new, start + h) if len(self.segment.path) else (x_new, v_new)
+
+    def start_clock(self, x: np.ndarray, v: np.ndarray) -> None:
+        """Make the root of x and v the clock of a step."""
+        if len(self.segment.path):
+            x[0], v[0] = 0.0, (1.0, 0.0, 0.0)
 
 
 def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Segment]) -> March:
@@ -280,12 +318,10 @@ def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Seg
     began = time.perf_counter()
     with np.errstate(all="ignore"):
         for segment in segments:
-            functions.forces = segment.forces
+            functions.segment = segment
             for i in range(segment.steps):
-                functions.now = (i + functions.moment) * segment.h
-                x, v = functions.advance(x, v, segment.h)
+                x, v = functions.advance(x, v, segment.since + i * segment.h)
                 taken += 1
-                functions.hold(x, v, segment, i)
                 left = not (np.abs(x).max() < MAX_COORDINATE and np.abs(v).max() < MAX_COORDINATE)
                 if left:
                     break
@@ -299,10 +335,10 @@ def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Seg
 
 def packed(segment: Segment) -> list[Any]:
     """A segment as what crosses the pipe (`wire.py`)."""
-    return [segment.steps, segment.h, [*segment.forces], segment.root]
+    return [segment.steps, segment.h, [*segment.forces], segment.path, segment.since]
 
 
 def unpacked(parts: Any) -> Segment:
     """The segment that `packed` made."""
-    steps, h, forces, root = parts
-    return Segment(int(steps), float(h), Forces(*forces), np.asarray(root, np.float64))
+    steps, h, forces, path, since = parts
+    return Segment(int(steps), float(h), Forces(*forces), np.asarray(path, np.float64), float(since))

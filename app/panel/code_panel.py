@@ -29,6 +29,7 @@ from app.scenes.charts import PALETTE
 from sim.formatting import number
 
 SAME = 1e-6  # [m] below which two ropes are the same
+ROUNDING = 1e-9  # [m] by which a right solution may differ where nothing else explains a difference
 CHART_WIDTH, CHART_HEIGHT = 280, 110  # [pixels] of the chart of the difference
 CHART_LEFT, CHART_BOTTOM, CHART_TOP = 40, 18, 8  # [pixels] of its margins
 MAX_POINTS = 150  # of its line
@@ -183,9 +184,10 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
         said.append(difference_chart(report))
     if report.grid != (0, 0):
         rows, cols = report.grid
-        said.append(fill("{} × {} points, without pleats and self-collision: plain Python is slow.", rows, cols))
-    if scene == "rope" and report.method == "leapfrog" and report.difference > SAME:
-        said.append(faint("The program's leapfrog takes damping exactly: a right one differs by a centimetre or so."))
+        what = "Rows and columns: {} × {} points, without pleats, self-collision and mouse, as plain Python is slow."
+        said.append(fill(what, rows, cols))
+    if not report.difference < ROUNDING:
+        said += [faint(line) for line in report.unlike]
     if report.restarts:
         often = "once" if report.restarts == 1 else f"{report.restarts} times"
         said.append(faint(f"Too slow: it started again from the program's {scene} {often}."))

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.lab.cloth_march import Sheet
-from app.lab.live_net import Answer, LiveNet
+from app.lab.live_net import CLOTH, Answer, LiveNet
 from app.lab.rope_march import Segment
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.start import build, sphere_home
@@ -32,10 +32,11 @@ class StudentCloth(StudentNet):
 
     def set_up(self, params: Params) -> bool:
         """Choose the points, and what joins them. Whether they are others than before."""
-        self.params = params
+        self.params, self.unlike = params, unlike(params)
         rows, cols = params.rows, params.cols
         self.is_comparable = rows * cols <= MAX_SAME_POINTS
         if not self.is_comparable:
+            self.rows.clear()
             rows, cols = min(rows, self.side), min(cols, self.side)
             # Without pleats, which a coarse cloth does not resolve: as wide as the pleated one.
             width = params.width * (params.gather if params.start == "hanging" else 1.0)
@@ -87,14 +88,11 @@ class StudentCloth(StudentNet):
         if not self.is_comparable:
             forces = forces._replace(held=-1)
         pins = list(self.sheet.pins)
-        moved = x[pins] - last[pins]
-        path = np.zeros((0, 6 * len(pins)))
-        if moved.any():
-            share = np.arange(1, steps + 1)[:, None, None] / steps
-            held = np.concatenate(
-                [last[pins] + share * moved, np.broadcast_to(moved / duration, (steps, *moved.shape))], axis=-1
-            )
-            path = held.reshape(steps, -1)
+        path = np.zeros((len(pins), 4, 3))
+        path[:, 0], path[:, 1] = last[pins], (x[pins] - last[pins]) / duration
+        if self.is_comparable:
+            for (i, j), exact in net.pin_paths:
+                path[pins.index(i * self.sheet.cols + j)] = exact.coefficients
         segment = Segment(steps, duration / steps, forces, path)
         self.follow(segment, after.t, self.params.integrator, x, self.rows_of(after.v))
 
@@ -123,3 +121,13 @@ class StudentCloth(StudentNet):
             x = self.net.x0.reshape(3, -1).T.copy()
             self.begin(x, np.zeros_like(x), self.time)
             self.tell_grid()
+
+
+def unlike(params: Params) -> tuple[str, ...]:
+    """The parameters that the functions of the tasks do not feel as the program's cloth does, a line each."""
+    lines: list[str] = []
+    if params.integrator not in CLOTH.exact:
+        lines.append("Method: your cloth steps by symplectic Euler, the program's by the method that you chose.")
+    if params.thickness > 0.0:
+        lines.append("Self-collision distance: the points of your cloth do not push each other.")
+    return tuple(lines)

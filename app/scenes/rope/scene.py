@@ -277,7 +277,7 @@ class RopeScene:
         self.net = net
         if self.student is not None:
             x, v = rows_of(self.state.x), rows_of(self.state.v)
-            self.student.follow_rope(net, good.t, steps, self.step, self.params.integrator, x, v)
+            self.student.follow_rope(net, good.t, steps, self.params, x, v)
         is_due = self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL and self.has_news()
         self.counts.add("stability checks", 1, is_due)
         if is_due:

@@ -3,7 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from app.lab.live_net import ROPE, step_of
 from app.lab.rope_march import Segment
+from app.scenes.rope.parameters import Params
 from app.scenes.springs.student_net import StudentNet, forces_of
 from sim.springs import Net
 
@@ -12,18 +14,25 @@ class StudentRope(StudentNet):
     """Used by the rope scene on the simulation thread."""
 
     def follow_rope(
-        self, net: Net, start: float, steps: int, h: float, method: str, x: NDArray[np.float64], v: NDArray[np.float64]
+        self, net: Net, start: float, steps: int, params: Params, x: NDArray[np.float64], v: NDArray[np.float64]
     ) -> None:
         """The program's rope has taken steps from time `start` [s], and is at x with velocities v, shape (n, 3)."""
-        segment = Segment(steps, h, forces_of(net, start), root_path(net, start, steps, h))
-        self.follow(segment, start + steps * h, method, x, v)
+        self.unlike = unlike(params)
+        path = np.array([path.coefficients for _, path in net.pin_paths]).reshape(-1, 4, 3)
+        segment = Segment(steps, params.time_step, forces_of(net, start), path)
+        self.follow(segment, start + steps * params.time_step, params.integrator, x, v)
 
 
-def root_path(net: Net, start: float, steps: int, h: float) -> NDArray[np.float64]:
-    """(steps, 6) position [m] and velocity [m/s] of a moving root after each step; (0, 6) of one that rests."""
-    if not net.pin_paths:
-        return np.zeros((0, 6))
-    path = net.pin_paths[0][1]
-    s = (start - path.start + h * np.arange(1, steps + 1))[:, None]
-    c0, c1, c2, c3 = (np.array(c) for c in path.coefficients)
-    return np.hstack([c0 + s * (c1 + s * (c2 + s * c3)), c1 + s * (2.0 * c2 + s * 3.0 * c3)])
+def unlike(params: Params) -> tuple[str, ...]:
+    """The parameters that the functions of the tasks do not feel as the program's rope does, a line each."""
+    lines: list[str] = []
+    method = params.integrator
+    if method == "leapfrog":
+        lines.append("Method: the program's takes damping exactly; a right step_leapfrog differs by a centimetre or so.")
+    elif method not in ROPE.exact:
+        lines.append(f"Method: your rope steps by {step_of(method)}, the program's by the method that you chose.")
+    if params.damping_model == "axial":
+        lines.append("Damping model: the program's acts along the link, that of spring_force in all directions.")
+    if params.sphere and params.contact_law == "lab":
+        lines.append("Contact law: the program's sphere may pull, as in the lab's code; sphere_force only pushes.")
+    return tuple(lines)

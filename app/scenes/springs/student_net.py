@@ -28,6 +28,7 @@ class Piece(NamedTuple):
     """A piece of the program's motion."""
 
     segment: Segment
+    sheet: Sheet | None  # what the cloth is made of in it
     time: float  # [s] at its end
     x: NDArray[np.float64] | None  # (n, 3) [m] the program's net at its end; None within a piece that was divided
 
@@ -37,6 +38,7 @@ class StudentNet:
 
     sheet: Sheet | None = None  # what a cloth is made of; None for a rope
     is_comparable = True  # whether it has the same points as the program's
+    unlike: tuple[str, ...] = ()  # of `StudentReport`, with the parameters as they are
 
     def __init__(self, live: LiveNet) -> None:
         self.live = live
@@ -73,8 +75,8 @@ class StudentNet:
         start = end - segment.steps * segment.h
         for part in parts[:-1]:
             start += part.steps * part.h
-            self.waiting.append(Piece(part, start, None))
-        self.waiting.append(Piece(parts[-1], end, x))
+            self.waiting.append(Piece(part, self.sheet, start, None))
+        self.waiting.append(Piece(parts[-1], self.sheet, end, x))
         if end - self.time > MAX_BEHIND and not self.left:
             restarts = self.live.report.restarts + 1
             self.begin(x, v, end)
@@ -86,14 +88,14 @@ class StudentNet:
         if self.sent or not self.waiting or self.left:
             return
         most = JOB_TIME / self.cost if self.cost else 1.0
-        pieces: list[Piece] = []
-        steps = 0
-        while self.waiting and (not pieces or steps + self.waiting[0].segment.steps <= most):
+        pieces = [self.waiting.popleft()]
+        sheet, steps = pieces[0].sheet, pieces[0].segment.steps
+        while self.waiting and self.waiting[0].sheet == sheet and steps + self.waiting[0].segment.steps <= most:
             pieces.append(self.waiting.popleft())
             steps += pieces[-1].segment.steps
         self.sent = pieces
         segments = [piece.segment for piece in pieces]
-        self.live.submit(Job(self.run, self.method, self.x, self.v, segments, self.answers, self.sheet))
+        self.live.submit(Job(self.run, self.method, self.x, self.v, segments, self.answers, sheet))
 
     def collect(self, max_reach: float) -> None:
         """Take the answers that have come. max_reach: [m] from the first point at which a net has left its bounds."""
@@ -108,7 +110,7 @@ class StudentNet:
         pieces, self.sent = self.sent, []
         sphere = any(piece.segment.forces.radius > 0.0 for piece in pieces)
         self.live.report = self.live.report._replace(
-            version=answer.version, compiled=answer.compiled, method=self.method, sphere=sphere
+            version=answer.version, compiled=answer.compiled, method=self.method, sphere=sphere, unlike=self.unlike
         )
         if not answer.version:
             self.points = self.matched = None
@@ -151,14 +153,10 @@ class StudentNet:
 
 def divided(segment: Segment) -> list[Segment]:
     """The same steps in parts of MAX_PART at most."""
-    parts: list[Segment] = []
-    forces = segment.forces
-    for first in range(0, segment.steps, MAX_PART):
-        steps = min(MAX_PART, segment.steps - first)
-        centre = np.array(forces.centre) + first * segment.h * np.array(forces.velocity)
-        x, y, z = centre.tolist()
-        parts.append(Segment(steps, segment.h, forces._replace(centre=(x, y, z)), segment.root[first : first + steps]))
-    return parts
+    return [
+        segment._replace(steps=min(MAX_PART, segment.steps - first), since=first * segment.h)
+        for first in range(0, segment.steps, MAX_PART)
+    ]
 
 
 def forces_of(net: Net, start: float) -> Forces:

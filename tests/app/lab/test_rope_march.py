@@ -19,7 +19,7 @@ def test_nan_is_said_of_the_force_of_a_sphere_that_has_come_near() -> None:
 
     x = np.array([[0.0, 0.0, 3.0], [-0.2, 0.0, 3.0], [-0.4, 0.0, 3.0]])
     module = types.SimpleNamespace(sphere_force=sphere_force)
-    segment = Segment(2000, 1 / 960, FORCES, np.zeros((0, 6)))
+    segment = Segment(2000, 1 / 960, FORCES, np.zeros((0, 4, 3)))
     functions = Functions(module, ["sphere_force"], "step_rk4", {})  # type: ignore[arg-type]
     with pytest.raises(Unfit, match="sphere_force returns NaN"):
         march(functions, x, np.zeros((3, 3)), [segment])

@@ -122,8 +122,7 @@ def test_a_right_function_moves_the_rope_as_the_program_does(right: Session, val
     frame = scene.frame()
     assert frame.reference is not None
     assert np.abs(frame.points[:, 2].astype(float) - 3.0).max() > 0.01  # it has moved
-    tolerance = 1e-3 if "root_swing" in values else 1e-9  # a step sees the moving root go on straight
-    assert right.rope.report.difference < tolerance
+    assert right.rope.report.difference < 1e-9
     assert scene.time == pytest.approx(right.rope.report.times[-1])
 
 

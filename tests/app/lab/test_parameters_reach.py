@@ -1,0 +1,129 @@
+"""Right solutions move rope and cloth as the program does, whatever a parameter is; or the panel names the parameter."""
+
+import dataclasses
+import inspect
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.lab.folder import make_folder
+from app.lab.session import Session
+from app.lab.task import load_tasks
+from app.messages import Grab, StudentAnswer
+from app.panel.code_panel import code_lines, tables_of
+from app.scenes.cloth.parameters import Params as ClothParams
+from app.scenes.cloth.scene import ClothScene
+from app.scenes.rope.parameters import Params as RopeParams
+from app.scenes.rope.scene import RopeScene
+from sim.parameters import Parameter, Value, effect_of_change, in_words, parameters_of
+from tests.app.lab.test_session import save, wait_for
+
+TASKS = load_tasks()
+FRAME = 1 / 30  # [s] of a scene's motion
+BEFORE, AFTER = 0.1, 1.0  # [s] of motion before and after the parameter is changed
+# A parameter is tested in the first of these in which it acts on the motion. The rope falls over the sphere onto the
+# floor, its root swings, and a hand pulls it. The cloth falls over a sphere that moves up and down, onto the floor, in
+# the wind, and a hand pulls it; or it hangs in pleats that touch each other.
+ROPE = RopeParams(
+    integrator="rk4", time_step=1 / 240, points=8, length=6.0, sphere=True, root_swing=0.1, swing_period=2.0, pull=20.0
+)
+CLOTH = ClothParams(
+    integrator="rk4", time_step=1 / 240, rows=5, cols=6, stiffness=100.0, shear=60.0, bend=3.0, damping=0.2, density=1.0,
+    start="level", sphere=True, sphere_radius=0.4, bob=0.2, width=1.0, length=3.6, contact_damping=2.0, pull=1.0,
+)  # fmt: skip
+PLEATS = dataclasses.replace(
+    CLOTH, start="hanging", pinned="corners", width=0.4, length=0.4, gather=0.4, shear=20.0, bend=0.5, sphere=False
+)
+BASES = {"rope": (ROPE, dataclasses.replace(ROPE, units="material")), "cloth": (CLOTH, PLEATS)}
+SCENES: dict[str, Any] = {"rope": RopeScene, "cloth": ClothScene}
+HELD = {"rope": 5, "cloth": 22}  # point that the hand pulls
+FILES = {"rope": "rope.py", "cloth": "cloth.py"}
+CASES = [
+    (name, parameter)
+    for name, bases in BASES.items()
+    for parameter, declared in parameters_of(bases[0]).items()
+    if declared.affects != "look"
+]
+
+
+@pytest.fixture(scope="module")
+def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
+    """A folder with the reference solutions, which move rope and cloth."""
+    folder = tmp_path_factory.mktemp("lab") / "mine"
+    make_folder(folder, TASKS)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("app.lab.session.COMPILE_DELAY", 1e6)
+        session = Session(folder, TASKS)
+        wait_for(lambda: session.state.version == 1)
+        for name, file in FILES.items():
+            sources = (inspect.getsource(task.function) for task in TASKS if task.file == file)
+            save(session, "import numpy as np\n\n\n" + "\n\n".join(sources), file)
+            wait_for(lambda name=name: getattr(session, name).taken == session.state.version)
+        yield session
+        session.close()
+
+
+def values_of(declared: Parameter, value: Any) -> list[Value]:
+    """Three values or more, where there are so many: all choices; or the default, and one on each side of `value`."""
+    if declared.choices:
+        return list(declared.choices)
+    if declared.kind is bool:
+        return [False, True]
+    sides = (0.75 * value, 1.25 * value) if value else (0.5 * declared.high, declared.high)
+    return [declared.default, *(declared.kind(min(max(side, declared.low), declared.high)) for side in sides)]
+
+
+def run(scene: Any, seconds: float) -> None:
+    """Advance by some time [s], with as much time for the student's as it needs."""
+    end = scene.time + seconds
+    while scene.time < end - 1e-9:
+        scene.advance(max(1, round(FRAME / scene.step)))
+        while scene.student is not None and scene.student.sent:
+            wait_for(scene.student.answers.qsize)
+            scene.handle(StudentAnswer())
+
+
+def changed(name: str, base: Any, parameter: str, value: Value, session: Session | None = None) -> Any:
+    """A scene 1 s after the parameter was changed. session: moves a rope or a cloth beside the program's."""
+    scene = SCENES[name](base, None if session is None else session.live)
+    scene.handle(Grab(HELD[name], (-1.0, 0.5, 1.5), 0))
+    run(scene, BEFORE)
+    new = dataclasses.replace(base, **{parameter: value})
+    if effect_of_change(base, new) == "start":
+        scene.params = new
+        scene.reset()
+    else:
+        scene.change_forces(new)
+    run(scene, AFTER)
+    return scene
+
+
+def acts(name: str, base: Any, parameter: str) -> bool:
+    """Whether two values of a parameter make the motion another one."""
+    values = values_of(parameters_of(base)[parameter], getattr(base, parameter))
+    first, *others = (changed(name, base, parameter, value).state.x for value in values)
+    return any(x.shape != first.shape or np.abs(x - first).max() > 1e-4 for x in others)
+
+
+@pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.stress)], ids=["one value", "all"])
+@pytest.mark.parametrize(("name", "parameter"), CASES)
+def test_right_solutions_feel_every_parameter_or_the_panel_names_it(
+    session: Session, name: str, parameter: str, every: bool
+) -> None:
+    base = next((base for base in BASES[name] if acts(name, base, parameter)), None)
+    assert base is not None, f"{parameter} moves nothing in BASES: add a scene in which it does"
+    declared = parameters_of(base)[parameter]
+    values = values_of(declared, getattr(base, parameter))
+    if not every:
+        values = [value for value in reversed(values) if value != getattr(base, parameter)][:1]
+    for value in values:
+        changed(name, base, parameter, value, session)
+        report = getattr(session, name).report
+        assert report.version
+        assert not report.restarts
+        if not report.difference < 1e-9:
+            said = code_lines(session.state, report, tables_of(session), name)
+            title = declared.title or in_words(parameter)
+            assert title.lower() in said.lower(), f"{value}: {report.difference} m"

@@ -18,7 +18,7 @@ from app.lab.cloth_march import FILE as CLOTH_FILE
 from app.lab.cloth_march import Sheet
 from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_march import REFERENCE, Forces, Segment
-from app.lab.runner import RunError, Runner
+from app.lab.runner import RunError, Runner, unexpected
 from app.lab.saved import Saved
 
 STEPS = {  # method of the scene -> the task with its step
@@ -202,13 +202,26 @@ class LiveNet:
     def run(self) -> None:
         """Do what comes."""
         while (item := self.inbox.get()) is not None:
-            if isinstance(item, Loaded):
-                self.take(item)
-            else:
-                item.answers.put(self.advance(item))
-                self.wake()
+            try:
+                self.do(item)
+            except Exception as error:  # the thread lives: the next version may run
+                said = unexpected(error, self.material.file)
+                for loaded in [item] if isinstance(item, Loaded) else self.versions[-1:]:
+                    self.fail(loaded.saved, said)
         for loaded in self.versions:
             loaded.runner.close()
+
+    def do(self, item: Job | Loaded) -> None:
+        """Take a version, or answer a job whatever happens: a scene waits for the answer."""
+        if isinstance(item, Loaded):
+            self.take(item)
+            return
+        answer = unanswered(item)
+        try:
+            answer = self.advance(item)
+        finally:
+            item.answers.put(answer)
+            self.wake()
 
     def take(self, loaded: Loaded) -> None:
         """Keep a new version and the last one that worked before it; or the newest in a process that compiled it."""
@@ -238,15 +251,22 @@ class LiveNet:
             try:
                 step = self.material.step_of(job.method)
                 done = runner.march(own, step, job.x, job.v, job.segments, job.sheet)
-            except RunError as error:
+            except Exception as error:
                 self.failed.add(attempt)
                 runner.close()
-                if not compiled:  # plain Python is tried next, and says where it was
+                if not isinstance(error, RunError):
+                    self.fail(saved, unexpected(error, self.material.file))
+                elif not compiled:  # plain Python is tried next, and says where it was
                     self.fail(saved, error)
                 continue
             each = done.seconds / max(done.steps, 1)
             return Answer(job.run, done.x, done.v, each, done.left, saved.number, compiled)
-        return Answer(job.run, job.x[None][:0], job.v, 0.0, False, 0)
+        return unanswered(job)
+
+
+def unanswered(job: Job) -> Answer:
+    """The answer to a job that no version has done."""
+    return Answer(job.run, job.x[None][:0], job.v, 0.0, False, 0)
 
 
 def cloth_functions_in_use(begun: Collection[str]) -> dict[str, bool]:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.runner import RunError, Runner
+from app.lab.runner import RunError, Runner, unexpected
 from app.lab.saved import Saved
 from app.lab.tabulate import Range
 from app.lab.task import Task
@@ -119,12 +119,16 @@ class LiveTables:
     def run(self) -> None:
         """Compute what was asked for last, by the version that was saved last."""
         while (item := self.inbox.get()) is not None:
-            if isinstance(item, Saved):
-                self.take(item)
-            else:
-                self.calls = item
-            if self.inbox.empty():
-                self.compute()
+            try:
+                if isinstance(item, Saved):
+                    self.take(item)
+                else:
+                    self.calls = item
+                if self.inbox.empty():
+                    self.compute()
+            except Exception as error:  # the thread lives: the next version or wish is computed
+                self.tried.clear()
+                self.errors = {**self.errors, "": unexpected(error, "Python")}
         for runner in self.runners.values():
             runner.close()
 

@@ -1,9 +1,9 @@
 """Advances a rope with a student's functions, in the process that runs them.
 
 What the student has not written yet, the reference solutions do. Floor, friction and the pull of the mouse, which are
-no task, are the program's laws (`sim/springs/forces`), in numpy. A parameter that acts here otherwise than on the
-program's rope is named in the panel (`unlike` in `student_rope.py` and `student_cloth.py`). Only numpy is imported here, so that the process
-starts fast.
+no task, are the program's laws (`sim/springs/forces`), in numpy. A parameter that acts otherwise than on the program's
+rope is named in the panel (`unlike` in `student_rope.py` and `student_cloth.py`). Only numpy is imported here, so that
+the process starts fast.
 """
 
 import time

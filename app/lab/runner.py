@@ -14,6 +14,7 @@ import sys
 import tempfile
 import threading
 import time
+import traceback
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import IO, Any
@@ -176,11 +177,12 @@ class Runner:
         process, self._process = self._process, None
         if process is None:
             return
-        with contextlib.suppress(OSError):  # it has ended already
-            if os.name == "posix":
-                os.killpg(process.pid, signal.SIGKILL)
-            else:
-                process.kill()
+        if process.returncode is None:  # else its number, and its group's, may be another process's by now
+            with contextlib.suppress(OSError):
+                if os.name == "posix":
+                    os.killpg(process.pid, signal.SIGKILL)
+                else:
+                    process.kill()
         for stream in (process.stdin, process.stdout):
             with contextlib.suppress(OSError):  # what was not yet sent is dropped
                 if stream is not None:
@@ -191,7 +193,7 @@ class Runner:
 
     def _ready(self) -> subprocess.Popen[bytes]:
         """The process, started unless it runs already. Raises RunError where it does not start."""
-        if self._process is not None and self._process.poll() is None:
+        if self._process is not None and not has_ended(self._process):
             return self._process
         self.close()
         self.starts += 1
@@ -273,8 +275,10 @@ class Runner:
             raise RunError("endless", text, where, line) from None
         if answer is None:
             process = self._process
-            status = process.wait() if process is not None else None
+            if process is not None:
+                has_ended(process, block=True)
             self.close()
+            status = process.returncode if process is not None else None
             how = f"signal {-status}" if status is not None and status < 0 else f"exit status {status}"
             raise RunError("ended", f"{function} ended its process ({how})", file)
         return answer
@@ -291,6 +295,25 @@ def read_answers(process: subprocess.Popen[bytes], answers: "queue.SimpleQueue[l
         answers.put(answer)
         if answer is None:
             return
+
+
+def has_ended(process: subprocess.Popen[bytes], *, block: bool = False) -> bool:
+    """Return whether a process has ended, and leave it unreaped where the system can: its group keeps its number.
+
+    block: wait until it has.
+    """
+    if process.returncode is None and hasattr(os, "waitid"):  # not on Windows, nor on macOS before Python 3.13
+        with contextlib.suppress(ChildProcessError):  # another thread has reaped it
+            return os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT | (0 if block else os.WNOHANG)) is not None
+    if block:
+        process.wait()
+    return process.poll() is not None
+
+
+def unexpected(error: Exception, file: str) -> RunError:
+    """An error of the lab's own as one for the panel; its traceback goes to the terminal."""
+    traceback.print_exception(error)
+    return RunError("ended", f"the lab could not run your functions: {type(error).__name__}: {error}", file)
 
 
 def is_march(answer: Any, shape: tuple[int, ...]) -> bool:

@@ -63,7 +63,7 @@ class CodePanel:
             )
 
         @self.choice.on_update
-        def _(_: object) -> None:
+        async def _(_: object) -> None:  # no coroutine: viser would call it in a pool of threads
             session.tables.show(self.choice.value)
 
     def headline(self) -> Html:

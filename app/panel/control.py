@@ -1,6 +1,7 @@
 """One parameter in the panel: its widgets, made from its declaration."""
 
 import math
+import threading
 from collections.abc import Callable
 
 import viser
@@ -86,6 +87,7 @@ class Control:
         self.slider: viser.GuiMultiSliderHandle[float] | None = None
         self.line: viser.GuiHtmlHandle | None = None
         self.text = self.refusal = ""
+        self.line_lock = threading.Lock()
         label, hint = title(name, parameter), hint_of(name, parameter)
         value = read()
         if parameter.choices:
@@ -170,10 +172,11 @@ class Control:
         """Show or hide all of it."""
         if visible == self.visible:
             return
-        self.visible = visible
-        for widget in (self.field, self.slider, self.line):
-            if widget is not None:
-                widget.visible = visible
+        with self.line_lock:
+            self.visible = visible
+            for widget in (self.field, self.slider, self.line):
+                if widget is not None:
+                    widget.visible = visible
 
     def write(self, text: str) -> None:
         """Write a line, as HTML, under the control."""
@@ -183,15 +186,16 @@ class Control:
 
     def show_lines(self) -> None:
         """The scene's line under the control, and above it why the last text was not taken."""
-        if self.line is None:
-            if not self.text and not self.refusal:
-                return
-            with self.folder:
-                order = (self.slider or self.field).order + 0.5
-                self.line = self.gui.add_html("", order=order, visible=self.visible)
-        refusal = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal) if self.refusal else ""
-        line = f'<div class="springtide-line">{self.text}</div>' if self.text else ""
-        self.line.content = str(refusal) + line
+        with self.line_lock:  # the viewer thread writes, the event loop refuses
+            if self.line is None:
+                if not self.text and not self.refusal:
+                    return
+                with self.folder:
+                    order = (self.slider or self.field).order + 0.5
+                    self.line = self.gui.add_html("", order=order, visible=self.visible)
+            said = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal) if self.refusal else ""
+            line = f'<div class="springtide-line">{self.text}</div>' if self.text else ""
+            self.line.content = str(said) + line
 
 
 def float_or_int(value: Value) -> float:

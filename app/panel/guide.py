@@ -181,7 +181,7 @@ class Guide:
                 self.camera = gui.add_button_group("", (PICTURE,))
                 self.camera.on_click(self.on_picture)
             self.answer = gui.add_html("")
-        self.show_task()
+        self.show_task(workbook.task)
 
     # ----- what browsers do
 
@@ -255,33 +255,32 @@ class Guide:
         refresh: show the live values of this snapshot, as the panel shows its readout: both say the same.
         """
         now = time.monotonic()
+        task = self.workbook.task  # callbacks turn to others meanwhile
+        stale, self.stale = self.stale, False  # what is asked for meanwhile is for the next update
         for widgets in self.questions:
             widgets.flush(now)
         if refresh:
             self.workbook.refresh()
             self.values = live_values(self.kind, snapshot)
-            if self.is_set_up_here:
-                self.unwritten = self.attempt(lambda: self.workbook.watch(self.workbook.task, self.values))
+            if self.is_set_up_here(task):
+                self.unwritten = self.attempt(lambda: self.workbook.watch(task, self.values))
         if self.workbook.revision != self.revision:
-            self.revision, self.stale = self.workbook.revision, True
-        if self.workbook.task is not self.shown:
+            self.revision, stale = self.workbook.revision, True
+        if task is not self.shown:
             self.refusal = self.unwritten = self.picture_said = ""
-            self.show_task()
-        elif refresh or self.stale:
-            self.show_values()
-        self.stale = False
+            self.show_task(task)
+        elif refresh or stale:
+            self.show_values(task)
 
-    @property
-    def is_set_up_here(self) -> bool:
-        """Whether the task that is shown belongs to the open scene."""
-        return self.workbook.set_up_of(self.workbook.task).scene == self.kind.name
+    def is_set_up_here(self, task: Task) -> bool:
+        """Whether a task belongs to the open scene."""
+        return self.workbook.set_up_of(task).scene == self.kind.name
 
-    def show_task(self) -> None:
+    def show_task(self, task: Task) -> None:
         """Show another task."""
         self.flush()
         for widgets in self.questions:
             widgets.remove()
-        task = self.workbook.task
         title = self.titles[self.workbook.tasks.index(task)]
         if self.chooser.value != title:
             self.chooser.value = title
@@ -289,12 +288,11 @@ class Guide:
         if self.workbook.folder is not None:
             with self.folder:
                 self.questions = [QuestionWidgets(self, task, question) for question in task.questions]
-        self.show_values()
+        self.show_values(task)
         self.shown = task
 
-    def show_values(self) -> None:
+    def show_values(self, task: Task) -> None:
         """Show the texts of the task with the values of now."""
-        task = self.workbook.task
         shown = self.workbook.is_shown(task)
         tools = (SET_UP, HIDE if shown and self.workbook.folder is None else SHOW)
         if self.tools.options != tools:
@@ -354,7 +352,7 @@ class Guide:
         if guide is None:
             return Html()
         laws = join(fill('<div class="springtide-law">{}</div>', formula(law)) for law in guide.law)
-        if not self.is_set_up_here or not all(condition.holds(self.values) for condition in guide.needs):
+        if not self.is_set_up_here(task) or not all(condition.holds(self.values) for condition in guide.needs):
             hint = coloured(f"Press “{SET_UP}” for the numbers.", WARNING_COLOUR)
             return fill('<div class="springtide-answer">{}{}</div>', laws, hint)
         return fill('<div class="springtide-answer">{}{}</div>', laws, fill_in(guide.answer, self.values))

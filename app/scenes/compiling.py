@@ -136,7 +136,11 @@ class Compiling:
         try:
             process = self.processes.get(number)
             if process is None or process.poll() is not None:
-                process = self.processes[number] = start_process(ahead=number == AHEAD)
+                process = start_process(ahead=number == AHEAD)
+                with self.changed:
+                    self.processes[number] = process
+                    if self.ended:  # `close` may have looked before the process was there
+                        process.kill()
         except OSError as error:
             return str(error)
         assert process.stdin is not None

@@ -81,19 +81,18 @@ def replay_html(kind: AnyKind, frames: Sequence[Kept], plotted: Plotted) -> str:
     server, _ = open_server("127.0.0.1", 0)
     try:
         record_shaders(server)
-        view = view_named(kind.name)(server, lambda command: None)
         params = chosen[-1].params
-        place_cameras(server, *view.first_view(params), view.FIELD_OF_VIEW)
-        view.show(chosen[0].frame)
-        recording = server.get_scene_serializer()
-        for before, kept in itertools.pairwise(chosen):
-            recording.insert_sleep(kept.wall - before.wall)
-            with server.atomic():
-                view.show(kept.frame)
-        server.flush()
-        recording._binary_buffers = [rounded(buffer) for buffer in recording._binary_buffers]
-        page = recording.as_html()
-        view.close()
+        with contextlib.closing(view_named(kind.name)(server, lambda command: None)) as view:
+            place_cameras(server, *view.first_view(params), view.FIELD_OF_VIEW)
+            view.show(chosen[0].frame)
+            recording = server.get_scene_serializer()
+            for before, kept in itertools.pairwise(chosen):
+                recording.insert_sleep(kept.wall - before.wall)
+                with server.atomic():
+                    view.show(kept.frame)
+            server.flush()
+            recording._binary_buffers = [rounded(buffer) for buffer in recording._binary_buffers]
+            page = recording.as_html()
     finally:
         with contextlib.redirect_stdout(io.StringIO()):  # viser would say that a server has stopped
             server.stop()

@@ -28,7 +28,9 @@ def unlike(params: Params) -> tuple[str, ...]:
     lines: list[str] = []
     method = params.integrator
     if method == "leapfrog":
-        lines.append("Method: the program's takes damping exactly; a right step_leapfrog differs by a centimetre or so.")
+        lines.append(
+            "Method: the program's takes damping exactly; a right step_leapfrog differs by a centimetre or so."
+        )
     elif method not in ROPE.exact:
         lines.append(f"Method: your rope steps by {step_of(method)}, the program's by the method that you chose.")
     if params.damping_model == "axial":

@@ -257,3 +257,19 @@ def test_the_radial_sea_keeps_the_last_version_that_worked(folder: Folder, name:
         scene.advance(1)
         assert scene.student is not None
         assert scene.student.taken[name].version == works
+
+
+def test_an_error_of_the_lab_is_shown_and_the_next_version_runs(
+    folder: Folder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise TypeError("not what was expected")
+
+    scene = SquareSeaScene(PHILLIPS, folder.live)
+    with monkeypatch.context() as patch:
+        patch.setattr(folder.tables, "runner", fail)
+        folder.save(source("gravity"))
+        wait_for(lambda: folder.tables.errors)
+        assert "TypeError: not what was expected" in str(next(iter(folder.tables.errors.values())))
+    settle(scene, folder, folder.save(source("gravity") + "\n# saved again\n"), {"gravity"})
+    assert folder.tables.errors == {}

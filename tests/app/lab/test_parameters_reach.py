@@ -1,4 +1,4 @@
-"""Right solutions move rope and cloth as the program does, whatever a parameter is; or the panel names the parameter."""
+"""Right solutions move rope and cloth as the program does at any value of a parameter; or the panel names it."""
 
 import dataclasses
 import inspect
@@ -30,8 +30,9 @@ ROPE = RopeParams(
     integrator="rk4", time_step=1 / 240, points=8, length=6.0, sphere=True, root_swing=0.1, swing_period=2.0, pull=20.0
 )
 CLOTH = ClothParams(
-    integrator="rk4", time_step=1 / 240, rows=5, cols=6, stiffness=100.0, shear=60.0, bend=3.0, damping=0.2, density=1.0,
-    start="level", sphere=True, sphere_radius=0.4, bob=0.2, width=1.0, length=3.6, contact_damping=2.0, pull=1.0,
+    integrator="rk4", time_step=1 / 240, rows=5, cols=6, stiffness=100.0, shear=60.0, bend=3.0, damping=0.2,
+    density=1.0, start="level", sphere=True, sphere_radius=0.4, bob=0.2, width=1.0, length=3.6, contact_damping=2.0,
+    pull=1.0,
 )  # fmt: skip
 PLEATS = dataclasses.replace(
     CLOTH, start="hanging", pinned="corners", width=0.4, length=0.4, gather=0.4, shear=20.0, bend=0.5, sphere=False

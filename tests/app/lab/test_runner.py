@@ -5,12 +5,13 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from app.lab.runner import RunError, Runner
+from app.lab.runner import RunError, Runner, has_ended
 
 ROOT = Path(__file__).parents[3]
 # What a function does -> the kind of the error and a part of its text.
@@ -176,3 +177,58 @@ def test_an_endless_loop_ends_when_the_lab_is_killed(tmp_path: Path) -> None:
     while not gone(pid) and time.monotonic() < end:
         time.sleep(0.05)
     assert gone(pid)
+
+
+@pytest.fixture
+def killed(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The groups that are killed; each must still have its number, which a process keeps until it is reaped."""
+    groups: list[int] = []
+    killpg = os.killpg
+
+    def kill(group: int, number: int) -> None:
+        os.kill(group, 0)  # raises ProcessLookupError for a process that was reaped
+        groups.append(group)
+        killpg(group, number)
+
+    monkeypatch.setattr(os, "killpg", kill)
+    return groups
+
+
+def has_group(group: int) -> bool:
+    try:
+        os.kill(-group, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+CHILD = "import os, subprocess\n    subprocess.Popen(['sleep', '60'])\n    os._exit(3)"
+
+
+@pytest.mark.skipif(not hasattr(os, "waitid"), reason="what has ended can only be seen by reaping it")
+def test_what_an_ended_process_has_started_is_ended_and_no_other_group(tmp_path: Path, killed: list[int]) -> None:
+    write(tmp_path, CHILD)
+    with Runner(tmp_path) as runner:
+        with pytest.raises(RunError, match="exit status 3"):
+            runner.call("mine.py", "f", 1.0)
+        assert len(killed) == 1
+        wait_until(lambda: not has_group(killed[0]))
+        runner.call("mine.py", "right", 1.0)
+        process = runner._process
+        assert process is not None
+        os.kill(process.pid, signal.SIGKILL)  # it ends between two calls
+        assert has_ended(process, block=True)
+        assert runner.call("mine.py", "right", 3.0) == 6.0
+        assert killed[1:] == [process.pid]
+        process = runner._process
+        assert process is not None
+        runner.abort()
+        process.wait()  # it is reaped: nobody may use its number
+    assert len(killed) == 2
+
+
+def wait_until(condition: Callable[[], bool]) -> None:
+    end = time.monotonic() + 30.0
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.01)

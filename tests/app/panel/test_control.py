@@ -1,9 +1,12 @@
 """A control: what it is set to is bounded, shown and passed on; the value itself is the panel's."""
 
 import re
+import threading
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
+import viser
 
 from app.panel.control import SliderScale, title
 from app.scenes import NAMES, scene_named
@@ -42,6 +45,35 @@ def test_a_control_holds_no_value_of_its_own(lab: Viewer) -> None:
     control = lab.panel.controls["stiffness"]
     control.set(1234.5)
     assert 1234.5 not in [value for value in vars(control).values() if isinstance(value, float)]
+
+
+def test_two_threads_that_write_the_first_line_make_one(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    lab.stop_threads()
+    control = lab.panel.controls["stiffness"]
+    made: list[viser.GuiHtmlHandle] = []
+    making, go_on = threading.Event(), threading.Event()
+    add_html = control.gui.add_html
+
+    def add_slowly(*arguments: Any, **named: Any) -> viser.GuiHtmlHandle:
+        if not making.is_set():  # the first one waits until the other has had time to come here
+            making.set()
+            go_on.wait(0.5)
+        made.append(add_html(*arguments, **named))
+        return made[-1]
+
+    monkeypatch.setattr(control.gui, "add_html", add_slowly)
+    first = threading.Thread(target=control.write, args=("too stiff",))
+    first.start()
+    assert making.wait(30.0)
+    second = threading.Thread(target=control.refuse, args=("no such number",))
+    second.start()
+    second.join(0.2)  # with a lock it waits for the first
+    go_on.set()
+    for thread in (first, second):
+        thread.join(30.0)
+    assert len(made) == 1
+    assert "too stiff" in made[0].content
+    assert "no such number" in made[0].content
 
 
 NUMBERS = [

@@ -268,3 +268,45 @@ def test_an_error_is_written_as_in_the_table(error: float, floor: float, said: s
     result: Any = SimpleNamespace(error=error, error_floor=floor)
     assert format(LiveNumber(error, "m", "Error of rope 1", floor), "u") == said
     assert re.sub("</?b>", "", error_text(result)) == escape(said)
+
+
+def test_a_page_that_is_turned_in_the_middle_of_a_look_does_not_tick_off_a_step_of_the_next_task(
+    student: Viewer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    guide = show(student, "step_euler")
+    does(guide.on_tool, SET_UP)
+    wait_for(lambda: student.scene.params.integrator == "explicit_euler")
+    guide = guide_of(student)
+    wait_for(lambda: guide.shown is not None and guide.shown.name == "step_euler")
+    student.stop_threads()
+    workbook, watched = guide.workbook, []
+    set_up_of = workbook.set_up_of
+
+    def set_up_and_turn(task: Any) -> Any:
+        found = set_up_of(task)
+        workbook.index = 0  # as a callback does, on the event loop
+        return found
+
+    monkeypatch.setattr(workbook, "set_up_of", set_up_and_turn)
+    monkeypatch.setattr(workbook, "watch", lambda task, values: watched.append(task.name))
+    guide.update(student.loop.latest, True)
+    assert watched == ["step_euler"]
+
+
+def test_what_is_asked_for_in_the_middle_of_a_look_is_shown_by_the_next(
+    student: Viewer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    guide = show(student, "step_euler")
+    student.stop_threads()
+    said = "The report has the picture “rope”."
+
+    def ask_meanwhile() -> None:
+        guide.picture_said, guide.stale = said, True  # as the thread that takes a picture does
+
+    guide.picture_said, guide.stale = "", True
+    with monkeypatch.context() as patch:
+        patch.setattr(guide.questions[-1], "show", ask_meanwhile)
+        guide.update(student.loop.latest, False)
+    assert said not in guide.answer.content
+    guide.update(student.loop.latest, False)
+    assert said in guide.answer.content

@@ -9,6 +9,10 @@ from typing import Any
 import pytest
 import viser
 
+from app.lab.folder import make_folder
+from app.lab.session import Session
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
 from app.messages import Load
 from app.scenes import NAMES
 from app.server.viewer import Viewer
@@ -38,9 +42,23 @@ def callbacks(viewer: Viewer) -> Iterator[Callable[..., Any]]:
             yield from node._impl_aux.update_cb
 
 
+@pytest.fixture(scope="module")
+def students_lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Viewer]:
+    """`springtide lab DIR`: a workbook, and the panel of a student's functions."""
+    tasks, folder = load_tasks(), tmp_path_factory.mktemp("lab") / "mine"
+    make_folder(folder, tasks)
+    session = Session(folder, tasks)
+    viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
+    yield viewer
+    viewer.shut()
+    session.close()
+
+
 @pytest.mark.parametrize("name", NAMES)
-def test_every_callback_runs_on_the_one_event_loop(viewer: Viewer, name: str) -> None:
+@pytest.mark.parametrize("lab_of", ["viewer", "students_lab"])
+def test_every_callback_runs_on_the_one_event_loop(request: pytest.FixtureRequest, name: str, lab_of: str) -> None:
     """viser runs others in a pool of threads, where two changes of the parameters could lose each other."""
+    viewer: Viewer = request.getfixturevalue(lab_of)
     viewer.open(name)
     wait_for(lambda: viewer.served.shown > 0)
     found = list(callbacks(viewer))

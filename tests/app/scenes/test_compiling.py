@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -117,3 +118,26 @@ def test_a_killed_worker_gives_its_locks_back(tmp_path: Path) -> None:
     for process in (holder, waiter):
         process.kill()
         process.wait()
+
+
+def test_a_worker_that_starts_while_the_queue_is_closed_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    starting, go_on = threading.Event(), threading.Event()
+    started: list[subprocess.Popen[str]] = []
+
+    def start(*, ahead: bool) -> "subprocess.Popen[str]":
+        starting.set()
+        assert go_on.wait(30.0)
+        command = [sys.executable, "-c", "input()"]
+        started.append(subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
+        return started[0]
+
+    monkeypatch.setattr(compiling, "start_process", start)
+    queue = Compiling(1)
+    queue.want(jobs("a"))
+    assert starting.wait(30.0)
+    queue.close()  # it finds no process
+    go_on.set()
+    queue.threads[0].join(30.0)
+    ended = not queue.threads[0].is_alive()
+    started[0].kill()  # of a thread that waits for it, too
+    assert ended

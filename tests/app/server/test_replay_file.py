@@ -13,7 +13,7 @@ import zstandard
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
 from app.render.surroundings import LIGHT_SKY
-from app.scenes import scene_named
+from app.scenes import scene_named, view_named
 from app.scenes.setups import read_setup
 from app.server.loop import SimLoop
 from app.server.replay_file import BITS, MAX_DURATION, MAX_FRAMES, MAX_RAW_BYTES, replay_html, rounded, thinned
@@ -118,3 +118,17 @@ def test_a_replay_holds_the_last_frames_evenly_thinned(recorded: Any) -> None:
 def test_without_a_frame_it_says_so(recorded: Any) -> None:
     with pytest.raises(ValueError, match="nothing has been recorded yet"):
         replay_html(recorded[0], (), Plotted((), {}))
+
+
+def test_a_view_that_fails_is_closed(recorded: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    view = view_named(recorded[0].name)
+    closed: list[object] = []
+
+    def fail(*_: object) -> None:
+        raise RuntimeError("this frame cannot be drawn")
+
+    monkeypatch.setattr(view, "show", fail)
+    monkeypatch.setattr(view, "close", lambda self: closed.append(self))
+    with pytest.raises(RuntimeError, match="cannot be drawn"):
+        replay_html(*recorded)
+    assert len(closed) == 1

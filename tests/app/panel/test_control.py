@@ -2,6 +2,7 @@
 
 import re
 import threading
+from concurrent.futures import ThreadPoolExecutor, wait
 from types import SimpleNamespace
 from typing import Any
 
@@ -62,15 +63,14 @@ def test_two_threads_that_write_the_first_line_make_one(lab: Viewer, monkeypatch
         return made[-1]
 
     monkeypatch.setattr(control.gui, "add_html", add_slowly)
-    first = threading.Thread(target=control.write, args=("too stiff",))
-    first.start()
-    assert making.wait(30.0)
-    second = threading.Thread(target=control.refuse, args=("no such number",))
-    second.start()
-    second.join(0.2)  # with a lock it waits for the first
-    go_on.set()
-    for thread in (first, second):
-        thread.join(30.0)
+    with ThreadPoolExecutor(2) as threads:
+        first = threads.submit(control.write, "too stiff")
+        assert making.wait(30.0)
+        second = threads.submit(control.refuse, "no such number")
+        wait([second], 0.2)  # with a lock it waits for the first
+        go_on.set()
+        first.result(30.0)
+        second.result(30.0)
     assert len(made) == 1
     assert "too stiff" in made[0].content
     assert "no such number" in made[0].content

@@ -127,7 +127,7 @@ def test_a_worker_that_starts_while_the_queue_is_closed_is_ended(monkeypatch: py
     def start(*, ahead: bool) -> "subprocess.Popen[str]":
         starting.set()
         assert go_on.wait(30.0)
-        command = [sys.executable, "-c", "input()"]
+        command = [sys.executable, "-c", "import time; time.sleep(600)"]
         started.append(subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
         return started[0]
 

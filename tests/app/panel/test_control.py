@@ -49,7 +49,7 @@ def test_a_control_holds_no_value_of_its_own(lab: Viewer) -> None:
 
 
 def test_two_threads_that_write_the_first_line_make_one(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
-    lab.stop_threads()
+    lab.served.stop_threads()
     control = lab.panel.controls["stiffness"]
     made: list[viser.GuiHtmlHandle] = []
     making, go_on = threading.Event(), threading.Event()

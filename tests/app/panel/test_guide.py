@@ -278,7 +278,7 @@ def test_a_page_that_is_turned_in_the_middle_of_a_look_does_not_tick_off_a_step_
     wait_for(lambda: student.scene.params.integrator == "explicit_euler")
     guide = guide_of(student)
     wait_for(lambda: guide.shown is not None and guide.shown.name == "step_euler")
-    student.stop_threads()
+    student.served.stop_threads()
     workbook, watched = guide.workbook, []
     set_up_of = workbook.set_up_of
 
@@ -297,7 +297,7 @@ def test_what_is_asked_for_in_the_middle_of_a_look_is_shown_by_the_next(
     student: Viewer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     guide = show(student, "step_euler")
-    student.stop_threads()
+    student.served.stop_threads()
     said = "The report has the picture “rope”."
 
     def ask_meanwhile() -> None:

@@ -13,8 +13,9 @@ from rich.table import Table
 
 from sim.floating import Body, Hull, MotionCoefficients, equilibrium_draft, make_fleet, step, still_water
 from sim.floating.boundary_elements import FREQUENCIES, make_table
+from sim.floating.equilibrium import SEA_WATER
 from sim.floating.excitation import HullExcitation
-from sim.floating.hydrodynamics import SEA_WATER, LinearHull, lagrange, linear_hull, natural_frequency
+from sim.floating.hydrodynamics import LinearHull, lagrange, linear_hull, natural_frequency
 from sim.floating.linear_motion import GRAVITY, SEA_DENSITY, first_swings, linear_decay, linear_response
 from sim.floating.linear_table import place_of_table, write_table
 from sim.validation import argument_error

@@ -32,7 +32,7 @@ class Drift(NamedTuple):
 
 def swing() -> Net:
     """The lab's rope without damping: straight, stretched by its weight, at an angle to the vertical."""
-    net = rope(10, damping=0.0, drag=0.0)
+    net = rope(10, damping=0.0, drag=0.0, gravity=10.0)
     depth = -hanging_chain(net).x[:, 2]
     return dataclasses.replace(
         net, x0=np.stack([-depth * math.sin(ANGLE), 0.0 * depth, -depth * math.cos(ANGLE)])[:, None, :]

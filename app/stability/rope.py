@@ -54,7 +54,7 @@ def row(
 
 def measure(net: Net | None = None, quick: bool = False, workers: int = 0) -> list[RopeMap]:
     """All integrators that can run this rope (None: the lab's). workers: processes, 0: one on each core."""
-    net = rope() if net is None else net
+    net = rope(gravity=10.0) if net is None else net
     rows, cols, max_steps = (8, 12, 1 << 12) if quick else (32, 48, 1 << 14)
     steps, stiffnesses = np.geomspace(*STEPS, cols), np.geomspace(*STIFFNESSES, rows)
     names = [name for name, record in INTEGRATORS.items() if not (record.undamped_only and net.is_damped)]

@@ -1,7 +1,7 @@
-"""Floating bodies: hulls, where they float, and how they move in one or two fluids under waves.
+"""Floating bodies: hulls, where they float, and how they move in one or two fluids under waves; sea water by default.
 
 fleet = make_fleet([Body(Hull.box(1.0, 1.0, 1.0), density=500.0)])
-step(fleet, still_water(fleet, [(850.0, 0.2), (1025.0, math.inf)]), 1 / 60)
+step(fleet, still_water(fleet), 1 / 60)
 """
 
 from sim.floating.body import Body, Fleet, lowest, make_fleet, pull, vertices

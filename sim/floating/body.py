@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.floating.closed_mesh import area_vectors, check_hull
-from sim.floating.equilibrium import Layers, check_layers
+from sim.floating.equilibrium import SEA_WATER, Layers, check_layers
 from sim.floating.hull import Hull
-from sim.floating.hydrodynamics import POLES, SEA_WATER, afloat
+from sim.floating.hydrodynamics import POLES, afloat
 from sim.floating.rotation import rotation_matrix
 from sim.floating.shapes.record import COLLISION_FORMS
 from sim.validation import argument_error, as_array, check_not_negative, check_positive, is_whole_number

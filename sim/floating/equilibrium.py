@@ -20,15 +20,16 @@ from sim.floating.hydrostatics import Submerged, submerged
 from sim.validation import argument_error, as_float, check_positive
 
 Layers = Sequence[tuple[float, float]]
-OIL_ON_WATER: Layers = ((850.0, 0.2), (1025.0, math.inf))
+SEA_WATER: Layers = ((1025.0, math.inf),)  # the default fluid of the package
 
 
-def equilibrium_draft(hull: Hull, density: float, layers: Layers = OIL_ON_WATER, gravity: float = 9.81) -> float:
+def equilibrium_draft(hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = 9.81) -> float:
     """Depth [m] of the lowest point of the upright hull below the top surface, at rest in the layers.
 
-    layers: (density [kg/m3], thickness [m]) from the top, the last of thickness inf. The result is inf for a hull
-    denser than the last layer, which sinks without end, and the smallest depth where several are in equilibrium.
-    Gravity does not change the result and is only checked. Raises ValueError for a bad density, layers or gravity.
+    layers: (density [kg/m3], thickness [m]) from the top, the last of thickness inf; sea water by default. The result
+    is inf for a hull denser than the last layer, which sinks without end, and the smallest depth where several are in
+    equilibrium. Gravity does not change the result and is only checked. Raises ValueError for a bad density, layers or
+    gravity.
     """
     check_hull("hull", hull)
     check_positive("density", density, "kg/m3")

@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.floating.body import Body, Fleet
-from sim.floating.equilibrium import Layers, check_layers
+from sim.floating.equilibrium import SEA_WATER, Layers, check_layers
 from sim.floating.hull import Hull
-from sim.floating.hydrodynamics import DIRECTIONS, SEA_WATER, LinearHull, afloat, lagrange, wet_pressure
+from sim.floating.hydrodynamics import DIRECTIONS, LinearHull, afloat, lagrange, wet_pressure
 from sim.floating.rigid import heading_of
 from sim.interruption import pieces, raise_if_stopped
 from sim.jit import kernel

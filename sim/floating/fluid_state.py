@@ -5,13 +5,12 @@ there. A hull large beside the waves adds `relief`, the surface above that plane
 interface between an upper and a lower fluid is given in the same way; one fluid is two of the same density.
 """
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from sim.floating.body import Fleet
-from sim.floating.equilibrium import check_layers, density_steps
+from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.validation import argument_error, as_array, check_finite
 
 
@@ -36,7 +35,7 @@ class Water(NamedTuple):
 
 def make_water(
     fleet: Fleet,
-    layers: Sequence[tuple[float, float]],
+    layers: Layers,
     height: np.ndarray,
     *,
     slope: np.ndarray | None = None,
@@ -101,6 +100,6 @@ def make_water(
     )
 
 
-def still_water(fleet: Fleet, layers: Sequence[tuple[float, float]], level: float = 0.0) -> Water:
+def still_water(fleet: Fleet, layers: Layers = SEA_WATER, level: float = 0.0) -> Water:
     """Level water at rest, its surface at `level` [m]. Raises ValueError for bad layers."""
     return make_water(fleet, layers, np.full(len(fleet.mass), check_finite("level", level, "m")))

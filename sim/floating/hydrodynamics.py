@@ -18,13 +18,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.floating.closed_mesh import ClosedMesh, area_vectors
-from sim.floating.equilibrium import equilibrium_draft, upright
+from sim.floating.equilibrium import SEA_WATER, Layers, equilibrium_draft, upright
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import add_pressure
 from sim.floating.linear_table import LinearTable, table_of
 from sim.interruption import raise_if_stopped
 
-SEA_WATER = ((1025.0, math.inf),)  # one fluid, as `layers`
 # Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
 POLES = np.array([-0.362 + 0.419j, -0.408 + 0.850j, -0.311 + 1.274j, -1.344 + 1.128j, -1.127 + 4.227j])
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 10.0))  # in which waves run, of the excitation
@@ -251,7 +250,7 @@ class Afloat(NamedTuple):
 
 
 @functools.lru_cache(maxsize=256)
-def afloat(hull: Hull, density: float, layers: tuple[tuple[float, float], ...] = SEA_WATER) -> Afloat:
+def afloat(hull: Hull, density: float, layers: Layers = SEA_WATER) -> Afloat:
     """The linear coefficients of a hull of `density` [kg/m3] upright at its draft in these layers.
 
     One that sinks has those of the deepest draft.

@@ -2,14 +2,14 @@
 
 import math
 
-from sim.floating.equilibrium import OIL_ON_WATER, Layers, check_layers, density_steps, equilibrium_draft, upright
+from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps, equilibrium_draft, upright
 from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import linear_hull, natural_frequency
 from sim.validation import argument_error, check_not_negative, is_whole_number
 
 
 def heave_period(
-    hull: Hull, density: float, layers: Layers = OIL_ON_WATER, gravity: float = 9.81, added: float = 1.0
+    hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = 9.81, added: float = 1.0
 ) -> float:
     """Period [s] of small heave of the upright hull about its equilibrium: 2 pi sqrt((m + A33)/C33).
 
@@ -35,7 +35,7 @@ def heave_period_at(
 
 
 def roll_period(
-    hull: Hull, density: float, layers: Layers = OIL_ON_WATER, gravity: float = 9.81, added: float = 1.0, axis: int = 0
+    hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = 9.81, added: float = 1.0, axis: int = 0
 ) -> float:
     """Period [s] of small roll (axis 0, about x) or pitch (axis 1, about y) of the upright hull, free to sway.
 

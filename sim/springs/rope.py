@@ -17,7 +17,7 @@ def rope(
     stiffness: float = 800.0,
     damping: float = 7.0,
     drag: float = 1.0,
-    gravity: float = 10.0,
+    gravity: float = 9.81,
     root: Vector = (0.0, 0.0, 0.0),
     floor: float | None = None,
     sphere: tuple[float, float, float, float] | None = None,

@@ -1,6 +1,7 @@
 """`simulate`: a net from rest to the end, sampled at equal times."""
 
 import math
+import warnings
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -65,7 +66,7 @@ def simulate(
     take that. with_account: also integrate what damping takes and pins put in; the stored energies are always there.
     progress: called with (frames done, frames).
     A run that diverges ends there: `diverged_at` is the time of the first step that left any sane bound, or of an
-    adaptive method's that found none short enough, and later frames are NaN.
+    adaptive method's that found none short enough, later frames are NaN, and a RuntimeWarning says so.
 
     Raises ValueError, naming the argument, its value and what is allowed.
     """
@@ -97,13 +98,26 @@ def simulate(
         longest = (may_be_endless and critical_step(net, record)) or math.inf  # 0 where no step is stable for ever
         if duration / longest > MOST_STEPS:
             raise argument_error("duration", duration, f"up to {MOST_STEPS:g} steps of {longest:g} s")
-        return marched(net, record, t, rtol or RTOL, atol or ATOL, with_account, progress)
+        return warned(marched(net, record, t, rtol or RTOL, atol or ATOL, with_account, progress))
     if step is not None and duration / step > MOST_STEPS:
         raise argument_error("step", step, f"at least duration / {MOST_STEPS:g} = {duration / MOST_STEPS:g} s")
     step = step or default_step(net, record)
     if duration / step > MOST_STEPS:
         raise argument_error("duration", duration, f"up to {MOST_STEPS:g} steps of {step:g} s")
-    return stepped(net, record, t, step, with_account, progress)
+    return warned(stepped(net, record, t, step, with_account, progress))
+
+
+def warned(run: Run) -> Run:
+    """The run itself, after a warning to the caller of `simulate` where it diverged."""
+    if run.diverged_at is not None:
+        took = "its own steps" if run.step is None else f"steps of {run.step:g} s"
+        warnings.warn(
+            f"the run with {run.integrator} in {took} diverged at t = {run.diverged_at:g} s: later frames are NaN; "
+            "critical_step(net, integrator) is the longest step that is stable at the start",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+    return run
 
 
 def default_step(net: Net, record: Integrator) -> float:

@@ -254,10 +254,6 @@ def step_limit(mode: Mode, integrator: Integrator) -> float:
     return min(h, free)
 
 
-def chosen(integrator: str | Integrator) -> Integrator:
-    return integrator_named(integrator) if isinstance(integrator, str) else integrator
-
-
 def modes_at(net: Net, state: State | None) -> list[Mode]:
     """The `top_modes` of a state, None: of the start. Raises ValueError for a state of another net."""
     if state is None:
@@ -273,7 +269,7 @@ def critical_step(net: Net, integrator: str | Integrator, state: State | None = 
     0 where every step is unstable (undamped explicit Euler), inf where none is. Raises ValueError for an unknown
     integrator.
     """
-    record = chosen(integrator)
+    record = integrator_named(integrator)
     return min((step_limit(mode, record) for mode in modes_at(net, state)), default=math.inf)
 
 
@@ -286,7 +282,7 @@ def critical_stiffness(
     modes: the `top_modes` of the state, where they are known.
     Raises ValueError for an unknown integrator or a step that is not above 0.
     """
-    record = chosen(integrator)
+    record = integrator_named(integrator)
     check_number("h", h, 0, math.inf, "s", above=True)
     stiffest = max((f.stiffness for f in net.families), default=0.0)
     if stiffest == 0.0:
@@ -344,7 +340,7 @@ def gauge(net: Net, integrator: str | Integrator, h: float, state: State, modes:
 
     modes: the `top_modes` of the state, where they are known.
     """
-    record = chosen(integrator)
+    record = integrator_named(integrator)
     modes = modes_at(net, state) if modes is None else modes
     if not modes:
         return Gauge(0.0, 0.0, 0.0, math.inf, math.inf)

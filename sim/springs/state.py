@@ -11,9 +11,9 @@ from sim.jit import set_threads
 from sim.springs.analysis.energy import Energy, energies
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND, extremes
 from sim.springs.forces.acceleration import set_acceleration
-from sim.springs.integrators import Integrator
+from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
-from sim.validation import argument_error
+from sim.validation import argument_error, check_number, is_whole_number
 
 # In one call of a kernel, which a Ctrl-C waits for: hundredths of a second.
 POINT_EVALS = 2e6  # force evaluations times points, of a rope
@@ -103,15 +103,22 @@ def check_damping(net: Net, integrator: Integrator) -> None:
 
 
 def advance(
-    net: Net, state: State, integrator: Integrator, h: float, steps: int, *, with_account: bool = False
+    net: Net, state: State, integrator: str | Integrator, h: float, steps: int, *, with_account: bool = False
 ) -> None:
     """Advance `state` in place by `steps` steps of h [s].
 
-    Raises ValueError for a net the integrator refuses, and for a state of another net. Where the solve is ended early
-    (sim/interruption.py) the state is that after some of the steps.
+    integrator: a name in `INTEGRATORS`, or one of its records.
+
+    Raises ValueError for a net the integrator refuses, for a state of another net, for an unknown integrator, and for a
+    step or a number of steps that cannot be. Where the solve is ended early (sim/interruption.py) the state is that
+    after some of the steps.
     """
     check_state(net, state)
+    integrator = integrator_named(integrator)
     check_damping(net, integrator)
+    check_number("h", h, 0, math.inf, "s", above=True)
+    if not is_whole_number(steps) or steps < 0:
+        raise argument_error("steps", steps, "a whole number from 0")
     set_lag(net, state, integrator.lag * h)
     # The sums go on from where they are, so that they do not depend on how the steps are shared out among the calls.
     ledger, p = np.array([state.dissipated, state.work]), net.kernel_view(h)

@@ -8,6 +8,7 @@ out. With `--peers`, each peer is given the rope task (`app/bench/tasks/rope.py`
 """
 
 import dataclasses
+import functools
 import math
 import statistics
 import time
@@ -49,12 +50,13 @@ class Truth(NamedTuple):
     uncertainty: float  # [m]
 
 
+LAB = functools.partial(rope, 10, gravity=10.0)
 PROBLEMS = (
-    Problem("lab default", rope(10), 2.0),
-    Problem("stiff, 8e4 N/m", rope(10, stiffness=8e4), 1.0),
-    Problem("undamped, long", rope(10, damping=0.0, drag=0.0), 4.0),
-    Problem("very stiff, 8e6 N/m", rope(10, stiffness=8e6), 1.0),
-    Problem("drop on the floor", rope(10, floor=-1.0), 1.5),
+    Problem("lab default", LAB(), 2.0),
+    Problem("stiff, 8e4 N/m", LAB(stiffness=8e4), 1.0),
+    Problem("undamped, long", LAB(damping=0.0, drag=0.0), 4.0),
+    Problem("very stiff, 8e6 N/m", LAB(stiffness=8e6), 1.0),
+    Problem("drop on the floor", LAB(floor=-1.0), 1.5),
 )
 
 

@@ -60,7 +60,9 @@ def discover() -> dict[str, Integrator]:
     return {r.name: r for r in sorted(records, key=lambda r: (r.order, r.evals, r.symplectic, r.name))}
 
 
-def integrator_named(name: str) -> Integrator:
-    """The record of that name. Raises ValueError with the names there are."""
+def integrator_named(integrator: str | Integrator) -> Integrator:
+    """The record of that name, or the record itself. Raises ValueError with the names there are."""
+    if isinstance(integrator, Integrator):
+        return integrator
     records = discover()
-    return records[check_choice("integrator", name, records)]
+    return records[check_choice("integrator", integrator, records)]

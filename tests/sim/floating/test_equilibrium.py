@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from sim.floating import Hull, equilibrium_draft, heave_period, roll_period
+from sim.floating import Body, Hull, equilibrium_draft, heave_period, make_fleet, roll_period, step, still_water
 from sim.floating.equilibrium import upright
 from sim.floating.periods import heave_period_at
 from sim.floating.prediction import predict
@@ -178,3 +178,16 @@ def test_the_prediction_of_a_scene_is_that_of_the_functions():
     assert found.draft == pytest.approx(prism_draft(500.0, 0.8, 850.0, 0.2, 1025.0), rel=1e-6)
     assert found.draft_in_water == pytest.approx(0.4, rel=1e-6)
     assert found.period == heave_period_at(box, 500.0, SPILL, found.draft)
+
+
+def test_every_default_fluid_is_sea_water():
+    """A half-dense cube has one draft and one period, whether or not its fluid is named."""
+    cube, raft = Hull.box(1.0, 1.0, 1.0), Hull.box(2.0, 2.0, 0.5)
+    assert equilibrium_draft(cube, 500.0) == pytest.approx(500 / 1025, abs=1e-12)
+    assert heave_period(cube, 500.0) == heave_period(cube, 500.0, WATER)
+    assert roll_period(raft, 500.0) == roll_period(raft, 500.0, WATER) < math.inf
+    fleet = make_fleet([Body(cube, 500.0, (0.0, 0.0, 0.5 - 500 / 1025))])
+    for named, default in zip(still_water(fleet, WATER), still_water(fleet), strict=True):
+        assert np.array_equal(named, default)
+    step(fleet, still_water(fleet), 1 / 60)
+    assert fleet.position[0, 2] == pytest.approx(0.5 - 500 / 1025, abs=1e-12)

@@ -98,6 +98,20 @@ CALLS = {  # a name in the error: calls that it is in
     ],
     "rtol": [lambda: simulate(rope(), "dopri5", rtol=1e-200), lambda: simulate(rope(), "dop853", rtol=1e-18)],
     "atol": [lambda: simulate(rope(), "dopri5", atol=1e-200)],
+    "h": [
+        lambda: advance(rope(), State.at_rest(rope()), "rk4", -1e-3, 10),
+        lambda: advance(rope(), State.at_rest(rope()), "rk4", 0.0, 10),
+        lambda: advance(rope(), State.at_rest(rope()), "rk4", math.nan, 10),
+        lambda: advance(rope(), State.at_rest(rope()), "rk4", math.inf, 10),
+    ],
+    "steps": [
+        lambda: advance(rope(), State.at_rest(rope()), "rk4", 1e-3, -1),
+        lambda: advance(rope(), State.at_rest(rope()), "rk4", 1e-3, 1.5),  # type: ignore[arg-type]
+    ],
+    "integrator": [
+        lambda: advance(rope(), State.at_rest(rope()), "RK4", 1e-3, 1),
+        lambda: advance(rope(), State.at_rest(rope()), None, 1e-3, 1),  # type: ignore[arg-type]
+    ],
     "step": [lambda: simulate(rope(), step=5e-324), lambda: simulate(rope(), step=1e-300)],
     "duration": [
         lambda: simulate(rope(), duration=1e308),
@@ -163,7 +177,8 @@ def test_no_stricter_tolerance_than_round_off_and_no_step_of_nan_are_taken():
     """A state that is not finite ends an adaptive run at once, and not never."""
     net = rope(3)
     broken = dataclasses.replace(net, x0=np.full_like(net.x0, math.nan))
-    assert simulate(broken, "dopri5", duration=0.1, frames=3).diverged_at == 0.0
+    with pytest.warns(RuntimeWarning, match=r"dopri5 in its own steps diverged at t = 0 s"):
+        assert simulate(broken, "dopri5", duration=0.1, frames=3).diverged_at == 0.0
     assert simulate(net, "dop853", rtol=1e-14, atol=1e-14, duration=0.01, frames=2).diverged_at is None
 
 

@@ -12,6 +12,7 @@ residues R are fitted, best where the hull's own frequencies lie, under the cond
 
 import functools
 import math
+import warnings
 from typing import NamedTuple
 
 import numpy as np
@@ -30,6 +31,7 @@ DIRECTIONS = np.radians(np.arange(0.0, 360.0, 10.0))  # in which waves run, of t
 FIT_WIDTH = 0.12  # share of a hull's own frequency about which the memory is fitted best
 FIT_FLOOR = 0.06  # weight of the other frequencies
 STEADY_WEIGHT = 30.0  # of the condition that a steady motion meets no force
+DEEPEST = 0.98  # of the height of a hull: the draft at which one that is wholly under water has its coefficients
 MAX_TURNS = 60  # of the search for a natural frequency
 # What changes sign under a mirror that turns x, or y
 MIRROR_X = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
@@ -68,27 +70,67 @@ class Memory(NamedTuple):
     residues: np.ndarray  # (p, 6, 6) complex
 
 
-def linear_hull(hull: Hull, draft: float) -> LinearHull:
-    """The linear coefficients of a hull upright at a draft [m], which is bounded to what is tabulated."""
-    raise_if_stopped()
-    low, high = (float(value) for value in hull.extents[2])
-    height = high - low
-    draft = min(draft, 0.98 * height)
-    shape, is_round = hull.shape, False
+class TablePlace(NamedTuple):
+    """The table of a hull at a draft, and the place in it."""
+
+    table: LinearTable
+    aspect: float  # length over width, at least 1
+    depth: float  # draft over `length`
+    length: float  # [m] that the table is in units of
+    is_turned: bool  # the long side lies along y, in the tables along x
+    is_round: bool
+
+
+def place_in_table(hull: Hull, draft: float) -> TablePlace:
+    """The table of a hull and its place in it, upright at a draft [m] below its height."""
+    shape = hull.shape
     x, y = (float(value) for value in hull.size[:2])
-    cut = upright(hull, draft)
     if shape.table is not None:
-        table, length, aspect, depth = shape.table, table_length(hull), 1.0, draft
-    elif shape.linear in ("cylinder", "sphere"):
-        table, length, aspect, depth, is_round = table_of(shape.linear), x / 2, 1.0, draft, True
-    else:
-        table, depth = table_of("box"), draft
-        if shape.linear != "box":
-            x, y = (math.sqrt(12 * max(second, 1e-9) / max(cut.area, 1e-9)) for second in cut.second[:2])
-            depth = cut.volume / (x * y)
-        length, aspect = math.sqrt(x * y) / 2, x / y
-    turned = shape.table is None and aspect < 1
-    found = interpolated(table, max(aspect, 1 / aspect), depth / length)
+        length = table_length(hull)
+        return TablePlace(shape.table, 1.0, draft / length, length, False, False)
+    if shape.linear in ("cylinder", "sphere"):
+        return TablePlace(table_of(shape.linear), 1.0, 2 * draft / x, x / 2, False, True)
+    if shape.linear != "box":
+        cut = upright(hull, draft)
+        x, y = (math.sqrt(12 * max(second, 1e-9) / max(cut.area, 1e-9)) for second in cut.second[:2])
+        draft = cut.volume / (x * y)
+    length = math.sqrt(x * y) / 2
+    return TablePlace(table_of("box"), max(x / y, y / x), draft / length, length, x < y, False)
+
+
+def outside_table(hull: Hull, draft: float) -> str:
+    """The words for a hull that floats upright at a draft [m] outside its table of coefficients; "" for one inside.
+
+    A hull that is wholly under water makes no waves at the surface, and is never outside.
+    """
+    if draft >= DEEPEST * float(hull.size[2]):
+        return ""
+    place, beyond = place_in_table(hull, draft), []
+    for name, value, nodes in (
+        ("length over width", place.aspect, place.table.aspect),
+        ("draft over half the width", place.depth, place.table.draft),
+    ):
+        low, high = float(nodes[0]), float(nodes[-1])
+        if not low * (1 - 1e-9) <= value <= high * (1 + 1e-9):
+            beyond.append(f"{name} {value:.3g} (table: {low:g} to {high:g})")
+    return " and ".join(beyond)
+
+
+def linear_hull(hull: Hull, draft: float) -> LinearHull:
+    """The linear coefficients of a hull upright at a draft [m].
+
+    Outside its table a hull has the coefficients at the border, and a UserWarning names what is outside.
+    """
+    raise_if_stopped()
+    beyond = outside_table(hull, draft)
+    if beyond:
+        advice = "a mesh file has a table of its own by the command `springtide hydrodynamics`"
+        words = f"{hull.shape.name}: {beyond} is outside; added mass, damping and wave forces are those of the border"
+        warnings.warn(f"{words}; {advice}", UserWarning, stacklevel=2)
+    low = float(hull.extents[2, 0])
+    draft = min(draft, DEEPEST * float(hull.size[2]))
+    table, aspect, depth, length, turned, is_round = place_in_table(hull, draft)
+    found = interpolated(table, aspect, depth)
     excitation = around(found.excitation, table.direction)
     a, b, infinite = found.added_mass, found.damping, found.infinite
     if turned:  # the tables have the long side along x: a quarter turn
@@ -112,7 +154,7 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
         excitation=(excitation * unit * length) @ S,
         length=length,
         draft=draft,
-        volume=cut.volume,
+        volume=upright(hull, draft).volume,
         is_round=is_round,
     )
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from sim.floating.equilibrium import Layers, equilibrium_draft
 from sim.floating.hull import Hull
+from sim.floating.hydrodynamics import outside_table
 from sim.floating.periods import heave_period_at
 
 
@@ -15,6 +16,7 @@ class HydrostaticPrediction(NamedTuple):
     draft_in_water: float  # [m] in clean water; inf: it sinks
     height: float  # [m] of the hull
     period: float  # [s] of small heave, with added mass; inf: no force restores
+    outside: str = ""  # its place outside the table of linear coefficients, in words
 
 
 def predict(hull: Hull, density: float, layers: Layers, water_density: float) -> HydrostaticPrediction:
@@ -28,4 +30,5 @@ def predict(hull: Hull, density: float, layers: Layers, water_density: float) ->
         draft_in_water=equilibrium_draft(hull, density, ((water_density, math.inf),)),
         height=float(hull.extents[2, 1] - hull.extents[2, 0]),
         period=heave_period_at(hull, density, layers, draft),
+        outside=outside_table(hull, draft),
     )

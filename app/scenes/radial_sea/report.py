@@ -68,10 +68,19 @@ def forces_html(readings: RadialReadings) -> Html:
         f"{', '.join(approximated)}: added mass, damping and wave forces are those of the box with its volume and "
         "waterplane. The command springtide hydrodynamics HULL computes its own."
     )
+    outside = [
+        faint(
+            f"{body.title}: {body.prediction.outside} is outside the table of coefficients: added mass, damping and "
+            "wave forces are those of its border."
+        )
+        for body in readings.bodies
+        if body.prediction.outside
+    ]
     return join((
         *weight_tables(readings),
         table((("heave period", ""), ("measured", "s"), ("theory", "s")), periods),
         *([note] if approximated else []),
+        *outside,
     ))  # fmt: skip
 
 

@@ -48,6 +48,15 @@ def test_no_bodies_and_no_waves_are_reported_too() -> None:
     assert all(notes_of(loop.latest).values())
 
 
+@pytest.mark.parametrize(("density", "is_said"), [(50.0, True), (450.0, False)])
+def test_a_body_outside_its_table_of_coefficients_is_said_to_be(density: float, is_said: bool) -> None:
+    """The box of 50 kg/m3 floats at 0.058 of half its width, where the table begins at 0.06."""
+    loop = SimLoop(RadialSeaScene(check_record(Params, {"density": density, "bodies": 3, "waves": False})))
+    loop.tick(0.1)
+    words = "Box: draft over half the width 0.0569 (table: 0.06 to 4.2) is outside"
+    assert (words in notes_of(loop.latest)["Weight, buoyancy, heave"]) == is_said
+
+
 def live(**values) -> dict[str, float]:
     """The live values of a scene."""
     loop = SimLoop(RadialSeaScene(check_record(Params, values)))

@@ -1,6 +1,8 @@
 """Bodies against the committed boundary-element coefficients: periods, decay, response in regular waves."""
 
 import math
+import re
+import warnings
 
 import numpy as np
 import pytest
@@ -21,6 +23,7 @@ from sim.floating.excitation import HullExcitation, WaveExcitation, plane_force
 from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange
 from sim.floating.linear_motion import first_swings, linear_decay, linear_response
 from sim.floating.linear_table import table_of
+from sim.floating.prediction import predict
 from sim.ocean.gerstner import Waves
 from sim.ocean.radial import RadialSea
 
@@ -244,8 +247,34 @@ def test_size_and_gravity_scale_periods() -> None:
     np.testing.assert_allclose(z, first, atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("hull", "density", "words"),
+    [
+        (Hull.box(120.0, 12.0, 9.0), 500.0, "length over width 10 (table: 1 to 5)"),
+        (Hull.box(12.0, 120.0, 9.0), 500.0, "length over width 10 (table: 1 to 5)"),
+        (Hull.box(1.0, 1.0, 1.0), 20.0, "draft over half the width 0.039 (table: 0.06 to 4.2)"),
+        (Hull.cylinder(0.2, 4.0), 900.0, "draft over half the width 17.6 (table: 0.06 to 4.2)"),
+        (Hull.sphere(0.5), 1020.0, "draft over half the width 1.92 (table: 0.15 to 1.9)"),
+    ],
+)
+def test_a_hull_outside_its_table_is_warned_of_by_name(hull: Hull, density: float, words: str) -> None:
+    with pytest.warns(UserWarning, match="^" + re.escape(f"{hull.shape.name}: {words} is outside")):
+        heave_period(hull, density)
+    assert predict(hull, density, WATER, 1025.0).outside == words
+
+
+@pytest.mark.parametrize(
+    ("hull", "density"), [(Hull.box(5.0, 1.0, 1.0), 500.0), (Hull.sphere(0.5), 1025.0), (Hull.sphere(0.5), 2000.0)]
+)
+def test_a_hull_inside_its_table_or_wholly_under_water_is_not_warned_of(hull: Hull, density: float) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        make_fleet([Body(hull, density)])
+        assert predict(hull, density, WATER, 1025.0).outside == ""
+
+
 def test_a_long_hull_does_not_feel_short_waves_along_it_and_feels_them_across() -> None:
-    linear = afloat(Hull.box(30.0, 5.0, 2.0), 500.0, WATER).linear
+    linear = afloat(Hull.box(30.0, 6.0, 2.0), 500.0, WATER).linear
     i = int(np.argmin(np.abs(linear.frequency - math.sqrt(2 * math.pi / 10))))
     ahead, abeam = np.abs(linear.excitation[i, 0, 2]), np.abs(linear.excitation[i, 9, 2])
     assert abeam > 5 * ahead

@@ -25,6 +25,7 @@ from sim.floating import (
 
 BOX = Hull.box(1.0, 1.0, 1.0)
 WATER = [(1025.0, math.inf)]
+SPILL = [(850.0, 0.2), (1025.0, INF)]
 NAN, INF = math.nan, math.inf
 
 
@@ -106,8 +107,8 @@ def test_a_bad_argument_is_refused_by_name(name: str, value: str, call: Callable
 
 def test_what_is_allowed_stays_allowed() -> None:
     """A generator of layers, numpy's whole numbers, parts that touch or are apart, a hollow, a face without area."""
-    pairs = (pair for pair in [(850.0, 0.2), (1025.0, INF)])
-    assert equilibrium_draft(BOX, 500.0, pairs) == equilibrium_draft(BOX, 500.0)  # type: ignore[arg-type]
+    pairs = (pair for pair in SPILL)
+    assert equilibrium_draft(BOX, 500.0, pairs) == equilibrium_draft(BOX, 500.0, SPILL)  # type: ignore[arg-type]
     assert len(Hull.sphere(1.0, np.int64(4)).faces) == 320  # type: ignore[arg-type]
     assert of_parts((cube(1), BOX.faces), (cube(0.5, 3, 0, 0), BOX.faces)).volume == pytest.approx(1.125)
     assert of_parts((cube(1), BOX.faces), (cube(1, 1, 0, 0), BOX.faces)).volume == pytest.approx(2.0)

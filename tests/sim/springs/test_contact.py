@@ -90,7 +90,7 @@ def test_points_of_a_radius_rest_that_much_higher():
 
 def test_a_rope_on_the_floor_is_carried_by_it():
     """The floor bears the weight of every point: none is deeper than the others."""
-    net = rope(6, drag=3.0, root=(0.0, 0.0, -0.0125), floor=0.0)
+    net = rope(6, drag=3.0, gravity=10.0, root=(0.0, 0.0, -0.0125), floor=0.0)
     state = State.at_rest(net)
     advance(net, state, INTEGRATORS["leapfrog"], 1e-3, 30_000)
     assert state.x[2, 0] == pytest.approx(np.full(6, -0.0125), abs=1e-9)

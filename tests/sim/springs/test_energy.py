@@ -65,7 +65,7 @@ def test_the_ledger_closes_through_contact_and_friction(name, law):
 
 
 def test_undamped_leapfrog_keeps_its_energy_over_a_hundred_thousand_steps():
-    net = rope(10, damping=0.0, drag=0.0)
+    net = rope(10, damping=0.0, drag=0.0, gravity=10.0)
     run = simulate(net, "leapfrog", 1e-3, 100.0, 1001)
     total = run.energy[:, :4].sum(axis=1)
     off = np.abs(total - total[0]).max()

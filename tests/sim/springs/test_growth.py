@@ -79,7 +79,7 @@ def test_the_hanging_rope_holds_to_its_critical_step_and_no_further(name, stiffn
 
 @pytest.mark.parametrize("surroundings", [{"floor": -1.0}, {"sphere": (-0.3, 0.05, -1.2, 0.5)}])
 def test_a_settled_rope_stays_where_it_is(surroundings):
-    net = rope(10, **surroundings)
+    net = rope(10, gravity=10.0, **surroundings)
     state = State.at_rest(net)
     state.x[:] = find_rest_positions(net)
     if "floor" in surroundings:  # on a sphere it may yet slide, very slowly

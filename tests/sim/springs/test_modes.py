@@ -10,6 +10,7 @@ from sim.springs.state import State, advance, velocities
 from sim.springs.statics import equilibrium
 from tests.sim.springs.test_stability import products
 
+LAB = rope(10, gravity=10.0)
 LONGITUDINAL = (  # [rad/s] of nine moving points, fixed and free, k = 800 N/m, m = 1 kg
     4.67139321, 13.88675621, 22.7233247, 30.94006013, 38.31283137, 44.64052844, 49.75054827, 53.50350283, 55.79702131,
 )  # fmt: skip
@@ -53,18 +54,18 @@ def measured(net, axis, shape, amplitude, seconds, name="rk4", steps=None):
 
 
 def test_longitudinal_frequencies_are_the_fixed_free_chain_s():
-    squared, _ = mode_shapes(rope(10), hanging(rope(10)).x, 2)
+    squared, _ = mode_shapes(LAB, hanging(LAB).x, 2)
     assert np.sqrt(squared) == pytest.approx(LONGITUDINAL, rel=1e-8)
 
 
 def test_frequencies_across_the_lab_s_hanging_rope_are_the_table_s():
-    squared, _ = mode_shapes(rope(10), hanging(rope(10)).x, 0)
+    squared, _ = mode_shapes(LAB, hanging(LAB).x, 0)
     assert np.sqrt(squared) == pytest.approx(HANGING, rel=1e-8)
 
 
 @pytest.mark.parametrize("points", [5, 10])
 def test_a_nearly_inextensible_chain_has_the_zeros_of_laguerre_s_polynomial(points):
-    net = rope(points, 2.0, stiffness=1e9)
+    net = rope(points, 2.0, stiffness=1e9, gravity=10.0)
     squared, _ = mode_shapes(net, hanging(net).x, 0)
     zeros = np.polynomial.laguerre.lagroots([0.0] * (points - 1) + [1.0])
     assert squared == pytest.approx(10.0 * (points - 1) / 2.0 * zeros, rel=1e-6)
@@ -74,7 +75,7 @@ def test_a_nearly_inextensible_chain_has_the_zeros_of_laguerre_s_polynomial(poin
 
 @pytest.mark.parametrize("mode", [0, 1, 4, 8])
 def test_the_rope_swings_at_its_modes_frequencies(mode):
-    net = rope(10, damping=0.0, drag=0.0)
+    net = rope(10, damping=0.0, drag=0.0, gravity=10.0)
     _, shapes = mode_shapes(net, hanging(net).x, 0)
     omega, decay = measured(net, 0, shapes[:, mode], 1e-4, 20.0 * math.pi / HANGING[mode])
     assert omega == pytest.approx(HANGING[mode], rel=1e-5)
@@ -84,7 +85,7 @@ def test_the_rope_swings_at_its_modes_frequencies(mode):
 @pytest.mark.parametrize("mode", [0, 3, 8])
 def test_longitudinal_vibrations_decay_at_the_rayleigh_rate(mode):
     """gamma = (b lambda + c)/m with lambda = m omega^2/k: amplitudes fall as exp(-gamma t/2)."""
-    net = rope(10)
+    net = LAB
     _, shapes = mode_shapes(net, hanging(net).x, 2)
     omega0 = LONGITUDINAL[mode]
     gamma = 7.0 * omega0**2 / 800.0 + 1.0

@@ -56,10 +56,10 @@ def test_a_rope_starts_at_rest_from_its_root_along_minus_x():
     assert net.families[0].rest == 0.5
 
 
-def test_the_defaults_are_the_lab_s():
+def test_the_defaults_are_the_lab_s_but_for_its_gravity_of_10():
     net = rope()
     assert net.x0.shape[2] == 10
-    assert (net.mass, net.drag, net.gravity) == (1.0, 1.0, (0.0, 0.0, -10.0))
+    assert (net.mass, net.drag, net.gravity) == (1.0, 1.0, (0.0, 0.0, -9.81))
     assert net.families == ((0, 1, 2.0 / 9, 800.0, 7.0),)
     assert net.damping_model == "isotropic"
 
@@ -90,9 +90,9 @@ def test_numpy_numbers_are_numbers():
 
 
 def test_in_lab_units_a_rope_stretches_with_its_points_and_in_material_units_it_does_not():
-    """The lab's trap: ten points hang 2.56 m deep, fifty 17.3 m, of the same 2 m rope."""
-    assert -hanging_chain(rope(10)).x[-1, 2] == pytest.approx(2.5625)
-    assert -hanging_chain(rope(50)).x[-1, 2] == pytest.approx(17.3125)
+    """The lab's trap: ten points hang 2.56 m deep, fifty 17.3 m, of the same 2 m rope (its gravity is 10 m/s2)."""
+    assert -hanging_chain(rope(10, gravity=10.0)).x[-1, 2] == pytest.approx(2.5625)
+    assert -hanging_chain(rope(50, gravity=10.0)).x[-1, 2] == pytest.approx(17.3125)
     material = [hanging_chain(rope(n, 2.0, **lab_units(n, 2.0, 500.0, 1.0, 0.1, 0.2))).x[-1, 2] for n in (10, 50, 1000)]
     assert np.ptp(material) < 5e-3
 

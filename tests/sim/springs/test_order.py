@@ -16,11 +16,13 @@ COARSEST = {1: 400, 2: 50, 4: 50, 5: 100}  # steps that are well inside the asym
 LOW = [name for name, record in INTEGRATORS.items() if max(record.order, record.undamped_order) <= 5]
 PATH = PinPath(-0.1, ((0.01, -0.02, 0.03), (0.2, -0.1, 0.5), (-0.6, 0.4, 2.0), (1.0, 0.5, -3.0)))
 ROPES = {
-    "isotropic": rope(10),
-    "axial": rope(10, damping_model="axial"),
-    "undamped": rope(10, damping=0.0, drag=0.0),
-    "moving root": dataclasses.replace(rope(10), pin_paths=(((0, 0), PATH),)),
-    "moving root, axial": dataclasses.replace(rope(10, damping_model="axial"), pin_paths=(((0, 0), PATH),)),
+    "isotropic": rope(10, gravity=10.0),
+    "axial": rope(10, gravity=10.0, damping_model="axial"),
+    "undamped": rope(10, gravity=10.0, damping=0.0, drag=0.0),
+    "moving root": dataclasses.replace(rope(10, gravity=10.0), pin_paths=(((0, 0), PATH),)),
+    "moving root, axial": dataclasses.replace(
+        rope(10, gravity=10.0, damping_model="axial"), pin_paths=(((0, 0), PATH),)
+    ),
 }
 
 
@@ -118,7 +120,7 @@ def test_a_moving_root_is_exactly_where_its_path_is():
 def test_the_lab_s_own_figures_of_error_come_out():
     # Lab defaults from horizontal, two seconds: RK4 at 1/60 s is off by 2.0e-6 m and the damped leapfrog is second
     # order where the lab's Euler at the same cost is a hundred times as far off.
-    net = rope(10)
+    net = rope(10, gravity=10.0)
     truth = exact(net, 2.0)
     rk4, leapfrog, euler = (
         np.abs(integrated(net, name, 2.0, steps).x - truth[0]).max()

@@ -103,11 +103,11 @@ def test_a_rope_folded_on_itself_hangs_in_two_equal_legs():
 
 
 def test_the_hanging_chain_has_the_lab_s_numbers():
-    shape = hanging_chain(rope(10))
+    shape = hanging_chain(rope(10, gravity=10.0))
     depth = -shape.x[:, 2]
     assert depth[1] - 2.0 / 9 == pytest.approx(0.1125, rel=1e-12)
     assert depth[-1] == pytest.approx(2.5625, rel=1e-12)
-    scene = hanging_chain(rope(50))
+    scene = hanging_chain(rope(50, gravity=10.0))
     assert -scene.x[1, 2] - 2.0 / 49 == pytest.approx(0.6125, rel=1e-12)
     assert -scene.x[-1, 2] == pytest.approx(2.0 + 10.0 * 49 * 50 / 1600.0, rel=1e-12)
 

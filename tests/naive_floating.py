@@ -89,9 +89,9 @@ def naive_step(
 ):
     """One leapfrog step of one body from motion.py's equations, in matrices and the axes of the body's heading.
 
-    state: position, rotation, velocity, spin, the wet skin of the last step or None, and the memory (p, 6); upper and
-    lower: (density, height at the origin, slope) of the planes z = height + slope . (x, y); flow (3,) and lift:
-    velocity and upward acceleration of the surface; given (6,): excitation, or None.
+    state: position, rotation, velocity, spin, the fluid (6,) carried at the last step or None, and the memory (p, 6);
+    upper and lower: (density, height at the origin, slope) of the planes z = height + slope . (x, y); flow (3,) and
+    lift: velocity and upward acceleration of the surface; given (6,): excitation, or None.
     The drag is integrated in many small steps instead of in closed form.
     """
     position, rotation, velocity, spin, before, memory = state
@@ -124,17 +124,24 @@ def naive_step(
     wetter = np.minimum(wet / full, 1.0) if volume > 0 else np.zeros(3)
     share = tilt**2 @ wetter
     scale = np.sqrt(np.append(share, (np.roll(share, -1) + np.roll(share, -2)) / 2))
-    infinite = law.added_mass * fluid * linear.linear.infinite
-    added = np.outer(scale, scale) * infinite
+
+    def added_mass(carried):
+        """What the hull carries of A: each motion in turn, with what it couples, out of what the ones before left."""
+        total, left = np.zeros((6, 6)), linear.linear.infinite.copy()
+        for part, shared in zip(range(6), carried, strict=True):
+            if left[part, part] > 1e-8 * np.trace(linear.linear.infinite):
+                alone = np.outer(left[part], left[part]) / left[part, part]
+                total, left = total + shared * alone, left - alone
+        return law.added_mass * total
+
+    added = added_mass(fluid * scale**2)
     solid = np.zeros((6, 6))
     solid[:3, :3], solid[3:, 3:] = hull.volume * density * np.eye(3), density * tilt @ hull.inertia @ tilt.T
     v, w, u = heading.T @ velocity, heading.T @ spin, heading.T @ flow
-    if before is not None and volume > 0:
-        carried = np.diag(infinite)[:3]
-        early = np.minimum(before / full, 1.0)
-        entering = np.where(wet > before, (solid[0, 0] + carried * early) / (solid[0, 0] + carried * wetter), 1.0)
-        for c in range(3):
-            v = v + tilt[:, c] * (tilt[:, c] @ (v - u)) * (entering[c] - 1.0)
+    if before is not None:
+        kept = added_mass(np.minimum(before, fluid * scale**2))
+        shared = np.linalg.solve(solid + added, (solid + kept) @ np.append(v - u, w))
+        v, w = u + shared[:3], shared[3:]
     level = upper[1] + position[:2] @ upper[2] - position[2]
     felt = scale * math.exp(-max(level - np.abs(hull.extents[2]).max(), 0.0) / linear.linear.draft)
     poles = linear.memory.poles * math.sqrt(law.gravity)
@@ -167,7 +174,7 @@ def naive_step(
         w[i] = dragged(w[i], wide, wider, law, h)
     velocity, spin = flow + turn @ v, turn @ w
     position, rotation, spin = naive_drift(hull, position, rotation, velocity, spin, h / 2)
-    return position, rotation, velocity, spin, wet, memory
+    return position, rotation, velocity, spin, fluid * scale**2, memory
 
 
 def naive_drift(hull: Hull, position, rotation, velocity, spin, h: float):

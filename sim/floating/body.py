@@ -51,7 +51,7 @@ class PackedHulls(NamedTuple):
 class PackedLinear(NamedTuple):
     """What linear theory knows of s hulls at their drafts, at unit density and gravity: see hydrodynamics.py."""
 
-    added_mass: np.ndarray  # (s, 6, 6) at infinite frequency, about the centre of mass
+    added_factor: np.ndarray  # (s, 6, 6) lower Cholesky factor of the added mass at infinite frequency
     poles: np.ndarray  # (s, p) complex
     coupled: np.ndarray  # (s, 36, 2) int: motions c, d that the memory couples, the first coupled_count[s] of them
     coupled_count: np.ndarray  # (s,) int
@@ -68,7 +68,9 @@ class Fleet(NamedTuple):
     rotation: np.ndarray  # (n, 4) quaternion (w, x, y, z)
     velocity: np.ndarray  # (n, 3) [m/s]
     spin: np.ndarray  # (n, 3) [rad/s] in world axes
-    wetted: np.ndarray  # (n, 3) [kg/m] wetted area across each body axis times density at the last step; -1 before it
+    # (n, 6) [kg/m3] density of the fluid times its share that each motion, in the axes of the heading, carried at the
+    # last step; -1 before it
+    carried: np.ndarray
     buoyancy: np.ndarray  # (n,) [N] weight of the displaced fluids at the last step
     # (n, 4) [N] upward, mean over the last step: buoyancy, waves, drag, and what the motion through the water meets:
     # added mass, the waves that the body made, a pull. With the weight they are mass times acceleration.
@@ -119,7 +121,7 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
         rotation=rotation / np.linalg.norm(rotation, axis=1, keepdims=True),
         velocity=np.array([body.velocity for body in bodies], dtype=float).reshape(n, 3),
         spin=np.array([body.spin for body in bodies], dtype=float).reshape(n, 3),
-        wetted=np.full((n, 3), -1.0),
+        carried=np.full((n, 6), -1.0),
         buoyancy=np.zeros(n),
         lift=np.zeros((n, 4)),
         wet_volume=np.zeros((n, 2)),
@@ -158,7 +160,7 @@ def pack_linear(
         coupled[i, : len(pairs)] = pairs
         residues[i, : len(pairs)] = one.memory.residues[:, pairs[:, 0], pairs[:, 1]].T
     return np.array([number[id(one)] for one in found], dtype=np.int64), PackedLinear(
-        added_mass=added,
+        added_factor=np.linalg.cholesky(added + steady),
         poles=np.array([one.memory.poles for one in unique], dtype=complex).reshape(s, len(POLES)),
         coupled=coupled,
         coupled_count=coupled_count,

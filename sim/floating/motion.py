@@ -19,9 +19,12 @@ are level, what is displaced is that at rest, and the upward F_e is a change of 
 where Archimedes says, but for the mean of the drag. Mean forces of second order, which would need the potential of that
 order (Pinkster 1980), are left out.
 
-A hull that comes out of the water loses A, F_r and F_e with what of it is wet, below half of that at rest. As it
-enters again it shares its momentum with the fluid that it begins to carry, (m + A)(v - u) = const (von Karman 1929,
-NACA TN 321); a hull that leaves the water gets nothing back. So a change of A takes energy and never gives any.
+A hull that comes out of the water loses A, F_r and F_e with what of it is wet, below half of that at rest. With
+A = L L^T the part that it carries is L diag(c) L^T, c the wet share of each of the six motions: a sum of positive parts
+that grow with c, whatever A couples. Where a share grows, body and fluid share their momentum and their moment of
+momentum, (M + A)(V - U) = const for the six motions at once (von Karman 1929, NACA TN 321, for the vertical one). Where
+a share shrinks, the velocities stay, and the fluid that is left behind keeps its energy. So neither change of A gives
+energy: p^T (M + A)^-1 p falls as A grows at constant p, V^T (M + A) V falls as A shrinks at constant V.
 
 **Step.** Leapfrog, half a drift, the kick, half a drift: forces at the middle of the substep change the velocity.
 Buoyancy alone is explicit; drag is solved exactly over the step and the pull implicitly, so neither limits it. The
@@ -290,10 +293,11 @@ def kick(fleet, water, coefficients, i, h, share_of_step, scratch):
     before, mass = fleet.velocity[i, 2], fleet.mass[i]
     buoyancy, density = scratch.force[2], fluid_density(fleet, water, i)
     set_mass(fleet, water, coefficients, i, density, scratch)
-    set_velocities(fleet, water, coefficients, i, density, scratch)
+    factorise(scratch.mass, scratch.factor)
+    set_velocities(fleet, water, i, scratch)
+    share_momentum(fleet, coefficients, i, density, scratch)
     update_memory(fleet, water, i, scratch)
     waves = set_forces(fleet, water, coefficients, i, density, scratch)
-    factorise(scratch.mass, scratch.factor)
     solve_factorised(scratch.factor, load)
     for c in range(3):
         v[c] += h * load[c]
@@ -314,7 +318,9 @@ def kick(fleet, water, coefficients, i, h, share_of_step, scratch):
 
 @kernel(inline=True)
 def set_mass(fleet, water, coefficients, i, density, scratch):
-    """Set mass (6, 6), and share (6,): sqrt of how much of body i is wet, of half of what is wet at rest, at most 1.
+    """Set mass (6, 6), wet (6,) and share (6,) of body i.
+
+    wet is how much of it is wet for each motion, of half of what is wet at rest, at most 1; share is the root of that.
 
     The coefficients are those at rest while at least half of that is wet: a scale that followed each small motion
     would push the body up or down on average, which linear theory does not know.
@@ -327,14 +333,15 @@ def set_mass(fleet, water, coefficients, i, density, scratch):
             full = ENTRY_SHARE * density * fleet.linear.wet_area[s, d]
             wet[c] += T[c, d] * T[c, d] * (min(scratch.wetted[d] / full, 1.0) if full > 0.0 else 0.0)
     for c in range(3):
-        wet[3 + c] = np.sqrt((wet[(c + 1) % 3] + wet[(c + 2) % 3]) / 2.0)
-    for c in range(3):
-        wet[c] = np.sqrt(wet[c])
+        wet[3 + c] = (wet[(c + 1) % 3] + wet[(c + 2) % 3]) / 2.0
+    L = fleet.linear.added_factor
     for c in range(6):
-        scratch.share[c] *= wet[c]
-        for d in range(6):
-            added = coefficients.added_mass * density * fleet.linear.added_mass[s, c, d]
-            scratch.mass[c, d] = added * wet[c] * wet[d]
+        scratch.share[c] *= np.sqrt(wet[c])
+        for d in range(c + 1):
+            added = 0.0
+            for k in range(d + 1):
+                added += L[s, c, k] * wet[k] * L[s, d, k]
+            scratch.mass[c, d] = scratch.mass[d, c] = coefficients.added_mass * density * added
     for c in range(3):
         scratch.mass[c, c] += fleet.mass[i]
         for d in range(3):
@@ -353,26 +360,45 @@ def fluid_density(fleet, water, i):
 
 
 @kernel(inline=True)
-def set_velocities(fleet, water, coefficients, i, density, scratch):
-    """Set v and w (3,) of body i, which shares its momentum with the fluid that it begins to carry."""
-    H, T, v, w, flow, wetted = scratch.H, scratch.T, scratch.v, scratch.w, scratch.flow, scratch.wetted
-    s, m = fleet.linear_hull[i], fleet.mass[i]
+def set_velocities(fleet, water, i, scratch):
+    """Set v and w (3,) of body i, and the flow (3,), in the axes of its heading."""
+    H, v, w, flow = scratch.H, scratch.v, scratch.w, scratch.flow
     for c in range(3):
         flow[c] = v[c] = w[c] = 0.0
         for d in range(3):
             flow[c] += H[d, c] * water.velocity[i, d]
             v[c] += H[d, c] * fleet.velocity[i, d]
             w[c] += H[d, c] * fleet.spin[i, d]
-    for c in range(3):
-        if 0.0 <= fleet.wetted[i, c] < wetted[c]:
-            full = ENTRY_SHARE * density * fleet.linear.wet_area[s, c]
-            carried = coefficients.added_mass * density * fleet.linear.added_mass[s, c, c]
-            before, now = min(fleet.wetted[i, c] / full, 1.0), min(wetted[c] / full, 1.0)
-            speed = T[0, c] * (v[0] - flow[0]) + T[1, c] * (v[1] - flow[1]) + T[2, c] * (v[2] - flow[2])
-            change = speed * carried * (before - now) / (m + carried * now)
-            for d in range(3):
-                v[d] += T[d, c] * change
-        fleet.wetted[i, c] = wetted[c]
+
+
+@kernel(inline=True)
+def share_momentum(fleet, coefficients, i, density, scratch):
+    """Let body i share its momentum with the fluid that it begins to carry.
+
+    (M + A)(V - U) stays while c grows in A = L diag(c) L^T: V changes by -(M + A)^-1 L diag(dc) L^T (V - U), with the A
+    of the greater c.
+    """
+    v, w, flow, change, L = scratch.v, scratch.w, scratch.flow, scratch.load, fleet.linear.added_factor
+    s = fleet.linear_hull[i]
+    enters = False
+    for c in range(6):
+        change[c] = 0.0
+    for k in range(6):
+        before, now = fleet.carried[i, k], density * scratch.wet[k]
+        fleet.carried[i, k] = now
+        if not 0.0 <= before < now:
+            continue
+        enters = True
+        momentum = 0.0
+        for c in range(k, 6):
+            momentum += L[s, c, k] * (v[c] - flow[c] if c < 3 else w[c - 3])
+        for c in range(k, 6):
+            change[c] -= coefficients.added_mass * (now - before) * L[s, c, k] * momentum
+    if enters:
+        solve_factorised(scratch.factor, change)
+        for c in range(3):
+            v[c] += change[c]
+            w[c] += change[3 + c]
 
 
 @kernel(inline=True)

@@ -138,7 +138,11 @@ class WideArrays(NamedTuple):
     air_drag: float  # rho C_D / 2 [kg/m^3]
     air_lift: float
     thickness: float  # [m] at which particles of the net push each other, 0: never
-    pairs: NDArray[np.int64]  # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for
+    row_spacing: float  # [m] at rest from row to row, FARTHEST where no link says it
+    col_spacing: float
+    # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for; in [-1, 1] the most particles
+    # that were left out as the list was full
+    pairs: NDArray[np.int64]
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     bands: int  # number of bands of rows; each thread computes the forces of one band
 
@@ -248,6 +252,10 @@ class Net:
             w[i, j] = 0.0
         return w.ravel()
 
+    def spacing(self, di: int, dj: int) -> float:
+        """Rest length [m] of the links from (i, j) to (i + di, j + dj), FARTHEST where there are none."""
+        return next((float(f.rest) for f in self.families if f[:2] == (di, dj)), FARTHEST)
+
     def with_stiffness(self, stiffness: float) -> "Net":
         """The same net with all links scaled together, so that the stiffest have `stiffness` [N/m].
 
@@ -332,6 +340,8 @@ class Net:
             air_drag=0.5 * float(air.density * air.drag),
             air_lift=0.5 * float(air.density * air.lift),
             thickness=float(self.thickness),
+            row_spacing=self.spacing(1, 0),
+            col_spacing=self.spacing(0, 1),
             pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1, dtype=np.int64),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
             bands=self.bands,

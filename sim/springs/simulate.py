@@ -13,7 +13,7 @@ from sim.springs.analysis.energy import energies
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.automatic import AUTO, choose_for_step, choose_for_tolerance
 from sim.springs.integrators import Integrator, integrator_named
-from sim.springs.net import Net
+from sim.springs.net import PAIRS, Net
 from sim.springs.stability import critical_step, gershgorin
 from sim.springs.state import State, advance, check_damping, check_net, energy, steps_for, velocities
 from sim.validation import argument_error, check_number, is_whole_number
@@ -41,6 +41,7 @@ class Run(NamedTuple):
     diverged_at: float | None  # [s]
     step: float | None  # [s] that was taken; None where the method chose its own
     integrator: str  # that ran: what "auto" took
+    left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
 
 
 def simulate(
@@ -108,12 +109,19 @@ def simulate(
 
 
 def warned(run: Run) -> Run:
-    """The run itself, after a warning to the caller of `simulate` where it diverged."""
+    """The run itself, after a warning to the caller of `simulate` where it diverged or left contacts out."""
     if run.diverged_at is not None:
         took = "its own steps" if run.step is None else f"steps of {run.step:g} s"
         warnings.warn(
             f"the run with {run.integrator} in {took} diverged at t = {run.diverged_at:g} s: later frames are NaN; "
             "critical_step(net, integrator) is the longest step that is stable at the start",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+    if run.left_out > 0:
+        warnings.warn(
+            f"self-contact left out up to {run.left_out} particles, the last of the net: more than {PAIRS} pairs a "
+            "particle were within reach",
             RuntimeWarning,
             stacklevel=3,
         )
@@ -159,7 +167,17 @@ def stepped(
         ledger[frame] = *energy(net, state), state.dissipated, state.work
         if progress:
             progress(frame + 1, len(t))
-    return Run(t, per_point(net, xs), per_point(net, vs), ledger, state.force_evals, diverged_at, h, record.name)
+    return Run(
+        t,
+        per_point(net, xs),
+        per_point(net, vs),
+        ledger,
+        state.force_evals,
+        diverged_at,
+        h,
+        record.name,
+        state.left_out,
+    )
 
 
 def marched(
@@ -189,7 +207,8 @@ def marched(
             progress(frame + 1, len(t))
     diverged_at = None if filled == len(t) else float(stopped_at)
     x_frames, v_frames = per_point(net, xs.reshape(shape)), per_point(net, vs.reshape(shape))
-    return Run(t, x_frames, v_frames, ledger, evals, diverged_at, None, record.name)
+    left_out = max(0, int(p.pairs[-1, 1])) if net.thickness > 0.0 else 0
+    return Run(t, x_frames, v_frames, ledger, evals, diverged_at, None, record.name, left_out)
 
 
 def first_insane_time(net: Net, state: State, integrator: Integrator, h: float, steps: int) -> float:

@@ -34,15 +34,14 @@ class State:
     work: float = 0.0  # [J]
     force_evals: int = 0
     steps: int = 0
+    left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
 
     @classmethod
     def at_rest(cls, net: Net) -> "State":
         return cls(net.x0.copy(), np.zeros_like(net.x0))
 
     def copy(self) -> "State":
-        return State(
-            self.x.copy(), self.v.copy(), self.t, self.lag, self.dissipated, self.work, self.force_evals, self.steps
-        )
+        return dataclasses.replace(self, x=self.x.copy(), v=self.v.copy())
 
     @property
     def is_bounded(self) -> bool:
@@ -137,6 +136,8 @@ def advance(
         if may_end_within_a_step:
             raise_if_stopped()
             state.x[:], state.v[:] = x, v
+        if net.thickness > 0.0:
+            state.left_out = max(state.left_out, int(p.pairs[-1, 1]))
         state.force_evals += evals
         state.t += count * h
         state.steps += count

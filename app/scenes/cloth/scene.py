@@ -83,6 +83,7 @@ class ClothReadings(NamedTuple):
     corrections: float  # Newton corrections a step, of implicit methods
     note: str  # why another method runs than the one chosen, or ""
     threads: int  # that compute the forces
+    left_out: int = 0  # most particles that self-collision has left out, its list of pairs being full
 
 
 def gusty_wind(params: Params, t: float) -> Vector:
@@ -390,7 +391,8 @@ class ClothScene:
 
     def readings(self) -> ClothReadings:
         """Stability as last assessed, and the cost of the last steps."""
-        return self.stability._replace(corrections=self.corrections, threads=self.tuner.threads)
+        threads, left_out = self.tuner.threads, self.state.left_out
+        return self.stability._replace(corrections=self.corrections, threads=threads, left_out=left_out)
 
     def frame(self) -> ClothFrame:
         """What to draw; kept for a while, to be shown again if the run diverges."""

@@ -165,6 +165,8 @@ class View:
         parts = [stability_bar(readings.stability, exact=readings.exact)]
         if readings.corrections:
             parts.append(fill("<div>{:.1f} Newton iterations a step</div>", readings.corrections))
+        if readings.left_out:
+            parts.append(fill("<div>too crowded: self-collision left out {} particles</div>", readings.left_out))
         if readings.threads > 1:
             parts.append(fill("<div>forces computed on {} threads</div>", readings.threads))
         if frame.colour == "strain":

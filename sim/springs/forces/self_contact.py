@@ -1,5 +1,9 @@
 """A net against itself: particles nearer than the thickness push each other apart, neighbours on the grid excepted.
 
+Neighbours are those that links hold, and those with less than pi/2 thicknesses of cloth between them at rest: as much
+as lies between the two sides of the tightest fold, a half circle as wide as the thickness. So a flat net that is thick
+beside its spacing does not push itself apart.
+
 Pairs are found by a spatial hash and kept while nothing has moved by half of what they were looked for beyond the
 thickness (Verlet's list), so that a force evaluation only runs over a short list. With a thickness of at least 0.71
 of the spacing nothing fits through a cell.
@@ -31,10 +35,13 @@ def bucket(cx, cy, cz, mask):
 def find_pairs(x, p):
     """Fill p.pairs with the pairs nearer than (1 + SKIN) thickness, and p.seen with the positions.
 
+    Where p.pairs is full, the particles after that are left out; its last row keeps the largest number of them.
+
     There are none where p.stop asks for an end: who calls a kernel that may end in here looks at p.stop afterwards.
     """
     n = p.rows * p.cols
     reach = (1.0 + SKIN) * p.thickness
+    fold = 0.5 * math.pi * p.thickness
     inverse = 1.0 / reach
     mask = 1
     while mask < n:
@@ -55,6 +62,7 @@ def find_pairs(x, p):
     count = 0
     for a in range(n):
         if count == most:  # of a net in one heap the search would take the square of its particles
+            p.pairs[most, 1] = max(p.pairs[most, 1], n - a)
             break
         if a % UNASKED == 0 and is_stopped(p.stop):
             p.pairs[most, 0] = 0
@@ -69,7 +77,10 @@ def find_pairs(x, p):
                 b = order[s]
                 if b <= a:
                     continue
-                if abs(b // p.cols - ia) <= NEIGHBOURS and abs(b % p.cols - ja) <= NEIGHBOURS:
+                i, j = abs(b // p.cols - ia), abs(b % p.cols - ja)
+                if i <= NEIGHBOURS and j <= NEIGHBOURS:
+                    continue
+                if (i * p.row_spacing) ** 2 + (j * p.col_spacing) ** 2 < fold * fold:
                     continue
                 dx, dy, dz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
                 if dx * dx + dy * dy + dz * dz >= reach * reach:
@@ -81,6 +92,8 @@ def find_pairs(x, p):
                 if other and count < most:
                     p.pairs[count, 0], p.pairs[count, 1] = a, b
                     count += 1
+                elif other:
+                    p.pairs[most, 1] = max(p.pairs[most, 1], n - a)
     p.pairs[most, 0] = count
     for j in range(3 * n):
         p.seen[j] = x[j]

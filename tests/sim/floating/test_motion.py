@@ -17,11 +17,13 @@ from sim.floating import (
     roll_period,
     step,
     still_water,
+    submerged,
     vertices,
 )
 from sim.floating.hydrodynamics import POLES
 from sim.floating.hydrodynamics import afloat as afloat_in
 from sim.floating.motion import frequency_bound
+from sim.floating.rotation import rotation_matrix
 from tests.naive_floating import lumpy, naive_step, quaternion
 
 FRAME_INTERVAL = 1 / 60
@@ -76,7 +78,8 @@ def test_what_is_dropped_settles_at_its_draft(layers):
     # Only drag stops a drift, dv/dt = -v^2/L along each axis: after t it is below L/t, with L = 4 (m + A)/(rho S), and
     # A that of slow motions.
     sway = np.array([np.diag(afloat_in(body.hull, body.density).linear.added_mass[0])[:2].max() for body in bodies])
-    length = 4 * (fleet.mass + layers[-1][0] * sway) / fleet.wetted[:, :2].min(axis=1)
+    wet = np.array([afloat_in(body.hull, body.density, tuple(layers)).wet_area[:2].min() for body in bodies])
+    length = 4 * (fleet.mass + layers[-1][0] * sway) / (layers[0][0] * wet)
     assert (np.hypot(*fleet.velocity[:, :2].T) < math.sqrt(2) * length / 120).all()
 
 
@@ -184,6 +187,54 @@ def test_still_water_moves_nothing(minutes):
     assert fleet.position[:, 1] == pytest.approx(np.zeros(3), abs=1e-6)
     assert np.abs(fleet.velocity).max() < 1e-7  # the sphere of triangles still rolls towards its lowest face
     assert fleet.rotation[:2, 0] == pytest.approx(np.ones(2), abs=1e-9)
+
+
+def energy_of(fleet, bodies, i):
+    """Kinetic energy of body i and the fluid that it carries, its weight's and the still sea water's potential [J]."""
+    turn = rotation_matrix(fleet.rotation[i])
+    heading = turn_about_z(fleet.rotation[i])
+    velocity, spin = heading.T @ fleet.velocity[i], fleet.spin[i]
+    carried = fleet.linear.added_factor[fleet.linear_hull[i]].T @ np.append(velocity, heading.T @ spin)
+    solid = fleet.density[i] * turn @ bodies[i].hull.inertia @ turn.T
+    total = fleet.mass[i] * (velocity @ velocity / 2 + 9.81 * fleet.position[i, 2]) + spin @ solid @ spin / 2
+    wet = submerged(bodies[i].hull, fleet.position[i], fleet.rotation[i], 0.0)
+    depth = -wet.centre[2] if wet.volume > 0 else 0.0
+    return total + (np.maximum(fleet.carried[i], 0.0) * carried**2).sum() / 2 + 1025 * 9.81 * wet.volume * depth
+
+
+def turn_about_z(q):
+    angle = 2 * math.atan2(q[3], q[0])
+    return np.array([
+        [math.cos(angle), -math.sin(angle), 0.0],
+        [math.sin(angle), math.cos(angle), 0.0],
+        [0.0, 0.0, 1.0],
+    ])  # fmt: skip
+
+
+@pytest.mark.parametrize("seconds", [10, pytest.param(60, marks=pytest.mark.stress)])
+def test_no_entry_and_no_exit_gives_energy(seconds):
+    """Rolling hulls dropped again and again into still water, without drag and waves: their energy only falls."""
+    rng = np.random.default_rng(1)
+    bodies = []
+    for i, hull in enumerate(
+        [Hull.box(1.5, 1.0, 0.4), Hull.box(1.0, 1.0, 1.0), Hull.cylinder(0.5, 0.5), Hull.box(1.0, 2.5, 0.5)]
+    ):
+        tilt, place, speed = rng.uniform(-0.3, 0.3), (20.0 * i, 0.0, rng.uniform(1, 3)), (0.0, rng.uniform(-1, 1), 0.0)
+        rotation = (math.cos(tilt), math.sin(tilt), 0.0, 0.0)
+        bodies.append(Body(hull, rng.uniform(60, 300), place, rotation, speed, (rng.uniform(-2, 2), 0.0, 0.0)))
+    fleet = make_fleet(bodies)
+    rest = make_fleet([afloat(body.hull, body.density, WATER) for body in bodies])
+    step(rest, still_water(rest), 1e-6, UNDAMPED)
+    least = np.array([energy_of(rest, bodies, i) for i in range(4)])
+    water, energy, carried = still_water(fleet), [], []
+    for _ in range(60 * seconds):
+        step(fleet, water, 1 / 60, UNDAMPED, substeps=8)
+        energy.append([energy_of(fleet, bodies, i) for i in range(4)])
+        carried.append(fleet.carried.sum(axis=1))
+    above = np.array(energy) - least
+    grows = np.diff(carried, axis=0) > 0
+    assert (grows[1:] & ~grows[:-1]).sum() >= 200
+    assert (above - np.minimum.accumulate(above)).max(axis=0) == pytest.approx(np.zeros(4), abs=1e-4 * above[0].min())
 
 
 def test_energy_of_undamped_heave_stays_bounded():

@@ -25,7 +25,7 @@ from sim.floating import (
 
 BOX = Hull.box(1.0, 1.0, 1.0)
 WATER = [(1025.0, math.inf)]
-SPILL = [(850.0, 0.2), (1025.0, INF)]
+SPILL = [(850.0, 0.2), (1025.0, math.inf)]
 NAN, INF = math.nan, math.inf
 
 

@@ -254,6 +254,42 @@ def test_the_pairs_found_by_hashing_are_all_there_are():
     assert found == expected
 
 
+def test_a_flat_cloth_thicker_than_its_spacing_does_not_push_itself_apart():
+    """Less than pi/2 thicknesses of cloth lie between two particles of a fold; farther ones push each other."""
+    net = cloth(16, 16, gravity=0.0, pinned="free", thickness=0.25)
+    state = State.at_rest(net)
+    assert energy(net, state).total == 0.0
+    advance(net, state, "leapfrog", 1e-4, 1000)
+    assert np.abs(state.x - net.x0).max() < 1e-12
+    assert state.left_out == 0
+    folded = net.x0.copy()
+    folded[1, 8:], folded[2, 8:] = folded[1, 7::-1], 0.2
+    assert energy(net, State(folded, np.zeros_like(folded))).contact > 0.0
+    spacing = 1.0 / 15
+    p = net.kernel_view(1.0)
+    find_pairs(folded.reshape(-1), p)
+    apart = np.abs(np.diff(np.stack(np.divmod(p.pairs[: p.pairs[-1, 0]], 16)), axis=2))[..., 0]
+    assert np.hypot(*(spacing * apart)).min() == pytest.approx(0.5 * math.pi * 0.25, abs=spacing)
+
+
+def test_a_heap_that_fills_the_list_of_pairs_is_reported():
+    net = cloth(20, 20, thickness=0.02, gravity=0.0, pinned="free", contact=Contact(1.0, 0.0))
+    heap = np.ascontiguousarray(1e-3 * np.random.default_rng(1).random(net.x0.shape))
+    state = State(heap, np.zeros_like(heap))
+    advance(net, state, "leapfrog", 1e-5, 1)
+    p = net.kernel_view(1.0)
+    find_pairs(heap.reshape(-1), p)
+    assert p.pairs[-1, 0] == 24 * 400
+    first_left_out = 400 - state.left_out
+    assert p.pairs[: p.pairs[-1, 0], 0].max() == first_left_out
+    assert 0 < state.left_out < 400
+    heaped = dataclasses.replace(net, x0=heap)
+    for method in ("leapfrog", "dopri5"):
+        with pytest.warns(RuntimeWarning, match=r"self-contact left out up to \d+ particles"):
+            assert simulate(heaped, method, duration=1e-4, frames=2).left_out == state.left_out
+    assert simulate(net, "leapfrog", 1e-4, 1e-3, 2).left_out == 0
+
+
 def test_a_cloth_that_falls_onto_itself_does_not_pass_through():
     """A sheet folded over itself: the upper half comes down on the lower and stays above it."""
     net = cloth(20, 8, 0.4, 1.0, 0.3, 400.0, 100.0, 0.0, 0.02, pinned=[(i, j) for i in range(14) for j in range(8)],

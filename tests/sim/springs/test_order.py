@@ -15,14 +15,13 @@ COARSEST = {1: 400, 2: 50, 4: 50, 5: 100}  # steps that are well inside the asym
 # Orders that doubles can show at length.
 LOW = [name for name, record in INTEGRATORS.items() if max(record.order, record.undamped_order) <= 5]
 PATH = PinPath(-0.1, ((0.01, -0.02, 0.03), (0.2, -0.1, 0.5), (-0.6, 0.4, 2.0), (1.0, 0.5, -3.0)))
+LAB = rope(10, gravity=10.0)
 ROPES = {
-    "isotropic": rope(10, gravity=10.0),
-    "axial": rope(10, gravity=10.0, damping_model="axial"),
+    "isotropic": LAB,
+    "axial": dataclasses.replace(LAB, damping_model="axial"),
     "undamped": rope(10, gravity=10.0, damping=0.0, drag=0.0),
-    "moving root": dataclasses.replace(rope(10, gravity=10.0), pin_paths=(((0, 0), PATH),)),
-    "moving root, axial": dataclasses.replace(
-        rope(10, gravity=10.0, damping_model="axial"), pin_paths=(((0, 0), PATH),)
-    ),
+    "moving root": dataclasses.replace(LAB, pin_paths=(((0, 0), PATH),)),
+    "moving root, axial": dataclasses.replace(LAB, damping_model="axial", pin_paths=(((0, 0), PATH),)),
 }
 
 

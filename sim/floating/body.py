@@ -160,7 +160,7 @@ def pack_linear(
         coupled[i, : len(pairs)] = pairs
         residues[i, : len(pairs)] = one.memory.residues[:, pairs[:, 0], pairs[:, 1]].T
     return np.array([number[id(one)] for one in found], dtype=np.int64), PackedLinear(
-        added_factor=np.linalg.cholesky(added + steady),
+        added_factor=np.array([lower_factor(one) for one in added]).reshape(s, 6, 6),
         poles=np.array([one.memory.poles for one in unique], dtype=complex).reshape(s, len(POLES)),
         coupled=coupled,
         coupled_count=coupled_count,
@@ -169,6 +169,17 @@ def pack_linear(
         added_bound=1 / np.einsum("sii->si", np.linalg.inv(added + steady)) if s else np.zeros((0, 6)),
         decay_length=np.array([one.linear.draft for one in unique], dtype=float),
     )
+
+
+def lower_factor(added: np.ndarray) -> np.ndarray:
+    """Lower L (6, 6) of L L^T, the nearest matrix to `added` that gives energy to no motion.
+
+    That of a sphere, which the water does not turn, has no inverse, and interpolation may miss 0 by a little.
+    """
+    size = np.sqrt(np.abs(np.diag(added))) + 1e-12
+    values, vectors = np.linalg.eigh(added / np.outer(size, size))
+    root = size[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
+    return np.linalg.qr(root.T, "r").T
 
 
 def pack(hulls: Sequence[Hull]) -> PackedHulls:

@@ -202,6 +202,13 @@ def energy_of(fleet, bodies, i):
     return total + (np.maximum(fleet.carried[i], 0.0) * carried**2).sum() / 2 + 1025 * 9.81 * wet.volume * depth
 
 
+def least_energy(bodies):
+    """`energy_of` of each body at rest (n,) [J]."""
+    rest = make_fleet([afloat(body.hull, body.density, WATER) for body in bodies])
+    step(rest, still_water(rest), 1e-6, UNDAMPED)
+    return np.array([energy_of(rest, bodies, i) for i in range(len(bodies))])
+
+
 def turn_about_z(q):
     angle = 2 * math.atan2(q[3], q[0])
     return np.array([
@@ -223,9 +230,7 @@ def test_no_entry_and_no_exit_gives_energy(seconds):
         rotation = (math.cos(tilt), math.sin(tilt), 0.0, 0.0)
         bodies.append(Body(hull, rng.uniform(60, 300), place, rotation, speed, (rng.uniform(-2, 2), 0.0, 0.0)))
     fleet = make_fleet(bodies)
-    rest = make_fleet([afloat(body.hull, body.density, WATER) for body in bodies])
-    step(rest, still_water(rest), 1e-6, UNDAMPED)
-    least = np.array([energy_of(rest, bodies, i) for i in range(4)])
+    least = least_energy(bodies)
     water, energy, carried = still_water(fleet), [], []
     for _ in range(60 * seconds):
         step(fleet, water, 1 / 60, UNDAMPED, substeps=8)
@@ -252,20 +257,23 @@ def test_energy_of_undamped_heave_stays_bounded():
     assert np.mean(energy[-1000:]) == pytest.approx(np.mean(energy[:1000]), rel=0.01)
 
 
-@pytest.mark.parametrize("minutes", [3, pytest.param(10, marks=pytest.mark.stress)])
+@pytest.mark.parametrize("minutes", [2, pytest.param(10, marks=pytest.mark.stress)])
 def test_undamped_rocking_stays_bounded(minutes):
-    """Tilted, spinning and bobbing at once for minutes without drag: speeds stay those of the first one."""
+    """Tilted, spinning and bobbing at once for minutes without drag: no more energy than lifts a body by 2 mm appears.
+
+    Some does and goes again, as free rotation keeps the momentum of the solid alone.
+    """
     hulls = [Hull.box(1.0, 1.5, 0.4), Hull.cylinder(0.5, 1.0), Hull.sphere(0.5)]
-    fleet = make_fleet([
+    bodies = [
         Body(hull, 400.0, (9.0 * i, 0, 0.2), (1.0, 0.2, 0.1, 0.0), spin=(0.3, 0.2, 0.5)) for i, hull in enumerate(hulls)
-    ])  # fmt: skip
+    ]
+    fleet, energy = make_fleet(bodies), []
     water = still_water(fleet, WATER)
-    speeds = []
-    for _ in range(minutes * 3600):
+    for frame in range(minutes * 3600):
         step(fleet, water, FRAME_INTERVAL, UNDAMPED)
-        speeds.append(np.abs(fleet.velocity[:, 2]) + np.abs(fleet.spin).max(axis=1))
-    speeds = np.array(speeds)
-    assert (speeds[-3600:].max(axis=0) < 1.5 * speeds[:3600].max(axis=0)).all()
+        if frame % 20 == 0:
+            energy.append([energy_of(fleet, bodies, i) for i in range(3)])
+    assert (np.max(energy, axis=0) - energy[0] < 2e-3 * 9.81 * fleet.mass).all()
 
 
 def test_the_step_is_stable_below_omega_h_of_two_and_not_above():
@@ -278,6 +286,7 @@ def test_the_step_is_stable_below_omega_h_of_two_and_not_above():
         reach = 0.0
         for _ in range(100):
             step(fleet, water, ratio / omega, UNDAMPED, substeps=1)
+            fleet.spin[:], fleet.rotation[:] = 0.0, (1.0, 0.0, 0.0, 0.0)  # roll is faster, and grows from round-off
             reach = max(reach, abs(fleet.position[0, 2] - rest))
         assert (reach < 1e-4) == stable
 

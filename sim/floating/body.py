@@ -179,7 +179,7 @@ def lower_factor(added: np.ndarray) -> np.ndarray:
     size = np.sqrt(np.abs(np.diag(added))) + 1e-12
     values, vectors = np.linalg.eigh(added / np.outer(size, size))
     root = size[:, None] * vectors * np.sqrt(np.maximum(values, 0.0))
-    return np.linalg.qr(root.T, "r").T
+    return np.linalg.qr(root.T).R.T
 
 
 def pack(hulls: Sequence[Hull]) -> PackedHulls:

@@ -93,9 +93,7 @@ def test_the_readme_is_short_and_has_its_two_commands():
         assert f"```sh\n{command}\n```" in readme
 
 
-@pytest.mark.parametrize(
-    "page", [page for page in PAGES if page.stem not in ("architecture", "physics")], ids=lambda page: page.name
-)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_a_table_cell_has_at_most_15_words(page):
     for line in prose_of(page).splitlines():
         for cell in re.split(r"(?<!\\)\|", line.strip("|")) if line.startswith("|") else ():

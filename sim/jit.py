@@ -8,6 +8,7 @@ writable, kernels compile at each start.
 import contextlib
 import functools
 import hashlib
+import inspect
 import os
 import platform
 import re
@@ -208,14 +209,18 @@ def chosen(variants: dict[type, Any]) -> Any:
     def call(*args: Any) -> Any:
         return next(variants[type(arg)] for arg in args if type(arg) in variants)(*args)
 
-    @overload(call)
-    def variant(*args):  # without annotations: numba compares the signature with that of the function it returns
-        for arg in args:
-            kernel = variants.get(getattr(arg, "instance_class", type(None)))
+    # Arguments by name: in a tuple of any length each field of the records would be copied.
+    names = ", ".join(inspect.signature(next(iter(variants.values()))).parameters)
+
+    def implementation(types: tuple[Any, ...]) -> Any:
+        """The call of the variant for arguments of these types; None if there is no such variant."""
+        for one in types:
+            kernel = variants.get(getattr(one, "instance_class", type(None)))
             if kernel is not None:
-                return lambda *args: kernel(*args)
+                return eval(f"lambda {names}: kernel({names})", {"kernel": kernel})
         return None
 
+    overload(call)(eval(f"lambda {names}: implementation(({names},))", {"implementation": implementation}))
     return call
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import viser
 
 from app.render.html import fill, join, note
+from app.render.viser_inside import uuid_of
 from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.comparisons import COMPARISONS
 from app.scenes.setups import Setup
@@ -80,6 +81,6 @@ class Compare:
         said = json.dumps([pane._asdict() for pane in panes])
         words = fill(
             '<span data-springtide-beside="{}" data-buttons="{}" data-end="{}"></span>',
-            said, self.buttons._impl.uuid, self.end._impl.uuid,
+            said, uuid_of(self.buttons), uuid_of(self.end),
         )  # fmt: skip
         self.line.content = str(words)

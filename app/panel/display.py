@@ -8,6 +8,7 @@ Each browser has its own (`js/display.js`, `js/quality.js`).
 import viser
 
 from app.render.html import fill
+from app.render.viser_inside import uuid_of
 from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.contract import AnyView
 
@@ -43,8 +44,8 @@ class Display:
             '<div class="springtide-switches springtide-display" data-springtide-dark="{}" data-springtide-light="{}">'
             '<button type="button" data-springtide-switch="dark">Dark</button>'
             '<button type="button" data-springtide-switch="large">Large text</button></div>',
-            self.dark._impl.uuid,
-            self.light._impl.uuid,
+            uuid_of(self.dark),
+            uuid_of(self.light),
         )
         gui.add_html(str(switches))
 

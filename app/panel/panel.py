@@ -7,10 +7,9 @@ cannot lose each other.
 import dataclasses
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeAlias, cast
+from typing import TYPE_CHECKING, Literal, TypeAlias, cast
 
 import viser
-from viser._messages import HotkeyKey  # viser names no public type of its keys
 
 from app.lab import task
 from app.lab.workbook import Workbook
@@ -57,7 +56,8 @@ STATUS_INTERVAL = 0.25  # [s]
 MARKS_INTERVAL = 0.5  # [s]
 WORK_INTERVAL = 2.0  # [s]
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
-DIGITS: tuple[HotkeyKey, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
+Key = Literal["space", "G", "N", "P", "R", "U", "1", "2", "3", "4", "5", "6", "7", "8", "9"]
+DIGITS: tuple[Key, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
 OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
 OPEN_GROUPS = 1  # the first groups of parameters start open
 BUTTONS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce(), "Reset": Reset()}
@@ -189,7 +189,7 @@ class Panel:
 
     def add_keys(self) -> None:
         """Keyboard and command palette. W A S D Q E and the arrows already move the camera."""
-        actions: list[tuple[str, HotkeyKey | None, Callable[[], None]]] = [
+        actions: list[tuple[str, Key | None, Callable[[], None]]] = [
             ("Play or pause", "space", lambda: self.post(TogglePlay())),
             ("Single step", "N", lambda: self.post(StepOnce())),
             ("Reset", "R", lambda: self.post(Reset())),

@@ -24,6 +24,7 @@ from app.panel.recorder import RATES, Kept, Recorder
 from app.panel.recording_files import Plotted, plots_csv, plots_svg, recording_npz
 from app.render.cameras import place_camera
 from app.render.html import fill, note
+from app.render.viser_inside import uuid_of
 from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.comparisons import comparison_named
 from app.scenes.contract import AnyKind, AnySnapshot, PostCommand
@@ -136,7 +137,7 @@ class Share:
             self.moment = gui.add_html("", visible=False)
         self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
-        holder = fill('<span data-springtide-inbox="{}"></span>', self.inbox._impl.uuid)
+        holder = fill('<span data-springtide-inbox="{}"></span>', uuid_of(self.inbox))
         gui.add_html(str(holder))
         with gui.add_folder("Record and share", expand_by_default=False):
             self.time = gui.add_slider("Recorded [s]", 0.0, 1.0, SLIDER_STEP, 0.0, disabled=True)

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from app.render.colormap import OUTCOME_COLOURS
 from app.render.html import note
-from app.render.viser_types import GuiHandle, ViserEvent
+from app.render.viser_inside import uuid_of
+from app.render.viser_types import ViserEvent
 from app.scenes.contract import SpringParams, StabilityMap
 from sim.formatting import SUPERSCRIPTS
 from sim.parameters import Parameter, parameters_of
@@ -178,11 +179,6 @@ class StabilityMapPanel:
             (self.axes.parameter, self.axes.stiffnesses, place[1]),
         ):
             self.take(name, float(f"{values[0] * (values[-1] / values[0]) ** min(max(part, 0.0), 1.0):.3g}"))
-
-
-def uuid_of(slider: GuiHandle) -> str:
-    """What viser calls a GUI element in its messages."""
-    return slider._impl.uuid
 
 
 def place_of(values: NDArray[np.float64], value: float) -> float:

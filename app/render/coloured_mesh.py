@@ -11,7 +11,7 @@ import numpy as np
 import viser
 
 from app.render.injection import add_data_mesh, injector_of
-from app.render.node_arrays import set_arrays
+from app.render.viser_inside import set_arrays
 from sim.packing import pack
 from sim.validation import argument_error
 

@@ -1,14 +1,8 @@
 """Shaders that stock viser does not have: a short script, sent once per server, replaces them in the browser.
 
-viser 1.1 draws an ordinary mesh in one colour with one rough material. Three of its private names open the way to
-more; for shaders they are used in this file and in `js/` alone, and `tests/browser/test_water.py` fails when they
-change:
-
-- `server._websock_server.queue_message`: the public API has no call that sends a script. What is queued here is sent
-  again to each browser that connects later, and is kept in recordings.
-- `viser._messages.RunJavascriptMessage`: the message itself. viser keeps each one for good, therefore there is one per
-  server and never one per frame.
-- `window.__viserMutable` in the page: `nodeRefFromName`, `scene`, `requestRender`.
+viser 1.1 draws an ordinary mesh in one colour with one rough material. Its public API has no call that sends a script:
+`app.render.viser_inside.run_script` does. In the page the scripts in `js/` use `window.__viserMutable`
+(`nodeRefFromName`, `scene`, `requestRender`); `tests/browser/test_water.py` fails when these change.
 
 Everything that changes travels as vertices of hidden meshes (`add_data_mesh`), because viser keeps only the newest
 vertices of a mesh. What moves the vertices of a drawn mesh travels packed (`sim/packing.py`), in a fifth of the bytes;
@@ -29,10 +23,10 @@ from importlib import resources
 
 import numpy as np
 import viser
-from viser import _messages
 
 from app.render.colormap import DARK_LIFT, LUMA
 from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
+from app.render.viser_inside import run_script
 
 STORAGE_KEY = "springtide-shaders"  # of the page's local storage, under which the script answers
 ASK_INTERVAL = 0.5  # [s] between two questions to a browser that has not answered for every node
@@ -65,7 +59,7 @@ class ShaderInjector:
         self._open: set[int] = set()  # client ids of the questions that wait for an answer
         self._unanswered = threading.Event()
         self.is_recorded = False  # whether what is drawn is only recorded, for pages that have the script
-        server._websock_server.queue_message(_messages.RunJavascriptMessage(source=self.script()))
+        run_script(server, self.script())
         server.on_client_connect(lambda client: self._unanswered.set())
         threading.Thread(target=self._ask_clients, name="shader questions", daemon=True).start()
 

@@ -5,15 +5,14 @@ What a browser draws as a picture has no background, so that it is put behind th
 """
 
 import weakref
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import viser
 from numpy.typing import NDArray
-from viser._messages import SceneNodeUpdateMessage
 
 from app.render.cameras import NEAR, set_clipping
-from app.render.viser_types import ViserConnection
+from app.render.viser_inside import update_node
 
 Colour = tuple[int, int, int]  # sRGB, 0 to 255
 FLOOR = "/floor"
@@ -89,13 +88,7 @@ class Surroundings:
 def set_dark(client: viser.ClientHandle, dark: bool) -> None:
     """Draw the floor dark, or light again, for one browser. The node stays that of the server."""
     (_dark.add if dark else _dark.discard)(client)
-    send_update(client, FLOOR, **(DARK if dark else LIGHT)._asdict())
-
-
-def send_update(client: viser.ClientHandle, node: str, **properties: Any) -> None:
-    """Give a node of the server other properties for one browser."""
-    connection: ViserConnection = client._websock_connection  # pyright: ignore[reportPrivateUsage]
-    connection.queue_message(SceneNodeUpdateMessage(node, properties))
+    update_node(client, FLOOR, **(DARK if dark else LIGHT)._asdict())
 
 
 def before_sky(client: viser.ClientHandle, pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -16,8 +16,8 @@ import viser
 from app.render.cameras import lowest_camera
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import WATER_UNIFORMS, Material, Waterline, as_bytes, uniform_table, waterline_table
-from app.render.node_arrays import set_arrays
 from app.render.skies import CAMERA_RANGE
+from app.render.viser_inside import set_arrays
 from sim.ocean.surface_fields import SurfaceNumbers, pack_fields, set_surface_fields
 from sim.validation import argument_error
 

@@ -3,7 +3,7 @@
 viser checks neither the Origin of a websocket nor any value that arrives on it, so any page in the user's browser could
 drive a loopback server, and any client could set a slider out of its range or open the public share tunnel. Everything
 from a browser passes `screen`: a short list of message types, only finite bounded numbers, and GUI values within what
-their control offers. The names with a leading underscore are viser's own and the reason for the pin in pyproject.toml.
+their control offers. If viser has changed so that this is not possible, only loopback addresses are served.
 """
 
 # pyright: reportPrivateUsage=false
@@ -27,10 +27,20 @@ from urllib.parse import urlsplit
 import rich
 import viser
 import websockets.asyncio.server
-from viser import _messages as vm
 from websockets.http11 import Request, Response
 
 from app.render.injection import answer_apart
+from app.render.viser_inside import (
+    UNKNOWN,
+    Handler,
+    Taker,
+    forget_client,
+    input_of,
+    intercept,
+    lose,
+    refuse_requests,
+    send_to_all,
+)
 from app.render.viser_types import GuiHandle, ViserConnection, ViserMessage
 from app.server.access import OWN_PAGES_ONLY, Access, admitted, refusal
 from app.server.pace import PACE, Pace, put_small_first
@@ -47,22 +57,21 @@ STARTING = threading.Lock()  # one server at a time: what starts it is replaced 
 
 ClientId: TypeAlias = int
 MergeKey: TypeAlias = tuple[object, ...]
-Handler = Callable[[ClientId, ViserMessage], Awaitable[None]]
 
-# What a browser of ours sends. No uploads, no forms, no share tunnel.
+# Messages that a browser of ours sends. No uploads, no forms, no share tunnel.
 ALLOWED = (
-    vm.CommandTriggerMessage,
-    vm.GetRenderResponseMessage,
-    vm.GuiButtonHoldMessage,
-    vm.GuiUpdateMessage,
-    vm.LocalStorageGetItemResponseMessage,
-    vm.SceneNodeClickMessage,
-    vm.SceneNodeDragMessage,
-    vm.ScenePointerMessage,
-    vm.TransformControlsDragEndMessage,
-    vm.TransformControlsDragStartMessage,
-    vm.TransformControlsUpdateMessage,
-    vm.ViewerCameraMessage,
+    "CommandTriggerMessage",
+    "GetRenderResponseMessage",
+    "GuiButtonHoldMessage",
+    "GuiUpdateMessage",
+    "LocalStorageGetItemResponseMessage",
+    "SceneNodeClickMessage",
+    "SceneNodeDragMessage",
+    "ScenePointerMessage",
+    "TransformControlsDragEndMessage",
+    "TransformControlsDragStartMessage",
+    "TransformControlsUpdateMessage",
+    "ViewerCameraMessage",
 )
 
 
@@ -103,9 +112,13 @@ def may_connect(request: Request, bound: str, access: Access) -> bool:
 
 
 @contextlib.contextmanager
-def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[None]:
-    """While open, a websocket server that starts refuses upgrades from other pages with 403, and serves the panes."""
+def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list[str]]:
+    """While open, a websocket server that starts refuses upgrades from other pages with 403, and serves the panes.
+
+    Yields a list with an entry for each server that has started.
+    """
     serve = websockets.asyncio.server.serve
+    started: list[str] = []
 
     def guarded_serve(
         handler: Callable[[ViserConnection], Awaitable[None]],
@@ -131,11 +144,12 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[None
             PACE.set(pace)
             await panes.serve(connection, handler)
 
+        started.append(bound)
         return serve(serve_pane, *address, process_request=check, **options)  # type: ignore[arg-type]
 
     websockets.asyncio.server.serve = guarded_serve  # type: ignore[assignment]
     try:
-        yield
+        yield started
     finally:
         websockets.asyncio.server.serve = serve  # type: ignore[assignment]
 
@@ -205,58 +219,66 @@ def same(good: object, sent: object) -> bool:
     return (is_sequence(good) and is_sequence(sent) and list(good) == list(sent)) or good == sent
 
 
+def kind_of(message: ViserMessage) -> str:
+    """The name of the type of a message."""
+    return type(message).__name__
+
+
 class Screen:
     """Lets through of a browser's messages what is allowed, and counts what is not."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self.server = server
         self.refused: collections.Counter[str] = collections.Counter()
+        self.is_in_place = False  # whether messages pass through this screen
 
     def __call__(self, message: ViserMessage) -> ViserMessage:
         """The message, with a value bounded where it only had to be bounded, or None where it is refused.
 
         Counts what is refused, and tells every browser of a value that was bounded.
         """
-        if not isinstance(message, vm.GuiUpdateMessage):
-            good = message if isinstance(message, ALLOWED) and is_bounded(dataclasses.asdict(message)) else None
+        if kind_of(message) != "GuiUpdateMessage":
+            good = message if kind_of(message) in ALLOWED and is_bounded(dataclasses.asdict(message)) else None
         else:
             good = self.judge_update(message)
             if good is not None and not same(good.updates["value"], message.updates["value"]):
                 # The sender shows what it sent; tell it, and everyone, what was made of it.
-                self.server._websock_server.queue_message(good)
+                send_to_all(self.server, good)
         if good is None:
             self.refused[type(message).__name__] += 1
         return good
 
-    def judge_update(self, message: vm.GuiUpdateMessage) -> vm.GuiUpdateMessage | None:
+    def judge_update(self, message: ViserMessage) -> ViserMessage | None:
         """A new value of a control, within what the control offers; None where it is no such value."""
-        handle = self.server.gui._gui_input_handle_from_uuid.get(message.uuid)
+        handle = input_of(self.server, message.uuid)
+        if handle is UNKNOWN:
+            return message if is_bounded(message.updates) else None
         if handle is None or set(message.updates) != {"value"}:
             return None
         good = allowed_value(handle, message.updates["value"])
         if good is None or getattr(handle, "disabled", False):
             return None
-        return vm.GuiUpdateMessage(message.uuid, {"value": good})
+        return dataclasses.replace(message, updates={"value": good})
 
 
 def merge_key(message: ViserMessage) -> MergeKey | None:
     """Messages with the same key supersede each other: the last counts. None of what is never merged."""
-    match message:
-        case vm.GuiUpdateMessage() | vm.CommandTriggerMessage() | vm.GuiButtonHoldMessage():
-            return type(message), message.uuid
-        case vm.SceneNodeDragMessage():
-            return type(message), message.name, message.instance_index, message.phase
-        case vm.SceneNodeClickMessage() | vm.TransformControlsUpdateMessage():
-            return type(message), message.name
-        case vm.ViewerCameraMessage() | vm.ScenePointerMessage():
-            return (type(message),)
+    match kind := kind_of(message):
+        case "GuiUpdateMessage" | "CommandTriggerMessage" | "GuiButtonHoldMessage":
+            return kind, message.uuid
+        case "SceneNodeDragMessage":
+            return kind, message.name, message.instance_index, message.phase
+        case "SceneNodeClickMessage" | "TransformControlsUpdateMessage":
+            return kind, message.name
+        case "ViewerCameraMessage" | "ScenePointerMessage":
+            return (kind,)
         case _:
             return None
 
 
 def is_camera(message: ViserMessage) -> bool:
     """Whether a browser says with this message where its camera is."""
-    return isinstance(message, vm.ViewerCameraMessage)
+    return kind_of(message) == "ViewerCameraMessage"
 
 
 class Intake:
@@ -279,13 +301,13 @@ class Intake:
 
     def take(self, client: ClientId, message: ViserMessage) -> None:
         """Queue a message, over one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""
-        if not isinstance(message, ALLOWED):
+        if kind_of(message) not in ALLOWED:
             self.screen(message)  # refused and counted
             return
         key = merge_key(message)
         if key is None:
             self.unmerged += 1
-            key = (type(message), self.unmerged)
+            key = (kind_of(message), self.unmerged)
         self.waiting.pop(key, None)
         self.waiting[key] = message
         if len(self.waiting) > MAX_WAITING:
@@ -326,30 +348,19 @@ class Intake:
         self.counted = True
 
 
-def put_intakes(server: viser.ViserServer, screen: Screen) -> None:
-    """Pass every message of every browser through an intake of its own before viser's handlers see it."""
-    connection: ViserConnection = server._websock_server
-    handle: Handler = connection._handle_incoming_message
+def put_intakes(server: viser.ViserServer, screen: Screen) -> bool:
+    """Pass every message of a browser through its intake before viser's handlers see it. False: it is not possible."""
     intakes: dict[ClientId, Intake] = {}
 
-    async def take(client_id: ClientId, message: ViserMessage) -> None:
-        if client_id in intakes:
-            intakes[client_id].take(client_id, message)
+    def join(client: ClientId, handlers: list[Handler]) -> Taker:
+        intakes[client] = intake = Intake(screen, handlers)
+        return intake.take
 
-    async def ignore(client_id: ClientId, message: ViserMessage) -> None:
-        """The same message as the server is given: one intake serves both."""
+    def leave(client: ClientId) -> None:
+        intakes.pop(client).close()
+        forget_client(server, client)
 
-    def join(client: ViserConnection) -> None:
-        intakes[client.client_id] = Intake(screen, [handle, client._handle_incoming_message])
-        client._handle_incoming_message = ignore
-
-    def leave(client: ViserConnection) -> None:
-        intakes.pop(client.client_id).close()
-        server._connected_clients.pop(client.client_id, None)
-
-    connection._handle_incoming_message = take
-    connection.on_client_connect(join)
-    connection.on_client_disconnect(leave)
+    return intercept(server, join, leave)
 
 
 @contextlib.contextmanager
@@ -384,12 +395,18 @@ def open_server(
     check_port(host, port)
     # A message that cannot be decoded ends its connection, and would print a traceback each time.
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
-    with STARTING, checked_requests(host, access, panes or Panes()), quiet():
+    with STARTING, checked_requests(host, access, panes or Panes()) as started, quiet():
         server = viser.ViserServer(host=host, port=port, label="Springtide", verbose=False)
     if port not in (0, server.get_port()):
         server.stop()
         raise OSError(f"port {port} was taken while starting")
-    return server, guarded(server)
+    if not started:
+        lose("other pages of the browser may connect", "it does not call websockets.asyncio.server.serve")
+    screen = guarded(server)
+    if not (started and screen.is_in_place) and not is_loopback(host):
+        server.stop()
+        raise OSError(f"with viser {viser.__version__} the lab serves loopback addresses only")
+    return server, screen
 
 
 def open_pane(panes: Panes, number: int) -> tuple[viser.ViserServer, Screen]:
@@ -403,9 +420,7 @@ def open_pane(panes: Panes, number: int) -> tuple[viser.ViserServer, Screen]:
 def guarded(server: viser.ViserServer) -> Screen:
     """Pass what browsers send to a server through a screen, and what they are sent at the pace of their lines."""
     screen = Screen(server)
-    connection: ViserConnection = server._websock_server
-    for request in (vm.ShareUrlRequest, vm.ShareUrlDisconnect):
-        connection.unregister_handler(request)
-    put_intakes(server, screen)
-    put_small_first(connection)
+    refuse_requests(server, "ShareUrlRequest", "ShareUrlDisconnect")
+    screen.is_in_place = put_intakes(server, screen)
+    put_small_first(server)
     return screen

@@ -15,11 +15,12 @@ import collections
 import contextvars
 import math
 import statistics
-from collections.abc import AsyncGenerator, Callable, Sequence
+from collections.abc import AsyncGenerator, Sequence
 from typing import NamedTuple
 
-from viser import _messages as vm
+import viser
 
+from app.render.viser_inside import pass_windows_through
 from app.render.viser_types import ViserConnection, ViserMessage
 from app.server.transport import kind_and_size
 
@@ -145,15 +146,9 @@ Window = Sequence[ViserMessage]
 Windows = AsyncGenerator[Window, None]
 
 
-def put_small_first(server_connection: ViserConnection) -> None:
+def put_small_first(server: viser.ViserServer) -> None:
     """Have what all browsers of a server are sent wait for room, with small updates of the panel going ahead."""
-    buffer = server_connection.get_message_buffer()
-    windows: Callable[..., Windows] = buffer.window_generator
-
-    def paced_windows(*arguments: object, **options: object) -> Windows:
-        return small_first(windows(*arguments, **options), PACE.get())
-
-    buffer.window_generator = paced_windows
+    pass_windows_through(server, lambda windows: small_first(windows, PACE.get()))
 
 
 async def small_first(windows: Windows, pace: Pace) -> Windows:
@@ -205,7 +200,7 @@ def hold(held: dict[str, ViserMessage], window: Window) -> list[ViserMessage]:
 
 def is_small(message: ViserMessage) -> bool:
     """Whether this is an update of something in the panel that is small enough to go ahead."""
-    if not isinstance(message, vm.GuiUpdateMessage):
+    if type(message).__name__ != "GuiUpdateMessage":
         return False
     found = [kind_and_size(value) for value in message.updates.values()]
     return sum(size for _, size in filter(None, found)) < SMALL

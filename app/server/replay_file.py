@@ -5,8 +5,6 @@ which adds its client. Positions are rounded below what can be seen: rounded num
 parameters are in it as a set-up file, so that it can be loaded again.
 """
 
-# pyright: reportPrivateUsage=false
-
 import contextlib
 import io
 import itertools
@@ -21,6 +19,7 @@ from app.render.cameras import place_cameras
 from app.render.html import Html, fill, join
 from app.render.injection import record_shaders
 from app.render.surroundings import LIGHT_SKY
+from app.render.viser_inside import change_buffers
 from app.scenes import view_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import setup_block, write_value
@@ -91,7 +90,7 @@ def replay_html(kind: AnyKind, frames: Sequence[Kept], plotted: Plotted) -> str:
                 with server.atomic():
                     view.show(kept.frame)
             server.flush()
-            recording._binary_buffers = [rounded(buffer) for buffer in recording._binary_buffers]
+            change_buffers(recording, rounded)
             page = recording.as_html()
     finally:
         with contextlib.redirect_stdout(io.StringIO()):  # viser would say that a server has stopped

@@ -4,12 +4,7 @@ viser's own `atomic()` holds a browser's next message back while a picture is ha
 being put together then ends in the middle of a picture, or takes half of one that the next replaces. Therefore no
 `atomic()` is used on the viewer's thread: a picture is handed over as a whole on viser's event loop, where messages are
 put together too. So mesh and poses of one picture are always in one message, however slow a browser is.
-
-The names with an underscore are viser's own and a reason for the upper bound in pyproject.toml; the tests fail when
-they change.
 """
-
-# pyright: reportPrivateUsage=false
 
 import collections
 import contextlib
@@ -21,7 +16,7 @@ import numpy as np
 import viser
 
 from app.messages import WorkCount
-from app.render.viser_types import ViserConnection
+from app.render.viser_inside import watch_messages
 
 MAX_WAIT = 1.0  # [s] for viser's event loop to take a picture
 
@@ -46,18 +41,15 @@ class TransportCounters:
         self.counting_thread: int | None = None
         self.picture: list[object] = []  # messages of the picture that is being drawn
         self.loop = server.get_event_loop()
-        connection: ViserConnection = server._websock_server
-        self.send = connection.queue_message
-        self.buffer = connection.get_message_buffer()
+        self.send_together = watch_messages(server, self.take)
 
-        def queue_message(message: object) -> None:
-            if threading.get_ident() == self.counting_thread:
-                self.count(message)
-                self.picture.append(message)
-            else:
-                self.send(message)
-
-        connection.queue_message = queue_message
+    def take(self, message: object) -> bool:
+        """Count a message of the picture that is being drawn, and hold it until the whole is sent."""
+        if threading.get_ident() != self.counting_thread:
+            return False
+        self.count(message)
+        self.picture.append(message)
+        return True
 
     def count(self, message: object) -> None:
         """Count the properties that a message changes, or those of what it makes."""
@@ -90,12 +82,8 @@ class TransportCounters:
         done = threading.Event()
 
         def send_all() -> None:
-            # Within, viser wakes its event loop once and not for each message. It cannot cut a picture in two: the loop
-            # puts no message together while this runs on it.
-            self.buffer.atomic_start()
-            for message in picture:
-                self.send(message)
-            self.buffer.atomic_end()
+            # It cannot be cut in two: the loop puts no message together while this runs on it.
+            self.send_together(picture)
             done.set()
 
         with contextlib.suppress(RuntimeError):  # the server has ended

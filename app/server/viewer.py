@@ -20,7 +20,7 @@ from app.panel.questions import Questions
 from app.render.cameras import ClientCamera, place_client_camera
 from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_scene
-from app.render.viser_types import ViserConnection
+from app.render.viser_inside import send_at_once
 from app.scenes import NAMES, scene_named
 from app.scenes.compiling import Compiling
 from app.scenes.contract import AnyKind, AnyScene, AnyView, PostCommand
@@ -35,7 +35,6 @@ from app.server.transport import TransportCounters
 if TYPE_CHECKING:
     from app.lab.session import Session
 
-SEND_WINDOW = 0.0  # [s] for which viser holds back what it sends, by default 17 ms: flushing each frame costs more
 MIN_SCENE_TIME = 0.3  # [s] for which a scene is shown before another is opened: long enough for its status line
 PROGRESS_INTERVAL = 0.25  # [s] between two updates of what is being compiled
 
@@ -81,8 +80,7 @@ class Viewer:
         self.comparing = Comparing(self, self.make_pane)
         if plain:
             disable_shaders(self.server)
-        connection: ViserConnection = self.server._websock_server
-        connection.get_message_buffer().window_duration_sec = SEND_WINDOW
+        send_at_once(self.server)
         self.transport = TransportCounters(self.server)
         self.port = self.server.get_port()
         self.server.on_client_disconnect(self.on_disconnect)
@@ -254,7 +252,7 @@ class Viewer:
 
     def visitors(self) -> int:
         """How many browsers are connected."""
-        return len(self.server._connected_clients)
+        return len(self.server.get_clients())
 
     def audience(self) -> int:
         """How many browsers look; at all labs, where several are side by side."""

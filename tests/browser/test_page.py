@@ -79,3 +79,23 @@ def test_no_link_leads_the_page_to_another_server(chromium: Any) -> None:
         finally:
             viewer.shut()
             page.close()
+
+
+def test_without_viser_s_inner_object_the_page_still_works(chromium: Any) -> None:
+    """The page's own scripts find nothing: plain water, and no error."""
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        viewer.open("square_sea")
+        page, errors = new_page(chromium, 480, 320, False), []
+        page.add_init_script("Object.defineProperty(window, '__viserMutable', {get: () => undefined, set: () => {}})")
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.goto(f"http://127.0.0.1:{viewer.port}/")
+        page.get_by_role("button", name="Pause", exact=True).click()
+        until = time.monotonic() + 30.0
+        while viewer.loop.running and time.monotonic() < until:
+            page.wait_for_timeout(50)
+        assert not viewer.loop.running
+        assert errors == []
+        page.close()
+    finally:
+        viewer.shut()

@@ -12,8 +12,8 @@ from app.render.dragging import PullLine, SurfaceDrag
 from app.render.gizmo import Gizmo
 from app.render.html import fill, join
 from app.render.meshes import ball
-from app.render.node_arrays import set_arrays
 from app.render.surroundings import Surroundings, set_dark
+from app.render.viser_inside import set_arrays
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.scene import ClothFrame, ClothReadings
 from app.scenes.contract import Pieces, PostCommand

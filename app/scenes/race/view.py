@@ -13,8 +13,8 @@ from app.render.colormap import lifted, rgb
 from app.render.dragging import SurfaceDrag, drag
 from app.render.injection import injector_of
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
-from app.render.node_arrays import set_arrays
-from app.render.surroundings import send_update, set_dark
+from app.render.surroundings import set_dark
+from app.render.viser_inside import set_arrays, update_node
 from app.scenes.charts import PALETTE
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.race.entrants import RaceReadings
@@ -176,8 +176,8 @@ class RopesDrawing:
         """Draw ropes and beads as on a dark floor, or light again, for one browser. The nodes stay the server's."""
         count, n, _ = self.shape
         for i, tube in enumerate(self.tubes):
-            send_update(client, tube.name, color=material_colour(i, dark=dark))
-        send_update(client, self.beads.name, batched_colors=bead_colours(count, n, dark=dark))
+            update_node(client, tube.name, color=material_colour(i, dark=dark))
+        update_node(client, self.beads.name, batched_colors=bead_colours(count, n, dark=dark))
 
     def remove(self) -> None:
         """Take everything out of the scene."""

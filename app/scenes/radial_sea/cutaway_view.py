@@ -8,7 +8,7 @@ import viser
 
 from app.render.coloured_mesh import ColouredMesh
 from app.render.material import RGB
-from app.render.node_arrays import set_arrays
+from app.render.viser_inside import set_arrays
 from app.scenes.radial_sea.cutaway import DIRECTION, FAR_WALL_POINTS, HALF_WIDTH, Cutaway
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.materials import blend, mixture_share, rgb_of

@@ -10,7 +10,7 @@ import numpy as np
 import viser
 
 from app.render.material import Material
-from app.render.node_arrays import set_arrays
+from app.render.viser_inside import set_arrays
 from app.scenes.radial_sea.frame import JetParcels
 from app.scenes.radial_sea.well_blowout import FIRE, JET_VELOCITY, SMOKE_LIFE
 from sim.particles.fire import share_left

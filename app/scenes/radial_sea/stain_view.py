@@ -7,7 +7,7 @@ import viser
 from trimesh.intersections import slice_faces_plane
 
 from app.render.material import as_linear_bytes
-from app.render.node_arrays import set_arrays
+from app.render.viser_inside import set_arrays
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.materials import rgb_of
 

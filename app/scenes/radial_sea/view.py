@@ -14,8 +14,8 @@ from app.render.dragging import PullLine, drag
 from app.render.follow_camera import FollowCamera
 from app.render.material import Material
 from app.render.meshes import ball
-from app.render.node_arrays import set_arrays
 from app.render.skies import set_sky
+from app.render.viser_inside import set_arrays
 from app.render.water import Water
 from app.scenes.contract import Pieces
 from app.scenes.radial_sea.bodies import BODY_KINDS

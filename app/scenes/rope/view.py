@@ -12,8 +12,8 @@ from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
 from app.render.gizmo import Gizmo
 from app.render.html import Html, bold, fill
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
-from app.render.node_arrays import set_arrays
 from app.render.surroundings import set_dark
+from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import NumericalCost, RopeFrame, RopeReadings

@@ -13,8 +13,8 @@ from app.messages import Command, Point, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
 from app.render.material import RAIN_HEIGHT, Material, as_linear_bytes
 from app.render.meshes import ball, tube_faces
-from app.render.node_arrays import set_arrays
 from app.render.skies import set_sky
+from app.render.viser_inside import set_arrays
 from app.render.water import Water
 from app.scenes.contract import Pieces
 from app.scenes.square_sea import report

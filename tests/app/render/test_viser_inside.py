@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import viser
 
-from app.render.node_arrays import set_arrays
+from app.render.viser_inside import set_arrays
 
 TURNS = np.array([[1.0, 0.0, 0.0, 0.0]])
 

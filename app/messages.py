@@ -198,6 +198,16 @@ class Status(NamedTuple):
     faster: str = ""  # what would make a run that is capped faster, or ""
 
 
+class Line(NamedTuple):
+    """How one column of a chart is drawn."""
+
+    label: str
+    colour: str  # CSS
+    width: float = 2.0
+    dash: tuple[float, ...] = ()
+    fill: str = ""  # CSS colour of the area below
+
+
 class Snapshot(NamedTuple, Generic[P, F, R]):
     """One moment for the viewer: what the scene shows (float32), its readings, and what the loop is doing."""
 

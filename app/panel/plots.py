@@ -14,9 +14,8 @@ import viser
 from numpy.typing import NDArray
 from viser import uplot
 
-from app.messages import PlotRow, WorkCount
+from app.messages import Line, PlotRow, WorkCount
 from app.panel.round_step import round_step
-from app.render.line_chart import Line
 from app.render.viser_types import GuiHandle
 from app.scenes.charts import Chart, Columns, chart_of, lines_of
 from app.scenes.contract import AnyKind, AnySnapshot

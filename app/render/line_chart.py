@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from app.messages import Line
 from app.render.html import Html, fill, join
 
 WIDTH, PLOT_HEIGHT = 560, 208  # [px] of the chart, and of it without its key
@@ -17,16 +18,6 @@ CHARACTER_WIDTH = 6.6  # [px] of a name in the key
 FIRST_LABEL_WIDTH = 40  # [px] for the label of the first column, at the end of the key's rows
 MAX_TICKS = 5  # on each axis, at most
 SPACE = 0.05  # of the range, above and below
-
-
-class Line(NamedTuple):
-    """How one column is drawn."""
-
-    label: str
-    colour: str  # CSS
-    width: float = 2.0
-    dash: tuple[float, ...] = ()
-    fill: str = ""  # CSS colour of the area below
 
 
 class Drawing(NamedTuple):

@@ -56,7 +56,7 @@ def test_what_is_imported_anywhere_is_a_dependency_or_an_extra():
 
 
 def test_no_dependency_has_an_upper_bound():
-    """Each use of an inner name has a fallback (tests/sim/test_numba_names.py, tests/app/server/test_viser_names.py)."""
+    """Each use of an inner name has a fallback; `test_numba_names.py` and `test_viser_names.py` take them away."""
     assert [r for r in PROJECT["dependencies"] if "<" in r] == []
 
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from app.render.line_chart import Line
+from app.messages import Line
 from app.scenes.charts import PALETTE, Chart, CurveAxes
 from app.scenes.plot_rows import ROW_INTERVAL, row_number
 from app.scenes.race.entrants import Race

@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.render.line_chart import Line
+from app.messages import Line
 from app.scenes.charts import PALETTE, Chart
 from sim.ocean.weathering import Spill, weather
 from sim.ocean.weathering.spill import MAX_HOURS

@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Snapshot
+from app.messages import Line, Snapshot
 from app.panel.plots import KEPT_DASH, MIN_FILLED, SHOWN_ROWS, Plots, at_times, beside, scale_of, with_kept
-from app.render.line_chart import Line
 from app.scenes import scene_named
 from app.scenes.charts import Chart
 

@@ -4,7 +4,9 @@ from collections import Counter
 
 import pytest
 
+from tests.faults import table
 from tests.faults.drawing import modules, read_list
+from tests.faults.running import key_of_fault
 from tests.faults.sites import Fault, faults_in
 
 CASES = {
@@ -45,3 +47,15 @@ def test_there_are_three_hundred_faults_in_all_of_sim_and_the_reports():
     assert set(of_each) <= set(modules())
     assert len(of_each) > 0.8 * len(modules())
     assert max(of_each.values()) < 10
+
+
+def test_untried_and_open_faults_count_as_not_found(monkeypatch, capsys):
+    listed = [one for one in read_list() if not one.equivalent][:4]
+    rows = {
+        key_of_fault(one): {"result": result}
+        for one, result in zip(listed, ("found", "not found", "open"), strict=False)
+    }
+    monkeypatch.setattr(table, "read_list", lambda: listed)
+    monkeypatch.setattr(table, "read_results", lambda: rows)
+    table.print_table()
+    assert capsys.readouterr().out.splitlines()[-1] == "| all | 1 | 1 | 1 | 1 | 0 | 25 % |"

@@ -1,10 +1,11 @@
-"""What was found, by package."""
+"""Results of the planted faults, by package."""
 
 from collections import Counter
 
-from tests.faults.running import read_results
+from tests.faults.drawing import read_list
+from tests.faults.running import key_of_fault, read_results
 
-RESULTS = ("found", "not found", "equivalent", "open")
+RESULTS = ("found", "not found", "open", "untried")
 
 
 def package_of(module: str) -> str:
@@ -12,14 +13,23 @@ def package_of(module: str) -> str:
     return "/".join(parts[:2]) if parts[0] == "sim" and len(parts) > 2 else "sim" if parts[0] == "sim" else "app/scenes"
 
 
+def counts() -> Counter[tuple[str, str]]:
+    """Number of faults by package and result; the whole list counts, whether tried or not."""
+    results = read_results()
+    found: Counter[tuple[str, str]] = Counter()
+    for listed in read_list():
+        row = results.get(key_of_fault(listed))
+        result = "equivalent" if listed.equivalent else row["result"] if row else "untried"
+        for package in (package_of(listed.fault.module), "all"):
+            found[package, result if result in (*RESULTS, "equivalent") else "untried"] += 1
+    return found
+
+
 def print_table() -> None:
-    """As a table in Markdown."""
-    counts = Counter((package_of(row["module"]), row["result"]) for row in read_results().values())
-    print("| in | found | not found | equivalent | open | found, at least |\n|---|---|---|---|---|---|")
-    packages = sorted({package for package, _ in counts})
-    for package in [*packages, "all"]:
-        found, missed, same, left = (
-            sum(n for (p, r), n in counts.items() if r == result and package in (p, "all")) for result in RESULTS
-        )
-        share = f"{100.0 * found / tried:.0f} %" if (tried := found + missed + left) else ""
-        print(f"| {package} | {found} | {missed} | {same} | {left} | {share} |")
+    """As a table in Markdown. Only what a test has noticed is found; a fault that is open or untried is not."""
+    found = counts()
+    print(f"| in | {' | '.join(RESULTS)} | equivalent | found |\n|---|{'---|' * (len(RESULTS) + 2)}")
+    for package in [*sorted({package for package, _ in found} - {"all"}), "all"]:
+        numbers = [found[package, result] for result in RESULTS]
+        ratio = f"{100.0 * numbers[0] / total:.0f} %" if (total := sum(numbers)) else ""
+        print(f"| {package} | {' | '.join(map(str, numbers))} | {found[package, 'equivalent']} | {ratio} |")

@@ -1,9 +1,9 @@
 """What linear theory knows of a floating hull: added mass, radiation damping, the force of waves, and their memory.
 
-The coefficients come from boundary elements (`boundary_elements.py`), committed as tables by draft in
-`assets/hydrodynamics`. A box, an upright cylinder and a sphere are in the tables at every size: to the water a hull is
-its wet part. A hull from a file may have a table of its own (`springtide hydrodynamics`). Any other has, as an
-approximation, those of the box with its volume and the second moments of its waterplane.
+The coefficients come from boundary elements (`boundary_elements.py`), as tables by draft in `tables`. A box, an upright
+cylinder and a sphere are in the tables at every size: to the water a hull is its wet part. A hull from a file may have
+a table of its own (`springtide hydrodynamics`). Any other has, as an approximation, those of the box with its volume
+and the second moments of its waterplane.
 
 Cummins (1962): (M + A_inf) a + int K(t - s) v(s) ds + C x = F. The transform of K is B + i w (A - A_inf); here it is a
 sum over the same few poles for all entries, so that the memory is a small state: s' = p s + v, force -2 Re(R s). The

@@ -1,4 +1,4 @@
-"""Tables of linear coefficients: of the shipped shapes (`assets/hydrodynamics`), and of a hull of one's own beside it.
+"""Tables of linear coefficients: of the shipped shapes (`tables`), and of a hull of one's own beside it.
 
 The table of a hull from a file lies in a file of the same name that ends with `.hydrodynamics.npz`. It is made by
 `springtide hydrodynamics`, and belongs to that mesh only.
@@ -36,8 +36,8 @@ class LinearTable(NamedTuple):
 
 @functools.cache
 def table_of(name: str) -> LinearTable:
-    """A committed table: "box", "cylinder" or "sphere"."""
-    with files("assets").joinpath(f"hydrodynamics/{name}.npz").open("rb") as file, np.load(file) as arrays:
+    """A shipped table: "box", "cylinder" or "sphere"."""
+    with files("sim.floating").joinpath(f"tables/{name}.npz").open("rb") as file, np.load(file) as arrays:
         return LinearTable(**{field: arrays[field] for field in LinearTable._fields})
 
 

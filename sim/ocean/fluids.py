@@ -1,6 +1,6 @@
 """Fluids: water, oils, what a mixture of two amounts to, and how much light they reflect.
 
-How viscous a mixture is: `sim.ocean.emulsions`. Oil data and their source: assets/oils.csv.
+How viscous a mixture is: `sim.ocean.emulsions`. Oil data and their source: oils.csv.
 """
 
 import csv
@@ -33,11 +33,17 @@ class Fluid(NamedTuple):
 
 
 @cache
+def oil_rows() -> list[dict[str, str]]:
+    """The rows of oils.csv."""
+    lines = files("sim.ocean").joinpath("oils.csv").read_text(encoding="utf-8").splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+@cache
 def fluids() -> dict[str, Fluid]:
-    """All fluids of assets/oils.csv by name, water first."""
-    lines = files("assets").joinpath("oils.csv").read_text(encoding="utf-8").splitlines()
+    """All fluids of oils.csv by name, water first."""
     found = {}
-    for row in csv.DictReader(line for line in lines if not line.startswith("#")):
+    for row in oil_rows():
         tensions = [float(row[c]) * 1e-3 if row[c] else None for c in ("surface_tension", "interface_tension")]
         density = float(row["density"])
         index = float(row["refractive_index"]) if row["refractive_index"] else oil_index(density)

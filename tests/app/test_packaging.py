@@ -2,6 +2,8 @@
 
 import ast
 import re
+import shutil
+import subprocess
 import sys
 import tomllib
 from importlib.metadata import packages_distributions
@@ -67,3 +69,17 @@ def test_the_wheel_holds_of_the_assets_what_the_program_reads_and_nothing_else()
     assert kept
     assert [name for name in sorted(kept) if name not in sources and f'"{Path(name).stem}"' not in sources] == []
     assert excluded == {"bench", "make_models.py", "make_tables.py", "pictures", "stability"}
+
+
+def test_the_library_reads_its_tables_without_the_rest_of_the_package(tmp_path: Path):
+    shutil.copytree(ROOT / "sim", tmp_path / "sim", ignore=shutil.ignore_patterns("__pycache__"))
+    code = (
+        "import sys; from sim.floating.linear_table import table_of; from sim.ocean.weathering.components import *;"
+        "tables = [table_of(name).draft.size for name in ('box', 'cylinder', 'sphere')];"
+        "others = {'app', 'assets'} & set(sys.modules);"
+        "print(tables, len(fluids()) > len(oil_records()) > 0, others, *sys.modules['sim'].__path__)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, env={}, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == f"[9, 9, 9] True set() {tmp_path / 'sim'}"

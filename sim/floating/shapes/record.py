@@ -42,7 +42,7 @@ class Shape:
     lengths: tuple[float, ...]  # [m] at size 1, as bodies of a scene have them
     appearances: tuple[Appearance, ...] = ()  # () for one that is named as the shape, and has no model
     order: int = 100  # place in a scene's list of kinds of body; equal ones are sorted by name
-    # the table of linear coefficients in assets/hydrodynamics that its wet part has; "": that of an equal box
+    # the table of linear coefficients in sim/floating/tables that its wet part has; "": that of an equal box
     linear: str = ""
     table: LinearTable | None = None  # linear coefficients of its own, of a hull from a file
     # the part of the upright hull up to a height [m] from 0 to its own; None: exact integrals over the mesh

@@ -6,16 +6,14 @@ Crude oils without a distillation get one from their density (Jones 1997, Proc. 
 densities: Riazi, Characterization and Properties of Petroleum Fractions, eq. 2.48 with table 2.6, and eq. 2.13.
 """
 
-import csv
 import math
 from functools import cache
-from importlib.resources import files
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.ocean.fluids import Fluid, fluids
+from sim.ocean.fluids import Fluid, fluids, oil_rows
 from sim.validation import check_choice, check_number
 
 CELSIUS = 273.15  # [K]
@@ -30,7 +28,7 @@ JONES_CUTS = 5
 
 
 class OilRecord(NamedTuple):
-    """What assets/oils.csv has of an oil beyond its properties at 15 C."""
+    """Data of an oil in oils.csv beyond its properties at 15 C."""
 
     record: str  # in NOAA's database
     is_crude: bool
@@ -56,9 +54,8 @@ class PseudoComponents(NamedTuple):
 @cache
 def oil_records() -> dict[str, OilRecord]:
     """The records of all oils by name."""
-    lines = files("assets").joinpath("oils.csv").read_text(encoding="utf-8").splitlines()
     found = {}
-    for row in csv.DictReader(line for line in lines if not line.startswith("#")):
+    for row in oil_rows():
         if not row["record"]:
             continue
         cuts = [cut.split("@") for cut in row["distillation"].split()]
@@ -78,7 +75,7 @@ def oil_records() -> dict[str, OilRecord]:
 
 
 def check_oil(oil: object) -> str:
-    """The name of an oil in assets/oils.csv. Raises ValueError for another."""
+    """The name of an oil in oils.csv. Raises ValueError for another."""
     return check_choice("oil", oil, oil_records())
 
 

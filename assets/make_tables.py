@@ -1,6 +1,6 @@
-"""Makes the tables of this folder: linear coefficients of boxes, cylinders and spheres afloat in deep water.
+"""Makes sim/floating/tables: linear coefficients of boxes, cylinders and spheres afloat in deep water.
 
-python assets/hydrodynamics/make_tables.py [box cylinder sphere]    (needs the extra `bem`; half an hour on one core)
+python assets/make_tables.py [box cylinder sphere]    (needs the extra `bem`; half an hour on one core)
 
 A box, or a cylinder with its axis upright, is to the water only its wet part. So the tables go by draft, and of boxes
 by the ratio of their sides. Lengths are in units of half the root of length times width of a box, and of the radius
@@ -15,6 +15,7 @@ import numpy as np
 from sim.floating.boundary_elements import FREQUENCIES, Solution, solve
 from sim.floating.shape_panels import PANELS
 
+TABLES = Path(__file__).parents[1] / "sim" / "floating" / "tables"
 ASPECTS = (1.0, 1.5, 2.5, 5.0)  # of the sides of a box
 DRAFTS = (0.06, 0.15, 0.3, 0.5, 0.75, 1.1, 1.7, 2.7, 4.2)  # of a box and a cylinder
 SPHERE_DRAFTS = (0.15, 0.3, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 1.9)
@@ -48,4 +49,4 @@ def table(name: str) -> dict[str, np.ndarray]:
 
 if __name__ == "__main__":
     for asked in sys.argv[1:] or ("box", "cylinder", "sphere"):
-        np.savez_compressed(Path(__file__).with_name(f"{asked}.npz"), **table(asked))  # type: ignore[arg-type]
+        np.savez_compressed(TABLES / f"{asked}.npz", **table(asked))  # type: ignore[arg-type]

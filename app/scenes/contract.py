@@ -12,7 +12,7 @@ To add a scene, add one folder here, named as the scene is on the command line:
 The folder is found by being here: command line, panel, sweeps, benchmarks and tests take it up from there.
 """
 
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeAlias, TypeVar
 
@@ -210,16 +210,6 @@ class FramePacking(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Together(Generic[P, F, R]):
-    """Many runs of a scene at once, where their parameters allow it."""
-
-    key: Callable[[P], Hashable]  # runs with equal keys can go together; None: this one has to run alone
-    # Of runs with equal keys, and times [s]: each one's scene at its first whole step at or after each of these times;
-    # None where it has to run alone after all.
-    run: Callable[[Sequence[P], Sequence[float]], Sequence[Iterator[Scene[P, F, R]] | None]]
-
-
-@dataclass(frozen=True)
 class SceneKind(Generic[P, F, R]):
     """All there is to know of a scene without making one."""
 
@@ -237,7 +227,6 @@ class SceneKind(Generic[P, F, R]):
         default_factory=dict[str, CurveAxes]
     )  # parameter that opens the chart -> its axes
     measures: Callable[..., dict[str, Measure]] | None = None  # of the scene, what a sweep records; None: the plot rows
-    together: Callable[[], "Together[P, F, R]"] | None = None  # for sweeps; None: every run goes alone
     live_values: Callable[..., dict[str, Measure]] | None = None  # of a snapshot, what the tasks of the lab use
     # Unit of each array of a frame that goes into a file of the recording; arrays of a record in it: "record_array".
     # The first one in metres is what moves.

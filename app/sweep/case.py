@@ -2,7 +2,6 @@
 
 import math
 import time
-from collections.abc import Hashable, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -33,7 +32,6 @@ class Outcome(NamedTuple):
     run_time: float  # [s] of processor time
     measures: dict[str, list[float]]  # one value for each time; NaN for times that were not reached
     labels: dict[str, tuple[str, str]]  # unit and meaning of each measure
-    together: bool = False  # whether it ran beside others (`run_together`)
 
 
 def program() -> str:
@@ -90,39 +88,6 @@ def add_measures(
     for name, measure in measures.items():
         found.setdefault(name, [math.nan] * len(times))[index] = float(measure.value)
         labels[name] = measure.unit, measure.meaning
-
-
-def key_together(scene: str, values: dict[str, Any]) -> Hashable:
-    """Cases of a scene with equal keys can run together; None for one that has to run alone."""
-    kind = scene_named(scene)
-    return kind.together().key(check_record(kind.params, values)) if kind.together else None
-
-
-def run_together(scene: str, cases: Sequence[dict[str, Any]], times: tuple[float, ...]) -> list[Outcome | None]:
-    """`run_case` of cases with equal keys, together; None for one that has to run alone: it diverged, for example.
-
-    The numbers are those of `run_case` but for round-off. The processor time is shared out equally.
-    """
-    kind = scene_named(scene)
-    assert kind.together is not None
-    assert kind.measures is not None
-    outcomes: list[Outcome | None] = []
-    start = time.thread_time()
-    try:
-        with np.errstate(all="ignore"):
-            for samples in kind.together().run([check_record(kind.params, values) for values in cases], times):
-                if samples is None:
-                    outcomes.append(None)
-                    continue
-                found: dict[str, list[float]] = {}
-                labels: dict[str, tuple[str, str]] = {}
-                for index, running in enumerate(samples):
-                    add_measures(kind.measures(running), index, times, found, labels)
-                outcomes.append(Outcome(FINISHED, "", math.nan, math.nan, found, labels, together=True))
-    except Exception:
-        return [None] * len(cases)  # alone, each case shows whether it was the one
-    share = (time.thread_time() - start) / len(cases)
-    return [outcome and outcome._replace(run_time=share) for outcome in outcomes]
 
 
 def advance_to(running: Any, until: float) -> tuple[float, ...]:

@@ -72,12 +72,7 @@ def runner(spec: Spec, scheduler: str | None) -> Iterator[Run]:
 
     def run(jobs: dict[int, Any]) -> Outcomes:
         prepare(spec.scene, drawn=False)  # compiled here once, and not in every worker
-        rest = dict(jobs)
-        with contextlib.closing(workers.in_groups(jobs)) as together:
-            for number, outcome in together:
-                del rest[number]
-                yield number, outcome
-        yield from workers.on_cores(rest)
+        yield from workers.on_cores(jobs)
 
     yield run
 
@@ -144,8 +139,6 @@ def report(out: Path, figures: list[Path], dataset: Any, outcomes: dict[int, Out
     counted = ", ".join(f"{ends.count(end)} {end}" for end in ENDS if end in ends)
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
     print(f"{out}: {len(ends)} cases ({counted}) over {sizes}" + "".join(f", {path.name}" for path in figures))
-    if together := sum(outcome.together for outcome in outcomes.values()):
-        print(f"{together} cases ran together in the lanes of the vector registers, {len(ends) - together} one by one")
     first = next((outcome.message for outcome in outcomes.values() if outcome.end == FAILED), "")
     if first:
         print(f"The first that failed: {first}")

@@ -8,20 +8,14 @@ import contextlib
 import logging
 import os
 import socket
-from collections.abc import Generator, Hashable, Iterator
+from collections.abc import Generator, Iterator
 from typing import Any
 
-from rich import get_console
-
 from app.experiments.pool import Killed, run_tasks
-from app.sweep.case import Outcome, failed, key_together, program, run_case, run_together
+from app.sweep.case import Outcome, failed, program, run_case
 from sim.validation import argument_error
 
 Job = tuple[str, dict[str, Any], tuple[float, ...]]  # what run_case takes
-GROUP = 64  # cases that run together in one process, and are lost together where it is killed
-MOST_SAMPLES = 20_000  # of a group: what its memory is taken by
-LEAST_TOGETHER = 16  # cases: fewer are done sooner than the kernel for many is compiled
-COMPILE_TIME = 0.1  # [s] of simulated time: at least a step
 MAX_ANSWER_TIME = 20.0  # [s] for a scheduler to answer, and for its first worker
 
 
@@ -30,30 +24,6 @@ def on_cores(jobs: dict[int, Job]) -> Generator[tuple[int, Outcome], None, None]
     with contextlib.closing(run_tasks(run_case, jobs)) as results:
         for number, outcome in results:
             yield number, failed(outcome.reason) if isinstance(outcome, Killed) else outcome
-
-
-def in_groups(jobs: dict[int, Job]) -> Generator[tuple[int, Outcome], None, None]:
-    """Numbers and outcomes of those jobs that can run together, in groups on all cores; all others are left out."""
-    equal: dict[tuple[str, Hashable, tuple[float, ...]], list[int]] = {}
-    for number, (scene, values, times) in jobs.items():
-        key = key_together(scene, values)
-        if key is not None:
-            equal.setdefault((scene, key, times), []).append(number)
-    groups = {}
-    for (scene, _, times), numbers in equal.items():
-        if len(numbers) < LEAST_TOGETHER:
-            continue
-        # Compiled here once, and not in every worker.
-        with get_console().status(f"compiling the kernel for many of a {scene} (once)"):
-            run_together(scene, [jobs[numbers[0]][1]], (COMPILE_TIME,))
-        size = min(GROUP, max(1, MOST_SAMPLES // len(times)))
-        for start in range(0, len(numbers), size):
-            group = tuple(numbers[start : start + size])
-            groups[group] = scene, [jobs[number][1] for number in group], times
-    with contextlib.closing(run_tasks(run_together, groups)) as results:
-        for group, outcomes in results:
-            if not isinstance(outcomes, Killed):
-                yield from ((n, outcome) for n, outcome in zip(group, outcomes, strict=True) if outcome)
 
 
 @contextlib.contextmanager

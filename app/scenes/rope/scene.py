@@ -1,6 +1,5 @@
 """The rope of springs, part 2 of the lab: its root and its points can be dragged."""
 
-import functools
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,7 +18,7 @@ from app.messages import (
     vector_of,
 )
 from app.scenes.charts import PlotAxes
-from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap, Together
+from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.rope.live_values import live_values
@@ -115,13 +114,6 @@ def compile_gauge() -> None:
 def needs(params: Params) -> tuple[str, ...]:
     """What a scene with these parameters runs."""
     return integrator_or_fallback(params.integrator, build(params), params.time_step)[0].name, GAUGE
-
-
-def together() -> Together[Params, RopeFrame, RopeReadings]:
-    """Many ropes at once."""
-    from app.scenes.rope import together  # only sweeps pay for it
-
-    return Together(together.key, functools.partial(together.run, RopeScene))
 
 
 def rows_of(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -414,7 +406,6 @@ SCENE = SceneKind(
     plots=PLOTS,
     frame_units={"points": "m", "reference": "m, the program's rope beside a student's", "tension": "N"},
     measures=measures,
-    together=together,
     stability_map=StabilityMap(stiffness_parameter, build),
     live_values=live_values,
 )

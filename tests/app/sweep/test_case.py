@@ -3,14 +3,13 @@
 import dataclasses
 import math
 
-import numpy as np
 import pytest
 
 import app.scenes.rope.scene
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import Measure
 from app.scenes.measures import plotted
-from app.sweep.case import DIVERGED, FAILED, FINISHED, key_together, run_case, run_together
+from app.sweep.case import DIVERGED, FAILED, FINISHED, run_case
 from sim.floating import Hull, equilibrium_draft
 from sim.parameters import parameters_of
 from sim.springs import simulate
@@ -115,56 +114,3 @@ def test_an_integrator_that_would_be_replaced_is_a_failed_case(monkeypatch):
     monkeypatch.setattr(app.scenes.rope.scene, "SCENE", kind)
     outcome = run_case("rope", {}, (1.0,))
     assert (outcome.end, outcome.message) == (FAILED, Stub.note)
-
-
-@pytest.mark.parametrize("integrator", ["explicit_euler", "symplectic_euler", "leapfrog", "rk4"])
-def test_cases_that_run_together_measure_what_each_measures_alone(integrator):
-    # Ropes with and without a floor, with steps of their own. Round-off grows as they fall and fold.
-    common = {"integrator": integrator, "plot_energy": True, "plot_tip": True, "damping": 20.0}
-    cases = [
-        {**common, "time_step": 1e-3 * (1 + i), "stiffness": 500.0 + 100.0 * i, "floor": i % 2 == 0} for i in range(5)
-    ]
-    times = (0.0, 0.2, 0.45)
-    assert len({key_together("rope", values) for values in cases}) == 1
-    together = run_together("rope", cases, times)
-    for values, many in zip(cases, together, strict=True):
-        one = run_case("rope", values, times)
-        assert many is not None
-        assert many.together
-        assert not one.together
-        assert (many.end, many.labels) == (one.end, one.labels)
-        for name, measured in one.measures.items():
-            assert many.measures[name] == pytest.approx(measured, rel=1e-8, abs=1e-8), name
-
-
-def test_a_case_that_touches_the_floor_or_diverges_is_left_to_run_alone():
-    common = {"integrator": "symplectic_euler", "time_step": 5e-3}
-    touches, diverges = {**common, "stiffness": 100.0}, {**common, "stiffness": 1e6, "floor": False}
-    together = run_together("rope", [touches, {**common, "stiffness": 4000.0}, diverges], (0.1, 2.0))
-    assert [outcome is None for outcome in together] == [True, False, True]
-    assert max(run_case("rope", touches, tuple(np.linspace(0.0, 2.0, 21))).measures["contact_energy"]) > 0.0
-    wild = run_case("rope", diverges, (2.0,))
-    assert wild.end == DIVERGED
-    # What is out of its scene's bounds is a divergence long before its numbers are.
-    assert run_together("rope", [diverges], (wild.diverged_at + 5e-3,)) == [None]
-
-
-def test_what_one_case_raises_leaves_all_beside_it_to_run_alone(monkeypatch):
-    def fail(*_):
-        raise MemoryError
-
-    monkeypatch.setattr("app.scenes.rope.together.advance_many", fail)
-    assert run_together("rope", [{}, {}], (0.1,)) == [None, None]
-
-
-def test_what_the_lanes_cannot_take_has_no_key():
-    values = [
-        {"integrator": "pefrl"},
-        {"damping_model": "axial"},
-        {"sphere": True},
-        {"root_swing": 0.1},
-        {"points": 41},
-    ]
-    assert [key_together("rope", value) for value in values] == [None] * 5
-    assert key_together("race", {}) is None
-    assert key_together("rope", {"points": 40}) == ("leapfrog", 40)

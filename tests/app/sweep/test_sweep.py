@@ -263,29 +263,3 @@ def test_a_full_disk_ends_it_with_a_line_and_nothing_is_written_half(tmp_path):
     assert "springtide: " in done.stderr
     assert not [path.name for path in tmp_path.iterdir() if path.suffix in (".nc", ".png", ".svg")]
     assert (tmp_path / "out.nc.cases").exists()
-
-
-def test_a_sweep_of_plain_ropes_runs_them_together_and_the_others_one_by_one(tmp_path, capsys, monkeypatch):
-    taken = []
-
-    def one_by_one(jobs):
-        taken.extend(jobs)
-        return ((number, run_case(*job)) for number, job in jobs.items())
-
-    def here(work, tasks):
-        return ((key, work(*task)) for key, task in tasks.items())
-
-    monkeypatch.setattr(workers, "on_cores", one_by_one)
-    monkeypatch.setattr(workers, "run_tasks", here)
-    spec = """
-scene = "rope"
-seconds = 0.3
-[parameters]
-sphere = [false, true]
-stiffness = { from = 500.0, to = 2000.0, count = 19 }
-"""
-    assert sweep(spec, tmp_path) == 0
-    assert taken == list(range(19, 38))
-    assert "19 cases ran together in the lanes of the vector registers, 19 one by one" in capsys.readouterr().out
-    found = xr.open_dataset(tmp_path / "out.nc")["tip_height"].values.ravel()
-    assert found == pytest.approx([o.measures["tip_height"][0] for o in alone(tmp_path / "s.toml")], abs=1e-9)

@@ -14,8 +14,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, NamedTuple, TypeVar
 
-from sim.formatting import plain
-from sim.quantities import read_number
+from sim.quantities import plain, read_number
 from sim.validation import argument_error, as_float
 
 P = TypeVar("P")

@@ -21,8 +21,8 @@ GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+")  # 1,000: one or one thous
 
 def plain_unit(unit: str) -> str:
     """A unit in characters that every keyboard has: m/s^2 for m/s²."""
-    for sign, plain in (("²", "^2"), ("³", "^3"), ("·", " "), ("°", "deg")):
-        unit = unit.replace(sign, plain)
+    for sign, typed in (("²", "^2"), ("³", "^3"), ("·", " "), ("°", "deg")):
+        unit = unit.replace(sign, typed)
     return unit
 
 
@@ -88,3 +88,10 @@ def write_number(value: float) -> str:
         return f"{decimal.scaleb(-decimal.adjusted()):f}e{decimal.adjusted()}"
     whole = value == int(value) and abs(value) < 10
     return f"{value:.1f}" if whole else f"{decimal:f}"
+
+
+def plain(value: float) -> str:
+    """A number as it is typed: 0.5, 1000, 1e9. For ranges and messages."""
+    text = f"{value:g}"
+    mantissa, e, exponent = text.partition("e")
+    return f"{mantissa}e{int(exponent)}" if e else text

@@ -24,7 +24,7 @@ ORDER = (
     ("scenes",),
     ("lab",),
     ("render",),
-    ("messages", "files"),
+    ("formats", "messages", "files"),
 )
 RANK = {folder: rank for rank, folders in enumerate(ORDER) for folder in folders}
 TOP_MODULES = {"__init__", "__main__", "messages", "files"}  # directly in app/

@@ -6,7 +6,7 @@ import string
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from sim.formatting import count, fixed, metres, metres_above, number, percent, seconds
+from app.formats.formatting import count, fixed, metres, metres_above, number, percent, seconds
 from sim.validation import argument_error
 
 EASY = {"m": metres, "s": seconds}  # unit -> what writes a number in an easily read multiple of it

@@ -3,6 +3,7 @@
 import numpy as np
 import viser
 
+from app.formats.formatting import number
 from app.lab.live_net import StudentReport, cloth_functions_in_use, functions_in_use
 from app.lab.live_tables import TableReport
 from app.lab.live_values import LiveValues
@@ -26,7 +27,6 @@ from app.render.html import (
     note,
 )
 from app.scenes.charts import PALETTE
-from sim.formatting import number
 
 SAME = 1e-6  # [m] below which two ropes are the same
 ROUNDING = 1e-9  # [m] by which a right solution may differ where nothing else explains a difference

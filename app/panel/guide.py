@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 import viser
 
+from app.formats.formatting import number
 from app.lab.live_values import LiveNumber, LiveValues, fill_in
 from app.lab.task import PREDICTION, Question, Setup, Task
 from app.lab.workbook import Workbook, read_off
@@ -19,7 +20,6 @@ from app.render.formula import formula
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, faint, fill, join, note
 from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.contract import AnyKind, AnySnapshot
-from sim.formatting import number
 from sim.parameters import Value, in_words, parameters_of
 
 TYPING_PAUSE = 1.0  # [s] after the last keystroke, after which a text is kept

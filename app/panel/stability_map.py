@@ -17,12 +17,12 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from app.formats.formatting import SUPERSCRIPTS
 from app.render.colormap import OUTCOME_COLOURS
 from app.render.html import note
 from app.render.viser_inside import uuid_of
 from app.render.viser_types import ViserEvent
 from app.scenes.contract import SpringParams, StabilityMap
-from sim.formatting import SUPERSCRIPTS
 from sim.parameters import Parameter, parameters_of
 from sim.springs import INTEGRATORS, Integrator, Net
 from sim.springs.analysis.growth import outcome

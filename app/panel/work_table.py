@@ -2,9 +2,9 @@
 
 from typing import NamedTuple
 
+from app.formats.formatting import fixed, number
 from app.messages import WorkCounts
 from app.render.html import Html, table
-from sim.formatting import fixed, number
 
 
 class WorkRow(NamedTuple):

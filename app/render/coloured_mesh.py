@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import viser
 
+from app.formats.packing import pack
 from app.render.injection import add_data_mesh, injector_of
 from app.render.viser_inside import set_arrays
-from sim.packing import pack
 from sim.validation import argument_error
 
 SUFFIX = "vertex_colors"  # of the hidden mesh that makes the script replace the shader

@@ -5,7 +5,7 @@ viser 1.1 draws an ordinary mesh in one colour with one rough material. Its publ
 (`nodeRefFromName`, `scene`, `requestRender`); `tests/browser/test_water.py` fails when these change.
 
 Everything that changes travels as vertices of hidden meshes (`add_data_mesh`), because viser keeps only the newest
-vertices of a mesh. What moves the vertices of a drawn mesh travels packed (`sim/packing.py`), in a fifth of the bytes;
+vertices of a mesh. Displacements of a drawn mesh travel packed (`app/formats/packing.py`), in a fifth of the bytes;
 the drawn mesh's own vertices are sent only where a browser does not say that it has the shader. A hidden mesh named
 "<node>/<suffix>" makes the script replace the shader of "<node>"; each file in `js/` names its suffix.
 

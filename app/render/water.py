@@ -1,6 +1,6 @@
 """The mesh of a sea: with shaders in browsers that take them, and as stock viser draws it in the others.
 
-The surface travels packed, as displacements, slopes and foam (`sim/packing.py`), and its material as a few numbers,
+The surface travels as packed displacements, slopes and foam (`app/formats/packing.py`), its material as a few numbers,
 both as the vertices of hidden meshes. `js/water.js` (see `app/render/injection.py`) makes water of them. A browser that
 does not take the shader is sent the vertices themselves and draws them in one colour, with further meshes for foam,
 slick and grid.
@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import viser
 
+from app.formats.surface_fields import SurfaceNumbers, pack_fields, set_surface_fields
 from app.render.cameras import lowest_camera
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import WATER_UNIFORMS, Material, Waterline, as_bytes, uniform_table, waterline_table
 from app.render.skies import CAMERA_RANGE
 from app.render.viser_inside import set_arrays
-from sim.ocean.surface_fields import SurfaceNumbers, pack_fields, set_surface_fields
 from sim.validation import argument_error
 
 RIPPLE_PERIOD = 1024.0  # [s] after which ripples start again: their phases are single precision in the browser

@@ -4,11 +4,11 @@ import dataclasses
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from app.formats.formatting import number
 from app.messages import BaseParams
 from app.scenes import scene_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import Setup, read_query, read_setup, shortened
-from sim.formatting import number
 from sim.parameters import Parameter, Value, clamp_value, in_words, parameters_of
 from sim.validation import argument_error
 

@@ -1,10 +1,10 @@
-"""The surface of a sea in a quarter of its memory, as a recording keeps it: rounded, and packed by `sim/packing.py`."""
+"""The surface of a sea in a quarter of its memory, for recordings: rounded, and packed by `app/formats/packing.py`."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.ocean.surface_fields import pack_fields, set_surface_fields
-from sim.packing import unpack
+from app.formats.packing import unpack
+from app.formats.surface_fields import pack_fields, set_surface_fields
 
 DISPLACEMENT_STEP = 1e-3  # [m] to which displacements are rounded
 MAX_SENT_STEP = 2e-3  # [m] up to which a recording keeps what browsers were sent, and rounds nothing itself
@@ -14,7 +14,7 @@ class SentSurface:
     """What browsers were sent of the surface of a frame: set by the view that draws it, read by the recording, both on
     the viewer's thread."""
 
-    numbers: NDArray[np.float32] | None = None  # as `sim/packing.py` packs; None where it was not sent packed
+    numbers: NDArray[np.float32] | None = None  # as `app/formats/packing.py` packs; None where it was not sent packed
 
 
 def pack_surface(

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from app.formats.packing import is_packed
 from app.messages import BaseParams
 from app.panel.recorder import Kept, arrays_of_frame
 from app.panel.recording_files import Plotted, plot_charts
@@ -24,7 +25,6 @@ from app.scenes import view_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import setup_block, write_value
 from app.server.guard import open_server
-from sim.packing import is_packed
 from sim.parameters import in_words, parameters_of
 
 MAX_DURATION = 20.0  # [s] of a replay as it plays

@@ -81,6 +81,8 @@ def files_by_place(module: str) -> list[str]:
     if module in OTHER_TESTS:
         return [name for name in OTHER_TESTS[module] if (ROOT / name).exists()]
     parts = module.split("/")
+    if parts[:2] == ["app", "formats"]:
+        return [f"tests/app/formats/test_{parts[2]}"]
     if parts[0] == "app":
         scene = parts[2] if len(parts) > 3 and parts[2] != "springs" else ""
         sweep = ROOT / "tests/app/sweep/test_case.py"  # it reads the measures of all scenes

@@ -10,7 +10,7 @@ RESULTS = ("found", "not found", "open", "untried")
 
 def package_of(module: str) -> str:
     parts = module.split("/")
-    return "/".join(parts[:2]) if parts[0] == "sim" and len(parts) > 2 else "sim" if parts[0] == "sim" else "app/scenes"
+    return "/".join(parts[:2]) if len(parts) > 2 else "sim"
 
 
 def counts() -> Counter[tuple[str, str]]:

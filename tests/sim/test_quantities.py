@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from sim.quantities import read_number, write_number
+from sim.quantities import plain, read_number, write_number
 
 
 @pytest.mark.parametrize(
@@ -80,3 +80,9 @@ def test_what_is_written_is_read_as_the_same_number() -> None:
             ]
         )
         assert read_number(write_number(value)) == value
+
+
+def test_numbers_of_ranges_are_as_one_types_them() -> None:
+    assert [plain(v) for v in (1e9, 1e-5, 0.5, 1000.0, -3.0, 2e10)] == ["1e9", "1e-5", "0.5", "1000", "-3", "2e10"]
+    for value in (1e9, 1e-5, 0.25, -3.0):
+        assert float(plain(value)) == value

@@ -1,6 +1,6 @@
-// Unpacks what sim/packing.py packs, and gives it to a mesh as attributes of its vertices.
+// Unpacks what app/formats/packing.py packs, and gives it to a mesh as attributes of its vertices.
 
-const BLOCK = 16, WIDTH_BITS = 5, WORD_BITS = 30; // as in sim/packing.py
+const BLOCK = 16, WIDTH_BITS = 5, WORD_BITS = 30; // as in app/formats/packing.py
 
 // { count, offsets, fields: one Float32Array each } of packed numbers.
 function unpack(numbers) {

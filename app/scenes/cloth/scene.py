@@ -19,6 +19,7 @@ from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence
 from app.scenes.springs.drag import Drag, PullFrame
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
+from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from app.scenes.springs.work_counts import SpringWorkCounts
 from sim.springs import Air, Net, cloth
@@ -32,7 +33,6 @@ from sim.springs.net import PinPath
 from sim.springs.resampling import resample
 from sim.springs.stability import Gauge, gauge, gershgorin
 from sim.springs.state import State, advance, energy, velocities
-from sim.springs.tracking import CriticallyDampedTracker
 
 if TYPE_CHECKING:
     from app.lab.live_code import LiveCode

@@ -5,6 +5,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import viser
 
+from app.formats.formatting import number
+from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
 from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
@@ -18,8 +20,6 @@ from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.scene import ClothFrame, ClothReadings
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
-from sim.formatting import number
-from sim.packing import compile_packing
 
 CLOTH_COLOUR = (176, 58, 72)
 STUDENT_COLOUR, STUDENT_OPACITY = (20, 150, 90), 0.7  # a colour that no strain has

@@ -2,12 +2,12 @@
 
 import math
 
+from app.formats.formatting import metres, metres_above, number, seconds
 from app.render.html import ERROR_COLOUR, Html, bold, coloured, escape, fill, join, table_head, table_row
 from app.scenes.charts import PALETTE
 from app.scenes.race.entrants import RaceReadings, Result
 from app.scenes.race.names import rope_name
 from app.scenes.springs.divergence import stability_number
-from sim.formatting import metres, metres_above, number, seconds
 
 MIN_SHOWN_ENERGY = 1e-10  # [J]: less is round-off and is shown as 0
 HEAD = (("error", ""), ("energy error", "J"), ("hω", "of limit"), ("forces", "1/s"), ("time", "a step"))

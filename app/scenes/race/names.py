@@ -2,8 +2,8 @@
 
 from typing import Protocol
 
+from app.formats.formatting import number, time_step
 from app.scenes.springs.methods import method_name
-from sim.formatting import number, time_step
 
 
 class Named(Protocol):

@@ -1,8 +1,8 @@
 """What the panel says of the spill over hours: a table, the oil as it is now, and what other laws have evaporate."""
 
+from app.formats.formatting import fixed, metres, number, percent
 from app.render.html import Html, faint, fill, join, table
 from app.scenes.radial_sea.parameters import Params
-from sim.formatting import fixed, metres, number, percent
 from sim.ocean.weathering import OilRecord, WeatheredOil, Weathering, can_weather, oil_at, oil_records
 from sim.ocean.weathering.components import CELSIUS, api_gravity, boiled_off
 from sim.ocean.weathering.laws import fingas, stiver_mackay

@@ -6,13 +6,13 @@ import time
 import numpy as np
 import viser
 
+from app.formats.formatting import number
 from app.render.coloured_mesh import ColouredMesh
 from app.render.material import RGB
 from app.render.viser_inside import set_arrays
 from app.scenes.radial_sea.cutaway import DIRECTION, FAR_WALL_POINTS, HALF_WIDTH, Cutaway
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.materials import blend, mixture_share, rgb_of
-from sim.formatting import number
 from sim.ocean.fluid_column import FluidColumn
 
 BRIGHT_WATER: RGB = (0.13, 0.50, 0.60)  # of the water under its surface, as if light came through

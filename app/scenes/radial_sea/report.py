@@ -5,13 +5,13 @@ import math
 
 import numpy as np
 
+from app.formats.formatting import fixed, metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.html import Html, bold, faint, fill, join, table
 from app.scenes.radial_sea.budget import budget_html, budget_marks
 from app.scenes.radial_sea.frame import RadialReadings
 from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
 from app.scenes.radial_sea.well_blowout import CROSSING_WAVE, OilBudget
-from sim.formatting import fixed, metres, number, percent, seconds
 from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.gerstner import peak_wavenumber

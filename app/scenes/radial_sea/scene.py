@@ -51,6 +51,8 @@ from app.scenes.radial_sea.parameters import (
     spectrum_of,
     spill_of,
 )
+from app.scenes.radial_sea.radiated_waves import LENGTH as RADIATED_WAVES_LENGTH
+from app.scenes.radial_sea.radiated_waves import RadiatedWaves
 from app.scenes.radial_sea.well_blowout import CROSSING_WAVE, WellBlowout, slick_reach
 from sim.floating import Body, Hull, MotionCoefficients, Shape, make_fleet, shape_from_file, step, still_water
 from sim.interruption import kept_whole
@@ -60,8 +62,6 @@ from sim.ocean.foam import whitecaps
 from sim.ocean.gerstner import Waves, draw_waves
 from sim.ocean.radial import CLEAN, RadialSea, RadialSurface, lost
 from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.radiated_waves import LENGTH as RADIATED_WAVES_LENGTH
-from sim.ocean.radiated_waves import RadiatedWaves
 from sim.ocean.slick import SlickCover
 from sim.ocean.spectra import SPECTRA, Conditions
 from sim.ocean.statistics import energy_by_wavenumber, expected

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import viser
 
+from app.formats.packing import compile_packing
+from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Place, Snapshot, Vector, finite_vector, vector_of
 from app.render.cameras import place_cameras
 from app.render.dragging import PullLine, drag
@@ -32,8 +34,6 @@ from app.scenes.radial_sea.well_blowout import FIRE, RIG
 from sim.floating.shapes import Appearance
 from sim.ocean.radial import RadialSurface
 from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.surface_fields import compile_surface_fields
-from sim.packing import compile_packing
 
 SUN_BEARING = 1.25  # [rad] from +x: beyond the buoys, as seen from the first view
 SUN_LAMP_INTENSITY = 2.2  # of the lamp that stands for a sun of SUN_LAMP_STRENGTH

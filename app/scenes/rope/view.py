@@ -5,6 +5,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import viser
 
+from app.formats.formatting import number
+from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
@@ -20,8 +22,6 @@ from app.scenes.rope.scene import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROPE_RADIUS, SPHERE
 from app.scenes.springs.view import RopeSurroundings
-from sim.formatting import number
-from sim.packing import compile_packing
 
 ROPE_COLOUR = (196, 154, 92)
 REFERENCE_COLOUR = (60, 110, 190)

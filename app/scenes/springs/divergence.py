@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from app.formats.formatting import number, seconds
 from app.messages import Moment, vector_of
 from app.scenes.springs.methods import method_name
-from sim.formatting import number, seconds
 from sim.springs.integrators import Integrator
 from sim.springs.stability import Gauge
 

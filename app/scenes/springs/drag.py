@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from app.messages import Vector
-from sim.springs.tracking import CriticallyDampedTracker
+from app.scenes.springs.tracking import CriticallyDampedTracker
 
 
 class PullFrame(NamedTuple):

@@ -2,10 +2,10 @@
 
 import math
 
+from app.formats.formatting import number, seconds
 from app.render.colormap import css_scale
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from app.scenes.springs.divergence import stability_number
-from sim.formatting import number, seconds
 from sim.springs.stability import Gauge
 
 WARNING_SHARE = 0.8  # of the limit, from which h omega is shown in the colour of a warning

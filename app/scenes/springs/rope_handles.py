@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from app.messages import Vector
 from app.scenes.springs.drag import Drag, PullFrame
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, RopeParams
+from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.springs import Grab, Net
-from sim.springs.tracking import CriticallyDampedTracker
 
 MAX_PULL_RATE = 30.0  # [1/s] natural frequency of the pull on a free point
 MAX_PULL_RATE_STEP = 0.5  # the same times the time step, so that the pull is stable at any step

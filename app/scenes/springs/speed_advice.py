@@ -1,7 +1,7 @@
 """What would make the steps of a net of springs faster."""
 
+from app.formats.formatting import seconds
 from app.scenes.springs.methods import method_name
-from sim.formatting import seconds
 from sim.springs import INTEGRATORS
 from sim.springs.integrators import Integrator
 from sim.springs.stability import Gauge

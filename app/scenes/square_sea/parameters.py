@@ -4,8 +4,8 @@ import dataclasses
 import math
 from typing import Any, NamedTuple
 
+from app.formats.formatting import number
 from app.scenes.spectrum_parameters import SPECTRUM_PARAMETERS, spectrum_values
-from sim.formatting import number
 from sim.ocean.planets import RADIUS_RULES, SOLAR_SYSTEM, gravity_of
 from sim.ocean.spectra import SPECTRA
 from sim.parameters import parameter, with_parameters

@@ -3,12 +3,12 @@
 import math
 from typing import TYPE_CHECKING
 
+from app.formats.formatting import count, fixed, metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, join, lines, table
 from app.scenes.square_sea.live_values import spectrum_conditions
 from app.scenes.square_sea.parameters import Params, gravity
 from app.scenes.square_sea.statistics import Report
-from sim.formatting import count, fixed, metres, number, percent, seconds
 from sim.ocean.dispersion import viscous_root
 from sim.ocean.planets import EARTH_GRAVITY, RADIUS_RULES, gravity_of
 from sim.ocean.spectra import SPECTRA

@@ -19,9 +19,9 @@ from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, Params, conditions, hidden, rain_settings
 from app.scenes.square_sea.rainfall import Rainfall, RainFrame
 from app.scenes.square_sea.statistics import Report, Theory, measure, theory
+from app.scenes.square_sea.tile_mesh import set_mesh
 from sim.ocean import Sea
 from sim.ocean.foam import pace, threshold, whitecaps
-from sim.ocean.tile_mesh import set_mesh
 from sim.ocean.wave_gauge import WaveGauge, where_hit
 from sim.parameters import effect_of_change
 

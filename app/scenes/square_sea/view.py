@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import viser
 
+from app.formats.packing import compile_packing
+from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
 from app.render.material import RAIN_HEIGHT, Material, as_linear_bytes
@@ -21,8 +23,6 @@ from app.scenes.square_sea import report
 from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity, rain_settings
 from app.scenes.square_sea.rain_view import RainMesh
 from app.scenes.square_sea.scene import SeaFrame
-from sim.ocean.surface_fields import compile_surface_fields
-from sim.packing import compile_packing
 from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
 

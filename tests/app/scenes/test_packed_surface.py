@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from app.formats.surface_fields import pack_fields, set_surface_fields
 from app.scenes.packed_surface import DISPLACEMENT_STEP, MAX_SENT_STEP, SentSurface
 from app.scenes.square_sea.parameters import Params
 from app.scenes.square_sea.scene import SeaFrame, SquareSeaScene, pack_frame, unpack_frame
-from sim.ocean.surface_fields import pack_fields, set_surface_fields
 
 SIDE = 64
 

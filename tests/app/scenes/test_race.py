@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from app.commands.run import run_to_file
+from app.formats import formatting
 from app.messages import Grab, Place, Release
 from app.render.html import ERROR_COLOUR
 from app.scenes.contract import FRAME_INTERVAL
@@ -22,7 +23,6 @@ from app.scenes.rope.scene import RopeScene
 from app.scenes.springs.methods import method_name
 from app.scenes.springs.rope_parameters import ROOT, build_rope
 from app.server.loop import SimLoop
-from sim import formatting
 from sim.parameters import check_record, parameters_of
 from sim.springs import simulate
 from sim.springs.analysis.reference_run import HORIZON_SEPARATION, ReferenceRun

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 
+from app.formats.formatting import fixed
 from app.scenes.radial_sea.budget import budget_html
 from app.scenes.radial_sea.charts import budget_chart
 from app.scenes.radial_sea.live_values import live_values
@@ -14,7 +15,6 @@ from app.scenes.radial_sea.report import marks_of, mixture_html, notes_of, oil_b
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import OilBudget
 from app.server.loop import SimLoop
-from sim.formatting import fixed
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import fluids
 from sim.ocean.weathering import weather

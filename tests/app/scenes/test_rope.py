@@ -15,6 +15,7 @@ from app.scenes.rope.parameters import PRESETS, Params
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, RopeScene
 from app.scenes.springs.html import stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROOT, SPHERE
+from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
 from sim.springs import INTEGRATORS
@@ -22,7 +23,6 @@ from sim.springs.analysis.extremes import extremes
 from sim.springs.stability import Gauge
 from sim.springs.state import velocities
 from sim.springs.statics import hanging_chain
-from sim.springs.tracking import CriticallyDampedTracker
 
 
 def run(scene: RopeScene, frames: int, steps: int) -> None:

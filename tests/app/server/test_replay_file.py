@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import zstandard
 
+from app.formats.packing import pack
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
 from app.render.surroundings import LIGHT_SKY
@@ -17,7 +18,6 @@ from app.scenes import scene_named, view_named
 from app.scenes.setups import read_setup
 from app.server.loop import SimLoop
 from app.server.replay_file import BITS, MAX_DURATION, MAX_FRAMES, MAX_RAW_BYTES, replay_html, rounded, thinned
-from sim.packing import pack
 
 DURATION = 2.0  # [s]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.packing import BLOCK, MAX_QUOTIENT, WIDTH_BITS, WORD_BITS, is_packed, pack, unpack
+from app.formats.packing import BLOCK, MAX_QUOTIENT, WIDTH_BITS, WORD_BITS, is_packed, pack, unpack
 
 
 def read(numbers: np.ndarray) -> np.ndarray:

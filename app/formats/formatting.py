@@ -103,10 +103,3 @@ def count(value: float) -> str:
         if abs(value) >= 0.9995 * size:
             return f"{number(float(f'{value / size:.2g}'))} {word}"
     return number(round(value))
-
-
-def plain(value: float) -> str:
-    """A number as it is typed: 0.5, 1000, 1e9. For ranges and messages."""
-    text = f"{value:g}"
-    mantissa, e, exponent = text.partition("e")
-    return f"{mantissa}e{int(exponent)}" if e else text

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.ocean.radiated_waves import LENGTH, WIDEST, RadiatedWaves
+from app.scenes.radial_sea.radiated_waves import LENGTH, WIDEST, RadiatedWaves
 
 STEP = 0.01  # [m] of differences
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.ocean.tile_mesh import set_mesh
+from app.scenes.square_sea.tile_mesh import set_mesh
 
 SIZE, CELL = 16, 2.0
 

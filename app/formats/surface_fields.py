@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.formats.packing import FOAM_STEP, SLOPE_STEP, pack
 from sim.jit import kernel
-from sim.packing import FOAM_STEP, SLOPE_STEP, pack
 
 
 class SurfaceNumbers(NamedTuple):
@@ -35,7 +35,7 @@ def set_surface_fields(
 
 
 def pack_fields(fields: np.ndarray, surface: SurfaceNumbers, displacement_step: float, columns: int) -> np.ndarray:
-    """`sim.packing.pack` of the fields (6, n) of a surface; a mesh that has moved as a whole is taken back first.
+    """Pack the fields (6, n) of a surface (`packing.py`); a mesh that has moved as a whole is moved back first.
 
     displacement_step [m]: to which displacements are rounded. columns: points in a row of neighbours.
     """

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from sim.ocean.surface_fields import pack_fields, set_surface_fields
-from sim.packing import SLOPE_STEP, unpack
+from app.formats.packing import SLOPE_STEP, unpack
+from app.formats.surface_fields import pack_fields, set_surface_fields
 
 ROWS, COLS, CELL = 4, 6, 0.5
 

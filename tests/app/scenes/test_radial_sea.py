@@ -146,6 +146,33 @@ def test_a_browser_lets_go_only_of_what_it_holds() -> None:
     assert scene.bodies.fleet.pull_limit[1] == 0.0
 
 
+@pytest.mark.parametrize("size", [1.0, 2.0])
+def test_a_mooring_line_is_slack_then_stiff_then_at_its_limit(size: float) -> None:
+    """In weights of the body, at rest: none up to 1.5 m, 0.06 per metre from there, 0.6 at most; by the body's size."""
+    scene = RadialSeaScene(with_parameters(**CALM, size=size))
+    bodies = scene.bodies
+    weight = bodies.fleet.mass * 9.81
+    home = bodies.fleet.position[:, :2].copy()
+    bodies.fleet.velocity[:] = 0.0
+    for away, pull in ((0.0, 0.0), (1.49, 0.0), (2.5, 0.06), (6.5, 0.3), (11.4, 0.594), (11.6, 0.6), (50.0, 0.6)):
+        bodies.fleet.position[:, :2] = home + size * away * np.array([0.6, -0.8])
+        bodies.moor()
+        found = bodies.fleet.mooring / weight[:, None]
+        assert found == pytest.approx(np.tile(pull * np.array([-0.6, 0.8]), (bodies.count, 1)), abs=1e-6)
+
+
+def test_a_mooring_line_damps_and_never_pushes() -> None:
+    """0.15 of the critical damping while it pulls: 2 times 0.15 sqrt(0.06 g) times the speed outwards."""
+    scene = RadialSeaScene(with_parameters(**CALM, size=1.0))
+    fleet = scene.bodies.fleet
+    fleet.position[:, 0] += 3.5
+    for speed, acceleration in ((1.0, 0.12 * 9.81 + 0.3 * math.sqrt(0.06 * 9.81)), (-20.0, 0.0)):
+        fleet.velocity[:] = 0.0
+        fleet.velocity[:, 0] = speed
+        scene.bodies.moor()
+        assert fleet.mooring[:, 0] == pytest.approx(-acceleration * fleet.mass, abs=1e-6 * fleet.mass.max())
+
+
 def test_a_mooring_that_is_taken_off_pulls_no_longer() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
     scene.bodies.fleet.position[0, 0] += 20.0

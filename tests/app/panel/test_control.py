@@ -1,5 +1,6 @@
 """A control: what it is set to is bounded, shown and passed on; the value itself is the panel's."""
 
+import math
 import re
 import threading
 from concurrent.futures import ThreadPoolExecutor, wait
@@ -107,6 +108,35 @@ def test_the_default_is_where_the_slider_shows_it(scene: str, name: str) -> None
     shown = scale.value(scale.position(parameter.default))
     coarse = abs(scale.value(min(scale.position(parameter.default) + scale.step, scale.high)) - parameter.default)
     assert abs(shown - parameter.default) <= max(coarse, 1e-9 * abs(parameter.default))
+
+
+@pytest.mark.parametrize(("scene", "name"), NUMBERS)
+def test_a_slider_one_step_from_its_ends_means_a_number_one_step_from_its_bounds(scene: str, name: str) -> None:
+    p = parameters_of(scene_named(scene).params())[name]
+    scale = SliderScale(p)
+    low, high = (math.log10(p.log_from), math.log10(p.high)) if p.log_from else (p.low, p.high)
+    assert (scale.low, scale.high) == pytest.approx((low, high), rel=1e-12)
+    for position in (low + scale.step, high - scale.step):
+        exact = 10.0**position if p.log_from else position
+        value = scale.value(position)
+        # Three digits by decades, multiples of the step otherwise; integers are whole.
+        rounding = max(0.005 * exact if p.log_from else 0.5 * scale.step, 0.5 if p.kind is int else 0.0)
+        assert value == pytest.approx(exact, abs=1.001 * rounding)
+        if p.kind is float:
+            assert p.low < value < p.high
+            assert scale.position(value) == pytest.approx(position, abs=0.5 * scale.step)
+
+
+@pytest.mark.parametrize(("scene", "name"), NUMBERS)
+def test_numbers_beyond_a_slider_stand_at_its_ends(scene: str, name: str) -> None:
+    p = parameters_of(scene_named(scene).params())[name]
+    scale = SliderScale(p)
+    assert scale.position(p.low) == scale.low
+    assert scale.position(p.high) == scale.position(2.0 * p.high - p.low) == scale.high
+    middle = math.sqrt(p.log_from * p.high) if p.log_from else 0.5 * (p.low + p.high)
+    assert scale.position(middle) == pytest.approx(0.5 * (scale.low + scale.high))
+    if p.log_from:
+        assert scale.position(0.5 * p.log_from) == scale.position(0.0) == scale.low
 
 
 def test_a_list_shows_titles_and_the_record_has_names(lab: Viewer) -> None:

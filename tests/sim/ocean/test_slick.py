@@ -14,24 +14,30 @@ from sim.ocean.slick import SlickCover, slick_radius, spreading_coefficient
 from sim.ocean.spectra import SPECTRA
 
 
-def test_tension_spreads_a_slick_that_has_become_thin():
-    water, nu, spreading = 1025.0, 1.19e-6, 0.0276
+def test_fay_s_regimes_have_their_powers_and_meet_where_he_says():
+    """Inertia V^(1/4) t^(1/2), viscosity V^(1/3) t^(1/4), tension t^(3/4), and their constants at the two crossings."""
+    water, nu, spreading, volume = 1025.0, 1.19e-6, 0.0276, 100.0
     lift = (1.0 - 866.0 / water) * 9.81
-    for volume, hours in ((0.01, 0.5), (1.0, 1.0), (100.0, 12.0)):
-        t = 3600.0 * hours
-        inertial = 1.14 * (lift * volume * t**2) ** (1 / 4)
-        viscous = 1.45 * (lift * volume**2 * t**1.5 / nu**0.5) ** (1 / 6)
-        tension = 2.30 * (spreading**2 * t**3 / (water**2 * nu)) ** (1 / 4)
-        final = math.sqrt(1e5 * volume**0.75 / math.pi)
-        expected = min(max(min(inertial, viscous), tension), final)
-        assert slick_radius(volume, t, 866.0, spreading=spreading) == pytest.approx(expected, rel=1e-12)
-    # 100 m3: tension takes over when 1.45 (.. t^1.5)^(1/6) = 2.30 (.. t^3)^(1/4).
-    viscous, tension = 1.45 * (lift * 1e4 / nu**0.5) ** (1 / 6), 2.30 * (spreading**2 / (water**2 * nu)) ** 0.25
-    crossing = (viscous / tension) ** 2
-    before, after = (slick_radius(100.0, crossing * x, 866.0, spreading=spreading) for x in (0.9, 1.1))
-    assert before == pytest.approx(slick_radius(100.0, 0.9 * crossing, 866.0))
-    assert after == pytest.approx(math.sqrt(1.1) * slick_radius(100.0, 1.1 * crossing, 866.0))
-    assert math.pi * slick_radius(1.0, 1e9, 866.0, spreading=spreading) ** 2 == pytest.approx(1e5)
+
+    def radius(v, t):
+        return slick_radius(v, t, 866.0, spreading=spreading)
+
+    # Inertia ends at 2.62 (V/(lift nu))^(1/3), at a radius of 1.84 (V^5 lift/nu^2)^(1/12): 17 min, 107 m.
+    first = (1.45 / 1.14) ** 4 * (volume / (lift * nu)) ** (1 / 3)
+    met = 1.45**2 / 1.14 * (volume**5 * lift / nu**2) ** (1 / 12)
+    # Tension takes over when 1.45 (.. t^1.5)^(1/6) = 2.30 (.. t^3)^(1/4): 65 min.
+    second = (1.45 / 2.30) ** 2 * (lift * volume**2) ** (1 / 3) * (water / spreading) * nu ** (1 / 3)
+    assert first == pytest.approx(17.0 * 60.0, rel=0.05)
+    assert second == pytest.approx(65.0 * 60.0, rel=0.05)
+    for t, size, in_time, in_volume in (
+        (0.5 * first, 0.5**0.5 * met, 1 / 2, 1 / 4),
+        (2.0 * first, 2.0**0.25 * met, 1 / 4, 1 / 3),
+        (2.0 * second, 2.0**0.75 * (second / first) ** 0.25 * met, 3 / 4, 0.0),
+    ):
+        assert radius(volume, t) == pytest.approx(size, rel=1e-9)
+        assert math.log(radius(volume, 1.1 * t) / radius(volume, t)) / math.log(1.1) == pytest.approx(in_time)
+        assert math.log(radius(1.1 * volume, t) / radius(volume, t)) / math.log(1.1) == pytest.approx(in_volume)
+    assert math.pi * radius(1.0, 1e9) ** 2 == pytest.approx(1e5)
 
 
 def test_spreading_coefficients_of_the_table():

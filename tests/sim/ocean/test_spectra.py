@@ -136,7 +136,8 @@ def test_no_wind_is_too_weak_to_be_evaluated():
 def test_declared_peak_is_the_maximum(name):
     spectrum = SPECTRA[name]
     c = under(name, wind_speed=12.0)
-    tolerance = 0.15 if name == "elfouhaily" else 4e-3  # k_p of elfouhaily is the paper's parameter, not the maximum
+    # The peak is found on a grid whose frequencies lie 0.4 % apart.
+    tolerance = 0.08 if name == "elfouhaily" else 4e-3  # k_p of elfouhaily is the paper's parameter, not the maximum
     assert 2 * math.pi / theory(spectrum, c).peak_period == pytest.approx(spectrum.peak(c), rel=tolerance)
 
 
@@ -239,7 +240,7 @@ def test_spreading_integrates_to_one(name, swell):
     theta = (np.arange(2000) + 0.5) * (2 * math.pi / 2000) - math.pi
     for ratio in (0.3, 0.7, 1.0, 1.7, 5.0, 20.0):
         D = spread(name, np.full_like(theta, ratio), theta, 8.0, swell, 0.9)
-        assert D.sum() * (2 * math.pi / 2000) == pytest.approx(1.0, abs=2e-3 if swell else 1e-4)
+        assert D.sum() * (2 * math.pi / 2000) == pytest.approx(1.0, abs=7e-4 if swell else 4e-5)
         assert (D >= 0.0).all()
 
 

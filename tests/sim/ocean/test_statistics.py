@@ -32,20 +32,21 @@ def test_the_tile_that_holds_the_peak_has_the_theorys_statistics():
     k_max = math.pi * 512 / 900.0
     whole, tile = theory(sea.spectrum, sea.conditions, k_max=k_max), expected(sea)
     assert tile.significant_height == pytest.approx(whole.significant_height, rel=5e-3)
-    assert tile.peak_period == pytest.approx(whole.peak_period, rel=0.05)
+    assert tile.peak_period == pytest.approx(whole.peak_period, rel=0.05)  # bins 6 % wide; the highest wave alone
     assert tile.direction == pytest.approx(-1.0, abs=0.02)
     # The corners of the square hold a little more than the circle.
-    assert whole.mean_square_slope < tile.mean_square_slope < 1.2 * whole.mean_square_slope
+    assert whole.mean_square_slope < tile.mean_square_slope < 1.06 * whole.mean_square_slope
 
 
 def test_a_drawn_field_measures_as_its_amplitudes():
-    sea = Sea(256, 600.0, seed=2, wind_direction=2.0, precision="double")
-    of_field = measured(sea.surface(5.0).height, 600.0, sea.conditions, sea.surface(4.9).height)
+    sea = Sea(256, 600.0, seed=2, amplitudes="fixed", wind_direction=2.0, precision="double")
+    of_field = measured(sea.surface(5.0).height, 600.0, sea.conditions, sea.surface(4.9).height, 0.1)
     of_waves = drawn(sea)
-    assert of_field.significant_height == pytest.approx(of_waves.significant_height, rel=0.15)
-    assert of_field.peak_period == pytest.approx(of_waves.peak_period, rel=0.15)
-    assert of_field.direction == pytest.approx(2.0, abs=0.15)
-    assert of_waves.direction == pytest.approx(2.0, abs=0.15)
+    # No wave of this spectrum runs against another, so a snapshot has the energy of the amplitudes.
+    assert of_field.significant_height == pytest.approx(of_waves.significant_height, rel=1e-9)
+    assert of_field.peak_period == pytest.approx(of_waves.peak_period, rel=0.012)  # other bins, 6 % wide
+    assert of_field.direction == pytest.approx(2.0, abs=5e-3)  # weighs short waves more, which are fewer to a side
+    assert of_waves.direction == pytest.approx(2.0, abs=2e-4)
     slope = sea.surface(5.0).slope
     assert of_field.mean_square_slope == pytest.approx(float(np.square(slope).sum(-1).mean()), rel=1e-9)
     assert of_field.significant_height == pytest.approx(4 * sea.surface(5.0).height.std(), rel=1e-9)
@@ -58,7 +59,7 @@ def test_one_snapshot_tells_no_direction():
 
 @pytest.mark.parametrize(("length", "scatter"), [(250.0, 0.073), (500.0, 0.036)])
 def test_scatter_of_a_tile_is_the_published_one(length, scatter):
-    assert height_scatter(Sea(256, length, "pierson_moskowitz")) == pytest.approx(scatter, rel=0.06)
+    assert height_scatter(Sea(256, length, "pierson_moskowitz")) == pytest.approx(scatter, abs=5e-4)  # as printed
 
 
 @pytest.mark.parametrize("amplitudes", ["random", "fixed"])
@@ -66,7 +67,7 @@ def test_scatter_is_what_seeds_show(amplitudes):
     options = {"spectrum": "phillips", "wind_speed": 8.0, "amplitudes": amplitudes}
     heights = [4.0 * Sea(32, 120.0, seed=seed, **options).surface(3.0).height.std() for seed in range(400)]
     predicted = height_scatter(Sea(32, 120.0, **options))
-    assert np.std(heights) / np.mean(heights) == pytest.approx(predicted, rel=0.15)
+    assert np.std(heights) / np.mean(heights) == pytest.approx(predicted, rel=0.07)  # two standard errors of 400 seeds
 
 
 def test_flat_sea_has_no_period_and_no_scatter():

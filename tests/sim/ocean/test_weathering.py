@@ -221,8 +221,10 @@ def test_exposure_is_the_time_integral_of_area_over_volume():
     assert found.exposure(24.0) == pytest.approx(expected, rel=1e-3)
 
 
-def test_the_slick_drifts_at_three_percent_of_the_wind():
-    assert weather(Spill(wind_speed=10.0)).at(24.0).drift == pytest.approx(0.3 * 86400.0)
+def test_in_a_wind_of_20_knots_oil_drifts_14_nautical_miles_a_day():
+    """Responders' rule, 3 % of the wind (NOAA, Trajectory Analysis Handbook): 0.6 knots."""
+    knot, nautical_mile = 1852.0 / 3600.0, 1852.0
+    assert weather(Spill(wind_speed=20.0 * knot)).at(24.0).drift / nautical_mile == pytest.approx(14.4)
 
 
 def test_more_wind_and_warmth_evaporate_more():

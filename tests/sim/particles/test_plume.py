@@ -29,8 +29,8 @@ def test_the_middle_of_a_plume_is_as_fast_and_hot_as_mccaffrey_measured() -> Non
     """A fire of 1 MW: q = 15.85; in the flame, in the intermittent flame and in the plume."""
     speed, rise = centreline([1.0, 2.0, 10.0], 1e6)
     assert speed == pytest.approx([6.8, 1.9 * 1000**0.2, 1.1 * (10 / 1000**0.4) ** (-1 / 3) * 1000**0.2], rel=1e-6)
-    assert rise[0] == pytest.approx(853.0, rel=0.01)  # the same everywhere in the flame, 800 to 900 K as measured
-    assert rise[2] == pytest.approx(22.3 * (10 / 1000**0.4) ** (-5 / 3), rel=0.01)
+    assert rise[0] == pytest.approx(853.0, rel=1e-3)  # the same everywhere in the flame, 800 to 900 K as measured
+    assert rise[2] == pytest.approx(22.3 * (10 / 1000**0.4) ** (-5 / 3), rel=1e-3)
     below, above = centreline(0.08 * 1000**0.4 * np.array([0.9999, 1.0001]), 1e6)[0]
     assert above == pytest.approx(below, rel=0.02)  # the fits meet
 
@@ -54,10 +54,14 @@ def test_far_in_the_wind_gas_goes_by_briggs() -> None:
     wind = 12.0
     way = track(100e6, 4.0, wind, 600.0)
     age = way.step * np.arange(len(way.height))
-    rise = bent_rise(wind * age[200:], 100e6, wind)
-    assert way.height[200:] == pytest.approx(rise, rel=0.12)
+    # A plume takes the time of both laws together: without that of still air it goes by Briggs's alone. Within the
+    # flame, which is a hundredth of this height, it takes less.
+    still = track(100e6, 4.0, 0.0, 600.0)
+    rising = np.interp(way.height, still.height, still.step * np.arange(len(still.height)))  # [s]
+    rise = bent_rise(wind * (age - rising)[200:], 100e6, wind)
+    assert way.height[200:] == pytest.approx(rise, rel=0.02)
     growth = np.diff(way.height[[400, 500]].astype(float)) / np.diff(rise[[200, 300]])
-    assert growth == pytest.approx(1.0, rel=0.05)
+    assert growth == pytest.approx(1.0, rel=0.01)
     own = np.sqrt(np.square(way.radius[[400, 500]]) - np.square(turbulent_radius(wind * age[[400, 500]])))
     assert np.diff(own) / np.diff(way.height[[400, 500]]) == pytest.approx(BENT_WIDENING, rel=0.06)
 
@@ -72,9 +76,11 @@ def test_wind_s_turbulence_widens_smoke_as_briggs_curves_say() -> None:
 def test_gas_in_the_wind_is_as_hot_as_in_still_air_after_as_long_a_way() -> None:
     power, wind, age = 400e6, 20.0, 5.0
     still, blown = track(power, 9.0, 0.0, 20.0), track(power, 9.0, wind, 20.0)
-    heat, height = (float(np.interp(age, blown.step * np.arange(512), v)) for v in (blown.heat, blown.height))
-    way = math.hypot(wind * (age - DRAG_TIME), height)
-    assert heat == pytest.approx(float(np.interp(way, still.height, still.heat)), rel=0.1)
+    heat = float(np.interp(age, blown.step * np.arange(512), blown.heat))
+    ages = blown.step * np.arange(512)
+    along = wind * (ages - DRAG_TIME * (1.0 - np.exp(-ages / DRAG_TIME)))
+    way = np.append(0.0, np.cumsum(np.hypot(np.diff(along), np.diff(blown.height))))
+    assert heat == pytest.approx(float(np.interp(np.interp(age, ages, way), still.height, still.heat)), rel=2e-4)
 
 
 def test_soot_of_a_megawatt_darkens_twenty_square_metres_a_second() -> None:

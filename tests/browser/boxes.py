@@ -10,7 +10,6 @@ MIN_PICTURE_SHARE = 0.12  # of the window that must show the picture
 # Texts that a reader sees on top of each other, controls that no scrolling brings into the window, charts narrower than
 # their words, and the share of the window in which the picture is on top.
 MEASURE = """() => {
-    document.querySelectorAll(".webgl-software-rendering").forEach((note) => note.remove());
     const wide = innerWidth, high = innerHeight;
     // The part of a box that its scrolling ancestors let through.
     const seen = (element, box) => {

@@ -34,7 +34,7 @@ def test_nothing_covers_a_text_a_control_or_the_picture(resized: tuple[Viewer, T
 @pytest.mark.parametrize(
     ("style", "fault"),
     [
-        (".springtide-panel { transform: translateY(20px); }", "text over text: Running"),
+        (".springtide-panel[data-state] { height: 0; }", "text over text: Running"),  # what follows moves up into it
         ("[data-floating-window] { left: 700px !important; }", "out of reach: Reset"),
         ("[data-floating-window] { left: 0 !important; width: 880px !important; }", "the picture shows in"),
     ],
@@ -47,6 +47,14 @@ def test_the_measure_finds_what_is_wrong(shown: tuple[Viewer, Tab], style: str, 
         tab.wait(lambda: any(words.startswith(fault) for words in faults(tab.page)), 20)
     finally:
         planted.evaluate("style => style.remove()")
+
+
+def test_viser_s_note_on_software_drawing_does_not_cover_the_picture(shown: tuple[Viewer, Tab]) -> None:
+    _, tab = shown
+    note = tab.page.locator("#webgl-software-rendering")
+    tab.wait(note.count)  # this Chromium draws in software
+    assert not note.is_visible()
+    assert tab.page.evaluate(ON_TOP, (100, 100)) == "CANVAS"
 
 
 def test_a_phone_shows_the_race_first_and_its_plots_when_asked(

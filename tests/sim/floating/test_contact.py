@@ -204,44 +204,6 @@ def test_water_that_is_not_finite_is_reported(field):
         step(fleet, make_water(fleet, SPILL, **arguments), FRAME_INTERVAL)
 
 
-def test_bad_arguments_are_refused_by_name():
-    box = Hull.box(1.0, 1.0, 0.4)
-    for name, body in {
-        r"bodies\[0\]\.density": Body(box, -1.0),
-        r"bodies\[0\]\.position": Body(box, 500.0, (0, 0, math.nan)),
-        r"bodies\[0\]\.rotation": Body(box, 500.0, rotation=(0, 0, 0, 0)),
-        r"bodies\[0\]\.spin": Body(box, 500.0, spin=(0, 0)),  # type: ignore[arg-type]
-    }.items():
-        with pytest.raises(ValueError, match=f"{name}: .* is not allowed"):
-            make_fleet([body])
-    fleet = make_fleet([Body(box)])
-    water = still_water(fleet, WATER)
-    for name, arguments in {
-        "duration": {"duration": math.nan},
-        "gravity": {"coefficients": MotionCoefficients(gravity=math.nan)},
-        "linear_drag": {"coefficients": MotionCoefficients(linear_drag=-1.0)},
-        "restitution": {"coefficients": MotionCoefficients(restitution=2.0)},
-        "substeps": {"substeps": 0},
-    }.items():
-        with pytest.raises(ValueError, match=f"{name}: .* is not allowed"):
-            step(fleet, water, **{"duration": FRAME_INTERVAL, **arguments})
-    with pytest.raises(ValueError, match=r"duration: .* at most .* s for bodies this stiff"):
-        step(fleet, water, 1e6)
-    with pytest.raises(ValueError, match="water: "):
-        step(make_fleet([Body(box)] * 2), water, FRAME_INTERVAL)
-    with pytest.raises(ValueError, match="slope: "):
-        make_water(fleet, WATER, np.zeros(1), slope=np.zeros(3))
-    with pytest.raises(ValueError, match="layers: "):
-        still_water(fleet, [(700.0, 0.1), (850.0, 0.2), (1025.0, math.inf)])
-    for arguments in (
-        (3, (0, 0, 0), (0, 0, 0), 1.0),
-        (0, (0, math.nan, 0), (0, 0, 0), 1.0),
-        (0, (0, 0, 0), (0, 0, 0), -1),
-    ):
-        with pytest.raises(ValueError, match="is not allowed"):
-            pull(fleet, *arguments)
-
-
 def test_no_bodies_is_a_fleet_too():
     fleet = make_fleet([])
     assert step(fleet, still_water(fleet, WATER), FRAME_INTERVAL) == 0

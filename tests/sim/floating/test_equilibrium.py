@@ -147,30 +147,6 @@ def test_closed_forms_of_the_primitives_match_their_fine_meshes(height):
             assert exact.second == pytest.approx(fine.second, abs=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("name", "arguments"),
-    [
-        ("density", {"density": math.nan}),
-        ("density", {"density": -5.0}),
-        ("density", {"density": 0.0}),
-        ("density", {"density": "wood"}),
-        ("gravity", {"density": 500.0, "gravity": math.inf}),
-        ("gravity", {"density": 500.0, "gravity": 0.0}),
-        ("layers", {"density": 500.0, "layers": []}),
-        ("layers", {"density": 500.0, "layers": [(850.0, 0.2)]}),
-        ("layers", {"density": 500.0, "layers": [(850.0, math.inf), (1025.0, math.inf)]}),
-        ("layers", {"density": 500.0, "layers": [(1025.0, 0.2), (850.0, math.inf)]}),
-        ("layers", {"density": 500.0, "layers": [(850.0, -0.2), (1025.0, math.inf)]}),
-        ("layers", {"density": 500.0, "layers": [(math.nan, 0.2), (1025.0, math.inf)]}),
-        ("layers", {"density": 500.0, "layers": [(850.0, math.nan), (1025.0, math.inf)]}),
-        ("layers", {"density": 500.0, "layers": 1025.0}),
-    ],
-)
-def test_bad_arguments_are_refused_by_name(name, arguments):
-    with pytest.raises(ValueError, match=f"{name}: .* is not allowed; allowed: "):
-        equilibrium_draft(Hull.box(1.0, 1.0, 1.0), **arguments)
-
-
 def test_the_prediction_of_a_scene_is_that_of_the_functions():
     box = Hull.box(2.0, 1.5, 0.8)
     found = predict(box, 500.0, SPILL, 1000.0)

@@ -113,10 +113,3 @@ def test_a_file_that_is_no_hull_is_refused(tmp_path):
     cap.export(tmp_path / "open.stl")
     with pytest.raises(ValueError, match=r"open\.stl.*closed mesh"):
         Hull.load(tmp_path / "open.stl")
-
-
-@pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf, 1e9, "1", None, True])
-def test_lengths_out_of_range_are_refused(bad):
-    for make in (lambda: Hull.box(1.0, bad, 1.0), lambda: Hull.sphere(bad), lambda: Hull.cylinder(1.0, bad)):
-        with pytest.raises(ValueError, match=r"is not allowed; allowed: 0\.001 to 10000 m"):
-            make()

@@ -119,19 +119,3 @@ def test_waterplane_moments_of_a_floating_box_are_its_rectangle():
     below = submerged(Hull.box(2.0, 1.0, 0.5), (3.0, -4.0, 0.1))
     assert below.area == pytest.approx(2.0)
     assert below.second == pytest.approx([8 / 12, 2 / 12, 0], abs=1e-13)
-
-
-@pytest.mark.parametrize(
-    ("name", "arguments"),
-    [
-        ("position", {"position": (0, 0, math.nan)}),
-        ("position", {"position": (0, 0)}),
-        ("rotation", {"rotation": (0, 0, 0, 0)}),
-        ("rotation", {"rotation": (1, 0, math.inf, 0)}),
-        ("surface", {"surface": math.nan}),
-        ("surface", {"surface": np.zeros(3)}),
-    ],
-)
-def test_bad_poses_and_surfaces_are_refused(name, arguments):
-    with pytest.raises(ValueError, match=f"{name}: .* is not allowed"):
-        submerged(Hull.box(1.0, 1.0, 1.0), **arguments)

@@ -239,30 +239,6 @@ def test_thin_and_thick_layers_have_their_limits():
     assert viscous_two_layer(0.0, oil.density, oil.viscosity, 1.0, *arguments) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [
-        (lambda: omega(1.0, gravity=0.0), "gravity"),
-        (lambda: omega(1.0, depth=-1.0), "depth"),
-        (lambda: omega(1.0, depth=math.nan), "depth"),
-        (lambda: omega(1.0, tension=-1.0), "tension"),
-        (lambda: omega(1.0, density=INF), "density"),
-        (lambda: omega([1.0, -2.0]), "k"),
-        (lambda: omega(math.nan), "k"),
-        (lambda: two_layer(1.0, 1025.0, 1.0, 850.0), "lower_density"),
-        (lambda: two_layer(1.0, 850.0, 0.0, 1025.0), "thickness"),
-        (lambda: viscous_root(1.0, -1e-6), "viscosity"),
-        (lambda: viscous_two_layer(1.0, 850.0, 0.0, 1.0, 1025.0, 1e-3), "upper_viscosity"),
-        (lambda: viscous_two_layer(1.0, 850.0, 1e-2, INF, 1025.0, 1e-3), "thickness"),
-        (lambda: viscous_two_layer(1.0, 850.0, 1e-2, 1.0, 1025.0, math.nan), "lower_viscosity"),
-        (lambda: viscous_root(1.0, "thick"), "viscosity"),
-    ],
-)
-def test_bad_arguments_are_refused_by_name(call, name):
-    with pytest.raises(ValueError, match=rf"^{name}: .* is not allowed; allowed: "):
-        call()
-
-
 def test_closed_forms_need_no_transforms():
     code = "import sys, sim.ocean.dispersion; sys.exit('pyfftw' in sys.modules or 'numba' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

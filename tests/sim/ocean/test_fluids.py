@@ -123,22 +123,3 @@ def test_index_of_oils_by_the_one_third_rule():
     assert oil_index(932.0) == pytest.approx(1.534, abs=2e-3)
     assert fluids()["fresh water"].refractive_index == 1.333
     assert fluids()["Maya"].refractive_index == oil_index(932.0)
-
-
-@pytest.mark.parametrize(
-    ("call", "name"),
-    [
-        (lambda: arrhenius(1.0, 1.0, 1.5), "fraction"),
-        (lambda: arrhenius(0.0, 1.0, 0.5), "first"),
-        (lambda: mixed(fluids()["Maya"], fluids()["Mars"], 0.5, "stirred"), "law"),
-        (lambda: mixed(fluids()["Maya"], fluids()["Mars"], 0.5, continuous=fluids()["Brent"]), "continuous"),
-        (lambda: pal_rhodes(1.0, 1.0, 0.998), "fraction"),
-        (lambda: FluidColumn(fraction=0.001, continuous="oil"), "fraction"),
-        (lambda: FluidColumn(continuous="air"), "continuous"),
-        (lambda: fresnel(0.0, 0.9), "index"),
-        (lambda: oil_index(math.nan), "density"),
-    ],
-)
-def test_bad_arguments_are_refused_by_name(call, name):
-    with pytest.raises(ValueError, match=rf"^{name}: "):
-        call()

@@ -69,9 +69,3 @@ def test_a_film_lets_red_through_longest() -> None:
 ])  # fmt: skip
 def test_the_name_of_a_film(thickness: float, name: str) -> None:
     assert appearance(thickness) == name
-
-
-@pytest.mark.parametrize("thickness", [-1e-6, float("nan"), float("inf"), "thin"])
-def test_what_is_no_thickness_is_refused(thickness: object) -> None:
-    with pytest.raises(ValueError, match="thickness"):
-        light_through(thickness)  # type: ignore[arg-type]

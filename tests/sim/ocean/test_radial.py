@@ -256,24 +256,6 @@ def test_no_wind_is_a_level_sea() -> None:
     assert np.isfinite(surface.slope).all()
 
 
-@pytest.mark.parametrize(
-    ("make", "word"),
-    [
-        (lambda: draw_waves(SPECTRA["jonswap"], WIND, 0), "count"),
-        (lambda: RadialGrid(rings=2), "rings"),
-        (lambda: RadialGrid(law="cubic"), "law"),
-        (lambda: RadialGrid(inner=1e5), "inner"),
-        (lambda: FluidColumn(thickness=-1.0), "thickness"),
-        (lambda: FluidColumn(law="nonsense"), "law"),
-        (lambda: sea_of().at([[math.nan, 0.0]], 0.0), "points"),
-        (lambda: sea_of().on(RadialGrid(), math.inf), "t"),
-    ],
-)
-def test_what_is_not_allowed_is_refused_by_name(make, word: str) -> None:
-    with pytest.raises(ValueError, match=word):
-        make()
-
-
 def test_exposure_adds_up_and_is_that_of_having_run_longer() -> None:
     waves, oil = draw_waves(SPECTRA["jonswap"], WIND, 64), FluidColumn(oil=fluids()["IFO 180"], thickness=0.3)
     grown, longer = RadialSea(waves, oil, exposure=10.0), RadialSea(waves, oil, exposure=300.0)

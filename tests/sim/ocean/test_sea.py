@@ -426,35 +426,6 @@ def test_flat_query_needs_no_search():
     assert not residual.any()
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("size", 100000),
-        ("size", 33),
-        ("size", 64.0),
-        ("length", 0.0),
-        ("length", math.inf),
-        ("spectrum", "calm"),
-        ("wind_speed", math.nan),
-        ("gravity", -1.0),
-        ("depth", 0.0),
-        ("depth", -5.0),
-        ("tension", math.inf),
-        ("viscosity", -1.0),
-        ("choppiness", -1.0),
-        ("choppiness", math.nan),
-        ("amplitudes", "loud"),
-        ("seed", 1.5),
-        ("precision", "half"),
-        ("loop_period", 0.0),
-        ("dispersion_scale", -1.0),
-    ],
-)
-def test_bad_arguments_are_refused_by_name(name, value):
-    with pytest.raises(ValueError, match=rf"^{name}: .* is not allowed; allowed: "):
-        Sea(**{"size": 16, "length": 50.0, name: value})
-
-
 def test_unknown_condition_is_a_type_error():
     with pytest.raises(TypeError, match="wind_sped"):
         Sea(16, 50.0, wind_sped=3.0)
@@ -467,18 +438,6 @@ def test_bad_change_leaves_the_sea_alone():
         sea.change(1.0, depth=-1.0)
     np.testing.assert_array_equal(sea.surface(1.0).height, before)
     assert sea.version == 0
-
-
-def test_bad_times_and_points_are_refused():
-    sea = Sea(16, 50.0, viscosity=1e-3)
-    with pytest.raises(ValueError, match=r"^t: "):
-        sea.surface(math.nan)
-    with pytest.raises(ValueError, match=r"^t: "):
-        sea.surface(-1.0)
-    with pytest.raises(ValueError, match=r"^points: "):
-        sea.height_at([[1.0, 2.0, 3.0]], 0.0)
-    with pytest.raises(ValueError, match=r"^points: "):
-        sea.height_at([[1.0, math.nan]], 0.0)
 
 
 def test_no_wind_is_a_flat_sea():

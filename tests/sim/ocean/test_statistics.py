@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
-from sim.ocean.spectra import SPECTRA, Conditions
+from sim.ocean.spectra import SPECTRA
 from sim.ocean.statistics import (
     _peak_period,
     beaufort,
@@ -91,15 +91,6 @@ def test_flat_sea_has_no_period_and_no_scatter():
 )
 def test_beaufort(speed, force, name):
     assert beaufort(speed) == (force, name)
-
-
-def test_fields_that_do_not_fit_are_refused():
-    with pytest.raises(ValueError, match=r"^height: "):
-        measured(np.zeros((4, 5)), 1.0, Conditions())
-    with pytest.raises(ValueError, match=r"^earlier: "):
-        measured(np.zeros((4, 4)), 1.0, Conditions(), np.zeros((5, 5)))
-    with pytest.raises(ValueError, match=r"^wind_speed: "):
-        beaufort(-1.0)
 
 
 # Each spectrum by itself, and JONSWAP's with what may come to it; all of both under -m stress.

@@ -230,25 +230,3 @@ def test_in_a_wind_of_20_knots_oil_drifts_14_nautical_miles_a_day():
 def test_more_wind_and_warmth_evaporate_more():
     lost = [weather(Spill(wind_speed=u, temperature=t)).at(3.0).evaporated for u, t in ((2, 5), (8, 5), (8, 25))]
     assert lost[0] < lost[1] < lost[2]
-
-
-@pytest.mark.parametrize(
-    ("values", "name"),
-    [
-        ({"oil": "Bunker C Zalinski"}, "oil"),
-        ({"oil": "sea water"}, "oil"),
-        ({"water": "Brent"}, "water"),
-        ({"volume": 0.0}, "volume"),
-        ({"wind_speed": -1.0}, "wind_speed"),
-        ({"temperature": 60.0}, "temperature"),
-        ({"volume": math.nan}, "volume"),
-    ],
-)
-def test_a_spill_that_cannot_be_is_refused_by_name(values, name):
-    with pytest.raises(ValueError, match=rf"^{name}: "):
-        Spill(**values)
-
-
-def test_other_times_than_five_days_are_refused():
-    with pytest.raises(ValueError, match=r"^hours: "):
-        weather(Spill()).at(121.0)

@@ -69,12 +69,6 @@ def test_smoke_has_another_outline_after_some_time_and_the_same_in_another_run()
     assert np.ptp(middles[0]) > 0.1
 
 
-@pytest.mark.parametrize("bad", [{"power": -1.0}, {"count": 0}, {"life": math.inf}, {"wind": (math.nan, 0.0)}])
-def test_what_is_not_allowed_is_refused_by_name(bad: dict) -> None:
-    with pytest.raises(ValueError, match=next(iter(bad))):
-        Fire((0.0, 0.0, 0.0), **bad)
-
-
 def test_parcels_start_evenly_over_the_pool() -> None:
     fire = young(Fire((5.0, -3.0, 1.0), count=4000, life=1000.0))
     x, y, z = fire.position

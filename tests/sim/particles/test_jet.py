@@ -75,12 +75,6 @@ def test_fay_spreads_by_inertia_first_and_by_viscosity_then() -> None:
         slick_radius(1.0, 1.0, 1030.0)
 
 
-@pytest.mark.parametrize("bad", [{"flow": 0.0}, {"spread": -1.0}, {"count": 0}, {"drag_time": 0.0}])
-def test_what_is_not_allowed_is_refused_by_name(bad: dict) -> None:
-    with pytest.raises(ValueError, match=next(iter(bad))):
-        Jet((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), **bad)
-
-
 def test_drag_and_wind_carry_a_parcel_along_the_closed_form() -> None:
     """v = v_end + (v0 - v_end) exp(-t/tau) and its integral, in one step or many."""
     wind, tau, t = (3.0, -2.0), 0.8, 1.5

@@ -98,13 +98,3 @@ def test_wind_bends_the_plume_and_gas_cools_all_the_way() -> None:
 
 def test_light_is_that_of_a_sphere() -> None:
     assert 4.0 * math.pi * radiated_light(1e6) == pytest.approx(0.3e6)
-
-
-@pytest.mark.parametrize(
-    ("name", "values"),
-    [("power", (-1.0, 4.0, 5.0, 1.0)), ("diameter", (1e6, 0.0, 5.0, 1.0)), ("wind_speed", (1e6, 4.0, -1.0, 1.0)),
-     ("duration", (1e6, 4.0, 5.0, 0.0))],
-)  # fmt: skip
-def test_what_is_not_allowed_is_refused_by_name(name: str, values: tuple[float, ...]) -> None:
-    with pytest.raises(ValueError, match=name):
-        track(*values)

@@ -128,19 +128,3 @@ def test_drops_begun_under_a_wave_do_not_count():
     rain = Rain(25.0, 10.0, 10.0, count=1000)
     assert len(rain.step(1e-6, np.full((4, 4), 5.0)).speed) == 0
     assert (rain.position[2] > 5.0).all()
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("rate", 0.0),
-        ("rate", math.nan),
-        ("length", -1.0),
-        ("ceiling", math.inf),
-        ("count", 0),
-        ("wind", (1.0, math.nan)),
-    ],
-)
-def test_bad_arguments_are_refused_by_name(name, value):
-    with pytest.raises(ValueError, match=rf"^{name}: .* is not allowed; allowed: "):
-        Rain(**{"rate": 10.0, "length": 50.0, "ceiling": 20.0, name: value})

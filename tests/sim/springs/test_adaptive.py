@@ -191,16 +191,6 @@ def test_the_ledger_closes_within_the_tolerance(name):
     assert np.abs(balance - balance[0]).max() < 1e-5
 
 
-def test_a_tolerance_is_for_adaptive_methods_and_without_a_step():
-    with pytest.raises(ValueError, match=r"^rtol: .* adaptive methods only"):
-        simulate(rope(), "rk4", rtol=1e-6)
-    with pytest.raises(ValueError, match=r"^atol: .* the step is given"):
-        simulate(rope(), "dopri5", 1e-3, atol=1e-6)
-    for bad in (0.0, -1.0, float("nan"), "1", 2.0):
-        with pytest.raises(ValueError, match=r"^rtol: "):
-            simulate(rope(), "dopri5", rtol=bad)  # type: ignore[arg-type]
-
-
 def test_pefrl_refuses_damping():
     for net in (rope(), rope(damping=0.0), rope(damping=0.0, drag=0.0, floor=-1.0)):
         with pytest.raises(ValueError, match=r"^integrator: 'pefrl' is not allowed; .* damped"):

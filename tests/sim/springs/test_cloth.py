@@ -18,8 +18,6 @@ from sim.springs.state import State, advance, energy
 from sim.springs.statics import catenary, hanging_chain
 from tests.naive import acceleration
 
-BAD = [math.nan, math.inf, True, "1", None]
-
 
 def forces_of(net, x=None, v=None):
     """Accelerations by the kernels (3, rows, cols)."""
@@ -28,23 +26,6 @@ def forces_of(net, x=None, v=None):
     a = np.empty_like(x)
     set_acceleration(x.reshape(-1), v.reshape(-1), 0.0, net.kernel_view(1.0), a.reshape(-1))
     return a
-
-
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [(name, value) for name in ("rows", "cols") for value in [*BAD, 1, 0, 2.5, 5000]]
-    + [(name, value) for name in ("width", "length", "density") for value in [*BAD, 0.0, -1.0]]
-    + [
-        (name, value)
-        for name in ("stiffness", "shear", "bend", "damping", "drag", "thickness")
-        for value in [*BAD, -1.0]
-    ]
-    + [("pinned", value) for value in ("middle", 3, [(0, 32)], [(-1, 0)], ["ab", "c"])]
-    + [("contact", 3), ("air", 3), ("damping_model", "none"), ("floor", math.nan), ("sphere", (0, 0, 0))],
-)
-def test_a_bad_argument_is_refused_by_name(name, value):
-    with pytest.raises(ValueError, match=rf"^{name}.* is not allowed; allowed: \S"):
-        cloth(**{name: value})
 
 
 def test_the_default_is_a_square_metre_held_at_two_corners():

@@ -299,17 +299,3 @@ def test_a_step_that_is_not_given_is_half_the_critical_one_or_shorter():
     assert simulate(undamped, "explicit_euler", duration=0.1, frames=2).step == pytest.approx(1 / 1200, rel=1e-12)
     assert simulate(rope(), "rk4", 0.03, 0.1, 3).step == pytest.approx(0.025, rel=1e-12)
     assert simulate(rope(), "dopri5", duration=0.01, frames=2).step is None
-
-
-@pytest.mark.parametrize(
-    "function", [lambda: critical_step(rope(), "rk5"), lambda: critical_stiffness(rope(), "", 0.1)]
-)
-def test_an_unknown_integrator_is_refused_with_the_known_ones(function):
-    with pytest.raises(ValueError, match=r"integrator: .*leapfrog"):
-        function()
-
-
-@pytest.mark.parametrize("h", [0.0, -1.0, math.nan, math.inf, True])
-def test_a_step_that_is_none_is_refused(h):
-    with pytest.raises(ValueError, match="h: "):
-        critical_stiffness(rope(), "rk4", h)

@@ -146,15 +146,3 @@ def test_nets_that_do_not_hang_are_refused():
             equilibrium(net)
     with pytest.raises(ValueError, match="pinned at point 0 only"):
         hanging_chain(rope(4, end=(1.0, 0.0, 0.0)))
-
-
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -1.0, 0.0, True, "2"])
-def test_a_length_that_is_none_is_refused(bad):
-    with pytest.raises(ValueError, match="length: "):
-        catenary(5, bad, 1.0, 0.0, 800.0, 1.0, 10.0)
-
-
-@pytest.mark.parametrize("bad", [1, 2.5, True, math.nan, "3"])
-def test_a_number_of_points_that_is_none_is_refused(bad):
-    with pytest.raises(ValueError, match="points: "):
-        catenary(bad, 2.0, 1.0, 0.0, 800.0, 1.0, 10.0)

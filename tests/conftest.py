@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 
 import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread, as it does when the program runs
+from tests.reruns import pytest_configure  # noqa: F401  a hook
 
 # See `pytest_collection_modifyitems`.
 EARLY = ("test_shader_functions.py", "test_water.py", "test_water_pixels.py", "test_extension.py")

@@ -18,7 +18,6 @@ from sim.validation import argument_error, check_number, is_whole_number
 # In one call of a kernel, which a Ctrl-C waits for: hundredths of a second.
 POINT_EVALS = 2e6  # force evaluations times points, of a rope
 GRID_COST = 4.0  # of a net with links in several directions, in evaluations of a rope's
-SWEEP_COST = 4.0  # of moving one link after the other, in evaluations
 CONTACT_COST = 300.0  # of a net that touches itself, in evaluations without
 
 
@@ -124,7 +123,7 @@ def advance(
     if net.bands > 1:
         set_threads(net.bands)
     each = CONTACT_COST if net.thickness > 0.0 else 1.0 if net.is_rope else GRID_COST
-    cost = net.x0[0].size * integrator.evals * each * (SWEEP_COST if integrator.softens else 1.0)
+    cost = net.x0[0].size * integrator.evals * each
     most = max(1, int(POINT_EVALS / cost))
     may_end_within_a_step = integrator.implicit or net.thickness > 0.0
     for done in range(0, steps, most):

@@ -13,7 +13,6 @@ TITLES = {  # name -> (title in a list, name in a sentence)
     "implicit_euler": ("Euler, implicit", "implicit Euler"),
     "implicit_midpoint": ("Midpoint, implicit", "implicit midpoint"),
     "tr_bdf2": ("TR-BDF2, implicit", "TR-BDF2"),
-    "xpbd": ("XPBD (position based)", "XPBD"),
     "pefrl": ("PEFRL (no damping)", "PEFRL"),
     "dopri5": ("Dormand-Prince 5, adaptive", "Dormand-Prince 5"),
     "dop853": ("Dormand-Prince 8, adaptive", "Dormand-Prince 8"),

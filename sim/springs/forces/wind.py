@@ -106,7 +106,7 @@ def wind_power(x, v, p):
 
 
 @kernel(noalias=True, allocates=False)
-def blow_wide(x, v, s, p, f, a, middle, with_account, ledger):
+def blow(x, v, s, p, f, a, middle, with_account, ledger):
     """The air's push for a time s [s], by the explicit midpoint rule; books what it put in and what it dissipated.
 
     The wind does the work of its force at its own speed; what the particles do not get of it is dissipated.
@@ -137,14 +137,6 @@ def blow_wide(x, v, s, p, f, a, middle, with_account, ledger):
     ledger[1] += p.mass * work
 
 
-@kernel(inline=True)
-def blow_nothing(x, v, s, p, f, a, middle, with_account, ledger):
-    """A rope catches no air."""
-
-
-blow = by_net(rope=blow_nothing, grid=blow_wide)
-
-
 @kernel(noalias=True, inline=True)
 def drift_rope(x, v, h, p, f, a, middle, with_account, ledger):
     add_scaled(x, h, v)
@@ -154,7 +146,7 @@ def drift_rope(x, v, h, p, f, a, middle, with_account, ledger):
 def drift_wide(x, v, h, p, f, a, middle, with_account, ledger):
     if p.has_air:
         add_scaled(x, 0.5 * h, v)
-        blow_wide(x, v, h, p, f, a, middle, with_account, ledger)
+        blow(x, v, h, p, f, a, middle, with_account, ledger)
         add_scaled(x, 0.5 * h, v)
     else:
         add_scaled(x, h, v)

@@ -35,7 +35,6 @@ class Integrator(NamedTuple):
     implicit: bool = False  # a force evaluation is then one correction of Newton's method, `evals` the least number
     evals_outside_newton: int = 0  # of implicit methods: force evaluations a step beside those corrections
     l_stable: bool = False  # what it cannot follow decays within a step
-    softens: bool = False  # its equilibrium, and a net's symmetry, are exact only as the step goes to 0
     undamped_only: bool = False  # refuses nets with damping
     march: Callable[..., tuple[int, int, int, float]] | None = None  # adaptive methods: with steps of its own choosing
 

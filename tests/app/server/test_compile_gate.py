@@ -56,10 +56,10 @@ def test_going_back_to_what_is_there_ends_the_wait() -> None:
 
 def test_a_preset_is_held_until_it_can_run() -> None:
     queue, gate, first = made()
-    load = Load(Params(integrator="xpbd"), 1)
+    load = Load(Params(integrator="tr_bdf2"), 1)
     assert gate.admit([load, Reset()]) == [Reset()]
     assert gate.read((load.params, 1)) == (first, 0)
-    queue.finish("xpbd")
+    queue.finish("tr_bdf2")
     assert gate.admit([Play()]) == [Play(), load]
     assert gate.read((load.params, 1)) == (load.params, 1)
     assert gate.admit([]) == []
@@ -68,9 +68,9 @@ def test_a_preset_is_held_until_it_can_run() -> None:
 def test_of_two_presets_only_the_last_is_loaded() -> None:
     queue, gate, _ = made()
     later = Load(Params(gravity=3.0), 2)
-    assert gate.admit([Load(Params(integrator="xpbd"), 1)]) == []
+    assert gate.admit([Load(Params(integrator="tr_bdf2"), 1)]) == []
     assert gate.admit([later]) == [later]
-    queue.finish("xpbd")
+    queue.finish("tr_bdf2")
     assert gate.admit([]) == []
     assert gate.read((later.params, 2)) == (later.params, 2)
 

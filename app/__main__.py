@@ -116,14 +116,14 @@ def make_parser() -> argparse.ArgumentParser:
     add_parameters(export)
     export.set_defaults(command=run_export)
 
-    bench = commands.add_parser("bench", help="measure run time against error, kernels, frames, start-up")
+    bench = commands.add_parser("bench", help="measure run time against error, frames and start-up")
     bench.add_argument("names", nargs="*", metavar="NAME", help="the benchmarks to run (default: all)")
     bench.add_argument("--quick", action="store_true", help="fewer and shorter runs: a minute each")
     bench.add_argument(
         "--peers",
         nargs="*",
         metavar="PEER",
-        help="compare with the other programs that are installed; with words of names: only with those",
+        help="in a checkout: compare with the other programs that are installed; with words of names: only with those",
     )
     bench.add_argument("--out", type=Path, metavar="DIR", help="write tables (CSV) and figures to this folder")
     bench.add_argument(

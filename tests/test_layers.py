@@ -12,7 +12,7 @@ import pytest
 from app.scenes import NAMES
 
 ROOT = Path(__file__).parent.parent
-SOURCES = sorted(path for top in ("sim", "app", "assets", "tests") for path in (ROOT / top).rglob("*.py"))
+SOURCES = sorted(path for top in ("sim", "app", "assets", "benchmarks", "tests") for path in (ROOT / top).rglob("*.py"))
 # Folders of app/ from left to right: none imports a folder to its left. Those of one entry do not import each other.
 ORDER = (
     ("bench",),
@@ -162,7 +162,7 @@ def test_sim_knows_neither_viewer_nor_app_nor_threads():
 def test_the_kernel_decorator_is_the_only_compiler():
     # What students write is compiled in a process of its own, and not kept.
     allowed = ("sim/jit.py", "sim/compiler.py", "app/lab/compiled.py")
-    paths = [path for path in [*below("sim"), *below("app")] if named(path) not in allowed]
+    paths = [path for path in [*below("sim"), *below("app"), *below("benchmarks")] if named(path) not in allowed]
     assert not offences(paths, "numba")
 
 
@@ -175,7 +175,7 @@ def test_springs_ocean_and_particles_do_not_know_each_other():
     assert not offences(below("sim/floating"), "sim.springs", "sim.particles")
 
 
-@pytest.mark.parametrize("top", ["sim", "app"])
+@pytest.mark.parametrize("top", ["sim", "app", "benchmarks"])
 def test_there_is_no_circle_of_imports(top: str):
     modules = {module_of(path): path for path in below(top)}
     graph = {
@@ -195,8 +195,12 @@ def test_the_spine_is_typed():
     assert not offences(paths, "typing.Any")
 
 
-def test_nothing_that_ships_imports_the_tests():
-    assert not offences([*below("sim"), *below("app"), *below("assets")], "tests")
+def test_nothing_that_ships_imports_the_tests_or_the_comparisons():
+    assert not offences([*below("sim"), *below("app"), *below("assets")], "tests", "benchmarks")
+
+
+def test_the_comparisons_import_neither_the_tests_nor_viser():
+    assert not offences(below("benchmarks"), "tests", "viser")
 
 
 def test_nothing_is_left_to_do():

@@ -1,3 +1,1 @@
-"""`springtide bench`: cases/ holds the benchmarks, tasks/ what Springtide and its peers are both given, peers/ the
-other programs, native/ the loops in C.
-"""
+"""`springtide bench`. Comparisons with C and with other programs lie in benchmarks/, which is not installed."""

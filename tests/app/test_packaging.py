@@ -12,7 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text())
 PROJECT = SETTINGS["project"]
-OWN = {"app", "assets", "sim"}
+OWN = {"app", "assets", "benchmarks", "sim"}
 # Peers that are no extras of ours: pypbd and bpy are installed by hand, warp's distribution is warp-lang.
 BY_HAND = {"bpy", "pypbd"}
 DISTRIBUTIONS = {"warp": "warp-lang", "netCDF4": "netcdf4"}
@@ -38,7 +38,7 @@ def undeclared(declared: set[str], *, at_top: bool) -> dict[str, set[str]]:
     """File -> its imports of distributions that are not among the declared."""
     distributions = packages_distributions()
     wrong = {}
-    for path in (*ROOT.glob("app/**/*.py"), *ROOT.glob("sim/**/*.py")):
+    for path in (path for top in ("app", "benchmarks", "sim") for path in ROOT.glob(f"{top}/**/*.py")):
         others = imported(ast.parse(path.read_text("utf-8")), at_top=at_top) - OWN - BY_HAND - sys.stdlib_module_names
         named = {
             DISTRIBUTIONS.get(name, distributions.get(name, [name])[0]).lower().replace("_", "-") for name in others
@@ -83,3 +83,10 @@ def test_the_library_reads_its_tables_without_the_rest_of_the_package(tmp_path: 
         [sys.executable, "-c", code], cwd=tmp_path, env={}, capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == f"[9, 9, 9] True set() {tmp_path / 'sim'}"
+
+
+def test_the_comparisons_are_in_the_sources_and_not_in_the_wheel():
+    targets = SETTINGS["tool"]["hatch"]["build"]["targets"]
+    assert (ROOT / "benchmarks" / "command.py").exists()
+    assert "benchmarks" in targets["sdist"]["include"]
+    assert targets["wheel"]["packages"] == ["app", "assets", "sim"]

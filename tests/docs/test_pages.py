@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from app.__main__ import make_parser
+from app.bench.command import benchmarks
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import FILE_KEYS, read_file
 from sim.parameters import parameters_of
@@ -81,9 +82,8 @@ def test_a_command_has_its_sub_command_and_options(named):
         if option == "--set" and command == "run" and words[1] in NAMES and named.page != "docs/contributing.md":
             assert value.partition("=")[0] in parameters_of(scene_named(words[1]).params)
     if command == "bench":
-        cases = {path.stem for path in (ROOT / "app" / "bench" / "cases").glob("*.py")}
         values = min((words.index(option) for option in ("--out", "--peers") if option in words), default=len(words))
-        assert {word for word in words[1:values] if word.islower() and not word.startswith("-")} <= cases
+        assert {word for word in words[1:values] if word.islower() and not word.startswith("-")} <= set(benchmarks())
 
 
 def test_the_readme_is_short_and_has_its_two_commands():

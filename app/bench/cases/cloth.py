@@ -1,44 +1,80 @@
-"""Run time and force evaluations against error on the benchmark cloth, with a ladder of steps for every integrator.
+"""Run time and force evaluations against error on the cloth C(n), with a ladder of steps for every integrator.
+
+C(n): n x n particles, 1 m, 1 kg, level, four corners pinned; structural springs 981, shear 490, bend 98 N/m, damping
+0.002 N s/m each; 0.25 s from rest. Errors are the largest distance of any particle from the reference at the end.
 
 Explicit methods take steps at fractions of their critical step; methods without one take a ladder of step counts. Some
 rungs are left out, and their row says why: they would take too long, they diverge, or the reference is not good enough
-to tell their error. With `--peers`, each peer is compared with our quickest run at its error or less, on one thread.
+to tell their error.
 
 All sizes take some five minutes; `--quick` (32 x 32 particles, rungs of up to a quarter of a second) ten seconds.
 """
 
 import functools
+import math
 import statistics
 import time
 from collections import Counter
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from rich.progress import track
 
-from app.bench.own_runs import RESOLUTION, OwnRuns, Reference, largest_distances
-from app.bench.peers.cloth import SCRIPTS
-from app.bench.peers.cloth_engines import ENGINES, OTHER_TASKS
-from app.bench.peers.ladder import Task
-from app.bench.peers.ladder import tables as peer_ladders
-from app.bench.tasks.cloth import (
-    DURATION,
-    benchmark_cloth,
-    expected_time,
-    ladders,
-    reference,
-    run,
-    step_counts,
-)
+from app.bench.reference import RESOLUTION, Positions, Reference, largest_distances
 from app.bench.timing import processor_time
-from app.experiments.tables import Rows, front
-from sim.springs import INTEGRATORS, Net
+from app.experiments.tables import front
+from sim.springs import INTEGRATORS, Net, cloth
+from sim.springs.stability import critical_step
+from sim.springs.state import State, advance, steps_for
 
+DURATION = 0.25  # [s]
+STEP_LADDER = (0.95, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.025)  # time steps over the critical step
+STEP_COUNTS = (8, 32, 128, 512, 2048, 8192)  # of methods that have no critical step
 METHODS = tuple(name for name, record in INTEGRATORS.items() if not record.undamped_only)
 MEASURED = ("force evaluations", "time [ms]", "least [ms]", "x real time", "error [m]", "reference good to [m]")
 MAX_ERROR = 0.5  # [m] a larger one means another motion altogether
-PEERS = SCRIPTS + ENGINES
+
+
+def benchmark_cloth(n: int, damping_model: str = "isotropic") -> Net:
+    """The cloth of C(n)."""
+    return cloth(
+        n, n, 1.0, 1.0, 1.0, 981.0, 490.0, 98.0, 0.002, pinned="all corners", damping_model=damping_model
+    )  # fmt: skip
+
+
+def run(net: Net, name: str, steps: int) -> State:
+    """The state after the whole motion, in one call."""
+    state = State.at_rest(net)
+    advance(net, state, INTEGRATORS[name], DURATION / steps, steps)
+    return state
+
+
+def positions(net: Net, name: str, steps: int) -> Positions:
+    """Positions (3, n, n) [m] at the end."""
+    return (run(net, name, steps).x,)
+
+
+def expected_time(net: Net, name: str, steps: int) -> float:
+    """About how long the whole motion takes [s], from its first sixteenth: for a solver that iterates, the easiest."""
+    state, first = State.at_rest(net), math.ceil(steps / 16)
+    return processor_time(lambda: advance(net, state, INTEGRATORS[name], DURATION / steps, first)) * steps / first
+
+
+def reference(net: Net) -> Reference:
+    """dop853 at a quarter of its critical step; its uncertainty is the distance to dopri5 at a fifth of its own."""
+    one, other = (
+        positions(net, name, steps_for(DURATION, fraction * critical_step(net, name)))
+        for name, fraction in (("dop853", 0.25), ("dopri5", 0.2))
+    )
+    return Reference(one, largest_distances(one, Reference(other, 0.0))[0])
+
+
+def step_counts(net: Net, name: str) -> list[int]:
+    """The steps of a method's ladder, coarse to fine."""
+    critical = critical_step(net, name)
+    if math.isinf(critical):
+        return list(STEP_COUNTS)
+    return [steps_for(DURATION, fraction * critical) for fraction in STEP_LADDER]
 
 
 def ladder(net: Net, name: str, truth: Reference, max_time: float, timing: float) -> list[dict[str, Any]]:
@@ -125,15 +161,3 @@ def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
         )
         for task, own in by_task(table).items()
     }
-
-
-def peer_task(n: int, damping: str) -> Task:
-    """The cloth task by this damping model, with our own runs of it."""
-    net = benchmark_cloth(n, damping)
-    return Task(net, (DURATION,), OwnRuns(ladders(net), reference(net)))
-
-
-def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
-    """The ladders of peers, and programs that cannot be given the task; quick: two sizes, every second rung."""
-    table = peer_ladders("C", (32, 64, 128), PEERS, peer_task, words, quick)
-    return table + [{"task": "another", "peer": name, "note": why} for name, why in OTHER_TASKS.items() if not words]

@@ -4,27 +4,21 @@ integrator.
 An error is the largest distance of any point from the reference at the end. The reference is dop853 at a tolerance of
 1e-12; its uncertainty is the distance to a second method, dopri5. Errors within ten times of that are left out. A run
 is one call for the whole motion, with compiled kernels; its time is the least of repeats. Runs that diverge are left
-out. With `--peers`, each peer is given the rope task (`app/bench/tasks/rope.py`) at several steps or tolerances.
+out.
 """
 
-import dataclasses
 import functools
 import math
 import statistics
 import time
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from rich.progress import track
 
-from app.bench.own_runs import RESOLUTION, OwnRuns
-from app.bench.peers.ladder import Task
-from app.bench.peers.ladder import tables as peer_ladders
-from app.bench.peers.rope import PEERS
-from app.bench.tasks.rope import benchmark_rope, ladders, reference
-from app.experiments.tables import Rows, front
+from app.bench.reference import RESOLUTION, Reference, largest_distances
+from app.experiments.tables import front
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.state import State, advance
 
@@ -41,13 +35,6 @@ class Problem(NamedTuple):
     name: str
     net: Net
     duration: float  # [s]
-
-
-class Truth(NamedTuple):
-    """The reference solution of a problem at the end, and its uncertainty."""
-
-    x: NDArray[np.float64]  # (3, 1, points) [m]
-    uncertainty: float  # [m]
 
 
 LAB = functools.partial(rope, 10, gravity=10.0)
@@ -79,10 +66,10 @@ def run_steps(problem: Problem, name: str, steps: int) -> tuple[NDArray[np.float
     return state.x, state.force_evals
 
 
-def truth_of(problem: Problem) -> Truth:
+def truth_of(problem: Problem) -> Reference:
     """The reference solution."""
-    one, other = (run_adaptive(problem, name, REFERENCE_TOLERANCE)[0] for name in ("dop853", "dopri5"))
-    return Truth(one, float(np.linalg.norm(one - other, axis=0).max()))
+    one, other = ((run_adaptive(problem, name, REFERENCE_TOLERANCE)[0],) for name in ("dop853", "dopri5"))
+    return Reference(one, largest_distances(one, Reference(other, 0.0))[0])
 
 
 def methods_for(net: Net) -> list[str]:
@@ -90,7 +77,7 @@ def methods_for(net: Net) -> list[str]:
     return [name for name, record in INTEGRATORS.items() if not (record.undamped_only and net.is_damped)]
 
 
-def ladder(problem: Problem, name: str, truth: Truth, max_evaluations: int, repeats: int) -> list[dict[str, Any]]:
+def ladder(problem: Problem, name: str, truth: Reference, max_evaluations: int, repeats: int) -> list[dict[str, Any]]:
     """Rungs from coarse to fine, up to `max_evaluations` of the force, or to the uncertainty of the reference."""
     found = []
     adaptive = INTEGRATORS[name].adaptive
@@ -100,7 +87,7 @@ def ladder(problem: Problem, name: str, truth: Truth, max_evaluations: int, repe
         run = run_adaptive if adaptive else run_steps
         with np.errstate(all="ignore"):
             x, evals = run(problem, name, setting)  # type: ignore[arg-type]
-            error = float(np.linalg.norm(x - truth.x, axis=0).max())
+            (error,) = largest_distances((x,), truth)
         if evals > max_evaluations or error < RESOLUTION * truth.uncertainty:
             break
         if not error < MAX_ERROR:
@@ -175,14 +162,3 @@ def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
             name = problem.name.split(",")[0].replace(" ", "_")
             drawn[f"rope_{name}"] = work_precision(own, f"Rope of 10 points, {problem.name}, {problem.duration:g} s")
     return drawn
-
-
-def peer_task(links: int, damping: str) -> Task:
-    """The rope task by this damping model, with our own runs of it."""
-    net = dataclasses.replace(benchmark_rope(links), damping_model=damping)
-    return Task(net, (0.5, 1.0), OwnRuns(ladders(net), reference(net)))
-
-
-def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
-    """The ladders of peers; quick: two sizes, every second rung."""
-    return peer_ladders("R", (16, 128, 1024), PEERS, peer_task, words, quick)

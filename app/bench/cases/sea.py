@@ -1,22 +1,13 @@
 """A frame of the square sea against the bare transforms that it needs, in turns."""
 
-import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
-from app.bench.own_runs import OwnRun, OwnRuns, Reference
-from app.bench.peers.ladder import Task
-from app.bench.peers.ladder import tables as peer_ladders
-from app.bench.peers.sea import PEERS, PRECISIONS, extended
 from app.bench.timing import median_times
-from app.experiments.tables import Rows
 from sim.ocean import Sea
 from sim.ocean.transforms import Transforms
 
 QUICK_REPEATS, REPEATS = 60, 400
-PEER_TIME = 5.0  # [s] of the frame that peers compute
 
 
 def rows(quick: bool) -> list[dict[str, Any]]:
@@ -29,35 +20,6 @@ def rows(quick: bool) -> list[dict[str, Any]]:
     for size in (128, 256) if quick else (64, 128, 256, 512):
         found += [row(name, size, fields, QUICK_REPEATS if quick else REPEATS) for name, fields in FRAMES.items()]
     return found
-
-
-def peer_task(size: int, _: str) -> Task:
-    """Height and displacement of a sea at a new time, and our own frames in both precisions.
-
-    An error is the largest distance of any point of the surface from the same sums in extended precision. It is
-    round-off, which differs a little from one order of sums to another: within a factor of two it counts as equal.
-    """
-    seas = {
-        precision: Sea(size=size, length=500.0, spectrum="phillips", precision=precision) for precision in PRECISIONS
-    }
-    truth = Reference((extended(seas["double"], PEER_TIME),), float(np.finfo(np.longdouble).eps))
-    own = [[OwnRun("frame", f"{name} precision", functools.partial(ours_at, sea))] for name, sea in seas.items()]
-    for (frame,) in own:
-        frame.run()  # plans the transforms
-    return Task(seas["double"], (PEER_TIME,), OwnRuns(own, truth, equal=2.0))
-
-
-def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
-    """The ladders of peers; quick: one size."""
-    return peer_ladders("S", (256, 512), PEERS, peer_task, words, quick)
-
-
-def ours_at(sea: Sea) -> tuple[np.ndarray]:
-    """Height and both displacements (3, N, N) [m] at the peers' time, computed anew."""
-    sea.surface(0.0)  # the sea keeps the fields of the latest time
-    surface = sea.surface(PEER_TIME)
-    displacement = surface.displacement
-    return (np.stack([surface.height, displacement[..., 0], displacement[..., 1]]),)
 
 
 FRAMES: dict[str, tuple[str, ...]] = {

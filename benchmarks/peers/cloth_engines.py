@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.peers.cloth import MAX_ROWS
-from app.bench.peers.record import Peer, Run
+from benchmarks.peers.cloth import MAX_ROWS
+from benchmarks.peers.record import Peer, Run
 from sim.springs import Net
 
 

@@ -1,5 +1,5 @@
 /* The sum of Gerstner waves as a careful C programmer would write it: the floor for sim/ocean/wave_sum.py. A wave is
-   eleven floats: kx, ky [turns/m], phase [turns], then the factors of the eight sums. Built by app/bench/kernels.py. */
+   eleven floats: kx, ky [turns/m], phase [turns], then the factors of the eight sums. Built by build.py. */
 #include <math.h>
 
 static inline float sine(float q) {

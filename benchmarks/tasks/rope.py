@@ -1,14 +1,20 @@
-"""The rope task R(N), its reference, and our ladders of runs.
+"""The rope R(N) as a task of peers: its reference, and our ladders of runs.
 
 R(N): N links, 1 m, 1 kg, EA 981 N, released horizontally, 1 s. Errors are the largest distance of any point from the
 reference at t = 0.5 s and at t = 1 s.
 """
 
+import dataclasses
 import functools
+from collections.abc import Sequence
 
 import numpy as np
 
-from app.bench.own_runs import OwnRun, Positions, Reference
+from app.bench.reference import Positions, Reference
+from app.experiments.tables import Rows
+from benchmarks.peers.ladder import Task, tables
+from benchmarks.peers.own_runs import OwnRun, OwnRuns
+from benchmarks.peers.rope import PEERS
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, steps_for
@@ -80,3 +86,14 @@ def ladders(net: Net) -> list[list[OwnRun]]:
         *([fixed_step_run(net, name, fraction) for fraction in STEP_LADDER] for name in FIXED_STEP_METHODS),
         *([adaptive_run(net, name, rtol) for rtol in TOLERANCES] for name in ADAPTIVE_METHODS),
     ]
+
+
+def peer_task(links: int, damping: str) -> Task:
+    """The rope task by this damping model, with our own runs of it."""
+    net = dataclasses.replace(benchmark_rope(links), damping_model=damping)
+    return Task(net, (0.5, 1.0), OwnRuns(ladders(net), reference(net)))
+
+
+def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
+    """The ladders of peers; quick: two sizes, every second rung."""
+    return tables("R", (16, 128, 1024), PEERS, peer_task, words, quick)

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.native.build import build
-from app.bench.tasks.rope import benchmark_rope
+from benchmarks.native.build import build
+from benchmarks.tasks.rope import benchmark_rope
 from sim.springs import INTEGRATORS
 from sim.springs.net import Net
 

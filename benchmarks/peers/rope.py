@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.bench.peers.record import Peer, Run
+from benchmarks.peers.record import Peer, Run
 from sim.springs import Net
 
 TOLERANCES = (1e-3, 1e-5, 1e-6, 1e-7, 1e-9)

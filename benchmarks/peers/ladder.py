@@ -14,10 +14,10 @@ from typing import Any, NamedTuple
 
 from rich.progress import track
 
-from app.bench.own_runs import RESOLUTION, OwnRuns, largest_distances
-from app.bench.peers.record import Peer
-from app.bench.timing import in_turns, undisturbed_time
+from app.bench.reference import RESOLUTION, largest_distances
 from app.experiments.tables import Rows
+from benchmarks.peers.own_runs import OwnRuns
+from benchmarks.peers.record import Peer
 from sim.springs.stability import critical_step
 
 FRACTIONS = (0.8, 0.4, 0.2, 0.1)  # over leapfrog's critical step, for peers that take steps
@@ -56,6 +56,29 @@ def rungs(peer: Peer, subject: Any, quick: bool) -> list[Rung]:
     return found[:: 2 if quick else 1]
 
 
+def undisturbed_time(call: Callable[[], Any]) -> float:
+    """The lesser of wall time and processor time of all threads in a call [s].
+
+    On a busy machine a long call waits for a core, and one shorter than a slice of the scheduler does not: wall times
+    would favour the short one. Several threads at once make the wall time the lesser.
+    """
+    start, used = time.perf_counter(), time.process_time()
+    call()
+    return min(time.process_time() - used, time.perf_counter() - start)
+
+
+def in_turns(calls: Sequence[Callable[[], Any]], max_time: float) -> list[list[float]]:
+    """Undisturbed times [s] of each call, taken in turns.
+
+    Until there are `TURNS` of each, or at least `LEAST_TURNS` and those of the first call add up to `max_time` [s].
+    """
+    times: list[list[float]] = [[] for _ in calls]
+    while len(times[0]) < TURNS and (len(times[0]) < LEAST_TURNS or sum(times[0]) < max_time):
+        for own, call in zip(times, calls, strict=True):
+            own.append(undisturbed_time(call))
+    return times
+
+
 def compared(peer: Peer, task: Task, quick: bool) -> Rows:
     """A row for each rung of a peer's ladder: its error and time, and our quickest run with errors no larger, in turns.
 
@@ -86,7 +109,7 @@ def compared(peer: Peer, task: Task, quick: bool) -> Rows:
                 continue
         best = ours.quickest(limits)
         calls = [functools.partial(theirs, times[-1]), *([] if best is None else [best.run])]
-        peer_times, *our_times = in_turns(calls, TURNS, max_time, LEAST_TURNS, undisturbed_time)
+        peer_times, *our_times = in_turns(calls, max_time)
         row["peer [ms]"] = 1e3 * statistics.median(peer_times)
         if best is None:
             beyond = min(limits) < RESOLUTION * ours.reference.uncertainty

@@ -4,23 +4,11 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from app.bench.reference import RESOLUTION, Positions, Reference, largest_distances
 from app.bench.timing import processor_time
 
-Positions = tuple[NDArray[np.float64], ...]  # (3, rows, points) [m] at each of the task's times
-
-RESOLUTION = 10.0  # an error below so many times the reference's own uncertainty says nothing
 CANDIDATES = 4  # runs that are timed again before the quickest is chosen
 MAX_RETIMED = 0.1  # [s] runs that take longer are not timed again: chance matters less
-
-
-class Reference(NamedTuple):
-    """The solution of a task, and its uncertainty [m]."""
-
-    positions: Positions
-    uncertainty: float
 
 
 class OwnRun(NamedTuple):
@@ -37,14 +25,6 @@ class Result(NamedTuple):
 
     time: float
     errors: tuple[float, ...]
-
-
-def largest_distances(positions: Positions, reference: Reference) -> tuple[float, ...]:
-    """Largest distance [m] of any particle from the reference, at each time; not finite where the run diverged."""
-    return tuple(
-        float(np.linalg.norm(own - true, axis=0).max())
-        for own, true in zip(positions, reference.positions, strict=True)
-    )
 
 
 class OwnRuns:

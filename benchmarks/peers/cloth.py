@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.bench.peers.record import Peer, Run
+from benchmarks.peers.record import Peer, Run
 from sim.springs import Net
 
 MAX_ROWS = 128  # a run with more takes minutes
@@ -138,7 +138,7 @@ def warp_gather(net: Net, h: float) -> Run:
     """Each particle gathers its links and steps itself, from one buffer into another: one launch a step."""
     import warp as wp  # type: ignore[import-not-found]
 
-    from app.bench.peers.cloth_warp import make_step
+    from benchmarks.peers.cloth_warp import make_step
 
     rows, cols = net.shape
     offsets, links = neighbours(net)

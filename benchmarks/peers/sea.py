@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.peers.record import Peer
+from benchmarks.peers.record import Peer
 from sim.ocean import Sea
 
 Frame = Callable[[float], Any]

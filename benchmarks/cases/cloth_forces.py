@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.native.build import build
-from app.bench.tasks.cloth import benchmark_cloth
+from app.bench.cases.cloth import benchmark_cloth
+from benchmarks.native.build import build
 from sim.jit import MAX_THREADS, kernel, set_threads
 from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size
 

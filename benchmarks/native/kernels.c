@@ -1,5 +1,5 @@
 /* The rope's integrators as a careful C programmer would write them: the floor that the compiled kernels are held to.
-   Arrays are (3, n); w is 1/mass, 0 where pinned; f is (3, n + 1). Built by app/bench/kernels.py. */
+   Arrays are (3, n); w is 1/mass, 0 where pinned; f is (3, n + 1). Built by build.py. */
 #include <math.h>
 
 static void accelerate(int n, const double *restrict x, const double *restrict v, const double *restrict w,

@@ -1,0 +1,1 @@
+"""The tasks of the peers: a subject, a reference solution, our own ladders of runs, and `peer_rows`."""

@@ -1,0 +1,46 @@
+"""The cloth C(n) of `app/bench/cases/cloth.py` as a task of peers. Ours run on one thread."""
+
+import functools
+from collections.abc import Sequence
+
+from app.bench.cases.cloth import DURATION, benchmark_cloth, expected_time, positions, reference, run, step_counts
+from app.experiments.tables import Rows
+from benchmarks.peers.cloth import SCRIPTS
+from benchmarks.peers.cloth_engines import ENGINES, OTHER_TASKS
+from benchmarks.peers.ladder import Task, tables
+from benchmarks.peers.own_runs import OwnRun, OwnRuns
+from sim.springs import Net
+
+# Methods that may be quickest at the error of a peer.
+QUICK_METHODS = ("leapfrog_lagged", "leapfrog", "rk4", "dopri5", "dop853", "symplectic_euler")
+
+
+def ladders(net: Net) -> list[list[OwnRun]]:
+    """Our runs of the task, a ladder for each quick method; their kernels are loaded."""
+    found = []
+    for name in QUICK_METHODS:
+        run(net, name, 1)
+        found.append(
+            [
+                OwnRun(
+                    name,
+                    f"{steps} steps",
+                    functools.partial(positions, net, name, steps),
+                    functools.partial(expected_time, net, name, steps),
+                )
+                for steps in step_counts(net, name)
+            ]
+        )
+    return found
+
+
+def peer_task(n: int, damping: str) -> Task:
+    """The cloth task by this damping model, with our own runs of it."""
+    net = benchmark_cloth(n, damping)
+    return Task(net, (DURATION,), OwnRuns(ladders(net), reference(net)))
+
+
+def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
+    """The ladders of peers, and programs that cannot be given the task; quick: two sizes, every second rung."""
+    table = tables("C", (32, 64, 128), SCRIPTS + ENGINES, peer_task, words, quick)
+    return table + [{"task": "another", "peer": name, "note": why} for name, why in OTHER_TASKS.items() if not words]

@@ -1,11 +1,7 @@
-"""The radial sea scene: many bodies on its waves, a frame of each preset, and each preset served to one client."""
+"""The radial sea scene: many bodies on its waves, and a frame of each preset."""
 
 import math
-import os
 import statistics
-import subprocess
-import sys
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -21,10 +17,9 @@ BODIES = 200
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Rows of name, ms of processor time, share of a core in real time; quick: only the first preset served."""
+    """Rows of name, ms of processor time, share of a core in real time."""
     repeats = 31 if quick else 201
-    presets = list(PRESETS)[:1] if quick else list(PRESETS)
-    return [bodies_row(repeats), *scene_rows(repeats), *served_rows(presets, 3.0 if quick else 15.0)]
+    return [bodies_row(repeats), *scene_rows(repeats)]
 
 
 def median_processor_time(work: Callable[[], Any], repeats: int) -> float:
@@ -67,31 +62,3 @@ def scene_rows(repeats: int) -> list[dict[str, Any]]:
             {"name": f"scene: {preset}", "ms": seconds * 1e3, "share of a core": seconds / scene.frame_interval}
         )
     return found
-
-
-def served_rows(presets: list[str], seconds: float) -> list[dict[str, Any]]:
-    """Processor time of this process while it serves each preset to one client, which runs in another process."""
-    from app.server.viewer import Viewer
-
-    viewer = Viewer("127.0.0.1", 0)
-    viewer.open("radial_sea")
-    client = subprocess.Popen([sys.executable, "-m", "app.bench.listener", str(viewer.port)])
-    try:
-        found = []
-        for preset in presets:
-            viewer.panel.load(preset)
-            time.sleep(3.0)
-            if client.poll() is not None or not viewer.audience():
-                raise RuntimeError("the listening client has ended")
-            start, before, shown = time.monotonic(), os.times(), viewer.served.shown
-            time.sleep(seconds)
-            after, taken = os.times(), time.monotonic() - start
-            spent = after.user + after.system - before.user - before.system
-            rate = (viewer.served.shown - shown) / taken
-            row = {"name": f"served: {preset}", "ms": 1e3 * spent / max(viewer.served.shown - shown, 1)}
-            found.append({**row, "share of a core": spent / taken, "frames/s": rate})
-        return found
-    finally:
-        client.terminate()
-        client.wait()
-        viewer.shut()

@@ -15,6 +15,7 @@ from sim.ocean import Sea
 Frame = Callable[[float], Any]
 
 
+TIME = 5.0  # [s] of the frame that is compared
 PRECISIONS = ("single", "double")
 TYPES = {"single": (np.float32, np.complex64), "double": (np.float64, np.complex128)}
 
@@ -25,12 +26,16 @@ def mirrored(h0: np.ndarray) -> np.ndarray:
 
 
 def planes(sea: Sea, columns: int, kind: type) -> tuple[np.ndarray, ...]:
-    """h0, conj(h0(-k)), i kx/k and i ky/k in a complex type, and the frequencies in double, (N, columns), FFT order."""
+    """h0, conj(h0(-k)), i kx/k and i ky/k in a complex type, and the frequencies in double, (N, columns), FFT order.
+
+    The mean level of our sea at `TIME` is in h0, in equal halves.
+    """
     n = np.fft.fftfreq(sea.size, 1.0 / sea.size).astype(np.longdouble)
     kx, ky = np.meshgrid(n, n, indexing="ij")
     k = np.hypot(kx, ky)
     k[0, 0] = 1.0
-    h0 = sea.amplitudes_at(0.0)
+    h0 = sea.amplitudes_at(0.0).copy()
+    h0[0, 0] = 0.5 * sea.mean_height(TIME)
     spectra = [a[:, :columns].astype(kind) for a in (h0, mirrored(h0), 1j * kx / k, 1j * ky / k)]
     return (*spectra, sea.frequencies[:, :columns])
 

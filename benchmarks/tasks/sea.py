@@ -9,10 +9,8 @@ from app.bench.reference import Reference
 from app.experiments.tables import Rows
 from benchmarks.peers.ladder import Task, tables
 from benchmarks.peers.own_runs import OwnRun, OwnRuns
-from benchmarks.peers.sea import PEERS, PRECISIONS, extended
+from benchmarks.peers.sea import PEERS, PRECISIONS, TIME, extended
 from sim.ocean import Sea
-
-PEER_TIME = 5.0  # [s] of the frame that peers compute
 
 
 def peer_task(size: int, _: str) -> Task:
@@ -24,11 +22,11 @@ def peer_task(size: int, _: str) -> Task:
     seas = {
         precision: Sea(size=size, length=500.0, spectrum="phillips", precision=precision) for precision in PRECISIONS
     }
-    truth = Reference((extended(seas["double"], PEER_TIME),), float(np.finfo(np.longdouble).eps))
+    truth = Reference((extended(seas["double"], TIME),), float(np.finfo(np.longdouble).eps))
     own = [[OwnRun("frame", f"{name} precision", functools.partial(ours_at, sea))] for name, sea in seas.items()]
     for (frame,) in own:
         frame.run()  # plans the transforms
-    return Task(seas["double"], (PEER_TIME,), OwnRuns(own, truth, equal=2.0))
+    return Task(seas["double"], (TIME,), OwnRuns(own, truth, equal=2.0))
 
 
 def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
@@ -39,6 +37,6 @@ def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
 def ours_at(sea: Sea) -> tuple[np.ndarray]:
     """Height and both displacements (3, N, N) [m] at the peers' time, computed anew."""
     sea.surface(0.0)  # the sea keeps the fields of the latest time
-    surface = sea.surface(PEER_TIME)
+    surface = sea.surface(TIME)
     displacement = surface.displacement
     return (np.stack([surface.height, displacement[..., 0], displacement[..., 1]]),)

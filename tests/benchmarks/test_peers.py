@@ -197,7 +197,7 @@ def test_peers_are_chosen_by_words_of_their_names(monkeypatch, tmp_path, capsys)
 
 def test_errors_of_sea_frames_are_round_off_of_their_precision():
     task = sea.peer_task(64, "isotropic")
-    deep = float(task.subject.frequencies.max()) * sea.PEER_TIME  # [rad] a phase, as large as they get
+    deep = float(task.subject.frequencies.max()) * sea.TIME  # [rad] a phase, as large as they get
     for run in (
         *(ladder[0].run for ladder in task.ours.ladders),
         *(lambda p=p: (student(task.subject, p)(5.0),) for p in PRECISIONS),

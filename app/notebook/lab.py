@@ -14,7 +14,7 @@ import numpy as np
 from app.messages import Advance, Ask, Pause, Play, Reset
 from app.notebook.dataset import to_dataset
 from app.notebook.output import Output, cell_of_now
-from app.notebook.picture import Still, take_picture
+from app.notebook.picture import Still, take_still
 from app.scenes import scene_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import preset_setup, read_query, write_query
@@ -134,7 +134,7 @@ class Lab:
 
         Raises RuntimeError where no browser shows the lab, and TimeoutError where one does not draw.
         """
-        return take_picture(self._open, width, height)
+        return take_still(self._open, width, height)
 
     def stop(self) -> None:
         """End the lab. Its last picture stays in the output cell."""
@@ -143,7 +143,7 @@ class Lab:
             return
         with contextlib.suppress(RuntimeError, TimeoutError):
             if viewer.audience():
-                self._output.still = take_picture(viewer, *self._output.still_size, timeout=LAST_TIMEOUT)
+                self._output.still = take_still(viewer, *self._output.still_size, timeout=LAST_TIMEOUT)
         viewer.shut()
         self._output.end()
 
@@ -300,7 +300,7 @@ def keep_still(viewer: Viewer, output: Output) -> None:
             time.sleep(0.5)
             if viewer.audience() and viewer.is_open:
                 with contextlib.suppress(RuntimeError, TimeoutError):
-                    output.show_still(take_picture(viewer, *output.still_size))
+                    output.show_still(take_still(viewer, *output.still_size))
 
     threading.Thread(target=output.context.run, args=(keep,), name="still picture", daemon=True).start()
 

@@ -1,13 +1,9 @@
 """A picture of what a browser shows."""
 
-import io
 import time
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from app.render.surroundings import before_sky
+from app.panel.picture import take_picture
 from app.server.viewer import Viewer
 from sim.validation import argument_error, is_whole_number
 
@@ -31,7 +27,7 @@ class Still:
         Path(path).write_bytes(self.png)
 
 
-def take_picture(viewer: Viewer, width: int, height: int, timeout: float = DRAW_TIMEOUT) -> Still:
+def take_still(viewer: Viewer, width: int, height: int, timeout: float = DRAW_TIMEOUT) -> Still:
     """What the newest browser shows, drawn again at width x height [pixels]. timeout: [s] for drawing it.
 
     Raises ValueError for what is not a size, RuntimeError where no browser shows the lab, and TimeoutError where it
@@ -46,17 +42,6 @@ def take_picture(viewer: Viewer, width: int, height: int, timeout: float = DRAW_
             raise RuntimeError("no browser shows this lab, so there is no picture of it; open its cell in a browser")
         time.sleep(POLL_INTERVAL)
     try:
-        client = clients[max(clients)]
-        pixels = client.get_render(int(height), int(width), transport_format="png", timeout=timeout)
+        return Still(take_picture(clients[max(clients)], (int(width), int(height)), timeout=timeout))
     except TimeoutError:
         raise TimeoutError(f"the browser drew no picture within {timeout:g} s; the page has to be in sight") from None
-    return Still(encoded(before_sky(client, pixels)))
-
-
-def encoded(pixels: NDArray[np.uint8]) -> bytes:
-    """Pixels (height, width, 3) as PNG."""
-    import imageio.v3 as iio  # only where a picture is taken
-
-    file = io.BytesIO()
-    iio.imwrite(file, pixels, extension=".png")
-    return file.getvalue()

@@ -29,13 +29,14 @@ from app.messages import (
 from app.panel.compare import Beside, Compare
 from app.panel.control import Control
 from app.panel.display import Display, add_quality
+from app.panel.files import MakeReplay
 from app.panel.guide import Guide
 from app.panel.history import History, Settings
 from app.panel.plots import Plots
 from app.panel.questions import Questions
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
-from app.panel.share import MakeReplay, Share
+from app.panel.share import Share
 from app.panel.work_table import work_table
 from app.render.cameras import ClientCamera, place_camera
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, note
@@ -159,7 +160,7 @@ class Panel:
                 self.controls[name] = Control(gui, folder, name, parameter, self.reader(name), self.on_change)
         self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
         self.recorder = Recorder(kind.packing)
-        self.share = Share(server, self.lab, self, self.recorder, post, wake, make_replay, questions)
+        self.share = Share(self, wake, make_replay, questions)
         self.compare = (
             None if beside is None else Compare(gui, self.buttons, self.comparable_names, self.comparable, beside)
         )
@@ -411,7 +412,7 @@ class Panel:
                 self.map.draw()
         if self.guide is not None:
             self.guide.update(snapshot, refresh)
-        self.share.update(snapshot)
+        self.share.update()
         if self.compare is not None:
             self.compare.update()
         if self.work_counts is not None and now - self.work_at >= WORK_INTERVAL:

@@ -11,11 +11,17 @@ QUALITY = 90  # of JPEG
 
 
 def take_picture(
-    client: viser.ClientHandle, size: tuple[int, int] = (0, 0), *, transparent: bool = False, jpeg: bool = False
+    client: viser.ClientHandle,
+    size: tuple[int, int] = (0, 0),
+    *,
+    transparent: bool = False,
+    jpeg: bool = False,
+    timeout: float = PICTURE_TIMEOUT,
 ) -> bytes:
     """The view of a browser as a PNG or JPEG file; without panel.
 
     size: width and height [pixels]; a height of 0 is that of the page's proportions, a width of 0 that of the page.
+    timeout: [s] for the browser to draw it.
 
     Waits for the browser, so it must not be called on viser's event loop. Raises TimeoutError, RuntimeError.
     """
@@ -27,7 +33,7 @@ def take_picture(
         size[1] or round(width * camera.image_height / camera.image_width),
         width,
         transport_format="png",  # with transparency, and without loss
-        timeout=PICTURE_TIMEOUT,
+        timeout=timeout,
     )
     encoded = io.BytesIO()
     how = {"extension": ".jpg", "quality": QUALITY} if jpeg else {"extension": ".png"}

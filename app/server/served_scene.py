@@ -124,7 +124,7 @@ class ServedScene:
             self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
         recorder.note(snapshot, now)
-        self.panel.share.sent = recorded
+        self.panel.share.files.sent = recorded
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
         """Show something; what goes wrong halts the run once, and this thread lives to say so."""

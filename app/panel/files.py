@@ -1,0 +1,169 @@
+"""Files of what was recorded and of what a browser shows, in the folder "Record and share".
+
+Callbacks run on viser's event loop. Each file is made in a thread of its own.
+"""
+
+import io
+import threading
+import time
+import traceback
+import zipfile
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import viser
+
+from app.messages import Pause
+from app.panel.picture import take_picture
+from app.panel.recorder import Kept
+from app.panel.recording_files import Plotted, plots_csv, plots_svg, recording_npz
+from app.render.viser_types import ViserEvent
+from app.scenes.contract import AnyKind
+
+if TYPE_CHECKING:
+    from app.panel.panel import Panel
+
+PICTURE_SIZES = {  # [pixels]
+    "As in the page": (0, 0),
+    "1280 x 720": (1280, 720),
+    "1920 x 1080": (1920, 1080),
+    "3840 x 2160": (3840, 2160),
+}
+PLOTS, PICTURE, REPLAY = "Plots as CSV", "Picture", "Replay"
+CHARTS, ARRAYS, FILM = "Plots as SVG", "Arrays", "Film pictures"
+MAX_PICTURES = 900  # of a film: half a minute of a recording
+MAX_FILM = 400e6  # [bytes] of all pictures of a film
+BARRIER_SIZE = (16, 16)  # [pixels] of a picture that is asked for only to know that what was sent before it has come
+DRAWN_TIMEOUT = 5.0  # [s] for the viewer's thread to send a frame of the recording
+# Buttons that the page itself answers (app/render/js/share.js).
+PAGE_BUTTONS = (
+    '<div class="springtide-switches"><button type="button" data-springtide-clip>Record clip</button>'
+    '<button type="button" data-springtide-charts>Plots as PNG</button></div>'
+)
+
+MakeReplay = Callable[[AnyKind, Sequence[Kept], Plotted], str]
+
+
+class Files:
+    """The buttons that make a file, in the folder that is open where this is made."""
+
+    def __init__(
+        self,
+        panel: "Panel",
+        wake: Callable[[], None],
+        make_replay: MakeReplay,
+        say: Callable[[object], None],
+    ) -> None:
+        """wake: makes the viewer's thread look at the recorder. make_replay: makes the page of a replay.
+
+        say: shows a line.
+        """
+        self.panel, self.recorder, self.wake = panel, panel.recorder, wake
+        self.make_replay, self.say = make_replay, say
+        self.sent: Kept | None = None  # the frame of the recording that the viewer sent last
+        self.busy = threading.Lock()  # one file at a time
+        gui = panel.gui
+        self.size = gui.add_dropdown("Picture size", tuple(PICTURE_SIZES))
+        self.transparent = gui.add_checkbox("Transparent background", initial_value=False)
+        for names in ((PLOTS, PICTURE, REPLAY), (CHARTS, ARRAYS, FILM)):
+            gui.add_button_group("", names).on_click(self.on_file)
+        gui.add_html(PAGE_BUTTONS)
+
+    async def on_file(self, event: ViserEvent) -> None:
+        """Make a file in a thread of its own, and send it to the browser that asks."""
+        client = event.client
+        if client is None:
+            return
+        make = {
+            PLOTS: self.plots_file,
+            CHARTS: self.charts_file,
+            PICTURE: self.picture_file,
+            REPLAY: self.replay_file,
+            ARRAYS: self.arrays_file,
+            FILM: self.film_file,
+        }[event.target.value]
+        if not self.busy.acquire(blocking=False):
+            self.say("Another file is still being made.")
+            return
+        self.say(f"{event.target.value}: being made …")
+        threading.Thread(target=self.send, args=(make, client), name="file for the page", daemon=True).start()
+
+    def send(self, make: Callable[[viser.ClientHandle], tuple[str, bytes]], client: viser.ClientHandle) -> None:
+        """Make a file and send it; whatever goes wrong is said in the folder."""
+        try:
+            name, content = make(client)
+            client.send_file_download(name, content, save_immediately=True)
+            self.say(f"{name}, {len(content) / 1e6:.2f} MB, was sent to the browser.")
+        except (ValueError, TimeoutError, RuntimeError) as reason:
+            self.say(f"No file was made: {reason}")
+        except Exception as error:
+            traceback.print_exc()
+            self.say(f"No file was made: {type(error).__name__}: {error}")
+        finally:
+            self.busy.release()
+
+    def plots_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """All plots as CSV with names and units. Raises ValueError where there are none."""
+        kind = self.panel.kind
+        return f"springtide-{kind.name}.csv", plots_csv(kind, self.panel.plotted()).encode()
+
+    def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """What one browser shows, drawn again at the chosen size."""
+        picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
+        return f"springtide-{self.panel.kind.name}.png", picture
+
+    def charts_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """All plots as SVG. Raises ValueError where there are none."""
+        kind = self.panel.kind
+        return f"springtide-{kind.name}.svg", plots_svg(kind, self.panel.plotted()).encode()
+
+    def arrays_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """The arrays of the recording. Raises ValueError where nothing was recorded."""
+        kind = self.panel.kind
+        return f"springtide-{kind.name}.npz", recording_npz(kind, self.recorder.kept())
+
+    def film_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """A PNG of every frame of the recording from the one that is shown on, drawn by one browser, in a ZIP file.
+
+        Raises ValueError where nothing was recorded, or where a hand chose another moment meanwhile.
+        """
+        frames = self.recorder.kept()
+        if not frames:
+            raise ValueError("nothing has been recorded yet: let the scene run first")
+        shown = self.recorder.shown
+        start = 0 if shown is None else next((i for i, kept in enumerate(frames) if kept is shown), 0)
+        chosen = frames[start : start + MAX_PICTURES]
+        self.panel.post(Pause())
+        size, transparent = PICTURE_SIZES[self.size.value], self.transparent.value
+        content, times = io.BytesIO(), ["picture,t [s]"]
+        with zipfile.ZipFile(content, "w", zipfile.ZIP_STORED) as film:
+            for number, kept in enumerate(chosen, 1):
+                if number > 1 and self.recorder.shown is not chosen[number - 2]:
+                    raise ValueError("another moment was chosen before all pictures were taken")
+                self.recorder.show_frame(kept)
+                self.wait_until_sent(kept)
+                take_picture(client, BARRIER_SIZE)
+                film.writestr(f"{number:04d}.png", take_picture(client, size, transparent=transparent))
+                times.append(f"{number:04d}.png,{kept.time!r}")
+                self.say(f"{FILM}: {number} of {len(chosen)}. Choose another moment to end it.")
+                if content.tell() > MAX_FILM:
+                    break
+            film.writestr("times.csv", "\n".join(times) + "\n")
+        return f"springtide-{self.panel.kind.name}-film.zip", content.getvalue()
+
+    def wait_until_sent(self, kept: Kept) -> None:
+        """Wait until the viewer's thread has sent a frame of the recording. Raises TimeoutError."""
+        end = time.monotonic() + DRAWN_TIMEOUT
+        while self.sent is not kept:
+            if time.monotonic() > end:
+                raise TimeoutError("the recording could not be shown")
+            self.wake()
+            time.sleep(0.01)
+        self.panel.server.flush()
+
+    def replay_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+        """The recording up to the moment that is shown as one page. Raises ValueError where nothing was recorded."""
+        shown = self.recorder.shown
+        frames = [kept for kept in self.recorder.kept() if shown is None or kept.time <= shown.time]
+        page = self.make_replay(self.panel.kind, frames, self.panel.plotted())
+        return f"springtide-{self.panel.kind.name}.html", page.encode()

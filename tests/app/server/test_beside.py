@@ -1,8 +1,8 @@
 """Labs side by side without a browser: one port, one sky, what differs in words, and one lab again at the end."""
 
 import asyncio
-import contextlib
 import http.client
+import threading
 import time
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
@@ -81,30 +81,23 @@ def test_a_foreign_page_is_refused_by_a_pane_too() -> None:
         viewer.shut()
 
 
-async def first_nodes(port: int, path: str) -> set[str]:
-    """The names of the scene nodes that a page is sent first."""
+async def nodes_until(port: int, path: str, last: str) -> set[str]:
+    """The names of the scene nodes that a page is sent, up to this one."""
     protocol = websockets.Subprotocol(f"viser-v{viser.__version__}")
     address = f"ws://127.0.0.1:{port}{path}"
-    async with connect(address, origin=HUB, subprotocols=[protocol], max_size=None) as client:
-        names: set[str] = set()
-        with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(1.5):
-                while True:
-                    for message in decoded(bytes(await client.recv())):
-                        if isinstance(message.get("name"), str):
-                            names.add(message["name"])
-        return names
+    names: set[str] = set()
+    async with asyncio.timeout(30.0), connect(address, origin=HUB, subprotocols=[protocol], max_size=None) as client:
+        while last not in names:
+            names |= {str(message.get("name")) for message in decoded(bytes(await client.recv()))}
+    return names
 
 
-def test_each_page_is_sent_its_own_lab() -> None:
-    viewer = opened("rope", "race&ropes=2", access=Access("/lab", (HUB,), KEY))
-    try:
-        first = coroutines.run(first_nodes(viewer.port, f"{PATH}/index.html"))
-        assert "/floor" in first
-        assert "/race/rope_2" not in first
-        assert "/race/rope_2" in coroutines.run(first_nodes(viewer.port, f"{PATH}/pane/2/index.html"))
-    finally:
-        viewer.shut()
+def test_each_page_is_sent_its_own_lab(pair: Viewer) -> None:
+    assert pair.comparison is not None
+    for viewer, name in zip(pair.comparison.viewers, ("/first", "/second"), strict=True):
+        viewer.server.scene.add_frame(name)
+    assert "/second" not in coroutines.run(nodes_until(pair.port, f"{PATH}/index.html", "/first"))
+    assert "/first" not in coroutines.run(nodes_until(pair.port, f"{PATH}/pane/2/index.html", "/second"))
 
 
 def test_one_sky_one_speed_and_only_what_differs_is_said(pair: Viewer) -> None:
@@ -124,8 +117,9 @@ def test_one_sky_one_speed_and_only_what_differs_is_said(pair: Viewer) -> None:
 
 def run(viewer: Viewer, action: Callable[[], None]) -> None:
     """Call what only viser's event loop may call."""
-    viewer.server.get_event_loop().call_soon_threadsafe(action)
-    time.sleep(0.1)
+    done = threading.Event()
+    viewer.server.get_event_loop().call_soon_threadsafe(lambda: (action(), done.set()))
+    assert done.wait(10.0)
 
 
 def line_of(viewer: Viewer) -> str:

@@ -83,45 +83,23 @@ def test_the_page_is_served(lab: Viewer) -> None:
     assert connection.getresponse().status == 200
 
 
-def hostile_value(rng: random.Random) -> Any:
-    return rng.choice(
-        [
-            math.nan,
-            math.inf,
-            -math.inf,
-            1e300,
-            -1e300,
-            rng.uniform(-1e9, 1e9),
-            2**60,
-            -1,
-            0,
-            True,
-            None,
-            "",
-            "Euler, implicit",
-            "__import__('os')",
-            "x" * 5000,
-            [],
-            [math.nan],
-            [1e9],
-            [1, 2, 3],
-            {"a": 1},
-            b"\x00\xff",
-        ]
-    )
+HOSTILE = [
+    math.nan, math.inf, -math.inf, 1e300, -1e300, 3e8, 2**60, -1, 0, True, None, "", "Euler, implicit",
+    "__import__('os')", "x" * 5000, [], [math.nan], [1e9], [1, 2, 3], {"a": 1}, b"\x00\xff",
+]  # fmt: skip
 
 
 def hostile_message(rng: random.Random, uuids: list[str]) -> dict[str, Any]:
-    vector = [hostile_value(rng) for _ in range(3)]
+    vector = [rng.choice(HOSTILE) for _ in range(3)]
     number = [rng.choice([math.nan, math.inf, 1e300, -1e30, 0.0]) for _ in range(4)]
     uuid = rng.choice([*uuids, "no-such-handle"])
     field = rng.choice(["value", "value", "value", "visible", "min", "options", "_order", "__class__"])
     node = rng.choice(["/root_gizmo", "/points", "/rope", "/nowhere"])
     return rng.choice(
         [
-            {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {field: hostile_value(rng)}},
-            {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {field: hostile_value(rng)}},
-            {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {field: hostile_value(rng)}},
+            {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {field: rng.choice(HOSTILE)}},
+            {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {field: rng.choice(HOSTILE)}},
+            {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {field: rng.choice(HOSTILE)}},
             {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {}},
             {"type": "TransformControlsUpdateMessage", "name": node, "wxyz": number, "position": number[:3]},
             {"type": "TransformControlsUpdateMessage", "name": node, "wxyz": [*vector, 0], "position": vector},
@@ -143,13 +121,14 @@ def hostile_message(rng: random.Random, uuids: list[str]) -> dict[str, Any]:
     )  # fmt: skip
 
 
-def test_2000_hostile_messages_leave_the_server_running_and_the_state_finite(lab: Viewer) -> None:
+@pytest.mark.parametrize("count", [300, pytest.param(2000, marks=pytest.mark.stress)])
+def test_hostile_messages_leave_the_server_running_and_the_state_finite(lab: Viewer, count: int) -> None:
     rng = random.Random(2)
     uuids = list(lab.server.gui._gui_input_handle_from_uuid)
-    messages = [hostile_message(rng, uuids) for _ in range(2000)]
+    messages = [hostile_message(rng, uuids) for _ in range(count)]
     cuts = coroutines.run(say(lab.port, messages))
-    assert cuts < 500
-    assert sum(lab.screen.refused.values()) > 500
+    assert cuts < count / 4
+    assert sum(lab.screen.refused.values()) > count / 4
     lab.loop.audience = lambda: 1
     for _ in range(30):
         lab.loop.tick(1 / 60)

@@ -116,6 +116,7 @@ def test_a_slider_one_step_from_its_ends_means_a_number_one_step_from_its_bounds
     scale = SliderScale(p)
     low, high = (math.log10(p.log_from), math.log10(p.high)) if p.log_from else (p.low, p.high)
     assert (scale.low, scale.high) == pytest.approx((low, high), rel=1e-12)
+    assert (high - low) / scale.step < 401.0  # a keyboard crosses it in so many presses
     for position in (low + scale.step, high - scale.step):
         exact = 10.0**position if p.log_from else position
         value = scale.value(position)

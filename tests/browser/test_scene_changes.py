@@ -82,6 +82,7 @@ def new(open_tab: Callable[..., Tab]) -> Iterator[Callable[[], Page]]:
         page.lab.shut()
 
 
+@pytest.mark.timeout(1500)  # on two busy cores the sample takes four minutes, all orders twelve
 @pytest.mark.parametrize("walk", [SAMPLE, pytest.param(all_orders(), marks=pytest.mark.stress)], ids=["few", "all"])
 def test_a_scene_after_another_looks_as_in_a_fresh_start(new: Callable[[], Page], walk: list[str]) -> None:
     page = new()

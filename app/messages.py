@@ -206,6 +206,7 @@ class Line(NamedTuple):
     width: float = 2.0
     dash: tuple[float, ...] = ()
     fill: str = ""  # CSS colour of the area below
+    dots: bool = False  # a dot at each value instead of a line, in files
 
 
 class Snapshot(NamedTuple, Generic[P, F, R]):

@@ -97,7 +97,12 @@ def line_chart(
 
 
 def draw_line(line: Line, places: NDArray[np.float64], values: NDArray[np.float64], x: Axis, y: Axis) -> Html:
-    """One line, and the area below it if it has one."""
+    """One line, and the area below it if it has one; or dots."""
+    if line.dots:
+        places, values = places[np.isfinite(values)], values[np.isfinite(values)]
+        at = ((x.at(place), y.at(value)) for place, value in zip(places, values, strict=True))
+        dots = join(fill('<circle cx="{:.1f}" cy="{:.1f}" r="3"/>', *place) for place in at)
+        return fill('<g fill="{}">{}</g>', line.colour, dots)
     path, area, run = "", "", []
     for place, value in [*zip(places.tolist(), values.tolist(), strict=True), (math.nan, math.nan)]:
         if math.isfinite(value):

@@ -5,19 +5,21 @@ import re
 import numpy as np
 import pytest
 
-from app.lab.chart import HEIGHT, WIDTH, chart
+from app.lab.chart import chart
 from app.lab.program_check import Points, draw
 from app.lab.runner import Runner
 from app.lab.task import load_tasks
-from app.render.line_chart import MAX_TICKS, ticks
+from app.render.line_chart import BOTTOM, LEFT, MAX_TICKS, PLOT_HEIGHT, RIGHT, TOP, WIDTH, ticks
 
 X = np.linspace(0.0, 3.0, 7)
 
 
-def coordinates(svg: str) -> list[float]:
-    """Every number of the drawn line and points."""
-    found = re.findall(r'points="([^"]*)"', svg)[0].replace(",", " ").split()
-    return [float(n) for n in (*found, *re.findall(r'c[xy]="([^"]+)"', svg))]
+def places(svg: str) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]:
+    """The corners of the drawn line, and the drawn points."""
+    (line,) = re.findall(r'<path d="M([^"]*)" fill="none" stroke="#1c6aa8" stroke-width="2"', svg)
+    dots = re.findall(r'<circle cx="([^"]+)" cy="([^"]+)"', svg)
+    corners = [place.split() for place in line.split("L")]
+    return [(float(x), float(y)) for x, y in corners], [(float(x), float(y)) for x, y in dots]
 
 
 @pytest.mark.parametrize(
@@ -29,10 +31,20 @@ def coordinates(svg: str) -> list[float]:
 def test_a_curve_stays_inside_its_chart(reference: np.ndarray, student: np.ndarray | None) -> None:
     svg = chart(Points("x <i>", "y", X, reference, student))
     assert "x &lt;i&gt;" in svg
-    for number in coordinates(svg):
-        assert 0.0 <= number <= max(WIDTH, HEIGHT)
+    line, dots = places(svg)
+    assert len(line) == len(X)
+    for x, y in line + dots:
+        assert LEFT <= x <= WIDTH - RIGHT
+        assert TOP <= y <= PLOT_HEIGHT - BOTTOM
     assert "nan" not in svg
     assert "inf" not in svg
+
+
+def test_points_far_from_the_reference_are_left_out_and_the_right_ones_lie_on_it() -> None:
+    line, dots = places(chart(Points("x", "y", X, X**2, X**2)))
+    assert dots == line
+    _, dots = places(chart(Points("x", "y", X, X**2, 10.0 * X**2)))
+    assert len(dots) == 3  # up to 18, the reference's greatest and its range more
 
 
 def test_a_curve_without_a_finite_value_is_left_out() -> None:
@@ -57,3 +69,4 @@ def test_every_curve_of_a_task_has_the_reference_and_the_student(tmp_path) -> No
         assert np.isfinite(points.reference).all()
         assert np.ptp(points.reference) > 0.0 or task.name == "step_leapfrog"
         assert points.student is None
+        assert (np.diff(points.x) > 0.0).all()

@@ -12,7 +12,7 @@ import numpy as np
 from sim.interruption import pieces
 
 KINDS = ("random", "fixed")
-PIECE = 32768  # wavenumbers at a time: others may have a turn in between
+PIECE = 32768  # wavenumbers at a time: the solve yields in between
 
 # Finaliser of splitmix64 (Steele, Lea, Flood 2014) and its increment.
 _STEP, _MIX1, _MIX2 = np.uint64(0x9E3779B97F4A7C15), np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)

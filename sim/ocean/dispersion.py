@@ -80,7 +80,7 @@ def two_layer(
 
 
 class ModeRatios(NamedTuple):
-    """How much of a mode shows at its far boundary. Negative: the two boundaries move oppositely."""
+    """Ratios of a mode's amplitude at its far boundary to that at its own. Negative: they move in antiphase."""
 
     surface: Any  # interface height over surface height, in the surface mode
     interface: Any  # surface height over interface height, in the interfacial mode
@@ -235,7 +235,7 @@ def _two_layer_roots(
     G1, G2 = g + s1 * k**2 / rho1, (rho2 - rho1) * g + s12 * k**2
     t1, t2 = _tanh(k, d), _tanh(k, h2)
     # X^2 (rho2 + rho1 t1 t2) - X k [rho2 G1 t1 + (rho1 G1 + G2) t2] + k^2 G1 G2 t1 t2 = 0,
-    # ocean.md 3.2 divided by cosh kd coth kh2, so that nothing overflows. The small root by Vieta.
+    # divided by cosh kd coth kh2, so that nothing overflows. The small root by Vieta.
     A = rho2 + rho1 * t1 * t2
     B = k * (rho2 * G1 * t1 + (rho1 * G1 + G2) * t2)
     C = k**2 * G1 * G2 * t1 * t2

@@ -1,4 +1,4 @@
-"""How viscous a mixture of two fluids is: emulsions of drops in a continuous fluid, and true solutions.
+"""Viscosity of a mixture of two fluids: emulsions of drops in a continuous fluid, and true solutions.
 
 Oil and water do not dissolve in each other. Stirred, one of them forms drops in the other: oil in water, thin, or
 water in oil, the "mousse" of real spills, which is 10 to 1000 times as viscous as the oil. Choose `pal_rhodes` for
@@ -75,7 +75,7 @@ def pal_rhodes(dispersed: float, continuous: float, fraction: float) -> float:
 
 
 def pal_rhodes_factor(fraction: float) -> float:
-    """How many times as viscous as the continuous fluid: `pal_rhodes`."""
+    """Ratio of the emulsion's viscosity to that of the continuous fluid: `pal_rhodes`."""
     x = fraction / PAL_RHODES_DROPS
     if not x < PAL_RHODES_POLE:
         raise argument_error("fraction", fraction, f"below {PAL_RHODES_POLE * PAL_RHODES_DROPS:.3g}")

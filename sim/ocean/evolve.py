@@ -88,7 +88,7 @@ def add_heights(even, odd, rate, fade, t, cosine, sine, h):
 
 
 @kernel(noalias=True)
-def turn(even, odd, rate, fade, t, cosine, sine):
+def shift_time(even, odd, rate, fade, t, cosine, sine):
     """Move the origin of time by t: even' = fade (even cos + odd sin), odd' = fade (odd cos - even sin), in place."""
     half, n = rate.shape[0], even.shape[0]
     for i in range(half):

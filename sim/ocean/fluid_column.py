@@ -1,7 +1,7 @@
-"""What waves run on: clean water, a layer of oil on water, or the two entirely mixed; and what that does to them.
+"""Fluids under the waves: clean water, a layer of oil on water, or a mixture; dispersion and decay of waves on them.
 
-Choose a thickness for oil on water, which is what happens; `mixed` for the lab's other reading. Limits: only the
-surface mode is excited (the interfacial one, slow and hidden, is not), and both fluids are at rest but for the waves.
+Choose a thickness for oil on water, as in nature; `mixed` for the lab's other reading. Limits: only the surface mode
+is excited (the interfacial one, slow and hidden, is not), and both fluids are at rest but for the waves.
 """
 
 import dataclasses
@@ -113,7 +113,7 @@ class FluidColumn:
 
 @functools.lru_cache(maxsize=32)
 def _layer_roots(column: FluidColumn, wavenumbers: bytes, shape: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """`FluidColumn.roots` of a layer; kept, as they are asked for again as waves decay, and take up to a second."""
+    """`FluidColumn.roots` of a layer; cached, because decaying waves need them again and they take up to a second."""
     k = np.frombuffer(wavenumbers).reshape(shape)
     upper, thickness, lower, gravity, _, *tensions = column._two()
     return viscous_two_layer(

@@ -1,6 +1,6 @@
-"""Fluids: water, oils, what a mixture of two amounts to, and how much light they reflect.
+"""Fluids: water, oils and mixtures of two, with their reflectance.
 
-How viscous a mixture is: `sim.ocean.emulsions`. Oil data and their source: oils.csv.
+Viscosity of mixtures: `sim.ocean.emulsions`. Oil data and their source: oils.csv.
 """
 
 import csv

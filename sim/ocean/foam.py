@@ -1,7 +1,7 @@
-"""Foam where the displaced surface is most compressed: which Jacobian is foam, so that the sea is as white as measured.
+"""Foam where the displaced surface is most compressed: the Jacobian below which the measured fraction of a sea is foam.
 
-The law of the covered share was measured on the seas of the Earth. Where short waves were damped away, less breaks: the
-share is taken times what is left of the mean square slope (`Sea.slope_left`).
+The law of the covered fraction was measured on the seas of the Earth. Where short waves are damped, fewer waves break:
+the fraction is multiplied by the remaining ratio of the mean square slope (`Sea.slope_left`).
 
 The Jacobian J is 1 + Dxx + Dyy to first order, and Dxx + Dyy is Gaussian with variance choppiness^2 mss. A point below
 the threshold 1 - z sigma is breaking; it stays there for Rice's mean excursion, and its foam outlasts that.
@@ -20,7 +20,7 @@ MAX_COVER = 0.6  # largest fraction of foam, reached at 33 m/s: the law is measu
 
 
 def whitecaps(wind_speed: float) -> float:
-    """Share of the sea that is foam, W = 3.84e-6 U10^3.41 (Monahan and O'Muircheartaigh 1980), at most MAX_COVER."""
+    """Fraction of the sea that is foam, W = 3.84e-6 U10^3.41 (Monahan and O'Muircheartaigh 1980), at most MAX_COVER."""
     return min(3.84e-6 * check_not_negative("wind_speed", wind_speed, "m/s") ** 3.41, MAX_COVER)
 
 
@@ -35,7 +35,7 @@ def pace(sea: "Sea", t: float) -> tuple[float, float]:
 
 
 def threshold(coverage: float, spread: float, frequency: float, lasting: float) -> float:
-    """The Jacobian below which foam is made so that the share `coverage` of the sea is foam. -inf where none is.
+    """The Jacobian below which foam is made so that the fraction `coverage` of the sea is foam; -inf without foam.
 
     spread: standard deviation of J, choppiness sqrt(mss); frequency [rad/s]: of `pace`; lasting [s]: for how long foam
     is seen after its crest has passed.
@@ -50,7 +50,7 @@ def threshold(coverage: float, spread: float, frequency: float, lasting: float) 
 
 @functools.lru_cache(maxsize=4)
 def excess(coverage: float, frequency: float, lasting: float) -> float:
-    """The z of `threshold`; kept, as it is asked for in each picture and seldom changes."""
+    """The z of `threshold`; cached, because every frame needs it and it seldom changes."""
     low, high, z = -4.0, 8.0, 0.0
     for _ in range(50):
         z = 0.5 * (low + high)

@@ -1,7 +1,7 @@
-"""Single waves drawn from a spectrum, each with an equal share of its energy, so that their sum's Hs is the spectrum's.
+"""Single waves drawn from a spectrum, each with an equal part of its energy, so that their sum's Hs is the spectrum's.
 
-A sum of n waves sees nothing that carries less than 1/n of the energy: its slopes are those of the long waves, and
-what is shorter belongs to the material (roughness, ripples). For the whole spectrum at once there is the FFT sea.
+A sum of n waves resolves no part of the spectrum with less than 1/n of the energy. Its slopes are those of the long
+waves; shorter ones belong to the material (roughness, ripples). For the whole spectrum at once there is the FFT sea.
 """
 
 import math
@@ -84,7 +84,7 @@ def draw_waves(spectrum: Spectrum, conditions: Conditions, count: int = 64, seed
 
 
 def energy_range(spectrum: Spectrum, conditions: Conditions) -> tuple[float, float]:
-    """Least and greatest wavenumber [rad/m] of what is looked at: beyond lies less than 1e-8 of the energy."""
+    """Smallest and largest wavenumber [rad/m] considered: less than 1e-8 of the energy lies outside."""
     low = high = peak_wavenumber(spectrum, conditions)
     if conditions.second_height > 0.0:
         second = wavenumber_of(conditions, 2.0 * math.pi / conditions.second_period)
@@ -93,7 +93,7 @@ def energy_range(spectrum: Spectrum, conditions: Conditions) -> tuple[float, flo
 
 
 def peak_wavenumber(spectrum: Spectrum, conditions: Conditions) -> float:
-    """Wavenumber [rad/m] about which the spectrum's energy lies; of 10 m/s where there is no wind to tell."""
+    """Wavenumber [rad/m] about which the spectrum's energy lies; that of 10 m/s if there is no wind."""
     if spectrum.peak is None or spectrum.is_level(conditions):
         return conditions.gravity / 10.0**2
     return wavenumber_of(conditions, spectrum.peak(conditions))

@@ -1,4 +1,4 @@
-"""What waves propagate in, apart from their spectrum's conditions: decay, and the lab's ways to bend dispersion."""
+"""Medium of the waves, apart from their spectrum's conditions: decay, and the lab's changes of the dispersion."""
 
 import dataclasses
 import math
@@ -38,8 +38,8 @@ class Medium:
     def roots(self, k: np.ndarray, conditions: Conditions) -> tuple[np.ndarray, np.ndarray]:
         """omega [rad/s] and decay rate [1/s] of wavenumbers k [rad/m].
 
-        Raises ValueError where a function for either gives another shape than that of k, or what is not finite or
-        below 0.
+        Raises ValueError if a function for either returns another shape than that of k, or values that are negative or
+        not finite.
         """
         natural = conditions.omega(k) if self.frequency is None else self._given("frequency", k)
         omega, decay = damped_root(natural, self.viscosity * k**2, self.film)
@@ -51,7 +51,7 @@ class Medium:
         return omega * self.dispersion_scale, decay
 
     def _given(self, name: str, k: np.ndarray) -> np.ndarray:
-        """What the function of this name gives for k."""
+        """Checked values at k of the user's function of this name."""
         values = np.asarray(getattr(self, name)(k), np.float64)
         if values.shape != k.shape:
             raise argument_error(name, values.shape, f"a function that returns the shape of k, {k.shape}")

@@ -1,4 +1,4 @@
-"""What a film of oil on water does to light: how much it mirrors, and how much light from the water it lets through.
+"""Optics of an oil film on water: reflected light, and light from the water that passes through.
 
 Light from the upper and from the lower face of a thin film interferes. For three bands of light (red, green, blue) with
 a Gaussian sensitivity, the mirrored share at normal incidence is, with two beams (Born and Wolf, Principles of Optics,

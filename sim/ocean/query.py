@@ -1,4 +1,4 @@
-"""Height of the displaced surface above a point: which label x has x + D(x) = X, and what height it carries.
+"""Height of the displaced surface above a point X: find the label x with x + D(x) = X, and return its height.
 
 Fixed-point steps x <- X - D(x) bring the label near (they contract only where |grad D| < 1), then Newton steps with
 halving finish. Between grid points fields are bicubic (Catmull-Rom), which smooths the waves of a few cells (measured:
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 TOLERANCE = 1e-9  # share of a cell at which a label counts as found
 FIXED_POINT_STEPS, NEWTON_STEPS, HALVINGS = 3, 40, 8
-PIECE = 4096  # points at a time: others may have a turn in between
+PIECE = 4096  # points at a time: the solve yields in between
 
 
 def query(surface: "Surface", points: np.ndarray, exact: bool) -> tuple[np.ndarray, np.ndarray]:
-    """(height, residual), each (n,) [m], of the surface above points (n, 2) float64 [m]. It may be ended early."""
+    """(height, residual), each (n,) [m], of the surface above points (n, 2) float64 [m]. Can be cancelled."""
     sea = surface.sea
     height, residual = np.empty(len(points)), np.empty(len(points))
     cell = sea.length / sea.size
@@ -107,9 +107,9 @@ def evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x, y):
 
 @kernel
 def find(points, exact, h, dx, dy, spectrum, dk, choppiness, cell, stop, height, residual):
-    """Heights and residuals of all points; `spectrum` is read where exact, the grids h, dx, dy where not.
+    """Heights and residuals of all points; reads `spectrum` if exact, else the grids h, dx, dy.
 
-    Where exact, it ends early where `stop` (4,) asks for it (sim/interruption.py): a sum over all waves may take long.
+    An exact query can be cancelled by `stop` (4,) (sim/interruption.py), because a sum over all waves may take long.
     """
     for p in range(points.shape[0]):
         X, Y = points[p, 0], points[p, 1]
@@ -144,7 +144,7 @@ def find(points, exact, h, dx, dy, spectrum, dk, choppiness, cell, stop, height,
 
 @kernel
 def newton_step(fx, fy, axx, axy, byx, byy):
-    """Solve (1 + grad D) s = -f; the plain fixed-point step -f where the matrix cannot be inverted."""
+    """Solve (1 + grad D) s = -f; the plain fixed-point step -f if the matrix is singular."""
     det = (1.0 + axx) * (1.0 + byy) - axy * byx
     if abs(det) < 1e-6:
         return -fx, -fy

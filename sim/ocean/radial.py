@@ -75,7 +75,7 @@ class RadialSea:
         self.expose(exposure)
 
     def __deepcopy__(self, memo: object) -> "RadialSea":
-        """The same waves, which go on by themselves: nothing is changed in place but kept results."""
+        """An independent copy; it shares arrays, because only cached results are changed in place."""
         return copy.copy(self)
 
     def change(
@@ -111,7 +111,7 @@ class RadialSea:
         """Bring the phases of the waves that fade out to time t."""
         if self._old is not None:
             kx, ky, amplitude, rate, phase, ratio = self._old
-            self._old = (kx, ky, amplitude, rate, turn(phase, rate, t - self._base), ratio)
+            self._old = (kx, ky, amplitude, rate, phase_at(phase, rate, t - self._base), ratio)
 
     def _set(self, waves: Waves, column: FluidColumn, phase: np.ndarray, loss: np.ndarray, t: float = 0.0) -> None:
         """loss (n,): -ln of the share of their amplitude that the waves have left."""
@@ -149,8 +149,8 @@ class RadialSea:
 
     def phases(self, t: float) -> np.ndarray:
         """Phase (n,) [turns], within half a turn, of all waves at time t [s] at the origin; old ones first."""
-        parts = [] if self._old is None else [turn(self._old[4], self._old[3], t - self._base)]
-        return np.concatenate([*parts, turn(self._phase, self.rate, t - self._base)])
+        parts = [] if self._old is None else [phase_at(self._old[4], self._old[3], t - self._base)]
+        return np.concatenate([*parts, phase_at(self._phase, self.rate, t - self._base)])
 
     def current(self, t: float) -> tuple[np.ndarray, ...]:
         """(kx, ky, amplitude, omega, phase at t, interface ratio) of all waves at time t."""
@@ -219,7 +219,7 @@ class RadialSea:
         return RadialSurface(vertices, slope, jacobian)
 
     def _plan(self, grid: RadialGrid, k: np.ndarray) -> None:
-        """Which waves each band shows: the longest first, in pairs."""
+        """Plan the waves that each band shows: the longest first, in pairs."""
         self._order = np.argsort(k, kind="stable")
         shown = grid.weights(k[self._order])
         even = len(k) + len(k) % 2
@@ -275,7 +275,7 @@ def lost(past: Mapping[FluidColumn, float], k: np.ndarray) -> np.ndarray:
     return sum((column.roots(k)[1] * duration for column, duration in past.items()), np.zeros(k.shape))
 
 
-def turn(phase: np.ndarray, omega: np.ndarray, t: float) -> np.ndarray:
+def phase_at(phase: np.ndarray, omega: np.ndarray, t: float) -> np.ndarray:
     """phase - omega t/(2 pi) within half a turn, in double: a month of seconds leaves an error of 1e-9 turns."""
     turns = phase - omega / (2.0 * math.pi) * t
     return turns - np.rint(turns)

@@ -44,7 +44,7 @@ class RadialGrid:
             self.radii = radius * (index / rings) ** power
         else:
             # r_i = inner (q^i - 1)/(q - 1), so that steps grow by q; q from r_n = radius
-            q = growth(radius / inner, rings)
+            q = step_ratio(radius / inner, rings)
             self.radii = inner * index if q - 1.0 < 1e-9 else inner * (q**index - 1.0) / (q - 1.0)
         angle = np.arange(spokes) * (2.0 * math.pi / spokes)
         ring = self.radii[:, None]
@@ -79,14 +79,14 @@ class RadialGrid:
         return np.concatenate(faces).astype(np.uint32)
 
     def weights(self, k: np.ndarray) -> np.ndarray:
-        """How much of each wave of wavenumber k (n,) [rad/m] each band shows, (rings + 1, n), 0 to 1, smooth."""
+        """Factor (rings + 1, n), 0 to 1, on waves of wavenumber k (n,) [rad/m] in each band: fades unresolved ones."""
         cells = 2.0 * math.pi / np.maximum(k, 1e-30) / self.spacing[:, None]
         low, high = FADE
         u = np.clip((cells - low) / (high - low), 0.0, 1.0)
         return u * u * (3.0 - 2.0 * u)
 
 
-def growth(ratio: float, count: int) -> float:
+def step_ratio(ratio: float, count: int) -> float:
     """q >= 1 with (q^count - 1)/(q - 1) = ratio >= count, by bisection."""
     low, high = 1.0, 64.0
     for _ in range(200):

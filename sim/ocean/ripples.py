@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.jit import kernel
-from sim.ocean.evolve import add_heights, turn
+from sim.ocean.evolve import add_heights, shift_time
 from sim.validation import argument_error, check_finite, check_not_negative, check_positions, check_positive
 
 QUIET = 1e-6  # [m] root mean square height below which rings are dropped
@@ -38,7 +38,7 @@ class Ripples:
         self._checks = 0
 
     def __deepcopy__(self, memo: object) -> "Ripples":
-        """The same rings, which go on by themselves."""
+        """An independent copy of the rings."""
         other = copy.copy(self)
         other._even, other._odd = self._even.copy(), self._odd.copy()
         return other
@@ -93,7 +93,7 @@ class Ripples:
         """Bring the state to time t [s]. Raises ValueError for a time before that of the last change."""
         t = self.check_time(t)
         if self.alive and t != self.time:
-            turn(self._even, self._odd, self._rate, self._fade(t), t - self.time, *self._scratch)
+            shift_time(self._even, self._odd, self._rate, self._fade(t), t - self.time, *self._scratch)
             self.version += 1
         self.time = t
 
@@ -110,7 +110,7 @@ class Ripples:
         h[0, 0] += self.mean
 
     def drop_if_quiet(self) -> None:
-        """Forget the rings where nothing visible is left of them; the mean stays."""
+        """Forget rings that are too low to be visible; the mean stays."""
         if self.rms < QUIET:
             self.clear()
 

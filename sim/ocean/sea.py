@@ -63,7 +63,7 @@ class Sea:
     ) -> None:
         """size: cells a side, even, 8 to 4096; length [m] of the tile; the wind is U10, U19.5 for pierson_moskowitz.
 
-        spectrum: a name in `SPECTRA`, or a record of one's own.
+        spectrum: a name in `SPECTRA`, or a custom record.
 
         amplitudes: "random" (Gaussian) or "fixed" (random phase only); choppiness: factor on the displacement;
         viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of `Conditions` and `Medium`,
@@ -124,9 +124,9 @@ class Sea:
         self._set_planes()
 
     def __deepcopy__(self, memo: dict) -> "Sea":
-        """A sea that goes on from here by itself.
+        """An independent copy of the sea.
 
-        It shares arrays that nothing changes in place, and the transforms: both are for the same thread.
+        It shares arrays that are never changed in place, and the transforms: both seas are for the same thread.
         """
         other = copy.copy(self)
         other._past, other._ripples = dict(self._past), copy.deepcopy(self._ripples, memo)
@@ -284,7 +284,7 @@ class Sea:
         return float((slope * self._passed * np.exp(-2.0 * lost)).sum()) / whole if whole > 0.0 else 1.0
 
     def is_steady(self, t: float) -> bool:
-        """Whether no wave grows or decays any more after time t [s], unless the conditions change."""
+        """True if no wave grows or decays any more after time t [s], unless the conditions change."""
         return not self._decays and self._share(t) == 0.0
 
     @property
@@ -345,7 +345,7 @@ class Sea:
         return t, self.version, self._choppiness, self._ripples.version if self._ripples is not None else -1
 
     def _set_conditions(self, spectrum: str | Spectrum[Any], values: dict[str, Any], medium: Medium) -> None:
-        """Check everything, then set spectrum, conditions, medium, and what follows from them."""
+        """Check everything, then set spectrum, conditions, medium, and all arrays that depend on them."""
         if not isinstance(spectrum, Spectrum):
             if spectrum not in SPECTRA:
                 raise argument_error("spectrum", spectrum, "one of " + ", ".join(SPECTRA))
@@ -420,7 +420,7 @@ class Sea:
         return share if share > SETTLED_SHARE else 0.0
 
     def _set_planes(self) -> None:
-        """Fold the amplitudes into even and odd half planes: the target, and what the start lacks of it."""
+        """Fold the amplitudes into even and odd half planes: of the target, and of the difference start - target."""
         unit = self._unit * self._full(np.exp(-self._lost)) if self._lost.any() else self._unit
         raise_if_stopped()
         self._settled = self._planes(unit * self._target)
@@ -439,7 +439,7 @@ class Sea:
         return [plane + weight * rest for plane, rest in zip(self._settled, self._to_come, strict=True)]
 
     def _push(self) -> np.ndarray:
-        """k tanh(kh)/(rho omega) of the quarter plane: what an impulse does, see ripples.py."""
+        """k tanh(kh)/(rho omega) of the quarter plane: the response to an impulse, see ripples.py."""
         c, omega = self.conditions, 2.0 * np.pi * self._rate
         tanh = np.tanh(self._k * c.depth) if math.isfinite(c.depth) else 1.0
         return np.divide(self._k * tanh, c.density * omega, out=np.zeros_like(omega), where=omega > 0.0)

@@ -1,6 +1,6 @@
-"""What a sea measures up to: Hs, Tp, mean square slope and direction, in theory and on a drawn field, with its band.
+"""Statistics of a sea: Hs, Tp, mean square slope and direction, in theory and on a drawn field, with their scatter.
 
-One tile is a sample: even a perfect one differs from its spectrum. `height_scatter` says by how much to expect.
+One tile is a sample: even a perfect one differs from its spectrum. `height_scatter` is the expected deviation.
 """
 
 import functools
@@ -26,7 +26,7 @@ BEAUFORT_NAMES = (
 
 
 class Statistics(NamedTuple):
-    """Of a sea. nan where it is flat, or where one snapshot cannot tell (direction)."""
+    """Statistics of a sea. nan if it is flat; the direction is nan if only one snapshot is known."""
 
     significant_height: float  # [m] 4 sqrt(m0)
     peak_period: float  # [s]
@@ -57,7 +57,7 @@ def theory(spectrum: Spectrum, conditions: Conditions, k_max: float = 1e4, k_min
 
 @functools.lru_cache(maxsize=64)
 def open_sea_height(spectrum: Spectrum, conditions: Conditions) -> float:
-    """Hs [m] of an endless sea under these conditions: a closed form where there is one, or the integral."""
+    """Hs [m] of an endless sea under these conditions: the closed form if one exists, or the integral."""
     if spectrum.is_level(conditions):
         closed = 0.0
     else:
@@ -71,7 +71,7 @@ def open_sea_height(spectrum: Spectrum, conditions: Conditions) -> float:
 def energy_by_wavenumber(
     spectrum: Spectrum, conditions: Conditions, k_max: float = 1e4, k_min: float = 1e-6
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(k [rad/m], energy [m2]), (n,) each: what the spectrum has in n cells of log k; the sum of the energies is m0."""
+    """(k [rad/m], energy [m2]), (n,) each: the spectrum's energy in n cells of log k; their sum is m0."""
     k, cells, _ = _polar_cells(spectrum, conditions, k_max, k_min)
     return k, cells.sum(axis=1)
 
@@ -161,7 +161,7 @@ def _half_plane(
 
 
 def resolved_in_time(period: float, interval: float) -> bool:
-    """Whether two fields `interval` [s] apart tell which way waves of this period [s] run."""
+    """True if two fields `interval` [s] apart show the direction of waves of this period [s]."""
     return 4.0 * interval < period
 
 
@@ -204,7 +204,7 @@ class _Bins(NamedTuple):
 
 
 def _bins(omega: np.ndarray, waves: np.ndarray) -> _Bins | None:
-    """Bins 6 % wide over the frequencies [rad/s] of these waves; None where there are none."""
+    """Bins 6 % wide over the frequencies [rad/s] of these waves; None without waves."""
     if not waves.any():
         return None
     running = omega[waves]

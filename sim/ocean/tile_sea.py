@@ -1,8 +1,8 @@
-"""The square FFT sea asked as the radial one is: on a radial grid and at points, so that the two can be compared.
+"""Adapter that gives the FFT sea the interface of `RadialSea`: on a radial grid and at points, to compare the two.
 
-The tile repeats every `length`, which is seen from high up; its shortest wave is two cells everywhere, however near
-the viewer. Towards the horizon, where rings are wider apart than waves are long, the surface is lowered to the share
-of the energy that the rings can show.
+The tile repeats every `length`, which is visible from high up; its shortest wave is two cells everywhere, however near
+the viewer. Towards the horizon, where rings are wider apart than waves are long, the surface is lowered to the fraction
+of the energy that the rings resolve.
 """
 
 import math
@@ -26,7 +26,7 @@ STEPS = 12  # towards a label: where the surface does not nearly fold, each leav
 
 
 class TileSea:
-    """A `Sea` with the questions of `RadialSea`."""
+    """A `Sea` with the methods of `RadialSea`."""
 
     def __init__(self, sea: Sea, past: Mapping[FluidColumn, float] | None = None) -> None:
         """past: the time [s] that the waves have spent on each medium, and decayed, as `RadialSea.past`."""
@@ -77,7 +77,7 @@ class TileSea:
 
     @property
     def mean_square_slope(self) -> float:
-        """As expected of the tile: sum k^2 S dk^2."""
+        """Mean square slope expected of the tile: sum k^2 S dk^2."""
         k = np.hypot(self.sea.k[:, None], self.sea.k[None, :])
         return float((k**2 * self.sea.energy_at(self.sea.time)).sum())
 
@@ -92,7 +92,7 @@ class TileSea:
         slope = np.column_stack([east - west, north - south]) / (2 * REACH)
         cell, label = self.sea.length / self.sea.size, where.copy()
         D = self.sea.surface(t).displacement
-        find_labels(where, D[..., 0], D[..., 1], cell, label)
+        find_tile_labels(where, D[..., 0], D[..., 1], cell, label)
         above, moved = [], []
         for instant in (-INSTANT, INSTANT):
             above.append(self.sea.height_at(where, t + instant)[0])
@@ -103,7 +103,7 @@ class TileSea:
                          residual[4 * n :])  # fmt: skip
 
     def particles(self, label: np.ndarray, t: float, cell: float) -> np.ndarray:
-        """Displacement (n, 3) [m] at time t [s] of what rests at labels (n, 2) [m]."""
+        """Displacement (n, 3) [m] at time t [s] of the water that rests at labels (n, 2) [m]."""
         surface = self.sea.surface(t)
         fields = (surface.displacement[..., 0], surface.displacement[..., 1], surface.height)
         out = np.empty((3, len(label)))
@@ -113,8 +113,8 @@ class TileSea:
 
 
 @kernel
-def find_labels(points, dx, dy, cell, labels):
-    """labels (n, 2) [m]: which point of the resting surface is at points (n, 2) [m], by fixed-point steps."""
+def find_tile_labels(points, dx, dy, cell, labels):
+    """Set labels (n, 2) [m] of the resting surface that are displaced to points (n, 2) [m], by fixed-point steps."""
     for p in range(points.shape[0]):
         x, y = points[p, 0], points[p, 1]
         for _ in range(STEPS):

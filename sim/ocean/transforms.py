@@ -48,7 +48,7 @@ class Transforms:
 
 
 def make_plan(spectrum: np.ndarray, grid: np.ndarray) -> Any:
-    """The measured plan from wisdom where there is some, else measured now (up to a second) and remembered."""
+    """The plan from wisdom if available, else one that is measured now (up to a second) and remembered."""
     import pyfftw
 
     path = wisdom_path()
@@ -66,12 +66,12 @@ def make_plan(spectrum: np.ndarray, grid: np.ndarray) -> Any:
 
 
 def wisdom_path() -> Path:
-    """Where wisdom is kept: beside the compiled kernels, in the user's cache directory."""
+    """Path of FFTW's wisdom: beside the compiled kernels, in the user's cache directory."""
     return Path(os.environ.get("SPRINGTIDE_CACHE") or platformdirs.user_cache_dir("springtide")) / "fftw-wisdom.json"
 
 
 def load_wisdom(path: Path) -> bool:
-    """Hand FFTW what `path` holds. False, and no harm done, where it is missing, unreadable or not wisdom."""
+    """Load FFTW's wisdom from `path`. Returns False if the file is missing, unreadable or no wisdom."""
     import pyfftw
 
     try:
@@ -84,7 +84,7 @@ def load_wisdom(path: Path) -> bool:
 
 
 def save_wisdom(path: Path) -> bool:
-    """Write what FFTW has learned to `path`, in one step. False where nothing can be written there."""
+    """Write FFTW's wisdom to `path`, in one step. Returns False if it cannot be written there."""
     import pyfftw
 
     text = json.dumps({"wisdom": [base64.b64encode(w).decode() for w in pyfftw.export_wisdom()]})

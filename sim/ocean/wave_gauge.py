@@ -68,7 +68,7 @@ class WaveGauge:
 
 
 def where_hit(sea: Sea, t: float, origin: Vector, direction: Vector, scale: float) -> tuple[float, float] | None:
-    """Where a ray first meets the water at time t [s], None where it does not: (x, y) [m]."""
+    """(x, y) [m] of the first hit of a ray on the water at time t [s]; None if it misses."""
     start, way = np.array(origin), np.array(direction)
     length = float(np.linalg.norm(way))
     if not length > 0.0:

@@ -98,7 +98,7 @@ def add_waves(x, y, start, active, weight, waves, wave, z, X, Y, hx, hy, xx, yy,
 
 @kernel(noalias=True, allocates=False)
 def calm_waves(x, y, start, active, weight, waves, wave, ex, ey, loss, cx, cy, radius, z, X, Y, hx, hy, xx, yy, xy):
-    """Take from the sums of `add_waves` what waves have lost under a round slick before they reach a vertex.
+    """Subtract from the sums of `add_waves` the losses of the waves under a round slick before they reach a vertex.
 
     ex, ey (waves,): direction of each wave; loss (waves,) [1/m]; cx, cy, radius [m] of the slick, single precision.
     """
@@ -181,7 +181,7 @@ def sum_at(x, y, p, kx, ky, phase, amplitude, chop, weight, out):
 
 @kernel
 def find_labels(points, kx, ky, phase, amplitude, chop, weight, labels, found, residual):
-    """labels (n, 2): which point of the resting surface is above points (n, 2); found (n, 8) the sums there.
+    """Set labels (n, 2) of the resting surface that are displaced to points (n, 2); found (n, 8): the sums there.
 
     x + D(x) = X by Newton's method from x = X - D(X); residual (n,) [m] is what is left, at rounding unless the
     surface folds there.
@@ -209,8 +209,10 @@ def find_labels(points, kx, ky, phase, amplitude, chop, weight, labels, found, r
 
 @kernel
 def set_motion(labels, kx, ky, rate, phase, amplitude, chop, weight, ratio, velocity, acceleration, interface):
-    """What rides the surface at labels (n, 2): velocity (n, 3), upward acceleration (n,), and the interface below:
-    interface (n, 4): height, slope along x, y, rise. rate [rad/s]; ratio: interface over surface."""
+    """Set the motion of the surface at labels (n, 2): velocity (n, 3), upward acceleration (n,), and of the interface.
+
+    interface (n, 4): height, slope along x, y, rise. rate [rad/s]; ratio: interface over surface.
+    """
     for p in range(labels.shape[0]):
         u = v = w = g = h = hx = hy = rise = 0.0
         for i in range(kx.size):

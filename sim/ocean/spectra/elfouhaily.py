@@ -17,7 +17,7 @@ KM_WATER = 370.0  # [rad/m] wavenumber of the slowest wave on clean water under 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class AgeConditions(Conditions):
-    """What a sea of some age is evaluated under."""
+    """Conditions of a sea of given wave age."""
 
     inverse_wave_age: float = parameter(
         0.84, 0.84, 5.0, "", "0.84 is a fully developed sea, 5 a very young one", title="Inverse wave age Ω"

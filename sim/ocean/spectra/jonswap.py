@@ -20,14 +20,14 @@ PEAKED_UNTIL = 0.86  # share of the fetch of full growth from which on the peak 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class PeakConditions(SpreadConditions):
-    """What a sea with a peak of JONSWAP's shape is evaluated under."""
+    """Conditions of a sea with a peak of JONSWAP's shape."""
 
     peak_enhancement: float = parameter(3.3, 1.0, 20.0, "", "Height of the peak of the spectrum", title="Peak factor γ")
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class FetchConditions(PeakConditions):
-    """What a sea of limited fetch is evaluated under."""
+    """Conditions of a sea of limited fetch."""
 
     fetch: float = parameter(100e3, 100.0, 1e7, "m", "Distance the wind blows over water", log_from=100.0)
 

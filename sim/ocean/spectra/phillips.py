@@ -11,7 +11,7 @@ from sim.parameters import parameter
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class PhillipsConditions(Conditions):
-    """What the spectrum of Phillips is evaluated under."""
+    """Conditions of the spectrum of Phillips."""
 
     phillips_constant: float = parameter(
         1.7421e-3,

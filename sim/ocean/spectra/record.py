@@ -1,4 +1,4 @@
-"""What a spectrum is, and the conditions that it is evaluated under."""
+"""The record of a wave spectrum, and the conditions that it is evaluated under."""
 
 import dataclasses
 import functools
@@ -16,15 +16,15 @@ from sim.validation import as_float, check_finite, check_number
 
 WIND_HEIGHTS = {10.0: 1.0, 19.5: 1.026}  # [m] -> wind there over U10, drag coefficient 1.3e-3 (Stewart 2008, eq. 16.33)
 MIN_WIND_SPEED = 1e-3  # [m/s] below which a wind makes no waves: spectra take powers of it, which would underflow
-PIECE = 16384  # wavenumbers at a time: these stay in the cache, and others may have a turn in between
+PIECE = 16384  # wavenumbers at a time: these stay in the cache, and the solve yields in between
 SECOND_EXPONENT = 25.0  # s of cos2s of the second system: swell that came a short way (Goda 2010, Sec. 2.3)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Conditions:
-    """What every spectrum is evaluated under. Raises ValueError for a value that is not allowed.
+    """Conditions of every spectrum. Raises ValueError for a value that is not allowed.
 
-    A spectrum with parameters of its own has a class of conditions that extends this one and declares each by
+    A spectrum with further parameters has a class of conditions that extends this one and declares each by
     `parameter(...)`: `Sea`, the panels of both seas, the command line and sweeps take them from there.
     """
 
@@ -69,7 +69,7 @@ class Conditions:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class SpreadConditions(Conditions):
-    """What the spectra are evaluated under that are known by frequency, and spread over the directions."""
+    """Conditions of spectra that are given by frequency and spread over the directions."""
 
     spreading: str = parameter("cos2", choices=SPREADINGS, doc="Formula of the spreading over directions")
     spread_exponent: float = parameter(
@@ -90,14 +90,14 @@ class Spectrum(NamedTuple, Generic[C]):
     density: Callable[[np.ndarray, np.ndarray, C], np.ndarray]  # S(kx, ky) [m4]
     significant_height: Callable[[C], float] | None  # Hs [m] where a closed form exists
     peak: Callable[[C], float] | None  # peak angular frequency [rad/s] where a closed form exists
-    conditions: type[C]  # what it is evaluated under
+    conditions: type[C]
     wind_height: float = 10.0  # [m] of the wind speed that it takes
     by_wind: bool = True  # whether the wind makes its waves: without wind there are none
     line: Callable[[C], tuple[float, float, float]] | None = None  # (kx, ky [rad/m], m0 [m2]) of one regular wave
 
     @property
     def title(self) -> str:
-        """What a list of spectra calls it: the first words of `doc`."""
+        """Its title in a list of spectra: the first words of `doc`."""
         return self.doc.partition(":")[0]
 
     def wind_speed(self, u10: float) -> float:
@@ -105,11 +105,11 @@ class Spectrum(NamedTuple, Generic[C]):
         return WIND_HEIGHTS[self.wind_height] * u10
 
     def is_level(self, conditions: C) -> bool:
-        """Whether there are no waves but those of the second system."""
+        """True if there are no waves but those of the second system."""
         return self.by_wind and conditions.wind_speed < MIN_WIND_SPEED
 
     def unused(self, values: Mapping[str, Any]) -> set[str]:
-        """Which of these parameters of spectra, name -> value, have no effect on this one."""
+        """Names of those parameters of spectra, name -> value, that have no effect on this one."""
         names = set(values) - set(parameters_of(self.conditions))
         if values.get("second_height") == 0.0:
             names |= {"second_period", "second_direction"} & set(values)
@@ -197,7 +197,7 @@ def _peaked_shape(x: np.ndarray, gamma: float) -> np.ndarray:
 
 @functools.lru_cache(maxsize=256)
 def peaked_integral(gamma: float) -> float:
-    """Its integral over all x: by Simpson's rule in log x on both sides of the peak, where it has a kink."""
+    """Integral of `_peaked_shape` over all x, by Simpson's rule in log x on both sides of the peak, which has a kink."""
     total = 0.0
     for a, b in ((math.log(0.3), 0.0), (0.0, math.log(100.0))):
         log_x, step = np.linspace(a, b, 4001, retstep=True)

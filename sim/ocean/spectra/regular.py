@@ -11,7 +11,7 @@ from sim.parameters import parameter
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class RegularConditions(Conditions):
-    """What one regular wave is evaluated under."""
+    """Conditions of one regular wave."""
 
     wave_height: float = parameter(1.0, 0.0, 20.0, "m", "Height H of the wave, from trough to crest", title="Height H")
     wave_period: float = parameter(6.0, 0.5, 30.0, "s", "Period T of the wave", title="Period T")

@@ -12,7 +12,7 @@ from sim.parameters import parameter
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class HeightConditions(PeakConditions):
-    """What a sea of given height and period is evaluated under."""
+    """Conditions of a sea of given height and period."""
 
     hs: float = parameter(
         2.0, 0.0, 20.0, "m", "Mean height of the highest third of the waves", title="Significant height Hs"

@@ -1,4 +1,4 @@
-"""What becomes of an oil spill over hours and days: it spreads, evaporates, takes up water, and breaks into drops.
+"""Weathering of an oil spill over hours and days: spreading, evaporation, uptake of water, dispersion into drops.
 
 from sim.ocean.weathering import Spill, weather
 day = weather(Spill(oil="Alaska North Slope 2002", volume=100.0, wind_speed=7.0)).at(24.0)

@@ -113,7 +113,7 @@ def api_gravity(oil: str) -> float:
 
 
 def can_weather(oil: str) -> bool:
-    """Whether the record tells how the oil evaporates: by a distillation, or as a crude oil by its density."""
+    """True if the record is enough for evaporation: a distillation, or a crude oil's density."""
     record = oil_records()[check_oil(oil)]
     return record.is_crude or bool(record.distillation)
 
@@ -122,7 +122,7 @@ def distillation_of(oil: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     """Shares by mass that have boiled off, and the temperatures [K], both (n,) and rising from 0 to 1.
 
     Below and above what was measured the curve goes on straight, within 266 and 1050 K.
-    Raises ValueError for an oil that nothing is known about.
+    Raises ValueError for an oil without a record.
     """
     record = oil_records()[check_oil(oil)]
     low, high = CUT_BOUNDS[0], CUT_BOUNDS[-1]
@@ -151,7 +151,7 @@ def boiled_off(oil: str, temperature: float) -> float:
 
 @cache
 def pseudo_components(oil: str) -> PseudoComponents:
-    """The parts of an oil. Raises ValueError for an oil that nothing is known about."""
+    """The parts of an oil. Raises ValueError for an oil without a record."""
     record = oil_records()[check_oil(oil)]
     share, at = distillation_of(oil)
     boiled = np.interp(CUT_BOUNDS, at, share)

@@ -38,7 +38,7 @@ def vapour_pressure(boiling_point: NDArray[np.float64], temperature: float) -> N
 
 
 def volatility(parts: PseudoComponents, temperature: float) -> NDArray[np.float64]:
-    """Sc_i^(-2/3) P_i/(R T) (n,) [mol/m3] of the parts of an oil: what they alone have to do with their evaporation."""
+    """Sc_i^(-2/3) P_i/(R T) (n,) [mol/m3]: the part of the evaporation rate that depends on the component only."""
     schmidt = SCHMIDT * (WATER_MOLAR_MASS / parts.molar_mass) ** (1.0 / 3.0)
     return schmidt * vapour_pressure(parts.boiling_point, temperature) / (GAS_CONSTANT * temperature)
 
@@ -83,7 +83,7 @@ def water_content(elapsed: float, wind_speed: float, most: float) -> float:
 
 
 def viscosity_factor(viscosity: float, evaporated: float, water: float) -> float:
-    """How many times as viscous the oil has become; viscosity: kinematic, of the fresh oil [m2/s].
+    """Ratio of the oil's viscosity to that of the fresh oil; viscosity: kinematic, of the fresh oil [m2/s].
 
     e^(c f), c = 1500 sqrt(nu), at least 1 and at most 10, times the factor of Pal and Rhodes for the water in it.
     """

@@ -148,7 +148,7 @@ def steps() -> NDArray[np.float64]:
 
 
 class State(NamedTuple):
-    """What is stepped through time."""
+    """State of the spill at one time."""
 
     mass: NDArray[np.float64]  # (n,) [kg] of each part of the oil on the sea
     evaporated: float  # [kg]

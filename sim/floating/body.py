@@ -1,4 +1,4 @@
-"""Bodies: what each is made of, and the arrays in which many of them move.
+"""Bodies: the description of each, and the arrays in which many of them move.
 
 `Body` describes one body and where it starts; `make_fleet` packs many into a `Fleet` with state arrays that `step`
 (motion.py) advances in place. A hull used by several bodies is packed once.
@@ -49,7 +49,7 @@ class PackedHulls(NamedTuple):
 
 
 class PackedLinear(NamedTuple):
-    """What linear theory knows of s hulls at their drafts, at unit density and gravity: see hydrodynamics.py."""
+    """Linear coefficients of s hulls at their drafts, at unit density and gravity: see hydrodynamics.py."""
 
     added_factor: np.ndarray  # (s, 6, 6) lower Cholesky factor of the added mass at infinite frequency
     poles: np.ndarray  # (s, p) complex
@@ -72,8 +72,8 @@ class Fleet(NamedTuple):
     # last step; -1 before it
     carried: np.ndarray
     buoyancy: np.ndarray  # (n,) [N] weight of the displaced fluids at the last step
-    # (n, 4) [N] upward, mean over the last step: buoyancy, waves, drag, and what the motion through the water meets:
-    # added mass, the waves that the body made, a pull. With the weight they are mass times acceleration.
+    # (n, 4) [N] upward, mean over the last step: buoyancy, waves, drag, and the reaction to the motion (added mass, the
+    # waves that the body made, a pull). With the weight they are mass times acceleration.
     lift: np.ndarray
     wet_volume: np.ndarray  # (n, 2) [m3] in the upper and in the lower fluid at the last step
     memory: np.ndarray  # (n, p, 6) complex: state of the radiated waves, one for each pole and motion
@@ -90,7 +90,7 @@ class Fleet(NamedTuple):
     linear: PackedLinear
 
     def __deepcopy__(self, memo: object) -> "Fleet":
-        """The same bodies, which go on by themselves; what is fixed is shared."""
+        """An independent copy; it shares the arrays that never change."""
         changing = {name: getattr(self, name).copy() for name in self._fields[: self._fields.index("vertex_start")]}
         return self._replace(**changing)
 
@@ -134,7 +134,7 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
         density=np.array([body.density for body in bodies], dtype=float),
         mass=np.array([body.density * body.hull.volume for body in bodies], dtype=float),
         vertex_start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        hulls=pack(hulls),
+        hulls=pack_hulls(hulls),
         linear_hull=linear_hull,
         linear=linear,
     )
@@ -143,14 +143,14 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
 def pack_linear(
     hulls: Sequence[Hull], densities: Sequence[float], layers: Layers = SEA_WATER
 ) -> tuple[np.ndarray, PackedLinear]:
-    """Index (n,) of the linear coefficients of each hull of a density [kg/m3], and these, each of them once."""
+    """Linear coefficients of hulls of given densities [kg/m3], each set once, and the index (n,) of each hull's."""
     fluids = check_layers(layers)
     found = [afloat(hull, float(density), fluids) for hull, density in zip(hulls, densities, strict=True)]
     unique = list({id(one): one for one in found}.values())
     number = {id(one): i for i, one in enumerate(unique)}
     s = len(unique)
     added = np.array([one.linear.infinite for one in unique]).reshape(s, 6, 6)
-    # The inverse of the inverse's diagonal is what is left of each entry where all other motions are free.
+    # 1 over the diagonal of the inverse is the added mass of a motion while all others are free.
     steady = np.array([1e-9 * np.trace(one) * np.eye(6) for one in added]).reshape(s, 6, 6)
     coupled, coupled_count = np.zeros((s, 36, 2), np.int64), np.zeros(s, np.int64)
     residues = np.zeros((s, 36, len(POLES)), complex)
@@ -182,8 +182,8 @@ def lower_factor(added: np.ndarray) -> np.ndarray:
     return np.linalg.qr(root.T).R.T
 
 
-def pack(hulls: Sequence[Hull]) -> PackedHulls:
-    """The hulls, one after another, with what a step needs to know of each."""
+def pack_hulls(hulls: Sequence[Hull]) -> PackedHulls:
+    """Pack the hulls one after another, with the properties that a step needs of each."""
     q = len(hulls)
     vertex_start = np.concatenate([[0], np.cumsum([len(hull.vertices) for hull in hulls])]).astype(np.int64)
     face_start = np.concatenate([[0], np.cumsum([len(hull.faces) for hull in hulls])]).astype(np.int64)
@@ -252,7 +252,7 @@ def lowest(fleet: Fleet) -> np.ndarray:
 def pull(fleet: Fleet, body: int, point: Sequence[float], target: Sequence[float], limit: float) -> None:
     """Pull a point of a body (3,) [m], in body axes, towards a target (3,) [m] with at most `limit` [N]; 0 lets go.
 
-    Raises ValueError for a body that is not there and for what is not finite.
+    Raises ValueError for a body that does not exist and for numbers that are not finite.
     """
     if not is_whole_number(body) or not 0 <= body < len(fleet.mass):
         raise argument_error("body", body, f"0 to {len(fleet.mass) - 1}")

@@ -33,7 +33,7 @@ class ClosedMesh:
 
 
 class Solid(NamedTuple):
-    """What a closed mesh encloses, at unit density."""
+    """Mass properties of the solid inside a closed mesh, at unit density."""
 
     volume: float  # [m3]
     centre: np.ndarray  # (3,) [m]
@@ -88,7 +88,7 @@ def checked_mesh(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -
 
 
 def check_hull(name: str, hull: object) -> None:
-    """Raises ValueError for what is no hull."""
+    """Raises ValueError if `hull` is no hull."""
     if not isinstance(hull, ClosedMesh):
         raise argument_error(name, hull, "a Hull")
 
@@ -133,7 +133,7 @@ def parts_of(faces: np.ndarray, count: int) -> np.ndarray:
 
 
 def enclosed(triangles: np.ndarray, point: np.ndarray) -> int:
-    """How often triangles (m, 3, 3), outward, enclose a point: the sum of their solid angles over 4 pi.
+    """Number of times that triangles (m, 3, 3), outward, enclose a point: the sum of their solid angles over 4 pi.
 
     Van Oosterom and Strackee 1983, IEEE Trans. Biomed. Eng. 30:125, eq. 8.
     """
@@ -150,7 +150,7 @@ def check_length(name: str, value: float) -> float:
 
 
 def open_edges(faces: np.ndarray) -> int:
-    """How many of the directed edges of faces (m, 3) lack their one opposite: 0 for a closed, oriented mesh."""
+    """Number of directed edges of faces (m, 3) without exactly one opposite: 0 for a closed, oriented mesh."""
     if not len(faces):
         return 0
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)

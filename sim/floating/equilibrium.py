@@ -1,4 +1,4 @@
-"""Where a hull floats upright in layered fluids.
+"""Equilibrium of an upright hull in layered fluids.
 
 Archimedes through layers of densities rho_1, rho_2, ... with tops at depths D_1 = 0, D_2, ... is a sum over
 interfaces, since each one adds the pressure (rho_i - rho_{i-1}) g (depth below it):
@@ -55,7 +55,7 @@ def equilibrium_draft(hull: Hull, density: float, layers: Layers = SEA_WATER, gr
 
 
 def upright(hull: Hull, height: float) -> Submerged:
-    """What of the true shape, upright, lies up to `height` [m] above its lowest point, about its centre of mass."""
+    """Part of the true shape, upright, up to `height` [m] above its lowest point, about its centre of mass."""
     bottom, top = hull.extents[2]
     inside = 0 < height < top - bottom
     if hull.shape.immersed is None:

@@ -28,7 +28,7 @@ HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of wav
 NUDGE = 1e-4  # share of the draft by which a plane is moved or tilted to find its force
 LAST_RATES = (15 / 8, -10 / 8, 3 / 8)  # weights of the last three rates of change, for that half a step after them
 CREEPING = 0.1  # of sqrt(g k), below which a wave in viscous fluids only sinks away, and does nothing upward here
-PIECE = 64  # waves at a time: others may have a turn in between
+PIECE = 64  # waves at a time: the solve yields in between
 BEYOND = 1.0  # [lengths] of 1/k over which the force fades beyond the highest frequency of a table
 
 
@@ -97,7 +97,7 @@ class WaveExcitation:
         self.impulses: tuple[np.ndarray, ...] = ()  # (n,) [m3 times m/s] upward at the last calls, the newest first
 
     def __deepcopy__(self, memo: object) -> "WaveExcitation":
-        """The same excitation, which goes on by itself: headings and weights are all that is changed in place."""
+        """An independent copy: only headings and weights are ever changed in place."""
         other = copy.copy(self)
         other.heading, other.weights = self.heading.copy(), self.weights.copy()
         return other
@@ -112,8 +112,8 @@ class WaveExcitation:
         [rad/m], amplitude (waves,) [m], omega (waves,) [rad/s], phase (waves,) [turns] at the origin.
 
         The upward force is the change of the impulse sum a Re(i D/w exp(i phase)) along the body's way, and so has no
-        mean. Linear theory knows no mean force: the force at a fixed place has none. At a place that moves with the
-        waves it gets one, of second order, which for a small body that follows the water is not there.
+        mean. In linear theory the force at a fixed place has no mean. At a place that moves with the waves it has one of
+        second order, which a small body that follows the water does not feel.
         """
         if not (np.array_equal(kx, self.kx) and np.array_equal(ky, self.ky)):
             self.kx, self.ky, self.impulses = kx.copy(), ky.copy(), ()

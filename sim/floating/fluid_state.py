@@ -29,8 +29,8 @@ class Water(NamedTuple):
     interface_rise: np.ndarray  # (n,) [m/s]
     relief: np.ndarray  # (0,), or per vertex of each body in turn [m]: surface above its body's plane
     interface_relief: np.ndarray  # (0,) or the same of the interface [m]
-    excitation: np.ndarray  # (0, 6), or (n, 6) [m3, m4 times m/s2]: what waves do beyond the pressure of the plane
-    lead: float  # [s] after the beginning of the step at which all these are the water's values
+    excitation: np.ndarray  # (0, 6), or (n, 6) [m3, m4 times m/s2]: wave force beyond the pressure of the plane
+    lead: float  # [s] from the beginning of the step to the time of all these values
 
 
 def make_water(

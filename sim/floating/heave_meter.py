@@ -15,9 +15,9 @@ MAX_AGE = 4.0  # periods since the last crossing, after which no period is given
 
 
 class WindowMean:
-    """Mean over the last minute of what n bodies show, in a window that fades at both ends (Hann).
+    """Mean over the last minute of readings of n bodies, in a window that fades at both ends (Hann).
 
-    So no wave is cut: of an oscillation of 8 s it leaves 1e-4. A plain mean of 60 s leaves up to 4 %.
+    An oscillation of 8 s is reduced to 1e-4 of its amplitude. A plain mean of 60 s leaves up to 4 %.
     """
 
     def __init__(self, n: int, numbers: int) -> None:

@@ -63,7 +63,7 @@ class Hull(ClosedMesh):
 
     @staticmethod
     def cylinder(radius: float, height: float) -> "Hull":
-        """A cylinder [m] with its axis along z. Raises ValueError for what is not 0.001 to 10000 m."""
+        """A cylinder [m] with its axis along z. Raises ValueError for lengths outside 0.001 to 10000 m."""
         return Hull.of(CYLINDER, cylinder(radius, height))
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""What linear theory knows of a floating hull: added mass, radiation damping, the force of waves, and their memory.
+"""Linear hydrodynamics of a floating hull: added mass, radiation damping, wave excitation, memory of radiated waves.
 
 The coefficients come from boundary elements (`boundary_elements.py`), as tables by draft in `tables`. A box, an upright
 cylinder and a sphere are in the tables at every size: to the water a hull is its wet part. A hull from a file may have
@@ -160,20 +160,21 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
 
 
 def table_length(hull: ClosedMesh) -> float:
-    """The length [m] that the table of a hull of one's own is in units of."""
+    """Unit of length [m] of the table of a custom hull."""
     return math.sqrt(float(hull.size[0] * hull.size[1])) / 2
 
 
 def interpolated(table: LinearTable, aspect: float, draft: float) -> LinearTable:
     """One hull of a table: the arrays without their first two axes, by cubic polynomials in the logarithms.
 
-    What is interpolated is over the powers of the draft by which it grows, which are nearly the same at all drafts.
+    Each coefficient is divided by the power of the draft by which it grows, and the ratio is interpolated: it varies
+    little with the draft.
     """
     drafts, aspects = np.log(table.draft), np.log(table.aspect)
     draft = min(max(draft, float(table.draft[0])), float(table.draft[-1]))
     i, u = lagrange(drafts, math.log(draft))
     j, v = lagrange(aspects, min(max(math.log(aspect), 0.0), float(aspects[-1])))
-    here, nodes = growth(np.array([draft]))[0], growth(table.draft[i])
+    here, nodes = powers_of_draft(np.array([draft]))[0], powers_of_draft(table.draft[i])
 
     def value(array: np.ndarray, powers: int) -> np.ndarray:
         scale = nodes if powers == 1 else nodes[:, :, None] * nodes[:, None, :]
@@ -189,7 +190,7 @@ def interpolated(table: LinearTable, aspect: float, draft: float) -> LinearTable
     )  # fmt: skip
 
 
-def growth(draft: np.ndarray) -> np.ndarray:
+def powers_of_draft(draft: np.ndarray) -> np.ndarray:
     """Powers of the drafts (d,) by which the coefficients of each motion grow, (d, 6)."""
     one, turning = np.ones_like(draft), (0.5 + draft) ** 1.5
     return np.stack([draft, draft, one, turning, turning, draft], axis=1)
@@ -219,7 +220,7 @@ def lagrange(nodes: np.ndarray, x: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
 
 
 def around(excitation: np.ndarray, direction: np.ndarray) -> np.ndarray:
-    """The excitation (n, 36, 6) over the full circle from that of a quarter, or of one direction of what is round."""
+    """The excitation (n, 36, 6) over the full circle from that of a quarter, or from one direction of a round hull."""
     if len(direction) == len(DIRECTIONS):
         return excitation
     if len(direction) == 1:
@@ -284,7 +285,7 @@ def memory_of(linear: LinearHull, own_frequencies: np.ndarray) -> Memory:
 
 
 class Afloat(NamedTuple):
-    """A hull of a density in fluids, as linear theory has it."""
+    """A hull of given density afloat in fluids, in linear theory."""
 
     linear: LinearHull
     memory: Memory

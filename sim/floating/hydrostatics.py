@@ -1,8 +1,8 @@
 """Hydrostatics of a closed mesh in any pose under any surface: volume, centre, waterplane, pressure force and moment.
 
 The surface is given as its height above each vertex and is linear over each triangle, so that the depth d of a
-point on the hull is linear there too. Each triangle is cut where d = 0, and what is integrated over the wet part is
-a polynomial: the integrals are exact. Two fluids are two such sums, since the pressure is
+point on the hull is linear there too. Each triangle is cut where d = 0, and the integrand over the wet part is a
+polynomial: the integrals are exact. Two fluids are two such sums, since the pressure is
 p = rho1 g d1 + (rho2 - rho1) g d2, each term only where its depth is positive: d1 below the surface, d2 below the
 interface.
 
@@ -105,7 +105,7 @@ def add_displaced_triangle(x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2, nz, o
 
 @kernel(noalias=True)
 def add_displaced(x, faces, nz, depth, out):
-    """Add what lies below the surface to out (10,): V, V x, V y, V z, A, A x, A y, A xx, A yy, A xy.
+    """Add the integrals of the part below the surface to out (10,): V, V x, V y, V z, A, A x, A y, A xx, A yy, A xy.
 
     x (3, n) [m] in world axes, faces (3, m), nz (m,) [m2] vertical part of the areas, depth (n,) [m].
     Each is an integral over the wet surface of a field of the right divergence that vanishes at d = 0 (volume) or
@@ -143,7 +143,7 @@ def add_displaced(x, faces, nz, depth, out):
 
 
 class Submerged(NamedTuple):
-    """What of a hull lies below a surface. The waterplane is the surface inside the hull, seen from above."""
+    """The part of a hull below a surface. The waterplane is the surface inside the hull, seen from above."""
 
     volume: float  # [m3]
     centre: np.ndarray  # (3,) [m] centre of buoyancy, in world axes; NaN where nothing is submerged
@@ -168,7 +168,7 @@ def check_pose(hull: ClosedMesh, position, rotation, surface) -> tuple[np.ndarra
 
 
 def submerged(hull: ClosedMesh, position=(0.0, 0.0, 0.0), rotation=(1.0, 0.0, 0.0, 0.0), surface=0.0) -> Submerged:
-    """What of the hull lies below `surface`, a height or heights above each vertex (n,) [m].
+    """The part of the hull below `surface`, a height or heights above each vertex (n,) [m].
 
     position (3,) [m] of the centre of mass, rotation a quaternion (w, x, y, z). Raises ValueError for bad arguments.
     """

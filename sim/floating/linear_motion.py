@@ -22,7 +22,7 @@ def linear_response(linear: LinearHull, mass: np.ndarray, stiffness: np.ndarray,
 
 
 def linear_decay(linear: LinearHull, mass: np.ndarray, stiffness: np.ndarray, axis: int, t: np.ndarray) -> np.ndarray:
-    """Course at t of a body let go at rest from a unit offset, from the response to a force that ends.
+    """Free decay: displacement at times t [s] after release at rest from unit displacement, by the frequency response.
 
     With H = 1/(C - w^2 (M + A) + i w B) of the motion, x(t) = C int_t^inf h(s) ds and h(t) = 2/pi int Re H cos(wt) dw.
     So x(t) = 2 C/pi int -Re(H) sin(wt)/w dw + C H(0), which is 1.

@@ -1,4 +1,4 @@
-"""Tables of linear coefficients: of the shipped shapes (`tables`), and of a hull of one's own beside it.
+"""Tables of linear coefficients: of the shipped shapes (`tables`), and of a custom hull, beside its file.
 
 The table of a hull from a file lies in a file of the same name that ends with `.hydrodynamics.npz`. It is made by
 `springtide hydrodynamics`, and belongs to that mesh only.
@@ -42,20 +42,20 @@ def table_of(name: str) -> LinearTable:
 
 
 def place_of_table(hull_file: str | Path) -> Path:
-    """Where the table of the hull in a file lies."""
+    """Path of the table of the hull in a file."""
     path = Path(hull_file)
     return path.with_name(path.stem + ENDING)
 
 
 def fingerprint(mesh: ClosedMesh) -> str:
-    """A text that two meshes share only if they are the same."""
+    """Hash of a mesh: two meshes have the same only if they are equal."""
     digest = hashlib.sha256(np.round(mesh.vertices, 6).tobytes())
     digest.update(mesh.faces.tobytes())
     return digest.hexdigest()
 
 
 def write_table(path: Path, table: LinearTable, mesh: ClosedMesh) -> None:
-    """Write the table of a mesh to a file. Raises OSError where that fails."""
+    """Write the table of a mesh to a file. Raises OSError if that fails."""
     with path.open("wb") as file:
         np.savez_compressed(file, mesh=np.array(fingerprint(mesh)), **table._asdict())
 

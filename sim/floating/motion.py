@@ -6,18 +6,18 @@ Of body i, in level axes that turn with its heading:
 
 F_p are the exact integrals of the hydrostatic pressure over the wet hull (hydrostatics.py) under the surface of
 `Water`: in any wave, upwards, the weight of what is displaced. A (6, 6) is the added mass at infinite frequency, F_r
-the memory of the waves that the body made (Cummins; hydrodynamics.py), F_e what waves do beyond F_p (excitation.py).
-Where the sea is no sum of waves, F_e is the added mass and what is displaced at rest, each times the fluid's
-acceleration at the surface, and F_r goes with the velocity against the fluid: so a small hull that displaces its weight
-moves as the fluid does in long waves. Small motions are those of linear theory. The drag is along and about the body's
-own axes, rho S/2 (b v + C |v| v/2) with S the wetted area.
+the memory of the waves that the body made (Cummins; hydrodynamics.py), F_e the wave force beyond F_p (excitation.py).
+If the sea is no sum of waves, F_e is the added mass plus the mass displaced at rest, times the fluid's acceleration at
+the surface, and F_r follows from the velocity against the fluid: so a small hull that displaces its weight moves with
+the fluid in long waves. Small motions are those of linear theory. The drag is along and about the body's own axes,
+rho S/2 (b v + C |v| v/2) with S the wetted area.
 
-**Means.** A, F_r and F_e are linear and have no mean. They must not get one from what is of second order: in axes that
-lean with the body A dV/dt would (A differs along them, and lean and acceleration go together), and so would an
-acceleration times what is displaced just then, or a wave force taken at a place that moves with the wave. So the axes
-are level, what is displaced is that at rest, and the upward F_e is a change of impulse. A body then floats in waves
-where Archimedes says, but for the mean of the drag. Mean forces of second order, which would need the potential of that
-order (Pinkster 1980), are left out.
+**Means.** A, F_r and F_e are linear and have no mean. Second-order terms must not leave a spurious mean force. Three
+would: A dV/dt in axes that lean with the body (A differs along them, and lean and acceleration are correlated), an
+acceleration times the momentary displacement, and a wave force taken at a place that moves with the wave. So the axes
+are level, the displaced mass is that at rest, and the upward F_e is a change of impulse. A body then floats in waves
+where Archimedes says, apart from the mean of the drag. Mean forces of second order, which would need the potential of
+that order (Pinkster 1980), are left out.
 
 A hull that comes out of the water loses A, F_r and F_e with what of it is wet, below half of that at rest. With
 A = L L^T the part that it carries is L diag(c) L^T, c the wet share of each of the six motions: a sum of positive parts
@@ -59,8 +59,8 @@ from sim.floating.rigid import (
 from sim.jit import kernel
 from sim.validation import argument_error, check_positive, check_within, is_whole_number
 
-# The kernels of one substep are inlined: a call that is none copies some hundred fields of the records, which took
-# more than half of the time.
+# The kernels of one substep are inlined: a real call copies about a hundred fields of the records, which took more than
+# half of the time.
 MAX_PHASE = 0.4  # of omega h in a substep: periods are within 0.7 %, and waves may add to gravity
 ENTRY_SHARE = 0.5  # of what is wet at rest, up to which a hull that gets wetter counts as entering the water
 MAX_SUBSTEPS = 512  # of a body in one call of `step`
@@ -172,7 +172,7 @@ def advance(fleet, water, coefficients, counts, duration):
 
 @kernel(inline=True)
 def set_memory_step(fleet, i, h, gravity, scratch):
-    """Set what a substep of h [s] makes of the memory of body i, if another one was set."""
+    """Set decay and gain of the memory of body i for a substep of h [s], unless they are set already."""
     s = fleet.linear_hull[i]
     if scratch.substep[s] == h:
         return
@@ -428,7 +428,7 @@ def set_forces(fleet, water, coefficients, i, density, scratch):
     a, sx, sy = max(water.acceleration[i], -coefficients.gravity), water.slope[i, 0], water.slope[i, 1]
     for c in range(6):
         load[c] = 0.0
-    # Of the volume at rest: what a wave adds to it is of second order, and would lift the body on average.
+    # Of the volume at rest: the change by a wave is of second order, and would lift the body on average.
     carried = min(m, density * m / fleet.density[i]) * share[2] * share[2]
     for c in range(2):
         load[c] = (

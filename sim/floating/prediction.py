@@ -1,4 +1,4 @@
-"""What hydrostatics predicts of a hull: the numbers beside which a scene shows its measured ones."""
+"""Hydrostatic prediction for a hull: the numbers that a scene shows beside its measured ones."""
 
 import math
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from sim.floating.periods import heave_period_at
 
 
 class HydrostaticPrediction(NamedTuple):
-    """What hydrostatics predicts of an upright hull at rest."""
+    """Hydrostatic prediction for an upright hull at rest."""
 
     draft: float  # [m] of the lowest point below the surface; inf: it sinks
     draft_in_water: float  # [m] in clean water; inf: it sinks

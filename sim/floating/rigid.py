@@ -125,9 +125,9 @@ def add_pull(fleet, i, h, rate, scratch):
 
     With K the mobility of the point, an implicit step of x'' = -rate^2 x - 2 rate x' is the impulse
     P = -s/(1 + s) K^-1 (x' + x rate/(2 + h rate)), s = h rate (2 + h rate) (Catto, Soft Constraints, GDC 2011).
-    An impulse above the limit is (K + m)^-1 instead of K^-1 times the same, m such that it has the size of the limit:
-    the further above, the straighter it points to the target. Scaled down it would point as K^-1 turns it, and a body
-    that is pulled upwards at a corner would run aside. m by the iteration of More and Sorensen 1983.
+    An impulse above the limit uses (K + m)^-1 in place of K^-1, with m such that its size is the limit. The further
+    above, the straighter it points to the target. An impulse that is only scaled down keeps the direction of K^-1, and
+    a body that is pulled upwards at a corner would run aside. m by the iteration of More and Sorensen 1983.
     """
     H, v, w, p, change = scratch.H, scratch.v, scratch.w, scratch.pull_point, scratch.load
     K, K_inv, wanted, impulse = np.empty((3, 3)), np.empty((3, 3)), np.empty(3), np.empty(3)

@@ -11,7 +11,7 @@ SIDES = 32  # of the prism: the second moments of its cross-section are within 2
 
 
 def cylinder(radius: float, height: float) -> ClosedMesh:
-    """A cylinder [m], as a prism of the same volume. Raises ValueError for what is not 0.001 to 10000 m."""
+    """A cylinder [m], as a prism of the same volume. Raises ValueError for lengths outside 0.001 to 10000 m."""
     radius, height = check_length("radius", radius), check_length("height", height)
     n = SIDES
     angle = 2 * math.pi / n * np.arange(n)

@@ -1,4 +1,4 @@
-"""What the program knows of a body shape: one `Shape` record."""
+"""The record of a body shape."""
 
 import dataclasses
 from collections.abc import Callable
@@ -13,7 +13,7 @@ Color = tuple[int, int, int]
 
 
 class Immersed(NamedTuple):
-    """What of an upright shape lies up to a height above its lowest point, in closed form."""
+    """The part of an upright shape up to a height above its lowest point, in closed form."""
 
     volume: float  # [m3]
     centroid: float  # [m] of that volume above the lowest point

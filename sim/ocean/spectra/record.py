@@ -197,7 +197,7 @@ def _peaked_shape(x: np.ndarray, gamma: float) -> np.ndarray:
 
 @functools.lru_cache(maxsize=256)
 def peaked_integral(gamma: float) -> float:
-    """Integral of `_peaked_shape` over all x, by Simpson's rule in log x on both sides of the peak, which has a kink."""
+    """Integral of `_peaked_shape` over all x: by Simpson's rule in log x on both sides of the peak, which is a kink."""
     total = 0.0
     for a, b in ((math.log(0.3), 0.0), (0.0, math.log(100.0))):
         log_x, step = np.linspace(a, b, 4001, retstep=True)

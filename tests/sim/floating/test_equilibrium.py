@@ -21,7 +21,7 @@ def as_mesh(hull):
 
 
 def prism_draft(density, height, upper, thickness, lower):
-    """ocean.md 3.8: floats in oil only, or straddles."""
+    """Draft of a prism in oil on water, by Archimedes: it floats in the oil only, or reaches into the water."""
     if density * height <= upper * thickness:
         return density * height / upper
     return thickness + (density * height - upper * thickness) / lower

@@ -39,7 +39,7 @@ cpu_target.options.noalias = TargetOptions.Mapping("noalias")  # type: ignore[at
 
 
 class KernelFile(IndexDataCacheFile):
-    """numba's cache file of one kernel, where neither a full disk nor rubbish ends the program: it compiles anew.
+    """numba's cache file of one kernel. After a full disk or with a corrupt file the kernel compiles again.
 
     numba keeps the kernels of each checkout apart by the path and the time of the source. The folder is already named
     by the contents, so that checkouts and environments with the same sources share their kernels.
@@ -52,7 +52,7 @@ class KernelFile(IndexDataCacheFile):
             return None
 
     def has(self, key: Any) -> bool:
-        """Whether it is kept, as far as the index says."""
+        """True if the index lists it as cached."""
         try:
             return key in self._load_index()
         except Exception:  # whatever unpickling leads to
@@ -131,9 +131,9 @@ class PartLibrary(KernelLibrary):
 
     @property
     def has_dynamic_globals(self) -> bool:
-        """Whether it holds an address of this process. Before it is optimised it may, without using it.
+        """True if it holds an address of this process. Before it is optimised it may, without using it.
 
-        An entry that does use one is not kept, so its parts would be compiled again only to be linked into it.
+        An entry that does use one is not cached, so its parts would be compiled again only to be linked into it.
         """
         return False
 
@@ -174,7 +174,7 @@ class EntryCompiler(Compiler):
 
 
 class PartResult(CompileResultCacheImpl):
-    """How a part is kept: its LLVM code, and what its callers have to know of it."""
+    """The cached form of a part: its LLVM code, and the types that its callers need."""
 
     def reduce(self, cres: Any) -> Any:
         library, about = cres.library, cres.fndesc
@@ -218,16 +218,16 @@ def environments(module: Any) -> list[Any]:
 
 
 class Kernel(CPUDispatcher):
-    """What part and entry share: two processes never compile the same kernel into one cache at the same time."""
+    """Base of part and entry: two processes never compile the same kernel into one cache at the same time."""
 
     _cache: Any
     _compiler: Any
 
     def while_locked(self, sig: Any, compile: Callable[[Any], Any]) -> Any:
-        """`compile` a signature. Where it is not kept yet, others that want it wait, and load what was compiled.
+        """`compile` a signature. If it is not cached yet, other processes wait, and load the result.
 
-        Kernels lock their callees while they are locked themselves. No kernel calls its callers, so there is no circle
-        in which processes could wait for each other. A process that is killed gives its locks back.
+        Kernels lock their callees while they are locked themselves. No kernel calls its callers, so processes cannot
+        deadlock. A process that is killed releases its locks.
         """
         args = tuple(sigutils.normalize_signature(sig)[0])
         file = getattr(self._cache, "_cache_file", None)
@@ -242,7 +242,7 @@ class Part(Kernel):
     """A kernel as other kernels call it."""
 
     def compile(self, sig: Any) -> Any:
-        """What stands for the part of these argument types among numba's functions; made where there is none yet."""
+        """The key of the part for these argument types among numba's functions; made on first use."""
         return self.while_locked(sig, self.load_or_compile)
 
     def load_or_compile(self, sig: Any) -> Any:
@@ -258,7 +258,7 @@ class Part(Kernel):
                 with event.trigger_event("numba:compile", data=about):
                     result = self._compiler.compile(args, return_type)
                 self._cache.save_overload(sig, result)
-            # numba finds the code of a call by what Python would call, so here by an object of no other meaning.
+            # numba looks up callees by entry point; parts have none, so a unique object() is the key.
             result = result._replace(entry_point=object())
             self.targetctx.insert_user_function(result.entry_point, result.fndesc, [result.library])
             self.overloads[tuple(args)] = result
@@ -266,12 +266,12 @@ class Part(Kernel):
 
 
 def with_room(call: Callable[[], Any]) -> Any:
-    """What `call` returns, with half a megabyte for the frames of the functions that it calls.
+    """Call `call` with half a megabyte for the frames of the functions that it calls.
 
-    Python keeps frames in pieces of 16 kB. Where a loop calls a function at the end of a piece, each call has the next
-    one mapped and unmapped: for numba's deep recursion 250,000 times in a race's kernels, a tenth of their compile
-    time. A piece is made as large as the frame that needs it, in powers of two, and this function's frame takes a
-    little over half of a megabyte.
+    Python keeps frames in chunks of 16 kB. If a loop calls a function at the end of a chunk, each call maps and unmaps
+    the next one: for numba's deep recursion 250,000 times in a race's kernels, a tenth of their compile time. A chunk
+    is made as large as the frame that needs it, in powers of two, and this function's frame takes a little over half a
+    megabyte.
     """
     return call()
 
@@ -298,13 +298,13 @@ class Entry(Kernel):
         return self.part.get_overload(sig)
 
 
-class Choice(Entry):
+class VariantEntry(Entry):
     """One of several kernels, by the class of a record (a NamedTuple) among the arguments."""
 
     variants: dict[Any, Any]
 
     def variant(self, args: Any) -> Any:
-        """The kernel for these argument types. Raises TypeError where there is none."""
+        """The kernel for these argument types. Raises TypeError if none fits."""
         for arg in args:
             kernel = self.variants.get(getattr(arg, "instance_class", None))
             if kernel is not None:
@@ -355,12 +355,12 @@ def compiled(
     return made
 
 
-def choose(variants: dict[type, Any]) -> Choice:
+def choose(variants: dict[type, Any]) -> VariantEntry:
     """A kernel that stands for one of `variants`, by the class of a record (a NamedTuple) among its arguments."""
-    choice: Any = numba.njit(next(iter(variants.values())).py_func)
-    choice.__class__ = Choice
-    choice.variants = variants
-    return choice
+    made: Any = numba.njit(next(iter(variants.values())).py_func)
+    made.__class__ = VariantEntry
+    made.variants = variants
+    return made
 
 
 class Pair(NamedTuple):

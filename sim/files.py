@@ -15,9 +15,9 @@ def draft_of(path: Path) -> Path:
 
 @contextlib.contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A name to write to; when the block ends `path` is that file, and after an exception it is what it was before.
+    """Yield a draft path to write to; it replaces `path` when the block ends, but not after an exception.
 
-    A symbolic link is followed: the file that it leads to is replaced. Raises OSError where that cannot be done.
+    A symbolic link is followed: the file that it leads to is replaced. Raises OSError if that fails.
     """
     target = Path(os.path.realpath(path))
     draft = draft_of(target)
@@ -35,8 +35,8 @@ def replacing(path: Path) -> Iterator[Path]:
 def locked(path: Path) -> Iterator[None]:
     """Hold the lock that this file stands for; waits while another process, or another thread, holds it.
 
-    The system gives back the locks of a process that ends, however it ends. Where the file cannot be made (a full disk,
-    a folder that nobody may write) nothing is locked.
+    The system releases the locks of a process that ends, however it ends. If the file cannot be made (a full disk, a
+    read-only folder) nothing is locked.
     """
     try:
         file = path.open("ab")

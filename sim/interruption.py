@@ -1,8 +1,8 @@
-"""Ends a long solve early, or lets something else have a turn in the middle of it.
+"""Cancelling long solves, and yielding in the middle of them.
 
-Kernels that may take long look at the numbers of `stop_request` now and then. The first is set by whoever wants the
-solve to end. Where the second is set, they also ask Python for signals, which only the main thread gets. Where the
-third is set, they call a function of Python's and then go on: so a solve of seconds lets its thread answer in between.
+Kernels that may take long read the numbers of `stop_request` now and then. The first cancels the solve. If the second
+is set, they also check for Python's signals, which only the main thread gets. If the third is set, they call a Python
+function and then go on: a solve of seconds yields to its thread in between.
 """
 
 import contextlib
@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 # Indices into a request.
-STOP = 0  # not 0: the solve is to end
-SIGNALS = 1  # not 0: Python is to be asked for a Ctrl-C
-TURN = 2  # not 0: FUNCTION is to be called, once
+STOP = 0  # not 0: cancel the solve
+SIGNALS = 1  # not 0: check for a Ctrl-C
+TURN = 2  # not 0: yield: call FUNCTION once
 FUNCTION = 3  # address of a function without arguments, or 0
-ABANDON = 2  # at STOP: nothing of the solve is needed any more, so that what is kept whole ends too
+ABANDON = 2  # at STOP: cancel at once, even inside `kept_whole`
 
 REQUEST: contextvars.ContextVar[NDArray[np.int64] | None] = contextvars.ContextVar("stop request", default=None)
 WHOLE: contextvars.ContextVar[bool] = contextvars.ContextVar("whole", default=False)
@@ -26,11 +26,11 @@ TURN_IS_DUE: contextvars.ContextVar[Callable[[], bool] | None] = contextvars.Con
 
 
 class InterruptionError(Exception):
-    """A solve was ended by another thread; the state is that of the last whole call of a kernel."""
+    """A solve was cancelled by another thread; the state is that of the last complete call of a kernel."""
 
 
 def stop_request() -> NDArray[np.int64]:
-    """The numbers that kernels called from this thread look at."""
+    """The request, (4,), of the kernels that are called from this thread."""
     request = REQUEST.get()
     if request is None:
         request = np.array([0, 1, 0, 0], np.int64)
@@ -43,10 +43,10 @@ def use_request(
     give_turn: Callable[[], None] | None = None,
     turn_is_due: Callable[[], bool] | None = None,
 ) -> None:
-    """Let solves of this thread look at `request` (4,). Any thread may set its STOP and TURN.
+    """Let solves of this thread read `request` (4,). Any thread may set its STOP and TURN.
 
-    give_turn: called where TURN is set, on this thread, in the middle of a solve; it raises nothing. turn_is_due: asked
-    by `raise_if_stopped`, as who sets TURN may be late.
+    give_turn: called on this thread when TURN is set, in the middle of a solve; it raises nothing. turn_is_due: called
+    by `raise_if_stopped`, because TURN may be set late.
     """
     request[FUNCTION] = id(give_turn) if give_turn else 0
     REQUEST.set(request)
@@ -55,10 +55,10 @@ def use_request(
 
 
 def raise_if_stopped() -> None:
-    """Raises KeyboardInterrupt after a Ctrl-C that a kernel noticed, InterruptionError where another thread asked.
+    """Raises KeyboardInterrupt after a Ctrl-C that a kernel noticed, InterruptionError if another thread cancels.
 
-    The request stays set in the latter case, so that nothing else of the same call begins; who set it takes it back.
-    A turn that was asked for, or is due, is given first. Inside `kept_whole` only ABANDON ends something.
+    The latter request stays set, so that no further part of the same call begins; the thread that set it clears it.
+    Yields first if a turn was requested or is due. Inside `kept_whole` only ABANDON cancels.
     """
     request, give_turn, is_due = stop_request(), GIVE_TURN.get(), TURN_IS_DUE.get()
     if give_turn and (request[TURN] or (is_due is not None and is_due())):
@@ -73,8 +73,7 @@ def raise_if_stopped() -> None:
 
 @contextlib.contextmanager
 def kept_whole() -> Iterator[None]:
-    """Inside, `raise_if_stopped` raises nothing but where all is abandoned: for a change of several things that must
-    all be made, or none."""
+    """Inside, only ABANDON makes `raise_if_stopped` raise: for several changes that must be made together."""
     before = WHOLE.set(True)
     try:
         yield
@@ -83,13 +82,12 @@ def kept_whole() -> Iterator[None]:
 
 
 def is_kept_whole() -> bool:
-    """Whether this thread is inside `kept_whole`."""
+    """True if this thread is inside `kept_whole`."""
     return WHOLE.get()
 
 
 def pieces(count: int, size: int) -> Iterator[slice]:
-    """Slices of at most `size` that cover range(count). Before each, others may have a turn; raises as
-    `raise_if_stopped`."""
+    """Slices of at most `size` that cover range(count). Yields before each (`raise_if_stopped`, which may raise)."""
     for start in range(0, count, size):
         raise_if_stopped()
         yield slice(start, min(start + size, count))

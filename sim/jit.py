@@ -1,8 +1,8 @@
-"""`kernel`: the only compiler decorator of the repository, and where compiled code is kept.
+"""`kernel`: the only compiler decorator of the repository, and the cache of compiled code.
 
-numba does not notice an edit in a *callee's* file, so the folder that a module's kernels are kept in is named by a hash
-of the module and of all modules of ours that it imports: an edit in one of them makes a new folder. Where nothing is
-writable, kernels compile at each start.
+numba does not notice an edit in a *callee's* file, so the cache folder of a module's kernels is named by a hash of the
+module and of all modules of ours that it imports: an edit in one of them makes a new folder. If no folder is writable,
+kernels compile at each start.
 """
 
 import contextlib
@@ -89,7 +89,7 @@ def reachable_hash(*paths: Path) -> str:
 
 
 def cache_directory() -> Path | None:
-    """The writable directory below which compiled kernels are kept, or None where there is none."""
+    """The writable directory below which compiled kernels are cached, or None if no directory is writable."""
     base = Path(os.environ.get("SPRINGTIDE_CACHE") or platformdirs.user_cache_dir("springtide")) / "kernels"
     try:
         base.mkdir(parents=True, exist_ok=True)
@@ -108,7 +108,7 @@ CACHE = cache_directory()
 
 @functools.cache
 def kernel_folder(path: Path) -> Path | None:
-    """Where the kernels of a source are kept: named by the module and by the hash of all that it can reach."""
+    """Cache folder of a source's kernels: named by the module and by the hash of all modules that it can reach."""
     if CACHE is None:
         return None
     try:
@@ -270,5 +270,5 @@ is_stopped: Any = kernel(_is_stopped_interpreted if numba.config.DISABLE_JIT els
 
 
 def set_threads(count: int) -> None:
-    """How many threads the calling thread's parallel kernels take. A kernel that set it could not be cached."""
+    """Set the number of threads of the calling thread's parallel kernels. A kernel that set it could not be cached."""
     numba.set_num_threads(count)

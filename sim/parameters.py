@@ -30,11 +30,11 @@ MAX_SHOWN_NAME = 60  # characters of an unknown name that an error repeats
 
 
 class Parameter(NamedTuple):
-    """What the value of one parameter may be. `choices` is non-empty for named values only; low and high bound numbers.
+    """The declaration of one parameter. `choices` is non-empty for named values only; low and high bound numbers.
 
-    title: what the panel calls it, "" for the name in words. choice_titles: what the panel calls each of `choices`.
-    affects: what a change does. "look": only the picture or the pace of the clock; "forces": the motion goes on under
-    other forces; "start": the scene begins again.
+    title: in the panel, "" for the name in words. choice_titles: in the panel, of each of `choices`.
+    affects: effect of a change. "look": only on the picture or the speed of the clock; "forces": the motion goes on
+    under other forces; "start": the scene begins again.
     """
 
     default: Value
@@ -66,11 +66,11 @@ class Parameter(NamedTuple):
         return f"{whole}{plain(self.low)} to {plain(self.high)}{unit}"
 
     def title_of(self, choice: str) -> str:
-        """What the panel calls one of `choices`."""
+        """Title in the panel of one of `choices`."""
         return self.choice_titles[self.choices.index(choice)]
 
     def choice_of(self, title: str) -> str:
-        """The choice that the panel calls `title`. Raises ValueError where there is none."""
+        """The choice with this title in the panel. Raises ValueError for an unknown title."""
         return self.choices[self.choice_titles.index(title)]
 
 
@@ -169,7 +169,7 @@ def effect_of_change(old: object, new: object) -> Effect | None:
 
 
 def clamp_value(parameter: Parameter, value: object) -> Value:
-    """`value` as the parameter's kind, within its range. What is no such value at all becomes the default."""
+    """`value` as the parameter's kind, within its range. A value of another kind becomes the default."""
     if parameter.choices:
         return value if isinstance(value, str) and value in parameter.choices else parameter.default
     if parameter.kind is bool:
@@ -212,7 +212,7 @@ def check_value(name: str, parameter: Parameter, value: object) -> Any:
 
 
 def unknown_parameter(name: str, known: Mapping[str, Parameter]) -> ValueError:
-    """The error for a name that is no parameter: those that it resembles, or all that there are."""
+    """The error for a name that is no parameter: it lists similar names, or all names."""
     shown = name if name.isidentifier() and len(name) <= MAX_SHOWN_NAME else repr(name[:MAX_SHOWN_NAME])
     close = similar(name, known)
     if close:
@@ -245,9 +245,9 @@ def check_record(cls: type[P], values: Mapping[str, object]) -> P:
 
 
 def parse_value(name: str, parameter: Parameter, text: str) -> Value:
-    """Read a parameter's value from what a person typed; numbers as `read_number` takes them, in the parameter's unit.
+    """Read a parameter's value from typed text; numbers as in `read_number`, in the parameter's unit.
 
-    Raises ValueError, with the reason where there is more to say, as `check_value` does.
+    Raises ValueError as `check_value` does, with a reason if one is known.
     """
     word = text.strip()
     if parameter.choices:
@@ -267,7 +267,7 @@ def parse_value(name: str, parameter: Parameter, text: str) -> Value:
 
 
 def parse_assignments(cls: type, assignments: list[str]) -> dict[str, Value]:
-    """Values from ["name=value", ...]. Raises ValueError for what is not of that form or not allowed."""
+    """Values from ["name=value", ...]. Raises ValueError for another form, or a value that is not allowed."""
     known = parameters_of(cls)
     values: dict[str, Value] = {}
     for assignment in assignments:

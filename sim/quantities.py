@@ -27,7 +27,7 @@ def plain_unit(unit: str) -> str:
 
 
 def exponent_of(suffix: str, unit: str) -> int | None:
-    """The power of ten that a suffix stands for: a prefix, the unit, or both; None where it is none of these."""
+    """The power of ten that a suffix stands for: a prefix, the unit, or both; None for any other suffix."""
     suffix, unit = plain_unit(suffix), plain_unit(unit)
     if suffix in ("", unit):
         return 0
@@ -36,7 +36,7 @@ def exponent_of(suffix: str, unit: str) -> int | None:
 
 
 def fraction_of(digits: str) -> Fraction:
-    """Decimal digits as an exact number. Raises ValueError where it is beyond every float."""
+    """Decimal digits as an exact number. Raises ValueError for a number beyond every float."""
     _, _, exponent = digits.lower().partition("e")
     if exponent and abs(int(exponent)) > MAX_EXPONENT:
         raise ValueError(f"{digits}: not a number that can be kept")
@@ -44,11 +44,11 @@ def fraction_of(digits: str) -> Fraction:
 
 
 def read_number(text: str, unit: str = "") -> float:
-    """The number that a text says, rounded once.
+    """Parse a number, rounded once.
 
-    It may be a quotient, have a comma for its point, and end in a prefix (n, µ or u, m, k, M, G), in the unit, or in
-    both. "5m" is five metres where the unit is m, and five thousandths elsewhere.
-    Raises ValueError for what is no number, and for "1,000", which means one number here and another there.
+    It may be a quotient, have a decimal comma, and end in a prefix (n, µ or u, m, k, M, G), in the unit, or in both.
+    "5m" is five metres if the unit is m, and five thousandths otherwise.
+    Raises ValueError for text that is no number, and for "1,000", whose meaning depends on the country.
     """
     word = text.strip().replace("\u2212", "-")
     word = re.sub(r"(?<=\d)[\u00a0\u2009\u202f ](?=\d{3}(?!\d))", "", word)  # spaces between groups of digits

@@ -1,4 +1,4 @@
-"""Checks of arguments: every error names the argument, the value given and what is allowed, in one line."""
+"""Checks of arguments: every error names the argument, the value given and the allowed values, in one line."""
 
 import math
 from collections.abc import Iterable
@@ -11,7 +11,7 @@ MAX_WAVENUMBER = 1e20  # [rad/m]: its powers are still finite
 
 
 def argument_error(name: str, value: object, allowed: str) -> ValueError:
-    """The one form of an argument error: the name, the value given, and what is allowed."""
+    """The one form of an argument error: the name, the value given, and the allowed values."""
     return ValueError(f"{name}: {value!r} is not allowed; allowed: {allowed}")
 
 
@@ -26,7 +26,7 @@ def as_float(value: object) -> float:
 
 
 def is_whole_number(value: object) -> bool:
-    """Whether `value` is an integer (and no bool)."""
+    """True if `value` is an integer (and no bool)."""
     return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 
@@ -92,8 +92,10 @@ def check_vector(name: str, value: object, unit: str, length: int = 3) -> tuple[
 
 
 def as_array(name: str, value: Any, allowed: str) -> np.ndarray:
-    """`value` as a float64 array. Raises ValueError for what holds no real numbers, truth values and texts included, or
-    is no regular array."""
+    """`value` as a float64 array.
+
+    Raises ValueError unless it is a regular array of real numbers; truth values and texts are refused.
+    """
     try:
         array = np.asarray(value)
     except ValueError:

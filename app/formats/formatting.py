@@ -48,7 +48,7 @@ def decimal(value: float, decimals: int) -> str:
 
 
 def fixed(value: float, decimals: int, *, sign: bool = False) -> str:
-    """Always `decimals` digits after the point, for what changes all the time; – where it is NaN or infinite.
+    """Always `decimals` digits after the point, for values that change all the time; – for NaN and infinity.
 
     sign: write a plus, too.
     """
@@ -90,7 +90,7 @@ def seconds(value: float, digits: int = 3) -> str:
 
 
 def time_step(step: float) -> str:
-    """A time step [s]: 1/240 s where it is nearly one over a whole number, else in ms or µs."""
+    """A time step [s]: 1/240 s if it is nearly one over a whole number, else in ms or µs."""
     rate = round(1.0 / step)
     if 10 <= rate <= MAX_STEP_RATE and abs(rate * step - 1.0) < 1e-4:
         return f"1/{rate} s"
@@ -98,7 +98,7 @@ def time_step(step: float) -> str:
 
 
 def count(value: float) -> str:
-    """How many, in words where there are millions of them: 30 million."""
+    """A count, in words from a million on: 30 million."""
     for word, size in COUNT_UNITS:
         if abs(value) >= 0.9995 * size:
             return f"{number(float(f'{value / size:.2g}'))} {word}"

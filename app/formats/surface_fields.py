@@ -9,7 +9,7 @@ from sim.jit import kernel
 
 
 class SurfaceNumbers(NamedTuple):
-    """What one pass over a surface finds."""
+    """Moments and maximum of a surface, from one pass over it."""
 
     shift: tuple[float, float, float]  # [m] mean displacement
     highest: float  # [m]

@@ -112,8 +112,8 @@ class WaveExcitation:
         [rad/m], amplitude (waves,) [m], omega (waves,) [rad/s], phase (waves,) [turns] at the origin.
 
         The upward force is the change of the impulse sum a Re(i D/w exp(i phase)) along the body's way, and so has no
-        mean. In linear theory the force at a fixed place has no mean. At a place that moves with the waves it has one of
-        second order, which a small body that follows the water does not feel.
+        mean. In linear theory the force at a fixed place has no mean. At a place that moves with the waves its mean is
+        of second order, and a small body that follows the water does not feel it.
         """
         if not (np.array_equal(kx, self.kx) and np.array_equal(ky, self.ky)):
             self.kx, self.ky, self.impulses = kx.copy(), ky.copy(), ()

@@ -81,12 +81,12 @@ class Fire:
 
     @property
     def burning(self) -> np.ndarray:
-        """Which parcels have started, (n,) bool."""
+        """Parcels that have started, (n,) bool."""
         return self.age >= 0.0
 
 
 def share_left(along: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Share of the parcels that live longer than this share of the longest life, (n,)."""
+    """Fraction of the parcels that live longer than this fraction of the longest life, (n,)."""
     late = np.clip((LONGEST_LIFE * along - LEAST_LIFE) / LIFE_RANGE, 0.0, 1.0)
     return (1.0 - np.sqrt(late)).astype(np.float32)
 

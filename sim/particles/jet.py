@@ -1,7 +1,7 @@
 """A jet of oil: parcels on ballistic paths that fall on a moving surface and feed a spill.
 
-Between nozzle and sea a parcel moves as dv/dt = -g z - (v - wind)/tau, exactly, with tau infinite by default. What
-leaves the nozzle is in the air or has reached the sea: `ejected` = `in_flight` + `fed` to rounding.
+Between nozzle and sea a parcel moves as dv/dt = -g z - (v - wind)/tau, exactly, with tau infinite by default. Volume is
+conserved: `ejected` = `in_flight` + `fed` to rounding.
 """
 
 import math
@@ -69,7 +69,7 @@ class Jet:
 
     @property
     def in_flight(self) -> float:
-        """Volume [m3] between the nozzle and the sea, with what waits for a parcel to become free."""
+        """Volume [m3] between the nozzle and the sea, with the volume that waits for a free parcel."""
         return float(self.volume[self.flying].sum()) + self._waiting
 
     def step(self, dt: float, height: np.ndarray, origin: tuple[float, float], cell: float) -> Landed:
@@ -119,7 +119,7 @@ def path(v, wind, pull, tau, t):
 
 @kernel
 def fly(position, velocity, flying, dt, gravity, tau, wind_x, wind_y):
-    """Move what is in the air by dt."""
+    """Move the parcels in the air by dt."""
     for i in range(flying.size):
         if flying[i]:
             way, velocity[0, i] = path(velocity[0, i], wind_x, 0.0, tau, dt)
@@ -149,7 +149,7 @@ def emit(position, velocity, flying, free, serial, dt, gravity, tau, spread, win
 
 @kernel
 def land(position, velocity, flying, volume, dt, height, x0, y0, cell, last, found):
-    """Take out of the air what is under the surface; found[m] = where it met it, its velocity and volume; returns m."""
+    """Land parcels under the surface: set found[m] to place, velocity and volume at the hit; return their number m."""
     count = 0
     for i in range(flying.size):
         if not flying[i]:

@@ -1,4 +1,4 @@
-"""The plume of a fire: how fast and how hot its middle is, how far it rises in the wind, and the way of its gas.
+"""The plume of a fire: speed and temperature on its axis, its rise in the wind, and the path of its gas.
 
 In still air McCaffrey's three regimes (1979, NBSIR 79-1910): with q = Q^(2/5), Q in kW, z in m,
 
@@ -12,11 +12,11 @@ The turbulence of the wind widens it too, by Briggs's curves for neutral air ove
 
     sy = 0.08 x/sqrt(1 + 0.0001 x),    sz = 0.06 x/sqrt(1 + 0.0015 x).
 
-A plume takes the time that both laws take together for each metre, the second from the height of the flame on; it
-widens, from the height of the flame on, by 0.15 of its rise in still air (Morton, Taylor and Turner 1956) and by
-Briggs's 0.6 where it is bent over. To the square of that radius comes the square of 2 sqrt(sy sz), as a disc of even
-density is twice as wide as its standard deviation. Gas is as hot as in still air after as long a way.
-Limits: neutral air; nearer than 119 F^(2/5) [m], where Briggs's plume stops to rise.
+The time for each metre is the sum of the times of both laws, the second from the height of the flame on. From there the
+plume widens by 0.15 of its rise in still air (Morton, Taylor and Turner 1956) and by Briggs's 0.6 when bent over. The
+square of 2 sqrt(sy sz) is added to the square of that radius, because a disc of even density is twice as wide as its
+standard deviation. Gas is as hot as in still air after the same path length.
+Limits: neutral air; nearer than 119 F^(2/5) [m], where Briggs's plume stops rising.
 """
 
 import math
@@ -91,7 +91,7 @@ def soot_made(power: float) -> float:
 
 
 class Track(NamedTuple):
-    """The way of gas in the middle of a plume, at equal steps of its age; arrays (TRACK_POINTS,) float32."""
+    """Path of the gas on the axis of a plume, at equal steps of its age; arrays (TRACK_POINTS,) float32."""
 
     step: float  # [s]
     height: NDArray[np.float32]  # [m] above the fire
@@ -100,7 +100,7 @@ class Track(NamedTuple):
 
 
 def track(power: float, diameter: float, wind_speed: float, duration: float) -> Track:
-    """The way of the gas of a fire of this power [W] and diameter [m] for `duration` [s]; wind [m/s].
+    """Path of the gas of a fire of this power [W] and diameter [m] for `duration` [s]; wind [m/s].
 
     Raises ValueError for a value that is not allowed.
     """

@@ -39,7 +39,7 @@ def terminal_speed(diameter, gravity: float = EARTH):
 
 
 class Rainfall(NamedTuple):
-    """What a rate means, from integrals over all drops between SMALLEST and LARGEST."""
+    """Rain of a given rate: integrals over all drops between SMALLEST and LARGEST."""
 
     concentration: float  # [1/m3] drops in the air
     flux: float  # [1/(m2 s)] drops that arrive
@@ -50,7 +50,7 @@ class Rainfall(NamedTuple):
 
 
 def rainfall(rate: float, gravity: float = EARTH) -> Rainfall:
-    """Of Marshall and Palmer's drops at `rate` [mm/h]. Raises ValueError where rate or gravity is not above 0."""
+    """Rain of Marshall and Palmer's drops at `rate` [mm/h]. Raises ValueError unless rate and gravity are above 0."""
     check_positive("rate", rate, "mm/h")
     D, N, step = drop_sizes(rate, gravity)
     v = terminal_speed(D, gravity)

@@ -14,7 +14,8 @@ from app.lab.rope_march import REFERENCE
 from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.server.viewer import Viewer
-from tests.app.lab.test_session import ACCIDENTS, HEAD, RIGHT, make_scene, run, save, wait_for
+from tests.app.lab.test_session import ACCIDENTS, HEAD, RIGHT, make_scene, run, save
+from tests.waiting import wait_for
 
 TASKS = load_tasks()
 METHODS = {"step_euler": "explicit_euler", "step_rk4": "rk4", "step_leapfrog": "leapfrog"}

@@ -2,8 +2,7 @@
 
 import dataclasses
 import inspect
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +21,7 @@ from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.square_sea.parameters import Params
 from app.scenes.square_sea.scene import SquareSeaScene
 from sim.ocean.emulsions import arrhenius
+from tests.waiting import wait_for
 
 TASKS = {task.name: task for task in load_tasks()}
 HEAD = "import numpy as np\n\n\n"
@@ -49,13 +49,6 @@ def source(*names: str) -> str:
 def with_fault(name: str, line: str) -> str:
     arguments = ", ".join(TASKS[name].arguments)
     return f"{HEAD}def {name}({arguments}):\n    {line}\n"
-
-
-def wait_for(condition: Callable[[], object], seconds: float = 30.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 class Folder:

@@ -18,7 +18,8 @@ from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import Params as RopeParams
 from app.scenes.rope.scene import RopeScene
 from sim.parameters import Parameter, Value, effect_of_change, in_words, parameters_of
-from tests.app.lab.test_session import save, wait_for
+from tests.app.lab.test_session import save
+from tests.waiting import wait_for
 
 TASKS = load_tasks()
 FRAME = 1 / 30  # [s] of a scene's motion

@@ -5,13 +5,13 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from app.lab.runner import RunError, Runner, has_ended
+from tests.waiting import wait_for
 
 ROOT = Path(__file__).parents[3]
 # What a function does -> the kind of the error and a part of its text.
@@ -212,7 +212,7 @@ def test_what_an_ended_process_has_started_is_ended_and_no_other_group(tmp_path:
         with pytest.raises(RunError, match="exit status 3"):
             runner.call("mine.py", "f", 1.0)
         assert len(killed) == 1
-        wait_until(lambda: not has_group(killed[0]))
+        wait_for(lambda: not has_group(killed[0]))
         runner.call("mine.py", "right", 1.0)
         process = runner._process
         assert process is not None
@@ -225,10 +225,3 @@ def test_what_an_ended_process_has_started_is_ended_and_no_other_group(tmp_path:
         runner.abort()
         process.wait()  # it is reaped: nobody may use its number
     assert len(killed) == 2
-
-
-def wait_until(condition: Callable[[], bool]) -> None:
-    end = time.monotonic() + 30.0
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)

@@ -3,7 +3,7 @@
 import dataclasses
 import inspect
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +22,7 @@ from app.messages import Grab, Place, StudentAnswer
 from app.panel.code_panel import code_lines, function_lines, headline
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import RopeScene, rows_of
+from tests.waiting import wait_for
 
 TASKS = load_tasks()
 HEAD = "import numpy as np\n\n"
@@ -44,13 +45,6 @@ ACCIDENTS = {
 
 def with_line(line: str) -> str:
     return RIGHT.replace("    r = np", f"    {line}\n    r = np")
-
-
-def wait_for(condition: Callable[[], object], seconds: float = 30.0) -> None:
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,8 @@ from app.messages import Grab, Place, StudentAnswer
 from app.panel.code_panel import code_lines, tables_of
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.scene import ClothScene
-from tests.app.lab.test_session import save, wait_for
+from tests.app.lab.test_session import save
+from tests.waiting import wait_for
 
 TASKS = load_tasks()
 SOURCES = {task.name: inspect.getsource(task.function) for task in TASKS if task.file == "cloth.py"}

@@ -3,6 +3,42 @@
 An empty name stands for a mistake that the check does not know; it must refuse the solution all the same.
 """
 
+# Right bodies, which a mistake changes in one or two places.
+ROPE = """
+            F = -drag * v
+            for i in range(len(x) - 1):
+                r = x[i + 1] - x[i]
+                l = np.linalg.norm(r)
+                f = stiffness * (l - rest_length) * r / l - damping * (v[i] - v[i + 1])
+                F[i] += f
+                F[i + 1] -= f
+            a = F / mass
+            a[:, 2] -= gravity
+            a[0] = 0
+            return a"""
+RK4 = """
+            v1, a1 = v, acceleration(x, v)
+            v2, a2 = v + h / 2 * a1, acceleration(x + h / 2 * v1, v + h / 2 * a1)
+            v3, a3 = v + h / 2 * a2, acceleration(x + h / 2 * v2, v + h / 2 * a2)
+            v4, a4 = v + h * a3, acceleration(x + h * v3, v + h * a3)
+            return x + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)"""
+SPHERE = """
+            d = x - centre
+            l = np.linalg.norm(d)
+            if l > radius:
+                return np.zeros(3)
+            n = d / l
+            return max(stiffness * (radius - l) - damping * (v @ n), 0) * n"""
+
+
+def changed(body: str, *texts: str) -> str:
+    """The body with each text replaced by the one behind it."""
+    for old, new in zip(texts[::2], texts[1::2], strict=True):
+        assert old in body
+        body = body.replace(old, new)
+    return body
+
+
 WRONG: dict[str, tuple[tuple[str, str], ...]] = {
     "spring_force": (
         ("sign reversed", """
@@ -53,70 +89,12 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
                         l = np.linalg.norm(r)
                         a[i] += stiffness * (l - rest_length) * r / l - damping * (v[i] - v[j])
             return a"""),
-        ("force on one end only", """
-            F = -drag * v
-            for i in range(len(x) - 1):
-                r = x[i + 1] - x[i]
-                l = np.linalg.norm(r)
-                F[i] += stiffness * (l - rest_length) * r / l - damping * (v[i] - v[i + 1])
-            a = F / mass + np.array([0, 0, -gravity])
-            a[0] = 0
-            return a"""),
-        ("root not held", """
-            F = -drag * v
-            for i in range(len(x) - 1):
-                r = x[i + 1] - x[i]
-                l = np.linalg.norm(r)
-                f = stiffness * (l - rest_length) * r / l - damping * (v[i] - v[i + 1])
-                F[i] += f
-                F[i + 1] -= f
-            return F / mass + np.array([0, 0, -gravity])"""),
-        ("gravity divided by the mass", """
-            F = -drag * v
-            F[:, 2] -= gravity
-            for i in range(len(x) - 1):
-                r = x[i + 1] - x[i]
-                l = np.linalg.norm(r)
-                f = stiffness * (l - rest_length) * r / l - damping * (v[i] - v[i + 1])
-                F[i] += f
-                F[i + 1] -= f
-            F[0] = 0
-            return F / mass"""),
-        ("gravity along the wrong axis", """
-            F = -drag * v
-            for i in range(len(x) - 1):
-                r = x[i + 1] - x[i]
-                l = np.linalg.norm(r)
-                f = stiffness * (l - rest_length) * r / l - damping * (v[i] - v[i + 1])
-                F[i] += f
-                F[i + 1] -= f
-            a = F / mass + np.array([0, -gravity, 0])
-            a[0] = 0
-            return a"""),
-        ("air drag forgotten", """
-            F = np.zeros_like(x)
-            for i in range(len(x) - 1):
-                r = x[i + 1] - x[i]
-                l = np.linalg.norm(r)
-                f = stiffness * (l - rest_length) * r / l - damping * (v[i] - v[i + 1])
-                F[i] += f
-                F[i + 1] -= f
-            a = F / mass
-            a[:, 2] -= gravity
-            a[0] = 0
-            return a"""),
-        ("", """
-            F = -drag * np.abs(v) * v
-            for i in range(len(x) - 1):
-                r = x[i + 1] - x[i]
-                l = np.linalg.norm(r)
-                f = stiffness * (l - rest_length) * r / l - damping * (v[i] - v[i + 1])
-                F[i] += f
-                F[i + 1] -= f
-            a = F / mass
-            a[:, 2] -= gravity
-            a[0] = 0
-            return a"""),
+        ("force on one end only", changed(ROPE, "\n                F[i + 1] -= f", "")),
+        ("root not held", changed(ROPE, "\n            a[0] = 0", "")),
+        ("gravity divided by the mass", changed(ROPE, "a[:, 2] -= gravity", "a[:, 2] -= gravity / mass")),
+        ("gravity along the wrong axis", changed(ROPE, "a[:, 2] -= gravity", "a[:, 1] -= gravity")),
+        ("air drag forgotten", changed(ROPE, "-drag * v", "np.zeros_like(x)")),
+        ("", changed(ROPE, "-drag * v", "-drag * np.abs(v) * v")),
     ),
     "step_euler": (
         ("velocity before position", """
@@ -144,18 +122,8 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             a = acceleration(x, v)
             v1, v2, v3, v4 = v, v + h / 2 * a, v + h / 2 * a, v + h * a
             return x + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a + 2 * a + 2 * a + a)"""),
-        ("weights do not sum to one", """
-            v1, a1 = v, acceleration(x, v)
-            v2, a2 = v + h / 2 * a1, acceleration(x + h / 2 * v1, v + h / 2 * a1)
-            v3, a3 = v + h / 2 * a2, acceleration(x + h / 2 * v2, v + h / 2 * a2)
-            v4, a4 = v + h * a3, acceleration(x + h * v3, v + h * a3)
-            return x + h * (v1 + 2 * v2 + 2 * v3 + v4), v + h * (a1 + 2 * a2 + 2 * a3 + a4)"""),
-        ("weights do not sum to one", """
-            v1, a1 = v, acceleration(x, v)
-            v2, a2 = v + h / 2 * a1, acceleration(x + h / 2 * v1, v + h / 2 * a1)
-            v3, a3 = v + h / 2 * a2, acceleration(x + h / 2 * v2, v + h / 2 * a2)
-            v4, a4 = v + h * a3, acceleration(x + h * v3, v + h * a3)
-            return x + h / 6 * (v1 + v2 + v3 + v4), v + h / 6 * (a1 + a2 + a3 + a4)"""),
+        ("weights do not sum to one", changed(RK4, "h / 6 * (", "h * (")),
+        ("weights do not sum to one", changed(RK4, "+ 2 * ", "+ ")),
         ("full steps to the middle", """
             k1x, k1v = v, acceleration(x, v)
             k2x, k2v = v + h * k1v, acceleration(x + h * k1x, v + h * k1v)
@@ -191,43 +159,18 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("Euler", "return x + h * v, v + h * acceleration(x, v)"),
     ),
     "sphere_force": (
-        ("damping that pulls", """
-            d = x - centre
-            l = np.linalg.norm(d)
-            if l > radius:
-                return np.zeros(3)
-            n = d / l
-            return stiffness * (radius - l) * n - damping * v.dot(n) * n"""),
-        ("normal not unit length", """
-            n = x - centre
-            depth = radius - np.linalg.norm(n)
-            if depth <= 0:
-                return np.zeros(3)
-            return max(stiffness * depth - damping * (v @ n), 0) * n"""),
-        ("damping with the whole velocity", """
-            d = x - centre
-            l = np.linalg.norm(d)
-            if l > radius:
-                return np.zeros(3)
-            return stiffness * (radius - l) * d / l - damping * v"""),
-        ("sign reversed", """
-            d = centre - x
-            l = np.linalg.norm(d)
-            if l > radius:
-                return np.zeros(3)
-            n = d / l
-            return max(stiffness * (radius - l) + damping * (v @ n), 0) * n"""),
+        ("damping that pulls", changed(SPHERE, "max(stiffness * (radius - l) - damping * (v @ n), 0)",
+                                       "(stiffness * (radius - l) - damping * (v @ n))")),
+        ("normal not unit length", changed(SPHERE, "n = d / l", "n = d")),
+        ("damping with the whole velocity", changed(SPHERE, "max(stiffness * (radius - l) - damping * (v @ n), 0) * n",
+                                                    "stiffness * (radius - l) * n - damping * v")),
+        ("sign reversed", changed(SPHERE, "d = x - centre", "d = centre - x", "- damping", "+ damping")),
         ("force outside the sphere", """
             d = x - centre
             l = np.linalg.norm(d)
             n = d / l
             return (stiffness * (radius - l) - damping * (v @ n)) * n"""),
-        ("returns nothing", """
-            d = x - centre
-            l = np.linalg.norm(d)
-            if l < radius:
-                n = d / l
-                return max(stiffness * (radius - l) - damping * (v @ n), 0) * n"""),
+        ("returns nothing", changed(SPHERE, "\n                return np.zeros(3)", "\n                return")),
     ),
     "cloth_links": (
         ("no shear links", """

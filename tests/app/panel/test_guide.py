@@ -20,7 +20,7 @@ from app.render.html import escape
 from app.scenes.race.html import error_text
 from app.server.viewer import Viewer
 from tests import coroutines
-from tests.app.server.test_viewer import wait_for
+from tests.waiting import wait_for
 
 TASKS = load_tasks()
 

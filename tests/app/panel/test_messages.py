@@ -8,7 +8,7 @@ import pytest
 
 from app.scenes import NAMES
 from app.server.viewer import Viewer
-from tests.app.server.test_viewer import wait_for
+from tests.waiting import wait_for
 
 
 def strings(value: Any) -> Iterator[str]:

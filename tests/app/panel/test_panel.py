@@ -17,7 +17,7 @@ from app.messages import Load
 from app.scenes import NAMES
 from app.server.viewer import Viewer
 from tests import coroutines
-from tests.app.server.test_viewer import wait_for
+from tests.waiting import wait_for
 
 
 @pytest.fixture(scope="module")

@@ -273,19 +273,6 @@ def test_a_change_of_look_costs_nothing_and_leaves_the_accounts_alone():
     assert alone.work() == changed.work()
 
 
-def test_what_one_browser_holds_no_other_takes_or_releases():
-    scene = race(ropes=2)
-    scene.handle(Grab(14, (0.0, 0.0, 2.0), client=1))
-    scene.handle(Grab(5, (1.0, 0.0, 2.0), client=2))
-    scene.handle(Grab(0, (1.0, 0.0, 2.0), client=2))  # the root as a bead
-    scene.handle(Release(client=2))
-    scene.advance(2)
-    assert scene.frame().pull.particle == 14
-    assert scene.handles.root.at_rest
-    scene.handle(Release(client=1))
-    assert scene.frame().pull is None
-
-
 def test_a_drag_of_one_rope_pulls_all_alike_and_the_reference_run_too():
     scene = race(ropes=3, integrator="rk4", integrator_2="rk4", integrator_3="rk4", spacing=0.5)
     run(scene, 3.0)
@@ -383,10 +370,6 @@ def test_parameters_that_mean_nothing_are_hidden():
     assert not {"integrator_3", "plot_errors", "stiffness_ratio"} & three
     assert "step_2" not in hidden(Params(race_steps="own steps"))
     assert {"race_steps", "stiffness_ratio", "spacing", "integrator_2"} <= hidden(Params(ropes=1))
-
-
-def test_the_first_preset_is_the_defaults():
-    assert check_record(Params, next(iter(PRESETS.values()))) == Params()
 
 
 def test_a_race_runs_to_a_file(tmp_path, capsys):

@@ -294,22 +294,6 @@ def test_another_method_goes_on_with_the_same_account() -> None:
     assert scene.readings().cost.numerical_dissipation > 0.01
 
 
-def test_what_one_browser_holds_no_other_takes_or_releases() -> None:
-    scene = RopeScene(Params())
-    scene.handle(Grab(7, (0.0, 0.0, 2.0), client=1))
-    scene.handle(Grab(5, (1.0, 0.0, 2.0), client=2))
-    scene.handle(Grab(0, (1.0, 0.0, 2.0), client=2))  # the root as a bead
-    scene.handle(Release(client=2))
-    scene.advance(2)
-    assert scene.frame().pull.particle == 7
-    assert scene.frame().pull.target[0] < 0.0
-    assert scene.handles.root.at_rest
-    scene.handle(Release(client=1))
-    assert scene.frame().pull is None
-    scene.handle(Grab(5, (1.0, 0.0, 2.0), client=2))
-    assert scene.frame().pull.particle == 5
-
-
 @pytest.mark.parametrize("name", [name for name, record in INTEGRATORS.items() if record.implicit])
 def test_the_stiffest_rope_holds_with_every_implicit_method(name: str) -> None:
     """1e9 N/m at the lab's own step: in bounds for ten seconds, at a bounded cost that is shown."""

@@ -3,10 +3,8 @@
 import asyncio
 import http.client
 import threading
-import time
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 import viser
@@ -22,18 +20,12 @@ from app.server.viewer import Viewer
 from tests import coroutines
 from tests.app.server.test_guard import say
 from tests.app.server.test_transport import decoded
+from tests.waiting import wait_for
 
 KEY = "k-3_" * 5
 HUB = "https://hub.example.org"
 PATH = f"/lab/{KEY}"
 READY = ", ".join(COMPARISONS)
-
-
-def wait_for(condition: Callable[[], Any]) -> None:
-    end = time.monotonic() + 30.0
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 def opened(*queries: str, access: Access = OWN_PAGES_ONLY) -> Viewer:

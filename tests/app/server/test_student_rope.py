@@ -14,7 +14,7 @@ from app.lab.workbook import Workbook
 from app.scenes import scene_named
 from app.scenes.race.parameters import Params
 from app.server.viewer import Viewer
-from tests.app.server.test_viewer import wait_for
+from tests.waiting import wait_for
 
 RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
 

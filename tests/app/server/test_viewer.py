@@ -16,13 +16,7 @@ from app.scenes.compiling import Job
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests import coroutines
-
-
-def wait_for(condition: Any) -> None:
-    end = time.monotonic() + 60.0
-    while not condition():
-        assert time.monotonic() < end
-        time.sleep(0.01)
+from tests.waiting import wait_for
 
 
 def test_a_picture_that_cannot_be_drawn_halts_the_run_once_and_the_threads_live(

@@ -4,7 +4,6 @@ import math
 import pytest
 
 from sim.parameters import check_record, clamp, clamp_value, parameter, parameters_of, parse_assignments, similar
-from sim.validation import argument_error
 
 
 @dataclasses.dataclass(frozen=True)
@@ -109,7 +108,6 @@ def test_the_panel_shows_titles_and_the_record_holds_names():
     ("text", "value"),
     [
         ("points=20", {"points": 20}),
-        ("points = 2e1", {}),
         ("stiffness=1e3", {"stiffness": 1000.0}),
         ("floor=off", {"floor": False}),
         ("floor=YES", {"floor": True}),
@@ -117,14 +115,12 @@ def test_the_panel_shows_titles_and_the_record_holds_names():
     ],
 )
 def test_assignments_are_read(text, value):
-    if not value:
-        with pytest.raises(ValueError, match="no such parameter"):
-            parse_assignments(Params, [text])
-    else:
-        assert parse_assignments(Params, [text]) == value
+    assert parse_assignments(Params, [text]) == value
 
 
-@pytest.mark.parametrize("text", ["points", "points=", "points=x", "points=nan", "floor=maybe", "stiffness=inf", "=3"])
+@pytest.mark.parametrize(
+    "text", ["points", "points=", "points=x", "points=nan", "floor=maybe", "stiffness=inf", "=3", "points = 20"]
+)
 def test_assignments_of_nonsense_are_refused(text):
     with pytest.raises(ValueError, match=r"not allowed; allowed|no such parameter"):
         parse_assignments(Params, [text])
@@ -143,10 +139,6 @@ def test_assignments_of_nonsense_are_refused(text):
 def test_a_parameter_that_contradicts_itself_cannot_be_declared(declare):
     with pytest.raises(ValueError, match="not allowed"):
         declare()
-
-
-def test_a_refusal_has_one_form():
-    assert str(argument_error("h", -1, "above 0 s")) == "h: -1 is not allowed; allowed: above 0 s"
 
 
 @dataclasses.dataclass(frozen=True)

@@ -19,36 +19,6 @@ def refused(capsys: pytest.CaptureFixture, *arguments: str) -> str:
     return lines[0]
 
 
-@pytest.mark.parametrize(
-    ("assignment", "words"),
-    [
-        ("stiffness=-3", ["stiffness", "-3", "1 to 1e9 N/m"]),
-        ("stiffness=nan", ["stiffness", "nan", "N/m"]),
-        ("points=2.5", ["points", "2.5", "whole number from 2 to 1000"]),
-        ("integrator=rk5", ["integrator", "rk5", "leapfrog"]),
-        ("floor=maybe", ["floor", "maybe", "true or false"]),
-        ("colour", ["--set", "colour", "name=value"]),
-        ("wobble=1", ["wobble", "no such parameter"]),
-    ],
-)
-def test_a_bad_parameter_ends_with_one_line_that_names_it(
-    capsys: pytest.CaptureFixture, tmp_path: Path, assignment: str, words: list[str]
-) -> None:
-    line = refused(capsys, "run", "rope", "--seconds", "1", "--out", str(tmp_path / "a.npz"), "--set", assignment)
-    for word in words:
-        assert word in line
-
-
-def test_bad_arguments_of_run_are_refused_before_any_work(capsys: pytest.CaptureFixture, tmp_path: Path) -> None:
-    out = str(tmp_path / "a.npz")
-    assert "--seconds" in refused(capsys, "run", "rope", "--seconds", "nan", "--out", out)
-    assert "--seconds" in refused(capsys, "run", "rope", "--seconds", "-1", "--out", out)
-    assert ".npz" in refused(capsys, "run", "rope", "--seconds", "1", "--out", str(tmp_path / "a.txt"))
-    assert "folder" in refused(capsys, "run", "rope", "--seconds", "1", "--out", str(tmp_path / "no" / "a.npz"))
-    assert "--port" in refused(capsys, "--port", "70000", "--no-open")
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_method_that_refuses_the_net_is_refused_where_nobody_looks(
     capsys: pytest.CaptureFixture, tmp_path: Path
 ) -> None:
@@ -56,27 +26,6 @@ def test_a_method_that_refuses_the_net_is_refused_where_nobody_looks(
     line = refused(capsys, "run", "rope", "--seconds", "1", "--out", str(out), "--set", "integrator=pefrl")
     assert "integrator: 'pefrl' is not allowed" in line
     assert not out.exists()
-
-
-def test_a_preset_file_sets_parameters_and_a_bad_one_is_refused(capsys: pytest.CaptureFixture, tmp_path: Path) -> None:
-    preset = tmp_path / "p.json"
-    preset.write_text(json.dumps({"scene": "rope", "parameters": {"points": 5, "gravity": 3.0}}))
-    out = tmp_path / "a.npz"
-    arguments = ["run", "rope", "--seconds", "0.5", "--out", str(out), "--preset", str(preset), "--set", "gravity=4"]
-    assert main(arguments) == 0
-    about = json.loads(str(np.load(out)["about"]))
-    assert about["parameters"]["points"] == 5
-    assert about["parameters"]["gravity"] == 4.0
-    capsys.readouterr()
-    for text in (
-        "{",
-        "[]",
-        '{"parameters": {"points": 1}}',
-        '{"scene": "moon", "parameters": {}}',
-        '{"parameters": {"wobble": 1}}',
-    ):
-        preset.write_text(text)
-        refused(capsys, *arguments)
 
 
 def test_run_writes_arrays_units_and_all_parameters(tmp_path: Path) -> None:

@@ -41,17 +41,6 @@ def argument_error(capsys: pytest.CaptureFixture, *arguments: str) -> str:
 # ----- scene names
 
 
-@pytest.mark.parametrize(("former", "name"), [("phillips", "square_sea"), ("radial", "radial_sea")])
-def test_former_scene_names_are_told_the_new_ones(capsys, tmp_path, former, name):
-    out = str(tmp_path / "a.npz")
-    told = f"scene: '{former}' is not allowed; allowed: {name}, its new name"
-    assert told in argument_error(capsys, "run", former, "--seconds", "1", "--out", out)
-    assert told in argument_error(capsys, "--scene", former, "--no-open")
-    (tmp_path / "s.toml").write_text(f'scene = "{former}"\nseconds = 1\n[parameters]\nspeed = [1, 2]\n')
-    assert told in argument_error(capsys, "sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "a.nc"))
-    assert "rope" in argument_error(capsys, "run", "moon", "--seconds", "1", "--out", out)
-
-
 # ----- presets
 
 
@@ -68,22 +57,6 @@ def test_a_preset_is_a_name_or_a_file(tmp_path):
     assert parameters_in(out)["points"] == 3
     assert main([*RUN, str(out), "--preset", str(file)]) == 0
     assert parameters_in(out)["points"] == 7
-
-
-def test_an_unknown_preset_is_answered_with_those_there_are(capsys, tmp_path):
-    line = argument_error(capsys, *RUN, str(tmp_path / "a.npz"), "--preset", "Moon")
-    assert "--preset: 'Moon'" in line
-    assert "Pendulum" in line
-    assert ".json" in line
-    assert "Pendulum" in argument_error(capsys, "--no-open", "--preset", "Moon")
-
-
-def test_control_characters_in_a_preset_do_not_reach_the_terminal(capsys, tmp_path):
-    file = tmp_path / "p.json"
-    file.write_text(json.dumps({"scene": "rope", "parameters": {"a\nb\r\x1b[31m": 1}}))
-    line = argument_error(capsys, *RUN, str(tmp_path / "a.npz"), "--preset", str(file))
-    assert "'a\\nb\\r\\x1b[31m': no such parameter" in line
-    assert line.isprintable()
 
 
 # ----- hosts

@@ -127,28 +127,6 @@ def test_a_run_that_diverges_keeps_the_frames_before_that(tmp_path, capsys):
     assert "ended early" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
-    ("words", "named"),
-    [
-        (("rope", "--seconds", "1"), "SCENE"),
-        (("square_sea", "--seconds", "0"), "--seconds"),
-        (("square_sea", "--seconds", "nan"), "--seconds"),
-        (("square_sea", "--seconds", "1", "--rate", "0.5"), "--rate"),
-        (("square_sea", "--seconds", "1", "--start", "-1"), "--start"),
-        (("square_sea", "--seconds", "1", "--format", "obj"), "--format"),
-        (("cloth", "--seconds", "1", "--format", "png"), "--format"),
-        (("square_sea", "--seconds", "1e5", "--rate", "1000"), "GB"),
-        (("square_sea", "--seconds", "1", "--set", "size=100"), "size"),
-    ],
-)
-def test_what_is_not_allowed_is_one_line_and_no_folder(words, named, tmp_path, capsys):
-    assert main(["export", *words, "--out", str(tmp_path / "a")]) == 2
-    lines = capsys.readouterr().err.strip().splitlines()
-    assert len(lines) == 1
-    assert named in lines[0]
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.mark.parametrize("taken", ["file", "folder", "link"])
 def test_nothing_is_overwritten(taken, tmp_path, capsys):
     out = tmp_path / "a"

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from app.__main__ import main
 from app.experiments import pool
 from app.stability import command, drift, linear, rope
 from sim.springs import INTEGRATORS
@@ -86,9 +85,3 @@ def test_the_command_keeps_tables_and_figures(tmp_path, monkeypatch, capsys, map
 def test_work_is_spread_in_order():
     assert pool.spread(divmod, [(7, 2), (9, 4)], "division", workers=1) == [(3, 1), (2, 1)]
     assert pool.spread(divmod, [(7, 2), (9, 4)], "division", workers=2) == [(3, 1), (2, 1)]
-
-
-def test_a_folder_that_cannot_be_made_is_refused(tmp_path, capsys):
-    (tmp_path / "file").write_text("")
-    assert main(["stability", "--quick", "--out", str(tmp_path / "file" / "inner")]) == 2
-    assert "--out" in capsys.readouterr().err

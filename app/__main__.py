@@ -200,7 +200,6 @@ def add_address(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
     parser.add_argument("--paused", action="store_true", help="start paused")
     parser.add_argument("--plain-water", action="store_true", help="draw with viser's public interface only")
-    parser.add_argument("--developer", action="store_true", help="show in the panel what was computed and what was not")
 
 
 def add_parameters(parser: argparse.ArgumentParser) -> None:
@@ -282,7 +281,6 @@ def serving(arguments: argparse.Namespace) -> dict[str, Any]:
         "browser": not arguments.no_open,
         "paused": arguments.paused,
         "plain": arguments.plain_water,
-        "developer": arguments.developer,
         "base_path": arguments.base_path,
         "origins": arguments.allowed_origin,
     }

@@ -164,20 +164,6 @@ SceneCommand = Place | Grab | Release | Point | StudentAnswer  # what a scene ha
 Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Load | Ask | Advance | SceneCommand
 
 
-class WorkCount(NamedTuple):
-    """Work of one kind: how much was done, and how much was not needed."""
-
-    done: float
-    skipped: float = 0.0
-    unit: str = ""  # of both, where they are not plain counts
-
-    @property
-    def skipped_share(self) -> float:
-        """The part that was skipped, 0 to 1."""
-        return self.skipped / (self.done + self.skipped) if self.skipped else 0.0
-
-
-WorkCounts = Mapping[str, WorkCount]
 PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SERIES); a NaN time clears the plots
 
 
@@ -216,7 +202,6 @@ class Snapshot(NamedTuple, Generic[P, F, R]):
     frame: F  # the scene's own record
     status: Status
     readings: R  # the scene's own record
-    work: WorkCounts  # what the scene did and what it skipped, since it was opened
     params: P  # the parameters that this moment was made with
     curves: Mapping[str, object] | None = None  # parameter -> columns of its chart
     state: KeptState | None = None  # of this moment, to go on from later; in some snapshots only

@@ -197,7 +197,7 @@ def test_the_examples_pass_the_type_checker(tmp_path):
 
 # What tests of all scenes ask of a new one, those that only read it.
 OF_A_NEW_SCENE = (
-    "tests/app/server/test_counters.py", "tests/app/sweep/test_case.py", "tests/app/scenes/test_first_look.py",
+    "tests/app/sweep/test_case.py", "tests/app/scenes/test_first_look.py",
     "tests/app/panel/test_recording_files.py", "tests/app/panel/test_control.py", "tests/app/scenes/test_setups.py",
 )  # fmt: skip
 

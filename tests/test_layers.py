@@ -207,3 +207,13 @@ def test_nothing_is_left_to_do():
     words = ("TODO", "FIXME", "XXX", "NotImplementedError")
     left = [(named(path), word) for path in SOURCES for word in words if word in path.read_text()]
     assert [entry for entry in left if entry[0] != named(Path(__file__))] == []
+
+
+def test_the_rope_imports_neither_seas_nor_heavy_packages():
+    code = "import sys; from app.scenes import scene_named; scene_named('rope'); print(*sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=120
+    )
+    names = set(done.stdout.split())
+    assert "sim.springs" in names
+    assert not names & {"sim.ocean", "sim.floating", "sim.particles", "matplotlib", "pyfftw", "trimesh"}

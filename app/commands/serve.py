@@ -46,7 +46,6 @@ def serve_lab(
     browser: bool,
     paused: bool,
     plain: bool,
-    developer: bool,
     base_path: str = "",
     origins: Sequence[str] = (),
     workbook: Workbook | None = None,
@@ -67,7 +66,7 @@ def serve_lab(
     access = Access(read_base_path(base_path), tuple(read_origin(origin) for origin in origins), key)
     try:
         viewer = Viewer(
-            host, port, plain=plain, developer=developer, compile_ahead=True, say=say, session=session, access=access,
+            host, port, plain=plain, compile_ahead=True, say=say, session=session, access=access,
             workbook=workbook or Workbook(load_tasks(with_checks=False)),
         )  # fmt: skip
     except OSError as error:

@@ -24,7 +24,6 @@ from app.messages import (
     Reset,
     StepOnce,
     TogglePlay,
-    WorkCounts,
 )
 from app.panel.compare import Beside, Compare
 from app.panel.control import Control
@@ -37,7 +36,6 @@ from app.panel.questions import Questions
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
 from app.panel.share import Share
-from app.panel.work_table import work_table
 from app.render.cameras import ClientCamera, place_camera
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, note
 from app.render.viser_types import ViserEvent
@@ -55,7 +53,6 @@ if TYPE_CHECKING:
 
 STATUS_INTERVAL = 0.25  # [s]
 MARKS_INTERVAL = 0.5  # [s]
-WORK_INTERVAL = 2.0  # [s]
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
 Key = Literal["space", "G", "N", "P", "R", "U", "1", "2", "3", "4", "5", "6", "7", "8", "9"]
 DIGITS: tuple[Key, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
@@ -79,11 +76,9 @@ class Panel:
         params: BaseParams,
         post: PostCommand,
         *,
-        work: Callable[[], WorkCounts],
         scenes: tuple[str, ...] = (),
         open_scene: OpenScene = lambda name, params, camera: None,
         workbook: Workbook | None = None,
-        developer: bool = False,
         wake: Callable[[], None],
         make_replay: MakeReplay,
         session: "Session | None" = None,
@@ -93,17 +88,17 @@ class Panel:
     ) -> None:
         """post: takes commands for the simulation. open_scene: takes a scene to show instead; both at once.
 
-        workbook: the tasks of the lab, shown above the parameters. work: the work counts of the open scene. developer:
-        show them. session: of a student's folder. wake: has the recording looked at once more. make_replay: makes the
-        page of a replay. beside: shows other set-ups beside this one; None where this one is beside another.
+        workbook: the tasks of the lab, shown above the parameters. session: of a student's folder. wake: has the
+        recording looked at once more. make_replay: makes the page of a replay. beside: shows other set-ups beside this
+        one; None where this one is beside another.
         changed: is told of parameters that were set. questions: of visitors, which outlive the panel.
         """
-        self.server, self.kind, self.view, self.post, self.work = server, kind, view, post, work
+        self.server, self.kind, self.view, self.post = server, kind, view, post
         self.open_scene, self.beside, self.changed = open_scene, beside, changed
         self.gui = gui = server.gui
         # Parameters as set now, and how many presets were loaded: read by another thread.
         self.state: tuple[BaseParams, int] = params, 0
-        self.status_at = self.marks_at = self.work_at = 0.0
+        self.status_at = self.marks_at = 0.0
         self.halted: str = ""
         self.visitors = 0
         self.history = History()
@@ -166,10 +161,6 @@ class Panel:
         )
         add_quality(gui)
         self.notes: dict[str, viser.GuiHtmlHandle] = {}
-        self.work_counts: viser.GuiHtmlHandle | None = None
-        if developer:
-            with gui.add_folder("Work counts", expand_by_default=False):
-                self.work_counts = gui.add_html("")
         self.hide()
         self.show_preset()
         self.add_keys()
@@ -415,9 +406,6 @@ class Panel:
         self.share.update()
         if self.compare is not None:
             self.compare.update()
-        if self.work_counts is not None and now - self.work_at >= WORK_INTERVAL:
-            self.work_at = now
-            self.work_counts.content = note(work_table(self.work()))
 
     def write_notes(self, notes: dict[str, str]) -> None:
         """Foldable texts below the controls, as HTML: made once, then kept up to date."""

@@ -14,7 +14,7 @@ import viser
 from numpy.typing import NDArray
 from viser import uplot
 
-from app.messages import Line, PlotRow, WorkCount
+from app.messages import Line, PlotRow
 from app.panel.round_step import round_step
 from app.render.viser_types import GuiHandle
 from app.scenes.charts import Chart, Columns, chart_of, lines_of
@@ -97,11 +97,7 @@ class Plots:
         self.kept_curves: Mapping[str, Chart | Columns] = {}  # those of an earlier run
         self.has_begun = False  # parameters have been read: charts that open from now on were asked for
         self.sent_at = 0.0
-        self.drawn = self.skipped = 0  # charts sent again, and charts that were closed or had nothing new
-
-    def work(self) -> dict[str, WorkCount]:
-        """How many charts were drawn and how many did not have to be."""
-        return {"charts drawn": WorkCount(self.drawn, self.skipped)}
+        self.drawn = 0  # charts that were sent again
 
     def keep(self, on: bool) -> float | None:
         """Keep the curves as they are, to be drawn beside those of the runs that follow, or drop them.
@@ -133,11 +129,9 @@ class Plots:
         if wanted != self.open:
             self.show(wanted)
         self.has_begun = True
-        before = self.drawn
         if wanted:
             self.send_curves(wanted)
             self.send_plots(wanted, moment)
-        self.skipped += len(names) - (self.drawn - before)
 
     def show(self, wanted: frozenset[str]) -> None:
         """Show these charts and hide the others, with the dock that they stand in."""

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeAlias, Type
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import BaseParams, Command, F, P, PlotRow, R, SceneCommand, Snapshot, Vector, WorkCounts
+from app.messages import BaseParams, Command, F, P, PlotRow, R, SceneCommand, Snapshot, Vector
 from app.scenes.charts import Chart, Columns, CurveAxes, PlotAxes
 from sim.parameters import Value, check_record
 
@@ -132,10 +132,6 @@ class Scene(Protocol[P, F_co, R_co]):
 
         Nobody holds what was held then.
         """
-        ...
-
-    def work(self) -> WorkCounts:
-        """What was done and what was skipped since the scene was made."""
         ...
 
 

@@ -1,1 +1,1 @@
-"""The server: threads, the simulation loop, the guard of what browsers send, work counters."""
+"""The server: threads, the simulation loop, the guard of what browsers send."""

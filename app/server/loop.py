@@ -36,7 +36,6 @@ from app.messages import (
     Status,
     StepOnce,
     TogglePlay,
-    WorkCount,
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
@@ -337,15 +336,6 @@ class SimLoop:
             self.capped, self.pacer.debt = True, 0.0
             self.pacer.dropped += n if self.seat is None else 0
 
-    def work(self) -> dict[str, WorkCount]:
-        """What ran against what had no need to, paused or unwatched, or no time to."""
-        c = self.counts
-        return {
-            "ticks": WorkCount(c["ticks"] - c["idle ticks"], c["idle ticks"]),
-            "steps": WorkCount(c["steps"], self.pacer.dropped),
-            "snapshots": WorkCount(c["snapshots"], max(c["ticks"] - c["snapshots"], 0)),
-        }
-
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
         start = self.effort()
@@ -607,7 +597,7 @@ class SimLoop:
         return last._replace(serial=serial, status=self.status(), params=self.scene.params, state=None)
 
     def collect(self, serial: int) -> AnySnapshot:
-        """The scene's frame, readings, work, parameters and curves; hands its plot rows over.
+        """The scene's frame, readings, parameters and curves; hands its plot rows over.
 
         While the last moments before a divergence are shown again, the frame is of one of them.
         Raises DivergenceError where the frame holds a number that is not finite.
@@ -617,7 +607,7 @@ class SimLoop:
         where = where_not_finite(frame)
         if where:
             raise DivergenceError(f"What is to be drawn is not finite ({where}). Reset, or take a smaller step.")
-        readings, work, curves = scene.readings(), scene.work(), scene.curves()
+        readings, curves = scene.readings(), scene.curves()
         rows = scene.take_plot_rows()
         self.plot_rows.extend(rows)
         for row in rows:
@@ -627,7 +617,7 @@ class SimLoop:
             while self.kept_rows and self.kept_rows[-1][0] >= row[0]:  # it has gone on from an earlier moment
                 self.kept_rows.pop()
             self.kept_rows.append(row)
-        return Snapshot(serial, frame, self.status(), readings, work, scene.params, curves, self.keep_state())
+        return Snapshot(serial, frame, self.status(), readings, scene.params, curves, self.keep_state())
 
     def status(self) -> Status:
         """The clock and the rates."""

@@ -7,7 +7,7 @@ import traceback
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app.messages import BaseParams, Command, Halt, WorkCount
+from app.messages import BaseParams, Command, Halt
 from app.panel.compare import Beside
 from app.panel.panel import Panel
 from app.panel.recorder import Kept
@@ -17,7 +17,6 @@ from app.scenes import NAMES, view_named
 from app.scenes.compiling import describe
 from app.scenes.contract import AnyKind
 from app.server.compile_gate import CompileGate
-from app.server.counters import Unwatched, gather, modules
 from app.server.loop import PATIENCE, SimLoop
 from app.server.replay_file import replay_html
 from sim.interruption import STOP
@@ -43,7 +42,6 @@ class ServedScene:
         self.recorded: Kept | None = None  # the frame of the recording that is shown
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
         self.starts = 0  # how often the shown run was begun again
-        self.unwatched = Unwatched()
         self.stop = threading.Event()
         self.is_open = True
         self.threads: list[threading.Thread] = []
@@ -53,8 +51,8 @@ class ServedScene:
         self.view = view_named(kind.name)(self.server, self.commands.put)
         place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
         self.panel = Panel(
-            self.server, kind, self.view, params, self.commands.put, work=self.work, scenes=NAMES,
-            open_scene=viewer.want, workbook=viewer.workbook, developer=viewer.developer, session=viewer.session,
+            self.server, kind, self.view, params, self.commands.put, scenes=NAMES,
+            open_scene=viewer.want, workbook=viewer.workbook, session=viewer.session,
             wake=lambda: self.loop.fresh.set(), make_replay=replay_html, changed=viewer.share_parameters,
             questions=viewer.questions,
             beside=None if viewer.pane_of else Beside(viewer.comparing.want, viewer.comparing.end, viewer.pane_words),
@@ -85,7 +83,6 @@ class ServedScene:
                 continue
             loop.fresh.clear()
             shown_at = loop.clock()
-            self.unwatched.note(self.viewer.audience())
             if not self.stop.is_set():
                 self.show_latest()
 
@@ -141,19 +138,6 @@ class ServedScene:
         if text != self.compile_text:
             self.compile_text = text
             self.compile_line.content = note(text) if text else ""
-
-    def work(self) -> dict[str, WorkCount]:
-        """The work counts."""
-        latest = self.loop.latest
-        return gather(
-            self.loop.work(),
-            {"pictures handed over": WorkCount(self.drawn, max(self.shown - self.drawn, 0))},
-            self.transport.work(),
-            self.panel.plots.work(),
-            latest.work,
-            self.unwatched.work(),
-            modules(),
-        )
 
     def stop_threads(self, picture_time: float | None = None) -> None:
         """Stop the threads; a solve that runs is ended early, and not waited for if it takes long.

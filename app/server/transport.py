@@ -15,7 +15,6 @@ from typing import cast
 import numpy as np
 import viser
 
-from app.messages import WorkCount
 from app.render.viser_inside import watch_messages
 
 MAX_WAIT = 1.0  # [s] for viser's event loop to take a picture
@@ -33,7 +32,7 @@ def kind_and_size(value: object) -> tuple[str, int] | None:
     return None
 
 
-class TransportCounters:
+class Transport:
     """What goes to the browsers of one server from within `counted()`; a message counts once, however many look."""
 
     def __init__(self, server: viser.ViserServer) -> None:
@@ -89,16 +88,3 @@ class TransportCounters:
         with contextlib.suppress(RuntimeError):  # the server has ended
             self.loop.call_soon_threadsafe(send_all)
             done.wait(MAX_WAIT)
-
-    def begin(self) -> None:
-        """Count from 0: another scene."""
-        self.sent.clear()
-
-    def work(self) -> dict[str, WorkCount]:
-        """What was sent since `begin`."""
-        return {
-            "messages sent": WorkCount(self.sent["messages"]),
-            "arrays sent": WorkCount(self.sent["arrays"]),
-            "texts sent": WorkCount(self.sent["texts"]),
-            "sent to each browser": WorkCount(self.sent["bytes"], unit="B"),
-        }

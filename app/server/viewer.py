@@ -30,7 +30,7 @@ from app.server.guard import open_pane, open_server, quiet
 from app.server.loop import SimLoop
 from app.server.panes import Panes
 from app.server.served_scene import MAX_JOIN_TIME, ServedScene
-from app.server.transport import TransportCounters
+from app.server.transport import Transport
 
 if TYPE_CHECKING:
     from app.lab.session import Session
@@ -48,7 +48,6 @@ class Viewer:
         port: int,
         *,
         plain: bool = False,
-        developer: bool = False,
         compile_ahead: bool = False,
         workbook: Workbook | None = None,
         session: "Session | None" = None,
@@ -56,7 +55,7 @@ class Viewer:
         access: Access = OWN_PAGES_ONLY,
         beside: "tuple[Viewer, int] | None" = None,
     ) -> None:
-        """plain: draw by viser's public API alone. developer: show the work counts in the panel.
+        """plain: draw by viser's public API alone.
 
         compile_ahead: while a scene runs, compile what it and the other scenes may call later. workbook: the tasks of
         the lab, which the panel of each scene shows. session: of a student's folder, with functions that the scenes
@@ -69,7 +68,6 @@ class Viewer:
         self.compiling = Compiling() if beside is None else beside[0].compiling
         self.compile_ahead, self.workbook, self.session, self.say = compile_ahead, workbook, session, say
         self.notice = ""  # what is compiled before something else can be shown
-        self.developer = developer
         self.panes = Panes()
         if beside is None:
             self.server, self.screen = open_server(host, port, access, self.panes)
@@ -81,7 +79,7 @@ class Viewer:
         if plain:
             disable_shaders(self.server)
         send_at_once(self.server)
-        self.transport = TransportCounters(self.server)
+        self.transport = Transport(self.server)
         self.port = self.server.get_port()
         self.server.on_client_disconnect(self.on_disconnect)
         self.questions = Questions(self.server)
@@ -180,7 +178,6 @@ class Viewer:
         """An empty panel and an empty scene."""
         self.server.gui.reset()
         reset_scene(self.server)
-        self.transport.begin()
 
     def show_failure(self, name: str, error: BaseException) -> None:
         """A page that says why a scene could not be opened, and offers the scenes."""
@@ -261,7 +258,7 @@ class Viewer:
 
     def make_pane(self, number: int) -> "Viewer":
         """A lab beside this one, with nothing open. number: of its pane, from 2."""
-        return Viewer("", 0, plain=self.plain, developer=self.developer, say=self.say, beside=(self, number))
+        return Viewer("", 0, plain=self.plain, say=self.say, beside=(self, number))
 
     def pane_words(self) -> tuple[PaneWords, ...]:
         """What stands above each lab, where several are side by side."""

@@ -31,7 +31,6 @@ class TileSea:
     def __init__(self, sea: Sea, past: Mapping[FluidColumn, float] | None = None) -> None:
         """past: the time [s] that the waves have spent on each medium, and decayed, as `RadialSea.past`."""
         self.sea = sea
-        self.evaluated = self.skipped = 0  # (wave, vertex) pairs: a transform has no such thing
         self._grid: RadialGrid | None = None
         self._share = np.zeros(0, np.float32)
         self._media: dict[FluidColumn, Medium] = {}

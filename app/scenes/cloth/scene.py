@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, StudentAnswer, Vector, WorkCounts
+from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, StudentAnswer, Vector
 from app.scenes.charts import PlotAxes
 from app.scenes.cloth.live_values import live_values
 from app.scenes.cloth.parameters import MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
@@ -21,7 +21,6 @@ from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
-from app.scenes.springs.work_counts import SpringWorkCounts
 from sim.springs import Air, Net, cloth
 from sim.springs import Grab as Pull
 from sim.springs.analysis.energy_account import EnergyAccount
@@ -129,7 +128,6 @@ class ClothScene:
             self.student = student_cloth.StudentCloth(live.cloth)
         self.plot_rows = PlotRows(len(SERIES))
         self.last_moments = LastMoments()
-        self.counts = SpringWorkCounts()
         self.tuner = ThreadTuner()
         self.drag = Drag()
         self.reset()
@@ -259,14 +257,12 @@ class ClothScene:
             if net.threads != threads:  # a net is checked as a whole each time that one is made
                 net = dataclasses.replace(net, threads=threads)
             advance(net, state, self.integrator, self.step, count, with_account=with_account)
-            self.counts.add("steps on two threads", count, threads == 2)
 
         try:
             self.tuner.advance(steps, take, large=self.particles >= MIN_PARTICLES_FOR_TWO_THREADS)
         finally:  # where it is ended early the steps that were taken count
             if extremes(state.x, state.v).max_coordinate < MAX_DISTANCE:  # false of a NaN as well
                 self.state = state
-        self.counts.update(net, state.force_evals - good.force_evals, steps, with_account=with_account)
         if self.state is good:
             self.repeat_to_divergence(net, good, steps)
             raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
@@ -275,9 +271,7 @@ class ClothScene:
         self.net = net
         if self.student is not None:
             self.student.follow_cloth(net, good, self.state, self.step)
-        is_due = self.particles <= MAX_ASSESSED_PARTICLES and self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL
-        self.counts.add("stability checks", 1, is_due)
-        if is_due:
+        if self.particles <= MAX_ASSESSED_PARTICLES and self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL:
             self.assess_stability()
         if self.plot_rows.is_due(self.state.t):
             self.add_plot_row()
@@ -369,10 +363,6 @@ class ClothScene:
         """Why the run diverged, and what would hold."""
         alternative = "" if self.integrator.implicit else "implicit Euler, which is stable at every step"
         return divergence_text(self.state.t, self.integrator, self.step, self.stability.stability, alternative)
-
-    def work(self) -> WorkCounts:
-        """What was computed and what was left out."""
-        return self.counts()
 
     def curves(self) -> None:
         """This scene has charts over time only."""

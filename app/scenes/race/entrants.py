@@ -252,14 +252,12 @@ class Race:
         for reference, entrant in zip(self.references, self.entrants, strict=False):
             reference.update(entrant.net)
 
-    def advance(self, moving: Net, ticks: int) -> tuple[int, int]:
+    def advance(self, moving: Net, ticks: int) -> None:
         """Advance all by `ticks` ticks. moving: the net of rope 1 with the motions of root and pull.
 
         Until all have arrived the race stays as it is: a solve may be ended early, or others look at it meanwhile.
-        Returns the numbers of force evaluations and steps of the ropes, without those of the reference runs.
         """
         duration = ticks * self.tick
-        before = self.counts()
         nets = [dataclasses.replace(moving, families=entrant.net.families) for entrant in self.entrants]
         arrivals = [entrant.after(net, ticks) for entrant, net in zip(self.entrants, nets, strict=True)]
         references = copy.deepcopy(self.references)
@@ -269,12 +267,6 @@ class Race:
             entrant.state, entrant.failure = state, failure
         self.references = references
         self.t += duration
-        after = self.counts()
-        return after[0] - before[0], after[1] - before[1]
-
-    def counts(self) -> tuple[int, int]:
-        """Force evaluations and steps of all ropes since the start."""
-        return sum(e.state.force_evals for e in self.entrants), sum(e.state.steps for e in self.entrants)
 
     def move_root(self, position: Vector) -> None:
         """Put the roots of all that have not failed to rest at a position [m]."""

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, PlotRow, Release, SceneCommand, Vector, WorkCounts, vector_of
+from app.messages import Grab, Place, PlotRow, Release, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.moments import copied, restore
@@ -19,7 +19,6 @@ from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
-from app.scenes.springs.work_counts import SpringWorkCounts
 from sim.springs import INTEGRATORS, rope
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.reference_run import ReferenceRun
@@ -83,7 +82,6 @@ class RaceScene:
     def __init__(self, params: Params) -> None:
         self.params = params
         self.handles = RopeHandles()
-        self.counts = SpringWorkCounts()
         self.reset()
 
     @property
@@ -147,13 +145,10 @@ class RaceScene:
         """Take `steps` ticks of the race, whatever happens to its ropes."""
         race = self.race
         self.net = self.handles.net_during(self.net, race.t, steps * race.tick, race.tick, self.params)
-        evals, taken = race.advance(self.net, steps)
-        self.counts.update(self.net, evals, taken, with_account=True)
+        race.advance(self.net, steps)
         if self.handles.root.at_rest:
             race.move_root(self.handles.root.position)
-        is_due = race.t - self.assessed_at >= ASSESSMENT_INTERVAL
-        self.counts.add("stability checks", 1, is_due)
-        if is_due:
+        if race.t - self.assessed_at >= ASSESSMENT_INTERVAL:
             race.assess_stability()
             self.assessed_at = race.t
         self.charts.update()
@@ -191,10 +186,6 @@ class RaceScene:
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
         """This scene has no plot rows: its charts thin out as the race goes on."""
         return ()
-
-    def work(self) -> WorkCounts:
-        """What was computed and what was left out."""
-        return self.counts()
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
         """The state for a file: name -> (array, unit)."""

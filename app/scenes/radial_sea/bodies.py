@@ -168,7 +168,6 @@ class FloatingBodies:
         self.draft = np.zeros(self.count)  # [m]
         self.stain = np.zeros(self.count)  # [m] of the body above its lowest point that oil has wetted
         self.impulse = np.zeros(self.count)  # [N s] on the water since the scene last took it
-        self.touches = 0  # pairs of bodies that touched, summed over steps
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -302,7 +301,7 @@ class FloatingBodies:
             lead=h / 2,
             **interface,
         )
-        self.touches += step(self.fleet, water, h, coefficients)
+        step(self.fleet, water, h, coefficients)
         self.lift.update(self.fleet.lift, h)
         # A body that presses on the water with more or less than the weight it carries makes waves.
         carried = self.fleet.mass * coefficients.gravity

@@ -1,6 +1,5 @@
 """The radial sea: buoys and a box on water, on oil, or on both mixed, near a rig that may burn."""
 
-import collections
 import dataclasses
 import functools
 import math
@@ -18,8 +17,6 @@ from app.messages import (
     Release,
     SceneCommand,
     StudentAnswer,
-    WorkCount,
-    WorkCounts,
 )
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
@@ -186,7 +183,6 @@ class RadialSeaScene:
         self.grid_choice: tuple[int, int, str] | None = None
         self.known_clean: tuple[Waves, tuple[float, float, float]] | None = None  # what `clean_waves` found, of which
         self.plot_rows = PlotRows(len(SERIES), PLOT_INTERVAL)
-        self.counts: collections.Counter[str] = collections.Counter()
         self.reset()
 
     @property
@@ -375,7 +371,6 @@ class RadialSeaScene:
         bodies, sea, h = self.bodies, self.sea, self.step
         coefficients = MotionCoefficients(gravity=self.column.gravity)
         self.calm_waves()
-        touches = bodies.touches
         for _ in range(steps):
             if bodies.count:
                 middle = self.time + h / 2
@@ -396,9 +391,6 @@ class RadialSeaScene:
             self.time += h
         if self.params.ageing and self.column.kind != "water":
             self.age_waves(steps * h)
-        n = bodies.count
-        done = {"body steps": steps * n, "pairs": steps * n * (n - 1) // 2, "touches": bodies.touches - touches}
-        self.counts.update(done)
         if self.params.ripples and bodies.count:
             density = self.column.layers[-1][0]  # of the deep fluid, which the waves move
             self.radiated_waves.press(self.time, bodies.fleet.position[:, :2], bodies.widths, bodies.impulse, density)
@@ -491,9 +483,7 @@ class RadialSeaScene:
         self.set_grid()
         centre = self.camera if p.centre == "camera" else (0.0, 0.0)
         sea = self.sea
-        before = sea.evaluated, sea.skipped
         self.surface = self.timed_surface(p.surface, sea, centre)
-        self.counts.update({"waves": sea.evaluated - before[0], "waves left out": sea.skipped - before[1]})
         if p.compare:
             self.compare(centre)
         vertices, slopes = self.surface.vertices, self.surface.slope
@@ -505,8 +495,6 @@ class RadialSeaScene:
         self.foam = self.make_foam()
         self.sent = SentSurface()
         self.cutaway = self.make_cutaway() if p.cutaway else None
-        radiated = p.ripples and self.radiated_waves.sea.ripples.alive
-        self.counts.update({"surfaces": 1, "radiated waves": int(radiated), "cutaways": int(p.cutaway)})
 
     def make_foam(self) -> NDArray[np.float32]:
         """Foam (n,), 0 to 1, where the surface is pressed together most: as much of the sea as Monahan measured.
@@ -550,7 +538,6 @@ class RadialSeaScene:
             self.timed_surface("fft", self.tile_now(), centre)
         else:
             self.timed_surface("sum", self.sum, centre)
-        self.counts["comparisons"] += 1
 
     def make_cutaway(self) -> Cutaway:
         """The sea at the walls of a cutaway beside the first body, as drawn there."""
@@ -640,18 +627,6 @@ class RadialSeaScene:
         """The chart of the oil budget, where it is open; the same one until spill or time change."""
         spill = spill_of(self.params) if self.params.plot_budget else None
         return None if spill is None else {"plot_budget": budget_chart(spill, self.params.spill_hours)}
-
-    def work(self) -> WorkCounts:
-        """Each wave at each vertex, each pair of bodies, and what may be added to every surface."""
-        c = self.counts
-        return {
-            "waves summed at vertices": WorkCount(c["waves"], c["waves left out"]),
-            "steps of bodies": WorkCount(c["body steps"]),
-            "pairs of bodies in touch": WorkCount(c["touches"], max(c["pairs"] - c["touches"], 0)),
-            "surfaces with radiated waves": WorkCount(c["radiated waves"], c["surfaces"] - c["radiated waves"]),
-            "surfaces with a cutaway": WorkCount(c["cutaways"], c["surfaces"] - c["cutaways"]),
-            "surfaces timed for comparison": WorkCount(c["comparisons"]),
-        }
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
         """The state for a file: name -> (array, unit)."""

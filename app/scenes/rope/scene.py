@@ -14,7 +14,6 @@ from app.messages import (
     SceneCommand,
     StudentAnswer,
     Vector,
-    WorkCounts,
     vector_of,
 )
 from app.scenes.charts import PlotAxes
@@ -30,7 +29,6 @@ from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
-from app.scenes.springs.work_counts import SpringWorkCounts
 from sim.springs import Net, rope
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
@@ -140,7 +138,7 @@ class RopeScene:
         self.handles = RopeHandles()
         self.plot_rows = PlotRows(len(SERIES))
         self.last_moments = LastMoments()
-        self.counts = SpringWorkCounts()
+        self.checks = 0  # of the stability, while it moves
         self.reset()
 
     @property
@@ -258,7 +256,6 @@ class RopeScene:
             found = extremes(state.x, state.v)
             if found.reach < self.max_reach:  # false of a NaN as well
                 self.state = state
-        self.counts.update(net, state.force_evals - good.force_evals, steps, with_account=True)
         if self.state is good:
             self.repeat_to_divergence(net, good, steps)
             raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
@@ -270,9 +267,8 @@ class RopeScene:
         if self.student is not None:
             x, v = rows_of(self.state.x), rows_of(self.state.v)
             self.student.follow_rope(net, good.t, steps, self.params, x, v)
-        is_due = self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL and self.has_news()
-        self.counts.add("stability checks", 1, is_due)
-        if is_due:
+        if self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL and self.has_news():
+            self.checks += 1
             self.assess_stability()
         if self.plot_rows.is_due(self.state.t):
             self.add_plot_row()
@@ -339,10 +335,6 @@ class RopeScene:
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
         """The plot rows since the last call."""
         return self.plot_rows.take()
-
-    def work(self) -> WorkCounts:
-        """What was computed and what was left out."""
-        return self.counts()
 
     def readings(self) -> RopeReadings:
         """Stability and cost, as last assessed."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import PlotRow, Point, SceneCommand, StudentAnswer, Vector, WorkCount
+from app.messages import PlotRow, Point, SceneCommand, StudentAnswer, Vector
 from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -56,7 +56,6 @@ FOAM_CORRECTION_RATE = 0.15  # [1/s] standard deviations by which the limit move
 INITIAL_FOAM_CORRECTION = 0.5  # standard deviations that the limit starts above the formula's
 MIN_FOAM_COVER = 1e-4  # share of the sea below which differences of foam do not count
 FOAM_VISIBLE_SHARE = 1.2  # multiple of the fading time for which a patch of foam counts as foam
-TRANSFORMS_OF_ALL_FIELDS = 8  # of height, displacement, slope and Jacobian
 
 
 class SeaFrame(NamedTuple):
@@ -281,7 +280,6 @@ class SquareSeaScene:
         """Let the sea adapt to its conditions in this time [s]."""
         self.sea.change(self.time, transition, **self.conditions())
         self.changed_at, self.transition = self.time, transition
-        self.counts["changes"] += 1
         self.paced_at = self.measured_at = -math.inf
 
     def conditions(self) -> dict[str, Any]:
@@ -343,7 +341,6 @@ class SquareSeaScene:
             drawn = self.draw()
         elif drawn.params != p:
             drawn = drawn._replace(params=p)
-            self.counts["frames reused"] += 1
         self.drawn = drawn
         return drawn
 
@@ -471,20 +468,6 @@ class SquareSeaScene:
             rain=rain,
             report=self.report if self.params.statistics else None,
         )
-
-    def work(self) -> dict[str, WorkCount]:
-        """What was done, and what a frame with every field and everything shown would have done beyond that."""
-        c = self.counts
-        frames = c["frames"]
-        return {
-            "transforms": WorkCount(c["transforms"], max(TRANSFORMS_OF_ALL_FIELDS * frames - c["transforms"], 0)),
-            "surfaces for a changed look": WorkCount(0, c["frames reused"]),
-            "rainfall steps": WorkCount(c["rainfall steps"], frames - c["rainfall steps"]),
-            "rings of rain made": WorkCount(c["rings"]),
-            "wave gauge readings": WorkCount(c["gauge readings"], frames - c["gauge readings"]),
-            "wave gauge spectra": WorkCount(c["gauge spectra"], frames - c["gauge spectra"]),
-            "statistics": WorkCount(c["statistics"], frames - c["statistics"]),
-        }
 
     def curves(self) -> dict[str, tuple[NDArray[np.floating], ...]] | None:
         """The columns of `CURVES`, where it is open."""

@@ -76,7 +76,7 @@ def test_the_curves_of_a_race_are_kept_and_dropped() -> None:
     plots = Plots(server, kind)
     for _ in range(3):
         scene.advance(100)
-        snapshot: Any = Snapshot(1, scene.frame(), None, None, {}, scene.params, scene.curves())
+        snapshot: Any = Snapshot(1, scene.frame(), None, None, scene.params, scene.curves())
         plots.update(snapshot, [])
     chart = plots.curves["plot_errors"]
     assert isinstance(chart, Chart)

@@ -23,7 +23,7 @@ class Frame(NamedTuple):
 def snapshot(number: int, starts: int = 0, running: bool = True, points: Any = None) -> Any:
     status = Status(running, number * INTERVAL, number, 1.0, 1.0, False, 20.0, "", starts)
     points = np.full((10, 3), number, np.float32) if points is None else points
-    return Snapshot(number, Frame(number, points), status, None, {}, None)
+    return Snapshot(number, Frame(number, points), status, None, None)
 
 
 @pytest.fixture

@@ -102,8 +102,6 @@ def test_a_frame_costs_three_transforms_and_one_without_choppiness():
         scene = SquareSeaScene(Params(**SMALL, choppiness=choppiness))
         run(scene, 10)
         assert scene.counts["transforms"] == 10 * each
-        # All there are: of height, two of displacement, two of slope, three of the Jacobian.
-        assert scene.work()["transforms"][:2] == (10 * each, 10 * (8 - each))
         assert scene.counts["steps"] == 20
 
 
@@ -124,7 +122,6 @@ def test_a_new_look_on_a_paused_sea_computes_and_sends_no_surface():
     assert after.params.clouds == 0.9
     assert after.vertices is before.vertices  # what the viewer sends only where it is new
     assert scene.counts["transforms"] == done
-    assert scene.work()["surfaces for a changed look"][:2] == (0, 1)
     change_parameters(scene, amplitude=2.0)
     assert scene.frame().vertices is not before.vertices
 

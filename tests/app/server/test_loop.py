@@ -20,7 +20,6 @@ from app.messages import (
     Reset,
     StepOnce,
     TogglePlay,
-    WorkCount,
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL
@@ -104,9 +103,6 @@ class Scene:
 
     def curves(self) -> None:
         return None
-
-    def work(self) -> dict[str, WorkCount]:
-        return {"advances": WorkCount(len(self.seen))}
 
 
 def make(cost: float = 0.0, **options) -> tuple[SimLoop, Scene]:

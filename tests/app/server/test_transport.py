@@ -12,7 +12,7 @@ import zstandard
 from websockets.asyncio.client import connect
 
 from app.server.guard import open_server
-from app.server.transport import TransportCounters
+from app.server.transport import Transport
 from tests import coroutines
 
 NODES = 12  # of the drawing, a mesh and a place each
@@ -64,7 +64,7 @@ def test_mesh_and_poses_of_a_picture_come_in_one_message() -> None:
     buffer = server._websock_server.get_message_buffer()
     buffer.window_duration_sec = 0.0
     buffer.message_from_id = SlowDict(buffer.message_from_id)  # viser makes messages of it
-    transport = TransportCounters(server)
+    transport = Transport(server)
     ended = threading.Event()
     try:
         nodes = [server.scene.add_label(f"/node_{i}", "0") for i in range(NODES)]

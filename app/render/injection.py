@@ -2,21 +2,18 @@
 
 viser 1.1 draws an ordinary mesh in one colour with one rough material. Its public API has no call that sends a script:
 `app.render.viser_inside.run_script` does. In the page the scripts in `js/` use `window.__viserMutable`
-(`nodeRefFromName`, `scene`, `requestRender`); `tests/browser/test_water.py` fails when these change.
+(`nodeRefFromName`, `scene`, `requestRender`, `sendMessage`); `tests/browser/test_water.py` fails when these change.
 
 Everything that changes travels as vertices of hidden meshes (`add_data_mesh`), because viser keeps only the newest
 vertices of a mesh. Displacements of a drawn mesh travel packed (`app/formats/packing.py`), in a fifth of the bytes;
 the drawn mesh's own vertices are sent only where a browser does not say that it has the shader. A hidden mesh named
 "<node>/<suffix>" makes the script replace the shader of "<node>"; each file in `js/` names its suffix.
 
-Each browser is asked whether that worked: the script writes the names of the nodes that it has drawn into the page's
-local storage, where `ClientHandle.local_storage` (public) reads them.
+Each page reports whether that worked: the script sends the names of the nodes that it has drawn with their shader
+through a hidden field, whenever they change.
 """
 
 import json
-import math
-import secrets
-import threading
 import time
 import weakref
 from importlib import resources
@@ -25,49 +22,38 @@ import numpy as np
 import viser
 
 from app.render.colormap import DARK_LIFT, LUMA
+from app.render.html import fill
 from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
-from app.render.viser_inside import run_script
+from app.render.viser_inside import run_script, uuid_of
+from app.render.viser_types import GuiHandle, ViserEvent
 
-STORAGE_KEY = "springtide-shaders"  # of the page's local storage, under which the script answers
-ASK_INTERVAL = 0.5  # [s] between two questions to a browser that has not answered for every node
-QUESTION_TIMEOUT = 5.0  # [s] after which a question is given up, and asked again later
-MAX_QUESTIONS = 16  # open at the same time, a thread each: browsers that are stuck do not delay the others
+LAST = 1e9  # place in the panel
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
-MAX_ANSWER_LENGTH = 10_000  # [characters] that are read of an answer
 SCRIPTS = ("quality.js", "injection.js", "packed.js", "water_shader.js", "water.js", "rain.js", "smoke.js", "dark.js")
 
 _injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
 _disabled: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()
-_storage_keys: "weakref.WeakKeyDictionary[viser.ViserServer, str]" = weakref.WeakKeyDictionary()
 
 
 class ShaderInjector:
     """The shaders of one server: the nodes that should have one, and which browsers draw them so.
 
-    Made by `injector_of(server)`. The viewer's thread watches nodes; threads of this class ask the browsers.
+    Made by `injector_of(server)`. The viewer's thread watches nodes; reports come on viser's event loop.
     """
 
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = weakref.ref(server)
-        self._storage_key = _storage_keys.get(server, STORAGE_KEY)
-        self._token = secrets.token_hex(8)  # tells answers to this server from those that an earlier one left behind
-        self._lock = threading.Lock()  # for what follows
         self._watched: dict[str, float] = {}  # node -> since when it is watched [s]
-        self._asked: dict[int, float] = {}  # client id -> when it was first asked [s]
-        self._last_asked: dict[int, float] = {}  # client id -> when it was last asked [s]
-        self._drawn: dict[int, frozenset[str]] = {}  # client id -> the watched nodes that it draws with their shader
-        self._open: set[int] = set()  # client ids of the questions that wait for an answer
-        self._unanswered = threading.Event()
+        self._seen: dict[int, float] = {}  # client id -> when it was first looked for [s]
+        self._drawn: dict[int, frozenset[str]] = {}  # client id -> nodes that it draws with their shader
         self.is_recorded = False  # whether what is drawn is only recorded, for pages that have the script
         run_script(server, self.script())
-        server.on_client_connect(lambda client: self._unanswered.set())
-        threading.Thread(target=self._ask_clients, name="shader questions", daemon=True).start()
+        server.on_client_disconnect(self._forget)
+        self.restart(server)
 
     def script(self) -> str:
         """The script as it is sent: one function scope, the constants shared with Python first, the hook last."""
         constants = {
-            "TOKEN": self._token,
-            "STORAGE_KEY": self._storage_key,
             "WATER_UNIFORMS": WATER_UNIFORMS,
             "RAIN_UNIFORMS": RAIN_UNIFORMS,
             "MAX_WATERLINES": MAX_WATERLINES,
@@ -78,24 +64,30 @@ class ShaderInjector:
         files = [(resources.files("app.render") / "js" / name).read_text("utf-8") for name in SCRIPTS]
         return "\n".join(['(() => { "use strict";', *shared, *files, "install(); })();"])
 
+    def restart(self, server: viser.ViserServer) -> None:
+        """Begin a scene: a new hidden field through which pages report, so nothing is left of an earlier one."""
+        self._watched.clear()
+        self._drawn.clear()
+        inbox: GuiHandle = server.gui.add_text("Shaders", "", multiline=True, visible=False)
+        server.gui.add_html(str(fill('<span data-springtide-shaders="{}"></span>', uuid_of(inbox))), order=LAST)
+
+        @inbox.on_update
+        async def _(event: ViserEvent) -> None:
+            _, *names = inbox.value.split("\n")  # the page's own word comes first: two pages may report the same
+            self._drawn[event.client_id] = frozenset(names)
+
+    async def _forget(self, client: viser.ClientHandle) -> None:
+        """A browser has left."""
+        self._drawn.pop(client.client_id, None)
+        self._seen.pop(client.client_id, None)
+
     def watch(self, name: str) -> None:
-        """Ask every browser about this node, whatever it said of an earlier node of that name."""
-        self.unwatch(name)
-        with self._lock:
-            self._watched[name] = time.monotonic()
-        self._unanswered.set()
+        """Expect every browser to draw this node with its shader from now on."""
+        self._watched[name] = time.monotonic()
 
     def unwatch(self, name: str) -> None:
-        """Stop asking about a removed node."""
-        with self._lock:
-            self._watched.pop(name, None)
-            self._drawn = {client: drawn - {name} for client, drawn in self._drawn.items()}
-
-    def unwatch_all(self) -> None:
-        """Stop asking: every node is removed. Each question makes a browser draw a frame."""
-        with self._lock:
-            self._watched.clear()
-            self._drawn = dict.fromkeys(self._drawn, frozenset())
+        """A node is removed."""
+        self._watched.pop(name, None)
 
     def is_active(self, name: str) -> bool | None:
         """True if every connected browser draws the node with its shader, False if one does not, None while unknown."""
@@ -105,82 +97,19 @@ class ShaderInjector:
         clients = list(server.get_clients()) if server is not None else []
         if not clients:
             return None
-        with self._lock:
-            without = [client for client in clients if name not in self._drawn.get(client, frozenset())]
-            if not without:
-                return True
-            now = time.monotonic()
-            since = self._watched.get(name, now)
-            waited = max(now - max(since, self._asked.get(client, now)) for client in without)
-        return False if waited > MAX_ANSWER_TIME else None
-
-    def _ask_clients(self) -> None:
-        """Ask each connected browser until it draws every watched node, or has left."""
-        while True:
-            self._unanswered.wait(timeout=60.0)  # ends in time where the server is gone and nothing sets the event
-            self._unanswered.clear()
-            server = self._server()
-            if server is None:
-                return
-            if self._start_questions(server.get_clients()):
-                self._unanswered.set()
-            del server
-            time.sleep(ASK_INTERVAL)
-
-    def _start_questions(self, clients: dict[int, viser.ClientHandle]) -> bool:
-        """Ask the browsers that have not answered for every node; False where there are none."""
         now = time.monotonic()
-        with self._lock:
-            for gone in (set(self._drawn) | set(self._asked)) - set(clients):
-                self._drawn.pop(gone, None)
-                self._asked.pop(gone, None)
-                self._last_asked.pop(gone, None)
-            unanswered = [client for client in clients if not self._watched.keys() <= self._drawn.get(client, set())]
-            for client in unanswered:
-                self._asked.setdefault(client, now)
-            ready = [client for client in unanswered if client not in self._open]
-            ready.sort(key=lambda client: self._last_asked.get(client, 0.0))  # who has waited longest comes first
-            ready = ready[: max(MAX_QUESTIONS - len(self._open), 0)]
-            self._last_asked.update(dict.fromkeys(ready, now))
-            self._open.update(ready)
-        for client in ready:
-            arguments = client, clients[client], now
-            threading.Thread(target=self._ask, args=arguments, name="shader question", daemon=True).start()
-        return bool(unanswered)
-
-    def _ask(self, client: int, handle: viser.ClientHandle, now: float) -> None:
-        """Ask one browser once; now [s]: the time of asking."""
-        try:
-            answer = handle.local_storage.get_item(self._storage_key, timeout=QUESTION_TIMEOUT)
-        except (RuntimeError, TimeoutError):  # it has left, or it is too busy and will be asked again
-            answer = None
-        with self._lock:
-            self._open.discard(client)
-            if answer is not None and client in self._asked:
-                self._drawn[client] = self._read(answer, now)
-
-    def _read(self, answer: str, asked: float) -> frozenset[str]:
-        """The watched nodes in an answer that carries the token of this server.
-
-        A node that is watched since after `asked` [s] is left out: the answer may mean an earlier node of that name.
-        """
-        token, *names = answer[:MAX_ANSWER_LENGTH].split("\n")
-        if token != self._token:
-            return frozenset()
-        return frozenset(name for name in names if self._watched.get(name, math.inf) <= asked)
+        without = [
+            self._seen.setdefault(client, now) for client in clients if name not in self._drawn.get(client, frozenset())
+        ]
+        if not without:
+            return True
+        waited = now - max(self._watched.get(name, now), min(without))
+        return False if waited > MAX_ANSWER_TIME else None
 
 
 def disable_shaders(server: viser.ViserServer) -> None:
     """Draw everything on this server by viser's public API alone; to be called before anything is drawn."""
     _disabled.add(server)
-
-
-def answer_apart(server: viser.ViserServer, name: str) -> None:
-    """Have pages of this server answer under a name of their own: two servers at one address share the local storage.
-
-    To be called before anything is drawn.
-    """
-    _storage_keys[server] = f"{STORAGE_KEY}-{name}"
 
 
 def record_shaders(server: viser.ViserServer) -> None:
@@ -199,11 +128,12 @@ def injector_of(server: viser.ViserServer) -> ShaderInjector | None:
     return _injectors[server]
 
 
-def reset_scene(server: viser.ViserServer) -> None:
-    """Remove every node from the scene of a server, and stop asking about them."""
+def reset_page(server: viser.ViserServer) -> None:
+    """Remove every node from the scene of a server and every element from its panel."""
+    server.gui.reset()
     server.scene.reset()
     if server in _injectors:
-        _injectors[server].unwatch_all()
+        _injectors[server].restart(server)
 
 
 def add_data_mesh(server: viser.ViserServer, name: str, values: np.ndarray) -> viser.MeshHandle:

@@ -29,7 +29,6 @@ import viser
 import websockets.asyncio.server
 from websockets.http11 import Request, Response
 
-from app.render.injection import answer_apart
 from app.render.viser_inside import (
     UNKNOWN,
     Handler,
@@ -64,7 +63,6 @@ ALLOWED = (
     "GetRenderResponseMessage",
     "GuiButtonHoldMessage",
     "GuiUpdateMessage",
-    "LocalStorageGetItemResponseMessage",
     "SceneNodeClickMessage",
     "SceneNodeDragMessage",
     "ScenePointerMessage",
@@ -413,7 +411,6 @@ def open_pane(panes: Panes, number: int) -> tuple[viser.ViserServer, Screen]:
     """The same for a pane, which is reached through the port of the first lab and protected with it."""
     with STARTING, panes.making(number), quiet():
         server = viser.ViserServer(port=0, label="Springtide", verbose=False)
-    answer_apart(server, str(number))
     return server, guarded(server)
 
 

@@ -19,7 +19,7 @@ from app.panel.panel import Panel, add_scene_chooser
 from app.panel.questions import Questions
 from app.render.cameras import ClientCamera, place_client_camera
 from app.render.html import fill, note
-from app.render.injection import disable_shaders, reset_scene
+from app.render.injection import disable_shaders, reset_page
 from app.render.viser_inside import send_at_once
 from app.scenes import NAMES, scene_named
 from app.scenes.compiling import Compiling
@@ -122,7 +122,7 @@ class Viewer:
 
     def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
         """Make the scene and serve it."""
-        self.clear()
+        reset_page(self.server)
         self.current = current = ServedScene(self, kind, params, paused=paused)
         comparison = self.comparison
         if comparison is not None:
@@ -155,7 +155,7 @@ class Viewer:
         self.say(f"{kind.title}: compiling {', '.join(job.piece for job in jobs)}. This is done once.")
         cover = None
         if not self.is_open:
-            self.clear()
+            reset_page(self.server)
             cover = self.server.gui.add_html("")
         self.compiling.want(jobs)
         try:
@@ -174,18 +174,13 @@ class Viewer:
         self.say(f"{kind.title}: compiled in {time.monotonic() - start:.1f} s")
         return True
 
-    def clear(self) -> None:
-        """An empty panel and an empty scene."""
-        self.server.gui.reset()
-        reset_scene(self.server)
-
     def show_failure(self, name: str, error: BaseException) -> None:
         """A page that says why a scene could not be opened, and offers the scenes."""
         comparison = self.comparison
         if comparison is not None:
             comparison.leave(self)
         self.close()
-        self.clear()
+        reset_page(self.server)
         add_scene_chooser(self.server.gui, (f"{name} (failed)", *NAMES), f"{name} (failed)", self.want)
         reason = f"{type(error).__name__}: {error}"
         self.server.gui.add_html(

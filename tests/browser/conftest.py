@@ -69,14 +69,6 @@ def new_page(chromium: Any, width: int, height: int, drawn: bool | str) -> Any:
     return page
 
 
-@pytest.fixture(scope="session", autouse=True)
-def frequent_questions() -> Iterator[None]:
-    """Many tests wait until a browser says that it draws the water's shader."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.render.injection.ASK_INTERVAL", 0.05)
-        yield
-
-
 @pytest.fixture(scope="package")
 def chromium() -> Iterator[Any]:
     """A running Chromium; the test is skipped where there is none.

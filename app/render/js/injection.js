@@ -5,11 +5,11 @@
 // and recordings need no further script.
 //
 // Of viser this file uses window.__viserMutable: nodeRefFromName (the group of a node), scene (its onBeforeRender runs
-// before every frame, so that a new material of viser's never shows without its shader) and requestRender.
+// before every frame, so that a new material of viser's never shows without its shader), requestRender and sendMessage.
 // Of three it uses Material.onBeforeCompile and the renderer's property map, to see whether a program linked.
 //
-// app/render/injection.py puts these constants before this file: TOKEN, STORAGE_KEY, WATER_UNIFORMS, RAIN_UNIFORMS,
-// MAX_WATERLINES, DARK_LIFT, LUMA.
+// app/render/injection.py puts these constants before this file: WATER_UNIFORMS, RAIN_UNIFORMS, MAX_WATERLINES,
+// DARK_LIFT, LUMA.
 
 // Each shader: { suffix, update(context), removeUnused() }. `update` is called for each node with that suffix. It
 // returns the material that has the shader, or null. `removeUnused` (optional) disposes of what removed nodes left.
@@ -76,19 +76,18 @@ shaders.push({
   },
 });
 
-let lastAnswer = "";
+const REPORT_INTERVAL = 500; // [ms] between two looks for a field that has had no report
+const PAGE = Math.random().toString(36).slice(2, 10); // viser passes on only what changes the value of a field
+let drawn = "", reported = "";
 
-// The answer to the server: the token and the names of the nodes that are drawn with their shader. The server reads it
-// through viser's ClientHandle.local_storage. Its client puts the prefix "viser-user:" before each key.
-function answerServer(activeNodes) {
-  const answer = [TOKEN, ...activeNodes.sort()].join("\n");
-  if (answer === lastAnswer) return;
-  lastAnswer = answer;
-  try {
-    localStorage.setItem(`viser-user:${STORAGE_KEY}`, answer);
-  } catch {
-    // A browser without storage draws as any other; the server then believes that it has no shaders.
-  }
+// Report the names of the nodes that are drawn with their shader, once to each field and whenever they change. The
+// field comes after the script, and each scene has its own.
+function report() {
+  const uuid = document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders;
+  const send = window.__viserMutable.sendMessage;
+  if (!uuid || !send || reported === `${uuid}\n${drawn}`) return;
+  reported = `${uuid}\n${drawn}`;
+  send({ type: "GuiUpdateMessage", uuid, updates: { value: `${PAGE}\n${drawn}` } });
 }
 
 function beforeRender(renderer, scene, camera) {
@@ -110,7 +109,8 @@ function beforeRender(renderer, scene, camera) {
   for (const shader of shaders) if (shader.removeUnused) shader.removeUnused();
   dressSmoke(scene);
   darkenLabels(scene);
-  answerServer(active);
+  drawn = active.sort().join("\n");
+  report();
 }
 
 // The script may arrive before viser has made its canvas.
@@ -124,5 +124,7 @@ function install() {
   };
   hook.springtideEarlier = earlier;
   viewer.scene.onBeforeRender = hook;
+  clearInterval(window.__springtideReports); // of an earlier connection
+  window.__springtideReports = setInterval(report, REPORT_INTERVAL);
   viewer.requestRender();
 }

@@ -1,15 +1,15 @@
-"""The server's half of the shader injection: who is asked, who has answered, and what Python and JavaScript share."""
+"""The server's half of the shader injection: what pages report, and what Python and JavaScript share."""
 
+import asyncio
 import dataclasses
 import json
 import re
 import shutil
 import subprocess
-import threading
-import time
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -21,146 +21,101 @@ from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Material,
 from sim.ocean.oil_film import BAND_WIDTH, BANDS
 
 
-class FakeStorage:
-    """A browser's local storage: `answer` returns what it holds, or raises."""
-
-    def __init__(self, answer: Callable[[], str]) -> None:
-        self.answer = answer
-
-    def get_item(self, key: str, timeout: float) -> str:
-        return self.answer()
-
-
-class FakeClient:
-    def __init__(self, answer: Callable[[], str]) -> None:
-        self.local_storage = FakeStorage(answer)
-
-
 class FakeServer:
-    """What the injector uses of a viser server."""
+    """The parts of a viser server that the injector uses, and the newest field that pages report to."""
 
     def __init__(self) -> None:
-        self.clients: dict[int, FakeClient] = {}
-        self._websock_server = self
+        self.clients: dict[int, Any] = {}
+        self._websock_server = self.gui = self
         self.sources: list[str] = []
+        self.shown: list[str] = []
 
     def queue_message(self, message: Any) -> None:
         self.sources.append(message.source)
 
-    def on_client_connect(self, callback: Callable[[Any], None]) -> None:
-        self.connected = callback
+    def on_client_disconnect(self, callback: Callable[[Any], Any]) -> None:
+        self.left = callback
 
-    def get_clients(self) -> dict[int, FakeClient]:
+    def get_clients(self) -> dict[int, Any]:
         return dict(self.clients)
+
+    def add_text(self, label: str, value: str, **look: Any) -> Any:
+        self.inbox = SimpleNamespace(value=value, _impl=SimpleNamespace(uuid="field"))
+        self.inbox.on_update = lambda callback: setattr(self, "reported", callback)
+        return self.inbox
+
+    def add_html(self, content: str, order: float) -> None:
+        self.shown.append(content)
+
+    def report(self, client: int, *names: str) -> None:
+        """A page reports the nodes that it draws with their shader."""
+        self.inbox.value = "\n".join((f"page {client}", *names))
+        asyncio.run(self.reported(SimpleNamespace(client_id=client)))
 
 
 @pytest.fixture
-def server(monkeypatch: pytest.MonkeyPatch) -> FakeServer:
-    monkeypatch.setattr(injection, "ASK_INTERVAL", 0.01)
+def server() -> FakeServer:
     return FakeServer()
 
 
-def wait_for(condition: Callable[[], Any], seconds: float) -> bool:
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        if condition():
-            return True
-        time.sleep(0.005)
-    return bool(condition())
+@pytest.fixture
+def injector(server: FakeServer) -> ShaderInjector:
+    return ShaderInjector(server)  # type: ignore[arg-type]
 
 
-def test_a_browser_that_is_stuck_does_not_delay_the_others(server: FakeServer) -> None:
-    injector = ShaderInjector(server)  # type: ignore[arg-type]
-    free = threading.Event()
-
-    def stuck() -> str:
-        free.wait(5.0)
-        raise TimeoutError
-
-    asked = threading.Event()
-
-    def answers() -> str:
-        asked.set()
-        return f"{injector._token}\n/sea"
-
-    server.clients = {1: FakeClient(stuck), 2: FakeClient(stuck), 3: FakeClient(answers)}
+def test_a_shader_is_active_while_every_browser_reports_it(server: FakeServer, injector: ShaderInjector) -> None:
     injector.watch("/sea")
-    assert asked.wait(1.0)
-    server.clients = {3: server.clients[3]}
-    assert wait_for(lambda: injector.is_active("/sea"), 1.0)
-    free.set()
+    assert injector.is_active("/sea") is None  # nobody looks
+    server.clients = {1: None, 2: None}
+    server.report(1, "/sea", "/rope")
+    assert injector.is_active("/sea") is None
+    server.report(2, "/sea")
+    assert injector.is_active("/sea") is True
+    assert injector.is_active("/rope") is None
+    server.report(1)  # its driver has refused a program
+    assert injector.is_active("/sea") is None
 
 
-def test_answers_may_come_while_nodes_are_watched_and_forgotten(server: FakeServer) -> None:
-    injector = ShaderInjector(server)  # type: ignore[arg-type]
-    names = [f"/node{i}" for i in range(50)]
-    answer = "\n".join([injector._token, *names])
-    stop = threading.Event()
-
-    def come_and_go() -> None:  # browsers that answer at once
-        number = 0
-        while not stop.is_set():
-            number += 50
-            server.clients = {number + i: FakeClient(lambda: answer) for i in range(50)}
-            time.sleep(0.02)
-
-    thread = threading.Thread(target=come_and_go)
-    thread.start()
-    try:
-        end = time.monotonic() + 1.5
-        while time.monotonic() < end:
-            for name in names:
-                injector.watch(name)
-                injector.unwatch(name)
-    finally:
-        stop.set()
-        thread.join()
-    for name in names:
-        injector.watch(name)
-    assert wait_for(lambda: all(injector.is_active(name) for name in names), 5.0)
-
-
-def test_no_more_threads_than_stated_ask_and_all_end(server: FakeServer) -> None:
-    injector = ShaderInjector(server)  # type: ignore[arg-type]
-    free = threading.Event()
-
-    def asking() -> int:
-        return sum(thread.name == "shader question" for thread in threading.enumerate())
-
-    def stuck() -> str:
-        free.wait(10.0)
-        raise TimeoutError
-
-    server.clients = {i: FakeClient(stuck) for i in range(3 * injection.MAX_QUESTIONS)}
+def test_a_browser_that_left_is_forgotten(server: FakeServer, injector: ShaderInjector) -> None:
+    server.clients = {1: None}
     injector.watch("/sea")
-    assert wait_for(lambda: asking() == injection.MAX_QUESTIONS, 5.0)
-    time.sleep(0.1)
-    assert asking() == injection.MAX_QUESTIONS
+    server.report(1, "/sea")
+    assert injector.is_active("/sea") is True
+    asyncio.run(server.left(SimpleNamespace(client_id=1)))
+    assert injector.is_active("/sea") is None
     server.clients = {}
-    free.set()
-    assert wait_for(lambda: asking() == 0, 5.0)
+    assert injector.is_active("/sea") is None
 
 
-def test_a_browser_that_left_is_forgotten(server: FakeServer) -> None:
-    injector = ShaderInjector(server)  # type: ignore[arg-type]
-    server.clients = {1: FakeClient(lambda: f"{injector._token}\n/sea")}
-    injector.watch("/sea")
-    assert wait_for(lambda: injector.is_active("/sea"), 2.0)
-    server.clients = {2: FakeClient(lambda: "another token\n/sea")}
-    server.connected(None)
-    assert wait_for(lambda: not injector._drawn.get(1), 2.0)
-    assert injector.is_active("/sea") is None  # it may still answer
-
-
-def test_a_browser_that_never_answers_counts_as_one_without_shaders(
-    server: FakeServer, monkeypatch: pytest.MonkeyPatch
+def test_each_scene_has_a_field_and_nothing_reported_before_counts(
+    server: FakeServer, injector: ShaderInjector
 ) -> None:
-    monkeypatch.setattr(injection, "MAX_ANSWER_TIME", 0.1)
-    injector = ShaderInjector(server)  # type: ignore[arg-type]
-    server.clients = {1: FakeClient(lambda: "")}
+    server.clients = {1: None}
+    server.report(1, "/sea")
+    injector.restart(server)  # type: ignore[arg-type]
     injector.watch("/sea")
     assert injector.is_active("/sea") is None
-    assert wait_for(lambda: injector.is_active("/sea") is False, 2.0)
+    assert server.shown == ['<span data-springtide-shaders="field"></span>'] * 2
+
+
+def test_a_browser_that_never_reports_counts_as_one_without_shaders(
+    server: FakeServer, injector: ShaderInjector, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = 100.0
+    monkeypatch.setattr(injection.time, "monotonic", lambda: clock)
+    server.clients = {1: None, 2: None}
+    injector.watch("/sea")
+    server.report(1, "/sea")
+    assert injector.is_active("/sea") is None
+    clock += injection.MAX_ANSWER_TIME + 0.1
+    assert injector.is_active("/sea") is False
+    injector.watch("/sea")  # made anew
+    assert injector.is_active("/sea") is None
+    clock += injection.MAX_ANSWER_TIME + 0.1
+    server.clients = {3: None}
+    assert injector.is_active("/sea") is None  # it has just come
+    server.report(3, "/sea")
+    assert injector.is_active("/sea") is True
 
 
 def source_of(name: str) -> str:

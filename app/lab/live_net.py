@@ -7,7 +7,6 @@ that works; which one fails, and why, is kept until the next one is saved.
 import itertools
 import math
 import queue
-import threading
 from collections.abc import Callable, Collection, Sequence
 from typing import NamedTuple
 
@@ -20,6 +19,7 @@ from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_march import REFERENCE, Forces, Segment
 from app.lab.runner import RunError, Runner, unexpected
 from app.lab.saved import Saved
+from app.lab.service import Service
 
 STEPS = {  # method of the scene -> the task with its step
     "explicit_euler": "step_euler",
@@ -156,23 +156,21 @@ CLOTH = Material(
 )
 
 
-class LiveNet:
+class LiveNet(Service[Job | Loaded]):
     """Runs jobs in a thread. `submit` is for the simulation thread; `attempt` and `adopt` for who loads versions."""
 
-    def __init__(self, material: Material, fail: Callable[[Saved, RunError], None]) -> None:
-        """fail: is told of a version that fails while it runs; on this object's thread."""
+    def __init__(self, material: Material, tell: Callable[[Saved, RunError], None]) -> None:
+        """tell: is told of a version that fails while it runs; on this object's thread."""
         self.material = material
         self.runs = itertools.count(1)  # for all scenes
         self.connect(lambda: None, lambda: None)
         self.method, self.sphere = "rk4", False  # of the last job: what a new version is tried with
-        self.fail = fail
-        self.inbox: queue.SimpleQueue[Job | Loaded | None] = queue.SimpleQueue()
+        self.tell = tell
         # The one that is preferred last: the last version before the newest, the newest, the newest compiled.
         self.versions: list[Loaded] = []
         self.taken = 0  # number of the version that was taken last
         self.failed: set[tuple[int, bool, frozenset[str]]] = set()  # version, whether compiled, functions in use
-        self.thread = threading.Thread(target=self.run, name="student's rope", daemon=True)
-        self.thread.start()
+        super().__init__("student's rope", material.file)
 
     def connect(self, wake: Callable[[], None], begin_again: Callable[[], None]) -> None:
         """Serve another scene. wake: called when there is an answer. begin_again: when another version is taken."""
@@ -194,24 +192,7 @@ class LiveNet:
         """Take a version that has been tried, in place of those before it."""
         self.inbox.put(loaded)
 
-    def close(self) -> None:
-        """End the thread, and the processes that it holds."""
-        self.inbox.put(None)
-        self.thread.join()
-
-    def run(self) -> None:
-        """Do what comes."""
-        while (item := self.inbox.get()) is not None:
-            try:
-                self.do(item)
-            except Exception as error:  # the thread lives: the next version may run
-                said = unexpected(error, self.material.file)
-                for loaded in [item] if isinstance(item, Loaded) else self.versions[-1:]:
-                    self.fail(loaded.saved, said)
-        for loaded in self.versions:
-            loaded.runner.close()
-
-    def do(self, item: Job | Loaded) -> None:
+    def handle(self, item: Job | Loaded) -> None:
         """Take a version, or answer a job whatever happens: a scene waits for the answer."""
         if isinstance(item, Loaded):
             self.take(item)
@@ -222,6 +203,16 @@ class LiveNet:
         finally:
             item.answers.put(answer)
             self.wake()
+
+    def fail(self, item: Job | Loaded, error: RunError) -> None:
+        """Say it of the version that was to be taken, or of the newest."""
+        for loaded in [item] if isinstance(item, Loaded) else self.versions[-1:]:
+            self.tell(loaded.saved, error)
+
+    def release(self) -> None:
+        """End the process of each version."""
+        for loaded in self.versions:
+            loaded.runner.close()
 
     def take(self, loaded: Loaded) -> None:
         """Keep a new version and the last one that worked before it; or the newest in a process that compiled it."""
@@ -255,9 +246,9 @@ class LiveNet:
                 self.failed.add(attempt)
                 runner.close()
                 if not isinstance(error, RunError):
-                    self.fail(saved, unexpected(error, self.material.file))
+                    self.tell(saved, unexpected(error, self.material.file))
                 elif not compiled:  # plain Python is tried next, and says where it was
-                    self.fail(saved, error)
+                    self.tell(saved, error)
                 continue
             each = done.seconds / max(done.steps, 1)
             return Answer(job.run, done.x, done.v, each, done.left, saved.number, compiled)

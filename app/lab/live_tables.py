@@ -5,16 +5,15 @@ A scene says which functions it has a use for, and at which arguments (`LiveTabl
 last version that worked goes on.
 """
 
-import queue
-import threading
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.runner import RunError, Runner, unexpected
+from app.lab.runner import RunError, Runner
 from app.lab.saved import Saved
+from app.lab.service import Service
 from app.lab.tabulate import Range
 from app.lab.task import Task
 
@@ -72,7 +71,7 @@ class TableUser:
         return {name: pair for name, pair in pairs.items() if pair[0] is not pair[1]}
 
 
-class LiveTables:
+class LiveTables(Service[Saved | Mapping[str, Call]]):
     """`want` is for the simulation thread; `adopt` for who loads versions; `show` for the panel."""
 
     def __init__(self, tasks: Mapping[str, Task], time_limit: float) -> None:
@@ -87,10 +86,9 @@ class LiveTables:
         self.runners: dict[int, Runner] = {}  # version -> its process
         self.calls: Mapping[str, Call] = {}
         self.tried: dict[str, tuple[int, Call]] = {}  # function -> version and arguments of the last attempt
-        self.inbox: queue.SimpleQueue[Saved | Mapping[str, Call] | None] = queue.SimpleQueue()
-        self.connect(lambda: None)
-        self.thread = threading.Thread(target=self.run, name="student's tables", daemon=True)
-        self.thread.start()
+        self.wake: Callable[[], None] = lambda: None
+        self.report = TableReport()
+        super().__init__("student's tables")
 
     def connect(self, wake: Callable[[], None]) -> None:
         """Serve another scene. wake: called when there are other tables, or they are to be shown or not."""
@@ -111,24 +109,22 @@ class LiveTables:
         self.shown = shown
         self.wake()
 
-    def close(self) -> None:
-        """End the thread and its processes."""
-        self.inbox.put(None)
-        self.thread.join()
+    def handle(self, item: Saved | Mapping[str, Call]) -> None:
+        """Take a version or a wish, and compute what was asked for last by the version that was saved last."""
+        if isinstance(item, Saved):
+            self.take(item)
+        else:
+            self.calls = item
+        if self.inbox.empty():
+            self.compute()
 
-    def run(self) -> None:
-        """Compute what was asked for last, by the version that was saved last."""
-        while (item := self.inbox.get()) is not None:
-            try:
-                if isinstance(item, Saved):
-                    self.take(item)
-                else:
-                    self.calls = item
-                if self.inbox.empty():
-                    self.compute()
-            except Exception as error:  # the thread lives: the next version or wish is computed
-                self.tried.clear()
-                self.errors = {**self.errors, "": unexpected(error, "Python")}
+    def fail(self, item: Saved | Mapping[str, Call], error: RunError) -> None:
+        """The next version or wish is computed."""
+        self.tried.clear()
+        self.errors = {**self.errors, "": error}
+
+    def release(self) -> None:
+        """End the process of each version."""
         for runner in self.runners.values():
             runner.close()
 

@@ -4,8 +4,6 @@ For the functions of the seas and the cloth, which do not move anything: what a 
 """
 
 import math
-import queue
-import threading
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -15,6 +13,7 @@ from app.lab.live_values import LiveNumber, LiveValues
 from app.lab.program_check import conform
 from app.lab.runner import RunError, Runner
 from app.lab.saved import Saved
+from app.lab.service import Service
 from app.lab.task import Task
 from sim.ocean.spectra import phillips
 
@@ -156,7 +155,7 @@ def wanted(scene: str, tasks: Mapping[str, Task], saved: Saved, live: LiveValues
     return Wanted(saved, arguments, program, values)
 
 
-class SceneValues:
+class SceneValues(Service[Wanted]):
     """Computes what is wanted in a thread. `found` is replaced, never changed."""
 
     def __init__(self, tasks: Mapping[str, Task], time_limit: float) -> None:
@@ -164,9 +163,8 @@ class SceneValues:
         self.found: Mapping[str, Compared] = {}
         self.last: Wanted | None = None
         self.errors: dict[str, str] = {}  # functions of the version that runs that are not called again, and why
-        self.inbox: queue.SimpleQueue[Wanted | None] = queue.SimpleQueue()
-        self.thread = threading.Thread(target=self.run, name="student's values", daemon=True)
-        self.thread.start()
+        self.runner: Runner | None = None  # of the version that runs
+        super().__init__("student's values")
 
     def ask(self, scene: str, saved: Saved | None, live: LiveValues) -> None:
         """Compute the values of a scene where they have changed. Called by the viewer's thread."""
@@ -178,23 +176,29 @@ class SceneValues:
             self.last = now
             self.inbox.put(now)
 
-    def run(self) -> None:
+    def handle(self, item: Wanted) -> None:
         """Compute what was asked for last."""
-        runner: Runner | None = None
-        while (job := self.inbox.get()) is not None:
-            if not self.inbox.empty():
-                continue
-            if runner is None or runner.folder != job.saved.folder.resolve():
-                if runner is not None:
-                    runner.close()
-                runner = Runner(job.saved.folder, self.time_limit)
-                self.errors = {}
-            found: dict[str, Compared] = {}
-            for task, given in job.arguments.items():
-                found[task] = self.compare(runner, self.tasks[task], job.values[task], given, job.program[task])
-            self.found = found
-        if runner is not None:
-            runner.close()
+        if not self.inbox.empty():
+            return
+        if self.runner is None or self.runner.folder != item.saved.folder.resolve():
+            self.release()
+            self.runner = Runner(item.saved.folder, self.time_limit)
+            self.errors = {}
+        found: dict[str, Compared] = {}
+        for task, given in item.arguments.items():
+            found[task] = self.compare(self.runner, self.tasks[task], item.values[task], given, item.program[task])
+        self.found = found
+
+    def fail(self, item: Wanted, error: RunError) -> None:
+        """No function has a result; the next version, or the next numbers, are computed."""
+        self.found = {
+            task: Compared(value, None, item.program[task], str(error)) for task, value in item.values.items()
+        }
+
+    def release(self) -> None:
+        """End the process."""
+        if self.runner is not None:
+            self.runner.close()
 
     def compare(
         self, runner: Runner, task: Task, value: SceneValue, given: tuple[Argument, ...], program: float
@@ -214,8 +218,3 @@ class SceneValues:
             return Compared(value, None, program, str(error))
         except Exception as error:  # a result of another type or shape, which the check names
             return Compared(value, None, program, str(error))
-
-    def close(self) -> None:
-        """End the thread and its process."""
-        self.inbox.put(None)
-        self.thread.join()

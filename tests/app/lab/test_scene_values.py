@@ -3,12 +3,14 @@
 import dataclasses
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from app.lab.folder import make_folder
 from app.lab.live_values import LiveNumber
 from app.lab.program_check import Verdict
+from app.lab.runner import Runner
 from app.lab.saved import keep, read_files
 from app.lab.scene_values import VALUES, SceneValues
 from app.lab.task import load_tasks
@@ -97,5 +99,31 @@ def test_a_function_without_a_number_is_left_to_its_check(tmp_path: Path) -> Non
         compared = found.found["cloth_links"]
         assert (compared.student, compared.error) == (None, "cloth.py, line 2: ZeroDivisionError: division by zero")
         assert "program" not in function_line(TASKS["cloth_links"], Verdict("failed", compared.error), compared)
+    finally:
+        found.close()
+
+
+def test_an_error_of_the_labs_own_leaves_the_thread_alive(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "cloth.py").write_text("def cloth_links(rows, cols):\n    return [0] * int(rows)\n")
+    saved = keep(read_files(tmp_path), tmp_path, 1, list(TASKS.values()))
+    found, starts = SceneValues(TASKS, 20.0), []
+
+    def runner(*arguments: Any) -> Runner:
+        starts.append(arguments)
+        if len(starts) == 1:
+            raise OSError("no more files")
+        return Runner(*arguments)
+
+    monkeypatch.setattr("app.lab.scene_values.Runner", runner)
+    try:
+        for rows, student in ((5, None), (6, 6.0)):
+            before, links = found.found, {"structural_links": 1.0, "shear_links": 1.0, "bend_links": 1.0}
+            live = {name: LiveNumber(value) for name, value in {"rows": rows, "cols": 4, **links}.items()}
+            found.ask("cloth", saved, live)
+            end = time.monotonic() + 30.0
+            while found.found is before and time.monotonic() < end:
+                time.sleep(0.02)
+            assert found.found["cloth_links"].student == student
+            assert ("no more files" in found.found["cloth_links"].error) is (student is None)
     finally:
         found.close()

@@ -77,7 +77,7 @@ class Workbook:
         """Where the task can be seen: as it says, or as another task of its item says."""
         others = (other.setup for other in self.all_tasks if other.item == task.item and other.setup is not None)
         setup = task.setup or next(others, None)
-        return Setup("", "", "") if setup is None else setup
+        return Setup("", "") if setup is None else setup
 
     # ----- answers
 

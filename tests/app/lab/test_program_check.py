@@ -1,6 +1,5 @@
 """The checks of programming tasks: right solutions pass, wrong ones are refused and named."""
 
-import dataclasses
 import inspect
 import textwrap
 from collections.abc import Iterator
@@ -9,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from app.lab.folder import stub
 from app.lab.program_check import SAMPLES, SEED, Verdict, call, check_program, is_begun, same
@@ -40,7 +40,7 @@ def verdict_of(desk: Desk, task: Task, source: str) -> Verdict:
     """What the check says; each solution is in a file of its own, as the process loads a file once."""
     file = f"solution_{len(list(desk.folder.iterdir()))}.py"
     (desk.folder / file).write_text(HEAD + source)
-    return check_program(desk.folder, desk.runner, dataclasses.replace(task, file=file))
+    return check_program(desk.folder, desk.runner, replace(task, file=file))
 
 
 def with_body(task: Task, body: str) -> str:

@@ -1,11 +1,11 @@
 """The workbook: what it keeps in answers.toml, what it refuses, and what it remembers."""
 
-import dataclasses
 import threading
 import time
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from app.lab.answers import FILE, Answers, read_answers
 from app.lab.folder import MAX_PICTURES, PICTURES, make_folder
@@ -21,7 +21,7 @@ PREDICT, MEASURE, EXPLAIN = DRAFT.questions
 
 def test_a_law_that_is_no_formula_is_named() -> None:
     assert DRAFT.guide is not None
-    broken = dataclasses.replace(DRAFT, guide=dataclasses.replace(DRAFT.guide, law=("a = {b",)))
+    broken = replace(DRAFT, guide=replace(DRAFT.guide, law=("a = {b",)))
     with pytest.raises(ValueError, match=r"extra_draft\.toml: law: 'a = \{b' .*braces"):
         Workbook([broken])
 

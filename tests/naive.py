@@ -7,14 +7,17 @@ import numpy as np
 
 
 def neighbours(net):
-    """((i, j), (i', j'), family) of every link."""
+    """((i, j), (i', j'), family) of every link; those along a side have their part of the family's numbers."""
     rows, cols = net.shape
     for family in net.families:
         for i in range(rows):
             for j in range(cols):
                 a, b = i + family.di, j + family.dj
                 if 0 <= a < rows and 0 <= b < cols:
-                    yield (i, j), (a, b), family
+                    on_side = (i == a and i in (0, rows - 1)) or (j == b and j in (0, cols - 1))
+                    ratio = net.side_ratio if on_side else 1.0
+                    own = family._replace(stiffness=ratio * family.stiffness, damping=ratio * family.damping)
+                    yield (i, j), (a, b), own
 
 
 def link_force(net, family, r, vr):
@@ -38,7 +41,7 @@ def surfaces(net, x, t):
             yield net.sphere[3] + net.radius - distance, offset / distance, velocity, True
 
 
-def contact_force(net, depth, normal, vr, on_sphere, h):
+def contact_force(net, mass, depth, normal, vr, on_sphere, h):
     """Force [N] on a touching point that moves at vr relative to the surface."""
     law = net.contact
     if law.law == "lab":
@@ -49,7 +52,7 @@ def contact_force(net, depth, normal, vr, on_sphere, h):
     speed = math.sqrt(slide @ slide)
     drag = np.zeros(3)
     if speed > 0.0:
-        drag = min(law.friction * push, net.mass * speed / h) * slide / speed
+        drag = min(law.friction * push, mass * speed / h) * slide / speed
     return push * normal - drag
 
 
@@ -61,13 +64,17 @@ def grab_force(grab, x, v):
 
 
 def own_contacts(net, xs, vs):
-    """(a, b, force on b) of particles nearer than the thickness; those up to two rows and columns apart never push."""
+    """(a, b, force on b) of particles nearer than the thickness; those up to two rows and columns apart never
+    push, and those with less than half a circle of cloth between them."""
     rows, cols = net.shape
+    row, col = (next((f.rest for f in net.families if f[:2] == link), math.inf) for link in ((1, 0), (0, 1)))
     particles = [(i, j) for i in range(rows) for j in range(cols)]
     for a, b in itertools.combinations(particles, 2):
         r = xs[b] - xs[a]
         distance = math.sqrt(r @ r)
-        if (abs(a[0] - b[0]) > 2 or abs(a[1] - b[1]) > 2) and distance < net.thickness:
+        down, across = abs(a[0] - b[0]), abs(a[1] - b[1])
+        cloth = math.hypot(down and down * row, across and across * col)
+        if (down > 2 or across > 2) and cloth >= math.pi / 2 * net.thickness and distance < net.thickness:
             n = r / distance
             depth, opening = net.thickness - distance, (vs[b] - vs[a]) @ n
             yield a, b, max(0.0, net.contact.stiffness * depth - net.contact.damping * opening) * n
@@ -87,18 +94,18 @@ def acceleration(net, x, v, t=0.0, h=1.0):
         force[b] += f
     for i in range(rows):
         for j in range(cols):
-            force[i, j] += net.mass * np.array(net.gravity) - net.drag * vs[i, j]
+            force[i, j] += net.masses[i, j] * np.array(net.gravity) - net.drag * vs[i, j]
             for depth, normal, velocity, on_sphere in surfaces(net, xs[i, j], t):
-                force[i, j] += contact_force(net, depth, normal, vs[i, j] - velocity, on_sphere, h)
+                force[i, j] += contact_force(net, net.masses[i, j], depth, normal, vs[i, j] - velocity, on_sphere, h)
             if net.grab is not None and (i, j) == (net.grab.row, net.grab.col):
                 force[i, j] += grab_force(net.grab, xs[i, j], vs[i, j])
             if (i, j) in net.pinned:
                 force[i, j] = 0.0
-    return np.moveaxis(force / net.mass, -1, 0)
+    return np.moveaxis(force / net.masses[..., None], -1, 0)
 
 
 def tangent(net, x, t=0.0):
-    """M^-1 K and M^-1 D, (3 rows cols, 3 rows cols), about x at rest, by central differences of the forces."""
+    """M^-1/2 K M^-1/2 and the same of D, (3 rows cols, 3 rows cols), about x at rest, by central differences."""
     size = x.size
     stiffness, damping = np.zeros((2, size, size))
     still = np.zeros_like(x)
@@ -111,4 +118,6 @@ def tangent(net, x, t=0.0):
         e = e.reshape(x.shape)
         stiffness[:, j] = (acceleration(net, x - e, still, t) - acceleration(net, x + e, still, t)).ravel() / 2e-6
         damping[:, j] = (acceleration(net, x, still - e, t) - acceleration(net, x, still + e, t)).ravel() / 2e-6
-    return stiffness, damping
+    root = np.sqrt(np.tile(net.masses.ravel(), 3))
+    scale = root[:, None] / root
+    return stiffness * scale, damping * scale

@@ -29,7 +29,7 @@ def step_symplectic(x: Any, v: Any, h: float, acceleration: Callable[..., Any]) 
 
 
 class Sheet(NamedTuple):
-    """What a cloth is made of, beside `Forces`, which has the mass of a point and the stiffness along rows and columns.
+    """What a cloth is made of, beside `Forces`, which has the mass of a cell and the stiffness along rows and columns.
 
     Point (i, j) has the number i cols + j.
     """
@@ -56,21 +56,31 @@ class ClothFunctions(Functions):
         super().__init__(module, own, step, {})
         self.sheet, self.pins = sheet, np.array(sheet.pins, int)
         links = checked_links(self.get("cloth_links"), sheet.rows, sheet.cols)
+        across, down = np.ones(sheet.cols), np.ones(sheet.rows)
+        across[[0, -1]] = down[[0, -1]] = 0.5
+        self.cells = np.outer(down, across).ravel()  # (n,) cells that each point stands for: 1, 1/2 or 1/4
         (i, j), (k, m) = (np.divmod(links[:, end], sheet.cols) for end in (0, 1))
         down, along = np.abs(k - i), np.abs(m - j)
         self.rest = np.hypot(along * sheet.spacing[0], down * sheet.spacing[1])
         self.links, self.kind = links, np.where(down * along > 0, 1, np.where(down + along > 1, 2, 0))
+        side = ((down == 0) & np.isin(i, (0, sheet.rows - 1))) | ((along == 0) & np.isin(j, (0, sheet.cols - 1)))
+        self.strip = np.where(side, 0.5, 1.0)  # of cloth that each link stands for
+
+    def mass_of(self, i: int | np.intp) -> float:
+        """The mass of point i [kg]: of a cell, of half of one on an edge, of a quarter at a corner."""
+        return self.forces.mass * self.cells[i]
 
     def inner(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Links, air and gravity."""
         f, sheet = self.forces, self.sheet
         total = -f.drag * v
         for kind, stiffness in enumerate((f.stiffness, sheet.shear, sheet.bend)):
-            chosen = self.kind == kind
-            if chosen.any():
-                total += self.link_forces(x, v, chosen, stiffness)
+            for strip in (0.5, 1.0):
+                chosen = (self.kind == kind) & (self.strip == strip)
+                if chosen.any():
+                    total += self.link_forces(x, v, chosen, strip * stiffness, strip * f.damping)
         total += self.wind(x, v)
-        a = total / f.mass
+        a = total / (f.mass * self.cells[:, None])
         a[:, 2] -= f.gravity
         return a
 
@@ -88,10 +98,12 @@ class ClothFunctions(Functions):
         a[self.pins] = 0.0
         return a
 
-    def link_forces(self, x: np.ndarray, v: np.ndarray, chosen: np.ndarray, stiffness: float) -> np.ndarray:
+    def link_forces(
+        self, x: np.ndarray, v: np.ndarray, chosen: np.ndarray, stiffness: float, damping: float
+    ) -> np.ndarray:
         """The forces [N], shape (n, 3), of some links. The student's function may change its arguments."""
         arrays = x.copy(), v.copy(), self.links[chosen], self.rest[chosen]
-        value = self.get("cloth_forces")(*arrays, stiffness, self.forces.damping)
+        value = self.get("cloth_forces")(*arrays, stiffness, damping)
         return self.fit("cloth_forces", value, x.shape)
 
     def wind(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -113,7 +125,11 @@ class ClothFunctions(Functions):
 
     def name_nan(self, x: np.ndarray, v: np.ndarray) -> None:
         """Raises Unfit for cloth_forces, where that returns NaN at this state."""
-        if "cloth_forces" in self.own and np.isnan(self.link_forces(x, v, self.kind >= 0, self.forces.stiffness)).any():
+        f = self.forces
+        if (
+            "cloth_forces" in self.own
+            and np.isnan(self.link_forces(x, v, self.kind >= 0, f.stiffness, f.damping)).any()
+        ):
             text = "cloth_forces returns NaN (not a number): look for a division by 0 or the root of a negative number"
             raise Unfit("NaN", text, self.own["cloth_forces"])
 

@@ -210,38 +210,43 @@ class Functions:
         f, first = self.forces, self.roots
         for i in np.flatnonzero(x[first:, 2] < f.floor) + first if x[:, 2].min() < f.floor else ():
             up = np.array([0.0, 0.0, 1.0])
-            a[i] += self.contact(f.floor - x[i, 2], up, v[i], 1.0) / f.mass
+            a[i] += self.contact(f.floor - x[i, 2], up, v[i], 1.0, self.mass_of(i)) / self.mass_of(i)
         if f.radius > 0.0:
             centre, velocity = self.sphere_now()
             distance = np.linalg.norm(x - centre, axis=1)
             near = np.flatnonzero(distance[first:] < f.radius) + first
             for i in range(first, len(x)) if "sphere_force" in self.own else near:
-                a[i] += self.sphere(x[i], v[i] - velocity, centre, float(distance[i])) / f.mass
+                mass = self.mass_of(i)
+                a[i] += self.sphere(x[i], v[i] - velocity, centre, float(distance[i]), mass) / mass
         if f.held >= first:
             gap = np.array(f.hand) - x[f.held]
             distance = float(np.linalg.norm(gap))
             k = f.max_pull / distance if f.pull_stiffness * distance > f.max_pull else f.pull_stiffness
-            a[f.held] += (k * gap - f.pull_damping * v[f.held]) / f.mass
+            a[f.held] += (k * gap - f.pull_damping * v[f.held]) / self.mass_of(f.held)
+
+    def mass_of(self, i: int | np.intp) -> float:
+        """The mass of point i [kg]."""
+        return self.forces.mass
 
     def sphere_now(self) -> tuple[np.ndarray, np.ndarray]:
         """Centre [m] and velocity [m/s] of the sphere."""
         velocity = np.array(self.forces.velocity)
         return np.array(self.forces.centre) + self.now * velocity, velocity
 
-    def sphere(self, x: np.ndarray, v: np.ndarray, centre: np.ndarray, distance: float) -> np.ndarray:
+    def sphere(self, x: np.ndarray, v: np.ndarray, centre: np.ndarray, distance: float, mass: float) -> np.ndarray:
         """The force [N], shape (3,), of the sphere on a point; the program's friction acts by the student's push."""
         f = self.forces
         normal = (x - centre) / distance if distance else np.array([0.0, 0.0, 1.0])
         if "sphere_force" not in self.own:
-            return self.contact(f.radius - distance, normal, v, f.radius - distance)
+            return self.contact(f.radius - distance, normal, v, f.radius - distance, mass)
         numbers = f.radius, f.contact_stiffness, f.contact_damping
         value = self.own["sphere_force"](x.copy(), v.copy(), centre.copy(), *numbers)
         force = self.fit("sphere_force", value, (3,))
         push = float(force @ normal)
-        return force if f.lab_contact or not push > 0.0 else force - self.grip(push, normal, v)
+        return force if f.lab_contact or not push > 0.0 else force - self.grip(push, normal, v, mass)
 
-    def contact(self, depth: float, normal: np.ndarray, v: np.ndarray, lab_scale: float) -> np.ndarray:
-        """The program's law of contact (`sim/springs/forces/contact.py`): force [N], shape (3,).
+    def contact(self, depth: float, normal: np.ndarray, v: np.ndarray, lab_scale: float, mass: float) -> np.ndarray:
+        """The program's law of contact (`sim/springs/forces/contact.py`): force [N], shape (3,), on a point of `mass`.
 
         lab_scale: what the lab's law multiplies the damping by.
         """
@@ -249,14 +254,14 @@ class Functions:
         if f.lab_contact:
             return f.contact_stiffness * depth * normal - f.contact_damping * lab_scale * v
         push = max(0.0, f.contact_stiffness * depth - f.contact_damping * float(v @ normal))
-        return push * normal - self.grip(push, normal, v)
+        return push * normal - self.grip(push, normal, v, mass)
 
-    def grip(self, push: float, normal: np.ndarray, v: np.ndarray) -> np.ndarray:
+    def grip(self, push: float, normal: np.ndarray, v: np.ndarray, mass: float) -> np.ndarray:
         """Coulomb friction [N], shape (3,), against the motion of a point that is pushed [N] along the normal."""
         f = self.forces
         sliding = v - float(v @ normal) * normal
         speed = float(np.linalg.norm(sliding))
-        grip = f.mass / self.segment.h
+        grip = mass / self.segment.h
         if f.friction * push < grip * speed:
             grip = f.friction * push / speed
         return (grip if f.friction else 0.0) * sliding
@@ -275,7 +280,9 @@ class Functions:
             else:
                 centre, velocity = self.sphere_now()
                 distance = np.linalg.norm(x - centre, axis=1)
-                values = [self.sphere(x[i], v[i] - velocity, centre, float(distance[i])) for i in range(1, len(x))]
+                values = [
+                    self.sphere(x[i], v[i] - velocity, centre, float(distance[i]), f.mass) for i in range(1, len(x))
+                ]
             if any(np.isnan(value).any() for value in values):
                 text = f"{name} returns NaN (not a number): look for a division by 0 or the root of a negative number"
                 raise Unfit("NaN", text, self.own[name])

@@ -5,6 +5,7 @@ import math
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.springs.net import (
     CLOTH,
@@ -62,8 +63,9 @@ def cloth(
 ) -> Net:
     """A cloth at rest in a level plane: particle (i, j) is at origin + (j width/(cols-1), i length/(rows-1), 0).
 
-    width, length: [m]. density: [kg/m^2], shared equally by all particles. stiffness, shear, bend: [N/m] of a link to
-    the next particle, across a cell, and to the next but one; damping [N s/m] of a link; drag [N s/m] of a particle.
+    width, length: [m]. density: [kg/m^2]; a particle has the mass of the cloth nearest to it. stiffness, shear, bend:
+    [N/m] of a link to the next particle, across a cell, and to the next but one; damping [N s/m] of a link. A link
+    along an edge, beside half a strip of cloth, has half of both. drag [N s/m] of a particle.
     pinned: "corners" (0, 0) and (0, cols - 1), "edge" between them, "all corners", "rim", "free", or the particles.
     thickness: particles nearer to each other push with the contact's stiffness [m], 0: they pass. air: drag and lift
     by wind. floor, sphere, damping_model, contact, radius: as of `rope`.
@@ -100,7 +102,9 @@ def cloth(
     return Net(
         x0=np.ascontiguousarray(x0),
         families=families,
-        mass=density * width * length / (rows * cols),
+        mass=density * dx * dy,
+        mass_ratios=cells_around(rows, cols),
+        side_ratio=0.5,
         drag=float(drag),
         gravity=(0.0, 0.0, -float(gravity)),
         pinned=pinned_particles(pinned, int(rows), int(cols)),
@@ -112,6 +116,13 @@ def cloth(
         air=air,
         thickness=float(thickness),
     )
+
+
+def cells_around(rows: int, cols: int) -> NDArray[np.float64]:
+    """(rows, cols) cells of cloth that each particle stands for: 1, on an edge 1/2, at a corner 1/4."""
+    across, down = np.ones(cols), np.ones(rows)
+    across[[0, -1]] = down[[0, -1]] = 0.5
+    return np.outer(down, across)
 
 
 def pinned_particles(pinned: object, rows: int, cols: int) -> frozenset[tuple[int, int]]:

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interruption import stop_request
-from sim.jit import MAX_THREADS, chosen
-from sim.validation import argument_error, check_choice, check_number, check_vector, is_whole_number
+from sim.jit import MAX_THREADS, chosen, kernel
+from sim.validation import argument_error, as_array, check_choice, check_number, check_vector, is_whole_number
 
 Vector = tuple[float, float, float]
 
@@ -91,7 +91,7 @@ class RopeArrays(NamedTuple):
     rows: int  # 1
     cols: int
     inverse_masses: NDArray[np.float64]  # (rows cols,) inverse masses [1/kg], 0 where pinned
-    mass: float  # [kg] per point
+    mass: Any  # [kg] of every point; of any other net (rows cols,) of each
     drag: float  # [N s/m] per point
     gx: float  # gravity [m/s^2]
     gy: float
@@ -145,6 +145,7 @@ class WideArrays(NamedTuple):
     pairs: NDArray[np.int64]
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     bands: int  # number of bands of rows; each thread computes the forces of one band
+    side: float  # stiffness and damping of links along a side, over their family's
 
 
 # A net of any families of links, and one of those of CLOTH. A kernel is compiled for each of the three classes of
@@ -156,6 +157,36 @@ ClothArrays = namedtuple("ClothArrays", RopeArrays._fields + WideArrays._fields)
 def by_net(rope: Any, grid: Any, cloth: Any = None) -> Any:
     """A kernel that stands for one of these, by the class of its argument p. cloth: None for that of any other net."""
     return chosen({RopeArrays: rope, GridArrays: grid, ClothArrays: cloth or grid})
+
+
+@kernel(inline=True)
+def one_mass(p, j):
+    return p.mass
+
+
+@kernel(inline=True)
+def own_mass(p, j):
+    return p.mass[j]
+
+
+# Mass of point j [kg]. A rope of equal masses has one number for all, which its kernels need not load.
+mass_at = by_net(rope=one_mass, grid=own_mass)
+
+
+@kernel(inline=True)
+def equal_link(p, q, i, j):
+    return 1.0
+
+
+@kernel(inline=True)
+def placed_link(p, q, i, j):
+    on_row = p.offsets[q, 0] == 0 and (i == 0 or i == p.rows - 1)
+    on_column = p.offsets[q, 1] == 0 and (j == 0 or j == p.cols - 1)
+    return p.side if on_row or on_column else 1.0
+
+
+# Stiffness and damping of the link of family q that begins at (i, j), over the family's.
+link_ratio = by_net(rope=equal_link, grid=placed_link)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -179,6 +210,8 @@ class Net:
     grab: Grab | None = None
     air: Air | None = None
     thickness: float = 0.0  # [m]: particles nearer to each other than this push, 0: they pass
+    mass_ratios: NDArray[np.float64] | None = None  # (rows, cols), each point's mass over `mass`; None: 1
+    side_ratio: float = 1.0  # stiffness and damping of links along a side of the net, over their family's
     threads: int = 1  # that a cloth's forces are worked out on
 
     def __deepcopy__(self, memo: object) -> "Net":
@@ -192,6 +225,11 @@ class Net:
         for family in self.families:
             check_family(family)
         check_number("mass", self.mass, 0, math.inf, "kg", above=True)
+        if self.mass_ratios is not None:
+            check_mass_ratios(self.mass_ratios, (rows, cols))
+        check_number("side_ratio", self.side_ratio, 0, math.inf, "", above=True)
+        if self.side_ratio != 1.0 and min(rows, cols) < 2:
+            raise argument_error("side_ratio", self.side_ratio, "1, as a net one particle wide has no sides")
         check_number("drag", self.drag, 0, math.inf, "N s/m")
         check_vector("gravity", self.gravity, "m/s^2")
         check_choice("damping_model", self.damping_model, DAMPING_MODELS)
@@ -245,12 +283,27 @@ class Net:
             or (touched and rough)
         )
 
+    @property
+    def masses(self) -> NDArray[np.float64]:
+        """(rows, cols) masses [kg], of pinned points too."""
+        return np.full(self.shape, float(self.mass)) if self.mass_ratios is None else self.mass * self.mass_ratios
+
     def inverse_masses(self) -> NDArray[np.float64]:
         """(rows cols,) inverse masses [1/kg]; 0 where pinned."""
-        w = np.full(self.shape, 1.0 / self.mass)
+        w = 1.0 / self.masses
         for i, j in self.pinned:
             w[i, j] = 0.0
         return w.ravel()
+
+    def link_ratios(self, di: int, dj: int) -> NDArray[np.float64]:
+        """Stiffness and damping over the family's of the links to (di, dj) further, (rows - di, cols - |dj|)."""
+        rows, cols = self.shape
+        ratios = np.ones((max(0, rows - di), max(0, cols - abs(dj))))
+        if di == 0:
+            ratios[[0, -1]] = self.side_ratio
+        if dj == 0 and ratios.size:
+            ratios[:, [0, -1]] = self.side_ratio
+        return ratios
 
     def spacing(self, di: int, dj: int) -> float:
         """Rest length [m] of the links from (i, j) to (i + di, j + dj), FARTHEST where there are none."""
@@ -329,8 +382,9 @@ class Net:
             grab_max=float(grab.max_force),
             stop=stop_request(),
         )
-        if self.is_rope and self.air is None and self.thickness == 0.0:
+        if self.is_rope and self.air is None and self.thickness == 0.0 and self.mass_ratios is None:
             return view
+        view = view._replace(mass=self.masses.ravel())
         air = self.air or Air()
         wide = WideArrays(
             has_air=self.air is not None,
@@ -345,6 +399,7 @@ class Net:
             pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1, dtype=np.int64),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
             bands=self.bands,
+            side=float(self.side_ratio),
         )
         return (ClothArrays if [f[:2] for f in self.families] == CLOTH else GridArrays)(*view, *wide)
 
@@ -364,6 +419,16 @@ def start_positions(x0: Any) -> NDArray[np.float64]:
     if largest >= FARTHEST:
         raise argument_error("x0", largest, allowed)
     return x0
+
+
+def check_mass_ratios(ratios: Any, shape: tuple[int, int]) -> None:
+    """Raises ValueError for what is no array of numbers above 0, one for each point."""
+    array = as_array("mass_ratios", ratios, f"numbers of shape {shape}")
+    if array.shape != shape:
+        raise argument_error("mass_ratios", array.shape, f"numbers of shape {shape}")
+    bad = ~((array > 0.0) & (array < math.inf))
+    if bad.any():
+        raise argument_error("mass_ratios", float(array[bad][0]), "finite numbers above 0")
 
 
 def check_place(name: str, value: object) -> Vector:

@@ -82,7 +82,7 @@ def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
 def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, float]:
     """Upper bounds of frequency [rad/s] and damping rate [1/s] in any state, from Gershgorin's discs.
 
-    omega^2 <= max_i (2 sum_j k_ij + contact + grab)/m and gamma <= max_i (2 sum_j b_ij + drag + contact + grab)/m,
+    omega^2 <= max_i (2 sum_j k_ij + contact + grab)/m_i and gamma <= max_i (2 sum_j b_ij + drag + contact + grab)/m_i,
     the first tight for a long uniform rope, 4 k/m. Of a net's contact with itself as many others push a particle as
     touch one at x (3, rows, cols) [m] or, without x, as equal spheres can. Air and friction are left out.
     """
@@ -90,10 +90,11 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
     stiffness, damping = np.zeros((2, rows, cols))
     for f in net.families:
         i, j = slice(0, max(0, rows - f.di)), slice(max(0, -f.dj), max(0, cols - max(0, f.dj)))
+        ratios = net.link_ratios(f.di, f.dj)
         far = slice(f.di, rows), slice(j.start + f.dj, max(0, j.stop + f.dj))
         for end in ((i, j), far):
-            stiffness[end] += 2.0 * f.stiffness
-            damping[end] += 2.0 * f.damping
+            stiffness[end] += 2.0 * f.stiffness * ratios
+            damping[end] += 2.0 * f.damping * ratios
     # The lab's sphere multiplies its damping by the depth, which no bound holds below the radius.
     depth = max(1.0, net.sphere[3] + net.radius) if net.sphere and net.contact.law == "lab" else 1.0
     touched = (net.floor is not None) + (net.sphere is not None) * depth
@@ -106,10 +107,8 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
     if net.grab is not None:
         stiffness[net.grab.row, net.grab.col] += net.grab.stiffness
         damping[net.grab.row, net.grab.col] += net.grab.damping
-    free = net.inverse_masses().reshape(rows, cols) > 0.0
-    if not free.any():
-        return 0.0, 0.0
-    return math.sqrt(float(stiffness[free].max()) / net.mass), float(damping[free].max()) / net.mass
+    free = net.inverse_masses().reshape(rows, cols)
+    return math.sqrt(float((free * stiffness).max())), float((free * damping).max())
 
 
 def sawtooth(net: Net, x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:

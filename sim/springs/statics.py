@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sim.springs.net import Net
 from sim.validation import argument_error, check_number
@@ -20,31 +20,29 @@ class Equilibrium(NamedTuple):
 
 
 def hanging_chain(net: Net) -> Equilibrium:
-    """The rope `net` hanging from its pinned point 0, away from floor and sphere: link i of n carries the n - i + 1
-    points below it, and stretches by m g (n - i + 1)/k.
+    """The rope `net` hanging from its pinned point 0, away from floor and sphere: link i of n carries the points
+    below it, and stretches by their weight over k.
 
     Raises ValueError where the net is no rope, is pinned elsewhere too, or has links without stiffness.
     """
     family = single_family(net)
     if net.pinned != {(0, 0)}:
         raise argument_error("net", sorted(net.pinned), "a rope pinned at point 0 only")
-    links = net.shape[1] - 1
-    weight = net.mass * np.asarray(net.gravity)
-    g = math.sqrt(float(weight @ weight))
+    g = math.hypot(*net.gravity)
     # Without gravity any straight shape is at rest: along -x, as `rope` lays it.
-    down = weight / g if g > 0.0 else np.array([-1.0, 0.0, 0.0])
-    tension = g * np.arange(links, 0, -1.0)
+    down = np.asarray(net.gravity) / g if g > 0.0 else np.array([-1.0, 0.0, 0.0])
+    tension = g * net.masses[0, :0:-1].cumsum()[::-1]
     depth = np.concatenate([[0.0], np.cumsum(family.rest + tension / family.stiffness)])
     return Equilibrium(net.x0[:, 0, 0] + depth[:, None] * down, tension)
 
 
 def catenary(
-    points: int, length: float, span: float, rise: float, stiffness: float, mass: float, gravity: float
+    points: int, length: float, span: float, rise: float, stiffness: float, mass: ArrayLike, gravity: float
 ) -> Equilibrium:
     """The discrete elastic catenary between pins at (0, 0, 0) and (span, 0, rise) [m], hanging in the x-z plane.
 
-    length: rest length of the whole [m]; stiffness [N/m] per link; mass [kg] per point; gravity [m/s^2] along -z, above
-    0 where the rope is not stretched straight.
+    length: rest length of the whole [m]; stiffness [N/m] per link; mass [kg] of every point, or (points,) of each;
+    gravity [m/s^2] along -z, above 0 where the rope is not stretched straight.
 
     With the first link's tension (H, V) the others carry (H, V + (i - 1) m g), each link is the vector
     (l0 + T_i/k) (H, V_i)/T_i, and H and V follow from where the last one ends (H. M. Irvine, Cable Structures, 1981,
@@ -59,11 +57,11 @@ def catenary(
     check_number("span", span, -math.inf, math.inf, "m")
     check_number("rise", rise, -math.inf, math.inf, "m")
     check_number("stiffness", stiffness, 0, math.inf, "N/m", above=True)
-    check_number("mass", mass, 0, math.inf, "kg")
+    check_number("mass", float(np.min(mass)), 0, math.inf, "kg")
     check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
     links = int(points) - 1
     rest = length / links
-    load = mass * gravity * np.arange(links)
+    load = gravity * np.concatenate([[0.0], np.broadcast_to(mass, (links + 1,))[1:-1].cumsum()])
     end = np.array([span, rise])
 
     def value(force):
@@ -126,7 +124,7 @@ def equilibrium(net: Net) -> Equilibrium:
     start, chord = net.x0[:, 0, 0], net.x0[:, 0, last] - net.x0[:, 0, 0]
     span = math.hypot(chord[0], chord[1])
     flat = catenary(
-        last + 1, family.rest * last, span, float(chord[2]), family.stiffness, net.mass, -net.gravity[2]
+        last + 1, family.rest * last, span, float(chord[2]), family.stiffness, net.masses[0], -net.gravity[2]
     )  # fmt: skip
     away = np.array([chord[0] / span, chord[1] / span, 0.0]) if span > 0.0 else np.array([1.0, 0.0, 0.0])
     return Equilibrium(start + flat.x[:, :1] * away + flat.x[:, 2:] * (0.0, 0.0, 1.0), flat.tension)

@@ -162,6 +162,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Drape over the sphere": {
         "start": "level", "pinned": "free", "rows": 64, "cols": 64, "sphere": True, "thickness": 0.02, "bend": 3.0,
         "integrator": "symplectic_euler", "time_step": 1 / 4800, "damping": 0.01, "wind": 0.0, "full_strain": 2.0,
+        "contact_stiffness": 60.0, "contact_damping": 0.08,  # a corner has a quarter of a particle's mass
     },
     "Trampoline": {
         "start": "level", "pinned": "rim", "rows": 48, "cols": 48, "sphere": True, "sphere_radius": 0.25, "bob": 0.45,

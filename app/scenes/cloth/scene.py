@@ -300,7 +300,7 @@ class ClothScene:
             _, index, hand = self.drag.hold
             hand.advance(t, duration)
             row, col = divmod(index, self.params.cols)
-            stiffness, damping = self.pull_spring()
+            stiffness, damping = self.pull_spring(index)
             pull = Pull(row, col, hand.position, stiffness, damping, self.params.pull)
         return dataclasses.replace(
             self.net,
@@ -312,11 +312,12 @@ class ClothScene:
             air=Air(gusty_wind(self.params, t), self.params.air) if self.params.air > 0.0 else None,
         )
 
-    def pull_spring(self) -> tuple[float, float]:
-        """Stiffness [N/m] and damping [N s/m] of a pull."""
-        stiffest = MAX_PULL_STIFFNESS_STEP * self.net.mass / self.step**2
+    def pull_spring(self, index: int) -> tuple[float, float]:
+        """Stiffness [N/m] and damping [N s/m] of a pull on a particle."""
+        mass = float(self.net.masses.flat[index])
+        stiffest = MAX_PULL_STIFFNESS_STEP * mass / self.step**2
         stiffness = min(self.params.pull / PULL_LENGTH, stiffest)
-        return stiffness, 0.5 * math.sqrt(stiffness * self.net.mass)
+        return stiffness, 0.5 * math.sqrt(stiffness * mass)
 
     def sphere_at(self, t: float) -> Vector:
         """Centre of the sphere at time t [m]."""
@@ -391,7 +392,7 @@ class ClothScene:
         if self.drag.hold is not None:
             _, index, hand = self.drag.hold
             distance = float(np.linalg.norm(np.asarray(hand.position) - self.state.x.reshape(3, -1)[:, index]))
-            pull = PullFrame(index, hand.position, min(1.0, distance * self.pull_spring()[0] / params.pull))
+            pull = PullFrame(index, hand.position, min(1.0, distance * self.pull_spring(index)[0] / params.pull))
         x, student = self.state.x, None
         both = None if self.student is None else self.student.pictured(x)
         if both is not None:

@@ -15,7 +15,7 @@ from sim.springs.forces.contact import contact_force, surface_velocity, touches,
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import self_contact_energy, self_contact_power
 from sim.springs.forces.wind import wind_power
-from sim.springs.net import by_net
+from sim.springs.net import by_net, link_ratio, mass_at
 
 
 class Energy(NamedTuple):
@@ -38,8 +38,19 @@ def kinetic_energy(v, p):
     n = p.rows * p.cols
     for j in range(n):
         if p.inverse_masses[j] > 0.0:
+            total += mass_at(p, j) * (v[j] ** 2 + v[n + j] ** 2 + v[2 * n + j] ** 2)
+    return 0.5 * total
+
+
+@kernel(allocates=False)
+def drag_power(v, p):
+    """c v^2 over the free particles [W]."""
+    total = 0.0
+    n = p.rows * p.cols
+    for j in range(n):
+        if p.inverse_masses[j] > 0.0:
             total += v[j] ** 2 + v[n + j] ** 2 + v[2 * n + j] ** 2
-    return 0.5 * p.mass * total
+    return p.drag * total
 
 
 @kernel(allocates=False)
@@ -55,7 +66,7 @@ def elastic_energy(x, p):
                 a = i * p.cols + j
                 b = a + di * p.cols + dj
                 rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
-                total += 0.5 * k * (math.sqrt(rx * rx + ry * ry + rz * rz) - rest) ** 2
+                total += 0.5 * link_ratio(p, q, i, j) * k * (math.sqrt(rx * rx + ry * ry + rz * rz) - rest) ** 2
     return total
 
 
@@ -66,8 +77,8 @@ def gravity_energy(x, p):
     n = p.rows * p.cols
     for j in range(n):
         if p.inverse_masses[j] > 0.0:
-            total -= p.gx * x[j] + p.gy * x[n + j] + p.gz * x[2 * n + j]
-    return p.mass * total
+            total -= mass_at(p, j) * (p.gx * x[j] + p.gy * x[n + j] + p.gz * x[2 * n + j])
+    return total
 
 
 @kernel(allocates=False)
@@ -118,7 +129,13 @@ def link_damping_power(x, v, p):
         for i in range(p.rows - di):
             a = np.uint64(i * p.cols + first)
             b = np.uint64((i + di) * p.cols + first + dj)
-            total += c * row_damping_power(x, v, a, b, np.uint64(count), n, p.axial)
+            ratio = link_ratio(p, q, i, 1)
+            total += ratio * c * row_damping_power(x, v, a, b, np.uint64(count), n, p.axial)
+            more = link_ratio(p, q, i, 0) - ratio  # of the links in the first and the last column
+            if dj == 0 and more != 0.0:
+                for j in (0, count - 1):
+                    o = np.uint64(j)
+                    total += more * c * row_damping_power(x, v, a + o, b + o, np.uint64(1), n, p.axial)
     return total
 
 
@@ -144,8 +161,9 @@ def moving_pins_power(x, v, p, elastic, damping):
                 if p.axial:
                     along = (du * rx + dv * ry + dw * rz) / rr
                     du, dv, dw = along * rx, along * ry, along * rz
-                s = k - k * rest / math.sqrt(rr)
-                fx, fy, fz = s * rx + c * du, s * ry + c * dv, s * rz + c * dw
+                ratio = link_ratio(p, q, i, j)
+                s, d = ratio * (k - k * rest / math.sqrt(rr)), ratio * c
+                fx, fy, fz = s * rx + d * du, s * ry + d * dv, s * rz + d * dw
                 if p.inverse_masses[a] == 0.0:
                     work -= fx * v[a] + fy * v[n + a] + fz * v[2 * n + a]
                 if p.inverse_masses[b] == 0.0:
@@ -170,7 +188,7 @@ def contact_power(x, v, t, p, with_damping):
             depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
             if depth > 0.0 and p.inverse_masses[j] > 0.0:
                 ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, p, on_sphere, with_damping)
+                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, mass_at(p, j), p, on_sphere, with_damping)
                 push = p.contact_k * depth
                 dissipated -= (fx - push * nx) * ru + (fy - push * ny) * rv + (fz - push * nz) * rw
                 work += fx * su + fy * sv + fz * sw
@@ -237,7 +255,7 @@ def power(x, v, t, p, with_damping):
     if with_damping:
         dissipated += link_damping_power(x, v, p)
         if p.drag > 0.0:
-            dissipated += 2.0 * p.drag / p.mass * kinetic_energy(v, p)
+            dissipated += drag_power(v, p)
     lost, done = power_of_width(x, v, p, with_damping)
     dissipated += lost
     work += done

@@ -81,7 +81,8 @@ def measured_limit(
 def energy_scale(net: Net, x: NDArray[np.float64]) -> float:
     """An energy [J] that is large for a net at rest at x (3, rows, cols): a fall by its own length, or a stretch."""
     span = float(np.ptp(x.reshape(3, -1), axis=1).max())
-    fall = net.mass * math.hypot(*net.gravity) * span * np.count_nonzero(net.inverse_masses())
+    free = net.inverse_masses().reshape(net.shape) > 0.0
+    fall = float(net.masses[free].sum()) * math.hypot(*net.gravity) * span
     stretch = max((f.stiffness * f.rest**2 for f in net.families), default=0.0)
     return max(fall, 1e-3 * stretch, 1e-12)
 
@@ -90,7 +91,7 @@ def stir(net: Net, state: State, joule: float) -> None:
     """Give the free points random velocities that carry `joule` [J]: something of every mode."""
     free = net.inverse_masses().reshape(net.shape) > 0.0
     kick = np.random.default_rng(0).standard_normal(state.v.shape) * free
-    square = 0.5 * net.mass * float((kick * kick).sum())
+    square = 0.5 * float((net.masses * kick * kick).sum())
     if square > 0.0:
         state.v += kick * math.sqrt(joule / square)
 

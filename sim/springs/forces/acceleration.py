@@ -13,7 +13,7 @@ import numpy as np
 from sim.jit import kernel
 from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size
 from sim.springs.forces.contact import add_contacts
-from sim.springs.forces.links import link_forces
+from sim.springs.forces.links import link_forces, scale_ends
 from sim.springs.forces.self_contact import add_self_contacts
 from sim.springs.forces.wind import add_wind, wind_scratch_size
 from sim.springs.net import by_net
@@ -42,9 +42,9 @@ def accelerate_rope(x, v, p, b, c, f, a):
 
 
 @kernel(noalias=True, inline=True)
-def set_load(v, a, o, n, load, c):
+def set_load(v, a, o, m, n, g, c):
     for j in range(n):
-        a[o + j] = load - c * v[o + j]
+        a[o + j] = m[j] * g - c * v[o + j]
 
 
 @kernel(noalias=True, inline=True)
@@ -64,9 +64,9 @@ def accelerate_grid(x, v, p, b, c, f, a):
     """Any families of links, row pair by row pair."""
     n = np.uint64(p.rows * p.cols)
     m = np.uint64(p.cols + 1)
-    set_load(v, a, np.uint64(0), n, p.mass * p.gx, c)
-    set_load(v, a, n, n, p.mass * p.gy, c)
-    set_load(v, a, n + n, n, p.mass * p.gz, c)
+    set_load(v, a, np.uint64(0), p.mass, n, p.gx, c)
+    set_load(v, a, n, p.mass, n, p.gy, c)
+    set_load(v, a, n + n, p.mass, n, p.gz, c)
     for q in range(p.offsets.shape[0]):
         di, dj = p.offsets[q, 0], p.offsets[q, 1]
         first = max(0, -dj)
@@ -74,12 +74,15 @@ def accelerate_grid(x, v, p, b, c, f, a):
         for i in range(p.rows - di):
             ia = np.uint64(i * p.cols + first)
             ib = np.uint64((i + di) * p.cols + first + dj)
+            ratio = p.side if di == 0 and (i == 0 or i == p.rows - 1) else 1.0
             link_forces(
                 x, v, f, ia, ib, np.uint64(0), count, n, m,
-                p.links[q, 1], b * p.links[q, 2], p.links[q, 0], p.axial and b > 0,
+                ratio * p.links[q, 1], ratio * b * p.links[q, 2], p.links[q, 0], p.axial and b > 0,
             )  # fmt: skip
-            for s in range(3):
-                of, o = np.uint64(s) * m, np.uint64(s) * n
+            if dj == 0 and p.side != 1.0:
+                scale_ends(f, np.uint64(0), count, m, p.side)
+            for e in range(3):
+                of, o = np.uint64(e) * m, np.uint64(e) * n
                 add_row(f, of, count, 1.0, a, o + ia)
                 add_row(f, of, count, -1.0, a, o + ib)
     scale_rows(p.inverse_masses, n, a, np.uint64(0))

@@ -7,7 +7,7 @@ its twelve in one loop: every link is worked out once, written once and read twi
 import numpy as np
 
 from sim.jit import kernel, prange
-from sim.springs.forces.links import link_forces
+from sim.springs.forces.links import link_forces, scale_ends
 
 PAD = 2  # zeros on either side of a row: no link reaches further
 REACH = 2  # rows on, where a link of the bend family ends
@@ -33,14 +33,14 @@ def clear(f, o, n):
 
 
 @kernel(noalias=True, inline=True)
-def sum_row(f, w, v, a, o, ow, n, load, c, f01, f10, g10, f11, g11, f1m, g1m, f02, f20, g20):
-    """a = w (load - c v + what each link pulls at its first end - what it pulls at its second)."""
+def sum_row(f, w, mass, v, a, o, ow, n, g, c, f01, f10, g10, f11, g11, f1m, g1m, f02, f20, g20):
+    """a = w (m g - c v + what each link pulls at its first end - what it pulls at its second)."""
     one, two = np.uint64(1), np.uint64(2)
     for j in range(n):
         along = f[f01 + j] - f[f01 + j - one] + f[f10 + j] - f[g10 + j]
         across = f[f11 + j] - f[g11 + j - one] + f[f1m + j] - f[g1m + j + one]
         far = f[f02 + j] - f[f02 + j - two] + f[f20 + j] - f[g20 + j]
-        a[o + j] = w[ow + j] * (load - c * v[o + j] + along + across + far)
+        a[o + j] = w[ow + j] * (mass[ow + j] * g - c * v[o + j] + along + across + far)
 
 
 @kernel(noalias=True, allocates=False)
@@ -69,20 +69,23 @@ def accelerate_rows(x, v, p, b, c, f, o, a, start, stop):
             if i + di < p.rows:
                 ia = np.uint64(i * p.cols + first)
                 ib = np.uint64((i + di) * p.cols + first + dj)
+                ratio = p.side if di == 0 and (i == 0 or i == p.rows - 1) else 1.0
                 link_forces(
                     x, v, f, ia, ib, of + np.uint64(first), count, n, m,
-                    p.links[q, 1], b * p.links[q, 2], p.links[q, 0], axial,
+                    ratio * p.links[q, 1], ratio * b * p.links[q, 2], p.links[q, 0], axial,
                 )  # fmt: skip
+                if dj == 0 and p.side != 1.0:
+                    scale_ends(f, of, count, m, p.side)
             else:
                 clear(f, of - np.uint64(PAD), np.uint64(3) * m)
         if i < start:
             continue
         row = np.uint64(i * p.cols)
         for e in range(3):
-            load = p.mass * (p.gx if e == 0 else p.gy if e == 1 else p.gz)
+            g = p.gx if e == 0 else p.gy if e == 1 else p.gz
             s = o + np.uint64(e) * m
             sum_row(
-                f, p.inverse_masses, v, a, np.uint64(e) * n + row, row, cols, load, c,
+                f, p.inverse_masses, p.mass, v, a, np.uint64(e) * n + row, row, cols, g, c,
                 place(0, i, width) + s,
                 place(1, i, width) + s, place(1, i + 2, width) + s,
                 place(2, i, width) + s, place(2, i + 2, width) + s,

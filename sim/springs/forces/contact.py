@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from sim.jit import kernel
+from sim.springs.net import mass_at
 
 
 @kernel(inline=True)
@@ -26,8 +27,8 @@ def touching(x, y, z, t, p, on_sphere):
 
 
 @kernel(inline=True)
-def contact_force(depth, nx, ny, nz, u, v, w, p, on_sphere, with_damping):
-    """Force (fx, fy, fz) on a point at `depth` that moves at (u, v, w) relative to the surface."""
+def contact_force(depth, nx, ny, nz, u, v, w, mass, p, on_sphere, with_damping):
+    """Force (fx, fy, fz) on a point of `mass` at `depth` that moves at (u, v, w) relative to the surface."""
     k, b = p.contact_k, p.contact_b
     if not with_damping:
         return k * depth * nx, k * depth * ny, k * depth * nz
@@ -42,7 +43,7 @@ def contact_force(depth, nx, ny, nz, u, v, w, p, on_sphere, with_damping):
         tx, ty, tz = u - vn * nx, v - vn * ny, w - vn * nz
         speed = math.sqrt(tx * tx + ty * ty + tz * tz)
         # F_t = -mu N t/|t|, at most what stops the point within the step
-        grip = p.mass * p.stop_rate
+        grip = mass * p.stop_rate
         if p.friction * normal < grip * speed:
             grip = p.friction * normal / speed
         fx -= grip * tx
@@ -100,7 +101,7 @@ def add_contacts(x, v, t, p, with_damping, a):
             depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
             if depth > 0.0:
                 ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, p, on_sphere, with_damping)
+                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, mass_at(p, j), p, on_sphere, with_damping)
                 w = p.inverse_masses[j]
                 a[j] += w * fx
                 a[n + j] += w * fy

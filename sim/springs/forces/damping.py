@@ -20,34 +20,32 @@ from sim.jit import kernel
 from sim.springs.forces.contact import surface_velocity, touches, touching
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import damp_self_contacts
-from sim.springs.net import by_net
+from sim.springs.net import by_net, link_ratio
 
 PAD = 4  # numbers beside a component in the room of `cross_gap`, the width of its window
 
 
 @kernel(noalias=True, inline=True)
-def damp_pairs(v, w, ia, ib, stride, count, o, free, held):
+def damp_pairs(v, w, ia, ib, stride, count, o, share):
     """One component of links (ia, ib), (ia + stride, ib + stride), ...: no particle twice, so that they vectorise.
 
-    free, held: the share (1 - exp(-b (w1 + w2) s)) / (w1 + w2) of a link with no pinned end, or one.
+    share: (1 - exp(-b (w1 + w2) s)) / (w1 + w2) of the link that begins at each particle.
     """
     for j in range(count):
         a, b = ia + stride * j, ib + stride * j
-        share = free if w[a] * w[b] > 0.0 else held
-        d = share * (v[o + b] - v[o + a])
+        d = share[a] * (v[o + b] - v[o + a])
         v[o + a] += w[a] * d
         v[o + b] -= w[b] * d
 
 
 @kernel(noalias=True, inline=True)
-def damp_pairs_along(x, v, w, ia, ib, stride, count, n, free, held):
+def damp_pairs_along(x, v, w, ia, ib, stride, count, n, share):
     """The same for the part of the relative velocity along each link, all components at once."""
     for j in range(count):
         a, b = ia + stride * j, ib + stride * j
         rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[n + n + b] - x[n + n + a]
         closing = (v[b] - v[a]) * rx + (v[n + b] - v[n + a]) * ry + (v[n + n + b] - v[n + n + a]) * rz
-        share = free if w[a] * w[b] > 0.0 else held
-        d = share * closing / (rx * rx + ry * ry + rz * rz + TINY)
+        d = share[a] * closing / (rx * rx + ry * ry + rz * rz + TINY)
         v[a] += w[a] * d * rx
         v[n + a] += w[a] * d * ry
         v[n + n + a] += w[a] * d * rz
@@ -57,29 +55,28 @@ def damp_pairs_along(x, v, w, ia, ib, stride, count, n, free, held):
 
 
 @kernel(noalias=True, allocates=False)
-def damp_set(x, v, w, ia, ib, stride, count, n, free, held, axial):
+def damp_set(x, v, w, ia, ib, stride, count, n, share, axial):
     """A set of links without a particle in common."""
     if axial:
-        damp_pairs_along(x, v, w, ia, ib, stride, count, n, free, held)
+        damp_pairs_along(x, v, w, ia, ib, stride, count, n, share)
     else:
         for e in range(3):
-            damp_pairs(v, w, ia, ib, stride, count, np.uint64(e) * n, free, held)
+            damp_pairs(v, w, ia, ib, stride, count, np.uint64(e) * n, share)
 
 
 @kernel(noalias=True, inline=True)
-def damp_next(v, w, first, count, o, free, held):
+def damp_next(v, w, first, count, o, share):
     """`damp_pairs` for links (first, first + 1), (first + 2, first + 3), ...: a 2 in LLVM's sight vectorises."""
     for j in range(count):
         a = first + np.uint64(2) * j
         b = a + np.uint64(1)
-        share = free if w[a] * w[b] > 0.0 else held
-        d = share * (v[o + b] - v[o + a])
+        d = share[a] * (v[o + b] - v[o + a])
         v[o + a] += w[a] * d
         v[o + b] -= w[b] * d
 
 
 @kernel(noalias=True, allocates=False)
-def damp_row(x, v, w, start, cols, dj, colour, n, free, held, axial):
+def damp_row(x, v, w, start, cols, dj, colour, n, share, axial):
     """Links (j, j + dj) within one row, those that start in an even block of dj points (colour 0) or an odd one (1)."""
     for j0 in range(colour * dj, colour * dj + dj):
         count = (cols - dj - j0 + 2 * dj - 1) // (2 * dj)
@@ -87,20 +84,19 @@ def damp_row(x, v, w, start, cols, dj, colour, n, free, held, axial):
             a = np.uint64(start + j0)
             if dj == 1 and not axial:
                 for e in range(3):
-                    damp_next(v, w, a, np.uint64(count), np.uint64(e) * n, free, held)
+                    damp_next(v, w, a, np.uint64(count), np.uint64(e) * n, share)
             else:
-                damp_set(x, v, w, a, a + np.uint64(dj), np.uint64(2 * dj), np.uint64(count), n, free, held, axial)
+                damp_set(x, v, w, a, a + np.uint64(dj), np.uint64(2 * dj), np.uint64(count), n, share, axial)
 
 
 @kernel(noalias=True, allocates=False)
-def damp_two_rows(ax, ay, az, bx, by, bz, wa, wb, free, held):
+def damp_two_rows(ax, ay, az, bx, by, bz, wa, wb, share):
     """Links (j, j) from one row of particles to another: velocities a and b, inverse masses wa and wb, (count,) each.
 
     As arrays of their own they vectorise: LLVM does not look whether rows of one array overlap.
     """
     for j in range(np.uint64(ax.shape[0])):
-        share = free if wa[j] * wb[j] > 0.0 else held
-        ca, cb = share * wa[j], share * wb[j]
+        ca, cb = share[j] * wa[j], share[j] * wb[j]
         dx, dy, dz = bx[j] - ax[j], by[j] - ay[j], bz[j] - az[j]
         ax[j] += ca * dx
         ay[j] += ca * dy
@@ -120,7 +116,7 @@ def damp_links(x, v, decay, p, reverse):
         di, dj, b = p.offsets[q, 0], p.offsets[q, 1], p.links[q, 2]
         if b == 0.0:
             continue
-        free, held = decay[q, 0], decay[q, 1]
+        share = decay[q]
         first = max(0, -dj)
         count = max(0, p.cols - abs(dj))
         for line in range(p.rows - di):
@@ -128,25 +124,23 @@ def damp_links(x, v, decay, p, reverse):
             if di == 0:
                 for turn in range(2):
                     colour = 1 - turn if reverse else turn
-                    damp_row(x, v, w, i * p.cols, p.cols, dj, colour, np.uint64(n), free, held, p.axial)
+                    damp_row(x, v, w, i * p.cols, p.cols, dj, colour, np.uint64(n), share, p.axial)
                 continue
             a, c = i * p.cols + first, (i + di) * p.cols + first + dj
             if p.axial:
-                damp_set(
-                    x, v, w, np.uint64(a), np.uint64(c), np.uint64(1), np.uint64(count), np.uint64(n), free, held, True
-                )
+                damp_set(x, v, w, np.uint64(a), np.uint64(c), np.uint64(1), np.uint64(count), np.uint64(n), share, True)
             else:
                 damp_two_rows(
                     v[a : a + count], v[n + a : n + a + count], v[2 * n + a : 2 * n + a + count],
                     v[c : c + count], v[n + c : n + c + count], v[2 * n + c : 2 * n + c + count],
-                    w[a : a + count], w[c : c + count], free, held,
+                    w[a : a + count], w[c : c + count], share[a : a + count],
                 )  # fmt: skip
 
 
 @kernel(noalias=True, inline=True)
-def scale_free(v, w, o, n, keep):
+def scale(v, keep, o, n):
     for j in range(n):
-        v[o + j] *= keep if w[j] > 0.0 else 1.0
+        v[o + j] *= keep[j]
 
 
 @kernel(allocates=False)
@@ -183,7 +177,7 @@ def damp_contact(x, v, t, s, p, on_sphere, reverse):
             keep = 1.0 - slow / speed if slow < speed else 0.0
             ru, rv, rw = keep * tx + after * nx, keep * ty + after * ny, keep * tz + after * nz
         if moves:
-            work += p.mass * ((ru + su - v[j]) * su + (rv + sv - v[n + j]) * sv + (rw + sw - v[2 * n + j]) * sw)
+            work += ((ru + su - v[j]) * su + (rv + sv - v[n + j]) * sv + (rw + sw - v[2 * n + j]) * sw) / w
         v[j], v[n + j], v[2 * n + j] = ru + su, rv + sv, rw + sw
     return work
 
@@ -199,15 +193,27 @@ def damp_grab(v, s, p):
 
 @kernel
 def make_decay(p, s):
-    """What `damp` needs of a time s [s], (families + 1, 2): each family's two shares, then the drag's factor."""
-    families = p.offsets.shape[0]
-    decay = np.zeros((families + 1, 2))
-    m = 1.0 / p.mass
+    """What `damp` needs of a time s [s], (families + 1, rows cols): the share of each family's link that begins at a
+    point, then what drag leaves of each point's velocity, 1 of pins."""
+    families, n, w = p.offsets.shape[0], p.rows * p.cols, p.inverse_masses
+    decay = np.zeros((families + 1, n))
     for q in range(families):
-        b = p.links[q, 2]
-        decay[q, 0] = -math.expm1(-2.0 * b * m * s) / (2.0 * m)
-        decay[q, 1] = -math.expm1(-b * m * s) / m
-    decay[families, 0] = math.exp(-p.drag * m * s)
+        di, dj, b = p.offsets[q, 0], p.offsets[q, 1], p.links[q, 2]
+        last, before, share = 0.0, 0.0, 0.0
+        for i in range(p.rows - di):
+            for j in range(max(0, -dj), p.cols - max(0, dj)):
+                a = i * p.cols + j
+                both = w[a] + w[a + di * p.cols + dj]
+                ratio = link_ratio(p, q, i, j)
+                if both != last or ratio != before:  # nearly all links are equal
+                    last, before = both, ratio
+                    share = -math.expm1(-ratio * b * both * s) / both if both > 0.0 else 0.0
+                decay[q, a] = share
+    last, keep = 0.0, 1.0
+    for j in range(n):
+        if w[j] != last:
+            last, keep = w[j], math.exp(-p.drag * w[j] * s)
+        decay[families, j] = keep
     return decay
 
 
@@ -216,14 +222,13 @@ def damp_rope(v, decay, p, reverse):
     """`damp_links` of a rope with isotropic damping: its even links, then its odd ones, or in reverse."""
     n = np.uint64(p.cols)
     one = np.uint64(1)
-    free, held = decay[0, 0], decay[0, 1]
     for e in range(3):
         o = np.uint64(e) * n
         if reverse:
-            damp_next(v, p.inverse_masses, one, (n - one) >> one, o, free, held)
-        damp_next(v, p.inverse_masses, np.uint64(0), n >> one, o, free, held)
+            damp_next(v, p.inverse_masses, one, (n - one) >> one, o, decay[0])
+        damp_next(v, p.inverse_masses, np.uint64(0), n >> one, o, decay[0])
         if not reverse:
-            damp_next(v, p.inverse_masses, one, (n - one) >> one, o, free, held)
+            damp_next(v, p.inverse_masses, one, (n - one) >> one, o, decay[0])
 
 
 @kernel(noalias=True, inline=True)
@@ -242,15 +247,15 @@ damp_all_links = by_net(rope=damp_rope_links, grid=damp_links)
 def damp_motion(x, v, decay, p, reverse):
     """Link damping, then drag, or in reverse. Drag scales every free velocity; moving pins keep theirs."""
     n = np.uint64(p.rows * p.cols)
-    keep = decay[p.offsets.shape[0], 0]
+    keep = decay[p.offsets.shape[0]]
     for turn in range(2):
         if (turn == 0) != reverse:
             if p.damped:
                 damp_all_links(x, v, decay, p, reverse)
-        elif keep < 1.0:
-            scale_free(v, p.inverse_masses, np.uint64(0), n, keep)
-            scale_free(v, p.inverse_masses, n, n, keep)
-            scale_free(v, p.inverse_masses, n + n, n, keep)
+        elif p.drag > 0.0:
+            scale(v, keep, np.uint64(0), n)
+            scale(v, keep, n, n)
+            scale(v, keep, n + n, n)
 
 
 @kernel(inline=True)
@@ -354,12 +359,9 @@ def make_rope_gap(p, decay):
     for e in range(3):
         for j in range(n):
             at, wa = PAD + e * width + j, p.inverse_masses[j]
-            if wa > 0.0:
-                keep[at] = decay[1, 0]
+            keep[at] = decay[1, j]
             if j + 1 < n:
-                wb = p.inverse_masses[j + 1]
-                share = decay[0, 0] if wa * wb > 0.0 else decay[0, 1]
-                first[at], second[at] = wa * share, wb * share
+                first[at], second[at] = wa * decay[0, j], p.inverse_masses[j + 1] * decay[0, j]
     return Gap(room, first, second, keep)
 
 

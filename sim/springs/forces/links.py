@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from sim.jit import kernel
 
 TINY = 1e-300  # [m^2] under the root: coincident points get no spring force instead of 0/0
@@ -40,3 +42,12 @@ def link_forces(x, v, f, ia, ib, of, n, N, M, k, b, rest, axial):
             f[of + j] = s * rx + b * (v[q] - v[p])
             f[M + of + j] = s * ry + b * (v[N + q] - v[N + p])
             f[M + M + of + j] = s * rz + b * (v[N + N + q] - v[N + N + p])
+
+
+@kernel(noalias=True, inline=True)
+def scale_ends(f, of, n, M, s):
+    """Multiply the forces of the first and the last of n links, f (3 M,) from index `of` of each component."""
+    last = of + n - np.uint64(1)
+    for e in range(3):
+        f[np.uint64(e) * M + of] *= s
+        f[np.uint64(e) * M + last] *= s

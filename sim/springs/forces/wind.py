@@ -100,8 +100,8 @@ def wind_power(x, v, p):
     work = 0.0
     gained = 0.0
     for j in range(n):
-        work += p.mass * (a[j] * p.wind_x + a[n + j] * p.wind_y + a[2 * n + j] * p.wind_z)
-        gained += p.mass * (a[j] * v[j] + a[n + j] * v[n + j] + a[2 * n + j] * v[2 * n + j])
+        work += p.mass[j] * (a[j] * p.wind_x + a[n + j] * p.wind_y + a[2 * n + j] * p.wind_z)
+        gained += p.mass[j] * (a[j] * v[j] + a[n + j] * v[n + j] + a[2 * n + j] * v[2 * n + j])
     return work - gained, work
 
 
@@ -128,13 +128,14 @@ def blow(x, v, s, p, f, a, middle, with_account, ledger):
     work = gained = 0.0
     for e in range(3):
         wind = p.wind_x if e == 0 else p.wind_y if e == 1 else p.wind_z
-        for j in range(e * n, (e + 1) * n):
-            change = s * a[j]  # 0 where pinned
-            work += change * wind
-            gained += change * (v[j] + 0.5 * change)
-            v[j] += change
-    ledger[0] += p.mass * (work - gained)
-    ledger[1] += p.mass * work
+        for j in range(n):
+            i = e * n + j
+            change = s * a[i]  # 0 where pinned
+            work += p.mass[j] * change * wind
+            gained += p.mass[j] * change * (v[i] + 0.5 * change)
+            v[i] += change
+    ledger[0] += work - gained
+    ledger[1] += work
 
 
 @kernel(noalias=True, inline=True)

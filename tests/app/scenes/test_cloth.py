@@ -251,9 +251,11 @@ def test_a_large_cloth_keeps_its_account_from_when_the_plot_is_opened():
 @pytest.mark.parametrize("step", [1e-4, 1 / 60])
 def test_a_pull_is_as_stiff_as_the_step_allows(step):
     scene = ClothScene(dataclasses.replace(SMALL, time_step=step, pull=3.0))
-    stiffness, damping = scene.pull_spring()
-    assert stiffness == pytest.approx(min(3.0 / 0.1, 0.1 * scene.net.mass / step**2))
-    assert damping == pytest.approx(0.5 * math.sqrt(stiffness * scene.net.mass))
+    for index in (74, 0):  # inside, and at a corner
+        mass = scene.net.masses.flat[index]
+        stiffness, damping = scene.pull_spring(index)
+        assert stiffness == pytest.approx(min(3.0 / 0.1, 0.1 * mass / step**2))
+        assert damping == pytest.approx(0.5 * math.sqrt(stiffness * mass))
 
 
 def test_plot_rows_are_measures_with_the_units_of_their_charts():

@@ -21,7 +21,7 @@ FAMILIES = (
 
 
 def patch(model="axial", contact=None, *, rows=3, cols=4, seed=0, floor=None, sphere=None, grab=None, **more) -> Net:
-    """A crumpled, stretched net of seven families, one corner pinned."""
+    """A crumpled, stretched net of seven families, unequal masses and weaker sides, one corner pinned."""
     rng = np.random.default_rng(seed)
     x, y = np.meshgrid(0.25 * np.arange(rows), 0.25 * np.arange(cols), indexing="ij")
     x0 = np.stack([x, y, np.zeros_like(x)]) + 0.03 * rng.standard_normal((3, rows, cols))
@@ -30,6 +30,8 @@ def patch(model="axial", contact=None, *, rows=3, cols=4, seed=0, floor=None, sp
         x0=np.ascontiguousarray(x0),
         families=FAMILIES,
         mass=0.7,
+        mass_ratios=rng.uniform(0.8, 1.2, (rows, cols)),
+        side_ratio=0.6 if min(rows, cols) > 1 else 1.0,
         drag=0.3,
         damping_model=model,
         pinned=frozenset({(0, 0)}),

@@ -19,12 +19,12 @@ def flying(net, seed=3):
 
 
 def momentum(net, state):
-    return net.mass * velocities(net, state).reshape(3, -1).sum(axis=1)
+    return (net.masses * velocities(net, state)).reshape(3, -1).sum(axis=1)
 
 
 def angular_momentum(net, state):
     x, v = state.x.reshape(3, -1), velocities(net, state).reshape(3, -1)
-    return net.mass * np.cross(x.T, v.T).sum(axis=0)
+    return (net.masses.reshape(-1, 1) * np.cross(x.T, v.T)).sum(axis=0)
 
 
 @pytest.mark.parametrize("model", ["isotropic", "axial"])

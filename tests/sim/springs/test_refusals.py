@@ -47,6 +47,11 @@ FIELDS = [  # of a rope of ten points: field, value, name in the error
     ("mass", 0.0, "mass"),
     ("mass", math.nan, "mass"),
     ("mass", -1.0, "mass"),
+    ("mass_ratios", np.ones(10), "mass_ratios"),
+    ("mass_ratios", np.zeros((1, 10)), "mass_ratios"),
+    ("mass_ratios", np.full((1, 10), math.nan), "mass_ratios"),
+    ("side_ratio", 0.0, "side_ratio"),
+    ("side_ratio", 0.5, "side_ratio"),  # a rope has no sides
     ("drag", -1.0, "drag"),
     ("gravity", (0.0, 10.0), "gravity"),
     ("pinned", frozenset({(0, 10)}), "pinned"),

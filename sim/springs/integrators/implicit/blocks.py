@@ -15,7 +15,7 @@ from sim.springs.forces.contact import surface_velocity, touching
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import refresh_pairs
 from sim.springs.forces.wind import cell_areas
-from sim.springs.net import by_net
+from sim.springs.net import by_net, link_ratio, mass_at
 
 KEPT = 0.4  # part of the mass that pressed links may take from a particle
 
@@ -36,28 +36,29 @@ def add_block(blocks, j, n, along, across, nx, ny, nz):
 
 
 @kernel(inline=True)
-def least_across(p):
-    """What a pressed link's c may fall to [kg], beside its damping."""
-    return -KEPT * p.mass / (2.0 * p.offsets.shape[0])
+def least_across(p, a, b):
+    """What the c of a pressed link from a to b may fall to [kg], beside its damping."""
+    return -KEPT * min(mass_at(p, a), mass_at(p, b)) / (2.0 * p.offsets.shape[0])
 
 
 @kernel(allocates=False)
 def set_link_blocks(x, g, p, links):
     """H = g b (I or n n^T) + g^2 k [n n^T + (1 - l0/l) (I - n n^T)] of every link, at its first end."""
     n = p.rows * p.cols
-    least = least_across(p)
     for j in range(links.shape[0]):
         links[j] = 0.0
     for r in range(p.offsets.shape[0]):
         di, dj = p.offsets[r, 0], p.offsets[r, 1]
-        rest, k, b = p.links[r, 0], p.links[r, 1], p.links[r, 2]
+        rest = p.links[r, 0]
         for i in range(p.rows - di):
             for j in range(max(0, -dj), p.cols - max(0, dj)):
                 a = i * p.cols + j
                 c = a + di * p.cols + dj
                 rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
                 length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-                across = max(g * g * k * (1.0 - rest / length), least)
+                ratio = link_ratio(p, r, i, j)
+                k, b = ratio * p.links[r, 1], ratio * p.links[r, 2]
+                across = max(g * g * k * (1.0 - rest / length), least_across(p, a, c))
                 if not p.axial:
                     across += g * b
                 s = math.sqrt(max(0.0, g * g * k + g * b - across)) / length
@@ -88,7 +89,7 @@ def add_surface_blocks(x, v, t, g, p, on_sphere, points):
             along += g * b
             speed = math.sqrt((ru - vn * nx) ** 2 + (rv - vn * ny) ** 2 + (rw - vn * nz) ** 2)
             if p.friction > 0.0:
-                across = g * min(p.mass * p.stop_rate, p.friction * normal / (speed + TINY))
+                across = g * min(mass_at(p, j) * p.stop_rate, p.friction * normal / (speed + TINY))
         add_block(points, j, n, along, across, nx, ny, nz)
 
 
@@ -264,10 +265,10 @@ def add_pair_products(p, own, u, q):
 def set_point_blocks(x, v, t, g, p, points):
     """M + g D + g^2 K about x, v, less the share of links, of pairs that touch and of air."""
     n = p.rows * p.cols
-    alone = p.mass + g * p.drag
     for j in range(points.shape[0]):
         points[j] = 0.0
     for j in range(n):
+        alone = mass_at(p, j) + g * p.drag
         for e in (0, 3, 5):
             points[j + e * n] = alone
     if p.has_floor:

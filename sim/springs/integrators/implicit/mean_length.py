@@ -15,6 +15,7 @@ import math
 from sim.jit import kernel
 from sim.springs.forces.links import TINY
 from sim.springs.integrators.implicit.blocks import GENERAL, least_across
+from sim.springs.net import link_ratio
 
 
 @kernel(inline=True)
@@ -40,7 +41,7 @@ def add_mean_lengths(x0, x, p, a):
                 b = i * p.cols + j
                 c = b + di * p.cols + dj
                 rx, ry, rz, length, _, _, _, mean = lengths(x0, x, n, b, c)
-                s = k * rest * (mean - length) / (mean * length)
+                s = link_ratio(p, r, i, j) * k * rest * (mean - length) / (mean * length)
                 wb, wc = s * p.inverse_masses[b], s * p.inverse_masses[c]
                 a[b] += wb * rx
                 a[n + b] += wb * ry
@@ -54,20 +55,21 @@ def add_mean_lengths(x0, x, p, a):
 def set_mean_blocks(x0, x, g, p, links):
     """H = g b (I or n n^T) + g^2 k [(1 - l0/l) I + l0/l^2 r_m n1^T] of every link, n1 its direction at the end."""
     n = p.rows * p.cols
-    least = least_across(p)
     for j in range(links.shape[0]):
         links[j] = 0.0
     for r in range(p.offsets.shape[0]):
         di, dj = p.offsets[r, 0], p.offsets[r, 1]
-        rest, k, b = p.links[r, 0], p.links[r, 1], p.links[r, 2]
+        rest = p.links[r, 0]
         for i in range(p.rows - di):
             for j in range(max(0, -dj), p.cols - max(0, dj)):
                 a = i * p.cols + j
                 c = a + di * p.cols + dj
+                ratio = link_ratio(p, r, i, j)
+                k, b = ratio * p.links[r, 1], ratio * p.links[r, 2]
                 rx, ry, rz, length, ex, ey, ez, mean = lengths(x0, x, n, a, c)
                 rx, ry, rz = rx / length, ry / length, rz / length
                 whole = g * g * k * (1.0 - rest / mean)
-                across = max(whole, least)
+                across = max(whole, least_across(p, a, c))
                 # Along the link nothing is cut off.
                 along = whole - across
                 if p.axial:

@@ -30,7 +30,7 @@ from sim.springs.integrators.implicit.blocks import (
 from sim.springs.integrators.implicit.conjugate_gradients import factorise, solve_conjugate_gradients
 from sim.springs.integrators.implicit.mean_length import add_mean_lengths, set_mean_blocks
 from sim.springs.integrators.implicit.tangent import dot
-from sim.springs.net import by_net
+from sim.springs.net import by_net, mass_at
 from sim.springs.vector_ops import set_sum
 
 MOST = 25  # corrections a stage: a stage that has not settled by then is taken as it is
@@ -231,7 +231,7 @@ def solve_stage(x0, v0, g, t, p, x, v, work, most):
         for e in range(3):
             for j in range(n):
                 i = e * n + j
-                work.r[i] = p.mass * (v0[i] + g * work.a[i] - v[i]) if p.inverse_masses[j] > 0.0 else 0.0
+                work.r[i] = mass_at(p, j) * (v0[i] + g * work.a[i] - v[i]) if p.inverse_masses[j] > 0.0 else 0.0
         set_point_blocks(x, v, t, g, p, work.points)
         set_pair_blocks(x, v, g, p, work.own)
         set_air_blocks(x, v, g, p, work.air)

@@ -1,7 +1,8 @@
 """The linearised forces of a net: products with its stiffness and damping matrices, and their extreme vectors.
 
-About a state x the free particles obey M u'' + D u' + K u = 0. Neither matrix is ever formed. Products come divided
-by the mass, with zeros where pinned, so that eigenvalues are squared frequencies [1/s^2] and damping rates [1/s].
+About a state x the free particles obey M u'' + D u' + K u = 0. Neither matrix is ever formed. Products are those of
+M^-1/2 K M^-1/2, with zeros where pinned: symmetric, its eigenvalues squared frequencies [1/s^2] or damping rates [1/s],
+its vectors M^1/2 u.
 """
 
 import math
@@ -11,7 +12,7 @@ import numpy as np
 from sim.jit import kernel
 from sim.springs.forces.contact import touching
 from sim.springs.forces.self_contact import refresh_pairs
-from sim.springs.net import by_net
+from sim.springs.net import by_net, link_ratio, mass_at
 
 STIFFNESS = 0  # K
 DAMPING = 1  # D
@@ -25,7 +26,7 @@ def add_links(x, u, p, part, out):
     n = p.rows * p.cols
     for q in range(p.offsets.shape[0]):
         di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest, k, b = p.links[q, 0], p.links[q, 1], p.links[q, 2]
+        rest = p.links[q, 0]
         for i in range(p.rows - di):
             for j in range(max(0, -dj), p.cols - max(0, dj)):
                 a = i * p.cols + j
@@ -33,6 +34,8 @@ def add_links(x, u, p, part, out):
                 rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
                 du, dv, dw = u[c] - u[a], u[n + c] - u[n + a], u[2 * n + c] - u[2 * n + a]
                 rr = rx * rx + ry * ry + rz * rz
+                ratio = link_ratio(p, q, i, j)
+                k, b = ratio * p.links[q, 1], ratio * p.links[q, 2]
                 # Of a link shorter than half its rest length only -k counts: it buckles, which no step can mend.
                 across = k - k * rest / math.sqrt(rr) if 4.0 * rr > rest * rest else -k
                 along = k
@@ -67,7 +70,7 @@ def add_surface(x, u, t, p, part, on_sphere, out):
                 along *= depth
             across = along if p.lab_contact else 0.0
         elif part == FRICTION:
-            along, across = 0.0, p.mass
+            along, across = 0.0, mass_at(p, j)
         un = (along - across) * (u[j] * nx + u[n + j] * ny + u[2 * n + j] * nz)
         out[j] += across * u[j] + un * nx
         out[n + j] += across * u[n + j] + un * ny
@@ -125,14 +128,24 @@ def add_pairs(x, u, p, part, out):
 add_own_contacts = by_net(rope=add_no_pairs, grid=add_pairs)
 
 
-@kernel(noalias=True, allocates=False)
-def set_tangent(x, u, t, p, part, out):
-    """out = M^-1 K u, or M^-1 D u (part DAMPING), about x at time t; all flat (3 rows cols,).
+@kernel(noalias=True, inline=True)
+def set_over_root_mass(y, p, out):
+    """out = M^-1/2 y, 0 where pinned."""
+    n = p.rows * p.cols
+    for e in range(3):
+        for j in range(n):
+            out[e * n + j] = math.sqrt(p.inverse_masses[j]) * y[e * n + j]
+
+
+@kernel(noalias=True)
+def set_tangent(x, y, t, p, part, out):
+    """out = M^-1/2 K M^-1/2 y, or with D for K (part DAMPING), about x at time t; all flat (3 rows cols,).
 
     Friction is apart, as its strongest damping is 1/h by construction: h D of it is part FRICTION. Air is left out.
     """
-    n = p.rows * p.cols
-    for j in range(3 * n):
+    u = np.empty_like(y)
+    set_over_root_mass(y, p, u)
+    for j in range(y.shape[0]):
         out[j] = p.drag * u[j] if part == DAMPING else 0.0
     if part != FRICTION:
         add_links(x, u, p, part, out)
@@ -145,9 +158,7 @@ def set_tangent(x, u, t, p, part, out):
             add_surface(x, u, t, p, part, True, out)
         if p.grabbed >= 0 and part != FRICTION:
             add_pull(x, u, p, part, out)
-    for e in range(3):
-        for j in range(n):
-            out[e * n + j] *= p.inverse_masses[j]
+    set_over_root_mass(out, p, out)
 
 
 @kernel(noalias=True, inline=True)
@@ -190,22 +201,24 @@ def set_lanczos(x, t, p, part, basis, diagonal, beside):
 
 
 @kernel(noalias=True)
-def quotients(x, u, t, p):
-    """(u K u, u K u of the links alone, u D u) over u M u [1/s^2, 1/s^2, 1/s], of a unit vector u, 0 where pinned.
+def quotients(x, y, t, p):
+    """(u K u, u K u of the links alone, u D u) over u M u [1/s^2, 1/s^2, 1/s], of a unit vector y = M^1/2 u, 0 where
+    pinned.
 
     The fourth is the share of u M u that slides on floor or sphere, 0 without friction.
     """
-    w = np.empty_like(x)
-    set_tangent(x, u, t, p, STIFFNESS, w)
-    stiffness = dot(u, w)
+    u, w = np.empty_like(x), np.empty_like(x)
+    set_tangent(x, y, t, p, STIFFNESS, w)
+    stiffness = dot(y, w)
     for j in range(w.shape[0]):
         w[j] = 0.0
+    set_over_root_mass(y, p, u)
     add_links(x, u, p, STIFFNESS, w)
-    links = dot(u, w) / p.mass
-    set_tangent(x, u, t, p, DAMPING, w)
-    rate = dot(u, w)
+    links = dot(u, w)
+    set_tangent(x, y, t, p, DAMPING, w)
+    rate = dot(y, w)
     sliding = 0.0
     if p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere):
-        set_tangent(x, u, t, p, FRICTION, w)
-        sliding = dot(u, w)
+        set_tangent(x, y, t, p, FRICTION, w)
+        sliding = dot(y, w)
     return stiffness, links, rate, sliding

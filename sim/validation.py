@@ -108,7 +108,7 @@ def as_array(name: str, value: Any, allowed: str) -> np.ndarray:
 def check_positions(name: str, value: Any) -> np.ndarray:
     """`value` as contiguous float64 of shape (n, 2).
 
-    Raises ValueError for another shape, or what is not finite or farther than MAX_DISTANCE.
+    Raises ValueError for another shape, or positions that are not finite or farther than MAX_DISTANCE.
     """
     allowed = f"positions of shape (n, 2), finite, at most {MAX_DISTANCE:g} m"
     array = np.ascontiguousarray(as_array(name, value, allowed))

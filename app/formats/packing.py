@@ -1,15 +1,15 @@
 """Values of smooth surfaces in few bits: rounded, predicted from their neighbours, and written as bits.
 
-Points lie in rows of `columns` points. Each value is rounded to a whole number q of steps. What is written is its
-difference r = q - (left + above - above left), which is small where the surface is smooth (the Lorenzo predictor;
+Points lie in rows of `columns` points. Each value is rounded to a whole number q of steps. The code stores the
+difference r = q - (left + above - above left), which is small if the surface is smooth (the Lorenzo predictor;
 Ibarria, Lindstrom, Rossignac and Szymczak 2003, "Out-of-core compression and decompression of large n-dimensional
-scalar fields"). Neighbours that do not exist count as 0. Each difference is made a number that is not negative (2 r, or
--2 r - 1) and written in blocks of BLOCK of them, with as many bits as the largest of the block needs, after
-WIDTH_BITS bits that say how many these are.
+scalar fields"). Missing neighbours count as 0. Each difference becomes a number that is not negative (2 r, or
+-2 r - 1). Differences are written in blocks of BLOCK, each with the width of the largest of its block, after
+WIDTH_BITS bits for this width.
 
 The result is an array (rows, 3) of single precision, as the vertices of a mesh are: count, columns and fields; then
 step, offset and 0 of each field; then the bits, WORD_BITS in each number, lowest first. Words of 30 bits are numbers
-from 0 to below 2, so that nothing on the way meets a NaN. `unpack` and `app/render/js/packed.js` read it.
+from 0 to below 2, so that none is a NaN in transport. `unpack` and `app/render/js/packed.js` read it.
 """
 
 from collections.abc import Sequence

@@ -99,7 +99,7 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
     """The arrays of many bodies.
 
     layers: (density [kg/m3], thickness [m]) from the top. The bodies take their linear coefficients at the
-    drafts that they have in these fluids. Raises ValueError, naming the body, for what is not finite or has no mass.
+    drafts that they have in these fluids. Raises ValueError, naming the body, unless all is finite and it has a mass.
     """
     for i, body in enumerate(bodies):
         check_hull(f"bodies[{i}].hull", body.hull)

@@ -51,8 +51,8 @@ def make_water(
 ) -> Water:
     """The water around a fleet from its values at the bodies' positions, of the shapes and units of `Water`.
 
-    layers: one or two (density, thickness) pairs as in `equilibrium_draft`. What is left out is still and level; an
-    interface left out follows the surface at the thickness of the upper layer (its slope and rise too).
+    layers: one or two (density, thickness) pairs as in `equilibrium_draft`. By default the fluids are still and level,
+    and the interface follows the surface at the thickness of the upper layer (its slope and rise too).
     acceleration is worth giving: with it a small hull rides a wave exactly, without it the frequency of the wave
     over that of heave, squared, is lost. excitation: from `WaveExcitation`, where the surface is a sum of waves: what
     diffraction, the decay of pressure with depth and the length of the hull add to the pressure of the plane. Without

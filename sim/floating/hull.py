@@ -86,7 +86,7 @@ class Hull(ClosedMesh):
 
 
 def shape_from_file(path: str | Path, own_table: bool = True) -> Shape:
-    """The shape of the mesh in a file; its hulls have the size of the file, whatever size is asked for.
+    """The shape of the mesh in a file; its hulls always have the size of the file.
 
     own_table: with the table of linear coefficients that lies beside the file, if there is one (linear_table.py).
 

@@ -33,7 +33,7 @@ FIT_FLOOR = 0.06  # weight of the other frequencies
 STEADY_WEIGHT = 30.0  # of the condition that a steady motion meets no force
 DEEPEST = 0.98  # of the height of a hull: the draft at which one that is wholly under water has its coefficients
 MAX_TURNS = 60  # of the search for a natural frequency
-# What changes sign under a mirror that turns x, or y
+# Signs of the motions under a mirror that turns x, or y
 MIRROR_X = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
 MIRROR_Y = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
 
@@ -119,7 +119,7 @@ def outside_table(hull: Hull, draft: float) -> str:
 def linear_hull(hull: Hull, draft: float) -> LinearHull:
     """The linear coefficients of a hull upright at a draft [m].
 
-    Outside its table a hull has the coefficients at the border, and a UserWarning names what is outside.
+    Outside its table a hull has the coefficients at the border, and a UserWarning names the quantity.
     """
     raise_if_stopped()
     beyond = outside_table(hull, draft)

@@ -62,7 +62,7 @@ from sim.validation import argument_error, check_positive, check_within, is_whol
 # The kernels of one substep are inlined: a real call copies about a hundred fields of the records, which took more than
 # half of the time.
 MAX_PHASE = 0.4  # of omega h in a substep: periods are within 0.7 %, and waves may add to gravity
-ENTRY_SHARE = 0.5  # of what is wet at rest, up to which a hull that gets wetter counts as entering the water
+ENTRY_SHARE = 0.5  # of the area wet at rest, up to which a hull that gets wetter counts as entering the water
 MAX_SUBSTEPS = 512  # of a body in one call of `step`
 
 
@@ -90,7 +90,7 @@ def frequency_bound(fleet: Fleet, density: float, coefficients: MotionCoefficien
     """Upper bound (n,) [rad/s] of the frequencies of each body in fluid of at most `density` [kg/m3].
 
     In any pose the force changes with depth by at most rho g times the smaller of |S|/2, with S_i the wetted area
-    across each axis of the whole hull, and what is wet. The added mass is in proportion to what is wet up to half of
+    across each axis of the whole hull, and the wet area. The added mass is proportional to the wet area up to half of
     that at rest: omega^2 <= rho g |S|/2 / (m + rho a). About each axis the same holds with the bound of the restoring
     moment, where the mean of two shares may be half the greater one. The sum bounds any coupling of the two.
     """
@@ -320,7 +320,7 @@ def kick(fleet, water, coefficients, i, h, share_of_step, scratch):
 def set_mass(fleet, water, coefficients, i, density, scratch):
     """Set mass (6, 6), wet (6,) and share (6,) of body i.
 
-    wet is how much of it is wet for each motion, of half of what is wet at rest, at most 1; share is the root of that.
+    wet: for each motion the wet area over half of that at rest, at most 1; share: its root.
 
     The coefficients are those at rest while at least half of that is wet: a scale that followed each small motion
     would push the body up or down on average, which linear theory does not know.

@@ -29,7 +29,7 @@ def heave_period_at(
     if math.isinf(draft):
         return math.inf
     cuts = [(change, upright(hull, draft - top)) for change, top in density_steps(layers)]
-    fluid = density * hull.volume / cuts[0][1].volume  # [kg/m3] mean density of what is displaced
+    fluid = density * hull.volume / cuts[0][1].volume  # [kg/m3] mean density of the displaced fluids
     stiffness = sum(change * cut.area for change, cut in cuts) / fluid
     return period(natural_frequency(linear_hull(hull, draft), 2, cuts[0][1].volume, stiffness, added), gravity)
 

@@ -95,7 +95,7 @@ class FluidColumn:
     def roots(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """omega [rad/s] and decay rate [1/s] of waves of wavenumber k [rad/m], from the exact linear problem.
 
-        With a `decay` of its own, the frequency is that without viscosity.
+        With a custom `decay`, the frequency is that without viscosity.
         """
         k = np.asarray(k, np.float64)
         if self.decay is not None:

@@ -61,7 +61,7 @@ class RadialSea:
         """exposure [s]: how long the waves have run on this medium, and decayed; choppiness: factor on Gerstner's
         horizontal motion. Raises ValueError for a negative one.
 
-        `past` [s] is the time spent on each medium. What waves have lost there they do not get back elsewhere.
+        `past` [s] is the time spent on each medium. Waves never regain energy that they lost there.
         """
         self.evaluated = self.skipped = 0  # (wave, vertex) pairs
         self.choppiness = check_not_negative("choppiness", choppiness, "")
@@ -82,11 +82,10 @@ class RadialSea:
         self, t: float, waves: Waves | None = None, column: FluidColumn | None = None, exposure: float | None = None,
         fade: float = 2.0,
     ) -> None:  # fmt: skip
-        """From time t [s] on another medium, or other waves: phases go on without a jump, and other waves take over
-        the energy of the old ones within `fade` [s].
+        """Change the medium or the waves at time t [s]. Phases stay continuous; new waves take over within `fade` [s].
 
-        What has been lost stays lost, by other waves of the same length too. exposure [s]: forget that, and let the
-        waves have run so long on the new medium alone. Raises ValueError for a negative one.
+        Lost energy stays lost, also by other waves of the same length. exposure [s]: forget the losses, and apply those
+        of so long a time on the new medium. Raises ValueError for a negative one.
         """
         t, fade = check_finite("t", t, "s"), check_not_negative("fade", fade, "s")
         past = self.past
@@ -259,7 +258,7 @@ class RadialSea:
                          interface[:, 1:3].copy(), interface[:, 3].copy(), label, residual)  # fmt: skip
 
     def _footprint(self, size: np.ndarray, kx: np.ndarray, ky: np.ndarray) -> np.ndarray:
-        """Factors (points, waves) of hulls of these sizes; kept, as the same hulls ask at every step."""
+        """Factors (points, waves) of hulls of these sizes; cached, because each step needs those of the same hulls."""
         key = size.tobytes() + len(kx).to_bytes(4, "little")
         if key not in self._weights:
             if len(self._weights) > 8:

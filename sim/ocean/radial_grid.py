@@ -11,7 +11,7 @@ FADE = (2.0, 4.0)  # a wave is drawn in full from the second number of cells a w
 
 
 class RadialGrid:
-    """Rings of `spokes` points about a point of their own: ring r is points r spokes to (r + 1) spokes.
+    """Rings of `spokes` points about a centre: ring r is points r spokes to (r + 1) spokes.
 
     The last point is the centre; `start` (rings + 2,) cuts the points into bands: the rings, then the centre alone.
     """

@@ -1,7 +1,7 @@
 """Rings and wakes: impulses added to spectral amplitudes and propagated exactly, with dispersion, tension and decay.
 
 A ring is height(k, t) = e^(-gamma t) (even cos(omega t) + odd sin(omega t)) on the half plane of the sea's own
-wavenumbers, so it costs one pass over the spectrum and no transform of its own, is stable at any step, and obeys the
+wavenumbers, so it costs one pass over the spectrum and no further transform, is stable at any step, and obeys the
 sea's gravity, depth and tension (Cauchy and Poisson; Lamb, Hydrodynamics, Art. 238-241 and 255).
 Limits: the tile is periodic, so a ring that leaves comes back; `leak` is a uniform decay standing for what would have
 left. A disturbance narrower than two cells is cut off by the grid and shows the cut as fine ringing.

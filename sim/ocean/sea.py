@@ -87,7 +87,7 @@ class Sea:
         self._past: dict[tuple[Medium, Conditions], float] = {}  # [s] spent in each medium before the last change
         self.version = 0  # counts changes of the conditions
         self._evolved: tuple | None = None
-        self._mean_height: tuple[tuple | None, float] = None, 0.0  # of which time and state, and the mean [m]
+        self._mean_height: tuple[tuple | None, float] = None, 0.0  # key of time and state, and the mean [m]
         self._latest: tuple[tuple, dict[str, np.ndarray]] | None = None
         self._ripples: Ripples | None = None
 
@@ -103,7 +103,7 @@ class Sea:
         self.rows["k2"] = (self.k**2).astype(self._real)
 
         self.transforms = Transforms(self.size, precision)
-        self._heights: np.ndarray | None = None  # made when first asked for
+        self._heights: np.ndarray | None = None  # made on first use
         self._scratch = (np.empty(self.size, self._real), np.empty(self.size, self._real))
         given = {
             "wind_speed": wind_speed,
@@ -115,7 +115,7 @@ class Sea:
         }
         self._given: dict[str, Any] = {}  # conditions as given, those of other spectra too
         self._lost = np.zeros_like(self._k)  # -ln of the share of each wave that is left of that time, a quarter plane
-        # ((medium, conditions), decay rates) that were last asked for by `expose`
+        # ((medium, conditions), decay rates) of the last call of `expose`
         self._other_decay: tuple[tuple[Medium, Conditions], np.ndarray] | None = None
         # for `slope_left`: under which spectrum and conditions, and the slope
         self._sloped_under: tuple[tuple[Spectrum[Any], Conditions] | None, np.ndarray] = None, self._lost
@@ -167,8 +167,8 @@ class Sea:
         """From time t [s] on, other conditions: any of the constructor's that describe wind, gravity or the medium.
 
         Phases go on without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
-        relax = 0. What waves have lost to viscosity stays lost: the new size is that of the new spectrum times the
-        share that is left. Raises ValueError for a value that is not allowed, TypeError for an unknown name.
+        relax = 0. Losses to viscosity stay: the new size is that of the new spectrum times the fraction that is left.
+        Raises ValueError for a value that is not allowed, TypeError for an unknown name.
         """
         t, relax = self._checked_time(t), check_not_negative("relax", relax, "s")
         if self._ripples is not None:
@@ -242,12 +242,12 @@ class Sea:
 
     @property
     def significant_height(self) -> float:
-        """Hs = 4 sqrt(m0) [m] of the amplitudes as drawn, at the time of the last surface asked for."""
+        """Hs = 4 sqrt(m0) [m] of the amplitudes as drawn, at `time`."""
         return self.significant_height_at(self._last)
 
     @property
     def time(self) -> float:
-        """Time [s] of the last surface asked for, or of the last change where that is later."""
+        """Time [s] of the last surface computed, or of the last change if that is later."""
         return self._last
 
     def significant_height_at(self, t: float) -> float:
@@ -299,14 +299,14 @@ class Sea:
 
     @property
     def ripples(self) -> Ripples:
-        """The rings on this sea, made when first asked for."""
+        """The rings on this sea, made on first use."""
         if self._ripples is None:
             self._ripples = Ripples(self.size, self.length, self._real)
             self._ripples.set_medium(-math.inf, self._rate, self._decay, self._push())
         return self._ripples
 
     def heights_spectrum(self, t: float) -> np.ndarray:
-        """h(k, t) with rings on the half plane ky >= 0, as its real view (N, N + 2). Kept until another t is asked."""
+        """h(k, t) with rings on the half plane ky >= 0, as its real view (N, N + 2). Cached for the last t."""
         key = self._key(t)
         if self._heights is None:
             self._heights = np.zeros((self.size, self.size + 2), self._real)

@@ -3,9 +3,9 @@
 In each fluid the vertical velocity is w = P + Q, times e^(ikx + st): P'' = k^2 P is the potential part, which carries
 the pressure -rho s P'/k^2, and Q'' = m^2 Q, m^2 = k^2 + s/nu, the rotational part, which carries none. Six constants
 (four in the layer, two below) meet six conditions: shear and normal stress at the surface, both velocities, shear and
-normal stress at the interface. Here four of the constants are eliminated by hand, and what is left of the 6 x 6
-determinant is written as that of fluids without viscosity plus terms that vanish with it. A decay of 1e-8 of the
-frequency so keeps its digits, which the determinant itself would lose.
+normal stress at the interface. Here four of the constants are eliminated by hand. The remaining determinant is written
+as that of fluids without viscosity plus terms that vanish with it. So a decay of 1e-8 of the frequency keeps its
+digits, which the 6 x 6 determinant would lose.
 
 Sources: H. Lamb, Hydrodynamics (1932), Art. 349 and 351, for one fluid; Landau and Lifshitz, Fluid Mechanics, Sec. 62
 and problems, for the conditions at an interface.
@@ -65,7 +65,7 @@ def surface_roots(layers: Layers, film: bool = False) -> tuple[np.ndarray, np.nd
         if not near.all():
             shift[~near] = _continued(first[~near], layers.of(~near), film)
     omega = layers.surface_omega + shift.imag
-    # Where the motion creeps the root is real, and the frequency is what is left of rounding.
+    # If the motion creeps the root is real, and the computed frequency is only rounding error.
     return np.where(omega > 1e-9 * layers.surface_omega, omega, 0.0), -shift.real
 
 

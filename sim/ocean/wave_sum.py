@@ -110,7 +110,7 @@ def calm_waves(x, y, start, active, weight, waves, wave, ex, ey, loss, cx, cy, r
             if loss[w] * radius < np.float32(1e-3) or scale == zero:
                 continue
             q = np.uint64(11) * w
-            # What the wave adds to the mean height, choppiness k a^2/2: xx + yy is -choppiness k a.
+            # The wave's part of the mean height, choppiness k a^2/2: xx + yy is -choppiness k a.
             mean = np.float32(-0.5) * scale * scale * wave[q + np.uint64(3)]
             mean *= wave[q + np.uint64(8)] + wave[q + np.uint64(9)]
             for i in range(start[band], start[band + np.uint64(1)]):
@@ -183,7 +183,7 @@ def sum_at(x, y, p, kx, ky, phase, amplitude, chop, weight, out):
 def find_labels(points, kx, ky, phase, amplitude, chop, weight, labels, found, residual):
     """Set labels (n, 2) of the resting surface that are displaced to points (n, 2); found (n, 8): the sums there.
 
-    x + D(x) = X by Newton's method from x = X - D(X); residual (n,) [m] is what is left, at rounding unless the
+    x + D(x) = X by Newton's method from x = X - D(X); residual (n,) [m] is the remaining miss, at rounding unless the
     surface folds there.
     """
     for p in range(points.shape[0]):

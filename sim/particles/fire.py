@@ -37,8 +37,8 @@ class Fire:
         """position [m] of the fire's middle; power [W]; life [s] of a parcel on average; wind (x, y) [m/s]; eddies:
         how much parcels turn and meander, 0 for not at all.
 
-        Parcels start spread over their lives, as if the fire had burnt for long. Raises ValueError for what is not
-        allowed.
+        Parcels start spread over their lives, as if the fire had burnt for long. Raises ValueError for a value that is
+        not allowed.
         """
         for name, value in (("power", power), ("diameter", diameter), ("life", life)):
             if not (math.isfinite(value) and value > 0.0):

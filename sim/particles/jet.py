@@ -40,7 +40,7 @@ class Jet:
     ) -> None:
         """nozzle [m]; velocity [m/s] of the jet's axis; flow [m3/s]; spread: rms deviation over the speed; count:
         most parcels in the air, which, spread over `flight` [s], sets how many leave a second; drag_time [s] or inf.
-        Raises ValueError for what is not allowed.
+        Raises ValueError for a value that is not allowed.
         """
         for name, values, length in (("nozzle", nozzle, 3), ("velocity", velocity, 3), ("wind", wind, 2)):
             if len(values) != length or not all(math.isfinite(v) for v in values):

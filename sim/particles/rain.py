@@ -44,7 +44,7 @@ class Rainfall(NamedTuple):
     concentration: float  # [1/m3] drops in the air
     flux: float  # [1/(m2 s)] drops that arrive
     water: float  # [kg/m3] in the air
-    rate: float  # [mm/h] that the drops amount to: as asked for
+    rate: float  # [mm/h] carried by the drops: the rate given
     energy: float  # [W/m2] kinetic energy that arrives
     extinction: float  # [1/m] of light: large drops take away twice what they cover (van de Hulst 1957, 8.22)
 

@@ -34,7 +34,7 @@ class Appearance(NamedTuple):
 class Shape:
     """A shape of floating bodies. Raises ValueError for a collision form that does not exist.
 
-    Only the first three fields are needed: what is left out is computed from the mesh.
+    Only the first three fields are needed: the rest is computed from the mesh by default.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Shape:
     order: int = 100  # place in a scene's list of kinds of body; equal ones are sorted by name
     # the table of linear coefficients in sim/floating/tables that its wet part has; "": that of an equal box
     linear: str = ""
-    table: LinearTable | None = None  # linear coefficients of its own, of a hull from a file
+    table: LinearTable | None = None  # linear coefficients of a hull from a file
     # the part of the upright hull up to a height [m] from 0 to its own; None: exact integrals over the mesh
     immersed: Callable[[ClosedMesh, float], Immersed] | None = None
     collision: str = "ellipsoid"  # the form, of the same extents, that other bodies collide with

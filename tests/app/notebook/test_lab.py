@@ -1,25 +1,29 @@
 """The handle of a lab in a notebook, without a notebook."""
 
 import json
+import os
 import random
+import signal
 import socket
 import subprocess
 import sys
 from collections.abc import Iterator
-from concurrent.futures import Future
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
 import app
-from app.messages import Advance, DivergenceError
+from app.messages import DivergenceError
 from app.notebook.lab import Lab, read_setup
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import write_query
 from app.scenes.stepping import steps_to
 from sim.parameters import parameters_of
+from tests.waiting import wait_for
 
 pytest.importorskip("xarray", reason="the extra jupyter is not installed")
+ROPE = scene_named("rope")
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +36,7 @@ def opened() -> Iterator[Lab]:
 def rope(opened: Lab) -> Lab:
     """A rope at its start, as the lab has it but stiffer, standing still."""
     opened.pause()
-    opened.set(**{name: p.default for name, p in parameters_of(opened._params).items()})
+    opened.set(**{name: p.default for name, p in parameters_of(ROPE.params).items()})
     opened.stiffness = 2000
     opened.reset()
     return opened
@@ -56,7 +60,8 @@ def test_parameters_are_read_and_set_to_the_last_bit(rope: Lab) -> None:
     rope.points = np.int64(12)
     rope.set(damping=1 / 3, integrator="rk4", floor=True)
     assert (rope.stiffness, rope.points, rope.damping) == (1000.1, 12, 1 / 3)
-    assert read_setup(rope.link, "", {})[1] == rope._params
+    params = ROPE.params(stiffness=1000.1, points=12, damping=1 / 3, integrator="rk4", floor=True)
+    assert read_setup(rope.link, "", {})[1] == params
 
 
 @pytest.mark.parametrize("scene", NAMES)
@@ -113,7 +118,7 @@ def test_what_is_no_parameter_cannot_be_read_or_set(rope: Lab) -> None:
 def test_a_wait_ends_at_the_whole_step_and_the_run_is_that_of_a_headless_one(rope: Lab) -> None:
     assert rope.wait(0.25) == pytest.approx(0.25)
     assert rope.wait(0.26) == rope.time == pytest.approx(31 / 60)  # the first whole step at or after 0.51 s
-    headless = scene_named("rope").make(rope._params)
+    headless = ROPE.make(ROPE.params(stiffness=2000))
     headless.advance(steps_to(headless, 0.51))
     data = rope.data()
     np.testing.assert_array_equal(data.x, headless.arrays()["x"][0])
@@ -139,31 +144,24 @@ def test_a_run_that_diverges_ends_the_wait_with_its_reason(rope: Lab) -> None:
     assert rope.wait(0.1) == pytest.approx(0.1)
 
 
-def test_a_reset_ends_a_wait_and_an_interrupt_leaves_the_lab_as_it_was(rope: Lab, monkeypatch) -> None:
-    def interrupt_if_waiting() -> None:
-        if rope._viewer.loop.goal is not None:
-            raise KeyboardInterrupt
+def test_a_reset_ends_a_wait_and_an_interrupt_leaves_the_lab_as_it_was(rope: Lab) -> None:
+    def interrupt() -> None:
+        wait_for(lambda: rope.running)
+        os.kill(os.getpid(), signal.SIGINT)
 
     rope.set(points=50, integrator="dop853", time_step=0.001)  # long enough to be waited for
-    with monkeypatch.context() as patch:
-        patch.setattr(Lab, "_check_open", lambda lab: interrupt_if_waiting())
+    wait_for(lambda: not rope.running)
+    with ThreadPoolExecutor() as pool:
+        interrupting = pool.submit(interrupt)
         with pytest.raises(KeyboardInterrupt):
-            rope._result_of(start(rope, 1e5), rope._viewer.served)
-    while rope._viewer.loop.goal is not None:
-        pass
-    assert not rope.running
-    answer = start(rope, 1e5)
-    while rope._viewer.loop.goal is None:
-        pass
-    rope.reset()
-    with pytest.raises(RuntimeError, match="begun again"):
-        rope._result_of(answer, rope._viewer.served)
-
-
-def start(lab: Lab, seconds: float) -> "Future[float]":
-    answer: Future[float] = Future()
-    lab._viewer.commands.put(Advance(seconds, answer))
-    return answer
+            rope.wait(1e5)
+        interrupting.result(60.0)
+        wait_for(lambda: not rope.running)
+        waiting = pool.submit(rope.wait, 1e5)
+        wait_for(lambda: rope.running)
+        rope.reset()
+        with pytest.raises(RuntimeError, match="begun again"):
+            waiting.result(60.0)
 
 
 def test_the_data_have_units_and_say_what_was_set(rope: Lab) -> None:
@@ -178,7 +176,7 @@ def test_the_data_have_units_and_say_what_was_set(rope: Lab) -> None:
     assert data.x.shape == (10, 3)
     assert float(data.critical_step) > 1 / 60
     assert data.energy.attrs == {"units": "J", "long_name": "kinetic, elastic, gravity, contact"}
-    assert read_setup(data.attrs["link"], "", {})[1] == rope._params
+    assert read_setup(data.attrs["link"], "", {})[1] == ROPE.params(stiffness=2000)
     assert json.loads(data.attrs["parameters"])["stiffness"] == 2000
 
 

@@ -32,7 +32,7 @@ def pack(
 ) -> np.ndarray:
     """(rows, 3) float32. fields: (m, n), m fields at n points; steps (m,): to which each is rounded, in its unit.
 
-    offsets (m,): what the reader adds to each field, by default 0. A step that is below the largest value of its field
+    offsets (m,): added to each field by the reader, by default 0. A step that is below the largest value of its field
     over MAX_QUOTIENT is made larger. Raises ValueError for a value that is not finite.
     """
     values = np.ascontiguousarray(fields, np.float32)
@@ -68,7 +68,7 @@ def unpack(numbers: np.ndarray) -> np.ndarray:
 
 
 def is_packed(numbers: np.ndarray) -> bool:
-    """Whether an array (rows, 3) of single precision can be a result of `pack`."""
+    """True if an array (rows, 3) of single precision can be a result of `pack`."""
     head = numbers[0]
     if not (np.mod(head, 1.0) == 0.0).all() or not (head > 0.0).all() or head[2] >= len(numbers):
         return False

@@ -134,17 +134,6 @@ def test_other_libraries_caches_stay_where_they_were():
     python("import numba; before = numba.config.CACHE_DIR; import sim.springs; assert numba.config.CACHE_DIR == before")
 
 
-def test_springs_import_nothing_that_a_rope_does_not_need():
-    # numba itself looks at scipy's version where there is one.
-    code = (
-        "import sys, numba; before = set(sys.modules); import sim.springs, sim.springs.stability, sim.springs.statics; "
-    )
-    imported = python(code + "print(*set(sys.modules) - before)").split()
-    assert "sim.springs.statics" in imported
-    packages = {name.split(".")[0] for name in imported}
-    assert not packages & {"pyfftw", "scipy", "viser", "trimesh", "matplotlib", "rich", "app", "assets"}
-
-
 def test_a_nan_stays_visible():
     """The flags of fast arithmetic leave out those that let a compiler assume there is none."""
     x = np.array([1.0, np.nan, np.inf, -np.inf])

@@ -1,8 +1,6 @@
 """`springtide` as a user types it."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -60,24 +58,3 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.
     assert main(["run", "rope", "--seconds", "0.2", "--out", str(out)]) == 1
     assert out.read_bytes() == b"precious"
     assert list(tmp_path.iterdir()) == [out]
-
-
-def imported(code: str, names: tuple[str, ...]) -> str:
-    """Run code in a new Python that has no scipy, and print which of the names it has loaded.
-
-    Where scipy is installed numba itself loads scipy.linalg, for its BLAS; nothing of ours may need it.
-    """
-    script = f"import sys; sys.modules['scipy'] = None; {code}; print([m for m in {names} if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    return done.stdout.strip().splitlines()[-1]
-
-
-def test_a_headless_rope_imports_no_viewer_and_no_transforms(tmp_path: Path) -> None:
-    command = f"['run', 'rope', '--seconds', '0.1', '--out', r'{tmp_path / 'a.npz'}']"
-    code = f"from app.__main__ import main; main({command})"
-    assert imported(code, ("viser", "trimesh", "pyfftw", "matplotlib")) == "[]"
-
-
-def test_serving_the_rope_imports_no_transforms() -> None:
-    code = "from app.server.viewer import Viewer; v = Viewer('127.0.0.1', 0); v.open('rope'); v.shut()"
-    assert imported(code, ("pyfftw", "matplotlib", "trimesh")) == "[]"

@@ -12,7 +12,7 @@ LIST = Path(__file__).parent / "faults.csv"
 SEED = 20261122
 LINES_PER_FAULT, FEWEST, MOST = 45, 2, 7  # of a module
 COMPILER = {"sim/jit.py", "sim/compiler.py", "sim/files.py"}  # they hold no physics
-REPORTED = ("report.py", "html.py", "measures.py", "statistics.py", "charts.py", "scene.py", "work_counts.py")
+REPORTED = ("report.py", "html.py", "measures.py", "statistics.py", "charts.py", "scene.py")
 DRAWN = ("radiated_waves.py", "tile_mesh.py", "tracking.py")  # of scenes: the numbers that are drawn or dragged
 
 

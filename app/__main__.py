@@ -18,7 +18,7 @@ MAX_HULL_FACES = 20_000  # of a hull from a file: pressure is summed over all of
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run one command; returns the exit status: 0, 1 for what went wrong on the way, 2 for a bad argument."""
+    """Run one command; returns the exit status: 0, 1 for an error on the way, 2 for a bad argument."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A file name that the terminal cannot show is printed with replacements.
         sys.stdout.reconfigure(errors="backslashreplace")
@@ -56,7 +56,7 @@ def one_line(text: str) -> str:
 
 @contextlib.contextmanager
 def cleaning_up_at_sigterm() -> Iterator[None]:
-    """Inside, SIGTERM ends the program as an exception does: what is half written is removed, workers are stopped."""
+    """Inside, SIGTERM ends the program as an exception does: half-written files are removed, workers are stopped."""
 
     def end(number: int, _: object) -> NoReturn:
         signal.signal(number, signal.SIG_IGN)
@@ -212,7 +212,7 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
 
 
 def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
-    """The scene's parameters from --preset and --set; raises ValueError for what is not allowed."""
+    """The scene's parameters from --preset and --set; raises ValueError if one is not allowed."""
     from app.scenes.setups import preset_setup
     from sim.parameters import check_record, parse_assignments
 

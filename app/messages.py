@@ -1,4 +1,4 @@
-"""All that crosses a thread: commands to the simulation, snapshots and plot rows from it. All are immutable."""
+"""Messages between threads: commands to the simulation, snapshots and plot rows from it. All are immutable."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping
@@ -15,7 +15,7 @@ MAX_DISTANCE = 100.0  # [m] from the origin: nothing from a browser is placed fa
 
 
 class BaseParams(Protocol):
-    """What the parameters of every scene have: a frozen dataclass of parameters (`sim/parameters.py`)."""
+    """Parameters of any scene: a frozen dataclass of parameters (`sim/parameters.py`)."""
 
     __dataclass_fields__: ClassVar[dict[str, Field[object]]]
 
@@ -26,7 +26,7 @@ class BaseParams(Protocol):
 
     @property
     def grid(self) -> bool:
-        """Whether the grid is drawn (key G)."""
+        """True if the grid is drawn (key G)."""
         ...
 
 
@@ -86,7 +86,7 @@ class StepOnce(NamedTuple):
 
 
 class Halt(NamedTuple):
-    """Pause because something went wrong, and say what."""
+    """Pause because of an error, and show its text."""
 
     reason: str
 
@@ -126,13 +126,13 @@ class Grab(NamedTuple):
 
 
 class Release(NamedTuple):
-    """Let go of what a browser drags."""
+    """Release the object that a browser drags."""
 
     client: int = 0
 
 
 class Point(NamedTuple):
-    """Point at what lies on a ray: from `origin` [m] along `direction`."""
+    """Point along a ray: from `origin` [m] along `direction`."""
 
     origin: Vector
     direction: Vector
@@ -143,7 +143,7 @@ class StudentAnswer(NamedTuple):
 
 
 class Ask(NamedTuple):
-    """Call `read` between two steps, and answer with what it returns or raises."""
+    """Call `read` between two steps, and answer with its result or exception."""
 
     read: Callable[[], object]
     answer: Future[object]
@@ -168,7 +168,7 @@ PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SE
 
 
 class Status(NamedTuple):
-    """What the simulation loop is doing."""
+    """State of the simulation loop."""
 
     running: bool
     time: float  # [s] simulated
@@ -196,7 +196,7 @@ class Line(NamedTuple):
 
 
 class Snapshot(NamedTuple, Generic[P, F, R]):
-    """One moment for the viewer: what the scene shows (float32), its readings, and what the loop is doing."""
+    """One moment for the viewer: the scene's frame (float32), its readings, and the state of the loop."""
 
     serial: int
     frame: F  # the scene's own record

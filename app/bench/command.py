@@ -22,7 +22,7 @@ ELSEWHERE = "comparisons with C and other programs work in a checkout, where ben
 
 
 def in_checkout() -> bool:
-    """Whether benchmarks/ lies beside the package; an installed one is somebody else's."""
+    """True if benchmarks/ lies beside the package; an installed one is somebody else's."""
     return (CHECKOUT / "benchmarks" / "command.py").is_file()
 
 

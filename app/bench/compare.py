@@ -27,7 +27,7 @@ TIME = re.compile(r"\[(s|ms|µs|ns|% of a core)\b[^\]]*\]$|^ns per ")  # in the 
 
 
 def git(root: Path, *arguments: str) -> str:
-    """What git answers; raises ValueError with its message where it fails."""
+    """Output of git; raises ValueError with its message if it fails."""
     try:
         done = subprocess.run(["git", "-C", str(root), *arguments], capture_output=True, text=True, check=False)
     except FileNotFoundError:
@@ -97,7 +97,7 @@ def times_of(found: dict[str, list[dict[str, str]]]) -> dict[tuple[str, str, str
 
 
 def is_name(column: str, text: str) -> bool:
-    """Whether a cell tells rows apart: words, or a number of points or links."""
+    """True if a cell tells rows apart: words, or a number of points or links."""
     try:
         float(text)
     except ValueError:

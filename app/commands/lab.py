@@ -29,7 +29,7 @@ def new(folder: Path, tasks: Sequence[Path], *, solutions: bool) -> int:
 
 
 def check(folders: Sequence[Path], tasks: Sequence[Path], out: dict[str, Path | None]) -> int:
-    """Check folders, and write what is asked for; returns 0 where every mandatory task of every folder is right.
+    """Check folders, and write the requested reports; returns 0 if every mandatory task of every folder is right.
 
     out: "json", "csv" and "report", each the file to write, or None.
     """
@@ -69,17 +69,17 @@ def print_results(results: Sequence[FolderResult]) -> None:
 
 
 def printable(text: str) -> Text:
-    """A text of a student for the terminal: what could steer it is written out."""
+    """A text of a student for the terminal, with control characters written out."""
     return Text("".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text))
 
 
 def whole_table(*names: str) -> Table:
-    """A table that folds what is too wide for the terminal and cuts nothing off."""
+    """A table that folds wide cells and cuts nothing off."""
     return Table(*(Column(name, overflow="fold") for name in names))
 
 
 def table_of_tasks(result: FolderResult) -> Table:
-    """What the check of one folder came to."""
+    """Result of the check of one folder."""
     table = whole_table("Task", "What", "State", "Why")
     for entry in result.tasks:
         name = f"{entry.task.item}{' *' if entry.task.optional else ''}"
@@ -90,7 +90,7 @@ def table_of_tasks(result: FolderResult) -> Table:
 
 
 def table_of_class(results: Sequence[FolderResult]) -> Table:
-    """What the check of the folders of a class came to."""
+    """Result of the check of the folders of a class."""
     table = whole_table("Folder", "Name", "Right", "Optional", "Not right")
     for result in results:
         (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)

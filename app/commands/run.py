@@ -77,6 +77,6 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
 
 
 def write_arrays(path: Path, arrays: dict[str, Any]) -> None:
-    """Write an .npz file so that `path` holds all of it or what it held before. Raises OSError."""
+    """Write an .npz file so that `path` holds all of it or its earlier content. Raises OSError."""
     with replacing(path) as draft:
         np.savez_compressed(draft, **arrays)

@@ -24,7 +24,7 @@ WAIT_INTERVAL = 0.5  # [s] between two looks for Ctrl-C, which on Windows does n
 
 
 def check_address(host: str, port: int) -> None:
-    """Raises ValueError for what is no address to serve on."""
+    """Raises ValueError if it is not an address to serve on."""
     if not 0 <= port <= 65535:
         raise argument_error("--port", port, "0 to 65535")
     allowed = "an address of this machine, such as 127.0.0.1, or 0.0.0.0 for all of them"

@@ -1,1 +1,1 @@
-"""What sweep, stability and bench share: a process pool, tables and figures."""
+"""Common parts of sweep, stability and bench: a process pool, tables and figures."""

@@ -88,7 +88,7 @@ def run_tasks(
 def run_in_pool(
     work: Callable[..., R], tasks: Mapping[K, Arguments], waiting: deque[K], workers: int
 ) -> Generator[tuple[K, R], None, list[K]]:
-    """Results of the tasks in `waiting`, until that is empty or a process dies; returns what was running then."""
+    """Results of the tasks in `waiting`, until that is empty or a process dies; returns the tasks then running."""
     context = multiprocessing.get_context("spawn")
     reader, writer = context.Pipe(duplex=False)
     pool = ProcessPoolExecutor(

@@ -63,7 +63,7 @@ class ClothMeshes:
 
 
 def rest_of_obj(rows: int, cols: int) -> str:
-    """Texture coordinates, from (0, 0) at the last row to (1, 1), and quads: what is the same in each file."""
+    """Common part of all files: texture coordinates, from (0, 0) at the last row to (1, 1), and quads."""
     lines = [f"vt {j / (cols - 1):.7g} {1.0 - i / (rows - 1):.7g}" for i in range(rows) for j in range(cols)]
     for i in range(rows - 1):
         for j in range(cols - 1):

@@ -1,4 +1,4 @@
-"""What `springtide export` needs of a scene that can be written as a sequence of files."""
+"""Contract of `springtide export` with a scene that can be written as a sequence of files."""
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -19,7 +19,7 @@ class Sequence(Protocol):
         ...
 
     def about(self) -> Mapping[str, Any]:
-        """What the files hold, with units, for the JSON file beside them; to be asked for after `write`."""
+        """Contents of the files, with units, for the JSON file beside them; complete after `write`."""
         ...
 
 

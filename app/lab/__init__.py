@@ -1,4 +1,4 @@
-"""The course lab: a folder of exercises, checks that say what is wrong, and a report to hand in.
+"""The course lab: a folder of exercises, checks that name mistakes, and a report to hand in.
 
 `tasks/` holds the tasks, one TOML file each and, where something is to be programmed, one Python file with the
 reference solution and its check. `folder.py` writes the student's folder, `runner.py` runs the student's functions in

@@ -10,7 +10,7 @@ MIN_WORDS = 3  # of a text that counts as an answer
 
 @dataclasses.dataclass(frozen=True)
 class AnswerVerdict:
-    """What the check of one answer came to.
+    """Result of the check of one answer.
 
     state: "not begun", "right", "wrong", or "given" for what is neither. text: what to tell the student.
     """
@@ -44,7 +44,7 @@ def check_answer(question: Question, answer: Value | None) -> AnswerVerdict:
 
 
 def is_right(question: Question, answer: Value) -> bool:
-    """Whether an answer is the right one."""
+    """True if an answer is the right one."""
     if isinstance(answer, float) and isinstance(question.right, float):
         return question.is_near(answer, question.right)
     return answer == question.right

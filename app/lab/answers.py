@@ -25,7 +25,7 @@ Value = str | float
 
 
 class Answers(NamedTuple):
-    """What answers.toml holds. error: why it could not be read, or ""."""
+    """Contents of answers.toml. error: why it could not be read, or ""."""
 
     name: str
     values: Mapping[tuple[str, str], Value]  # by task and question
@@ -48,7 +48,7 @@ class Answers(NamedTuple):
         return frozenset(int(word) for word in text.split() if word.isdecimal() and len(word) < 3)
 
     def is_shown(self, task: Task) -> bool:
-        """Whether the answer was looked at in the panel."""
+        """True if the answer was looked at in the panel."""
         return self.values.get((task.name, SHOWN)) == "yes"
 
 
@@ -61,7 +61,7 @@ def number_in(text: str) -> Value:
 
 
 def read_answers(folder: Path) -> Answers:
-    """The answers in a student's folder. Raises nothing: what cannot be read is said in `error`."""
+    """The answers in a student's folder. Raises nothing: `error` says why a file cannot be read."""
     path = folder / FILE
     try:
         if path.stat().st_size > MAX_SIZE:
@@ -156,7 +156,7 @@ def exact(text: str) -> dict[str, Any]:
 
 
 def is_toml(text: str) -> bool:
-    """Whether a text is TOML."""
+    """True if a text is TOML."""
     try:
         tomllib.loads(text)
     except (ValueError, RecursionError):

@@ -1,4 +1,4 @@
-"""Checks in a process of low priority what a student has saved, as `springtide lab check` does, while the scenes run.
+"""Checks of a student's saved files in a process of low priority, as by `springtide lab check`, while the scenes run.
 
 The process takes requests as lines of JSON, `{"number", "folder", "names"}`, and answers each function with a line
 `{"number", "name", "state", "text", "mistake"}`. A new request ends the one before it.
@@ -115,7 +115,7 @@ class BackgroundCheck:
             self.end_process()
 
     def end_process(self) -> None:
-        """End the process; it ends what it has started."""
+        """End the process; it ends its children."""
         process, self.process = self.process, None
         if process is not None:
             process.terminate()
@@ -127,7 +127,7 @@ class BackgroundCheck:
 
 
 def serve(requests: "queue.SimpleQueue[dict[str, object] | None]", say: Callable[[dict[str, object]], None]) -> None:
-    """Check what is asked for, until None comes."""
+    """Check the requested tasks until None comes."""
     tasks = {task.name: task for task in load_tasks(*map(Path, sys.argv[2:]))}
     while (request := requests.get()) is not None:
         folder, names = Path(str(request["folder"])), request["names"]

@@ -34,7 +34,7 @@ class TaskResult:
 
     @property
     def messages(self) -> tuple[str, ...]:
-        """What to tell the student of the parts that are not right."""
+        """Messages to the student on the parts that are not right."""
         texts = []
         if self.program is not None and self.program.state in ("wrong", "failed"):
             named = f"{self.program.mistake}: " if self.program.state == "wrong" and self.program.mistake else ""
@@ -58,7 +58,7 @@ class FolderResult:
 
     @property
     def is_complete(self) -> bool:
-        """Whether every task that is not optional is right."""
+        """True if every task that is not optional is right."""
         return all(result.state == "right" for result in self.tasks if not result.task.optional)
 
     def count(self, *, optional: bool) -> tuple[int, int]:
@@ -68,7 +68,7 @@ class FolderResult:
 
 
 def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool = False) -> FolderResult:
-    """Check all tasks of a student's folder; with what the report draws, if `curves`.
+    """Check all tasks of a student's folder; with the report's curves, if `curves`.
 
     Raises ValueError where it is no folder.
     """

@@ -1,4 +1,4 @@
-"""What the check of a programming task is made of; the Python file of a task uses these names.
+"""Building blocks of the check of a programming task; the Python file of a task uses these names.
 
 Beside the reference solution, such a file has
 - `inputs(rng)`, required: one set of arguments, drawn from a numpy generator. Functions may be among them.
@@ -16,7 +16,7 @@ import numpy as np
 
 
 class Mistake(NamedTuple):
-    """A typical mistake: its name, what to tell who made it, and a function that makes it."""
+    """A typical mistake: its name, a hint for the student, and a function that makes it."""
 
     name: str
     hint: str

@@ -29,7 +29,7 @@ def step_symplectic(x: Any, v: Any, h: float, acceleration: Callable[..., Any]) 
 
 
 class Sheet(NamedTuple):
-    """What a cloth is made of, beside `Forces`, which has the mass of a cell and the stiffness along rows and columns.
+    """Data of a cloth in addition to `Forces`, which has the mass of a cell and the stiffness along rows and columns.
 
     Point (i, j) has the number i cols + j.
     """

@@ -39,7 +39,7 @@ def links(x, v, mass, stiffness, damping, drag, rest_length, gravity, spring_for
 
 
 def compile_functions(path: Path, own: Collection[str]) -> tuple[dict[str, Callable[..., Any]], str]:
-    """What could be compiled of a student's functions, by name, and why something could not, or ""."""
+    """Compiled functions of a student by name, and why one could not be compiled, or ""."""
     plain, compiled = load(path, "plain"), load(path, "compiled")
     for name, value in vars(compiled).copy().items():
         if isinstance(value, types.FunctionType) and value.__module__ == compiled.__name__:
@@ -80,12 +80,12 @@ def load(path: Path, name: str) -> types.ModuleType:
 
 
 def inputs_of(name: str) -> Callable[[np.random.Generator], tuple[Any, ...]]:
-    """What makes arguments for a function, of its task."""
+    """Maker of arguments for a function, from its task."""
     return sys.modules[REFERENCE[name].__module__].inputs
 
 
 def agrees(plain: Callable[..., Any], compiled: Callable[..., Any], inputs: Callable[..., tuple[Any, ...]]) -> bool:
-    """Whether both give the same results at random inputs. Raises what they raise."""
+    """True if both give the same results at random inputs. Raises their errors."""
     rng = np.random.default_rng(SEED)
     for _ in range(SAMPLES):
         arguments = inputs(rng)
@@ -100,7 +100,7 @@ def agrees(plain: Callable[..., Any], compiled: Callable[..., Any], inputs: Call
 
 
 def first_line(error: Exception) -> str:
-    """What an error says, on one line: numba's has many, and only those after the heading matter."""
+    """An error's text on one line: numba's has many, and only those after the heading matter."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     told = [line for line in lines if not line.startswith(("Failed in", "During:", "File", "-", "["))]
     return (told or lines or [type(error).__name__])[0]

@@ -78,7 +78,7 @@ def right_answers(tasks: Sequence[Task]) -> Answers:
 
 
 def readme_text(name: str, tasks: Sequence[Task]) -> str:
-    """The README of the student's folder: what to do, and every task."""
+    """The README of the student's folder: instructions and every task."""
     mandatory, quoted = sum(not task.optional for task in tasks), shlex.quote(name)
     lines = [
         "# Springs and waves: the lab",

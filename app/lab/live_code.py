@@ -1,4 +1,4 @@
-"""What a scene runs of a student's functions."""
+"""The student's functions that a scene runs."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -8,7 +8,7 @@ from app.lab.live_tables import LiveTables
 
 
 class LiveCode(NamedTuple):
-    """Where a scene has a student's functions run; each scene uses what it has a use for."""
+    """Services that run a student's functions for a scene; each scene uses those that it needs."""
 
     rope: LiveNet
     cloth: LiveNet
@@ -25,4 +25,4 @@ class LiveCode(NamedTuple):
 
 
 def nothing() -> None:
-    """What is done for a scene that has no use for a net."""
+    """Empty service for a scene without springs."""

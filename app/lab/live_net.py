@@ -48,7 +48,7 @@ class Job(NamedTuple):
 
 
 class Answer(NamedTuple):
-    """What a job came to."""
+    """Result of a job."""
 
     run: int
     x: np.ndarray  # (segments, n, 3) [m] at the end of each segment
@@ -68,7 +68,7 @@ class Loaded(NamedTuple):
 
 
 class StudentReport(NamedTuple):
-    """What a scene says of the student's rope or cloth, for the panel. It is replaced, never changed."""
+    """A scene's report on the student's rope or cloth, for the panel. It is replaced, never changed."""
 
     version: int = 0  # of the files; 0: no function of the student's moves it
     compiled: tuple[str, ...] = ()  # functions that run compiled
@@ -102,7 +102,7 @@ def own_of(saved: Saved, method: str, *, sphere: bool) -> frozenset[str]:
 
 
 class Material(NamedTuple):
-    """What tells a rope from a cloth."""
+    """Differences between a rope and a cloth."""
 
     file: str  # of the student's functions
     exact: frozenset[str]  # methods by which a right solution moves as the program's, to rounding

@@ -28,14 +28,14 @@ class Call(NamedTuple):
     shape: tuple[int, ...] = ()  # of what it returns
 
     def same(self, other: "Call") -> bool:
-        """Whether both ask for the same."""
+        """True if both ask for the same."""
         return len(self.columns) == len(other.columns) and all(
             np.array_equal(a, b) for a, b in zip(self.columns, other.columns, strict=True)
         )
 
 
 class Table(NamedTuple):
-    """What a function of the student's returned."""
+    """Result of a student's function."""
 
     version: int  # of the files
     call: Call
@@ -43,7 +43,7 @@ class Table(NamedTuple):
 
 
 class TableReport(NamedTuple):
-    """What a scene says of the functions that it runs by, for the panel. It is replaced, never changed."""
+    """A scene's report on the functions that move it, for the panel. It is replaced, never changed."""
 
     running: Mapping[str, str] = {}  # function -> what it moves
     idle: Mapping[str, str] = {}  # function -> why the scene has no use for it just now
@@ -52,7 +52,7 @@ class TableReport(NamedTuple):
 
 
 class TableUser:
-    """What a sea runs by of `LiveTables`; for the simulation thread."""
+    """The part of `LiveTables` that moves a sea; for the simulation thread."""
 
     def __init__(self, live: "LiveTables") -> None:
         self.live = live
@@ -110,7 +110,7 @@ class LiveTables(Service[Saved | Mapping[str, Call]]):
         self.wake()
 
     def handle(self, item: Saved | Mapping[str, Call]) -> None:
-        """Take a version or a wish, and compute what was asked for last by the version that was saved last."""
+        """Take a version or a request, and compute the latest request by the latest version."""
         if isinstance(item, Saved):
             self.take(item)
         else:

@@ -1,4 +1,4 @@
-"""Values of a running scene, as tasks use them: in answers, in what is watched for, in what is read off."""
+"""Values of a running scene, as tasks use them: in answers, conditions and readings."""
 
 import math
 import operator
@@ -58,7 +58,7 @@ class Condition(NamedTuple):
     value: bool | str | float
 
     def holds(self, values: LiveValues) -> bool:
-        """Whether it holds; a value that the scene does not have fulfils no condition."""
+        """True if it holds; a value that the scene does not have fulfils no condition."""
         found = values.get(self.name)
         if isinstance(found, LiveNumber) and isinstance(self.value, float):
             if self.relation == "=":
@@ -98,7 +98,7 @@ class NamesOnly(string.Formatter):
 
 
 def names_in(template: str) -> set[str]:
-    """The names of the live values that a text uses. Raises ValueError for what `fill_in` could not fill in."""
+    """The names of the live values that a text uses. Raises ValueError if `fill_in` cannot fill one in."""
     fields = [(name, spec) for _, name, spec, _ in string.Formatter().parse(template) if name is not None]
     for _, spec in fields:
         format(LiveNumber(1.0), spec or "")

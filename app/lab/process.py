@@ -1,4 +1,4 @@
-"""What both sides of the process that runs a student's functions must agree on."""
+"""Constants of both sides of the process that runs a student's functions."""
 
 import signal
 

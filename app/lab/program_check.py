@@ -26,7 +26,7 @@ SEED = 20150130
 
 @dataclasses.dataclass(frozen=True)
 class Verdict:
-    """What the check of one function came to.
+    """Result of the check of one function.
 
     state: "not begun", "right", "wrong" or "failed" (no result). mistake: the name of a recognised mistake, or "".
     """
@@ -121,12 +121,12 @@ def parts(value: Any) -> tuple[np.ndarray, ...]:
 
 
 def same_shape(found: Any, expected: Any) -> bool:
-    """Whether two results have arrays of the same shapes."""
+    """True if two results have arrays of the same shapes."""
     return [a.shape for a in parts(found)] == [b.shape for b in parts(expected)]
 
 
 def same(found: Any, expected: Any) -> bool:
-    """Whether two results agree within the tolerance, every part relative to its largest value."""
+    """True if two results agree within the tolerance, every part relative to its largest value."""
     if not same_shape(found, expected):
         return False
     for a, b in zip(parts(found), parts(expected), strict=True):
@@ -140,7 +140,7 @@ def same(found: Any, expected: Any) -> bool:
 
 
 def is_begun(folder: Path, task: Task) -> bool:
-    """Whether the function in the student's file has a body: more than a docstring, `...` and `pass`."""
+    """True if the function in the student's file has a body: more than a docstring, `...` and `pass`."""
     try:
         tree = ast.parse((folder / task.file).read_bytes())
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):  # the last two where it nests too deeply
@@ -152,7 +152,7 @@ def is_begun(folder: Path, task: Task) -> bool:
 
 
 def is_empty(line: ast.stmt) -> bool:
-    """Whether a line is a docstring, `...` or `pass`."""
+    """True if a line is a docstring, `...` or `pass`."""
     return isinstance(line, ast.Pass) or (isinstance(line, ast.Expr) and isinstance(line.value, ast.Constant))
 
 
@@ -282,7 +282,7 @@ def scaled(value: Any, factor: float) -> Any:
 
 
 def ignores(student: Student, samples: list[Any], i: int) -> bool:
-    """Whether the student's result does not depend on argument `i`, though the reference does."""
+    """True if the student's result does not depend on argument `i`, though the reference does."""
     changed_reference = False
     for first, second in zip(samples[:3], samples[3:6], strict=True):
         if np.shape(first[i]) != np.shape(second[i]):

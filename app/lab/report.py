@@ -112,7 +112,7 @@ def state_class(state: str) -> str:
 
 
 def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Html) -> Html:
-    """One task: its statement, law, what was done, what the program says, and answers. shown: its pictures."""
+    """One task: its statement, law, steps done, check and answers. shown: its pictures."""
     task = entry.task
     laws = join(formula(law) for law in task.guide.law) if task.guide is not None else Html()
     return fill(
@@ -124,7 +124,7 @@ def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Ht
 
 
 def steps(answers: Answers, task: Task) -> Html:
-    """What was to be done in the scene, and whether the workbook has seen it."""
+    """Steps to do in the scene, and those that the workbook has seen."""
     done = answers.done(task)
     rows = join(
         fill(
@@ -138,7 +138,7 @@ def steps(answers: Answers, task: Task) -> Html:
 
 
 def program_text(entry: TaskResult) -> Html:
-    """What the check says to the function, and what it has checked."""
+    """The check's result for the function, and the aspects that it covers."""
     program = entry.program
     if program is None:
         return Html()
@@ -176,7 +176,7 @@ def answers_of(answers: Answers, entry: TaskResult) -> Html:
 
 
 def answer_text(verdict: AnswerVerdict) -> Html:
-    """One question with its answer and what the check says."""
+    """One question with its answer and the check's result."""
     state = {"given": "", "not begun": "not answered"}.get(verdict.state, verdict.state)
     said = fill('<p><span class="{}">{}</span> {}</p>', state_class(verdict.state), state, verdict.text)
     return fill(

@@ -69,7 +69,7 @@ class Segment(NamedTuple):
 
 
 class March(NamedTuple):
-    """What advancing came to."""
+    """Result of advancing."""
 
     x: np.ndarray  # (segments, n, 3) [m] at the end of each segment that was finished
     v: np.ndarray  # (n, 3) [m/s] at the end of the last of these
@@ -79,8 +79,9 @@ class March(NamedTuple):
 
 
 class Unfit(Exception):  # noqa: N818 - a judgement on a result, not an error of the program
-    """A student's function returned what cannot be used. kind: "wrong shape", "wrong type", "NaN", "returns nothing",
-    "out of range".
+    """Unusable result of a student's function.
+
+    kind: "wrong shape", "wrong type", "NaN", "returns nothing" or "out of range".
 
     function: the one that did.
     """
@@ -94,7 +95,7 @@ class Unfit(Exception):  # noqa: N818 - a judgement on a result, not an error of
 
 
 def fitting(name: str, value: Any, shape: tuple[int, ...], function: Callable[..., Any]) -> np.ndarray:
-    """What a function of this name returned, as an array of this shape. Raises Unfit."""
+    """Result of the function of this name as an array of this shape. Raises Unfit."""
     expected = f"expected is an array of shape {shape}" if shape else "expected is a number"
     if value is None:
         raise Unfit("returns nothing", f"{name} returns nothing: the last line must be return ...", function)
@@ -341,7 +342,7 @@ def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Seg
 
 
 def packed(segment: Segment) -> list[Any]:
-    """A segment as what crosses the pipe (`wire.py`)."""
+    """A segment in the form that crosses the pipe (`wire.py`)."""
     return [segment.steps, segment.h, [*segment.forces], segment.path, segment.since]
 
 

@@ -79,7 +79,7 @@ class Runner:
         self.close()
 
     def call(self, file: str, function: str, *arguments: Any) -> Any:
-        """What a function returns: None, numbers, texts, arrays, lists and tuples of these, or `Foreign`.
+        """Result of a function: None, numbers, texts, arrays, lists and tuples of these, or `Foreign`.
 
         Functions among the arguments are computed here when the student's function calls them. Raises RunError.
         """
@@ -105,7 +105,7 @@ class Runner:
     def table(
         self, file: str, function: str, columns: Sequence[np.ndarray], shape: tuple[int, ...], allowed: Range
     ) -> np.ndarray:
-        """(n, *shape) what a function returns for each row of its arguments (`tabulate.py`). Raises RunError.
+        """(n, *shape) results of a function for each row of its arguments (`tabulate.py`). Raises RunError.
 
         columns: (n, ...) each. The limit in time is that of each `TABLE_ROWS` rows.
         """
@@ -141,7 +141,7 @@ class Runner:
         self._ready()
 
     def _ask(self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float | None = None) -> Any:
-        """What the process answers to a message. function: the name that an error tells. time_limit: [s], or None."""
+        """Answer of the process to a message. function: its name for errors. time_limit: [s], or None."""
         if not (self.folder / file).is_file():
             raise RunError("missing", "there is no such file", file)
         functions: list[Callable[..., Any]] = []
@@ -317,7 +317,7 @@ def unexpected(error: Exception, file: str) -> RunError:
 
 
 def is_march(answer: Any, shape: tuple[int, ...]) -> bool:
-    """Whether an answer holds what a `March` of points (n, 3) does: a student's function may have forged it."""
+    """True if an answer holds what a `March` of points (n, 3) does: a student's function may have forged it."""
     if not isinstance(answer, tuple) or len(answer) != len(March._fields):
         return False
     x, v, steps, seconds, left = answer

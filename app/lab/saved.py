@@ -47,7 +47,7 @@ def keep(texts: Mapping[str, bytes], folder: Path, number: int, tasks: Iterable[
 
 
 def is_there(task: Task, texts: Mapping[str, bytes]) -> bool:
-    """Whether a file defines the function of a task at its top level.
+    """True if a file defines the function of a task at its top level.
 
     Of a file that cannot be parsed all functions count: running them says what is wrong with it.
     """

@@ -120,7 +120,7 @@ class Compared(NamedTuple):
 
 
 class Wanted(NamedTuple):
-    """What to compute."""
+    """A request."""
 
     saved: Saved
     arguments: Mapping[str, tuple[Argument, ...]]  # task -> arguments
@@ -129,7 +129,7 @@ class Wanted(NamedTuple):
 
 
 def wanted(scene: str, tasks: Mapping[str, Task], saved: Saved, live: LiveValues) -> Wanted:
-    """What can be compared in a scene as it is, of the functions that the student has begun."""
+    """The student's begun functions that can be compared in the present scene."""
 
     def number(name: str) -> float:
         found = live[name]
@@ -156,7 +156,7 @@ def wanted(scene: str, tasks: Mapping[str, Task], saved: Saved, live: LiveValues
 
 
 class SceneValues(Service[Wanted]):
-    """Computes what is wanted in a thread. `found` is replaced, never changed."""
+    """Computes the requested values in a thread. `found` is replaced, never changed."""
 
     def __init__(self, tasks: Mapping[str, Task], time_limit: float) -> None:
         self.tasks, self.time_limit = tasks, time_limit
@@ -177,7 +177,7 @@ class SceneValues(Service[Wanted]):
             self.inbox.put(now)
 
     def handle(self, item: Wanted) -> None:
-        """Compute what was asked for last."""
+        """Compute the latest request."""
         if not self.inbox.empty():
             return
         if self.runner is None or self.runner.folder != item.saved.folder.resolve():

@@ -1,4 +1,4 @@
-"""`springtide lab DIR` while it runs: watches the student's folder, tries what is saved, and runs it.
+"""`springtide lab DIR` while it runs: watches the student's folder, tries saved files, and runs them.
 
 A thread waits for files to be saved. Each saved version is copied, tried in a process of its own, and handed to the
 rope (`live_net.py`) where it works; where it does not, the last one that worked goes on. The seas run by tables of
@@ -37,7 +37,7 @@ LOOK_INTERVAL = 500  # [ms] between two looks whether to end
 
 
 class CodeState(NamedTuple):
-    """What is to be said of the student's files."""
+    """State of the student's files."""
 
     version: int = 0  # of the files as saved last
     saved_at: str = ""  # clock time
@@ -140,7 +140,7 @@ class Session:
             self.state = self.state._replace(error=RunError("ended", text, str(self.folder)))
 
     def is_for(self, file: str, changed: frozenset[str]) -> bool:
-        """Whether a change of these files can change what functions of a file move: itself, or one no task names."""
+        """True if a change of these files can change the functions of a file: itself, or one no task names."""
         others = {task.file for task in self.tasks} - {file}
         return not changed <= others
 
@@ -157,7 +157,7 @@ class Session:
         return bool(own)
 
     def compile_versions(self) -> None:
-        """Compile what moves the rope, and hand it to the rope where that works; of several versions the last."""
+        """Compile the functions that move the rope, and hand them over if that works; the latest version wins."""
         while (saved := self.to_compile.get()) is not None:
             self.stop.wait(COMPILE_DELAY)
             self.compiler = runner = Runner(saved.folder, self.time_limit, compiles=True)
@@ -176,7 +176,7 @@ class Session:
                 runner.close()
 
     def note_failure(self, saved: Saved, error: RunError) -> None:
-        """A version cannot run; what is said of a version before the newest is out of date."""
+        """A version cannot run; errors of versions before the newest are out of date."""
         if saved.number == self.state.version:
             self.state = self.state._replace(error=error)
 

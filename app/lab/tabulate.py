@@ -12,7 +12,7 @@ from app.lab.rope_march import Unfit, fitting
 
 
 class Range(NamedTuple):
-    """What a result may be, ends included."""
+    """Range of a result, ends included."""
 
     low: float
     high: float
@@ -27,7 +27,7 @@ class Range(NamedTuple):
 def tabulate(
     function: Callable[..., Any], name: str, columns: Sequence[np.ndarray], shape: tuple[int, ...], allowed: Range
 ) -> np.ndarray:
-    """(n, *shape) what the function returns for each row of its arguments, columns of shape (n, ...).
+    """(n, *shape) results of the function for each row of its arguments, columns of shape (n, ...).
 
     Raises Unfit for a result of another shape or type, or that is not finite or not allowed.
     """

@@ -1,4 +1,4 @@
-"""The tasks of the lab: each is a TOML file in a folder and, for what is to be programmed, a Python file of that name.
+"""The tasks of the lab: each is a TOML file in a folder; a programming task also has a Python file of that name.
 
 A task is found by being there. The TOML file holds its words and questions; the Python file holds the reference
 solution, a function named as the file, and what its check needs (`checking.py`). docs/lab.md shows a whole example.
@@ -31,7 +31,7 @@ class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class TypicalError(Table, frozen=True):
-    """A wrong answer that says what was misunderstood."""
+    """A wrong answer that shows a typical misunderstanding."""
 
     answer: str | float
     text: str
@@ -73,12 +73,12 @@ class Question(Table, frozen=True):
         return "Predict" if self.key == PREDICTION else "Explain" if self.kind == "text" else "Measure"
 
     def is_near(self, answer: float, value: float) -> bool:
-        """Whether a number counts as this value."""
+        """True if a number counts as this value."""
         return abs(answer - value) <= self.tolerance * abs(value)
 
 
 class Setup(Table, frozen=True):
-    """Where in Springtide the task can be seen."""
+    """Set-up of Springtide that shows the task."""
 
     scene: str
     look: str  # what to do and to look at
@@ -169,7 +169,7 @@ def load_tasks(*folders: Path, with_checks: bool = True) -> tuple[Task, ...]:
 
 
 def position(task: Task) -> tuple[tuple[int, ...], int, str]:
-    """Where a task stands in the lab."""
+    """Position of a task in the lab."""
     return tuple(int(number) for number in re.findall(r"\d+", task.item)), task.order, task.name
 
 

@@ -1,4 +1,4 @@
-"""What passes between the lab and the process that runs a student's functions: plain values as MessagePack.
+"""Messages between the lab and the process that runs a student's functions: plain values as MessagePack.
 
 Nothing that a student's function returns is unpickled in the lab's own process. A value that is neither a number, a
 text, an array of numbers nor a list of these arrives as `Foreign`, which holds the name of its type only.
@@ -23,7 +23,7 @@ class Foreign(NamedTuple):
 
 
 def pack(value: Any, refer: Callable[[Any], int]) -> Any:
-    """`value` as what MessagePack can hold. refer: gives the number of a function that stays here."""
+    """`value` in types of MessagePack. refer: gives the number of a function that stays here."""
     if isinstance(value, np.generic) and value.dtype.kind in "biuf":
         value = value.item()
     if value is None or isinstance(value, bool | str | float):
@@ -47,7 +47,7 @@ def pack(value: Any, refer: Callable[[Any], int]) -> Any:
 
 
 def unpack(value: Any, function: Callable[[int], Any]) -> Any:
-    """The value that `pack` made. function: makes what stands for a function of the other process."""
+    """The value from the result of `pack`. function: makes the stand-in of a function of the other process."""
     if isinstance(value, list):
         return [unpack(entry, function) for entry in value]
     if isinstance(value, dict):
@@ -72,7 +72,7 @@ def send(stream: IO[bytes], message: list[Any]) -> None:
 
 
 def receive(stream: IO[bytes]) -> list[Any] | None:
-    """Read one message; None at the end of the stream, or where what was read is no message."""
+    """Read one message; None at the end of the stream, or if the bytes are not a message."""
     head = stream.read(HEAD.size)
     if len(head) < HEAD.size or HEAD.unpack(head)[0] > MAX_BYTES:
         return None

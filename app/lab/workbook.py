@@ -27,7 +27,7 @@ ALLOWED_CONTROLS = "\n\t"
 
 
 class Workbook:
-    """The tasks to go through, one at a time, and what has been answered."""
+    """The tasks to go through, one at a time, and the answers so far."""
 
     def __init__(self, tasks: Sequence[Task], folder: Path | None = None) -> None:
         """folder: made by `springtide lab new`; without one only the guides of the items are shown.
@@ -56,7 +56,7 @@ class Workbook:
         return self.tasks[self.index]
 
     def first_open(self) -> int:
-        """Where to go on: the first task that is not complete, from the last one on that was begun."""
+        """Next task: the first one that is not complete, from the last one on that was begun."""
         begun = {name for (name, _), value in self.answers.values.items() if value != ""}
         last = max((i for i, task in enumerate(self.tasks) if task.name in begun), default=0)
         is_open = [i for i, task in enumerate(self.tasks) if not self.is_complete(task)]
@@ -74,7 +74,7 @@ class Workbook:
         self.index = next(own, self.index)
 
     def set_up_of(self, task: Task) -> Setup:
-        """Where the task can be seen: as it says, or as another task of its item says."""
+        """Set-up of the task, or of another task of its item."""
         others = (other.setup for other in self.all_tasks if other.item == task.item and other.setup is not None)
         setup = task.setup or next(others, None)
         return Setup("", "") if setup is None else setup
@@ -99,11 +99,11 @@ class Workbook:
                 self.read_at = found
 
     def verdict(self, task: Task, question: Question) -> AnswerVerdict:
-        """The answer to a question, and what the check says of it."""
+        """The answer to a question, and the check's result."""
         return check_answer(question, self.answers.of(task, question))
 
     def is_complete(self, task: Task) -> bool:
-        """Whether every question is answered, and none wrongly."""
+        """True if every question is answered, and none wrongly."""
         return all(self.verdict(task, question).state in ("right", "given") for question in task.questions)
 
     def answer(self, task: Task, question: Question, text: str) -> None:
@@ -142,7 +142,7 @@ class Workbook:
             self.refresh()
 
     def add_picture(self, task: Task, words: str, picture: bytes) -> str:
-        """Keep a picture that was taken for a task; returns its name. words: what it shows, as a part of the name.
+        """Keep a picture that was taken for a task; returns its name. words: its subject, as a part of the name.
 
         Raises ValueError where there are as many as the report shows, OSError where it cannot be written.
         """
@@ -166,7 +166,7 @@ class Workbook:
         return self.answers.done(task)
 
     def watch(self, task: Task, values: LiveValues) -> None:
-        """Tick off the next step where it is seen to be done now. Raises what `keep` raises."""
+        """Tick off the next step if it is seen to be done now. Raises the errors of `keep`."""
         done = self.done(task)
         number = next((i for i in range(1, len(task.steps) + 1) if i not in done), None)
         if self.folder is None or number is None:
@@ -175,13 +175,13 @@ class Workbook:
             self.keep(task.name, DONE, " ".join(str(i) for i in sorted(done | {number})))
 
     def is_shown(self, task: Task) -> bool:
-        """Whether the answer has been shown."""
+        """True if the answer has been shown."""
         if self.folder is None:
             return task.name in self.looked_at
         return self.answers.is_shown(task)
 
     def show_answer(self, task: Task) -> None:
-        """Show the answer. Raises ValueError where a prediction comes first, and what `keep` raises."""
+        """Show the answer. Raises ValueError if a prediction comes first, and the errors of `keep`."""
         if self.folder is None:
             self.looked_at ^= {task.name}
             return
@@ -202,7 +202,7 @@ def check_laws(task: Task) -> None:
 
 
 def answer_of(question: Question, text: str) -> Value:
-    """What is kept of a text from outside. Raises ValueError, with a line for the student, where it is not allowed."""
+    """Stored form of a text from outside. Raises ValueError, with a line for the student, if it is not allowed."""
     if len(text) > MAX_TEXT:
         raise ValueError(f"An answer has at most {MAX_TEXT} characters. This one has more, and is not kept.")
     if any(unicodedata.category(c) in ("Cc", "Cs") and c not in ALLOWED_CONTROLS for c in text):

@@ -87,7 +87,7 @@ class Worker:
                 send(self.outgoing, ["failed", "raised", f"the result has {error}", file, None])
 
     def answer(self, kind: str, file: str, function: str, arguments: Any) -> list[Any]:
-        """The message that tells what a call or a march came to."""
+        """The message with the result of a call or a march."""
         try:
             if kind == "compile":
                 from app.lab.compiled import compile_functions  # numba, which takes a second to import

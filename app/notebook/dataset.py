@@ -1,4 +1,4 @@
-"""What a lab knows at one time, as a labelled dataset."""
+"""State of a lab at one time as a labelled dataset."""
 
 import json
 import math

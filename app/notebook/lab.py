@@ -61,7 +61,7 @@ class Lab:
 
     @property
     def running(self) -> bool:
-        """Whether the clock runs. It stands still where no browser looks."""
+        """True if the clock runs. It stands still where no browser looks."""
         return self._open.loop.running
 
     @property
@@ -120,7 +120,7 @@ class Lab:
         self._open.commands.put(Pause())
 
     def data(self) -> "xarray.Dataset":
-        """What the lab knows now, with units in `attrs`; needs the extra `jupyter`.
+        """Present state of the lab, with units in `attrs`; needs the extra `jupyter`.
 
         Over `t` [s] the values of the plots since the run began, at most 20,000 of each; at the time `now` [s] the
         state, the measures and the other charts of the scene.
@@ -130,7 +130,7 @@ class Lab:
         return self._asked(lambda: to_dataset(kind, scene, loop.kept_rows, self.link))
 
     def picture(self, width: int = 960, height: int = 540) -> Still:
-        """A picture [pixels] of what a browser shows, which stays in the notebook.
+        """A picture [pixels] of a browser's view, which stays in the notebook.
 
         Raises RuntimeError where no browser shows the lab, and TimeoutError where one does not draw.
         """
@@ -192,7 +192,7 @@ class Lab:
             raise RuntimeError("this lab was stopped; app.show opens another")
 
     def _asked(self, read: Callable[[], T]) -> T:
-        """What `read` returns between two steps of the simulation."""
+        """Result of `read`, called between two steps of the simulation."""
         answer: Future[Any] = Future()
         served = self._open.served
         served.commands.put(Ask(read, answer))
@@ -211,7 +211,7 @@ class Lab:
             answer.cancel()  # where the kernel was interrupted: the lab is not to wait for it
 
     def _on_event_loop(self, action: Callable[[], None]) -> None:
-        """Call what only viser's event loop may call, and wait for it."""
+        """Call a function on viser's event loop, and wait for it."""
         done: Future[None] = Future()
 
         def run() -> None:
@@ -264,7 +264,7 @@ def show_lab(scene: str, preset: str, parameters: Mapping[str, object], *, pause
 
 
 def read_setup(scene: str, preset: str, parameters: Mapping[str, object]) -> tuple[AnyKind, Any]:
-    """The scene and its parameters. Raises ValueError for what is not allowed."""
+    """The scene and its parameters. Raises ValueError if they are not allowed."""
     if not isinstance(scene, str) or not isinstance(preset, str):
         raise argument_error("scene, preset", (scene, preset), "names")
     if "?" in scene:
@@ -307,6 +307,6 @@ def keep_still(viewer: Viewer, output: Output) -> None:
 
 @atexit.register
 def stop_all() -> None:
-    """End what still runs as the kernel ends: its compilers are processes of their own."""
+    """End the compiler processes when the notebook's kernel ends."""
     for _, _, _, viewer in LABS.values():
         viewer.shut()

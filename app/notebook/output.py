@@ -1,4 +1,4 @@
-"""What a lab shows in the output cell of a notebook: its page while it runs, and a picture that stays."""
+"""Output cell of a lab in a notebook: its page while it runs, and a picture that stays."""
 
 import base64
 import contextvars

@@ -1,4 +1,4 @@
-"""A picture of what a browser shows."""
+"""A picture of a browser's view."""
 
 import time
 from pathlib import Path
@@ -28,7 +28,7 @@ class Still:
 
 
 def take_still(viewer: Viewer, width: int, height: int, timeout: float = DRAW_TIMEOUT) -> Still:
-    """What the newest browser shows, drawn again at width x height [pixels]. timeout: [s] for drawing it.
+    """View of the newest browser, drawn again at width x height [pixels]. timeout: [s] for drawing it.
 
     Raises ValueError for what is not a size, RuntimeError where no browser shows the lab, and TimeoutError where it
     does not draw.

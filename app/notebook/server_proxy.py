@@ -8,7 +8,7 @@ START_TIMEOUT = 60.0  # [s]
 
 
 def springtide() -> dict[str, object]:
-    """What jupyter-server-proxy is told: how the lab is started, and the key that only the two of them know.
+    """Settings for jupyter-server-proxy: how the lab is started, and the key that only the two of them know.
 
     Jupyter asks for its token and checks the origin before it passes a request on. What does not come through it has
     no key and is refused: another page, or another user of the same machine.

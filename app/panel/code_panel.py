@@ -1,4 +1,4 @@
-"""The folder "Your code": which functions of the student's run, how fast, how far they are right, what is wrong."""
+"""The folder "Your code": state, speed and errors of the student's functions."""
 
 import numpy as np
 import viser
@@ -72,7 +72,7 @@ class CodePanel:
         return headline(state_of(session), self.net.report, tables_of(session), self.scene)
 
     def update(self, live: LiveValues) -> None:
-        """Show what has changed; called a few times a second. live: what the scene offers."""
+        """Show changes; called a few times a second. live: the values of the scene."""
         session = self.session
         session.values.ask(self.scene, session.saved, live)
         said = code_lines(state_of(session), self.net.report, tables_of(session), self.scene)
@@ -86,14 +86,14 @@ class CodePanel:
 
 
 def state_of(session: Session) -> CodeState:
-    """The state of the files, with what stops a function that the scene runs by."""
+    """The state of the files, with the error of a function that should move the scene."""
     state = session.state
     error = next(iter(session.tables.errors.values()), None)
     return state if state.error is not None or error is None else state._replace(error=error)
 
 
 def tables_of(session: Session) -> TableReport:
-    """What runs by tables, and of what does not the functions that the student has begun."""
+    """Functions that run by tables, and of the others those that the student has begun."""
     report, begun = session.tables.report, frozenset[str]() if session.saved is None else session.saved.begun
     idle = {name: why for name, why in report.idle.items() if name in begun}
     return report._replace(idle=idle, off=bool(session.tables.tables) and not session.tables.shown)
@@ -119,7 +119,7 @@ def headline(state: CodeState, report: StudentReport, tables: TableReport, scene
 
 
 def code_lines(state: CodeState, report: StudentReport, tables: TableReport, scene: str) -> Html:
-    """What is saved, what stops it, and what it moves in a scene."""
+    """The saved version, its error, and the part of the scene that it moves."""
     runs = bool(report.version or tables.running)
     said: list[Html] = [saved_text(state, HINTS.get(scene, ""), runs=runs or tables.off)]
     if state.error is not None:
@@ -133,7 +133,7 @@ def code_lines(state: CodeState, report: StudentReport, tables: TableReport, sce
 
 
 def sea_texts(tables: TableReport) -> list[Html]:
-    """The functions that a sea runs by, those that it has no use for, and what differs from the program's sea."""
+    """The functions that move a sea, those that it does not use, and the difference from the program's sea."""
     said: list[Html] = []
     if tables.off:
         said.append(fill("The sea runs by the program's functions."))
@@ -148,7 +148,7 @@ def sea_texts(tables: TableReport) -> list[Html]:
 
 
 def saved_text(state: CodeState, hint: str, *, runs: bool) -> Html:
-    """Which version there is, and what to begin with where nothing runs."""
+    """The version, and the first function to write if none runs."""
     if not state.version:
         return fill("Reading your files …")
     if state.error is not None:
@@ -239,7 +239,7 @@ def tick_mark(y: float, word: str) -> Html:
 
 
 def function_lines(session: Session) -> Html:
-    """The state of every function that is begun, and what is wrong with it; those that are right come last."""
+    """State and errors of every function that is begun; the right ones come last."""
     verdicts, waiting, compared = session.check.verdicts, session.check.waiting, session.values.found
     rows: list[tuple[int, Html]] = []
     not_begun = 0
@@ -267,7 +267,7 @@ def compared_text(compared: Compared | None) -> Html:
 
 
 def function_line(task: Task, verdict: Verdict, compared: Compared | None = None) -> Html:
-    """One function: its name and state, why it is not right, and what it gives in the scene."""
+    """One function: its name and state, its errors, and its values in the scene."""
     named = f"{verdict.mistake}. " if verdict.state == "wrong" and verdict.mistake else ""
     why = f"{named[:1].upper()}{named[1:]}{verdict.text}" if verdict.state in ("wrong", "failed") else ""
     return fill(

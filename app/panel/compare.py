@@ -1,4 +1,4 @@
-"""The folder "Compare side by side", and what the page with the panes (`js/beside.html`) reads of a panel."""
+"""The folder "Compare side by side", and the line that the page with the panes (`js/beside.html`) reads."""
 
 # pyright: reportPrivateUsage=false
 
@@ -16,14 +16,14 @@ from app.scenes.setups import Setup
 
 
 class PaneWords(NamedTuple):
-    """What stands above a pane, and where its scene has its middle [m]."""
+    """Title of a pane, and the middle of its scene [m]."""
 
     heading: str
     middle: tuple[float, float]
 
 
 class Beside(NamedTuple):
-    """What the folder needs of the viewer. Each call returns at once."""
+    """Calls to the viewer. Each returns at once."""
 
     compare: Callable[[Sequence[Setup], bool], None]  # show set-ups beside the lab; True: the first of them in the lab
     end: Callable[[], None]  # show the lab alone
@@ -41,7 +41,7 @@ class Compare:
         setup_of: Callable[[str], Setup],
         beside: Beside,
     ) -> None:
-        """buttons: that play, step and reset. names: of what can be shown beside what is set; setup_of: one of them."""
+        """buttons: that play, step and reset. names: of the available set-ups; setup_of: returns one of them."""
         self.names, self.setup_of, self.beside, self.buttons = names, setup_of, beside, buttons
         self.shown: tuple[PaneWords, ...] | None = None
         self.line = gui.add_html("")
@@ -59,7 +59,7 @@ class Compare:
         self.update()
 
     async def on_start(self, event: ViserEvent) -> None:
-        """Show what is set beside the chosen preset."""
+        """Show the present set-up beside the chosen preset."""
         name = str(self.choice.value)
         if event.client_id is not None and name in self.names():
             self.beside.compare([self.setup_of(name)], False)

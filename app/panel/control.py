@@ -16,19 +16,19 @@ SLIDER_STEPS = 400  # at most, over a slider's range
 
 
 def title(name: str, parameter: Parameter) -> str:
-    """What the panel calls the parameter, with its unit."""
+    """Label of the parameter, with its unit."""
     unit = f" [{parameter.unit}]" if parameter.unit else ""
     return (parameter.title or in_words(name)) + unit
 
 
 def hint_of(name: str, parameter: Parameter) -> str:
-    """What the parameter means, what it may be, and its name on the command line."""
+    """Meaning, range and command-line name of the parameter."""
     allowed = "" if parameter.choices or parameter.kind is bool else f" Allowed: {parameter.allowed}."
     return f"{parameter.doc}.{allowed} Command line: {name}"
 
 
 class SliderScale:
-    """Where a slider stands for a number, and the number that it stands for: linear, or by decades."""
+    """Scale of a slider: its position for a number and the number at a position, linear or logarithmic."""
 
     def __init__(self, parameter: Parameter) -> None:
         self.parameter = p = parameter
@@ -41,7 +41,7 @@ class SliderScale:
             self.step = max(1.0, round(step)) if p.kind is int else step
 
     def position(self, value: Value) -> float:
-        """Where the slider stands for a number."""
+        """Slider position of a number."""
         number = float(value)
         at = math.log10(max(number, self.parameter.log_from)) if self.parameter.log_from else number
         return min(max(at, self.low), self.high)
@@ -111,13 +111,13 @@ class Control:
         self.field.on_update(self.on_field)
 
     def shown(self, value: Value) -> Value:
-        """What the field holds for a value."""
+        """Content of the field for a value."""
         if self.parameter.choices:
             return self.parameter.title_of(str(value))
         return value if self.slider is None else write_number(float_or_int(value))
 
     async def on_field(self, event: ViserEvent) -> None:
-        """A browser has set the field; viser also calls this for what `show_value` assigns, without a client."""
+        """A browser has set the field; viser also calls this for values that `show_value` assigns, without a client."""
         if event.client_id is None:
             return
         sent: object = event.target.value
@@ -144,7 +144,7 @@ class Control:
             self.set(self.scale.value(position))
 
     def set(self, value: object) -> None:
-        """Take a value, bounded to what is allowed, show it, and pass it on."""
+        """Take a value, bounded to its range, show it, and pass it on."""
         good = clamp_value(self.parameter, value)
         self.changed(self.name, good)
         self.show_value(good)

@@ -1,4 +1,4 @@
-"""Files of what was recorded and of what a browser shows, in the folder "Record and share".
+"""Files of the recording and of a browser's view, in the folder "Record and share".
 
 Callbacks run on viser's event loop. Each file is made in a thread of its own.
 """
@@ -108,7 +108,7 @@ class Files:
         return f"springtide-{kind.name}.csv", plots_csv(kind, self.panel.plotted()).encode()
 
     def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
-        """What one browser shows, drawn again at the chosen size."""
+        """One browser's view, drawn again at the chosen size."""
         picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
         return f"springtide-{self.panel.kind.name}.png", picture
 

@@ -32,7 +32,7 @@ STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Kept."}
 
 
 def live_values(kind: AnyKind, snapshot: AnySnapshot) -> LiveValues:
-    """All that a task may name: the parameters, what the scene offers, the clock, and whether the run has stopped."""
+    """Values that a task may name: the parameters, those of the scene, the clock, and the state of the run."""
     found: dict[str, bool | str | LiveNumber] = {}
     for name, parameter in parameters_of(snapshot.params).items():
         value: Value = getattr(snapshot.params, name)
@@ -48,7 +48,7 @@ def live_values(kind: AnyKind, snapshot: AnySnapshot) -> LiveValues:
 
 
 class QuestionWidgets:
-    """One question of the workbook: what is asked, where it is answered, and what the check says."""
+    """One question of the workbook: its text, the field of its answer, and the result of the check."""
 
     def __init__(self, guide: "Guide", task: Task, question: Question) -> None:
         self.guide, self.task, self.question = guide, task, question
@@ -77,7 +77,7 @@ class QuestionWidgets:
         self.show()
 
     def kept_text(self) -> str:
-        """What the field holds for the answer that is kept."""
+        """Content of the field for the stored answer."""
         answer = self.workbook.answers.of(self.task, self.question)
         if self.question.kind == "choice":
             return answer if isinstance(answer, str) and answer in self.question.choices else UNANSWERED
@@ -112,7 +112,7 @@ class QuestionWidgets:
             self.keep(typed[0])
 
     def show(self) -> None:
-        """Show the answer that is kept, and what is said to it; a text that is being typed is left alone."""
+        """Show the stored answer and its check; a text that is being typed is left alone."""
         verdict = self.workbook.verdict(self.task, self.question)
         locked = self.question.key == PREDICTION and self.workbook.is_shown(self.task)
         if self.field.disabled != locked:
@@ -210,7 +210,7 @@ class Guide:
         self.stale = True
 
     async def on_picture(self, event: ViserEvent) -> None:
-        """Take a picture of what this browser shows, for the report."""
+        """Take a picture of this browser's view for the report."""
         if event.client is None or not self.busy.acquire(blocking=False):
             return
         self.picture_said = "The picture is being taken …"
@@ -250,7 +250,7 @@ class Guide:
     # ----- what is shown
 
     def update(self, snapshot: AnySnapshot, refresh: bool) -> None:
-        """Show what has changed. Called on the viewer's thread.
+        """Show changes. Called on the viewer's thread.
 
         refresh: show the live values of this snapshot, as the panel shows its readout: both say the same.
         """
@@ -273,7 +273,7 @@ class Guide:
             self.show_values(task)
 
     def is_set_up_here(self, task: Task) -> bool:
-        """Whether a task belongs to the open scene."""
+        """True if a task belongs to the open scene."""
         return self.workbook.set_up_of(task).scene == self.kind.name
 
     def show_task(self, task: Task) -> None:
@@ -307,7 +307,7 @@ class Guide:
             widgets.show()
 
     def statement(self, task: Task) -> Html:
-        """What the task asks, and where to look."""
+        """The task's question, and where to look."""
         setup = self.workbook.set_up_of(task)
         asked = task.guide.question if task.guide is not None else task.title
         more = Html()
@@ -326,7 +326,7 @@ class Guide:
         return fill('<div class="springtide-now">Now: {}</div>', join(rows, " · ")) if rows else Html()
 
     def steps(self, task: Task) -> Html:
-        """What is to be done, ticked off where it was seen."""
+        """The steps of the task, ticked off once seen."""
         if self.workbook.folder is None:
             return Html()
         done = self.workbook.done(task)
@@ -341,13 +341,13 @@ class Guide:
         )
 
     def said(self) -> Html:
-        """What was not possible, and why."""
+        """The failed action and its cause."""
         error = self.refusal or self.unwritten or self.workbook.answers.error
         said = fill('<div class="springtide-refusal" role="alert">{}</div>', error) if error else Html()
         return join((said, faint(self.picture_said))) if self.picture_said else said
 
     def answer_text(self, task: Task) -> Html:
-        """The law, and the answer with the values of now; what is missing where the scene is set up otherwise."""
+        """The law, and the answer with the present values, or the settings that the scene lacks."""
         guide = task.guide
         if guide is None:
             return Html()
@@ -364,5 +364,5 @@ class Guide:
 
 
 def title_of(task: Task) -> str:
-    """What the list of tasks calls one."""
+    """Name of a task in the list."""
     return f"{task.item} {task.title}{' (optional)' if task.optional else ''}"

@@ -1,4 +1,4 @@
-"""What was set before: the settings that undo brings back."""
+"""Earlier settings, which undo brings back."""
 
 import collections
 import time
@@ -25,7 +25,7 @@ class History:
         self.last = "", 0.0  # what was changed last, and when [s]
 
     def note(self, before: Settings, what: str) -> None:
-        """Keep what was set before a change. what: the parameter or the preset."""
+        """Keep the settings before a change. what: the parameter or the preset."""
         name, at = self.last
         now = time.monotonic()
         if name != what or now - at > SAME_CHANGE:
@@ -33,6 +33,6 @@ class History:
         self.last = what, now
 
     def take_last(self) -> Settings | None:
-        """What was set before the last change that is still kept; None where there is none."""
+        """Settings before the last change that is still kept; None if there is none."""
         self.last = "", 0.0
         return self.settings.pop() if self.settings else None

@@ -171,7 +171,7 @@ class Panel:
         return self.state[0]
 
     def reader(self, name: str) -> Callable[[], Value]:
-        """What reads one parameter as set now."""
+        """A function that reads the present value of one parameter."""
         return lambda: getattr(self.params, name)
 
     def add_chooser(self, scenes: tuple[str, ...]) -> None:
@@ -239,13 +239,13 @@ class Panel:
             self.load(event.target.value)
 
     def params_of(self, preset: str) -> BaseParams:
-        """The parameters that a preset sets. What is no parameter (a hull from a file) stays as it is."""
+        """The parameters of a preset. The hull from a file, which is not a parameter, stays."""
         own = self.own.get(preset)
         params = own.params if own else check_record(type(self.params), self.kind.presets[preset])
         return with_fields_of(self.params, params)
 
     def comparable_names(self) -> tuple[str, ...]:
-        """Of what can be shown beside what is set: presets, and the user's own set-ups."""
+        """Names of set-ups for a comparison: presets, and the user's own set-ups."""
         return (*self.kind.presets, *self.own)
 
     def comparable(self, name: str) -> Setup:
@@ -257,7 +257,7 @@ class Panel:
         self.load_params(self.params_of(preset), preset)
 
     def set_up(self, setup: task.Setup) -> None:
-        """Show what a task of the lab needs. Raises ValueError where there is no such scene, preset or parameter."""
+        """Show the set-up of a task. Raises ValueError if there is no such scene, preset or parameter."""
         _, params, preset = params_of_setup(setup)
         if setup.scene == self.kind.name:
             self.load_params(with_fields_of(self.params, params), preset)
@@ -338,7 +338,7 @@ class Panel:
             self.preset.value = shown
 
     async def on_button(self, event: ViserEvent) -> None:
-        """Play or pause, step, reset: what the button said when it was pressed."""
+        """Play or pause, step, reset: the action on the label of the pressed button."""
         self.post(BUTTONS[event.target.value])
 
     async def on_tool(self, event: ViserEvent) -> None:
@@ -364,7 +364,7 @@ class Panel:
             control.set(on)
 
     def update(self, snapshot: AnySnapshot, rows: list[PlotRow], busy: float = 0.0) -> None:
-        """Show what the loop is doing, at a few hertz, and at once where it starts, stops or halts.
+        """Show the state of the loop at a few hertz, and at once if it starts, stops or halts.
 
         rows: new plot rows. busy: [s] that the present tick has taken.
         """
@@ -421,7 +421,7 @@ class Panel:
             client.add_notification("Paused", text, color="red", auto_close_seconds=10.0)
 
     def close(self) -> None:
-        """Stop what runs for this panel, and keep what is being typed."""
+        """Stop the threads of this panel, and keep unfinished input."""
         if self.guide is not None:
             self.guide.flush()
         if self.map is not None:
@@ -446,13 +446,13 @@ def own_presets(kind: AnyKind) -> dict[str, Setup]:
 
 
 def with_fields_of(old: BaseParams, new: BaseParams) -> BaseParams:
-    """`new`, with what is no parameter (a hull from a file) as in `old`."""
+    """`new`, with the hull from a file, which is not a parameter, as in `old`."""
     kept = {f.name: getattr(old, f.name) for f in dataclasses.fields(old) if "parameter" not in f.metadata}
     return dataclasses.replace(new, **kept)
 
 
 def button_names(running: bool) -> tuple[str, str, str]:
-    """What the buttons say: the first says what it will do."""
+    """Labels of the buttons: the first names its next action."""
     return "Pause" if running else "Play", "Step", "Reset"
 
 

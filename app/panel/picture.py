@@ -1,4 +1,4 @@
-"""Pictures of what one browser shows: the browser draws the view once more."""
+"""Pictures of one browser's view, drawn by it once more."""
 
 import io
 

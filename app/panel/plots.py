@@ -59,7 +59,7 @@ class Scale(NamedTuple):
         return tuple(word.replace("-", "\N{MINUS SIGN}") for word in words)
 
     def fits(self, low: float, high: float) -> bool:
-        """Whether data from low to high lie within, and fill enough of it."""
+        """True if data from low to high lie within, and fill enough of it."""
         return self.low <= low and high <= self.high and high - low >= MIN_FILLED * (self.high - self.low)
 
 
@@ -110,7 +110,7 @@ class Plots:
         return self.kept[-1][0] if self.kept else max(map(float, ends), default=None)
 
     def update(self, snapshot: AnySnapshot, rows: list[PlotRow], moment: float | None = None) -> None:
-        """Take new rows and, at a few hertz, send what is open. moment: time [s] that is to be seen; None: the last."""
+        """Take new rows and, at a few hertz, send open charts. moment: time to show [s]; None: the last."""
         for row in rows:
             if row[0] != row[0]:  # a NaN time: the run starts over
                 self.rows.clear()
@@ -217,7 +217,7 @@ class Plots:
         self.drawn += 1
 
     def is_logarithmic(self, name: str) -> bool:
-        """Whether a chart has a logarithmic scale, from end to end of its ticks."""
+        """True if a chart has a logarithmic scale, from end to end of its ticks."""
         return name in self.kind.curves and bool(self.kind.curves[name].ticks)
 
     def scale_for(self, name: str, columns: Sequence[NDArray[np.floating]]) -> Scale:
@@ -302,7 +302,7 @@ def axes_of(ticks: tuple[float, ...], words: tuple[str, ...], width: float | Non
 
 
 def series_of(first: str, lines: Sequence[Line]) -> tuple[uplot.Series, ...]:
-    """What viser calls a chart's columns: the first, which the others stand over, then a line each."""
+    """viser's names of a chart's columns: the abscissa, then a line each."""
     series = [uplot.Series(label=first)]
     for line in lines:
         look = uplot.Series(label=line.label, stroke=line.colour, width=line.width)

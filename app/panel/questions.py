@@ -1,4 +1,4 @@
-"""What all visitors are asked: whether a link or a file of one browser may change the lab for all.
+"""Questions to all visitors: may a link or a file of one browser change the lab for all?
 
 A question waits until a visitor answers it or the browsers that ask it have left, also while scenes change. Browsers
 that ask the same share one question. What waits changes on viser's event loop only, and is replaced as a whole; the
@@ -29,7 +29,7 @@ class Asker(NamedTuple):
 
 
 class Question(NamedTuple):
-    """Whether something may be shown to all."""
+    """True if something may be shown to all."""
 
     number: int
     subject: Subject
@@ -63,7 +63,7 @@ class Questions:
         server.on_client_disconnect(self.on_leave)
 
     def ask(self, subject: Subject, asker: Asker) -> None:
-        """Ask for a browser, in place of what it asked before."""
+        """Ask for a browser, in place of its earlier question."""
         self.forget(asker.client)
         same = next((question for question in self.waiting if question.subject == subject), None)
         if same is None:
@@ -74,7 +74,7 @@ class Questions:
             self.waiting = tuple(joined if question is same else question for question in self.waiting)
 
     def forget(self, client: int) -> None:
-        """Drop what a browser asks."""
+        """Drop the question of a browser."""
         left = [q._replace(askers=tuple(a for a in q.askers if a.client != client)) for q in self.waiting]
         self.waiting = tuple(question for question in left if question.askers)
 
@@ -90,7 +90,7 @@ class Questions:
 
 
 class Ballot:
-    """The questions as one panel shows them, each with its own buttons: a vote counts for what its visitor has read."""
+    """The questions as one panel shows them, each with its own buttons: a vote counts for the question above it."""
 
     def __init__(
         self,
@@ -105,7 +105,7 @@ class Ballot:
         self.drawn: dict[int, tuple[viser.GuiHtmlHandle, viser.GuiButtonGroupHandle]] = {}  # question -> its handles
 
     def draw(self) -> None:
-        """Show what waits now; on the viewer's thread."""
+        """Show the open questions; on the viewer's thread."""
         waiting = self.questions.waiting
         if not waiting and not self.drawn:
             return

@@ -61,7 +61,7 @@ class Memory:
         self.holders: dict[int, int] = {}  # identity of an array -> number of frames that hold it
 
     def add(self, arrays: Mapping[int, int]) -> None:
-        """Count what one more frame holds."""
+        """Count the memory of one more frame."""
         for owner, size in arrays.items():
             count = self.holders.get(owner, 0)
             self.holders[owner] = count + 1
@@ -69,7 +69,7 @@ class Memory:
                 self.bytes += size
 
     def remove(self, arrays: Mapping[int, int]) -> None:
-        """Count what a frame held that is given up."""
+        """Subtract the memory of a frame that is dropped."""
         for owner, size in arrays.items():
             self.holders[owner] -= 1
             if self.holders[owner] == 0:
@@ -103,7 +103,7 @@ class Recorder:
         self.played = 0.0  # [s] of wall time since the frame at `position` was shown
 
     def follow(self, snapshot: AnySnapshot) -> None:
-        """Notice from a snapshot that the lab goes on, began again, or went back: it decides what is shown."""
+        """Follow the lab by a snapshot: it goes on, began again or went back, which decides the shown frame."""
         with self.lock:
             status = snapshot.status
             if status.running and not self.was_running:  # the lab goes on: the present is shown
@@ -116,7 +116,7 @@ class Recorder:
                 self.forget(self.frames.pop())  # the run has gone on from an earlier moment
 
     def note(self, snapshot: AnySnapshot, wall: float) -> None:
-        """Record a snapshot of a running scene; best once it is drawn, as what was sent need not be packed again.
+        """Record a snapshot of a running scene; best once it is drawn, as its packed form can be kept.
 
         wall: [s] of the clock.
         """
@@ -214,7 +214,7 @@ class Recorder:
             self.playing, self.played = True, 0.0
 
     def show_present(self) -> None:
-        """Show what the scene does now."""
+        """Go back to live."""
         with self.lock:
             self.position, self.playing = None, False
 

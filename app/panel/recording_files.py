@@ -1,4 +1,4 @@
-"""Files of what was recorded: arrays with units, and plots as CSV and SVG."""
+"""Files of a recording: arrays with units, and plots as CSV and SVG."""
 
 import csv
 import io
@@ -66,19 +66,19 @@ def recording_npz(kind: AnyKind, frames: Sequence[Kept]) -> bytes:
 
 
 class Plotted(NamedTuple):
-    """What the plots of a scene have: rows over time, and the charts that the scene makes whole, by their parameter."""
+    """Data of a scene's plots: rows over time, and the charts that the scene makes whole, by their parameter."""
 
     rows: Sequence[PlotRow]
     curves: Mapping[str, Chart | Columns]
 
     def between(self, start: float, end: float) -> "Plotted":
-        """What is over time, from `start` to `end` [s]; other charts as they are."""
+        """The charts over time from `start` to `end` [s]; other charts unchanged."""
         curves = {name: within(chart, start, end) for name, chart in self.curves.items()}
         return Plotted([row for row in self.rows if start <= row[0] <= end], curves)
 
 
 def within(chart: Chart | Columns, start: float, end: float) -> Chart | Columns:
-    """The part of a chart over time from `start` to `end` [s]; any other chart as it is."""
+    """The part of a chart over time from `start` to `end` [s]; any other chart unchanged."""
     if not isinstance(chart, Chart) or chart.first != TIME:
         return chart
     shown = (chart.columns[0] >= start) & (chart.columns[0] <= end)

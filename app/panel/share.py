@@ -1,4 +1,4 @@
-"""The folder "Record and share": the timeline, links, set-ups, and files of what was recorded.
+"""The folder "Record and share": the timeline, links, set-ups and files.
 
 Callbacks run on viser's event loop; `update` runs on the viewer's thread.
 """
@@ -102,7 +102,7 @@ class Share:
             self.show(subject, client.client_id)
 
     def read(self, text: str) -> Subject:
-        """What a page has sent. Raises ValueError for what is not allowed."""
+        """Content of a page's message. Raises ValueError if it is not allowed."""
         if not text.startswith(COMPARE):
             return read_query(text) if text.startswith("?") else read_file(text)
         name = text.removeprefix(COMPARE)
@@ -156,7 +156,7 @@ class Share:
             self.say(fill("Kept: the curves up to t = {:.2f} s. They are dashed.", end))
 
     async def on_own(self, event: ViserEvent) -> None:
-        """Keep what is set in the list of presets under its name, or remove what has that name."""
+        """Keep the present set-up in the list of presets under its name, or remove the one of that name."""
         client, panel, name = event.client, self.panel, self.name.value.strip()
         if client is None:
             return

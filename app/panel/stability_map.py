@@ -39,7 +39,7 @@ PICTURE = (300.0, 210.0)
 
 
 class Axes(NamedTuple):
-    """What a map was asked for."""
+    """Request for a map."""
 
     params: SpringParams
     parameter: str  # of the stiffness
@@ -47,7 +47,7 @@ class Axes(NamedTuple):
     stiffnesses: NDArray[np.float64]  # (ROWS,) in the parameter's unit
 
     def is_of(self, params: SpringParams) -> bool:
-        """Whether nothing but step and stiffness has changed since."""
+        """True if nothing but step and stiffness has changed since."""
         moved = {"time_step": params.time_step, self.parameter: getattr(params, self.parameter)}
         return shown(dataclasses.replace(self.params, **moved)) == shown(params)
 
@@ -66,7 +66,7 @@ def shown(params: SpringParams) -> tuple[object, ...]:
 
 
 def span(parameter: Parameter, value: float, count: int) -> NDArray[np.float64]:
-    """Values (count,) about `value`, evenly in their logarithms, within what the parameter allows."""
+    """Values (count,) about `value`, even in their logarithms, within the parameter's range."""
     low = max(value / 10.0**DECADES, parameter.log_from)
     high = max(min(value * 10.0**DECADES, parameter.high), 1.01 * low)
     return low * (high / low) ** np.linspace(0.0, 1.0, count)
@@ -91,7 +91,7 @@ def method_of(params: SpringParams, net: Net) -> Integrator:
 
 
 def measure_row(scene: StabilityMap, axes: Axes, stiffness: float) -> Row:
-    """What becomes of the scene's net at rest at each step of the map."""
+    """Growth of the scene's network at rest at each step of the map."""
     params = dataclasses.replace(axes.params, **{axes.parameter: stiffness})
     net = scene.build(params)
     record = method_of(params, net)
@@ -134,7 +134,7 @@ class StabilityMapPanel:
                 self.go(event.target.value)
 
     def ask(self) -> None:
-        """Measure again, in place of what is being measured."""
+        """Measure again, in place of the running measurement."""
         self.asked += 1
         threading.Thread(target=self.measure, args=(self.asked,), name="stability map", daemon=True).start()
 
@@ -143,7 +143,7 @@ class StabilityMapPanel:
         self.asked += 1
 
     def measure(self, number: int) -> None:
-        """Measure row by row, in a thread of its own; the panel draws what is there."""
+        """Measure row by row, in a separate thread; the panel draws the finished rows."""
         params = self.read()
         try:
             net = self.scene.build(params)
@@ -182,7 +182,7 @@ class StabilityMapPanel:
 
 
 def place_of(values: NDArray[np.float64], value: float) -> float:
-    """Where a value lies between the first and the last, 0 to 1, by logarithms."""
+    """Place of a value between the first and the last, 0 to 1, by logarithms."""
     return math.log(max(value, 1e-300) / values[0]) / math.log(values[-1] / values[0])
 
 
@@ -220,7 +220,7 @@ def axis(values: NDArray[np.float64], name: str, *, across: bool) -> str:
 
 
 def picture(axes: Axes, rows: list[Row], params: SpringParams, slider: str) -> str:
-    """The map as HTML. slider: the uuid of what a click moves."""
+    """The map as HTML. slider: the uuid of the slider that a click moves."""
     colours = list(OUTCOME_COLOURS.values())
     height, width = HIGH / (ROWS - 1), WIDE / (COLS - 1)
     parts: list[str] = []

@@ -27,12 +27,12 @@ MOMENT = '<b data-springtide-moment="{}">Shown: t = {:.2f} s of the recording.</
 
 
 class Timeline:
-    """The controls that show what was recorded, in the folder that is open where this is made."""
+    """The controls of the recording, in the folder that is open here."""
 
     def __init__(
         self, panel: "Panel", moment: viser.GuiHtmlHandle, wake: Callable[[], None], say: Callable[[object], None]
     ) -> None:
-        """moment: the line that tells what is shown. wake: makes the viewer's thread look at the recorder.
+        """moment: the line with the shown time. wake: makes the viewer's thread look at the recorder.
 
         say: shows a line.
         """
@@ -55,7 +55,7 @@ class Timeline:
         self.state = gui.add_html("")
 
     async def on_time(self, event: ViserEvent) -> None:
-        """A browser has moved along the timeline: the lab pauses, and shows what was."""
+        """A browser has moved along the timeline: the lab pauses and shows that moment."""
         if event.client_id is not None:
             self.moved_at = time.monotonic()
             self.panel.post(Pause())
@@ -92,7 +92,7 @@ class Timeline:
         self.recorder.rate = float(str(event.target.value).removeprefix("×"))
 
     async def on_loop(self, event: ViserEvent) -> None:
-        """Whether playing begins again at its end."""
+        """True if playing begins again at its end."""
         self.recorder.loops = bool(event.target.value)
 
     def update(self) -> None:

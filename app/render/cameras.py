@@ -24,7 +24,7 @@ Camera = viser.CameraHandle | viser.InitialCameraConfig
 
 
 class ClientCamera(NamedTuple):
-    """Where the camera of one browser is to be."""
+    """Place of the camera of one browser."""
 
     client: int
     position: Vector  # [m]
@@ -108,12 +108,12 @@ def place_of(camera: viser.CameraHandle) -> NDArray[np.float64]:
 
 
 def is_waiting(camera: viser.CameraHandle) -> bool:
-    """Whether the page of a camera that was placed has not reported that it is there."""
+    """True if the page of a camera that was placed has not reported that it is there."""
     return camera in _wanted
 
 
 def has_taken(wanted: NDArray[np.float64], reported: NDArray[np.float64]) -> bool:
-    """Whether a page that reports a place (2, 3) [m] has taken the wanted one; its user may be turning it already."""
+    """True if a page that reports a place (2, 3) [m] has taken the wanted one; its user may be turning it already."""
     off = reported - wanted
     # The page lifts a camera that would be under the floor or the water (js/camera.js).
     if np.abs(off[:, :2]).max() <= SAME_PLACE and off[:, 2].min() >= -SAME_PLACE:

@@ -73,7 +73,7 @@ class ColouredMesh:
         self.mesh.remove()
 
     def _fill(self, vertices: np.ndarray | None, colors: np.ndarray | None) -> None:
-        """Keep what is given."""
+        """Keep the arguments."""
         if colors is not None and np.shape(colors) != (self._fields.shape[1], 3):
             raise argument_error("colors", np.shape(colors), f"shape ({self._fields.shape[1]}, 3)")
         if vertices is not None:

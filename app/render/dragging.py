@@ -1,4 +1,4 @@
-"""Dragging with the mouse: what it tells the simulation, and the line from what is held to the mouse."""
+"""Dragging with the mouse: commands to the simulation, and the line from the held point to the mouse."""
 
 from collections.abc import Callable
 from typing import Any
@@ -12,7 +12,7 @@ HELD_COLOUR = (255, 90, 60)
 
 
 def drag(post: Callable[[Command], None], event: Any, index: int | None) -> None:
-    """Post what viser's drag event asks for: its browser pulls thing `index` to where the mouse is, or lets go."""
+    """Post the command of viser's drag event: its browser pulls thing `index` to the mouse, or lets go."""
     target = finite_vector(event.end_position)
     if event.phase == "end" or target is None or index is None:
         post(Release(event.client_id))
@@ -28,7 +28,7 @@ class SurfaceDrag:
         self.held: dict[int, int] = {}  # client -> point
 
     def handle(self, event: Any, points: np.ndarray) -> None:
-        """Post what viser's drag event asks for. points: (n, 3) as drawn [m]."""
+        """Post the command of viser's drag event. points: (n, 3) as drawn [m]."""
         if event.phase == "start":
             self.held[event.client_id] = int(np.argmin(np.linalg.norm(points - event.start_position, axis=1)))
         drag(self.post, event, self.held.get(event.client_id))

@@ -31,7 +31,7 @@ class FollowedView:
         self.next_place = (self.next_place + 1) % MAX_PLACES
 
     def is_own(self, place: NDArray[np.float64]) -> bool:
-        """Whether a reported place is one of those remembered.
+        """True if a reported place is one of those remembered.
 
         Camera and target arrive one after the other, so that a page may report a new one with an old one: each is
         compared by itself.

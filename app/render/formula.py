@@ -46,7 +46,7 @@ def row(tokens: list[re.Match[str]], at: int, *, closed: bool) -> Parsed:
 
 
 def scripted(tokens: list[re.Match[str]], at: int) -> Parsed:
-    """An item with what stands below and above it."""
+    """An item with its subscript and superscript."""
     base = item(tokens, at)
     scripts: dict[str, Html] = {}
     at = base.at

@@ -50,7 +50,7 @@ def fields_of(template: str) -> tuple[Field, ...]:
 
 
 def fill(template: LiteralString, *values: object, **named: object) -> Html:
-    """The HTML `template` with its fields filled in; see `Html` for what is escaped.
+    """The HTML `template` with its fields filled in; `Html` says how values are escaped.
 
     A field is `{}`, `{0}`, `{name:.3g}` or `{name.attribute}`, as in `str.format`; a format is a literal.
     """

@@ -113,7 +113,7 @@ def disable_shaders(server: viser.ViserServer) -> None:
 
 
 def record_shaders(server: viser.ViserServer) -> None:
-    """Leave out what only browsers without shaders need: this server's messages are recorded, with the script."""
+    """Leave out vertices for browsers without shaders: this server's messages are recorded, with the script."""
     injector = injector_of(server)
     assert injector is not None
     injector.is_recorded = True

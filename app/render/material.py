@@ -122,7 +122,7 @@ class Material:
     cutout: Cutout | None = None
 
     def seen_color(self, thickness: float) -> RGB:
-        """Colour of what comes back from below through so much oil [m], where one colour is all that is drawn."""
+        """Colour of the light from below through this much oil [m], for drawings in one colour."""
         if self.oil is None:
             return self.deep_color
         through = light_through(thickness)

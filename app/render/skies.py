@@ -1,4 +1,4 @@
-"""The skies: viser's environment maps, and what is known of each, so that sun, land and haze fit the water."""
+"""The skies: viser's environment maps, and the sun, land and haze of each, so that they fit the water."""
 
 import math
 from dataclasses import dataclass

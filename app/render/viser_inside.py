@@ -35,7 +35,7 @@ def lose(what: str, reason: str) -> None:
 
 
 def attempt(use: Callable[[], T], otherwise: T, loss: str) -> T:
-    """Return what `use` returns, or `otherwise` if viser lacks a name that it uses."""
+    """Return the result of `use`, or `otherwise` if viser lacks a name that it uses."""
     try:
         return use()
     except (AttributeError, ImportError) as error:
@@ -121,7 +121,7 @@ def set_arrays(node: Any, **arrays: np.ndarray) -> None:
 
 
 def change_buffers(recording: Any, change: Callable[[Any], Any]) -> None:
-    """Replace each binary buffer of viser's recording by what `change` makes of it."""
+    """Replace each binary buffer of viser's recording by the result of `change`."""
 
     def replace() -> None:
         recording._binary_buffers = [change(buffer) for buffer in recording._binary_buffers]
@@ -148,7 +148,7 @@ def forget_client(server: viser.ViserServer, client: int) -> None:
 def intercept(
     server: viser.ViserServer, join: Callable[[int, list[Handler]], Taker], leave: Callable[[int], None]
 ) -> bool:
-    """Pass the messages of each browser through what `join` returns for it. False if that is not possible.
+    """Pass the messages of each browser through the function that `join` returns. False if that is not possible.
 
     join: called with a browser's id and viser's handlers of its messages. leave: called when the browser has gone.
     """

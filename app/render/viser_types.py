@@ -1,4 +1,4 @@
-"""The edges at which viser's own types do not say what is handed over."""
+"""Values that viser's own types leave open."""
 
 from typing import Any, TypeAlias
 

@@ -136,7 +136,7 @@ class Water:
             set_arrays(self._material_mesh, vertices=self._uniforms)
 
     def set_waterlines(self, waterlines: Sequence[Waterline]) -> None:
-        """What stands in the water from the next frame on; browsers without the shader do not draw it."""
+        """Set the bodies in the water from the next frame on; only the shader draws their waterlines."""
         if self._injector is not None:
             set_arrays(self._waterline_mesh, vertices=waterline_table(waterlines))
 
@@ -179,7 +179,7 @@ class Water:
         return uniform_table(self._material, self._sea_state, (rows, cols, self._length), self._tiles)
 
     def _draw_plain(self, points: np.ndarray) -> None:
-        """Draw what viser's public API alone can of foam, slick, grid and far sea, where a browser has no shader.
+        """Draw foam, slick, grid and far sea by viser's public API, for browsers without the shader.
 
         points: (n, 3) [m], all vertices.
         """

@@ -1,4 +1,4 @@
-"""The scenes: one folder each, found by being here, imported on first use. `contract.py` says what one has to offer."""
+"""The scenes: one folder each, found by being here, imported on first use. `contract.py` is their contract."""
 
 import importlib
 import pkgutil

@@ -1,4 +1,4 @@
-"""What a chart shows: of the plot rows over time, or of columns that a scene makes whole."""
+"""Contents of a chart: columns of the plot rows over time, or columns that a scene makes whole."""
 
 from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias

@@ -1,4 +1,4 @@
-"""Set-ups side by side: those that are ready, what two of them share, and what tells them apart in words."""
+"""Set-ups side by side: the ready ones, the parameters that two have in common, and their differences in words."""
 
 import dataclasses
 from collections.abc import Sequence
@@ -65,7 +65,7 @@ def check_count(setups: Sequence[object]) -> None:
 
 
 def read_comparison(words: Sequence[str]) -> tuple[Setup, ...]:
-    """Set-ups as `read_setup` reads them, or the name of a comparison. Raises ValueError for what is not allowed."""
+    """Set-ups as `read_setup` reads them, or the name of a comparison. Raises ValueError if one is not allowed."""
     if len(words) == 1 and words[0] in COMPARISONS:
         return comparison_named(words[0])
     setups = tuple(read_setup(word) for word in words)
@@ -77,7 +77,7 @@ def read_comparison(words: Sequence[str]) -> tuple[Setup, ...]:
 
 
 def shared_parameters(a: BaseParams, b: BaseParams) -> dict[str, Parameter]:
-    """What is the same in all panes, of what two records both declare: sky, sun and light, and the clock's speed."""
+    """Parameters that two records have in common and that are equal in all panes: sky, sun, light, speed."""
     ours, theirs = parameters_of(a), parameters_of(b)
     return {
         name: parameter
@@ -89,7 +89,7 @@ def shared_parameters(a: BaseParams, b: BaseParams) -> dict[str, Parameter]:
 
 
 def with_shared(params: BaseParams, of: BaseParams) -> BaseParams:
-    """Parameters with what they share with another record as it is there, within their own ranges."""
+    """Parameters with the common ones taken from another record, within their own ranges."""
     values: dict[str, Any] = {
         name: clamp_value(parameter, getattr(of, name)) for name, parameter in shared_parameters(of, params).items()
     }
@@ -106,12 +106,12 @@ def written(parameter: Parameter, value: Value) -> str:
 
 
 def same_meaning(parameter: Parameter, other: Parameter | None) -> bool:
-    """Whether two scenes mean the same by a parameter: "size" is that of a body in one and of a grid in another."""
+    """True if a parameter has one meaning in two scenes: "size" is that of a body in one and of a grid in another."""
     return other is not None and (parameter.doc, parameter.unit) == (other.doc, other.unit)
 
 
 def differences(panes: Sequence[tuple[AnyKind, BaseParams]]) -> list[list[str]]:
-    """For each pane, what tells it apart: "Gravity 9.81 m/s²". What means nothing in a pane is left out there."""
+    """Distinguishing values of each pane: "Gravity 9.81 m/s²", without parameters that have no effect there."""
     records = [params for _, params in panes]
     hidden = [kind.hidden(params) for kind, params in panes]
     first = parameters_of(records[0])
@@ -135,7 +135,7 @@ def differences(panes: Sequence[tuple[AnyKind, BaseParams]]) -> list[list[str]]:
 
 
 def headings(panes: Sequence[tuple[AnyKind, BaseParams]]) -> list[str]:
-    """What stands above each pane: only what differs."""
+    """Title of each pane: its differences."""
     found: list[str] = []
     for (kind, _), words in zip(panes, differences(panes), strict=True):
         more = f" · and {len(words) - MAX_NAMED} more" if len(words) > MAX_NAMED else ""
@@ -144,6 +144,6 @@ def headings(panes: Sequence[tuple[AnyKind, BaseParams]]) -> list[str]:
 
 
 def middle_of(name: str, params: BaseParams) -> tuple[float, float]:
-    """Where [m] a view of these parameters and one of others have the same in sight."""
+    """Point (x, y) [m] on which side-by-side cameras are aligned."""
     middle = scene_named(name).middle
     return (0.0, 0.0) if middle is None else middle(params)

@@ -16,7 +16,7 @@ NICENESS = 10  # of what nobody waits for
 
 
 def main() -> None:
-    """Compile what is asked for."""
+    """Compile the pieces that are asked for."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the lab, which then closes our input
     if "--ahead" in sys.argv and hasattr(os, "nice"):
         os.nice(NICENESS)

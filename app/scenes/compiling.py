@@ -31,7 +31,7 @@ class Job(NamedTuple):
 
 
 class Compiling:
-    """The queue of what is to be compiled, and the workers that take from it."""
+    """Queue of pieces to compile, and the workers that take from it."""
 
     def __init__(self, workers: int | None = None) -> None:
         """workers: how many processes; by default one for each core, at most MAX_WORKERS."""
@@ -46,7 +46,7 @@ class Compiling:
         self.threads: dict[int, threading.Thread] = {}
 
     def missing(self, name: str, params: BaseParams | None) -> list[Job]:
-        """What has to be compiled before a scene runs with these parameters; None: all that it may ever call.
+        """Pieces to compile before a scene runs with these parameters; None: all that it may ever call.
 
         Empty where nothing can be kept: then each process compiles for itself, when it calls.
         """
@@ -81,12 +81,12 @@ class Compiling:
             return self.changed.wait_for(lambda: self.ended or wanted <= self.settled, timeout)
 
     def progress(self) -> tuple[list[Job], int]:
-        """What is compiled at the moment, and how many more wait."""
+        """The piece that is being compiled, and the number of waiting ones."""
         with self.changed:
             return list(self.running.values()), len(self.urgent) + len(self.rest)
 
     def close(self) -> None:
-        """End the workers; what they were at is lost, and nothing else."""
+        """End the workers; only their running compilations are lost."""
         with self.changed:
             self.ended = True
             self.changed.notify_all()
@@ -132,7 +132,7 @@ class Compiling:
                 print(f"springtide: {job.scene}: {job.piece} could not be compiled ahead: {problem}", file=sys.stderr)
 
     def ask(self, number: int, job: Job) -> str:
-        """Let the worker's process compile a job; returns what went wrong, or ""."""
+        """Let the worker's process compile a job; returns the error, or ""."""
         try:
             process = self.processes.get(number)
             if process is None or process.poll() is not None:
@@ -162,7 +162,7 @@ class Compiling:
 
 
 def start_process(*, ahead: bool) -> "subprocess.Popen[str]":
-    """A process that compiles what it is told. ahead: at low priority."""
+    """A process that compiles the pieces that it reads. ahead: at low priority."""
     path = os.pathsep.join(part for part in (str(ROOT), os.environ.get("PYTHONPATH", "")) if part)
     return subprocess.Popen(
         [sys.executable, "-m", "app.scenes.compile_worker", *(["--ahead"] if ahead else [])],
@@ -175,7 +175,7 @@ def start_process(*, ahead: bool) -> "subprocess.Popen[str]":
 
 
 def describe(jobs: Iterable[Job], waiting: int) -> str:
-    """What is being compiled, in words."""
+    """Description of the running compilation."""
     names = ", ".join(f"{job.scene.replace('_', ' ')}: {job.piece}" for job in jobs)
     more = f", and {waiting} more" if waiting else ""
     return f"Compiling {names}{more}. This is done once." if names else ""

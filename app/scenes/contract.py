@@ -1,4 +1,4 @@
-"""The contract of a scene: what the simulation loop, the viewer, the panel, sweeps and headless runs use.
+"""The contract of a scene with the simulation loop, the viewer, the panel, sweeps and headless runs.
 
 To add a scene, add one folder here, named as the scene is on the command line:
 
@@ -56,7 +56,7 @@ class Scene(Protocol[P, F_co, R_co]):
 
     @property
     def step(self) -> float:
-        """Time step [s]; what `advance` counts in."""
+        """Time step [s], the unit of `advance`."""
         ...
 
     @property
@@ -76,7 +76,7 @@ class Scene(Protocol[P, F_co, R_co]):
 
     @property
     def faster(self) -> str:
-        """What would make it faster, for a sentence of the panel: "fewer points or a larger step"."""
+        """Advice on speed, for a sentence of the panel: "fewer points or a larger step"."""
         ...
 
     def change_forces(self, params: P) -> None:
@@ -88,11 +88,11 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def reset(self) -> None:
-        """Begin again with `params`; what a browser has moved goes back to where a new scene has it."""
+        """Begin again with `params`; objects that a browser has moved go back to their initial places."""
         ...
 
     def handle(self, command: SceneCommand) -> None:
-        """Carry out what a browser asks of the scene; a command that means nothing to it is ignored."""
+        """Carry out a command of a browser; a command without meaning for the scene is ignored."""
         ...
 
     def advance(self, steps: int) -> None:
@@ -104,7 +104,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def frame(self) -> F_co:
-        """What to draw: immutable, arrays float32."""
+        """Frame to draw: immutable, arrays float32."""
         ...
 
     def readings(self) -> R_co:
@@ -124,11 +124,11 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def keep(self) -> object:
-        """All that changes as the scene runs, in copies that nothing changes later (`app/scenes/moments.py`)."""
+        """Checkpoint: independent copies of everything that changes as the scene runs (`app/scenes/moments.py`)."""
         ...
 
     def resume(self, kept: object) -> None:
-        """Go on from what `keep` gave, with `params` as they were then; `kept` can be used again.
+        """Go on from a checkpoint of `keep`, with the `params` of that time; `kept` can be used again.
 
         Nobody holds what was held then.
         """
@@ -164,16 +164,16 @@ class View(Protocol[P, F, R]):
         ...
 
     def set_dark(self, client: "ClientHandle", dark: bool) -> None:
-        """Draw what stands around the scene dark, or light again, for one browser."""
+        """Draw the surroundings of the scene dark, or light again, for one browser."""
         ...
 
     def close(self) -> None:
-        """Give back what removing the scene's nodes does not: callbacks, threads."""
+        """Release callbacks and threads, which outlive the scene's nodes."""
         ...
 
 
 class SpringParams(BaseParams, Protocol):
-    """What the parameters of a scene with a stability map have in addition."""
+    """Additional parameters of a scene with a stability map."""
 
     @property
     def integrator(self) -> str:
@@ -192,7 +192,7 @@ class SpringParams(BaseParams, Protocol):
 
 
 class StabilityMap(NamedTuple):
-    """What the panel's map of step and stiffness needs of a scene; its parameters are `SpringParams`."""
+    """Additional contract for the panel's map of step and stiffness; the parameters are `SpringParams`."""
 
     stiffness: Callable[..., str]  # params -> name of the stiffness parameter in force
     build: Callable[..., "Net"]  # params -> the net that they describe

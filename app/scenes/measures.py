@@ -1,4 +1,4 @@
-"""What a sweep records of a scene that declares no measures of its own: its plot rows."""
+"""Default measures of a sweep for a scene that declares none: its plot rows."""
 
 import math
 from typing import Any

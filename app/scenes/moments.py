@@ -1,4 +1,4 @@
-"""Copies of what changes as a scene runs, from which it can go on later.
+"""Checkpoints: copies of the state of a scene, from which it can go on later.
 
 `copy.deepcopy` makes them. Classes of `sim` that hold much that never changes in place share it with their copies.
 """
@@ -11,7 +11,7 @@ import numpy as np
 
 
 def copied(values: Mapping[str, Any], *shared: object) -> dict[str, Any]:
-    """Deep copies of these values, which keep what they have in common. shared: objects that nothing changes."""
+    """Deep copies of these values, which keep their common parts. shared: objects that nothing changes."""
     return copy.deepcopy(dict(values), {id(one): one for one in shared})
 
 

@@ -19,7 +19,7 @@ FILE_NAME = re.compile(r"[^a-z0-9]+")  # what is replaced in a name
 
 
 def folder_of(kind: AnyKind) -> Path:
-    """Where the set-ups of a scene are."""
+    """Folder of the set-ups of a scene."""
     base = os.environ.get("SPRINGTIDE_DATA") or platformdirs.user_data_dir("springtide")
     return Path(base) / "set-ups" / kind.name
 

@@ -11,8 +11,7 @@ MAX_SENT_STEP = 2e-3  # [m] up to which a recording keeps what browsers were sen
 
 
 class SentSurface:
-    """What browsers were sent of the surface of a frame: set by the view that draws it, read by the recording, both on
-    the viewer's thread."""
+    """Packed surface of a frame as sent: set by the view, read by the recording, both on the viewer's thread."""
 
     numbers: NDArray[np.float32] | None = None  # as `app/formats/packing.py` packs; None where it was not sent packed
 
@@ -45,7 +44,7 @@ def pack_surface(
 def unpack_surface(
     numbers: NDArray[np.float32], rest: NDArray[np.float32], shape: tuple[int, ...]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-    """(vertices, slopes, foam) of what `pack_surface` made; shape: of the foam."""
+    """(vertices, slopes, foam) of a surface packed by `pack_surface`; shape: of the foam."""
     fields, columns = unpack(numbers), int(numbers.reshape(-1)[1])
     if fields.shape[1] > rest.shape[1]:  # the row and the column that close a tile
         fields = fields.reshape(len(fields), -1, columns)[:, :-1, :-1].reshape(len(fields), -1)

@@ -34,7 +34,7 @@ class PlotRows:
         self.number = -1
 
     def is_due(self, t: float) -> bool:
-        """Whether a row is due at time t [s]."""
+        """True if a row is due at time t [s]."""
         return row_number(t, self.interval) > self.number
 
     def add(self, t: float, *values: float) -> None:

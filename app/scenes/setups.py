@@ -1,4 +1,4 @@
-"""Set-ups: what a scene is set to, as the query of an address and as a file. Both are read here, and by nothing else.
+"""Set-ups: the parameters of a scene as the query of an address and as a file. Only this file reads both.
 
 The address `/?scene=rope&preset=...&stiffness=2000` and the file
 
@@ -56,7 +56,7 @@ Camera = tuple[Vector, Vector]  # position and target [m]
 
 
 class Setup(NamedTuple):
-    """What a scene is set to."""
+    """A scene's parameters."""
 
     scene: str
     params: BaseParams  # the scene's own record
@@ -122,7 +122,7 @@ def write_query(kind: AnyKind, params: BaseParams, preset: str = "", camera: Cam
 
 
 def read_query(query: str) -> Setup:
-    """The set-up that a query says, with or without its "?". Raises ValueError for what is not allowed."""
+    """The set-up of a query, with or without its "?". Raises ValueError if it is not allowed."""
     check_length("address", query)
     pairs = parse_qsl(query.removeprefix("?"), keep_blank_values=True)
     given = dict(pairs)
@@ -175,7 +175,7 @@ def camera_number(text: str, camera: str) -> float:
 
 
 def camera_error(camera: object) -> ValueError:
-    """The error for what is no camera."""
+    """The error for an invalid camera."""
     allowed = f"six numbers, position and target, at most {MAX_CAMERA_DISTANCE:g} m from the origin and not the same"
     return argument_error("camera", camera, allowed)
 

@@ -5,7 +5,7 @@ from typing import Protocol
 
 
 class Running(Protocol):
-    """What has a time [s], and a step [s]."""
+    """Protocol with a time [s] and a step [s]."""
 
     @property
     def time(self) -> float: ...

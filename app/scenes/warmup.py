@@ -1,4 +1,4 @@
-"""What is compiled ahead: the pieces of each scene, and a file that stands for each piece that has been compiled."""
+"""Compiling ahead: the pieces of each scene, and a marker file for each compiled piece."""
 
 import contextlib
 import functools
@@ -30,7 +30,7 @@ def mark_of(name: str, piece: str, *, drawn: bool) -> Path | None:
 
 
 def is_marked(name: str, piece: str, *, drawn: bool) -> bool:
-    """Whether this version of a piece has been compiled before."""
+    """True if this version of a piece has been compiled before."""
     mark = mark_of(name, piece, drawn=drawn)
     return mark is not None and mark.exists()
 
@@ -55,7 +55,7 @@ def all_pieces(name: str) -> tuple[tuple[str, bool], ...]:
 
 
 def missing(name: str, params: BaseParams | None = None) -> tuple[tuple[str, bool], ...]:
-    """What is still to be compiled of `all_pieces`. params: of what runs with these parameters; None: of everything."""
+    """Pieces of `all_pieces` still to be compiled. params: only those that run with these parameters; None: all."""
     if is_marked(name, EVERYTHING, drawn=True):
         return ()
     needs = scene_named(name).needs
@@ -107,7 +107,7 @@ def compile_here(name: str, pieces: Iterable[tuple[str, bool]], show: Callable[[
 
 
 def prepare(name: str, *, drawn: bool = True) -> None:
-    """Compile what a scene may call and has not been compiled before. drawn: and what its drawing calls."""
+    """Compile the kernels of a scene that are not compiled yet. drawn: those of its drawing, too."""
     pieces = all_pieces(name) if drawn else tuple((piece, False) for piece in scene_pieces(name))
     todo = [(piece, of_drawing) for piece, of_drawing in pieces if not is_marked(name, piece, drawn=of_drawing)]
     if todo:

@@ -1,1 +1,1 @@
-"""The server: threads, the simulation loop, the guard of what browsers send."""
+"""The server: threads, the simulation loop, and the guard of browser messages."""

@@ -1,4 +1,4 @@
-"""Who may reach the lab beside a browser of this machine, and at which path. By default nobody, and at no other path.
+"""Access beyond the browsers of this machine, and the path of the lab. By default there is none.
 
 Behind a proxy the page has an address that is not the server's own. What the proxy does has to be said:
 
@@ -46,7 +46,7 @@ def make_key() -> str:
 
 
 def read_base_path(text: str) -> str:
-    """A base path without its last slash; "" for "/". Raises ValueError for what is none."""
+    """A base path without its last slash; "" for "/". Raises ValueError if it is not one."""
     path = text.removesuffix("/")
     if len(text) > MAX_LENGTH or (path and not BASE_PATH.fullmatch(path)):
         allowed = "a path such as /lab or /user/ada/lab, of letters, digits and . _ ~ @ - %"
@@ -55,7 +55,7 @@ def read_base_path(text: str) -> str:
 
 
 def read_origin(text: str) -> str:
-    """An origin as browsers write it. Raises ValueError for what is none."""
+    """An origin as browsers write it. Raises ValueError if it is not one."""
     error = argument_error("--allowed-origin", text[:MAX_LENGTH], "an address such as https://hub.example.org, no path")
     if len(text) > MAX_LENGTH:
         raise error
@@ -100,7 +100,7 @@ def admitted(access: Access, request: Request) -> Request | Response:
 
 
 def is_same(given: str, expected: str) -> bool:
-    """Whether two texts are equal, in a time that does not say how much of them is."""
+    """True if two texts are equal, in a time that does not say how much of them is."""
     return compare_digest(given.encode("utf-8", "replace"), expected.encode())
 
 

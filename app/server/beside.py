@@ -22,7 +22,7 @@ KEEP_TIMEOUT = 5.0  # [s] for the first lab to hand over its state, to go on fro
 
 
 class Comparison:
-    """The labs of a comparison: the first one stays what it was, the others end with the comparison."""
+    """The labs of a comparison: the first one stays unchanged, the others end with the comparison."""
 
     def __init__(self, first: "Viewer", make_pane: Callable[[int], "Viewer"]) -> None:
         """make_pane: makes the lab of a number from 2, with nothing open."""
@@ -96,7 +96,7 @@ class Comparison:
         return min(viewer.visitors() for viewer in self.viewers)
 
     def words(self) -> tuple[PaneWords, ...]:
-        """What the page says above each pane."""
+        """Titles of the panes on the page."""
         viewers = [viewer for viewer in self.viewers if viewer.is_open]
         if len(viewers) < len(self.viewers):
             return tuple(PaneWords("", (0.0, 0.0)) for _ in self.viewers)
@@ -105,7 +105,7 @@ class Comparison:
         return tuple(PaneWords(*pair) for pair in zip(headings(panes), middles, strict=True))
 
     def share(self, source: "Viewer", params: BaseParams) -> None:
-        """Set in the other labs what is the same in all, as it was set in this one."""
+        """Copy the common parameters of this lab to the others."""
         for viewer in self.viewers:
             if viewer is source or not viewer.is_open:
                 continue
@@ -181,7 +181,7 @@ class Comparing:
                 viewer.stop_opening()
 
     def try_to(self, action: Callable[[], None]) -> None:
-        """Do it; say on every page what went wrong."""
+        """Run the action; show its error on every page."""
         try:
             action()
         except Exception as error:

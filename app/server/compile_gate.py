@@ -8,7 +8,7 @@ from app.scenes.contract import AnyKind
 
 
 class CompileGate:
-    """Stands between the panel and the simulation of one scene, which goes on with what it has meanwhile.
+    """Holds back parameters of one scene until their kernels are compiled; the scene goes on with the present ones.
 
     The simulation thread alone calls it and changes it; the viewer thread reads `notice`.
     """
@@ -25,7 +25,7 @@ class CompileGate:
         self.notice = ""  # pending compilation, in words
 
     def is_ready(self, params: BaseParams) -> bool:
-        """Whether all is compiled that these parameters run; if not, it is compiled next."""
+        """True if all is compiled that these parameters run; if not, it is compiled next."""
         if params not in self.jobs:
             self.jobs[params] = self.compiling.missing(self.kind.name, params)
             if self.jobs[params]:

@@ -1,4 +1,4 @@
-"""Who may connect, and what they may say.
+"""Access control: which pages may connect, and which messages pass.
 
 viser checks neither the Origin of a websocket nor any value that arrives on it, so any page in the user's browser could
 drive a loopback server, and any client could set a slider out of its range or open the public share tunnel. Everything
@@ -74,7 +74,7 @@ ALLOWED = (
 
 
 def is_own_origin(origin: str | None, host: str | None, bound: str) -> bool:
-    """Whether a websocket with these headers comes from our own page, on a server bound to address `bound`.
+    """True if a websocket with these headers comes from our own page, on a server bound to address `bound`.
 
     A browser always sends an Origin; programs that send none are not what is defended against. The Host must be a name
     of this machine, as a page of another name that resolves to it (DNS rebinding) has Origin and Host alike.
@@ -104,7 +104,7 @@ def is_loopback(host: str) -> bool:
 
 
 def may_connect(request: Request, bound: str, access: Access) -> bool:
-    """Whether a request, which brought the key where there is one, is from a page that may connect."""
+    """True if a request, which brought the key where there is one, is from a page that may connect."""
     origin = request.headers.get("Origin")
     return bool(access.key) or origin in access.origins or is_own_origin(origin, request.headers.get("Host"), bound)
 
@@ -153,7 +153,7 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list
 
 
 def is_bounded(value: object) -> bool:
-    """Whether every number in a message is finite and of a sane size, and no text is long."""
+    """True if every number in a message is finite and of a sane size, and no text is long."""
     if isinstance(value, bool) or value is None:
         return True
     if isinstance(value, int | float):
@@ -169,12 +169,12 @@ def is_bounded(value: object) -> bool:
 
 
 def is_sequence(value: object) -> TypeGuard[Sequence[object]]:
-    """Whether this is a list or a tuple."""
+    """True if this is a list or a tuple."""
     return isinstance(value, list | tuple)
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Whether this is a finite number, and no bool."""
+    """True if this is a finite number, and no bool."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
@@ -185,7 +185,7 @@ CHOICES = (viser.GuiDropdownHandle, viser.GuiButtonGroupHandle)
 
 
 def allowed_value(handle: GuiHandle, value: object) -> object:
-    """`value` within what a GUI control offers, clamped where it has a range; None where it is no such value."""
+    """`value` within the range or choices of a GUI control; None if it is not a valid value."""
     kind = cast("type[object]", type(handle))
     if issubclass(kind, FLAGS):
         return value if isinstance(value, bool) else None
@@ -213,7 +213,7 @@ def allowed_value(handle: GuiHandle, value: object) -> object:
 
 
 def same(good: object, sent: object) -> bool:
-    """Whether a browser already shows the value that was made of what it sent."""
+    """True if a browser already shows the value that was made of its message."""
     return (is_sequence(good) and is_sequence(sent) and list(good) == list(sent)) or good == sent
 
 
@@ -223,7 +223,7 @@ def kind_of(message: ViserMessage) -> str:
 
 
 class Screen:
-    """Lets through of a browser's messages what is allowed, and counts what is not."""
+    """Filter of a browser's messages: passes the allowed ones and counts the others."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self.server = server
@@ -247,7 +247,7 @@ class Screen:
         return good
 
     def judge_update(self, message: ViserMessage) -> ViserMessage | None:
-        """A new value of a control, within what the control offers; None where it is no such value."""
+        """A new value of a control, within its range or choices; None if it is not valid."""
         handle = input_of(self.server, message.uuid)
         if handle is UNKNOWN:
             return message if is_bounded(message.updates) else None
@@ -260,7 +260,7 @@ class Screen:
 
 
 def merge_key(message: ViserMessage) -> MergeKey | None:
-    """Messages with the same key supersede each other: the last counts. None of what is never merged."""
+    """Key of messages of which only the latest counts. None for messages that are never coalesced."""
     match kind := kind_of(message):
         case "GuiUpdateMessage" | "CommandTriggerMessage" | "GuiButtonHoldMessage":
             return kind, message.uuid
@@ -275,7 +275,7 @@ def merge_key(message: ViserMessage) -> MergeKey | None:
 
 
 def is_camera(message: ViserMessage) -> bool:
-    """Whether a browser says with this message where its camera is."""
+    """True if a browser says with this message where its camera is."""
     return kind_of(message) == "ViewerCameraMessage"
 
 
@@ -318,7 +318,7 @@ class Intake:
         self.waiting, self.handlers = {}, []
 
     async def handle_waiting(self, client: ClientId) -> None:
-        """Handle what waits, in turns."""
+        """Handle the waiting messages, in turns."""
         try:
             while self.waiting:
                 pause = self.turned_at + INTAKE_INTERVAL - time.monotonic()
@@ -385,7 +385,7 @@ def check_port(host: str, port: int) -> None:
 def open_server(
     host: str, port: int, access: Access = OWN_PAGES_ONLY, panes: Panes | None = None
 ) -> tuple[viser.ViserServer, Screen]:
-    """A viser server that only our own page may connect to and that only takes what `Screen` lets through.
+    """A viser server that only our own page may connect to, with its messages filtered by `Screen`.
 
     access: who else may connect. panes: the labs that are reached through its port; none by default.
     Raises OSError where the port is busy or may not be bound.
@@ -415,7 +415,7 @@ def open_pane(panes: Panes, number: int) -> tuple[viser.ViserServer, Screen]:
 
 
 def guarded(server: viser.ViserServer) -> Screen:
-    """Pass what browsers send to a server through a screen, and what they are sent at the pace of their lines."""
+    """Filter the messages of a server's browsers, and limit the rate of the messages to them."""
     screen = Screen(server)
     refuse_requests(server, "ShareUrlRequest", "ShareUrlDisconnect")
     screen.is_in_place = put_intakes(server, screen)

@@ -62,7 +62,7 @@ MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond
 
 
 class Goal(NamedTuple):
-    """What an `Advance` waits for."""
+    """Goal of an `Advance`."""
 
     until: float  # [s] of simulated time
     answer: Future[float]
@@ -70,7 +70,7 @@ class Goal(NamedTuple):
 
 
 class FixedStep:
-    """Turns elapsed wall time into whole steps, dropping what does not fit the budget."""
+    """Turns elapsed wall time into whole steps, and drops the time that does not fit the budget."""
 
     def __init__(self) -> None:
         self.debt = 0.0  # [s] of simulated time not yet stepped
@@ -253,7 +253,7 @@ class SimLoop:
         return n > 0
 
     def take(self, params: BaseParams) -> bool:
-        """Take parameters by what their change affects; False where they are those of the scene."""
+        """Take parameters according to the effect of their change; False if they are those of the scene."""
         effect = effect_of_change(self.scene.params, params)
         if effect is None:
             return False
@@ -350,7 +350,7 @@ class SimLoop:
         return seconds
 
     def turn_is_due(self) -> bool:
-        """Whether controls have waited for a while for what runs."""
+        """True if input has been pending for longer than PATIENCE."""
         return self.busy_since is not None and self.clock() - self.turn_at >= PATIENCE
 
     def ask_for_turn(self) -> None:
@@ -448,7 +448,7 @@ class SimLoop:
         self.halted = reason
 
     def handle_waiting(self) -> bool:
-        """Handle what is left of the waiting commands once they are merged, after a reset that was ended early, unless
+        """Handle the waiting commands once they are merged, after a reset that was cancelled, unless
         another one waits; True where there was one."""
         waiting, self.waiting = self.waiting, []
         left = merged(waiting)
@@ -532,7 +532,7 @@ class SimLoop:
         self.begin(self.scene.reset)
 
     def begin(self, reset: Callable[[], None]) -> None:
-        """Run what begins the scene again; the next tick does it where it is ended early."""
+        """Begin the scene again; if that is cancelled, the next tick does it."""
         self.unfinished = None
         self.guarded(reset, again=True)
 
@@ -557,13 +557,13 @@ class SimLoop:
         return state
 
     def publish(self) -> None:
-        """Hand the viewer what there is now."""
+        """Publish the present state for the viewer."""
         self.latest = self.snapshot()
         self.published = self.scene.time
         self.fresh.set()
 
     def snapshot(self) -> AnySnapshot:
-        """What there is to show now; the last good frame where the scene has none, or where controls end it."""
+        """Frame to show now; the last good one if the scene has none or controls cancel it."""
         self.counts["snapshots"] += 1
         serial, params = self.counts["snapshots"], self.scene.params
         last: AnySnapshot | None = getattr(self, "latest", None)

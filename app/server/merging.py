@@ -1,4 +1,4 @@
-"""What supersedes is merged before it is handled: of many waiting commands only those that still matter are left."""
+"""Coalescing of waiting commands: the latest of those that supersede each other is left."""
 
 from collections.abc import Iterable
 from typing import Literal
@@ -83,16 +83,16 @@ def merged(commands: Iterable[Command]) -> list[Command]:
 
 
 def begins_anew(command: Command) -> bool:
-    """Whether the scene begins from its start after this command."""
+    """True if the scene begins from its start after this command."""
     return isinstance(command, Reset) or (isinstance(command, Load) and command.state is None)
 
 
 def is_urgent(command: Command) -> bool:
-    """Whether a command should not wait for a long solve: all but drags, going on, and what a program waits for."""
+    """True if a command should not wait for a long solve: all but drags, going on, and those of a waiting program."""
     return not isinstance(command, SceneCommand | Play | Ask | Advance)
 
 
 def put_last(waiting: dict[tuple[str, str | int], SceneCommand], key: tuple[str, str | int], new: SceneCommand) -> None:
-    """Replace what waits under a key, and move it to the end: the order of the last ones is kept."""
+    """Replace the waiting command of a key, and move it to the end: the order of the latest ones is kept."""
     waiting.pop(key, None)
     waiting[key] = new

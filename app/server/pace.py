@@ -84,7 +84,7 @@ class Pace:
 
     @property
     def has_room(self) -> bool:
-        """Whether a picture would be sent at once."""
+        """True if a picture would be sent at once."""
         bound = self.rate * (self.round_trip + QUEUE)
         return self.clock() < self.probe_at and self.bytes_on_the_way <= bound and len(self.on_the_way) < MOST
 
@@ -137,7 +137,7 @@ class Pace:
 
 
 def has_come(pong: "asyncio.Future[float]") -> bool:
-    """Whether a pong is there; otherwise it has not come yet, or the browser has gone."""
+    """True if a pong is there; otherwise it has not come yet, or the browser has gone."""
     return pong.done() and not pong.cancelled() and pong.exception() is None
 
 
@@ -147,7 +147,7 @@ Windows = AsyncGenerator[Window, None]
 
 
 def put_small_first(server: viser.ViserServer) -> None:
-    """Have what all browsers of a server are sent wait for room, with small updates of the panel going ahead."""
+    """Delay messages to a server's browsers until their line has capacity; small panel updates go ahead."""
     pass_windows_through(server, lambda windows: small_first(windows, PACE.get()))
 
 
@@ -186,7 +186,7 @@ async def small_first(windows: Windows, pace: Pace) -> Windows:
 
 
 def hold(held: dict[str, ViserMessage], window: Window) -> list[ViserMessage]:
-    """Add a window to what waits; returns what may go ahead: nothing while anything that is made or removed waits."""
+    """Add a window to the waiting messages; returns those that may go ahead: none while a creation or removal waits."""
     ahead: list[ViserMessage] = []
     for message in window:
         key = message.redundancy_key()
@@ -199,7 +199,7 @@ def hold(held: dict[str, ViserMessage], window: Window) -> list[ViserMessage]:
 
 
 def is_small(message: ViserMessage) -> bool:
-    """Whether this is an update of something in the panel that is small enough to go ahead."""
+    """True if this is an update of something in the panel that is small enough to go ahead."""
     if type(message).__name__ != "GuiUpdateMessage":
         return False
     found = [kind_and_size(value) for value in message.updates.values()]
@@ -207,5 +207,5 @@ def is_small(message: ViserMessage) -> bool:
 
 
 def is_update(message: ViserMessage) -> bool:
-    """Whether this changes something that is there already."""
+    """True if this changes something that is there already."""
     return message.lifecycle_phase in ("update_dict", "update_simple")

@@ -46,7 +46,7 @@ class Bridge:
         await self.at_home(self.connection.close(*why))
 
     def at_home(self, action: Coroutine[object, object, T]) -> Awaitable[T]:
-        """Run on the connection's own event loop, and wait here; what is cancelled here is cancelled there."""
+        """Run on the connection's event loop and wait here; a cancellation here cancels it there."""
         return asyncio.wrap_future(asyncio.run_coroutine_threadsafe(action, self.home))
 
 
@@ -54,7 +54,7 @@ PaneHandler: TypeAlias = Callable[[Bridge], Coroutine[object, object, None]]
 
 
 class Unbound:
-    """What viser takes for its websocket server: it binds no port, and is given connections by `Panes`."""
+    """Stand-in for viser's websocket server: it binds no port and gets its connections from `Panes`."""
 
     server = SimpleNamespace(sockets=())
 

@@ -21,7 +21,7 @@ class Replay:
 
     @property
     def ended(self) -> bool:
-        """Whether all were shown."""
+        """True if all were shown."""
         return self.number == len(self.moments) - 1 and self.shown_for >= MOMENT_INTERVAL
 
     def play(self, wall: float) -> bool:

@@ -70,7 +70,7 @@ def thinned(frames: Sequence[Kept]) -> list[Kept]:
 
 
 def replay_html(kind: AnyKind, frames: Sequence[Kept], plotted: Plotted) -> str:
-    """The page of a replay, of the last of these frames. plotted: what the plots have.
+    """The page of a replay of the last of these frames. plotted: the data of the plots.
 
     Raises ValueError where there is no frame.
     """
@@ -102,7 +102,7 @@ def replay_html(kind: AnyKind, frames: Sequence[Kept], plotted: Plotted) -> str:
 
 
 def about_html(kind: AnyKind, params: BaseParams, plotted: Plotted, start: float, end: float) -> Html:
-    """What the replay shows: the scene, all of its parameters, and its plots between two times [s]."""
+    """Description of the replay: the scene, all parameters, and the plots between two times [s]."""
     charts = join(chart.svg for chart in plot_charts(kind, plotted.between(start, end)))
     table = join(
         fill(

@@ -37,7 +37,7 @@ class ServedScene:
     """
 
     def __init__(self, viewer: "Viewer", kind: AnyKind, params: BaseParams, *, paused: bool) -> None:
-        """viewer: the server and what scenes share. `start` runs the threads."""
+        """viewer: the server and the parts common to all scenes. `start` runs the threads."""
         self.viewer, self.server, self.transport = viewer, viewer.server, viewer.transport
         self.recorded: Kept | None = None  # the frame of the recording that is shown
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
@@ -124,7 +124,7 @@ class ServedScene:
         self.panel.share.files.sent = recorded
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
-        """Show something; what goes wrong halts the run once, and this thread lives to say so."""
+        """Run a drawing action; an exception halts the run once, and this thread goes on."""
         try:
             action()
         except Exception as error:
@@ -133,7 +133,7 @@ class ServedScene:
                 self.commands.put(Halt(f"The {what} could not be drawn, {type(error).__name__}: {error}"))
 
     def show_compiling(self) -> None:
-        """What is compiled while the scene runs: for what was chosen, or ahead."""
+        """Show the running compilation: for a chosen preset, or ahead."""
         text = self.viewer.notice or self.gate.notice or describe(*self.viewer.compiling.progress())
         if text != self.compile_text:
             self.compile_text = text
@@ -152,7 +152,7 @@ class ServedScene:
         self.threads = []
 
     def close(self, picture_time: float | None = None) -> None:
-        """Stop the threads and give back what the scene holds, once."""
+        """Stop the threads and release the resources of the scene, once."""
         self.stop_threads(picture_time)
         if self.is_open:
             self.is_open = False

@@ -31,7 +31,7 @@ class Seat:
 
     @property
     def is_first(self) -> bool:
-        """Whether this loop lets the clock's time pass."""
+        """True if this loop lets the clock's time pass."""
         return self.clock.seats[:1] == (self,)
 
     def due(self, time: float, step: float) -> int:
@@ -66,7 +66,7 @@ class Seat:
                     seat.told.put(command)
 
     def share(self, command: Command) -> Command:
-        """Pass to the other loops what concerns all; returns what this one is to do."""
+        """Pass shared commands to the other loops; returns the commands for this one."""
         match command:
             case TogglePlay():
                 return self.share(Pause() if self.running else Play())

@@ -1,4 +1,4 @@
-"""Hands what the viewer thread draws to viser, one picture at a time, and counts it: arrays, texts and bytes.
+"""Hands the frames of the viewer thread to viser, one at a time.
 
 viser's own `atomic()` holds a browser's next message back while a picture is handed over. But a message that is just
 being put together then ends in the middle of a picture, or takes half of one that the next replaces. Therefore no
@@ -33,7 +33,7 @@ def kind_and_size(value: object) -> tuple[str, int] | None:
 
 
 class Transport:
-    """What goes to the browsers of one server from within `counted()`; a message counts once, however many look."""
+    """Messages to the browsers of one server from within `counted()`; each counts once for all browsers."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self.sent: collections.Counter[str] = collections.Counter()
@@ -51,7 +51,7 @@ class Transport:
         return True
 
     def count(self, message: object) -> None:
-        """Count the properties that a message changes, or those of what it makes."""
+        """Count the properties that a message changes, or those of the node that it creates."""
         self.sent["messages"] += 1
         changes = getattr(message, "updates", None) or getattr(getattr(message, "props", None), "__dict__", {})
         for value in changes.values():
@@ -63,7 +63,7 @@ class Transport:
 
     @contextlib.contextmanager
     def counted(self) -> Generator[None]:
-        """While open, what this thread hands over is counted; at the end it is handed over as one.
+        """While open, messages of this thread are collected; at the end they are sent as one.
 
         It has been when this ends: what is removed later must not come before it.
         """

@@ -144,7 +144,7 @@ class Viewer:
         return kind.make_with_student(params, live)
 
     def compile(self, kind: AnyKind, params: BaseParams) -> bool:
-        """Have compiled what a scene needs, with progress in the page and in lines on the terminal.
+        """Compile the kernels of a scene, with progress on the page and in lines on the terminal.
 
         An open scene goes on meanwhile. False where the lab ended before that, or another scene was asked for.
         """
@@ -207,7 +207,7 @@ class Viewer:
 
     @property
     def is_open(self) -> bool:
-        """Whether a scene is open."""
+        """True if a scene is open."""
         return self.current is not None and self.current.is_open
 
     @property
@@ -256,18 +256,18 @@ class Viewer:
         return Viewer("", 0, plain=self.plain, say=self.say, beside=(self, number))
 
     def pane_words(self) -> tuple[PaneWords, ...]:
-        """What stands above each lab, where several are side by side."""
+        """Titles of the labs that are side by side."""
         comparison = self.comparison
         return () if comparison is None else comparison.words()
 
     def share_parameters(self, params: BaseParams) -> None:
-        """Set in the labs beside this one what is the same in all."""
+        """Copy the common parameters to the labs beside this one."""
         comparison = self.comparison
         if comparison is not None:
             comparison.share(self, params)
 
     async def on_disconnect(self, client: viser.ClientHandle) -> None:
-        """A browser that is gone lets go of what it drags."""
+        """Release the objects that a disconnected browser dragged."""
         if self.current is not None:
             self.current.commands.put(Release(client.client_id))
 

@@ -51,7 +51,7 @@ def failed(message: str) -> Outcome:
 
 
 def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Outcome:
-    """Run one case and measure it at each of `times` [s]. What the scene raises becomes a failed outcome."""
+    """Run one case and measure it at each of `times` [s]. An exception becomes a failed outcome."""
     kind = scene_named(scene)
     found: dict[str, list[float]] = {}
     labels: dict[str, tuple[str, str]] = {}
@@ -84,7 +84,7 @@ def add_measures(
     found: dict[str, list[float]],
     labels: dict[str, tuple[str, str]],
 ) -> None:
-    """Write what was measured at times[index] into `found` and `labels`, as `Outcome` has them."""
+    """Write the measures at times[index] into `found` and `labels`, as `Outcome` has them."""
     for name, measure in measures.items():
         found.setdefault(name, [math.nan] * len(times))[index] = float(measure.value)
         labels[name] = measure.unit, measure.meaning

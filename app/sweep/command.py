@@ -134,7 +134,7 @@ def write_figures(dataset: Any, out: Path) -> list[Path]:
 
 
 def report(out: Path, figures: list[Path], dataset: Any, outcomes: dict[int, Outcome]) -> None:
-    """Print what was written, and why the first failed case failed."""
+    """Print the written file, and the error of the first failed case."""
     ends = [outcome.end for outcome in outcomes.values()]
     counted = ", ".join(f"{ends.count(end)} {end}" for end in ENDS if end in ends)
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())

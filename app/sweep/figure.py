@@ -106,7 +106,7 @@ def points(axes: Any, x: Any, y: Any) -> None:
 
 
 def is_number(values: Any) -> bool:
-    """Whether values are numbers and not words or truth values."""
+    """True if values are numbers and not words or truth values."""
     return values.dtype.kind in "if"
 
 
@@ -116,7 +116,7 @@ def positions(x: Any) -> Any:
 
 
 def is_log(x: Any) -> bool:
-    """Whether a logarithmic axis shows these values better."""
+    """True if a logarithmic axis shows these values better."""
     low, high = float(x.min()), float(x.max())
     return low > 0.0 and high / low >= MIN_LOG_RATIO
 

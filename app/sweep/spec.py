@@ -1,4 +1,4 @@
-"""`Spec`: what a sweep is to do, read from TOML and checked completely before any work.
+"""`Spec`: the specification of a sweep, read from TOML and checked completely before any work.
 
 The checks are written here and not declared as types for msgspec or pydantic: what is allowed depends on the scene that
 the spec names, and an error is to name the value and the range with its unit, which those libraries' errors do not.
@@ -55,7 +55,7 @@ class Spec:
         return check_record(self.kind.params, {**self.fixed, **self.cases[index]})
 
     def identity(self) -> dict[str, Any]:
-        """All that decides the results, as it is written in JSON."""
+        """Everything that determines the results, for JSON."""
         names = ("scene", "seconds", "frames", "design", "seed", "fixed")
         return {name: getattr(self, name) for name in names} | {
             "parameters": {k: list(v) for k, v in self.swept.items()}
@@ -63,7 +63,7 @@ class Spec:
 
 
 def read_spec(path: Path) -> Spec:
-    """Read and check a spec. Raises ValueError, naming what is wrong and what is allowed."""
+    """Read and check a spec. Raises ValueError with the key, its value and the allowed values."""
     try:
         text = path.read_text("utf-8")
         content = tomllib.loads(text)
@@ -75,7 +75,7 @@ def read_spec(path: Path) -> Spec:
 
 
 def make_spec(content: dict[str, Any], text: str = "", folder: Path | None = None) -> Spec:
-    """Check what was read from a file in `folder`. Raises ValueError."""
+    """Check a spec from a file in `folder`. Raises ValueError."""
     for key in content:
         if key not in KEYS:
             raise ValueError(f"{key}: no such key of a spec; the keys are {', '.join(KEYS)}")
@@ -127,7 +127,7 @@ def make_spec(content: dict[str, Any], text: str = "", folder: Path | None = Non
 
 
 def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any], folder: Path | None) -> dict[str, Any]:
-    """Values of the preset and of [set]. The plots are on, because they decide what is measured."""
+    """Values of the preset and of [set]. The plots are on, because measures depend on them."""
     preset = content.get("preset")
     if preset is not None and not isinstance(preset, str):
         raise argument_error("preset", preset, "one of " + ", ".join(scene.presets) + "; or a file FILE.json")

@@ -120,7 +120,7 @@ def remove(path: Path) -> None:
 
 
 def check_same_sweep(path: Path, old: Any, new: dict[str, Any]) -> None:
-    """Raises ValueError where the file at `path` belongs to another sweep, and says in what the two differ."""
+    """Raises ValueError if the file at `path` belongs to another sweep, and names the differences."""
     new = json.loads(json.dumps(new))
     if old == new:
         return

@@ -1,4 +1,4 @@
-"""Who runs the cases of a sweep: processes on all cores of this machine, or the workers of a Dask cluster.
+"""Workers of a sweep: processes on all cores of this machine, or those of a Dask cluster.
 
 Either way a case is run again when its worker dies, and a case that kills its workers ends as failed: nothing is lost,
 and the other cases go on.

@@ -1,4 +1,4 @@
-"""Which integrator runs: the chosen one, what `auto` takes, or a replacement where the chosen one refuses the net."""
+"""Integrator of a run: the chosen one, the choice of `auto`, or a replacement if the chosen one refuses the net."""
 
 from sim.springs.automatic import AUTO, choose_for_step
 from sim.springs.integrators import Integrator, discover, integrator_named

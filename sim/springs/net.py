@@ -86,7 +86,7 @@ class PinPath(NamedTuple):
 
 
 class RopeArrays(NamedTuple):
-    """What the kernels read of a rope without air around it: flat numbers and arrays."""
+    """Kernel data of a rope without air around it: flat numbers and arrays."""
 
     rows: int  # 1
     cols: int
@@ -129,7 +129,7 @@ class RopeArrays(NamedTuple):
 
 
 class WideArrays(NamedTuple):
-    """What the kernels read in addition of any other net."""
+    """Additional kernel data of any other net."""
 
     has_air: bool
     wind_x: float  # [m/s]
@@ -219,7 +219,7 @@ class Net:
         return self
 
     def __post_init__(self) -> None:
-        """Raises ValueError, naming the field, for what the kernels cannot take: they check no index."""
+        """Raises ValueError with the field's name for values that kernels cannot take: they check no index."""
         object.__setattr__(self, "x0", start_positions(self.x0))
         rows, cols = self.shape
         for family in self.families:
@@ -273,7 +273,7 @@ class Net:
 
     @property
     def is_damped(self) -> bool:
-        """Whether anything but a grab takes energy out."""
+        """True if anything but a grab takes energy out."""
         touched = self.floor is not None or self.sphere is not None or self.thickness > 0.0
         rough = self.contact.damping > 0.0 or (self.contact.friction > 0.0 and self.contact.law == "clipped")
         return (
@@ -405,7 +405,7 @@ class Net:
 
 
 def start_positions(x0: Any) -> NDArray[np.float64]:
-    """`x0` as a contiguous float64 array (3, rows, cols); raises ValueError for another shape, or what is too far away.
+    """`x0` as a contiguous float64 array (3, rows, cols); raises ValueError for another shape or a point too far away.
 
     A NaN passes: a run of it diverges with its first step.
     """
@@ -422,7 +422,7 @@ def start_positions(x0: Any) -> NDArray[np.float64]:
 
 
 def check_mass_ratios(ratios: Any, shape: tuple[int, int]) -> None:
-    """Raises ValueError for what is no array of numbers above 0, one for each point."""
+    """Raises ValueError if it is not an array of numbers above 0, one for each point."""
     array = as_array("mass_ratios", ratios, f"numbers of shape {shape}")
     if array.shape != shape:
         raise argument_error("mass_ratios", array.shape, f"numbers of shape {shape}")
@@ -458,7 +458,7 @@ def check_particle(name: str, value: Any, rows: int, cols: int) -> tuple[int, in
 
 
 def check_air(air: Air) -> None:
-    """Raises ValueError, naming what of the air cannot be."""
+    """Raises ValueError with the name of the invalid property of the air."""
     if not isinstance(air, Air):
         raise argument_error("air", air, "an Air, or None")
     check_vector("air.wind", air.wind, "m/s")
@@ -469,7 +469,7 @@ def check_air(air: Air) -> None:
 def check_surroundings(
     contact: Contact | None, floor: float | None, sphere: tuple[float, float, float, float] | None
 ) -> Contact:
-    """The contact, or the plain one for None; raises ValueError, naming what of the three cannot be and why."""
+    """The contact, or the plain one for None; raises ValueError with the name of the invalid one and the reason."""
     contact = PLAIN_CONTACT if contact is None else contact
     if not isinstance(contact, Contact):
         raise argument_error("contact", contact, "a Contact, or None")

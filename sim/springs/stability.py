@@ -42,7 +42,7 @@ class Mode(NamedTuple):
 
     @property
     def omega(self) -> float:
-        """[rad/s]; at least what makes zeta MOST_DAMPED."""
+        """[rad/s]; at least the value at which zeta is MOST_DAMPED."""
         return max(math.sqrt(max(self.stiffness, 0.0)), 0.5 * self.rate / MOST_DAMPED)
 
     @property

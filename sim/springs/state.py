@@ -1,4 +1,4 @@
-"""`State`: what changes while a net moves, and `advance`, which changes it."""
+"""`State` of a moving net, and `advance`, which changes it."""
 
 import dataclasses
 import math
@@ -49,7 +49,7 @@ class State:
 
 
 def check_net(net: object) -> None:
-    """Raises ValueError for what is no net."""
+    """Raises ValueError if it is not a net."""
     if not isinstance(net, Net):
         raise argument_error("net", net, "a Net, as `rope` and `cloth` make them")
 
@@ -76,7 +76,7 @@ def acceleration(net: Net, state: State, lag: float) -> NDArray[np.float64]:
 
 
 def set_lag(net: Net, state: State, lag: float) -> None:
-    """Move the velocities, in place, to time t - lag [s]: what a change of step or of integrator asks for."""
+    """Move the velocities, in place, to time t - lag [s], for a change of step or of integrator."""
     if lag != state.lag:
         state.v += (state.lag - lag) * acceleration(net, state, max(lag, state.lag))
         state.lag = lag

@@ -109,7 +109,7 @@ def catenary(
 
 
 def equilibrium(net: Net) -> Equilibrium:
-    """Where the rope `net` comes to rest, hanging from point 0 or from both its ends; floor and sphere apart.
+    """Rest state of the rope `net`, hanging from point 0 or from both its ends; without floor and sphere.
 
     Raises ValueError as `hanging_chain` and `catenary` do, and where gravity is not along z.
     """

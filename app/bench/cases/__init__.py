@@ -1,1 +1,1 @@
-"""The benchmarks. Every module in this folder is one; `app/bench/command.py` says what it must offer."""
+"""The benchmarks. Every module in this folder is one; `app/bench/command.py` holds their contract."""

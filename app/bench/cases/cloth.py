@@ -126,12 +126,12 @@ def by_task(table: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
 
 
 def is_point(row: dict[str, Any]) -> bool:
-    """Whether a rung was measured."""
+    """True if a rung was measured."""
     return "left out" not in row
 
 
 def findings(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """What the ladders say: the reference's own error, the front of time against error, and what was left out."""
+    """Summary of the ladders: the reference's error, the front of time against error, and the methods left out."""
     found = []
     for task, own in by_task(table).items():
         points = [row for row in own if is_point(row)]

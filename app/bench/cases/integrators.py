@@ -1,4 +1,4 @@
-"""Every integrator: what it declares, and what a step costs on the lab's rope.
+"""Every integrator: its declared properties, and the cost of a step on the lab's rope.
 
 Ropes of 10 and 100 points that have swung for 0.3 s, with the lab's parameters and steps of 1/480 s; methods for
 undamped ropes run without damping. Times are the least of repeats in turns.

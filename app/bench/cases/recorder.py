@@ -1,4 +1,4 @@
-"""What recording costs: processor time of the frames and states that are kept, and the memory that they hold."""
+"""Cost of recording: processor time and memory of the frames and states that are kept."""
 
 import time
 from typing import Any

@@ -133,7 +133,7 @@ def evaluations_at(table: list[dict[str, Any]], method: str, error: float) -> fl
 
 
 def findings(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """What the ladders show: the uncertainty of the reference, the front, and leapfrog against the lab's Euler."""
+    """Summary of the ladders: the uncertainty of the reference, the front, and leapfrog against the lab's Euler."""
     found = []
     for problem in PROBLEMS:
         own = [row for row in table if row["problem"] == problem.name]

@@ -45,7 +45,7 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
 
 
 def measured(viewer: Any, seconds: float) -> dict[str, float]:
-    """The figures of what is shown now, over so long [s]."""
+    """The figures of the open scene over this time [s]."""
     time.sleep(SETTLING)
     spent, simulated, shown = time.process_time(), viewer.loop.latest.status.time, viewer.served.shown
     time.sleep(seconds)

@@ -1,4 +1,4 @@
-"""Time from a command to what it shows, with compiled kernels in the cache and without."""
+"""Time from a command to its page, with compiled kernels in the cache and without."""
 
 import asyncio
 import os
@@ -81,7 +81,7 @@ def start_times(scene: str, cache: str | None) -> tuple[float, float]:
 
 
 def both(name: str, timed: Any, quick: bool, repeats: int) -> dict[str, Any]:
-    """A row: with a warm cache, after a run that fills it, and with an empty one. Quick: once, with what there is."""
+    """A row: with a warm cache, after a run that fills it, and with an empty one. Quick: once, as it is."""
     first = timed(None)
     if quick:
         return {"what": name, "warm [s]": first}

@@ -1,4 +1,4 @@
-"""What many viewers of one sea cost: processor time of the server, and whether the sea keeps real time."""
+"""Cost of many viewers of one sea: processor time of the server, and the real-time factor of the sea."""
 
 import os
 import subprocess

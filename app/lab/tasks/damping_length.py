@@ -6,7 +6,7 @@ from app.lab.checking import Curve, Mistake, require
 
 
 def damping_length(viscosity, time):
-    """The length l [m] of the lab's damping that does what a viscosity does in a time.
+    """The length l [m] of the lab's damping that is equivalent to a viscosity over a time.
 
     The damping multiplies the power of each wave by exp(-k^2 l^2). Viscosity lowers the amplitude by exp(-2 nu k^2 t),
     and power is the square of the amplitude: l = 2 sqrt(nu t).

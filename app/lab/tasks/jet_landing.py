@@ -6,7 +6,7 @@ from app.lab.checking import Curve, Mistake, require
 
 
 def jet_landing(x, v, level, gravity):
-    """Where a drop of an oil jet falls back onto the sea: its position [m], shape (3,), on the surface z = level.
+    """Position [m] where a drop of an oil jet falls back onto the sea, shape (3,), on the surface z = level.
 
     The drop flies freely: x(t) = x + v t + g t^2/2, with g = (0, 0, -gravity). It lands at the later of the two times
     at which its height is that of the surface.

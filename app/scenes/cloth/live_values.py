@@ -1,4 +1,4 @@
-"""What the tasks of the lab use of the cloth: its springs, its strain, the limit of its step."""
+"""Values of the cloth for the tasks of the lab: its springs, its strain, the limit of its step."""
 
 from typing import TYPE_CHECKING
 

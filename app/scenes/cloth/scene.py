@@ -57,7 +57,7 @@ PLOTS = {
 
 
 class ClothFrame(NamedTuple):
-    """What the view draws of a cloth."""
+    """Drawn state of a cloth."""
 
     points: NDArray[np.float32]  # (rows, cols, 3) [m], C-contiguous
     strain: NDArray[np.float32]  # (rows, cols), largest of the structural springs at a particle
@@ -108,7 +108,7 @@ def compile_gauge() -> None:
 
 
 def needs(params: Params) -> tuple[str, ...]:
-    """What a scene with these parameters runs."""
+    """Compiled pieces that a scene with these parameters runs."""
     net = build(params, sphere_home(params))
     return integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE
 
@@ -149,7 +149,7 @@ class ClothScene:
 
     @property
     def faster(self) -> str:
-        """What would make a step faster."""
+        """Advice on a faster step."""
         touches_itself = self.params.thickness > 0.0
         return faster_steps(
             self.integrator, self.stability.stability, "rows and columns", touches_itself=touches_itself
@@ -162,7 +162,7 @@ class ClothScene:
 
     @property
     def with_account(self) -> bool:
-        """Whether the energy account is kept: always, except for large cloths with the plot of energies closed."""
+        """True if the energy account is kept: always, except for large cloths with the plot of energies closed."""
         return self.params.plot_energy or self.particles <= MAX_ACCOUNTED_PARTICLES
 
     def reset(self) -> None:
@@ -182,11 +182,11 @@ class ClothScene:
             self.student.start(self.params, self.state)
 
     def keep(self) -> dict[str, object]:
-        """State, energy account and what is moved, as they are now."""
+        """Checkpoint: state, energy account and moved objects."""
         return copied({name: getattr(self, name) for name in CHANGING})
 
     def resume(self, kept: object) -> None:
-        """Go on from what `keep` gave."""
+        """Go on from a checkpoint of `keep`."""
         restore(self, kept)
         self.drag.clear()
         self.tuner.restart()
@@ -361,7 +361,7 @@ class ClothScene:
         self.assessed_at = self.state.t
 
     def diagnosis(self) -> str:
-        """Why the run diverged, and what would hold."""
+        """Cause of the divergence, and settings that would hold."""
         alternative = "" if self.integrator.implicit else "implicit Euler, which is stable at every step"
         return divergence_text(self.state.t, self.integrator, self.step, self.stability.stability, alternative)
 
@@ -386,7 +386,7 @@ class ClothScene:
         return self.stability._replace(corrections=self.corrections, threads=threads, left_out=left_out)
 
     def frame(self) -> ClothFrame:
-        """What to draw; kept for a while, to be shown again if the run diverges."""
+        """Frame to draw; kept for a while, to be shown again if the run diverges."""
         params = self.params
         pull = None
         if self.drag.hold is not None:

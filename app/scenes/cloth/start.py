@@ -13,7 +13,7 @@ CONTACT_DISTANCE = 0.012  # [m] between the cloth and sphere or floor, so that i
 
 
 def corner(params: Params) -> Vector:
-    """Where particle (0, 0) starts [m]."""
+    """Initial position of particle (0, 0) [m]."""
     if params.start == "flag":
         return -0.9, 0.0, 2.1
     if params.start == "hanging":
@@ -22,7 +22,7 @@ def corner(params: Params) -> Vector:
 
 
 def sphere_home(params: Params) -> Vector:
-    """Where the sphere starts [m]: under a level cloth, in front of a hanging one."""
+    """Initial position of the sphere [m]: under a level cloth, in front of a hanging one."""
     if params.start == "level":
         below = 0.15 if params.bob > 0.0 else CONTACT_DISTANCE + 0.15
         return 0.0, 0.0, max(1.5 - params.sphere_radius - below, params.sphere_radius)

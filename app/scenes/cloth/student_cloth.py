@@ -31,7 +31,7 @@ class StudentCloth(StudentNet):
         self.side = COARSE_SIDES[0]
 
     def set_up(self, params: Params) -> bool:
-        """Choose the points, and what joins them. Whether they are others than before."""
+        """Choose the points and their links. True if they have changed."""
         self.params, self.unlike = params, unlike(params)
         rows, cols = params.rows, params.cols
         self.is_comparable = rows * cols <= MAX_SAME_POINTS

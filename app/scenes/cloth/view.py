@@ -191,5 +191,5 @@ class View:
 
 
 def warm_up() -> Pieces:
-    """What the drawing calls."""
+    """Call the kernels of the drawing."""
     return {"packing": compile_packing}

@@ -186,7 +186,7 @@ class Entrant:
         self.state.v[:, 0, 0] = 0.0
 
     def assess_stability(self) -> None:
-        """Compare the step with its limit at the state as it is, and measure what it costs."""
+        """Compare the step with its limit in the present state, and measure its cost."""
         if self.failure:
             return
         self.gauge = gauge(self.net, self.record, self.step, self.state)
@@ -277,7 +277,7 @@ class Race:
             reference.pin(position)
 
     def assess_stability(self) -> None:
-        """Compare each step with its limit, and measure what it costs."""
+        """Compare each step with its limit, and measure its cost."""
         for entrant in self.entrants:
             entrant.assess_stability()
 

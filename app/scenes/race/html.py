@@ -55,7 +55,7 @@ def result_rows(result: Result, stiffness_differs: bool) -> Html:
 
 
 def reference_text(readings: RaceReadings) -> Html:
-    """What is to be said of the reference run."""
+    """Remarks on the reference run."""
     if readings.no_reference:
         return fill("There is no reference run: {}.", readings.no_reference)
     if readings.reference_horizon is not None:
@@ -69,7 +69,7 @@ def reference_text(readings: RaceReadings) -> Html:
 
 
 def results_table(readings: RaceReadings) -> Html:
-    """The results of all ropes, and what is to be said of the reference run."""
+    """The results of all ropes, and remarks on the reference run."""
     stiffness_differs = len({result.stiffness for result in readings.results}) > 1
     rows = join(result_rows(result, stiffness_differs) for result in readings.results)
     return fill(

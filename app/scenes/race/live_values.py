@@ -1,4 +1,4 @@
-"""What the tasks of the lab use of a race: the error of each rope, its energy, how near its limit its step is."""
+"""Values of a race for the tasks of the lab: error and energy of each rope, and its step relative to its limit."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""Measures of a race: how accurate each rope is, what its method took, and how near its limit its step is."""
+"""Measures of a race: error, cost and step relative to the limit of each rope."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""What the ropes of a race are called, in charts, labels and tables."""
+"""Names of the ropes of a race in charts, labels and tables."""
 
 from typing import Protocol
 
@@ -7,7 +7,7 @@ from app.scenes.springs.methods import method_name
 
 
 class Named(Protocol):
-    """What a name is made of; entrants and results have it."""
+    """Parts of a name; entrants and results have them."""
 
     @property
     def number(self) -> int:

@@ -41,7 +41,7 @@ def step_of_rope(number: int) -> Any:
 
 @dataclasses.dataclass(frozen=True)
 class RaceRules:
-    """How many ropes take part, and in what they differ."""
+    """Number of ropes, and their differences."""
 
     ropes: int = parameter(
         3, 1, MAX_ROPES, "", "Number of ropes, each with its own method and step", group="Main", affects="start"
@@ -91,7 +91,7 @@ class RaceMethods:
 
 @dataclasses.dataclass(frozen=True)
 class Params(RaceMethods, RopeParams, RaceRules):
-    """The race's parameters. What the methods are compared on starts it again; other forces do not."""
+    """The race's parameters. A change of the compared problem starts it again; other forces do not."""
 
     integrator: str = redeclare(
         RopeParams,
@@ -165,7 +165,7 @@ def method_of(params: Params, number: int) -> str:
 
 
 def offset_of(params: Params, index: int) -> float:
-    """Where rope `index`, from 0, is drawn along y [m]. All ropes move in the same place; only the drawing differs."""
+    """Drawn y [m] of rope `index`, from 0. All ropes move in the same place; only the drawing differs."""
     return (index - 0.5 * (params.ropes - 1)) * params.spacing
 
 

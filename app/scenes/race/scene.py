@@ -31,7 +31,7 @@ REFERENCE = "reference run"  # name of the piece to compile
 
 
 class RaceFrame(NamedTuple):
-    """What the view draws of a race."""
+    """Drawn state of a race."""
 
     ropes: NDArray[np.float32]  # (ropes, points, 3) [m], C-contiguous, side by side
     references: NDArray[np.float32] | None  # the same of the reference runs, or None where there are none to show
@@ -67,7 +67,7 @@ def compile_reference() -> None:
 
 
 def needs(params: Params) -> tuple[str, ...]:
-    """What a race with these parameters runs."""
+    """Compiled pieces that a race with these parameters runs."""
     methods = {method_of(params, number) for number in range(1, params.ropes + 1)}
     return *sorted(methods), GAUGE, REFERENCE
 
@@ -103,11 +103,11 @@ class RaceScene:
         self.assessed_at = 0.0  # [s]
 
     def keep(self) -> dict[str, object]:
-        """All ropes and their references, the charts, and what is moved, as they are now."""
+        """Checkpoint: all ropes and their references, the charts and moved objects."""
         return copied({name: getattr(self, name) for name in CHANGING}, self.charts.drawn)
 
     def resume(self, kept: object) -> None:
-        """Go on from what `keep` gave."""
+        """Go on from a checkpoint of `keep`."""
         restore(self, kept)
         self.handles.drag.clear()
 
@@ -154,7 +154,7 @@ class RaceScene:
         self.charts.update()
 
     def frame(self) -> RaceFrame:
-        """What to draw."""
+        """Frame to draw."""
         params, race, handles = self.params, self.race, self.handles
         offsets = np.array([(0.0, offset_of(params, i), 0.0) for i in range(len(race.entrants))])[:, None]
         references = race.reference_points() if params.show_reference else None

@@ -264,7 +264,7 @@ class View:
 
 
 def warm_up() -> Pieces:
-    """What the drawing calls."""
+    """Call the kernels of the drawing."""
     return {"drawing": compile_drawing}
 
 

@@ -1,4 +1,4 @@
-"""The floating bodies of the radial sea: what floats where, what is predicted of each, and what is measured."""
+"""The floating bodies of the radial sea: their places, predictions and measured values."""
 
 import math
 from typing import NamedTuple
@@ -58,7 +58,7 @@ class BodyKind(NamedTuple):
 
     @property
     def title(self) -> str:
-        """What tables call it."""
+        """Name in tables."""
         return self.appearance.title
 
 
@@ -77,7 +77,7 @@ def kind_of(index: int) -> BodyKind:
 
 
 def place_of(index: int, size: float) -> tuple[float, float]:
-    """Where body `index` floats [m]: the first three at fixed places, the others on a spiral about them."""
+    """Position of body `index` [m]: the first three at fixed places, the others on a spiral about them."""
     if index < len(FIRST_PLACES):
         x, y = FIRST_PLACES[index]
         return x * size, y * size
@@ -88,7 +88,7 @@ def place_of(index: int, size: float) -> tuple[float, float]:
 
 
 def place_of_file_hull(hull: Hull, size: float) -> tuple[float, float]:
-    """Where a hull from a file floats [m], beside bodies of this size."""
+    """Position of a hull from a file [m], beside bodies of this size."""
     farther = max(float(np.abs(hull.extents[:2]).max()) - 1.0, 0.0)
     (x, y), (dx, dy) = FILE_PLACE, FILE_DIRECTION
     return x * size + dx * farther, y * size + dy * farther
@@ -179,7 +179,7 @@ class FloatingBodies:
         return tuple(own[i] if i < min(len(own), self.count_asked) else density for i in range(self.count))
 
     def prediction(self, i: int) -> HydrostaticPrediction:
-        """What hydrostatics predicts of body i in the fluids where it is, the slick among them."""
+        """Hydrostatic prediction for body i in the fluids at its place, the slick among them."""
         name, column = self.body_kinds[i].name, self.column
         slick = SLICK_RESOLUTION * round(float(self.slick[i]) / SLICK_RESOLUTION)
         key = (name, self.densities[i], slick)
@@ -216,7 +216,7 @@ class FloatingBodies:
         return HeaveMeter(self.count), WindowMean(self.count, 4)
 
     def make_excitation(self) -> WaveExcitation:
-        """What the waves do to these bodies in these fluids."""
+        """Wave forces on these bodies in these fluids."""
         hulls = [self.hulls[kind.name] for kind in self.body_kinds]
         bodies = [Body(hull, density) for hull, density in zip(hulls, self.densities, strict=True)]
         return WaveExcitation(bodies, self.widths, self.column.layers)
@@ -234,7 +234,7 @@ class FloatingBodies:
         pull(self.fleet, index, (0.0, 0.0, 0.0), target, limit * GRAVITY * float(self.fleet.mass[index]))
 
     def release(self, client: int = 0) -> None:
-        """Let go of what a browser holds; the body keeps its velocity."""
+        """Release the body that a browser holds; it keeps its velocity."""
         for index in [index for index, holder in self.holders.items() if holder == client]:
             self.fleet.pull_limit[index] = 0.0
             self.heave_meter.restart(index)

@@ -1,4 +1,4 @@
-"""What the panel says of the spill over hours: a table, the oil as it is now, and what other laws have evaporate."""
+"""Report of the spill over hours: a table, the present oil, and the evaporation by other laws."""
 
 from app.formats.formatting import fixed, metres, number, percent
 from app.render.html import Html, faint, fill, join, table
@@ -55,7 +55,7 @@ def now_html(params: Params, now: WeatheredOil) -> Html:
 
 
 def other_laws(params: Params, weathering: Weathering) -> Html:
-    """What the laws of Fingas and of Stiver and Mackay have evaporate in a day."""
+    """Evaporation in a day by the laws of Fingas and of Stiver and Mackay."""
     is_crude = oil_records()[params.oil].is_crude
     distilled = boiled_off(params.oil, FINGAS_TEMPERATURE)
     by_fingas = fingas(distilled, CELSIUS + params.temperature, 60.0 * COMPARED_HOURS, is_crude=is_crude)
@@ -72,7 +72,7 @@ def other_laws(params: Params, weathering: Weathering) -> Html:
 
 
 def origin_text(record: OilRecord) -> str:
-    """Where the numbers of the oil and the laws are from."""
+    """Sources of the numbers of the oil and of the laws."""
     if not record.distillation:
         known = "Its record has no distillation: boiling points are estimated from its density (Jones 1997)."
     else:

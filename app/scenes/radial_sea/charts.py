@@ -22,7 +22,7 @@ HOURS = np.unique(np.concatenate([np.linspace(0.0, 6.0, 25), np.linspace(6.0, MA
 
 @lru_cache(maxsize=8)
 def budget_chart(spill: Spill, hours: float) -> Chart:
-    """Where the oil is from 0 to 120 h [%], stacked; the water in the emulsion [%]; a mark at the time shown [h]."""
+    """Oil budget from 0 to 120 h [%], stacked; the water in the emulsion [%]; a mark at the time shown [h]."""
     found = weather(spill)
     start = min(max(hours - 0.5 * NOW_WIDTH, 0.0), MAX_HOURS - NOW_WIDTH)
     end = start + NOW_WIDTH

@@ -15,7 +15,7 @@ MIN_WATER_DEPTH = 0.5  # [m] at size 1 from the lowest point of the interface to
 
 
 class Cutaway(NamedTuple):
-    """The box, and what its walls cut: a closed line of points, the far wall first, from its right end as seen."""
+    """The box, and its outline on the surface: a closed line, the far wall first, from its right end as seen."""
 
     middle: tuple[float, float]  # [m] of the far wall
     half_width: float  # [m] of the far wall

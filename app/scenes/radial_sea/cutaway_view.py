@@ -116,7 +116,7 @@ class Walls:
         return np.array(lines, np.float32)
 
     def show_ruler(self, cutaway: Cutaway, keel: float | None, *, say: bool, column: FluidColumn) -> None:
-        """Draw ruler and arrow; where `say`, write on the labels what one looks at.
+        """Draw ruler and arrow; with `say`, also the labels.
 
         These are the fluids, and how deep the lowest point of the body lies; keel [m] is its height.
         """
@@ -165,8 +165,7 @@ class Walls:
                 label.position = places[part]
 
     def labels_are_due(self, now: float, step: float) -> bool:
-        """Whether labels say what is shown at time `now` [s], or that of a moment ago: while the sea runs, some times
-        a second; paused, and with single steps [s], always."""
+        """True if labels follow at time `now` [s]: a few times a second; paused, or with single steps [s], always."""
         moved, self.shown_time = now - self.shown_time, now
         wall = time.monotonic()
         if moved > 1.5 * step and wall - self.said_at < LABEL_INTERVAL:

@@ -1,4 +1,4 @@
-"""What the radial sea hands to its view and to the panel: frames and readings, immutable."""
+"""Frames and readings of the radial sea for its view and the panel, immutable."""
 
 import functools
 from collections.abc import Mapping
@@ -29,7 +29,7 @@ class JetParcels(NamedTuple):
 
 
 class RadialFrame(NamedTuple):
-    """What the view draws."""
+    """Drawn state of the sea."""
 
     params: Params
     time: float  # [s]

@@ -1,4 +1,4 @@
-"""What the tasks of the lab use of the radial sea: fluids, drafts, waves, light, oil of the jet, the grid."""
+"""Values of the radial sea for the tasks of the lab: fluids, drafts, waves, light, oil of the jet, the grid."""
 
 import functools
 import math
@@ -71,7 +71,7 @@ def speeds_and_decay(column: FluidColumn) -> tuple[float, float, float]:
 
 
 def wave_values(readings: "RadialReadings") -> dict[str, Measure]:
-    """Heights, and what the fluids do to a long and a short wave."""
+    """Heights, and the decay of a long and a short wave in the fluids."""
     column = readings.column
     speed, clean, decay = speeds_and_decay(column)
     height_left = readings.height / readings.clean_height if readings.clean_height > 0.0 else math.nan
@@ -90,7 +90,7 @@ def wave_values(readings: "RadialReadings") -> dict[str, Measure]:
 
 @functools.lru_cache(maxsize=4)
 def light_values(column: FluidColumn) -> dict[str, Measure]:
-    """What the surface reflects, and what comes back through a layer; kept, the light of a whole sky takes long."""
+    """Light reflected by the surface and returned through a layer; cached, as the light of a whole sky takes long."""
     oil, water = column.oil.refractive_index, column.water.refractive_index
     at_oil, at_water = normal_reflectance(oil), normal_reflectance(water)
     return {
@@ -107,7 +107,7 @@ def light_values(column: FluidColumn) -> dict[str, Measure]:
 
 
 def body_values(body: "BodyReading") -> dict[str, Measure]:
-    """One body: what it weighs, and how deep it floats."""
+    """Weight and draft of one body."""
     name, p = slug(body.title), body.prediction
     return {
         f"{name}_draft": Measure(p.draft, "m", f"{body.title}: draft at rest"),

@@ -92,7 +92,7 @@ def mixture_share(column: FluidColumn) -> float:
 
 
 def waterlines_of(frame: RadialFrame) -> list[Waterline]:
-    """Where the legs of the rig and the first bodies stand in the water, upright; then the rig's decks."""
+    """Upright positions of the rig's legs and the first bodies in the water; then the rig's decks."""
     lines = list(LEGS) if frame.params.rig else []
     room = MAX_WATERLINES - len(lines) - 1  # for bodies
     for kind, position, turn in zip(frame.kinds, frame.positions.tolist(), frame.rotations.tolist(), strict=True):
@@ -140,7 +140,7 @@ def material_of(light: Material, frame: RadialFrame) -> Material:
 
 
 def fire_light(power: float) -> dict[str, Any]:
-    """What a fire of this power [W] on the rig changes in a material: it lights the sea."""
+    """Changes of a material by the light of a fire of this power [W] on the rig."""
     x, y, z = FIRE
     intensity = VISIBLE_SHARE * radiated_light(power) * SUN_STRENGTH / SUN_IRRADIANCE
     red, green, blue = (intensity * part for part in FIRE_COLOUR)
@@ -148,7 +148,7 @@ def fire_light(power: float) -> dict[str, Any]:
 
 
 def spill_look(frame: RadialFrame) -> dict[str, Any]:
-    """What changes in a material inside a spill: a layer of oil, or oil and water mixed, which is brown and turbid.
+    """Changes of a material inside a spill: a layer of oil, or oil and water mixed, which is brown and turbid.
 
     The spill of the simulation has no end. It is drawn as a slick around the bodies, so that one sees clean water too.
     """
@@ -170,7 +170,7 @@ def spill_look(frame: RadialFrame) -> dict[str, Any]:
 
 
 def slick_look(p: Params, column: FluidColumn, slick: Slick) -> dict[str, Any]:
-    """What changes in a material where there is a slick of this oil."""
+    """Changes of a material under a slick of this oil."""
     # Rounded, as the decay of ripples is found again for each thickness.
     thickness = THICKNESS_RATIO ** round(math.log(slick.thickness) / math.log(THICKNESS_RATIO))
     layer = dataclasses.replace(column, thickness=thickness, fraction=0.0)

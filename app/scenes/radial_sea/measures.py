@@ -1,4 +1,4 @@
-"""What a sweep records of the radial sea: bodies beside predictions, and what oil leaves of the waves."""
+"""Measures of the radial sea for sweeps: bodies beside predictions, and the waves that oil leaves."""
 
 import math
 from typing import TYPE_CHECKING

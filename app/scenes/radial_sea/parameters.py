@@ -334,7 +334,7 @@ def own_densities_of(params: Params) -> tuple[float, ...]:
 
 
 def densities_of(params: Params) -> tuple[float, ...]:
-    """What the parameters say of densities [kg/m3]; equal ones make equal bodies."""
+    """Densities of the parameters [kg/m3]; equal ones make equal bodies."""
     return (params.density, *own_densities_of(params))
 
 

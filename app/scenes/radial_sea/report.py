@@ -123,7 +123,7 @@ def waves_text(readings: RadialReadings) -> Html:
 
 
 def oil_budget_text(budget: OilBudget) -> Html:
-    """Where the oil of the jet is, and what its slick leaves of a wave."""
+    """Place of the jet's oil, and the damping of a wave by its slick."""
     left = percent(budget.wave_left, 3) if budget.wave_left >= LEAST_LEFT else f"less than {percent(LEAST_LEFT)}"
     calmed = (
         "" if math.isnan(budget.wave_left) else f" A wave of {CROSSING_WAVE:g} m keeps {left} of its height across it."
@@ -146,7 +146,7 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
 
 
 def mixture_html(column: FluidColumn, law: str) -> Html:
-    """The viscosity of the mixture, by which law, of what drops in what, and whether that law holds for so many."""
+    """Viscosity of the mixture, its law, the dispersed and the continuous fluid, and the law's validity."""
     water = number(column.water.viscosity * 1e3)
     kinds = (
         "Oil and water do not dissolve in each other: they form an emulsion, oil in water or, in most spills at sea, "
@@ -164,7 +164,7 @@ def mixture_html(column: FluidColumn, law: str) -> Html:
 
 
 def drops_text(column: FluidColumn) -> str:
-    """What the drops of an emulsion are in, how many there are, and whether the law holds for so many."""
+    """Continuous fluid and drop fraction of an emulsion, and the law's validity."""
     kind = "water in oil" if drops_of(column) == "water" else "oil in water"
     ratio = column.surface.viscosity / column.continuous_fluid.viscosity
     times = f"{number(ratio)} times as viscous as the {kind.split()[-1]} alone"

@@ -120,20 +120,20 @@ def warm_up() -> Pieces:
 
 
 def needs(params: Params) -> tuple[str, ...]:
-    """What a scene with these parameters runs."""
+    """Compiled pieces that a scene with these parameters runs."""
     fire = (FIRE,) if params.fire or params.jet else ()
     tile = (TILE,) if params.surface == "fft" or params.compare else ()
     return MOTION, WAVES, BODIES, *fire, *tile
 
 
 def compile_motion() -> None:
-    """The step of a body. It is half of what bodies call: another process compiles the rest meanwhile."""
+    """The step of a body: half of the kernels of bodies. Another process compiles the rest meanwhile."""
     fleet = make_fleet([Body(Hull.box(1.0, 1.0, 1.0), density=500.0)])
     step(fleet, still_water(fleet, [(850.0, 0.2), (1025.0, math.inf)]), 1 / 60)
 
 
 def compile_with(changes: dict[str, Value]) -> None:
-    """What a scene calls with these parameters changed from their defaults."""
+    """Call the kernels of a scene with these parameters changed from their defaults."""
     scene = RadialSeaScene(check_record(Params, changes))
     if scene.params.bodies:
         scene.handle(Grab(0, (0.0, 0.0, 0.0)))
@@ -146,7 +146,7 @@ def compile_with(changes: dict[str, Value]) -> None:
 
 
 class WaveChoice(NamedTuple):
-    """What the waves are drawn from; equal choices have equal waves."""
+    """Choices that determine the random waves; equal choices have equal waves."""
 
     spectrum: str
     conditions: Conditions
@@ -154,7 +154,7 @@ class WaveChoice(NamedTuple):
 
 
 def wave_choice_of(params: Params) -> WaveChoice:
-    """What the parameters say of the waves."""
+    """Waves of these parameters."""
     return WaveChoice(spectrum_of(params).name, conditions_of(params), params.wave_count)
 
 
@@ -192,7 +192,7 @@ class RadialSeaScene:
 
     @property
     def faster(self) -> str:
-        """What would make a step faster: its time goes into bodies, particles and waves."""
+        """Advice on a faster step: its time goes into bodies, particles and waves."""
         return "fewer bodies, fewer waves or a larger step"
 
     @property
@@ -201,7 +201,7 @@ class RadialSeaScene:
         return ""
 
     def reset(self) -> None:
-        """The bodies at rest in their places, and no oil but what the parameters ask for."""
+        """The bodies at rest in their places, and only the oil of the parameters."""
         p = self.params
         self.time = 0.0
         self.column, self.age = self.fluids(p), exposure_of(p)
@@ -236,7 +236,7 @@ class RadialSeaScene:
         )
 
     def resume(self, kept: object) -> None:
-        """Go on from what `keep` gave."""
+        """Go on from a checkpoint of `keep`."""
         restore(self, kept)
         for client in set(self.bodies.holders.values()):
             self.bodies.release(client)
@@ -294,7 +294,7 @@ class RadialSeaScene:
         return self.sum if self.params.surface == "sum" else self.tile_now()
 
     def change_forces(self, params: Params) -> None:
-        """Take parameters under way: only what their change affects is replaced."""
+        """Take parameters while the sea runs: only the affected parts are replaced."""
         old, self.params = self.params, params
         column, choice = self.fluids(params), wave_choice_of(params)
         other_fluids = column != self.column or exposure_of(params) != exposure_of(old)
@@ -329,7 +329,7 @@ class RadialSeaScene:
         return column_of(params) if self.student is None else self.student.column(params)
 
     def take_student(self, student: "StudentRadialSea") -> None:
-        """Take what a student's functions have come to."""
+        """Take the results of a student's functions."""
         changed = student.collect()
         if not changed:
             return
@@ -350,7 +350,7 @@ class RadialSeaScene:
             self.bodies.set_down(box, draft)
 
     def forget_costs(self) -> None:
-        """Forget what the surfaces cost: it may have changed."""
+        """Forget the cost of the surfaces: it may have changed."""
         self.costs, self.compared_at = {}, -math.inf
 
     def handle(self, command: SceneCommand) -> None:
@@ -448,7 +448,7 @@ class RadialSeaScene:
         return self.plot_rows.take()
 
     def frame(self) -> RadialFrame:
-        """What to draw."""
+        """Frame to draw."""
         p, bodies = self.params, self.bodies
         key = (self.time, p, self.camera)
         if key != self.drawn:
@@ -521,7 +521,7 @@ class RadialSeaScene:
         return self.known_clean[1]
 
     def timed_surface(self, name: str, sea: RadialSea | TileSea, centre: tuple[float, float]) -> RadialSurface:
-        """The surface of a sea on the grid about a centre [m]; what it costs is kept under `name`."""
+        """Surface of a sea on the grid about a centre [m]; its cost is recorded under `name`."""
         start = time.perf_counter()
         surface = sea.on(self.grid, self.time, centre)
         taken = time.perf_counter() - start

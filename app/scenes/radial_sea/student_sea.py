@@ -30,7 +30,7 @@ LEAST = 1e-12  # share of a wave that is left at least: below, a rate cannot be 
 
 
 class StudentNumbers(NamedTuple):
-    """What the student's functions come to; None where they give nothing."""
+    """Results of the student's functions; None without a result."""
 
     viscosity: float | None  # [Pa s] of the mixture
     decay: Callable[[np.ndarray], np.ndarray] | None  # rate (k) [1/s]
@@ -46,7 +46,7 @@ class StudentRadialSea(TableUser):
         self.numbers = StudentNumbers(None, None, None, None)  # that they come to
 
     def want(self, p: Params, bodies: FloatingBodies) -> None:
-        """Ask for the tables that the parameters have a use for; what has no use any more is not taken."""
+        """Ask for the tables that the parameters need; tables that are no longer needed are not taken."""
         column, calls, idle = column_of(p), {}, {}
         oil, water = column.oil, column.water
         if column.kind == "mixed":
@@ -94,7 +94,7 @@ class StudentRadialSea(TableUser):
         return dataclasses.replace(column, oil=column.oil._replace(refractive_index=index))
 
     def report(self, p: Params, bodies: FloatingBodies) -> None:
-        """Tell the panel what runs, and what differs from the program's."""
+        """Report to the panel the functions that run, and their differences from the program's."""
         viscosity, decay, index, draft = self.numbers
         program, wave = column_of(p), np.array([SHOWN_WAVE])
         differences: list[tuple[str, float, float, str]] = []
@@ -122,7 +122,7 @@ def lifetime(rate: float) -> float:
 
 
 def numbers_of(tables: dict[str, Table]) -> StudentNumbers:
-    """What tables come to."""
+    """Results read from tables."""
     index = decay = None
     if REFLECTANCE in tables:
         root = math.sqrt(float(tables[REFLECTANCE].values[0]))

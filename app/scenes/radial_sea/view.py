@@ -93,7 +93,7 @@ class View:
         self.stains = Stains(server)
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
-        """Position and target [m] of a camera that has not been moved: beside what is followed."""
+        """Position and target [m] of a camera that has not been moved: beside the followed object."""
         if self.followed_body is None or params.follow not in FOLLOWED_BODY:
             return VIEWS.get(params.follow, self.CAMERA)
         position, target = self.followed_body + offset_of_view(params)
@@ -153,7 +153,7 @@ class View:
             self.water.set_waterlines(waterlines_of(frame))
 
     def show_fire(self, frame: RadialFrame) -> None:
-        """Draw flames, smoke and the oil of the jet, and light what is near the fire."""
+        """Draw flames, smoke and the oil of the jet, and the light of the fire."""
         if self.flames is None and (frame.fire is not None or frame.jet is not None):
             self.flames = Flames(self.server, "/flames")
         if self.flames is not None:
@@ -230,7 +230,7 @@ class View:
             line.show(frame.pulls[i] if i < len(frame.pulls) else None)
 
     def move_camera(self, frame: RadialFrame) -> None:
-        """Move to what is followed when it is chosen, then along with it; tell the scene where the camera is."""
+        """Move to the followed object when it is chosen, then along with it; report the camera's place to the scene."""
         p = frame.params
         body = FOLLOWED_BODY.get(p.follow, -1)
         target = frame.positions[body].astype(float) if 0 <= body < len(frame.positions) else None
@@ -294,5 +294,5 @@ def handle_scale(frame: RadialFrame, kind: str) -> float:
 
 
 def warm_up() -> Pieces:
-    """What the drawing calls."""
+    """Call the kernels of the drawing."""
     return {"packing": compile_packing, "fields of the surface": compile_surface_fields}

@@ -42,7 +42,7 @@ class Slick(NamedTuple):
 
 
 class OilBudget(NamedTuple):
-    """Where the oil of the jet is."""
+    """Budget of the jet's oil."""
 
     ejected: float  # [m3]
     in_flight: float  # [m3]
@@ -55,7 +55,7 @@ class OilBudget(NamedTuple):
 
 
 class JetTotal(NamedTuple):
-    """What jets ejected."""
+    """Oil that jets ejected."""
 
     ejected: float = 0.0  # [m3]
     fed: float = 0.0  # [m3]
@@ -63,7 +63,7 @@ class JetTotal(NamedTuple):
 
 
 class FireSettings(NamedTuple):
-    """What a fire is made with."""
+    """Arguments of a fire."""
 
     power: float  # [W]
     parcels: int
@@ -71,21 +71,21 @@ class FireSettings(NamedTuple):
 
 
 class JetSettings(NamedTuple):
-    """What a jet is made with."""
+    """Arguments of a jet."""
 
     flow: float  # [m3/s]
     parcels: int
 
 
 def fire_settings(params: Params) -> FireSettings | None:
-    """What the parameters say of the fire; None where nothing burns."""
+    """Fire of these parameters; None if nothing burns."""
     if not (params.rig and params.fire):
         return None
     return FireSettings(params.fire_power * 1e6, params.particles, wind_of(params))
 
 
 def jet_settings(params: Params) -> JetSettings | None:
-    """What the parameters say of the jet; None where it is shut."""
+    """Jet of these parameters; None if it is shut."""
     if not (params.rig and params.jet):
         return None
     return JetSettings(params.jet_flow, max(params.particles // 2, MIN_JET_PARCELS))
@@ -165,7 +165,7 @@ class WellBlowout:
         return Slick((x, y), radius, slick_thickness(volume, radius))
 
     def oil_budget(self, column: FluidColumn) -> OilBudget:
-        """Where the oil is."""
+        """Budget of the oil."""
         slick, jet, closed = self.slick(column), self.jet, self.closed_jets_total
         return OilBudget(
             ejected=closed.ejected + (jet.ejected if jet is not None else 0.0),

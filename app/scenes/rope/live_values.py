@@ -1,4 +1,4 @@
-"""What the tasks of the lab use of the rope: its stretch, its tension, the limits of its step and stiffness."""
+"""Values of the rope for the tasks of the lab: its stretch, its tension, the limits of its step and stiffness."""
 
 from typing import TYPE_CHECKING
 

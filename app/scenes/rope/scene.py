@@ -57,7 +57,7 @@ PLOTS = {
 
 
 class RopeFrame(NamedTuple):
-    """What the view draws of a rope: the student's where there is one, and then the program's beside it."""
+    """Drawn state of a rope: the student's if there is one, with the program's beside it."""
 
     points: NDArray[np.float32]  # (n, 3) [m], C-contiguous
     reference: NDArray[np.float32] | None  # (n, 3) [m] the program's rope beside the student's
@@ -74,7 +74,7 @@ class RopeFrame(NamedTuple):
 
 
 class NumericalCost(NamedTuple):
-    """What an implicit method costs, since it was chosen."""
+    """Cost of an implicit method since it was chosen."""
 
     corrections: float  # Newton corrections a step, lately
     numerical_dissipation: float  # [J] that the method took, negative where it fed the motion
@@ -110,7 +110,7 @@ def compile_gauge() -> None:
 
 
 def needs(params: Params) -> tuple[str, ...]:
-    """What a scene with these parameters runs."""
+    """Compiled pieces that a scene with these parameters runs."""
     return integrator_or_fallback(params.integrator, build(params), params.time_step)[0].name, GAUGE
 
 
@@ -168,7 +168,7 @@ class RopeScene:
 
     @property
     def faster(self) -> str:
-        """What would make a step faster."""
+        """Advice on a faster step."""
         return faster_steps(self.integrator, self.stability.stability, "points")
 
     def reset(self) -> None:
@@ -187,11 +187,11 @@ class RopeScene:
             self.student.restart(rows_of(self.state.x), rows_of(self.state.v))
 
     def keep(self) -> dict[str, object]:
-        """State, energy account and what is moved, as they are now."""
+        """Checkpoint: state, energy account and moved objects."""
         return copied({name: getattr(self, name) for name in CHANGING})
 
     def resume(self, kept: object) -> None:
-        """Go on from what `keep` gave."""
+        """Go on from a checkpoint of `keep`."""
         restore(self, kept)
         self.handles.drag.clear()
         self.counted = self.state.force_evals, self.state.steps
@@ -288,7 +288,7 @@ class RopeScene:
             self.state = good
 
     def has_news(self) -> bool:
-        """Whether the stability, or the cost of an implicit method, may have changed since the last assessment."""
+        """True if the stability, or the cost of an implicit method, may have changed since the last assessment."""
         moved = float(np.abs(self.state.x - self.assessed_x).max())
         return self.integrator.implicit or moved > MIN_MOVE_TO_ASSESS * self.net.families[0].rest
 
@@ -318,7 +318,7 @@ class RopeScene:
         return NumericalCost(self.corrections, taken, account.damping_dissipation(self.state))
 
     def diagnosis(self) -> str:
-        """Why the run diverged, and what would hold."""
+        """Cause of the divergence, and settings that would hold."""
         g = self.stability.stability
         alternative = leapfrog_alternative(self.integrator, g)
         return divergence_text(self.state.t, self.integrator, self.step, g, alternative)
@@ -349,7 +349,7 @@ class RopeScene:
         return rope_tension(self.net, self.state.x)
 
     def frame(self) -> RopeFrame:
-        """What to draw; kept for a while, to be shown again if the run diverges."""
+        """Frame to draw; kept for a while, to be shown again if the run diverges."""
         params, handles = self.params, self.handles
         weight = self.net.mass * abs(self.net.gravity[2]) * (params.points - 1)
         both = None if self.student is None else self.student.drawn(rows_of(self.state.x))

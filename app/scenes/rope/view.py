@@ -129,7 +129,7 @@ class View:
             set_tube_colours(frame.tension, self.samples, frame.full_scale, SCALE, SIDES, self.rgb)
 
     def colours_differ(self, frame: RopeFrame) -> bool:
-        """Whether a frame's colours can be told from those that are shown."""
+        """True if a frame's colours can be told from those that are shown."""
         if self.painted != (frame.colour, frame.full_scale):
             return True
         return float(np.abs(frame.tension - self.tension).max()) >= COLOUR_TOLERANCE * frame.full_scale
@@ -236,7 +236,7 @@ def bead_radius(points: np.ndarray) -> float:
 
 
 def warm_up() -> Pieces:
-    """What the drawing calls."""
+    """Call the kernels of the drawing."""
     return {"drawing": compile_drawing, "packing": compile_packing}
 
 

@@ -1,1 +1,1 @@
-"""What the scenes of springs (rope, race, cloth) share. This folder holds no scene."""
+"""Common parts of the scenes of springs (rope, race, cloth). This folder holds no scene."""

@@ -1,4 +1,4 @@
-"""A net of springs that left its bounds: its last moments, why that was, and what would hold."""
+"""A spring network that left its bounds: its last frames, the cause, and settings that would hold."""
 
 import collections
 import math
@@ -25,7 +25,7 @@ class LastMoments:
         self.frames: collections.deque[tuple[float, object, NDArray[np.float32]]] = collections.deque(maxlen=MOMENTS)
 
     def add(self, t: float, frame: object, points: NDArray[np.float32]) -> None:
-        """Keep the frame of time t [s], unless it is kept already. points: (..., 3) [m] of what moves."""
+        """Keep the frame of time t [s], unless it is kept already. points: (..., 3) [m] that move."""
         if not self.frames or self.frames[-1][0] < t:
             self.frames.append((t, frame, points.reshape(-1, 3)))
 
@@ -44,7 +44,7 @@ def stability_number(value: float) -> str:
 
 
 def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge, alternative: str) -> str:
-    """The sentences for the panel. t [s]; step [s]; alternative: what else would hold, or ""."""
+    """The sentences for the panel. t [s]; step [s]; alternative: another setting that would hold, or ""."""
     method = method_name(integrator.name)
     start = f"Unstable: the run diverged at t = {t:.2f} s."
     limit = stability_number(gauge.limit)

@@ -29,7 +29,7 @@ class Drag:
         self.hold: Hold | None = None
 
     def may_move(self, client: int) -> bool:
-        """Whether this browser holds a particle, or nobody does."""
+        """True if this browser holds a particle, or nobody does."""
         return self.hold is None or self.hold.client == client
 
     def move(self, client: int, particle: int, start: Vector, target: Vector) -> None:
@@ -41,7 +41,7 @@ class Drag:
         self.hold.hand.target = target
 
     def release(self, client: int) -> None:
-        """Let go of what this browser holds."""
+        """Release the particle that this browser holds."""
         if self.hold is not None and self.hold.client == client:
             self.hold = None
 

@@ -40,7 +40,7 @@ def step_mark(critical_step: float) -> str:
 
 
 def colour_scale(low: str, name: str, high: str) -> Html:
-    """The colour scale with what its two ends mean, and the name of the quantity."""
+    """The colour scale with the values of its two ends, and the name of the quantity."""
     return fill(
         '<div class="springtide-scale" style="--light-scale:{};--dark-scale:{}"></div>'
         '<div style="display:flex;justify-content:space-between">'

@@ -1,4 +1,4 @@
-"""What the tasks of the lab use of every scene of springs: how near its limit a step is."""
+"""Values of every scene of springs for the tasks of the lab: its step relative to the limit."""
 
 from app.scenes.contract import Measure
 from sim.springs.stability import Gauge

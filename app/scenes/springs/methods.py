@@ -1,4 +1,4 @@
-"""What the panel calls the methods of integration, in the order in which one looks for them."""
+"""Names of the integration methods in the panel, in the order of its list."""
 
 from sim.parameters import in_words
 from sim.springs import INTEGRATORS

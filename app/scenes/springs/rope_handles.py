@@ -1,4 +1,4 @@
-"""What a user moves of a rope: its root, the sphere, and one dragged point."""
+"""Parts of a rope that a user moves: its root, the sphere, and one dragged point."""
 
 import dataclasses
 import math
@@ -31,12 +31,12 @@ class RopeHandles:
         self.drag = Drag()
 
     def move_root(self, position: Vector) -> None:
-        """Put the root there, or what it swings about."""
+        """Move the root, or the centre of its swing."""
         self.home = self.root.target = position
 
     @property
     def at_rest(self) -> bool:
-        """Whether nothing is moved."""
+        """True if nothing is moved."""
         return self.root.at_rest and self.sphere.at_rest and self.drag.hold is None
 
     def restart(self) -> None:

@@ -1,4 +1,4 @@
-"""What would make the steps of a net of springs faster."""
+"""Advice on faster steps of a spring network."""
 
 from app.formats.formatting import seconds
 from app.scenes.springs.methods import method_name
@@ -10,7 +10,7 @@ CAUTION = 0.9  # of the limit of a method, up to which a step is proposed
 
 
 def faster_steps(integrator: Integrator, gauge: Gauge, points: str, *, touches_itself: bool = False) -> str:
-    """Proposals in words. gauge: of the step that is taken; points: what the net has fewer of where it is coarser."""
+    """Proposals in words. gauge: of the present step; points: name of the elements that a coarser net has fewer of."""
     proposals = [f"fewer {points}"]
     if touches_itself:
         proposals.append("no self-collision")

@@ -1,4 +1,4 @@
-"""The student's rope or cloth beside the program's, as a scene sees it: what it is asked to do, how far it has come.
+"""The student's rope or cloth beside the program's, as a scene sees it: its jobs and its progress.
 
 The program's net never waits for the student's. Each piece of its motion is recorded and sent on; the picture shows
 both at the moment that the student's has reached, so that what differs is the nets and not the time.
@@ -84,7 +84,7 @@ class StudentNet:
         self.send()
 
     def send(self) -> None:
-        """Hand on what waits, unless a job is under way: as many steps as are done in `JOB_TIME`."""
+        """Hand over the waiting steps unless a job is running: as many as are done in `JOB_TIME`."""
         if self.sent or not self.waiting or self.left:
             return
         most = JOB_TIME / self.cost if self.cost else 1.0
@@ -172,7 +172,7 @@ def forces_of(net: Net, start: float) -> Forces:
 
 
 def air_of(p: Any) -> dict[str, Any]:
-    """What the air does to a net, as its kernels see it."""
+    """Air forces on a net, as its kernels take them."""
     if not getattr(p, "has_air", False):  # a rope has none
         return {}
     return {"wind": (p.wind_x, p.wind_y, p.wind_z), "air_drag": p.air_drag, "air_lift": p.air_lift}

@@ -1,4 +1,4 @@
-"""What the drawings of rope and race share: sky, floor, the arrows at the root, and the line of a drag."""
+"""Common parts of the drawings of rope and race: sky, floor, the arrows at the root, and the line of a drag."""
 
 import numpy as np
 import viser
@@ -25,8 +25,7 @@ class RopeSurroundings:
         self.pull = PullLine(server)
 
     def show(self, floor: bool, grid: bool, root: Vector | None, pull: PullFrame | None, points: np.ndarray) -> None:
-        """Assign what has changed. root: [m] of its arrows; None hides them. points: (n, 3) as drawn [m]; the pull
-        names one of them."""
+        """Assign changes. root: [m] of its arrows; None hides them. points: (n, 3) as drawn [m]; the pull names one."""
         self.surroundings.show(floor, grid)
         self.root.show(root)
         if pull is None:

@@ -1,4 +1,4 @@
-"""What the tasks of the lab use of the square sea: heights, lengths and speeds here, in other winds, on the Earth."""
+"""Values of the square sea for the tasks of the lab: heights, lengths and speeds here, in other winds, on the Earth."""
 
 import math
 from typing import TYPE_CHECKING
@@ -40,7 +40,7 @@ def open_sea(params: Params, wind_speed: float, g: float) -> tuple[float, float]
 
 
 def live_values(snapshot: Snapshot) -> dict[str, Measure]:
-    """The numbers of a snapshot. What is measured is there once the sea has been measured."""
+    """The numbers of a snapshot. Measured values are there once the sea has been measured."""
     p: Params = snapshot.frame.params
     readings: SeaReadings = snapshot.readings
     g = gravity(p)

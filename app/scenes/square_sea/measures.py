@@ -1,4 +1,4 @@
-"""What a sweep records of the square sea: its statistics as drawn, and theory of the same tile."""
+"""Measures of the square sea for sweeps: its statistics as drawn, and theory of the same tile."""
 
 from typing import TYPE_CHECKING
 

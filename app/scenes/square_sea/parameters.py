@@ -1,4 +1,4 @@
-"""The parameters of the square sea, its presets, and what of the sea they describe."""
+"""The parameters of the square sea, its presets, and the sea that they describe."""
 
 import dataclasses
 import math
@@ -237,7 +237,7 @@ PRESETS: dict[str, dict[str, Any]] = {
 
 
 class RainSettings(NamedTuple):
-    """What the rainfall depends on: when one of these changes, it starts again."""
+    """Parameters of the rainfall: when one of these changes, it starts again."""
 
     rate: float  # [mm/h]
     drops: int  # largest number of drops drawn
@@ -276,7 +276,7 @@ def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any
 
 
 def rain_settings(params: Params) -> RainSettings:
-    """What the rainfall depends on."""
+    """Parameters of the rainfall."""
     p = params
     bearing = math.radians(p.wind_direction)
     wind = p.wind_speed * math.cos(bearing), p.wind_speed * math.sin(bearing)

@@ -30,7 +30,7 @@ WATER_DENSITY = 1000.0  # [kg/m3]
 
 
 class RainFrame(NamedTuple):
-    """What is drawn of the rain, float32."""
+    """Drawn state of the rain, float32."""
 
     drops: NDArray[np.float32]  # (n, 3) [m]
     velocity: NDArray[np.float32]  # (n, 3) [m/s]

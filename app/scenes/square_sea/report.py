@@ -45,7 +45,7 @@ def readout(snapshot: Snapshot) -> Html:
 
 
 def foam_text(r: "SeaReadings", g: float) -> str:
-    """How much of the sea is foam, and by what it is compared."""
+    """Foam cover of the sea, and the law that it is compared with."""
     covered = f"Foam covers {percent(r.foam_cover)} of the sea"
     if not r.is_choppy:
         return "No foam: without choppiness the surface is not pressed together anywhere."
@@ -78,7 +78,7 @@ def depth_line(params: Params) -> str:
 
 
 def fetch_line(c: FetchConditions) -> str:
-    """Where the sea is fully grown."""
+    """Conditions of a fully grown sea."""
     full = fetch_of_full_growth(c)
     if c.fetch >= full:
         return f"fully grown, as from {metres(full)} on: a longer fetch adds nothing, and the peak factor is 1"
@@ -204,6 +204,6 @@ def viscosity_line(params: Params, area: float) -> str:
 
 
 def is_weak(k: float, viscosity: float, g: float) -> bool:
-    """Whether a wave of wavenumber k [rad/m] decays at 2 nu k^2 within 5 %."""
+    """True if a wave of wavenumber k [rad/m] decays at 2 nu k^2 within 5 %."""
     _, decay = viscous_root(k, viscosity, g)
     return abs(float(decay) - 2.0 * viscosity * k**2) <= 0.05 * 2.0 * viscosity * k**2

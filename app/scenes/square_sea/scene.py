@@ -59,7 +59,7 @@ FOAM_VISIBLE_SHARE = 1.2  # multiple of the fading time for which a patch of foa
 
 
 class SeaFrame(NamedTuple):
-    """What the view draws of a sea."""
+    """Drawn state of a sea."""
 
     params: Params
     time: float  # [s]
@@ -105,7 +105,7 @@ def unpack_frame(packed: PackedFrame) -> SeaFrame:
 
 
 def gauge_home(length: float) -> tuple[float, float]:
-    """Where the wave gauge stands [m] on a tile of this length [m] until a click places it."""
+    """Initial place of the wave gauge [m] on a tile of this length [m], until a click moves it."""
     x, y = (
         math.copysign(min(abs(share) * length, limit), share)
         for share, limit in zip(GAUGE_OFFSET_SHARE, MAX_GAUGE_OFFSET, strict=True)
@@ -143,7 +143,7 @@ def warm_up() -> Pieces:
 
 
 def compile_drawn_sea() -> None:
-    """All that a small sea with rain calls."""
+    """Call all kernels of a small sea with rain."""
     small = Params(size="64", mesh="32", length=64.0, rain=50.0, plot_wave_spectrum=True)
     for params in (small, Params(**{**vars(small), "choppiness": 0.0})):
         scene = SquareSeaScene(params)
@@ -197,7 +197,7 @@ class SquareSeaScene:
         return copied({name: getattr(self, name) for name in CHANGING}, self.foam)
 
     def resume(self, kept: object) -> None:
-        """Go on from what `keep` gave; the wave gauge stays where it is, and forgets what came later."""
+        """Go on from a checkpoint of `keep`; the wave gauge keeps its place and forgets later values."""
         restore(self, kept)
         while self.gauge.trace and self.gauge.trace[-1][0] > self.time:
             self.gauge.trace.pop()
@@ -287,7 +287,7 @@ class SquareSeaScene:
         return conditions(self.params) if self.student is None else self.student.conditions(self.params)
 
     def take_student(self, student: "StudentSea") -> None:
-        """Take what a student's functions have come to."""
+        """Take the results of a student's functions."""
         transition = student.collect(self.params)
         if transition is None:
             return
@@ -320,12 +320,12 @@ class SquareSeaScene:
 
     @property
     def gauge_shown(self) -> bool:
-        """Whether the wave gauge is drawn and read."""
+        """True if the wave gauge is drawn and read."""
         return self.gauge_placed or self.params.plot_wave_gauge or self.params.plot_wave_spectrum
 
     @property
     def statistics_due(self) -> bool:
-        """Whether the statistics are shown and out of date."""
+        """True if the statistics are shown and out of date."""
         return self.params.statistics and abs(self.time - self.measured_at) >= STATISTICS_INTERVAL
 
     def frame(self) -> SeaFrame:

@@ -13,7 +13,7 @@ PEAK_WIDTH = 0.08  # of the peak frequency: waves no farther from the peak are c
 
 
 class Theory(NamedTuple):
-    """What the spectrum says."""
+    """Theory of the spectrum."""
 
     statistics: Statistics  # as the tile resolves it
     scatter: float  # relative standard deviation of one sea's Hs

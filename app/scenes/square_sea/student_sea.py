@@ -32,7 +32,7 @@ class StudentSea(TableUser):
         self.spectrum: Spectrum[Any] | None = None  # of the taken table
 
     def want(self, p: Params) -> None:
-        """Ask for the tables that the parameters have a use for; what has no use any more is not taken."""
+        """Ask for the tables that the parameters need; tables that are no longer needed are not taken."""
         calls, idle = {}, {}
         if p.planet == "by mass" and p.radius_rule == "same_density":
             declared = parameters_of(Params)["gravity"]
@@ -79,7 +79,7 @@ class StudentSea(TableUser):
         return found
 
     def report(self, p: Params) -> None:
-        """Tell the panel what runs, and how the sea differs from the program's."""
+        """Report to the panel the functions that run, and the difference of the sea from the program's."""
         differences = ()
         if self.taken:
             own, program = (

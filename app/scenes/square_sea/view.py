@@ -87,7 +87,7 @@ class View:
         return camera_of(params.view, params.length)
 
     async def on_click(self, event: Any) -> None:
-        """Tell the scene what the mouse points at."""
+        """Report the point under the mouse to the scene."""
         origin, direction = finite_vector(event.ray_origin, MAX_CLICK_DISTANCE), finite_vector(event.ray_direction)
         if origin is not None and direction is not None:
             self.post(Point(origin, direction))
@@ -262,5 +262,5 @@ def upright(radius: float, low: float, high: float) -> tuple[np.ndarray, np.ndar
 
 
 def warm_up() -> Pieces:
-    """What the drawing calls."""
+    """Call the kernels of the drawing."""
     return {"packing": compile_packing, "fields of the surface": compile_surface_fields}

@@ -1,1 +1,1 @@
-"""What is measured or computed about a net: energies, growth, settling, reference runs."""
+"""Analysis of a spring network: energies, growth, settling, reference runs."""

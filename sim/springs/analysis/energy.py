@@ -1,4 +1,4 @@
-"""The energy ledger: kinetic, elastic, gravity, contact; what damping took; what pins, pull, sphere and wind put in.
+"""The energy ledger: kinetic, elastic, gravity, contact; damping losses; work of pins, pull, sphere and wind.
 
 energy - initial + dissipated - work is numerical error: the exact motion keeps it at 0.
 Potential of gravity and kinetic energy are those of the free particles; pins trade through `work`.
@@ -98,7 +98,7 @@ def contact_energy(x, t, p):
 
 @kernel(noalias=True, inline=True)
 def row_damping_power(x, v, a, b, count, n, axial):
-    """What damping of 1 N s/m takes [W] in the links (a, b), (a + 1, b + 1), ..."""
+    """Power lost to damping of 1 N s/m [W] in the links (a, b), (a + 1, b + 1), ..."""
     total = 0.0
     if axial:
         for j in range(count):
@@ -117,7 +117,7 @@ def row_damping_power(x, v, a, b, count, n, axial):
 
 @kernel(allocates=False)
 def link_damping_power(x, v, p):
-    """What the links' damping takes [W]."""
+    """Power lost to the links' damping [W]."""
     total = 0.0
     n = np.uint64(p.rows * p.cols)
     for q in range(p.offsets.shape[0]):
@@ -141,7 +141,7 @@ def link_damping_power(x, v, p):
 
 @kernel(allocates=False)
 def moving_pins_power(x, v, p, elastic, damping):
-    """What moving pins put in [W] through the links' elastic forces, their damping, or both: 1.0 counts it, 0.0 not."""
+    """Power of moving pins [W] through the links' elastic forces, their damping, or both: 1.0 counts it, 0.0 not."""
     work = 0.0
     n = p.rows * p.cols
     if p.pins.shape[0] == 0:
@@ -274,7 +274,7 @@ def power(x, v, t, p, with_damping):
 
 @kernel(allocates=False)
 def add_power(x, v, t, p, with_damping, weight, ledger):
-    """Add weight [s] times the power dissipated to ledger[0] [J], and of what was put in to ledger[1]."""
+    """Add weight [s] times the power dissipated to ledger[0] [J], and times the power supplied to ledger[1]."""
     dissipated, work = power(x, v, t, p, with_damping)
     ledger[0] += weight * dissipated
     ledger[1] += weight * work
@@ -296,7 +296,7 @@ def open_damping(v, p, before):
 
 @kernel(allocates=False)
 def close_damping(x, v, p, s, kinetic, by_sphere, before, ledger):
-    """Book what damping did in a time s [s] since `open_damping`, which returned `kinetic`.
+    """Book the work of damping in a time s [s] since `open_damping`, which returned `kinetic`.
 
     The particles' loss is exact, and so is the work of a moving sphere, `by_sphere` [J]. What moving pins put in
     through damping forces is that at the mean velocity. All that is put in so is dissipated too.

@@ -1,4 +1,4 @@
-"""The energy account of a run: what is stored, what damping took, what was put in, and what is numerical error.
+"""The energy account of a run: stored, dissipated and supplied energy, and numerical error.
 
 stored + dissipated - work - initial is 0 in the exact motion. The kernels add to `dissipated` and `work` of `State`
 (`add_power`). Where the parameters of a running net change, its stored energy jumps. The change has done that work, as
@@ -30,7 +30,7 @@ class EnergyAccount:
         state.work += self.stored(net, state) - stored
 
     def start_method(self, net: Net, state: State) -> None:
-        """Another method of integration takes over: what it takes is counted from here on."""
+        """Another integrator takes over: its losses are counted from here on."""
         self.error_before_method = self.error(net, state)
         self.dissipated_before_method = state.dissipated
 

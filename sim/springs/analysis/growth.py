@@ -1,4 +1,4 @@
-"""Stability measured: whether what an integrator computes grows, found by letting it run through its own kernel.
+"""Stability measured: growth of a disturbance in a run of an integrator's kernel.
 
 Beside theory (`sim.springs.stability`), which it does not use: the oscillator is a spring of no rest length, so that
 a net of two points is exactly linear, and the rope is the real one.
@@ -97,7 +97,7 @@ def stir(net: Net, state: State, joule: float) -> None:
 
 
 def outcome(integrator: Integrator, net: Net, h: float, rest: NDArray[np.float64], most: int = 1 << 14) -> int:
-    """What becomes of a small disturbance of `net` at rest at `rest` (3, rows, cols) [m] in steps of h [s].
+    """Growth of a small disturbance of `net` at rest at `rest` (3, rows, cols) [m] in steps of h [s].
 
     STABLE: it decayed, or did not grow within `most` steps. BOUNDED_GROWTH: its amplitude grew a hundredfold, and then
     the nonlinear links bounded it. EXPLODING: nothing bounds it. The size of a disturbance is its energy above the

@@ -38,7 +38,7 @@ class ReferenceRun:
     """The reference motion of one net."""
 
     def __init__(self, net: Net, length: float, count: int = 1) -> None:
-        """length: [m] of the rope, for what counts as lost. count: of references in the race."""
+        """length: [m] of the rope, scale of a lost reference. count: of references in the race."""
         x = net.x0.reshape(-1)
         self.length = length
         self.runs = [[x.copy(), np.zeros(x.size)], [nudged(x), np.zeros(x.size)]]

@@ -1,4 +1,4 @@
-"""Where a net comes to rest, floor and sphere included, found by letting it fall."""
+"""Rest state of a net, floor and sphere included, found by letting it fall."""
 
 import dataclasses
 

@@ -1,4 +1,4 @@
-"""What the links of a rope carry."""
+"""Tension of the links of a rope."""
 
 import math
 

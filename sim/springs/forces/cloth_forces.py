@@ -22,7 +22,7 @@ def cloth_scratch_size(cols):
 
 @kernel(inline=True)
 def place(q, i, m):
-    """Where the row i of family q begins, its padding behind it."""
+    """Start of row i of family q, with its padding behind it."""
     return np.uint64(((q * RING + i % RING) * 3) * m + PAD)
 
 
@@ -34,7 +34,7 @@ def clear(f, o, n):
 
 @kernel(noalias=True, inline=True)
 def sum_row(f, w, mass, v, a, o, ow, n, g, c, f01, f10, g10, f11, g11, f1m, g1m, f02, f20, g20):
-    """a = w (m g - c v + what each link pulls at its first end - what it pulls at its second)."""
+    """a = w (m g - c v + pull of the links that begin here - pull of those that end here)."""
     one, two = np.uint64(1), np.uint64(2)
     for j in range(n):
         along = f[f01 + j] - f[f01 + j - one] + f[f10 + j] - f[g10 + j]

@@ -80,7 +80,7 @@ def nearest(x, n, cx, cy, cz):
 
 @kernel(noalias=True, allocates=False)
 def touches(x, t, p, on_sphere):
-    """Whether any point is in contact."""
+    """True if any point is in contact."""
     n = np.uint64(p.rows * p.cols)
     if on_sphere:
         s = t - p.epoch

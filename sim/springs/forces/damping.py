@@ -193,7 +193,7 @@ def damp_grab(v, s, p):
 
 @kernel
 def make_decay(p, s):
-    """What `damp` needs of a time s [s], (families + 1, rows cols): the share of each family's link that begins at a
+    """Factors of `damp` for a time s [s], (families + 1, rows cols): the share of each family's link that begins at a
     point, then what drag leaves of each point's velocity, 1 of pins."""
     families, n, w = p.offsets.shape[0], p.rows * p.cols, p.inverse_masses
     decay = np.zeros((families + 1, n))
@@ -298,7 +298,7 @@ def damp_surfaces(x, v, t, s, p, reverse):
 
 @kernel(inline=True)
 def is_odd(t, h, s):
-    """Whether the step s steps after time t is of the odd ones, however steps are shared out among calls."""
+    """True if the step s steps after time t is of the odd ones, however steps are shared out among calls."""
     return (math.floor(t / h + 0.5) + s) % 2 == 1
 
 

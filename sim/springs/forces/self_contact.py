@@ -109,7 +109,7 @@ def mean_shift(x, seen, o, n):
 
 @kernel(noalias=True, inline=True)
 def farthest(x, seen, n):
-    """Largest squared distance of any particle from where it was seen, but for what all have moved together."""
+    """Largest squared displacement of a particle since the list was made, relative to the mean displacement."""
     mx, my, mz = mean_shift(x, seen, np.uint64(0), n), mean_shift(x, seen, n, n), mean_shift(x, seen, n + n, n)
     most = 0.0
     for j in range(n):
@@ -172,7 +172,7 @@ def add_self_contacts(x, v, p, with_damping, a):
 
 @kernel(allocates=False)
 def damp_self_contacts(x, v, s, p, reverse):
-    """The damping of touching pairs alone for a time s [s], each exact or, separating, at most what pushes them."""
+    """Damping of touching pairs alone for a time s [s]: exact, but for separating pairs at most their push."""
     n = p.rows * p.cols
     count = refresh_pairs(x, p)
     for turn in range(count):

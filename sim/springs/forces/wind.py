@@ -107,7 +107,7 @@ def wind_power(x, v, p):
 
 @kernel(noalias=True, allocates=False)
 def blow(x, v, s, p, f, a, middle, with_account, ledger):
-    """The air's push for a time s [s], by the explicit midpoint rule; books what it put in and what it dissipated.
+    """The air's push for a time s [s], by the explicit midpoint rule; books its work and dissipation.
 
     The wind does the work of its force at its own speed; what the particles do not get of it is dissipated.
     a, middle: scratch (3 rows cols,); f: of `make_scratch`.

@@ -21,7 +21,7 @@ from sim.validation import check_choice
 
 
 class Integrator(NamedTuple):
-    """What an integrator declares of itself."""
+    """Declared properties of an integrator."""
 
     name: str
     order: int  # of the global error, with damping
@@ -44,7 +44,7 @@ class Integrator(NamedTuple):
 
     @property
     def adaptive(self) -> bool:
-        """Whether it takes rtol and atol instead of a step."""
+        """True if it takes rtol and atol instead of a step."""
         return self.march is not None
 
 

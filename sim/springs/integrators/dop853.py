@@ -14,7 +14,7 @@ POLYNOMIAL = polynomial_of(A, B)
 
 
 def limit(zeta: float) -> float:
-    """Where the stability polynomial of its twelve stages leaves 1 on the ray of s = h lambda."""
+    """Limit at which the stability polynomial of its twelve stages exceeds 1 on the ray of s = h lambda."""
     return limit_of_polynomial(POLYNOMIAL, zeta)
 
 

@@ -14,7 +14,7 @@ POLYNOMIAL = polynomial_of(A, B)
 
 
 def limit(zeta: float) -> float:
-    """Where the stability polynomial, 1 + s + ... + s^5/120 + s^6/600, leaves 1 on the ray of s = h lambda."""
+    """Limit: the stability polynomial, 1 + s + ... + s^5/120 + s^6/600, exceeds 1 on the ray of s = h lambda."""
     return limit_of_polynomial(POLYNOMIAL, zeta)
 
 

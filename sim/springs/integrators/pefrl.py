@@ -35,7 +35,7 @@ UNDAMPED_LIMIT = limit_of(growth)
 
 
 def limit(zeta: float) -> float:
-    """Where half the trace of the step matrix leaves -1..1; no step holds damping."""
+    """Limit at which half the trace of the step matrix leaves -1..1; unstable with damping."""
     return UNDAMPED_LIMIT if zeta <= 1e-9 else 0.0
 
 

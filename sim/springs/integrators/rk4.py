@@ -15,7 +15,7 @@ from sim.springs.vector_ops import set_sum
 
 
 def limit(zeta: float) -> float:
-    """Where |1 + s + s^2/2 + s^3/6 + s^4/24| leaves 1 on the ray of s = h lambda; 2 sqrt 2 undamped."""
+    """Limit at which |1 + s + s^2/2 + s^3/6 + s^4/24| exceeds 1 on the ray of s = h lambda; 2 sqrt 2 undamped."""
     return limit_of_polynomial((1.0, 1.0, 1 / 2, 1 / 6, 1 / 24), zeta)
 
 

@@ -19,7 +19,7 @@ STEP = C, VELOCITY[: len(C) + 1, :-1], POSITION[: len(C) + 1, :-1]
 
 @functools.lru_cache(maxsize=1000)
 def limit(zeta: float) -> float:
-    """Where the step matrix of its eight stages has an eigenvalue above 1."""
+    """Limit at which the step matrix of its eight stages has an eigenvalue above 1."""
     return limit_of_many(nystroem_growth(*STEP, zeta))
 
 

@@ -59,7 +59,7 @@ def estimate_two(method, i, x, v, h, stages, xn, vn, rtol, atol):
 
 @kernel(allocates=False)
 def error_of(method, x, v, h, stages, xn, vn, rtol, atol):
-    """The step's error over what is allowed, root mean square over positions and velocities.
+    """Ratio of the step's error to the tolerance, root mean square over positions and velocities.
 
     Where there are two estimates the second, of third order, goes in the denominator (Solving ODEs I, II.10.17).
     """

@@ -177,7 +177,7 @@ def accelerate_all(x, v, t, p, f, a):
 
 @kernel(inline=True)
 def is_bare(p):
-    """Whether links, gravity and drag of a rope are all there is."""
+    """True if links, gravity and drag of a rope are all there is."""
     return not (p.has_floor or p.has_sphere) and p.grabbed < 0 and p.pins.shape[0] == 0
 
 

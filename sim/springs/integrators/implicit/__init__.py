@@ -1,1 +1,1 @@
-"""What the implicit integrators share."""
+"""Common parts of the implicit integrators."""

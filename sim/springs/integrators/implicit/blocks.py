@@ -37,7 +37,7 @@ def add_block(blocks, j, n, along, across, nx, ny, nz):
 
 @kernel(inline=True)
 def least_across(p, a, b):
-    """What the c of a pressed link from a to b may fall to [kg], beside its damping."""
+    """Lower bound of the c of a compressed link from a to b [kg], without its damping."""
     return -KEPT * min(mass_at(p, a), mass_at(p, b)) / (2.0 * p.offsets.shape[0])
 
 
@@ -126,7 +126,7 @@ def set_no_air_blocks(x, v, g, p, air):
 
 @kernel(allocates=False)
 def set_cell_blocks(x, v, g, p, air):
-    """Air: g times the symmetric part of what a cell's force changes by with its velocity, as if n were fixed.
+    """Air: g times the symmetric part of the derivative of a cell's force by its velocity, with n fixed.
 
     rho/2 A [C_D |s| (I + n n^T) + C_L |u| (1 - s^2/u^2)^2 n n^T], s = u . n, at the cell's first particle. What turns
     the force is left out: it is not symmetric.

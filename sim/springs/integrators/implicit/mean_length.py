@@ -31,7 +31,7 @@ def lengths(x0, x, n, a, c):
 
 @kernel(noalias=True, allocates=False)
 def add_mean_lengths(x0, x, p, a):
-    """a += what the mean lengths change of the accelerations at the midpoint x of a step from x0."""
+    """a += change of the accelerations by the mean lengths at the midpoint x of a step from x0."""
     n = p.rows * p.cols
     for r in range(p.offsets.shape[0]):
         di, dj = p.offsets[r, 0], p.offsets[r, 1]

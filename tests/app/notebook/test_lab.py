@@ -149,7 +149,7 @@ def test_a_reset_ends_a_wait_and_an_interrupt_leaves_the_lab_as_it_was(rope: Lab
         wait_for(lambda: rope.running)
         os.kill(os.getpid(), signal.SIGINT)
 
-    rope.set(points=50, integrator="dop853", time_step=0.001)  # long enough to be waited for
+    rope.set(points=50, time_step=0.0001)  # long enough to be waited for, by a method that is compiled
     wait_for(lambda: not rope.running)
     with ThreadPoolExecutor() as pool:
         interrupting = pool.submit(interrupt)

@@ -1,7 +1,7 @@
 """The matrix of an implicit step, M + g D + g^2 K, as 3 x 3 blocks: one a link and one a particle.
 
 A particle's block is its six numbers xx, xy, xz, yy, yz, zz. A link's block H, which stands for [H -H; -H H], is
-c I + p q^T in the numbers c, q and, where it is not symmetric, p. Number e of point j is at index j + e n.
+c I + p q^T in the numbers c, q and, of a rope where it is not symmetric, p. Number e of point j is at index j + e n.
 Where links are pressed the geometric part of K is negative; it is kept while the whole stays positive definite by
 Gershgorin's discs, so that Newton's method is exact for short steps, and cut off there for long ones.
 """
@@ -280,21 +280,19 @@ def set_point_blocks(x, v, t, g, p, points):
 
 
 @kernel(noalias=True, allocates=False)
-def add_links_to_points(p, links, numbers, points):
-    """Each link's block, or its symmetric part, onto the blocks of both its ends: the matrix's own diagonal."""
+def add_links_to_points(p, links, points):
+    """Each link's block onto the blocks of both its ends: the matrix's own diagonal, of a net."""
     n = p.rows * p.cols
-    left = numbers - 3
     for r in range(p.offsets.shape[0]):
         di, dj = p.offsets[r, 0], p.offsets[r, 1]
         for i in range(p.rows - di):
             for j in range(max(0, -dj), p.cols - max(0, dj)):
                 a = i * p.cols + j
                 c = a + di * p.cols + dj
-                at = numbers * n * r + a
+                at = SYMMETRIC * n * r + a
                 qx, qy, qz = links[at + n], links[at + 2 * n], links[at + 3 * n]
-                px, py, pz = links[at + left * n], links[at + (left + 1) * n], links[at + (left + 2) * n]
-                xx, yy, zz = links[at] + px * qx, links[at] + py * qy, links[at] + pz * qz
-                xy, xz, yz = 0.5 * (px * qy + py * qx), 0.5 * (px * qz + pz * qx), 0.5 * (py * qz + pz * qy)
+                xx, yy, zz = links[at] + qx * qx, links[at] + qy * qy, links[at] + qz * qz
+                xy, xz, yz = qx * qy, qx * qz, qy * qz
                 for m in (a, c):
                     points[m] += xx
                     points[n + m] += xy

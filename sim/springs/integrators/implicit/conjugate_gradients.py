@@ -4,7 +4,7 @@ import numpy as np
 
 from sim.jit import is_stopped, kernel
 from sim.springs.forces.acceleration import add_row
-from sim.springs.integrators.implicit.blocks import GENERAL, SYMMETRIC, add_air_products, add_pair_products
+from sim.springs.integrators.implicit.blocks import SYMMETRIC, add_air_products, add_pair_products
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.vector_ops import add_scaled
 
@@ -25,17 +25,17 @@ def set_products(blocks, o, u, n, q):
 
 
 @kernel(noalias=True, inline=True)
-def set_link_products(blocks, o, left, u, ia, ib, count, n, m, f):
-    """f = H (u_a - u_b) = c (u_a - u_b) + p q.(u_a - u_b) of `count` links in a row; p starts at number `left`."""
-    q, p = o + n, o + left * n
+def set_link_products(blocks, o, u, ia, ib, count, n, m, f):
+    """f = H (u_a - u_b) = c (u_a - u_b) + q q.(u_a - u_b) of `count` links in a row."""
+    q = o + n
     for j in range(count):
         a, b = ia + j, ib + j
         x, y, z = u[a] - u[b], u[n + a] - u[n + b], u[n + n + a] - u[n + n + b]
         c = blocks[o + a]
         s = blocks[q + a] * x + blocks[q + n + a] * y + blocks[q + n + n + a] * z
-        f[j] = c * x + s * blocks[p + a]
-        f[m + j] = c * y + s * blocks[p + n + a]
-        f[m + m + j] = c * z + s * blocks[p + n + n + a]
+        f[j] = c * x + s * blocks[q + a]
+        f[m + j] = c * y + s * blocks[q + n + a]
+        f[m + m + j] = c * z + s * blocks[q + n + n + a]
 
 
 @kernel(noalias=True, inline=True)
@@ -44,8 +44,8 @@ def hold_pinned(w, u, o, n):
         u[o + j] = u[o + j] if w[j] > 0.0 else 0.0
 
 
-@kernel(noalias=True, inline=True)
-def set_matrix_product(points, links, own, air, numbers, u, p, f, q):
+@kernel(noalias=True, allocates=False)
+def set_matrix_product(points, links, own, air, u, p, f, q):
     """q = (M + g D + g^2 K) u of `sim.springs.integrators.implicit.blocks`, 0 where pinned; u is 0 there."""
     n, m = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1)
     set_products(points, np.uint64(0), u, n, q)
@@ -56,8 +56,8 @@ def set_matrix_product(points, links, own, air, numbers, u, p, f, q):
         for i in range(p.rows - di):
             ia = np.uint64(i * p.cols + first)
             ib = np.uint64((i + di) * p.cols + first + dj)
-            o = np.uint64(numbers * r) * n
-            set_link_products(links, o, np.uint64(numbers - 3), u, ia, ib, count, n, m, f)
+            o = np.uint64(SYMMETRIC * r) * n
+            set_link_products(links, o, u, ia, ib, count, n, m, f)
             for e in range(3):
                 of, o = np.uint64(e) * m, np.uint64(e) * n
                 add_row(f, of, count, 1.0, q, o + ia)
@@ -66,18 +66,6 @@ def set_matrix_product(points, links, own, air, numbers, u, p, f, q):
     add_air_products(p, air, u, q)
     for e in range(3):
         hold_pinned(p.inverse_masses, q, np.uint64(e) * n, n)
-
-
-@kernel(noalias=True, allocates=False)
-def set_symmetric_product(points, links, own, air, u, p, f, q):
-    """`set_matrix_product` of a symmetric matrix: a constant number of a link's block saves a fourth of the loads."""
-    set_matrix_product(points, links, own, air, SYMMETRIC, u, p, f, q)
-
-
-@kernel(noalias=True, allocates=False)
-def set_general_product(points, links, own, air, u, p, f, q):
-    """`set_matrix_product` of a matrix that is not symmetric."""
-    set_matrix_product(points, links, own, air, GENERAL, u, p, f, q)
 
 
 @kernel(noalias=True, allocates=False)
@@ -136,7 +124,7 @@ def solve_conjugate_gradients(points, links, own, air, factors, r, reduction, p,
     for count in range(MOST):
         if rho <= goal or (count % UNASKED == UNASKED - 1 and is_stopped(p.stop)):
             return count
-        set_symmetric_product(points, links, own, air, d, p, f, q)
+        set_matrix_product(points, links, own, air, d, p, f, q)
         alpha = rho / dot(d, q)
         add_scaled(u, alpha, d)
         add_scaled(r, -alpha, q)

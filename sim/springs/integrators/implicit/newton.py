@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from sim.jit import is_stopped, kernel
 from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
-from sim.springs.integrators.implicit.bicgstab import solve_stabilised_gradients
 from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridiagonal
 from sim.springs.integrators.implicit.blocks import (
     GENERAL,
@@ -59,20 +58,18 @@ class WorkCount(NamedTuple):
     z: NDArray[np.float64]
     d: NDArray[np.float64]
     q: NDArray[np.float64]
-    s: NDArray[np.float64]
-    shadow: NDArray[np.float64]
     u: NDArray[np.float64]
 
 
 @kernel(inline=True)
-def rope_sizes(p):
-    """Rows of a rope's matrix, and numbers in a vector of conjugate gradients, which it does not need."""
-    return p.cols, 0
+def rope_sizes(p, mean):
+    """Numbers of a link's block, rows of a rope's matrix, and numbers in a vector of conjugate gradients."""
+    return GENERAL if mean else SYMMETRIC, p.cols, 0
 
 
 @kernel(inline=True)
-def grid_sizes(p):
-    return 0, 3 * p.rows * p.cols
+def grid_sizes(p, mean):
+    return SYMMETRIC, 0, 3 * p.rows * p.cols
 
 
 solver_sizes = by_net(rope=rope_sizes, grid=grid_sizes)
@@ -81,9 +78,7 @@ solver_sizes = by_net(rope=rope_sizes, grid=grid_sizes)
 @kernel
 def make_work(p, mean):
     size = p.rows * p.cols
-    numbers = GENERAL if mean else SYMMETRIC
-    n, m = solver_sizes(p)
-    more = m if mean else 0
+    numbers, n, m = solver_sizes(p, mean)
     return WorkCount(
         mean,
         numbers,
@@ -100,8 +95,6 @@ def make_work(p, mean):
         np.zeros(m),
         np.zeros(m),
         np.zeros(m),
-        np.zeros(more),
-        np.zeros(more),
         np.zeros(3 * size),
     )
 
@@ -166,20 +159,14 @@ def correct_net(before, p, work):
     reduction = forcing(found, before)
     for j in range(6 * n):
         work.factors[j] = work.points[j]
-    add_links_to_points(p, work.links, work.numbers, work.factors)
+    add_links_to_points(p, work.links, work.factors)
     add_pairs_to_points(p, work.own, work.factors)
     add_air_to_points(p, work.air, work.factors)
     factorise(work.factors, n)
-    if work.mean:
-        solve_stabilised_gradients(
-            work.points, work.links, work.own, work.air, work.factors, work.r, reduction, p, work.f, work.z, work.d,
-            work.q, work.s, work.shadow, work.u,
-        )  # fmt: skip
-    else:
-        solve_conjugate_gradients(
-            work.points, work.links, work.own, work.air, work.factors, work.r, reduction, p, work.f, work.z, work.d,
-            work.q, work.u,
-        )  # fmt: skip
+    solve_conjugate_gradients(
+        work.points, work.links, work.own, work.air, work.factors, work.r, reduction, p, work.f, work.z, work.d,
+        work.q, work.u,
+    )  # fmt: skip
     # The scratch of forces is zero at its ends for whoever relies on it.
     for j in range(work.f.shape[0]):
         work.f[j] = 0.0

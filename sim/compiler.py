@@ -393,7 +393,7 @@ def check(folder: Path) -> None:
     for caller, expected in ((stored, 3.0), (doubled, 6.0), (stored, 3.0)):
         kept = len(list(folder.glob(f"*{caller.__name__}*.nbc")))  # none on a full disk
         callee = make_kernel(added, folder, {"nogil": True}, noalias=True, counts=False)
-        function = FunctionType(caller.__code__, {"added": choose({Pair: callee}), "np": np})
+        function = FunctionType(caller.__code__, {**globals(), "added": choose({Pair: callee})})
         entry = make_kernel(function, folder, {"nogil": True}, noalias=False, counts=True)
         values = callee(pair), entry(pair), sum(entry.stats.cache_hits.values())
         if values != (3.0, expected, kept):

@@ -49,10 +49,13 @@ def test_the_measure_finds_what_is_wrong(shown: tuple[Viewer, Tab], style: str, 
         planted.evaluate("style => style.remove()")
 
 
-def test_viser_s_note_on_software_drawing_does_not_cover_the_picture(shown: tuple[Viewer, Tab]) -> None:
-    _, tab = shown
+def test_viser_s_note_on_software_drawing_does_not_cover_the_picture(
+    one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
+) -> None:
+    lab, _ = one_page
+    tab = open_tab(lab.port)  # a new page: an older one has closed its note
     note = tab.page.locator("#webgl-software-rendering")
-    tab.wait(note.count)  # this Chromium draws in software
+    tab.wait(note.count, 30)  # this Chromium draws in software
     assert not note.is_visible()
     assert tab.page.evaluate(ON_TOP, (100, 100)) == "CANVAS"
 

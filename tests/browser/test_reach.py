@@ -77,7 +77,7 @@ def test_the_reach_is_marked_and_ends(shown: tuple[Viewer, Tab], scene: str) -> 
         lab.panel.set("show_points", False)
     lab.loop.commands.put(Pause())
     node = "/race/rope_1" if scene == "race" else f"/{scene}"
-    tab.wait(lambda: not lab.loop.running and lab.shown == lab.loop.latest.serial and len(drawn(tab, node)) > 0)
+    tab.wait(lambda: not lab.loop.running and lab.served.shown == lab.loop.latest.serial and len(drawn(tab, node)) > 0)
     tab.page.wait_for_timeout(500)
     ring = tab.page.locator("#springtide-ring")
 

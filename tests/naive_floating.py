@@ -126,7 +126,7 @@ def naive_step(
     scale = np.sqrt(np.append(share, (np.roll(share, -1) + np.roll(share, -2)) / 2))
 
     def added_mass(carried):
-        """What the hull carries of A: each motion in turn, with what it couples, out of what the ones before left."""
+        """Added mass that the hull carries: motions in turn, each with its couplings, from the rest of A."""
         total, left = np.zeros((6, 6)), linear.linear.infinite.copy()
         for part, shared in zip(range(6), carried, strict=True):
             if left[part, part] > 1e-8 * np.trace(linear.linear.infinite):

@@ -29,7 +29,7 @@ class Asker(NamedTuple):
 
 
 class Question(NamedTuple):
-    """True if something may be shown to all."""
+    """A request of one or more browsers to show something to all."""
 
     number: int
     subject: Subject

@@ -103,7 +103,7 @@ def changed(name: str, base: Any, parameter: str, value: Value, session: Session
 
 
 def acts(name: str, base: Any, parameter: str) -> bool:
-    """Whether two values of a parameter make the motion another one."""
+    """True if two values of a parameter make different motions."""
     values = values_of(parameters_of(base)[parameter], getattr(base, parameter))
     first, *others = (changed(name, base, parameter, value).state.x for value in values)
     return any(x.shape != first.shape or np.abs(x - first).max() > 1e-4 for x in others)

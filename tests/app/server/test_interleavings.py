@@ -41,7 +41,7 @@ class Held:
 
 
 def asked(viewer: Viewer, read: Callable[[], Any]) -> Any:
-    """What the simulation thread reads between two steps, after all commands that were put before."""
+    """Result of a read between two steps, after all commands that were put before."""
     answer: Future[Any] = Future()
     viewer.commands.put(Ask(read, answer))
     return answer.result(TIMEOUT)

@@ -1,4 +1,4 @@
-"""What visitors are asked before a link of one of them changes the lab for all."""
+"""Questions to visitors before a link of one of them changes the lab for all."""
 
 import asyncio
 import contextlib

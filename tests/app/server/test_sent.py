@@ -20,7 +20,7 @@ def handed_over(lab: Any, frame: Any) -> tuple[int, int]:
 
 
 def tube_bytes(lab: Any) -> int:
-    """What the drawn tube takes, packed."""
+    """Size of the drawn tube, packed."""
     return lab.view.tube._packed().nbytes
 
 

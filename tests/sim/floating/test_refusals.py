@@ -1,4 +1,4 @@
-"""What the library of floating bodies refuses: the error names the argument, the value, and what is allowed."""
+"""Refusals of the library of floating bodies: the error names the argument, its value and the allowed ones."""
 
 import math
 from collections.abc import Callable

@@ -1,7 +1,9 @@
 """The limit on tests that pass only when they are tried again."""
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -23,7 +25,8 @@ def test_it(name):
 def test_more_than_three_reruns_fail_the_suite(tmp_path, processes, reruns):
     (tmp_path / "test_second_try.py").write_text(SECOND_TRY.format(number=reruns))
     command = [sys.executable, "-m", "pytest", "-p", "tests.reruns", "-n", processes, "--rootdir", str(tmp_path), "."]
-    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=100, check=False)
+    paths = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
+    run = subprocess.run(command, cwd=tmp_path, env=paths, capture_output=True, text=True, timeout=100, check=False)
     assert f"{reruns} passed, {reruns} rerun" in run.stdout
     assert run.returncode == (reruns > MAX_RERUNS), run.stdout
     assert ("allowed: at most 3" in run.stdout) == (reruns > MAX_RERUNS)

@@ -105,14 +105,14 @@ def as_array(name: str, value: Any, allowed: str) -> np.ndarray:
     return array.astype(np.float64)
 
 
-def check_positions(name: str, value: Any) -> np.ndarray:
-    """`value` as contiguous float64 of shape (n, 2).
+def check_positions(name: str, value: Any, length: int = 2) -> np.ndarray:
+    """`value` as contiguous float64 of shape (n, length).
 
     Raises ValueError for another shape, or positions that are not finite or farther than MAX_DISTANCE.
     """
-    allowed = f"positions of shape (n, 2), finite, at most {MAX_DISTANCE:g} m"
+    allowed = f"positions of shape (n, {length}), finite, at most {MAX_DISTANCE:g} m"
     array = np.ascontiguousarray(as_array(name, value, allowed))
-    if array.ndim != 2 or array.shape[1] != 2:
+    if array.ndim != 2 or array.shape[1] != length:
         raise argument_error(name, array.shape, allowed)
     bad = ~(np.abs(array) <= MAX_DISTANCE)
     if bad.any():

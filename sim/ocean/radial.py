@@ -22,10 +22,11 @@ from numpy.typing import ArrayLike
 
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.gerstner import Waves, widened
+from sim.ocean.kinematics import Components, Kinematics
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.slick import SlickCover
 from sim.ocean.wave_sum import add_waves, calm_waves, find_labels, set_mesh, set_motion
-from sim.validation import check_finite, check_not_negative, check_positions
+from sim.validation import argument_error, check_finite, check_not_negative, check_positions
 
 CLEAN = FluidColumn()
 
@@ -256,6 +257,24 @@ class RadialSea:
         slope = np.column_stack([(hx * b - hy * c) * inverse, (hy * a - hx * c) * inverse])
         return SurfaceAt(height, slope, velocity, acceleration, interface[:, 0].copy(),
                          interface[:, 1:3].copy(), interface[:, 3].copy(), label, residual)  # fmt: skip
+
+    def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
+        """Velocity, acceleration and pressure of the water at points (n, 3) [m] at time t [s].
+
+        See `Components.kinematics`, also for the errors raised. Raises ValueError over a layer of oil, too.
+        """
+        return self.components(t).kinematics(points, t, stretching)
+
+    def components(self, t: float) -> Components:
+        """The waves, as high as at time t [s], without the slick.
+
+        Raises ValueError over a layer of oil, under which the pressure would need both fluids.
+        """
+        if self.column.kind == "layer":
+            raise argument_error("column", self.column.kind, "clean water or a mixture, which is one fluid")
+        kx, ky, amplitude, omega, phase, _ = self.current(check_finite("t", t, "s"))
+        phase = phase + omega * (t / (2.0 * math.pi))
+        return Components(kx, ky, amplitude, omega, phase - np.rint(phase), math.inf, self.column.surface.density)
 
     def _footprint(self, size: np.ndarray, kx: np.ndarray, ky: np.ndarray) -> np.ndarray:
         """Factors (points, waves) of hulls of these sizes; cached, because each step needs those of the same hulls."""

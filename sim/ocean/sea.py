@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from sim.interruption import raise_if_stopped
 from sim.ocean.amplitudes import KINDS, fold, integers, resolved, unit_amplitudes
 from sim.ocean.evolve import set_heights, weighted_energy
+from sim.ocean.kinematics import Components, Kinematics
 from sim.ocean.medium import Medium
 from sim.ocean.query import query
 from sim.ocean.ripples import Ripples
@@ -89,6 +90,7 @@ class Sea:
         self._evolved: tuple | None = None
         self._mean_height: tuple[tuple | None, float] = None, 0.0  # key of time and state, and the mean [m]
         self._latest: tuple[tuple, dict[str, np.ndarray]] | None = None
+        self._components: tuple[tuple | None, Components | None] = None, None  # key of the amplitudes, and the waves
         self._ripples: Ripples | None = None
 
         n = integers(self.size)
@@ -162,6 +164,33 @@ class Sea:
         fields are bicubic; exact: the sum over all waves instead, slow. Raises ValueError for another shape.
         """
         return query(self.surface(t), check_positions("points", points), exact)
+
+    def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
+        """Velocity, acceleration and pressure of the water at points (n, 3) [m] at time t, by the sum over all waves.
+
+        See `Components.kinematics`, also for the errors raised; `components` gives fewer waves, for many points or
+        steps.
+        """
+        return self.components(t).kinematics(points, t, stretching)
+
+    def components(self, t: float | None = None) -> Components:
+        """The waves of the tile, as high as at time t [s], by default the sea's own; `largest` of them picks a few.
+
+        They hold at all times unless waves decay, relax or are changed. Raises ValueError as `surface`.
+        """
+        t = self._last if t is None else self._checked_time(t)
+        key = self.version, None if self.is_steady(t) else t
+        known, waves = self._components
+        if waves is None or known != key:
+            h0, omega = self.amplitudes_at(t), self.frequencies
+            there = h0 != 0.0
+            h0, omega = h0[there], omega[there]
+            kx, ky = (np.broadcast_to(k, there.shape)[there] for k in (self.k[:, None], self.k[None, :]))
+            phase = (np.angle(h0) + omega * self._base) / (2.0 * math.pi)
+            c = self.conditions
+            waves = Components(kx, ky, 2.0 * np.abs(h0), omega, phase - np.rint(phase), c.depth, c.density)
+            self._components = key, waves
+        return waves
 
     def change(self, t: float, relax: float = 0.0, spectrum: str | Spectrum[Any] | None = None, **changes: Any) -> None:
         """From time t [s] on, other conditions: any of the constructor's that describe wind, gravity or the medium.

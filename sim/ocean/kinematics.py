@@ -1,0 +1,162 @@
+"""The water below linear waves: velocity, acceleration and pressure at points, as a sum over waves.
+
+    >>> from sim.ocean import Sea
+    >>> sea = Sea(64, 400.0, "regular", wave_height=2.0, wave_period=8.0, wind_speed=0.0, depth=60.0)
+    >>> flow = sea.kinematics([[0.0, 0.0, 0.0], [0.0, 0.0, -60.0]], t=12.0)
+    >>> flow.velocity.shape, flow.acceleration.shape, flow.pressure.shape
+    ((2, 3), (2, 3), (2,))
+    >>> bool(abs(flow.velocity[1, 2]) < 1e-12)  # at the bottom water moves along it
+    True
+
+A wave a cos(theta), theta = k.x - omega t + phase, in water of depth h moves the water at height z (Lamb, Art. 229)
+along k by u = a omega C cos(theta) and upwards by w = a omega S sin(theta), and its pressure is
+
+  p = rho a omega^2/k C cos(theta),    C = cosh k(z + h)/sinh kh,  S = sinh k(z + h)/sinh kh,  e^(kz) in deep water
+
+of first order in steepness: the velocity has a potential, the acceleration is du/dt in place, and rho du/dt = -grad p.
+The points are places, not labels. Left out are the choppy displacement, of second order here, decay within a period,
+rings and slicks.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from sim.jit import kernel
+from sim.ocean.evolve import sincos_turns
+from sim.ocean.gerstner import Waves
+from sim.ocean.spectra import Conditions
+from sim.validation import argument_error, check_choice, check_finite, check_positions, is_whole_number
+
+STRETCHINGS = ("constant", "wheeler")
+DEEPEST = 40.0  # kz beyond which the motion is under 1e-17 of that at the surface
+
+
+class Kinematics(NamedTuple):
+    """The water at n points at one moment."""
+
+    velocity: np.ndarray  # (n, 3) [m/s]
+    acceleration: np.ndarray  # (n, 3) [m/s2] in place
+    pressure: np.ndarray  # (n,) [Pa] beyond that of still water
+
+
+class Components(NamedTuple):
+    """n waves a cos(k.x - omega t + 2 pi phase) on one body of water. Arrays (n,)."""
+
+    kx: np.ndarray  # [rad/m]
+    ky: np.ndarray  # [rad/m]
+    amplitude: np.ndarray  # [m]
+    omega: np.ndarray  # [rad/s]
+    phase: np.ndarray  # [turns] at t = 0
+    depth: float  # [m], or inf
+    density: float  # [kg/m3]
+    elevation_error: float = 0.0  # [m] root mean square of the elevation of the waves that are left out
+    velocity_error: float = 0.0  # [m/s] the same of the vertical velocity at z = 0
+
+    def largest(self, count: int) -> "Components":
+        """The `count` highest of these waves; the errors then hold what is left out. Raises ValueError for a count
+        that is not whole or below 1."""
+        if not is_whole_number(count) or count < 1:
+            raise argument_error("count", count, "a whole number from 1")
+        order = np.argsort(-self.amplitude, kind="stable")
+        kept, left = order[:count], order[count:]
+        squares = 0.5 * np.square(self.amplitude[left])
+        return self._replace(
+            **{name: getattr(self, name)[kept] for name in ("kx", "ky", "amplitude", "omega", "phase")},
+            elevation_error=math.sqrt(self.elevation_error**2 + float(squares.sum())),
+            velocity_error=math.sqrt(self.velocity_error**2 + float((squares * self.omega[left] ** 2).sum())),
+        )
+
+    def table(self) -> np.ndarray:
+        """Rows (9, n) for `set_flow`: kx, ky [turns/m], phase [turns], omega [turns/s], cos and sin of the bearing,
+        a omega/(1 - q) [m/s], q = e^(-2kh), a [m]."""
+        k = np.hypot(self.kx, self.ky)
+        q = np.exp(-2.0 * k * self.depth) if math.isfinite(self.depth) else np.zeros_like(k)
+        turn = 2.0 * math.pi
+        rows = (self.kx / turn, self.ky / turn, self.phase, self.omega / turn, self.kx / k, self.ky / k)
+        return np.array([*rows, self.amplitude * self.omega / (1.0 - q), q, self.amplitude])
+
+    def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
+        """The water at points (n, 3) [m], z up from still water, at time t [s].
+
+        stretching, near the surface: "constant" is linear theory up to z = 0 and above it the value there; "wheeler"
+        takes the value at z' = h (z - eta)/(h + eta), eta the elevation of the sum there (Wheeler 1970, J. Pet.
+        Technol. 22:359). Points below the bottom have the value at the bottom. Raises ValueError for another shape,
+        points or a time that are not finite, or another stretching.
+        """
+        where = check_positions("points", points, 3)
+        wheeler = check_choice("stretching", stretching, STRETCHINGS) == "wheeler"
+        n = len(where)
+        flow = Kinematics(np.empty((n, 3)), np.empty((n, 3)), np.empty(n))
+        t = check_finite("t", t, "s")
+        set_flow(where, t, self.table(), self.depth, self.density, wheeler, *flow)
+        return flow
+
+
+def components_of(waves: Waves, conditions: Conditions) -> Components:
+    """The waves of `draw_waves` on water of these conditions: few that hold all of a spectrum's energy, at any depth.
+
+    >>> from sim.ocean.gerstner import draw_waves
+    >>> from sim.ocean.spectra import SPECTRA
+    >>> conditions = SPECTRA["tma"].conditions(wind_speed=12.0, depth=30.0)
+    >>> waves = components_of(draw_waves(SPECTRA["tma"], conditions, 100), conditions)
+    >>> waves.kinematics([[0.0, 0.0, -5.0]], t=3.0).velocity.shape
+    (1, 3)
+    """
+    omega = conditions.omega(waves.k)
+    return Components(waves.kx, waves.ky, waves.amplitude, omega, waves.phase, conditions.depth, conditions.density)
+
+
+@kernel(inline=True)
+def exponential(x):
+    """e^x for -DEEPEST <= x <= 0 within 1e-13: Taylor's series of x/1024, squared ten times."""
+    y = x / 1024.0
+    e = 1.0 + y * (1.0 + y / 2.0 * (1.0 + y / 3.0 * (1.0 + y / 4.0 * (1.0 + y / 5.0 * (1.0 + y / 6.0)))))
+    e *= e
+    e *= e
+    e *= e
+    e *= e
+    e *= e
+    e *= e
+    e *= e
+    e *= e
+    e *= e
+    return e * e
+
+
+@kernel(noalias=True, allocates=False)
+def set_flow(points, t, waves, depth, density, wheeler, velocity, acceleration, pressure):
+    """Set velocity (n, 3), acceleration (n, 3) and pressure (n,) at points (n, 3) at time t; waves as `table` has them.
+
+    wheeler: whether heights are stretched. depth may be inf. Other kernels may call it with the same arrays each step.
+    """
+    turn = 2.0 * math.pi
+    for p in range(points.shape[0]):
+        x, y, z = points[p, 0], points[p, 1], points[p, 2]
+        if wheeler:
+            eta = 0.0
+            for i in range(waves.shape[1]):
+                c, _ = sincos_turns(waves[0, i] * x + waves[1, i] * y + waves[2, i] - waves[3, i] * t)
+                eta += waves[8, i] * c
+            z = (z - eta) / (1.0 + eta / depth)
+        z = min(max(z, -depth), 0.0)
+        u = v = w = du = dv = dw = pushed = 0.0
+        for i in range(waves.shape[1]):
+            kx, ky, nx, ny, speed = waves[0, i], waves[1, i], waves[4, i], waves[5, i], waves[6, i]
+            c, s = sincos_turns(kx * x + ky * y + waves[2, i] - waves[3, i] * t)
+            k, omega = turn * (kx * nx + ky * ny), turn * waves[3, i]
+            e = exponential(max(k * z, -DEEPEST))
+            back = waves[7, i] / e
+            level, upward = speed * (e + back), speed * (e - back)
+            u += nx * level * c
+            v += ny * level * c
+            w += upward * s
+            du += nx * omega * level * s
+            dv += ny * omega * level * s
+            dw -= omega * upward * c
+            pushed += omega / k * level * c
+        velocity[p, 0], velocity[p, 1], velocity[p, 2] = u, v, w
+        acceleration[p, 0], acceleration[p, 1], acceleration[p, 2] = du, dv, dw
+        pressure[p] = density * pushed

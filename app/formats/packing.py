@@ -47,7 +47,7 @@ def pack(
     blocks = -(-n // BLOCK)
     words = np.empty(head + m * blocks * (WIDTH_BITS + 24 * BLOCK) // WORD_BITS + 4, np.uint32)
     words[:head] = 0
-    count = write_bits(values, used, columns, np.empty(n, np.int32), np.empty(blocks * BLOCK, np.int32), words[head:])
+    count = write_bits(values, used, columns, np.empty(n, np.int32), np.zeros(blocks * BLOCK, np.int32), words[head:])
     words[head + count : head + count + 2] = 0
     numbers = words.view(np.float32)
     numbers[:3] = n, columns, m
@@ -101,12 +101,10 @@ def emit(bits, used, words, at, number, length):
 def write_bits(values, steps, columns, q, r, words):
     """Write the fields (m, n), rounded to steps (m,), into words; return how many of these were used.
 
-    q (n,), r (n rounded up to whole blocks,): for the rounded values and their differences.
+    q (n,), r (n rounded up to whole blocks,): for the rounded values and their differences; r is 0 from n on.
     """
     fields, n = values.shape
     at, used, bits = np.uint64(0), np.uint64(0), np.uint64(0)  # the word that is written, and its bits that are taken
-    for i in range(n, r.size):
-        r[i] = 0
     for field in range(fields):
         scale = np.float32(1.0) / steps[field]
         value = values[field]

@@ -264,6 +264,10 @@ def test_a_rope_at_rest_is_not_assessed_again():
 
     assert assessed(gravity=0.0) == 0
     assert assessed() in (3, 4)
+    scene = RopeScene(Params(gravity=0.0))
+    for moved, has_news in ((0.9e-3, False), (1.1e-3, True)):  # of a link
+        scene.state.x[2, 0, -1] = scene.assessed_x[2, 0, -1] + moved * scene.net.families[0].rest
+        assert scene.has_news() is has_news
     # Newton corrections of an implicit method may change at any time.
     assert assessed(gravity=0.0, integrator="tr_bdf2") > 0
 

@@ -456,7 +456,11 @@ def test_a_regular_wave_on_a_tile_is_its_nearest_wave_as_high_as_given():
     assert np.unravel_index(spectrum.argmax(), spectrum.shape)[0] in (4, 60)
     assert expected_of(sea).significant_height == pytest.approx(sea.significant_height) == pytest.approx(math.sqrt(2.0))
     assert expected_of(sea).direction == pytest.approx(0.0)
+    # No wave is longer than the tile, or shorter than two cells: 1.56 m in 1 s, of cells of 0.74 m and of 0.82 m.
     assert Sea(64, 20.0, "regular", wave_height=1.0, wave_period=9.0).significant_height == 0.0
+    fine, coarse = (Sea(64, length, "regular", wave_height=1.0, wave_period=1.0) for length in (47.0, 52.0))
+    assert fine.significant_height == pytest.approx(math.sqrt(2.0))
+    assert coarse.significant_height == 0.0
     crossing = Sea(64, 100.0, "regular", wave_height=1.0, wave_period=4.0, second_height=0.5, second_period=3.0)
     assert expected_of(crossing).significant_height == pytest.approx(math.hypot(math.sqrt(2.0), 0.5), rel=0.05)
 

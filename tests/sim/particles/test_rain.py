@@ -87,10 +87,12 @@ def test_as_many_drops_fall_as_the_rate_says():
 
 def test_the_mean_drop_in_the_air_stays_the_same():
     rain = Rain(25.0, 30.0, 15.0, count=20000, seed=3)
-    before = rain.diameter.mean()
-    for _ in range(300):
+    mean, square = (moment(25.0, power) / moment(25.0, 0) for power in (1, 2))
+    three_errors = 3.0 * math.sqrt((square - mean**2) / 20000)  # standard errors of a mean of 20,000 drops
+    assert rain.diameter.mean() == pytest.approx(mean, abs=three_errors)
+    for _ in range(300):  # the slowest fall 15 m in 8 s, so that all have begun again
         rain.step(1 / 30, FLAT)
-    assert rain.diameter.mean() == pytest.approx(before, rel=0.02)
+    assert rain.diameter.mean() == pytest.approx(mean, abs=three_errors)
     assert rain.diameter.min() >= SMALLEST
     assert rain.diameter.max() <= LARGEST
 

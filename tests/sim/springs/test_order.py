@@ -4,7 +4,7 @@ import functools
 import numpy as np
 import pytest
 
-from sim.springs import INTEGRATORS, PinPath, rope
+from sim.springs import INTEGRATORS, Grab, PinPath, rope
 from sim.springs.net import Net
 from sim.springs.state import State, advance
 from tests.sim.springs.nets import patch
@@ -21,7 +21,9 @@ ROPES = {
     "axial": dataclasses.replace(LAB, damping_model="axial"),
     "undamped": rope(10, gravity=10.0, damping=0.0, drag=0.0),
     "moving root": dataclasses.replace(LAB, pin_paths=(((0, 0), PATH),)),
-    "moving root, axial": dataclasses.replace(LAB, damping_model="axial", pin_paths=(((0, 0), PATH),)),
+    "moving root, axial, pulled": dataclasses.replace(
+        LAB, damping_model="axial", pin_paths=(((0, 0), PATH),), grab=Grab(0, 4, (1.0, 0.5, 0.5), 50.0, 3.0, 1e3)
+    ),
 }
 
 
@@ -105,6 +107,19 @@ def test_damping_link_by_link_seeds_no_folds():
     errors = [np.abs(integrated(net, "leapfrog", 1.0, steps).x - truth).max() for steps in (34_000, 48_000)]
     assert errors[0] < 1e-4
     assert slope((34_000, 48_000), errors) == pytest.approx(2, abs=0.1)
+
+
+@pytest.mark.parametrize("name", INTEGRATORS)
+def test_a_step_takes_the_declared_evaluations(name):
+    """Implicit: of a rope at rest, and one correction more of each stage of a rope that begins to fall."""
+    record, damping = INTEGRATORS[name], {} if name != "pefrl" else {"damping": 0.0, "drag": 0.0}
+    resting, falling = State.at_rest(rope(4, gravity=0.0, **damping)), State.at_rest(rope(4, **damping))
+    advance(rope(4, gravity=0.0, **damping), resting, record, 1e-3, 5)
+    advance(rope(4, **damping), falling, record, 1e-3, 5)
+    first = resting.force_evals - 5 * record.evals  # some methods evaluate the forces once at the start
+    assert first in (0, 1)
+    stages = record.evals - record.evals_outside_newton if record.implicit else 0
+    assert falling.force_evals - first == 5 * (record.evals + stages)
 
 
 def test_a_moving_root_is_exactly_where_its_path_is():

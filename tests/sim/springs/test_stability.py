@@ -213,6 +213,19 @@ def test_a_stiffness_beside_a_contact_is_the_one_that_reaches_the_step():
     assert critical_step(at, "leapfrog") == pytest.approx(1 / 60, rel=1e-3)
 
 
+def test_the_stiffness_is_that_of_the_stiffest_links_with_known_modes_too():
+    net = patch()
+    found = critical_stiffness(net, "leapfrog", 0.01, modes=top_modes(net))
+    assert found == pytest.approx(critical_stiffness(net, "leapfrog", 0.01), rel=1e-6)
+    assert critical_step(net.with_stiffness(found), "leapfrog") == pytest.approx(0.01, rel=1e-4)
+
+
+def test_a_method_that_is_only_stable_where_damped_enough_has_a_largest_stiffness():
+    """Of the damping ratio 0.3/sqrt(k), 0.1 or more."""
+    record = INTEGRATORS["rk4"]._replace(limit=lambda zeta: 1.0 if zeta > 0.1 else 0.0)
+    assert critical_stiffness(rope(2, 1.0, 1.0, 1.0, 0.6, 0.0, 0.0), record, 1e-6) == pytest.approx(9.0, rel=1e-6)
+
+
 def folded():
     """A soft sheet, folded so that two rows of points push two others apart."""
     net = cloth(2, 8, 0.7, 0.1, 1.0, 2.0, 1.0, 0.5, 0.0, pinned="free", contact=Contact(300.0, 0.5), thickness=0.1)

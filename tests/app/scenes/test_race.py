@@ -24,7 +24,7 @@ from app.scenes.springs.methods import method_name
 from app.scenes.springs.rope_parameters import ROOT, build_rope
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
-from sim.springs import rope, simulate
+from sim.springs import simulate
 from sim.springs.analysis.reference_run import (
     ATOL,
     HORIZON_SEPARATION,
@@ -180,7 +180,7 @@ def test_a_reference_run_that_is_too_expensive_is_left_out_and_says_so():
 
 def test_a_reference_run_may_be_too_expensive_by_its_damping_alone():
     """Where damping limits the step, the estimated cost is the actual one of the two runs to a factor of two."""
-    net, duration = rope(10, damping=7000.0), 0.1
+    net, duration = build_rope(RopeParams(points=10, damping=7000.0)), 0.1
     taken = simulate(net, "dopri5", duration=duration, frames=2, rtol=RTOL, atol=ATOL).force_evals
     most = MAX_EVALUATION_RATE / (2 * taken * 10 / duration)  # references
     assert too_costly(net, round(0.5 * most)) == ""

@@ -18,11 +18,12 @@ from app.messages import Grab, Place, Release
 from app.scenes.radial_sea.bodies import BODY_KINDS, place_of
 from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden
 from app.scenes.radial_sea.report import marks_of
-from app.scenes.radial_sea.scene import RadialSeaScene
+from app.scenes.radial_sea.scene import FOAM_RADIUS, RadialSeaScene, mean_square_slope
 from app.scenes.radial_sea.well_blowout import LANDING, WellBlowout, slick_reach
 from app.server.loop import SimLoop
 from sim.floating import Hull, equilibrium_draft, heave_period
 from sim.ocean.fluids import fluids
+from sim.ocean.foam import whitecaps
 from sim.ocean.gerstner import peak_wavenumber
 from sim.ocean.radial import RadialSea
 from sim.ocean.spectra import SPECTRA
@@ -205,6 +206,16 @@ def test_a_change_of_the_grid_is_a_change_of_look() -> None:
         frame = scene.frame()
         assert (frame.grid.rings, frame.grid.spokes) == (params.rings, params.spokes)
         assert len(frame.surface.vertices) == len(frame.foam) == len(frame.grid)
+
+
+@pytest.mark.parametrize("changes", [{"wind_speed": 10.0}, {"wind_speed": 18.0, "film": True, "exposure": 3600.0}])
+def test_as_much_of_the_sea_is_foam_as_was_measured_for_the_slope_that_oil_leaves(changes: dict) -> None:
+    scene = RadialSeaScene(with_parameters(rig=False, bodies=1, ripples=False, spill="mixed", **changes))
+    foam = scene.frame().foam[: int((scene.grid.radii < FOAM_RADIUS).sum()) * scene.grid.spokes]
+    left = scene.sum.mean_square_slope / mean_square_slope(scene.sum.waves)
+    assert left < 0.9 if "film" in changes else left > 0.99
+    # Half of the width over which foam begins lies on either side of the threshold.
+    assert (foam > 0.5).mean() == pytest.approx(whitecaps(scene.params.wind_speed) * left, abs=2.0 / len(foam))
 
 
 def test_what_is_not_in_the_column_does_not_reset_its_age() -> None:

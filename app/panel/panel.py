@@ -130,13 +130,13 @@ class Panel:
             from app.panel import code_panel  # only `springtide lab DIR` pays for it
 
             self.code = code_panel.CodePanel(gui, session, kind.name)
-        help_text = fill(
-            '<div class="springtide-note">{}<br>'
+        self.help = gui.add_html("")
+        keys = fill(
+            '<div class="springtide-note">'
             "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset view · <b>P</b> plots · "
-            "<b>G</b> grid · <b>U</b> undo · <b>1-9</b> presets</div>",
-            Html(kind.help),
+            "<b>G</b> grid · <b>U</b> undo · <b>1-9</b> presets</div>"
         )
-        gui.add_html(str(help_text))
+        gui.add_html(str(keys))
         self.map: StabilityMapPanel | None = None
         if kind.stability_map is not None:
             from app.panel import stability_map  # no sea imports what springs need
@@ -331,6 +331,9 @@ class Panel:
         look = {name for name, parameter in parameters_of(self.params).items() if parameter.affects == "look"}
         changed = changed_names(self.params_of(self.loaded), self.params) - look
         shown = f"{self.loaded} (changed)" if changed else self.loaded
+        text = note(fill("{} {}", Html(self.kind.help), self.kind.about.get(self.loaded, "")))
+        if self.help.content != text:
+            self.help.content = text
         options = (*self.kind.presets, *self.own, *((shown,) if changed else ()))
         if self.preset.options != options:
             self.preset.options = options

@@ -4,7 +4,7 @@ To add a scene, add one folder here, named as the scene is on the command line:
 
 1. `parameters.py`: `Params`, a frozen dataclass of parameters (`sim/parameters.py`) with at least `speed` and `grid`,
    each declaring what its change affects, and `PRESETS`, name -> the values that differ from the defaults; the first
-   preset is the defaults.
+   preset is the defaults. `ABOUT` holds a sentence on each: what it shows and what to try.
 2. `scene.py`: the simulation, a class that satisfies `Scene`, and `SCENE = SceneKind(...)`. It imports no viewer.
 3. `view.py`: the drawing, a class `View` that satisfies `View` below and `warm_up()`. Only it and `*_view.py` beside it
    import viser.
@@ -211,7 +211,7 @@ class SceneKind(Generic[P, F, R]):
 
     name: str  # of its folder
     title: str
-    help: str  # two lines on how to use it, as HTML; one begins with "Next:" and says what to try
+    help: str  # one line on what the mouse does, as HTML
     params: type[P]
     presets: Mapping[str, Mapping[str, Value]]  # name -> the values that differ from the defaults
     make: Callable[[P], Scene[P, F, R]]
@@ -234,6 +234,9 @@ class SceneKind(Generic[P, F, R]):
     make_with_student: Callable[[P, "LiveCode"], Scene[P, F, R]] | None = None
     # Where [m] a view of these parameters and one of others have the same in sight; None: at the origin.
     middle: Callable[[P], tuple[float, float]] | None = None
+    about: Mapping[str, str] = field(
+        default_factory=dict[str, str]
+    )  # preset -> a sentence: what it shows and what to try
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
 
     def opening_params(self) -> P:

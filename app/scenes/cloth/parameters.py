@@ -170,6 +170,13 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
 }  # fmt: skip
 
+ABOUT = {  # preset -> what it shows and what to try
+    "Curtain": "A curtain hangs from its upper edge: pull it, or turn the wind up.",
+    "Flag in wind": "A flag in gusty wind: turn the wind down until it hangs.",
+    "Drape over the sphere": "A loose cloth falls over a sphere: move the sphere by its arrows.",
+    "Trampoline": "A sphere moves up and down in a cloth held at its rim: see where it stretches most.",
+}
+
 
 def hidden(params: Params) -> set[str]:
     """The parameters that mean nothing with the others as they are."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, StudentAnswer, Vector
 from app.scenes.charts import PlotAxes
 from app.scenes.cloth.live_values import live_values
-from app.scenes.cloth.parameters import MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
+from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -427,10 +427,10 @@ class ClothScene:
 SCENE = SceneKind(
     name="cloth",
     title="Cloth",
-    help="<b>Drag the cloth</b> to pull it, or the arrows to move its pins and the sphere. Next: turn the wind up, or "
-    "press <b>2</b> for a flag and <b>3</b> for a cloth that falls over a sphere.",
+    help="<b>Drag the cloth</b> to pull it, or the arrows to move its pins and the sphere.",
     params=Params,
     presets=PRESETS,
+    about=ABOUT,
     make=ClothScene,
     make_with_student=ClothScene,
     hidden=hidden,

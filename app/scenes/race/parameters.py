@@ -158,6 +158,16 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Shaken at the root": {"drag": 0.4, "root_swing": 0.2, "swing_period": 0.9},
 }  # fmt: skip
 
+ABOUT = {  # preset -> what it shows and what to try
+    "Euler against RK4 against leapfrog": "One rope, three methods: see how far each is from the exact motion.",
+    "Euler at rising stiffness": "Explicit Euler at one step and six stiffnesses: see which ropes it can hold.",
+    "RK4 at the same values": "The same six stiffnesses by Runge-Kutta 4: compare which ropes hold.",
+    "Leapfrog read literally": "Leapfrog beside the lab's formulas word for word: compare the errors.",
+    "Undamped until chaos": "Five methods at the same cost, until the smallest difference decides.",
+    "Implicit methods on a very stiff rope": "Three methods for stiff ropes: compare the energy each takes.",
+    "Shaken at the root": "All ropes are shaken alike, and never come to rest: compare the errors.",
+}
+
 
 def method_of(params: Params, number: int) -> str:
     """Name of the method of rope `number`, from 1."""

@@ -14,7 +14,7 @@ from app.scenes.race.entrants import Race, RaceReadings
 from app.scenes.race.live_values import live_values
 from app.scenes.race.measures import measures
 from app.scenes.race.names import rope_label
-from app.scenes.race.parameters import PRESETS, Params, hidden, method_of, offset_of
+from app.scenes.race.parameters import ABOUT, PRESETS, Params, hidden, method_of, offset_of
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
@@ -206,10 +206,10 @@ class RaceScene:
 SCENE = SceneKind(
     name="race",
     title="Race of ropes",
-    help="The same rope by different methods. <b>Drag a rope</b> to pull all alike. Next: press <b>2</b> to see "
-    "which stiffness Euler's method survives, and <b>3</b> for Runge-Kutta 4 at the same values.",
+    help="<b>Drag a rope</b> to pull all of them alike.",
     params=Params,
     presets=PRESETS,
+    about=ABOUT,
     opening="Shaken at the root",
     make=RaceScene,
     hidden=hidden,

@@ -288,6 +288,16 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
 }
 
+ABOUT = {  # preset -> what it shows and what to try
+    "Clear water": "Buoys and a box float on clean water: push one under and let go.",
+    "Light crude spill 0.2 m": "Light crude oil on the sea: compare how deep bodies float with clean water.",
+    "Heavy fuel oil": "Half a metre of heavy fuel oil: see which waves it has damped.",
+    "Entirely mixed": "Oil mixed into the water: the bodies float in a fluid of another density.",
+    "Storm with buoys": "Twelve bodies in a storm: hold one against the waves.",
+    "Burning rig": "A burning rig blows oil onto the sea: see the slick calm the waves.",
+    "A day after a spill": "A spill of crude oil after a day: the chart shows where the oil has gone.",
+}
+
 
 def hidden(params: Params) -> set[str]:
     """The parameters that mean nothing with the others as they are."""

@@ -37,6 +37,7 @@ from app.scenes.radial_sea.frame import (
 from app.scenes.radial_sea.live_values import live_values
 from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import (
+    ABOUT,
     PRESETS,
     Params,
     column_of,
@@ -72,10 +73,6 @@ if TYPE_CHECKING:
     from app.lab.live_code import LiveCode
     from app.scenes.radial_sea.student_sea import StudentRadialSea
 
-HELP = (
-    "<b>Drag a buoy</b> under the water and let go. Next: press <b>2</b> for an oil spill, and compare the drafts "
-    "in the table with Archimedes' principle; <b>6</b> sets the rig on fire."
-)
 PLOTTED_BODIES = 3  # bodies with a plotted draft
 BODY_SERIES = tuple(kind_of(i).title.lower() for i in range(PLOTTED_BODIES))
 HEIGHT_SERIES = ("surface", f"height of the {BODY_SERIES[0]}")
@@ -690,9 +687,10 @@ def flying_parcels(jet: Jet) -> JetParcels:
 SCENE = SceneKind(
     name="radial_sea",
     title="Radial sea",
-    help=HELP,
+    help="<b>Drag a buoy</b> under the water and let go.",
     params=Params,
     presets=PRESETS,
+    about=ABOUT,
     make=RadialSeaScene,
     make_with_student=RadialSeaScene,
     hidden=hidden,

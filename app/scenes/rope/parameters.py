@@ -48,6 +48,17 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
 }  # fmt: skip
 
+ABOUT = {  # preset -> what it shows and what to try
+    "Lab code: 10 points": "The rope of the course lab: raise the stiffness until it trembles.",
+    "Lab scene: 50 points": "Fifty points, as in the pictures of the course lab, in real time.",
+    "Euler explodes": "Explicit Euler adds energy in each step: see how long the rope lasts.",
+    "Lab's Euler": "Symplectic Euler, the method of the lab code, holds at the same step.",
+    "Stiff rope": "Sixty points on stiff springs hardly stretch, and need 40 000 steps a second.",
+    "Pendulum": "One point on a stiff spring: compare its period with that of a pendulum of 1 m.",
+    "Over the sphere": "The rope falls over a sphere: move the sphere by its arrows.",
+    "Shaken at the root": "The root swings to and fro: find the period at which the rope swings most.",
+}
+
 
 def hidden(params: Params) -> set[str]:
     """The parameters that mean nothing with the others as they are."""

@@ -22,7 +22,7 @@ from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.rope.live_values import live_values
 from app.scenes.rope.measures import measures
-from app.scenes.rope.parameters import PRESETS, Params, hidden
+from app.scenes.rope.parameters import ABOUT, PRESETS, Params, hidden
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.rope_handles import RopeHandles
@@ -384,10 +384,10 @@ class RopeScene:
 SCENE = SceneKind(
     name="rope",
     title="Rope",
-    help="<b>Drag the rope</b> to pull it, or the arrows to move its root. Next: raise the stiffness until hω "
-    "reaches its limit, or press <b>3</b> to see Euler's method explode.",
+    help="<b>Drag the rope</b> to pull it, or the arrows to move its root.",
     params=Params,
     presets=PRESETS,
+    about=ABOUT,
     opening="Shaken at the root",
     make=RopeScene,
     make_with_student=RopeScene,

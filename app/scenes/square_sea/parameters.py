@@ -235,6 +235,15 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
 }  # fmt: skip
 
+ABOUT = {  # preset -> what it shows and what to try
+    "Earth breeze": "Waves of a breeze on the Earth: turn the wind up, or choose another planet.",
+    "Storm arriving": "A storm raises waves, foam and rain on a calm sea within 20 s.",
+    "Storm over": "A storm dies down within 20 s, at sunset.",
+    "Light planet": "On a planet of 1/100 of the Earth's mass the same wind makes higher, longer waves.",
+    "Heavy planet": "On a planet of 100 times the Earth's mass the same wind makes lower, shorter waves.",
+    "Rain shower": "Rain on nearly calm water: watch the rings spread.",
+}
+
 
 class RainSettings(NamedTuple):
     """Parameters of the rainfall: when one of these changes, it starts again."""

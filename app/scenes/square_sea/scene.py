@@ -16,7 +16,7 @@ from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
 from app.scenes.plot_rows import PlotRows
 from app.scenes.square_sea.live_values import live_values
 from app.scenes.square_sea.measures import measures
-from app.scenes.square_sea.parameters import PRESETS, Params, conditions, hidden, rain_settings
+from app.scenes.square_sea.parameters import ABOUT, PRESETS, Params, conditions, hidden, rain_settings
 from app.scenes.square_sea.rainfall import Rainfall, RainFrame
 from app.scenes.square_sea.statistics import Report, Theory, measure, theory
 from app.scenes.square_sea.tile_mesh import set_mesh
@@ -29,10 +29,6 @@ if TYPE_CHECKING:
     from app.lab.live_code import LiveCode
     from app.scenes.square_sea.student_sea import StudentSea
 
-HELP = (
-    "<b>Click the water</b> to place a wave gauge; drag to look around, scroll to move. Next: turn the wind up, or "
-    "press <b>2</b> for a storm and <b>4</b> for a planet of 1/100 of the Earth's mass."
-)
 SERIES = ("wave gauge",)
 CHANGING = (  # as time passes
     "steps", "sea", "rainfall", "foam", "drawn_at", "foam_cover", "foam_correction", "foam_cover_before", "foam_limit",
@@ -486,9 +482,10 @@ class SquareSeaScene:
 SCENE = SceneKind(
     name="square_sea",
     title="Square sea",
-    help=HELP,
+    help="<b>Click the water</b> to place a wave gauge; drag to look around.",
     params=Params,
     presets=PRESETS,
+    about=ABOUT,
     make=SquareSeaScene,
     make_with_student=SquareSeaScene,
     hidden=hidden,

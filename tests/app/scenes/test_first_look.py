@@ -40,7 +40,11 @@ def test_the_first_look_still_moves_after_half_a_minute(name: str, duration: flo
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_first_look_is_a_preset_and_the_help_says_what_to_do_next(name: str) -> None:
+def test_the_first_look_is_a_preset_and_each_preset_has_one_sentence_of_its_own(name: str) -> None:
     kind = scene_named(name)
     assert kind.opening in ("", *kind.presets)
-    assert "Next:" in kind.help
+    assert list(kind.about) == list(kind.presets)
+    for sentence in kind.about.values():
+        assert sentence.endswith(".")
+        assert len(sentence.split()) <= 20
+    assert len(set(kind.about.values())) == len(kind.about)

@@ -7,11 +7,13 @@ import io
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
+from app.bench import places
 from app.scenes import NAMES, scene_named
+from sim.quantities import read_number
 
 LIVE = "live"  # the command of the lab that need not be named
 MAX_HULL_FACES = 20_000  # of a hull from a file: pressure is summed over all of them at each step
@@ -95,29 +97,11 @@ def make_parser() -> argparse.ArgumentParser:
     add_address(beside)
     beside.set_defaults(command=serve_beside)
 
-    run = commands.add_parser("run", help="run a scene without a browser, and write it to a file")
-    run.add_argument("scene", metavar="SCENE", help=", ".join(NAMES))
-    run.add_argument("--seconds", type=float, required=True, metavar="S", help="simulated time [s]")
-    run.add_argument("--out", type=Path, required=True, metavar="FILE.npz")
-    run.add_argument("--rate", type=float, default=30.0, metavar="HZ", help="frames a simulated second (default: 30)")
-    add_parameters(run)
-    run.set_defaults(command=run_headless)
-
-    export = commands.add_parser("export", help="write a sea or a cloth as a sequence of files for artists")
-    export.add_argument("scene", metavar="SCENE", help="square_sea (EXR or PNG pictures that tile) or cloth (OBJ)")
-    export.add_argument("--seconds", type=float, required=True, metavar="S", help="simulated time [s]")
-    export.add_argument("--out", type=Path, required=True, metavar="DIR", help="a new or empty folder")
-    export.add_argument(
-        "--rate", type=float, default=30.0, metavar="HZ", help="frames a simulated second (default: 30)"
-    )
-    export.add_argument("--start", type=float, default=0.0, metavar="S", help="time of the first frame (default: 0)")
-    forms = "exr (32-bit, the sea's default), exr16, png, or obj (the cloth's)"
-    export.add_argument("--format", metavar="FORMAT", help=forms)
-    add_parameters(export)
-    export.set_defaults(command=run_export)
+    add_recording(commands)
 
     bench = commands.add_parser("bench", help="measure run time against error, frames and start-up")
-    bench.add_argument("names", nargs="*", metavar="NAME", help="the benchmarks to run (default: all)")
+    names = f"the benchmarks to run (default: all): {', '.join(places())}"
+    bench.add_argument("names", nargs="*", metavar="NAME", help=names)
     bench.add_argument("--quick", action="store_true", help="fewer and shorter runs: a minute each")
     bench.add_argument(
         "--peers",
@@ -159,10 +143,51 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
+def add_recording(commands: Any) -> None:
+    """The commands that write a scene's frames to files."""
+    seconds, hertz, rate = quantity("s"), quantity("Hz"), "frames a simulated second (default: 30)"
+    run = commands.add_parser("run", help="run a scene without a browser, and write it to a file")
+    run.add_argument("scene", metavar="SCENE", help=", ".join(NAMES))
+    run.add_argument("--list", action="store_true", help="list the scene's parameters, presets and measures instead")
+    run.add_argument("--seconds", type=seconds, metavar="S", help="simulated time [s]")
+    run.add_argument("--out", type=Path, metavar="FILE.npz")
+    run.add_argument("--rate", type=hertz, default=30.0, metavar="HZ", help=rate)
+    add_parameters(run)
+    run.set_defaults(command=run_headless)
+
+    export = commands.add_parser("export", help="write a sea or a cloth as a sequence of files for artists")
+    export.add_argument("scene", metavar="SCENE", help="square_sea (EXR or PNG pictures that tile) or cloth (OBJ)")
+    export.add_argument("--seconds", type=seconds, required=True, metavar="S", help="simulated time [s]")
+    export.add_argument("--out", type=Path, required=True, metavar="DIR", help="a new or empty folder")
+    export.add_argument("--rate", type=hertz, default=30.0, metavar="HZ", help=rate)
+    export.add_argument("--start", type=seconds, default=0.0, metavar="S", help="time of the first frame (default: 0)")
+    forms = "exr (32-bit, the sea's default), exr16, png, or obj (the cloth's)"
+    export.add_argument("--format", metavar="FORMAT", help=forms)
+    add_parameters(export)
+    export.set_defaults(command=run_export)
+
+
+def quantity(unit: str) -> Callable[[str], float]:
+    """Return the reader of an option's number, which may have this unit: 2.5, 5ms, 1/3."""
+
+    def read(text: str) -> float:
+        try:
+            return float(text)  # "nan" and "inf" are refused later, with the allowed range
+        except ValueError:
+            pass
+        try:
+            return read_number(text, unit)
+        except ValueError as reason:
+            raise argparse.ArgumentTypeError(f"{text!r}: {reason}; write a number, with or without {unit}") from None
+
+    return read
+
+
 def add_lab(lab: argparse.ArgumentParser) -> None:
     """The commands of `springtide lab`."""
     commands = lab.add_subparsers(metavar="DIR, new or check", required=True)
-    live = commands.add_parser(LIVE, help="springtide lab DIR: the scenes with the functions in this folder, live")
+    lab.epilog = "`springtide lab DIR` opens the scenes with the functions in that folder, live."
+    live = commands.add_parser(LIVE)
     live.add_argument("folder", type=Path, metavar="DIR", help="a folder that `springtide lab new` has made")
     add_serving(live)
     live.set_defaults(command=serve_folder)
@@ -175,6 +200,7 @@ def add_lab(lab: argparse.ArgumentParser) -> None:
     json = "write the results as JSON; without a file, print them"
     check.add_argument("--json", type=Path, nargs="?", const=Path("-"), metavar="FILE", help=json)
     check.add_argument("--csv", type=Path, metavar="FILE.csv", help="write a table, one row a folder")
+    check.add_argument("--all", action="store_true", help="list the tasks that are not begun, too")
     check.add_argument("--report", type=Path, metavar="FILE.html", help="write the page to hand in")
     check.set_defaults(command=check_lab)
     for command in (live, new, check):
@@ -207,7 +233,8 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--preset", metavar="NAME or FILE", help="a preset of the scene, or a set-up file, replay or recording"
     )
-    parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="set parameters of the scene")
+    names = "set parameters of the scene; `springtide run SCENE --list` lists presets and parameters"
+    parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help=names)
     parser.add_argument("--hull", type=Path, metavar="FILE", help="add a closed mesh to the bodies of the radial sea")
 
 
@@ -289,6 +316,13 @@ def serving(arguments: argparse.Namespace) -> dict[str, Any]:
 def run_headless(arguments: argparse.Namespace) -> int:
     """`springtide run`."""
     scene = scene_named(arguments.scene)
+    if arguments.list:
+        from app.commands.list_scene import list_scene
+
+        return list_scene(scene)
+    for option in ("seconds", "out"):
+        if getattr(arguments, option) is None:
+            raise ValueError(f"--{option}: missing; or give --list for the scene's parameters, presets and measures")
     params = read_params(scene, arguments)
     from app.commands.run import run_to_file
 
@@ -357,16 +391,15 @@ def check_lab(arguments: argparse.Namespace) -> int:
     from app.commands.lab import check
 
     out = {"json": arguments.json, "csv": arguments.csv, "report": arguments.report}
-    return check(arguments.folders, arguments.tasks, out)
+    return check(arguments.folders, arguments.tasks, out, everything=arguments.all)
 
 
 def run_hydrodynamics(arguments: argparse.Namespace) -> int:
     """`springtide hydrodynamics`."""
     from app.commands.hydrodynamics import compare, make
-    from sim.validation import argument_error
 
     if arguments.compare == (arguments.hull is not None):
-        raise argument_error("HULL", str(arguments.hull), "a mesh file, or --compare without one")
+        raise ValueError("HULL: give a mesh file, or --compare without one")
     return compare() if arguments.compare else make(arguments.hull, arguments.out)
 
 

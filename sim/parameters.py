@@ -196,7 +196,7 @@ def check_value(name: str, parameter: Parameter, value: object) -> Any:
         good = clamp_value(parameter, value)
         if good is not value and (parameter.kind is bool or good != value):
             raise (
-                choice_error(name, parameter, value)
+                choice_error(name, value, parameter.choices)
                 if parameter.choices
                 else argument_error(name, value, parameter.allowed)
             )
@@ -228,11 +228,12 @@ def similar(word: object, names: Iterable[str]) -> list[str]:
     return (parts or difflib.get_close_matches(lower, names, n=2, cutoff=0.6))[:4]
 
 
-def choice_error(name: str, parameter: Parameter, value: object) -> ValueError:
-    """The error for a value that is not one of the choices; similar choices come first."""
-    close = similar(value, parameter.choices)
+def choice_error(name: str, value: object, choices: Iterable[str], more: str = "") -> ValueError:
+    """The error for a value that is not one of the choices, with similar ones. more: what else is allowed."""
+    choices = tuple(choices)
+    close = similar(value, choices) if isinstance(value, str) else []
     hint = f"; did you mean {' or '.join(close)}?" if close else ""
-    return ValueError(f"{argument_error(name, value, parameter.allowed)}{hint}")
+    return ValueError(f"{argument_error(name, value, 'one of ' + ', '.join(choices) + more)}{hint}")
 
 
 def check_record(cls: type[P], values: Mapping[str, object]) -> P:

@@ -15,6 +15,12 @@ def argument_error(name: str, value: object, allowed: str) -> ValueError:
     return ValueError(f"{name}: {value!r} is not allowed; allowed: {allowed}")
 
 
+def unreadable(name: str, path: object, error: OSError) -> ValueError:
+    """The error for a file that cannot be read: "no such file" if it is missing."""
+    reason = "no such file" if isinstance(error, FileNotFoundError) else error.strerror or str(error)
+    return ValueError(f"{name}: {path}: {reason[:1].lower()}{reason[1:]}")
+
+
 def as_float(value: object) -> float:
     """A real number of any kind as a float; NaN for anything else, True and "1" included."""
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):

@@ -6,31 +6,22 @@ A benchmark has `rows(quick)`, its table. It may have `findings(rows)`, a second
 
 import functools
 import importlib
-import pkgutil
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import app.bench.cases
+from app.bench import in_checkout, places
 from app.experiments import tables
 from sim.files import replacing
-from sim.validation import argument_error
+from sim.parameters import choice_error
 
-CHECKOUT = Path(__file__).resolve().parents[2]
 ELSEWHERE = "comparisons with C and other programs work in a checkout, where benchmarks/ lies"
-
-
-def in_checkout() -> bool:
-    """True if benchmarks/ lies beside the package; an installed one is somebody else's."""
-    return (CHECKOUT / "benchmarks" / "command.py").is_file()
 
 
 def benchmarks() -> dict[str, ModuleType]:
     """Name -> module, in alphabetical order."""
-    folders = [app.bench.cases, *([importlib.import_module("benchmarks.cases")] if in_checkout() else [])]
-    names = {info.name: folder.__name__ for folder in folders for info in pkgutil.iter_modules(folder.__path__)}
-    return {name: importlib.import_module(f"{names[name]}.{name}") for name in sorted(names)}
+    return {name: importlib.import_module(place) for name, place in places().items()}
 
 
 def run(names: list[str], quick: bool = False, peers: Sequence[str] | None = None, out: Path | None = None) -> int:
@@ -43,8 +34,7 @@ def run(names: list[str], quick: bool = False, peers: Sequence[str] | None = Non
     known = benchmarks()
     for name in names:
         if name not in known:
-            allowed = f"one of {', '.join(known)}"
-            raise argument_error("bench", name, allowed if in_checkout() else f"{allowed}; {ELSEWHERE}")
+            raise choice_error("bench", name, known, "" if in_checkout() else f"; {ELSEWHERE}")
     if peers is not None and not in_checkout():
         raise ValueError(f"--peers: {ELSEWHERE}")
     tables.make_folder(out)

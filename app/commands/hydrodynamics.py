@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from rich import get_console
 from rich.progress import Progress
-from rich.table import Table
 
+from app.experiments import tables
 from sim.floating import Body, Hull, MotionCoefficients, equilibrium_draft, make_fleet, step, still_water
 from sim.floating.boundary_elements import FREQUENCIES, make_table
 from sim.floating.equilibrium import SEA_WATER
@@ -72,6 +72,18 @@ class Compared(NamedTuple):
         return self.own / self.capytaine - 1.0
 
 
+def shown(row: Compared) -> dict[str, str]:
+    """A row of the table."""
+    return {
+        "body": row.body,
+        "quantity": row.quantity,
+        "Springtide": f"{row.own:.4f}",
+        "Capytaine": f"{row.capytaine:.4f}",
+        "difference": f"{row.difference:+.2%}",
+        "within": f"{row.limit:.0%}" if abs(row.difference) <= row.limit else f"not within {row.limit:.0%}",
+    }
+
+
 def compare() -> int:
     """Set the shipped shapes beside Capytaine, live; returns 0 where all lie within their limits, else 1.
 
@@ -86,15 +98,10 @@ def compare() -> int:
             draft = equilibrium_draft(hull, COMPARED_DENSITY, SEA_WATER)
             table = make_table(hull, [draft], progress=lambda: progress.advance(task))
             rows += compared(name, hull, Hull.of(dataclasses.replace(hull.shape, table=table), hull))
-    shown = Table("body", "quantity", "Springtide", "Capytaine", "difference", "within")
-    for row in rows:
-        within = f"{row.limit:.0%}" if abs(row.difference) <= row.limit else f"not within {row.limit:.0%}"
-        shown.add_row(
-            row.body, row.quantity, f"{row.own:.4f}", f"{row.capytaine:.4f}", f"{row.difference:+.2%}", within
-        )
-    console.print(shown)
-    print("Periods: of small motions, undamped. Decay: ratio of two extremes, a period apart, as simulated.")
-    print("Response: height of heave over that of the wave, by the coefficients; below 0.05 it is left out.")
+    tables.show("", [shown(row) for row in rows])
+    print("Periods: of small motions, undamped.")
+    print("Decay: ratio of two extremes, a period apart, as simulated.")
+    print("Response: height of heave over that of the wave; left out below 0.05.")
     return int(any(abs(row.difference) > row.limit for row in rows))
 
 

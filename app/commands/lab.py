@@ -1,16 +1,16 @@
 """`springtide lab new` and `springtide lab check`."""
 
-import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from rich import get_console
 from rich.console import Console
-from rich.table import Column, Table
 from rich.text import Text
 
+from app.experiments import tables
 from app.files import check_out_file
-from app.lab.check import FolderResult, check_folder
+from app.lab.check import FolderResult, TaskResult, check_folder
 from app.lab.folder import make_folder
 from app.lab.report import page_of
 from app.lab.results_file import csv_text, json_text
@@ -18,6 +18,8 @@ from app.lab.task import load_tasks
 from sim.files import replacing
 
 STYLES = {"right": "green", "wrong": "red", "failed": "red", "incomplete": "yellow", "not begun": "dim"}
+ITEM_WIDTH = 7  # [characters]
+STATE_WIDTH = 2 + max(map(len, STYLES))  # [characters]
 PARALLEL = 2  # folders of a class that are checked at the same time
 
 
@@ -28,10 +30,12 @@ def new(folder: Path, tasks: Sequence[Path], *, solutions: bool) -> int:
     return 0
 
 
-def check(folders: Sequence[Path], tasks: Sequence[Path], out: dict[str, Path | None]) -> int:
+def check(
+    folders: Sequence[Path], tasks: Sequence[Path], out: dict[str, Path | None], *, everything: bool = False
+) -> int:
     """Check folders, and write the requested reports; returns 0 if every mandatory task of every folder is right.
 
-    out: "json", "csv" and "report", each the file to write, or None.
+    out: "json", "csv" and "report", each the file to write, or None. everything: print tasks not begun too.
     """
     for option, path in out.items():
         if path is not None and str(path) != "-":
@@ -42,7 +46,7 @@ def check(folders: Sequence[Path], tasks: Sequence[Path], out: dict[str, Path | 
     if out["json"] is not None and str(out["json"]) == "-":
         print(json_text(results))
     else:
-        print_results(results)
+        print_results(results, everything=everything)
     write_files(results, out)
     return 0 if all(result.is_complete for result in results) else 1
 
@@ -56,47 +60,62 @@ def write_files(results: Sequence[FolderResult], out: dict[str, Path | None]) ->
                 draft.write_text(make(results), "utf-8")
 
 
-def print_results(results: Sequence[FolderResult]) -> None:
-    """Print one table: the tasks of one folder, or a row for each folder of a class."""
-    console = Console(file=sys.stdout)
-    console.print(table_of_tasks(results[0]) if len(results) == 1 else table_of_class(results))
-    if len(results) == 1:
-        result = results[0]
-        if result.answers.error:
-            console.print(printable(result.answers.error), style="red")
-        (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
-        console.print(f"{right} of {count} tasks right, {more} of {optional} optional ones ({result.seconds:.1f} s)")
+def print_results(results: Sequence[FolderResult], *, everything: bool = False) -> None:
+    """Print the result of one folder, or a row for each folder of a class.
 
-
-def printable(text: str) -> Text:
-    """A text of a student for the terminal, with control characters written out."""
-    return Text("".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text))
-
-
-def whole_table(*names: str) -> Table:
-    """A table that folds wide cells and cuts nothing off."""
-    return Table(*(Column(name, overflow="fold") for name in names))
-
-
-def table_of_tasks(result: FolderResult) -> Table:
-    """Result of the check of one folder."""
-    table = whole_table("Task", "What", "State", "Why")
+    everything: list the tasks that are not begun too.
+    """
+    if len(results) > 1:
+        tables.show("", [class_row(result) for result in results])
+        return
+    result, console = results[0], get_console()
     for entry in result.tasks:
-        name = f"{entry.task.item}{' *' if entry.task.optional else ''}"
-        why = printable("; ".join(entry.messages))
-        table.add_row(name, printable(entry.task.title), Text(entry.state, STYLES[entry.state]), why)
-    table.caption = "* optional"
-    return table
+        if everything or entry.state != "not begun":
+            print_task(entry, console)
+    problems = [text for entry in result.tasks for text in entry.problems]
+    for text in [result.answers.error, *problems]:
+        if text:
+            console.print()
+            print_paragraph(text, console)
+    for entry in result.tasks:
+        for text in entry.missing:
+            console.print()
+            print_paragraph(f"{entry.task.item}, still to do: {text}", console)
+    rest = 0 if everything else sum(entry.state == "not begun" for entry in result.tasks)
+    (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
+    console.print()
+    if rest:
+        print_paragraph(f"Not begun: {rest} of {len(result.tasks)} tasks; --all lists them.", console)
+    said = f"{right} of {count} tasks right, {more} of {optional} optional ones ({result.seconds:.1f} s)."
+    print_paragraph(said, console)
 
 
-def table_of_class(results: Sequence[FolderResult]) -> Table:
-    """Result of the check of the folders of a class."""
-    table = whole_table("Folder", "Name", "Right", "Optional", "Not right")
-    for result in results:
-        (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
-        rest = [entry.task.item for entry in result.tasks if entry.state != "right" and not entry.task.optional]
-        table.add_row(
-            printable(result.folder.name), printable(result.answers.name), f"{right} of {count}",
-            f"{more} of {optional}", printable(", ".join(dict.fromkeys(rest))),
-        )  # fmt: skip
-    return table
+def print_task(entry: TaskResult, console: Console) -> None:
+    """Print one line: item, state and title."""
+    head = f"{entry.task.item:<{ITEM_WIDTH}}{entry.state:<{STATE_WIDTH}}"
+    line = Text(f"{head}{plain(entry.task.title)}{' (optional)' if entry.task.optional else ''}")
+    line.stylize(STYLES[entry.state], ITEM_WIDTH, len(head))
+    console.print(line, soft_wrap=True)
+
+
+def print_paragraph(text: str, console: Console) -> None:
+    """Print a text at the width of the terminal, folded between words."""
+    console.print("\n".join(tables.fold(plain(text), console.width)), markup=False, highlight=False, soft_wrap=True)
+
+
+def plain(text: str) -> str:
+    """A text of a student for the terminal, with control characters written out."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+
+
+def class_row(result: FolderResult) -> dict[str, str]:
+    """Result of the check of one folder of a class."""
+    (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
+    rest = [entry.task.item for entry in result.tasks if entry.state != "right" and not entry.task.optional]
+    return {
+        "Folder": plain(result.folder.name),
+        "Name": plain(result.answers.name),
+        "Right": f"{right} of {count}",
+        "Optional": f"{more} of {optional}",
+        "Not right": plain(", ".join(dict.fromkeys(rest))),
+    }

@@ -3,6 +3,7 @@
 import csv
 import os
 import platform
+import textwrap
 from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -72,16 +73,26 @@ def show(title: str, rows: Rows) -> None:
     # Headings are folded between words, values are not.
     needed = 1 + sum(3 + max(widths[name], *map(len, name.split())) for name in names)
     if needed > console.width:
-        lines = [title, *(line for row in rows for line in ("", *lines_of(row)))]
-        console.print("\n".join(lines), markup=False, highlight=False, soft_wrap=True)
+        lines = [*([title] if title else []), *(line for row in rows for line in ("", *lines_of(row)))]
+        folded = [line for text in lines for line in fold(text, console.width) or [""]]
+        console.print("\n".join(folded), markup=False, highlight=False, soft_wrap=True)
         return
-    table = Table(title=escape(title), title_justify="left")
+    table = Table(title=escape(title) or None, title_justify="left")
     for name in names:
         is_number = any(isinstance(row.get(name), int | float) for row in rows)
         table.add_column(escape(name), justify="right" if is_number else "left", min_width=widths[name])
     for row in rows:
         table.add_row(*(escape(written(row.get(name))) for name in names))
     console.print(table)
+
+
+def fold(text: str, width: int) -> list[str]:
+    """A line folded between words, the further lines indented."""
+    indent = " " * (len(text) - len(text.lstrip()))
+    return textwrap.wrap(
+        text, width, drop_whitespace=True, initial_indent="", subsequent_indent=f"{indent}  ",
+        break_long_words=False, break_on_hyphens=False,
+    )  # fmt: skip
 
 
 def lines_of(row: dict[str, Any]) -> list[str]:

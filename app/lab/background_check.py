@@ -5,6 +5,7 @@ The process takes requests as lines of JSON, `{"number", "folder", "names"}`, an
 """
 
 import contextlib
+import dataclasses
 import json
 import os
 import queue
@@ -92,7 +93,7 @@ class BackgroundCheck:
                 found = json.loads(line)
                 with self.lock:
                     if found["number"] == self.number:
-                        verdict = Verdict(found["state"], found["text"], found["mistake"])
+                        verdict = Verdict(**found["verdict"])
                         self.verdicts = {**self.verdicts, found["name"]: verdict}
                         self.waiting = self.waiting - {found["name"]}
         process.kill()  # it has ended, or soon will: no request must go to it
@@ -137,8 +138,7 @@ def serve(requests: "queue.SimpleQueue[dict[str, object] | None]", say: Callable
                 if not requests.empty():
                     break
                 verdict = check_program(folder, runner, tasks[name])
-                found = {"state": verdict.state, "text": verdict.text, "mistake": verdict.mistake}
-                say({"number": request["number"], "name": name, **found})
+                say({"number": request["number"], "name": name, "verdict": dataclasses.asdict(verdict)})
 
 
 def main() -> None:

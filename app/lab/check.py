@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from app.lab.answer_check import AnswerVerdict, check_answer
-from app.lab.answers import Answers, read_answers
+from app.lab.answers import FILE, Answers, read_answers
+from app.lab.folder import check_is_folder
 from app.lab.program_check import Points, Verdict, check_program, draw
 from app.lab.runner import Runner
 from app.lab.task import Task
-from sim.validation import argument_error
 
 
 @dataclasses.dataclass(frozen=True)
@@ -33,18 +33,22 @@ class TaskResult:
         return "right" if not open_parts else "not begun" if open_parts == len(states) else "incomplete"
 
     @property
-    def messages(self) -> tuple[str, ...]:
-        """Messages to the student on the parts that are not right."""
-        texts = []
-        if self.program is not None and self.program.state in ("wrong", "failed"):
-            named = f"{self.program.mistake}: " if self.program.state == "wrong" and self.program.mistake else ""
-            texts.append(f"{self.task.name}: {named}{self.program.text}")
-        texts += [f"{answer.question.key}: {answer.text}" for answer in self.answers if answer.state == "wrong"]
-        if self.state == "incomplete":
-            missing = [self.task.name] if self.program is not None and self.program.state == "not begun" else []
-            missing += [answer.question.key for answer in self.answers if answer.state == "not begun"]
-            texts.append("still to do: " + ", ".join(missing))
+    def problems(self) -> tuple[str, ...]:
+        """The parts that are not right, each with its place and what to do."""
+        texts, program = [], self.program
+        if program is not None and program.state in ("wrong", "failed"):
+            texts.append(f"{program.place or self.task.file} {self.task.name}: {program.sentence}")
+        texts += [f"{FILE} {self.task.name}.{a.question.key}: {a.text}" for a in self.answers if a.state == "wrong"]
         return tuple(texts)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """The parts of a task that is begun which are still to do: its function, its questions."""
+        if self.state == "not begun":
+            return ()
+        program = self.program is not None and self.program.state == "not begun"
+        questions = [answer.question.ask for answer in self.answers if answer.state == "not begun"]
+        return (*([f"Write {self.task.name} in {self.task.file}."] if program else []), *questions)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,8 +76,7 @@ def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool = False) -
 
     Raises ValueError where it is no folder.
     """
-    if not folder.is_dir():
-        raise argument_error("DIR", str(folder), "a folder that `springtide lab new` has made")
+    check_is_folder(folder)
     began = time.monotonic()
     answers = read_answers(folder)
     results = []

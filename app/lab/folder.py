@@ -14,6 +14,13 @@ PICTURES = "pictures"  # folder for pictures of the screen, which the report sho
 MAX_PICTURES = 60  # that the report shows
 
 
+def check_is_folder(folder: Path) -> None:
+    """Raises ValueError where there is no such folder."""
+    if not folder.is_dir():
+        what = "not a folder" if folder.exists() else "no such folder"
+        raise ValueError(f"DIR: {folder}: {what}; `springtide lab new DIR` makes one with the exercises")
+
+
 def make_folder(folder: Path, tasks: Sequence[Task], *, solutions: bool = False) -> list[Path]:
     """Write the exercises into a new or empty folder; returns the files. solutions: with the reference solutions.
 

@@ -29,11 +29,19 @@ class Verdict:
     """Result of the check of one function.
 
     state: "not begun", "right", "wrong" or "failed" (no result). mistake: the name of a recognised mistake, or "".
+    place: file and line of a mistake, as an editor takes it: "rope.py:17"; "" if it is unknown.
     """
 
     state: str
     text: str = ""
     mistake: str = ""
+    place: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """The mistake in words."""
+        named = f"{self.mistake}: " if self.state == "wrong" and self.mistake else ""
+        return named + self.text + ("" if self.text.endswith((".", "?", "!")) else ".")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -139,16 +147,23 @@ def same(found: Any, expected: Any) -> bool:
     return True
 
 
-def is_begun(folder: Path, task: Task) -> bool:
-    """True if the function in the student's file has a body: more than a docstring, `...` and `pass`."""
+def definition(folder: Path, task: Task) -> ast.FunctionDef | None:
+    """The function in the student's file; None if it is not there, or the file cannot be parsed."""
     try:
         tree = ast.parse((folder / task.file).read_bytes())
     except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):  # the last two where it nests too deeply
-        return True  # running it says what is wrong
-    for node in tree.body:
-        if isinstance(node, ast.FunctionDef) and node.name == task.name:
-            return not all(is_empty(line) for line in node.body)
-    return True
+        return None
+    found = (node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == task.name)
+    return next(found, None)
+
+
+def is_begun(folder: Path, task: Task) -> bool:
+    """True if the function in the student's file has a body: more than a docstring, `...` and `pass`.
+
+    True without a function too: running the file says what is wrong.
+    """
+    node = definition(folder, task)
+    return node is None or not all(is_empty(line) for line in node.body)
 
 
 def is_empty(line: ast.stmt) -> bool:
@@ -165,10 +180,16 @@ def check_program(folder: Path, runner: Runner, task: Task) -> Verdict:
         compare(student)
         behave(student)
     except RunError as error:
-        return Verdict("failed", str(error), error.kind)
+        return Verdict("failed", error.text, error.kind, place_of(error.file, error.line))
     except Wrong as error:
-        return Verdict("wrong", str(error), error.mistake)
+        node = definition(folder, task)
+        return Verdict("wrong", str(error), error.mistake, place_of(task.file, node and node.lineno))
     return Verdict("right")
+
+
+def place_of(file: str, line: int | None) -> str:
+    """A place in a student's folder, as editors take it."""
+    return f"{file}:{line}" if line else file
 
 
 def draw(runner: Runner, task: Task) -> Points | None:

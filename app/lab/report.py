@@ -142,14 +142,15 @@ def program_text(entry: TaskResult) -> Html:
     program = entry.program
     if program is None:
         return Html()
-    mistake = f" ({program.mistake})" if program.mistake and program.state == "wrong" else ""
-    text = program.text
+    text = f"{program.place}: {program.sentence}" if program.place else program.sentence
+    if program.state == "not begun":
+        text = ""
     if program.state == "right":
         behaviour = inspect.getdoc(getattr(entry.task.check, "behaviour", None)) or ""
         text = f"As the reference at {SAMPLES} random inputs. {behaviour and 'Behaviour: '}{behaviour}"
     return fill(
-        '<p>Function <code>{}</code>: <b class="{}">{}</b>{}. {}</p>',
-        entry.task.name, state_class(program.state), program.state, mistake, text,
+        '<p>Function <code>{}</code>: <b class="{}">{}</b>. {}</p>',
+        entry.task.name, state_class(program.state), program.state, text,
     )  # fmt: skip
 
 

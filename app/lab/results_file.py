@@ -37,7 +37,7 @@ def task_record(entry: TaskResult) -> dict[str, object]:
         "state": entry.state,
         "program": None
         if program is None
-        else {"state": program.state, "mistake": program.mistake, "text": program.text},
+        else {"state": program.state, "mistake": program.mistake, "text": program.text, "place": program.place},
         "answers": {
             verdict.question.key: {"answer": verdict.answer, "state": verdict.state, "text": verdict.text}
             for verdict in entry.answers

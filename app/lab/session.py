@@ -21,6 +21,7 @@ from typing import NamedTuple
 import watchfiles
 
 from app.lab.background_check import BackgroundCheck
+from app.lab.folder import check_is_folder
 from app.lab.live_code import LiveCode
 from app.lab.live_net import CLOTH, ROPE, LiveNet, Loaded
 from app.lab.live_tables import LiveTables
@@ -28,7 +29,6 @@ from app.lab.runner import TIME_LIMIT, RunError, Runner
 from app.lab.saved import Saved, keep, read_files
 from app.lab.scene_values import SceneValues
 from app.lab.task import Task
-from sim.validation import argument_error
 
 SETTLE_TIME = 20  # [ms] without a further change before a save is read: editors write a file in several steps
 MAX_SETTLE_TIME = 400  # [ms]
@@ -56,8 +56,7 @@ class Session:
 
         time_limit: [s] of one call of a student's function.
         """
-        if not folder.is_dir():
-            raise argument_error("DIR", str(folder), "a folder that `springtide lab new` has made")
+        check_is_folder(folder)
         self.folder, self.tasks, self.time_limit = folder, tasks, time_limit
         self.state = CodeState()
         self.copies = Path(tempfile.mkdtemp(prefix="springtide-lab-"))

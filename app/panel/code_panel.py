@@ -268,8 +268,8 @@ def compared_text(compared: Compared | None) -> Html:
 
 def function_line(task: Task, verdict: Verdict, compared: Compared | None = None) -> Html:
     """One function: its name and state, its errors, and its values in the scene."""
-    named = f"{verdict.mistake}. " if verdict.state == "wrong" and verdict.mistake else ""
-    why = f"{named[:1].upper()}{named[1:]}{verdict.text}" if verdict.state in ("wrong", "failed") else ""
+    place = f"{verdict.place}: " if verdict.place else ""
+    why = f"{place}{verdict.sentence}" if verdict.state in ("wrong", "failed") else ""
     return fill(
         '<div class="springtide-function" data-function="{}" data-state="{}">{} {}{}{}</div>',
         task.name, verdict.state, task.name, coloured(verdict.state, COLOURS[verdict.state]),

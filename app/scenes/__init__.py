@@ -6,6 +6,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from sim.parameters import choice_error
 from sim.validation import argument_error
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ def check_name(name: str) -> str:
     if name in FORMER_NAMES:
         raise argument_error("scene", name, f"{FORMER_NAMES[name]}, its new name")
     if name not in NAMES:
-        raise argument_error("scene", name, "one of " + ", ".join(NAMES))
+        raise choice_error("scene", name, NAMES)
     return name
 
 

@@ -9,7 +9,7 @@ from app.messages import BaseParams
 from app.scenes import scene_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import Setup, read_query, read_setup, shortened
-from sim.parameters import Parameter, Value, clamp_value, in_words, parameters_of
+from sim.parameters import Parameter, Value, choice_error, clamp_value, in_words, parameters_of
 from sim.validation import argument_error
 
 MAX_PANES = 3  # each is a lab with a simulation and a page of its own
@@ -54,7 +54,7 @@ COMPARISONS = {
 def comparison_named(name: str) -> tuple[Setup, ...]:
     """The set-ups of a comparison that is ready. Raises ValueError where there is none of that name."""
     if name not in COMPARISONS:
-        raise argument_error("compare", shortened(name), "one of " + ", ".join(COMPARISONS))
+        raise choice_error("compare", shortened(name), COMPARISONS)
     return tuple(read_query(query) for query in COMPARISONS[name].queries)
 
 
@@ -68,10 +68,9 @@ def read_comparison(words: Sequence[str]) -> tuple[Setup, ...]:
     """Set-ups as `read_setup` reads them, or the name of a comparison. Raises ValueError if one is not allowed."""
     if len(words) == 1 and words[0] in COMPARISONS:
         return comparison_named(words[0])
-    setups = tuple(read_setup(word) for word in words)
     if len(words) == 1:
-        ready = ", ".join(COMPARISONS)
-        raise argument_error("set-ups side by side", words[0], f"2 to {MAX_PANES} set-ups, or one of {ready}")
+        raise choice_error("set-ups side by side", words[0], COMPARISONS, f"; or 2 to {MAX_PANES} set-ups")
+    setups = tuple(read_setup(word) for word in words)
     check_count(setups)
     return setups
 

@@ -27,9 +27,17 @@ import numpy as np
 from app.messages import BaseParams, Vector
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import AnyKind, SceneKind
-from sim.parameters import Value, changed_names, check_record, parameters_of, parse_value, similar, unknown_parameter
+from sim.parameters import (
+    Value,
+    changed_names,
+    check_record,
+    choice_error,
+    parameters_of,
+    parse_value,
+    unknown_parameter,
+)
 from sim.quantities import read_number, write_number
-from sim.validation import argument_error
+from sim.validation import argument_error, unreadable
 
 VERSION = 2  # of a file with a hull; others are of version 1, so that older programs can read them
 MAX_LENGTH = 5000  # characters of a query or a file
@@ -293,16 +301,14 @@ def read_text(what: str, text: object, max_length: int) -> str:
 def kind_named(name: object) -> AnyKind:
     """The scene of a set-up. Raises ValueError where there is none of that name."""
     if not isinstance(name, str) or name not in NAMES:
-        close = similar(name, NAMES) if isinstance(name, str) else []
-        hint = f"; did you mean {' or '.join(close)}?" if close else ""
-        raise ValueError(f"{argument_error('scene', name, 'one of ' + ', '.join(NAMES))}{hint}")
+        raise choice_error("scene", name, NAMES)
     return scene_named(name)
 
 
 def preset_named(what: str, preset: object, kind: SceneKind[Any, Any, Any]) -> Mapping[str, Value]:
     """The values of a scene's preset. Raises ValueError where it has none of that name."""
     if not isinstance(preset, str) or preset not in kind.presets:
-        raise argument_error(what, preset, "one of " + ", ".join(kind.presets))
+        raise choice_error(what, preset, kind.presets)
     return kind.presets[preset]
 
 
@@ -323,7 +329,7 @@ def preset_setup(option: str, preset: str, kind: SceneKind[Any, Any, Any], folde
         return Setup(kind.name, check_record(kind.params, values), values, preset)
     path = (folder or Path()) / preset
     if path.suffix != ".json" and not path.is_file():
-        raise argument_error(option, preset, "one of " + ", ".join(kind.presets) + "; or a file FILE.json")
+        raise choice_error(option, preset, kind.presets, "; or a file FILE.json")
     return read_file(read_setup_text(option, path), f"{option} {path}", kind.name)
 
 
@@ -346,7 +352,7 @@ def read_setup_text(what: str, path: Path) -> str:
                 return replayed_setup((start + file.read(MAX_REPLAY)).decode("utf-8"))
         return start.decode("utf-8")
     except OSError as error:
-        raise argument_error(what, str(path), f"a file that can be read ({error.strerror})") from None
+        raise unreadable(what, path, error) from None
     except UnicodeDecodeError:
         raise argument_error(what, str(path), "a file of JSON in UTF-8") from None
     except UNREADABLE:

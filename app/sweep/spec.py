@@ -16,7 +16,7 @@ from app.scenes.contract import SceneKind
 from app.scenes.setups import file_name, preset_setup
 from app.sweep.design import MAX_CASES, Axis, Listed, Range, grid, grid_values, hypercube, size
 from sim.parameters import Parameter, check_record, check_value, parameters_of, unknown_parameter
-from sim.validation import argument_error, check_choice, check_number, is_whole_number
+from sim.validation import argument_error, check_choice, check_number, is_whole_number, unreadable
 
 DESIGNS = ("grid", "random")
 KEYS = ("scene", "seconds", "frames", "preset", "design", "cases", "seed", "set", "parameters")
@@ -68,7 +68,7 @@ def read_spec(path: Path) -> Spec:
         text = path.read_text("utf-8")
         content = tomllib.loads(text)
     except OSError as error:
-        raise argument_error("SPEC", str(path), f"a file that can be read ({error.strerror})") from None
+        raise unreadable("SPEC", path, error) from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"SPEC: {path} is not TOML ({error})") from None
     return make_spec(content, text, path.parent)

@@ -21,7 +21,7 @@ from sim.floating.shapes.record import Appearance, Shape
 from sim.floating.shapes.sphere import SHAPE as SPHERE
 from sim.floating.shapes.sphere import sphere
 from sim.interruption import raise_if_stopped
-from sim.validation import argument_error, check_positive
+from sim.validation import argument_error, check_positive, unreadable
 
 FILE_SHAPE = "hull"  # name of the shape that is made of a mesh file, and of its one appearance
 FILE_TITLE = "From file"
@@ -92,6 +92,8 @@ def shape_from_file(path: str | Path, own_table: bool = True) -> Shape:
 
     Raises ValueError as `Hull.load`.
     """
+    if not Path(path).exists():
+        raise unreadable("path", path, FileNotFoundError())
     import trimesh  # reading meshes is rare and the import is slow
 
     try:

@@ -34,7 +34,7 @@ def test_an_unknown_benchmark_is_refused_with_the_known_ones():
 
 def test_an_installed_program_says_in_one_line_where_its_comparisons_are(tmp_path, monkeypatch):
     assert {"kernels", "cloth_forces", "wave_sum"} <= set(command.benchmarks())
-    monkeypatch.setattr(command, "CHECKOUT", tmp_path)
+    monkeypatch.setattr("app.bench.CHECKOUT", tmp_path)
     for names, peers in ((["kernels"], None), (["rope"], ["dop999"])):
         with pytest.raises(ValueError, match=r"^.*work in a checkout, where benchmarks/ lies$"):
             command.run(names, peers=peers)

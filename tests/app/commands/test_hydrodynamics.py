@@ -91,7 +91,7 @@ def test_what_is_missing_or_wrong_is_said(
         (["--compare"], 1, "pip install '.[bem]'"),
         ([], 2, "a mesh file, or --compare"),
         ([str(box_file), "--compare"], 2, "a mesh file, or --compare"),
-        ([str(box_file.with_name("none.stl"))], 2, "a mesh file that can be read"),
+        ([str(box_file.with_name("none.stl"))], 2, "none.stl: no such file"),
         ([str(box_file), "--out", str(box_file / "no" / "out.npz")], 2, "a folder that exists"),
     ):
         assert main(["hydrodynamics", *words]) == status

@@ -261,4 +261,4 @@ def test_a_folder_to_work_on_needs_no_command_before_it(
     assert (scene, params.integrator) == ("rope", "rk4")
     assert options["session"].folder == options["workbook"].folder == folder
     assert not options["session"].copies.exists()  # it was closed
-    assert "made" in error_of(capsys, str(tmp_path / "nothing"))
+    assert "nothing: no such folder" in error_of(capsys, str(tmp_path / "nothing"))

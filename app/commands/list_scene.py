@@ -1,0 +1,55 @@
+"""`springtide run SCENE --list`: parameters, presets and measures of a scene, in the width of the terminal."""
+
+import textwrap
+from collections.abc import Iterable
+from typing import Any
+
+from rich import get_console
+
+from app.scenes.contract import SceneKind
+from app.scenes.measures import plotted
+from app.scenes.setups import write_value
+from sim.parameters import Parameter, parameters_of
+
+INDENT = 4  # [characters] of the lines below a name
+
+
+def list_scene(kind: SceneKind[Any, Any, Any]) -> int:
+    """Print all that a run of the scene can be given and measures; returns the exit status."""
+    sections = {
+        "Presets (--preset NAME)": ((name, kind.about.get(name, "")) for name in kind.presets),
+        "Parameters (--set NAME=VALUE)": (
+            (f"{name} = {setting_text(p)}", meaning_text(p)) for name, p in parameters_of(kind.params).items()
+        ),
+        "Measures (in a sweep)": ((f"{name} [{m.unit}]", m.meaning) for name, m in measures_of(kind).items()),
+    }
+    print(f"{kind.title} ({kind.name})")
+    for heading, entries in sections.items():
+        print(f"\n{heading}")
+        print_entries(entries)
+    return 0
+
+
+def print_entries(entries: Iterable[tuple[str, str]]) -> None:
+    """Print names, each with its meaning below, folded between words."""
+    width, margin = get_console().width, " " * INDENT
+    for name, meaning in entries:
+        print(f"  {name}")
+        if meaning:
+            print(textwrap.fill(meaning, width, initial_indent=margin, subsequent_indent=margin))
+
+
+def setting_text(parameter: Parameter) -> str:
+    """The default with its unit."""
+    default = write_value(parameter.default)
+    return (f'"{default}"' if " " in default else default) + (f" {parameter.unit}" if parameter.unit else "")
+
+
+def meaning_text(parameter: Parameter) -> str:
+    """The meaning, and the allowed values."""
+    return f"{parameter.doc}. Allowed: {parameter.allowed}."
+
+
+def measures_of(kind: SceneKind[Any, Any, Any]) -> dict[str, Any]:
+    """The measures of the scene as it starts."""
+    return plotted(kind, ()) if kind.measures is None else kind.measures(kind.make(kind.params()))

@@ -1,0 +1,125 @@
+"""Output of the commands in a terminal of 80 columns: whole, and folded between words."""
+
+import argparse
+import textwrap
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.__main__ import main, make_parser
+from app.commands import hydrodynamics
+from app.scenes import NAMES, scene_named
+from sim.parameters import parameters_of
+
+WIDTH = 80  # [characters]
+
+
+@pytest.fixture(autouse=True)
+def narrow(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("COLUMNS", str(WIDTH))
+    monkeypatch.chdir(tmp_path)
+
+
+def check_whole(said: str, *texts: str) -> None:
+    """Nothing is cut, no line is too long, and all of these texts are there."""
+    assert "…" not in said
+    for line in said.splitlines():
+        assert len(line) <= WIDTH, line
+    for text in texts:
+        assert text in " ".join(said.split()), text
+
+
+def parsers(parser: argparse.ArgumentParser, words: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+    """The words of every command."""
+    yield words
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for name, inner in action.choices.items():
+                yield from parsers(inner, (*words, name))
+
+
+@pytest.mark.parametrize("words", list(parsers(make_parser())), ids=" ".join)
+def test_the_help_of_each_command_fits(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main([*words, "--help"])
+    check_whole(capsys.readouterr().out, "usage: springtide")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_scene_lists_its_presets_parameters_and_measures(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", name, "--list"]) == 0
+    kind, said = scene_named(name), capsys.readouterr().out
+    declared = parameters_of(kind.params)
+    check_whole(said, *kind.presets, *(f"{key} =" for key in declared), *(p.doc for p in declared.values()))
+    for parameter in declared.values():
+        assert f"Allowed: {parameter.allowed}." in " ".join(said.split())
+    assert said.index("Presets") < said.index("Parameters") < said.index("Measures")
+
+
+def test_the_lab_says_one_line_a_task_and_each_problem_with_its_place(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["lab", "new", "mine"]) == 0
+    path = Path("mine/rope.py")
+    wrong = "    return stiffness * (np.linalg.norm(x2 - x1) - rest_length) * (x2 - x1) - damping * (v1 - v2)\n"
+    path.write_text(path.read_text().replace("    ...\n", wrong, 1))
+    line = path.read_text().splitlines().index(wrong.rstrip("\n")) + 1
+    start = next(i for i in range(line, 0, -1) if path.read_text().splitlines()[i - 1].startswith("def "))
+    capsys.readouterr()
+    assert main(["lab", "check", "mine"]) == 1
+    said = capsys.readouterr().out
+    first = said.splitlines()[0]
+    assert first.startswith("3.2-1")
+    assert "wrong" in first
+    check_whole(
+        said, f"rope.py:{start} spring_force: direction not of unit length: ", "still to do: A rope of 9 springs"
+    )
+    assert said.count("3.2-2") == 0
+    main(["lab", "check", "mine", "--all"])
+    everything = capsys.readouterr().out
+    check_whole(everything, "3.2-2 not begun")
+    assert everything.count("not begun") == 24
+    main(["lab", "check", "mine", "mine"])
+    check_whole(capsys.readouterr().out, "0 of 19", "1.1-1, 1.1-2")
+
+
+def test_the_comparison_of_hulls_is_whole(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    row = hydrodynamics.Compared("Buoy", "response at 0.70 of the frequency of heave", 1.2345, 1.2344, 0.02)
+    monkeypatch.setattr(hydrodynamics, "require_capytaine", lambda: None)
+    monkeypatch.setattr(hydrodynamics, "make_table", lambda *_, **__: None)
+    monkeypatch.setattr(hydrodynamics.Hull, "of", lambda *_: None)
+    monkeypatch.setattr(hydrodynamics, "compared", lambda *_: [row])
+    assert main(["hydrodynamics", "--compare"]) == 0
+    check_whole(capsys.readouterr().out, row.quantity, "1.2345", "1.2344", "+0.01%")
+
+
+REFUSALS = {
+    ("run", "ropes", "--seconds", "1", "--out", "a.npz"): "did you mean rope?",
+    ("run", "rope", "--preset", "Pendulm", "--seconds", "1", "--out", "a.npz"): "did you mean Pendulum?",
+    ("run", "rope"): "--seconds: missing",
+    ("run", "rope", "--preset", "nowhere.json", "--seconds", "1", "--out", "a.npz"): "nowhere.json: no such file",
+    ("sweep", "nowhere.toml", "--out", "a.nc"): "nowhere.toml: no such file",
+    ("hydrodynamics", "nowhere.stl"): "nowhere.stl: no such file",
+    ("hydrodynamics",): "HULL: give a mesh file",
+    ("lab", "nowhere"): "nowhere: no such folder",
+    ("lab", "check", "nowhere"): "nowhere: no such folder",
+    ("beside", "planet"): "did you mean planets?",
+    ("bench", "ropes"): "did you mean rope",
+}
+
+
+@pytest.mark.parametrize(("words", "said"), REFUSALS.items(), ids=map(" ".join, REFUSALS))
+def test_what_is_missing_or_mistyped_is_named(
+    words: tuple[str, ...], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(list(words)) == 2
+    assert said in capsys.readouterr().err
+    assert list(Path().iterdir()) == []
+
+
+@pytest.mark.parametrize("seconds", ["0.02", "0.02 s", "20ms", "1/50", "0,02"])
+def test_a_time_may_have_its_unit(seconds: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "rope", "--set", "points=2", "--seconds", seconds, "--out", "a.npz"]) == 0
+    assert "to t = 0.0" in capsys.readouterr().out
+    with pytest.raises(SystemExit):
+        main(["run", "rope", "--seconds", "1 kg", "--out", "b.npz"])
+    assert textwrap.shorten(capsys.readouterr().err, 200).endswith("write a number, with or without s")

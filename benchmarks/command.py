@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from app.bench.command import keep
-from app.experiments import tables
+from app.formats import text_tables
 from benchmarks.peers import ladder
 from benchmarks.tasks import cloth, rope, sea
 from sim.validation import argument_error
@@ -28,8 +28,8 @@ def run(names: Sequence[str], quick: bool, words: Sequence[str], out: Path | Non
         if out is not None:
             rows = ladder.merged(out / f"{name}_peers.csv", rows)
         summary = ladder.summary(rows)
-        tables.show(f"{name}_peers", ladder.shown(rows))
-        tables.show(f"{name}_peers_summary", summary)
+        text_tables.show(f"{name}_peers", ladder.shown(rows))
+        text_tables.show(f"{name}_peers_summary", summary)
         if out is not None:
             found = {f"{name}_peers": rows, f"{name}_peers_summary": summary}
             keep(found, functools.partial(ladder.figures, f"{name}_peers", rows), out)

@@ -13,6 +13,7 @@ from typing import Any
 
 from app.bench import in_checkout, places
 from app.experiments import tables
+from app.formats import text_tables
 from sim.files import replacing
 from sim.parameters import choice_error
 
@@ -45,7 +46,7 @@ def run(names: list[str], quick: bool = False, peers: Sequence[str] | None = Non
         if hasattr(case, "findings"):
             found[f"{name}_findings"] = case.findings(found[name])
         for title, rows in found.items():
-            tables.show(title, rows)
+            text_tables.show(title, rows)
         if out is not None:
             keep(found, functools.partial(case.figures, found[name]) if hasattr(case, "figures") else dict, out)
     if peers is not None:
@@ -57,7 +58,7 @@ def run(names: list[str], quick: bool = False, peers: Sequence[str] | None = Non
     return 0
 
 
-def keep(found: dict[str, tables.Rows], figures: Callable[[], dict[str, Any]], out: Path) -> None:
+def keep(found: dict[str, text_tables.Rows], figures: Callable[[], dict[str, Any]], out: Path) -> None:
     """Write tables and their figures to a folder; figures only if matplotlib is installed."""
     for title, rows in found.items():
         tables.save_table(rows, out / f"{title}.csv")

@@ -18,6 +18,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from app.experiments import tables
+from app.formats import text_tables
 from sim.files import replacing
 from sim.validation import argument_error
 
@@ -105,7 +106,7 @@ def is_name(column: str, text: str) -> bool:
     return column in ("points", "links", "size")
 
 
-def ratios(runs: list[tuple[dict, dict]]) -> tables.Rows:
+def ratios(runs: list[tuple[dict, dict]]) -> text_tables.Rows:
     """A row a time: both medians, their ratio B / A, and the least and largest ratio of a pair of runs."""
     common = [key for key in runs[0][0] if all(key in times for pair in runs for times in pair)]
     rows = []
@@ -156,7 +157,7 @@ def compare(
     rows = ratios(runs)
     if not rows:
         raise ValueError(f"--compare: both commits have no time in common in {' '.join(names)}")
-    tables.show(f"A {hashes[0][:8]}, B {hashes[1][:8]}", [shown(row) for row in rows])
+    text_tables.show(f"A {hashes[0][:8]}, B {hashes[1][:8]}", [shown(row) for row in rows])
     if out is not None:
         kept = {"machine": tables.machine(), "names": names, "commits": hashes, "repeats": REPEATS, "rows": rows}
         with replacing(out / "compare.json") as draft:

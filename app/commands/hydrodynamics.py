@@ -10,7 +10,7 @@ import numpy as np
 from rich import get_console
 from rich.progress import Progress
 
-from app.experiments import tables
+from app.formats import text_tables
 from sim.floating import Body, Hull, MotionCoefficients, equilibrium_draft, make_fleet, step, still_water
 from sim.floating.boundary_elements import FREQUENCIES, make_table
 from sim.floating.equilibrium import SEA_WATER
@@ -98,7 +98,7 @@ def compare() -> int:
             draft = equilibrium_draft(hull, COMPARED_DENSITY, SEA_WATER)
             table = make_table(hull, [draft], progress=lambda: progress.advance(task))
             rows += compared(name, hull, Hull.of(dataclasses.replace(hull.shape, table=table), hull))
-    tables.show("", [shown(row) for row in rows])
+    text_tables.show("", [shown(row) for row in rows])
     print("Periods: of small motions, undamped.")
     print("Decay: ratio of two extremes, a period apart, as simulated.")
     print("Response: height of heave over that of the wave; left out below 0.05.")

@@ -8,8 +8,8 @@ from rich import get_console
 from rich.console import Console
 from rich.text import Text
 
-from app.experiments import tables
 from app.files import check_out_file
+from app.formats import text_tables
 from app.lab.check import FolderResult, TaskResult, check_folder
 from app.lab.folder import make_folder
 from app.lab.report import page_of
@@ -66,7 +66,7 @@ def print_results(results: Sequence[FolderResult], *, everything: bool = False) 
     everything: list the tasks that are not begun too.
     """
     if len(results) > 1:
-        tables.show("", [class_row(result) for result in results])
+        text_tables.show("", [class_row(result) for result in results])
         return
     result, console = results[0], get_console()
     for entry in result.tasks:
@@ -100,7 +100,9 @@ def print_task(entry: TaskResult, console: Console) -> None:
 
 def print_paragraph(text: str, console: Console) -> None:
     """Print a text at the width of the terminal, folded between words."""
-    console.print("\n".join(tables.fold(plain(text), console.width)), markup=False, highlight=False, soft_wrap=True)
+    console.print(
+        "\n".join(text_tables.fold(plain(text), console.width)), markup=False, highlight=False, soft_wrap=True
+    )
 
 
 def plain(text: str) -> str:

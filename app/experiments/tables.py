@@ -3,7 +3,6 @@
 import csv
 import os
 import platform
-import textwrap
 from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -11,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from app.formats.text_tables import Rows, columns
 from app.scenes.charts import PALETTE
 from sim.files import replacing
 from sim.validation import argument_error
-
-Rows = list[dict[str, Any]]
 
 # Curves that share a colour differ in shape.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h", "p", "d")
@@ -46,63 +44,6 @@ def make_folder(out: Path | None) -> None:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
         raise argument_error("--out", str(out), f"a folder that can be written ({problem.strerror})") from None
-
-
-def columns(rows: Rows) -> list[str]:
-    """The columns of all rows, in the order of their first appearance."""
-    return list(dict.fromkeys(name for row in rows for name in row))
-
-
-def written(value: Any) -> str:
-    """A value as a table on screen shows it."""
-    if value is None:
-        return ""
-    if isinstance(value, float | np.floating):
-        return f"{value:.4g}" if np.isfinite(value) else "-"
-    return str(value)
-
-
-def show(title: str, rows: Rows) -> None:
-    """Print a table; one that is too wide for the terminal as lines "name: value unit", so that no digit is cut."""
-    from rich.console import Console
-    from rich.markup import escape
-    from rich.table import Table
-
-    console, names = Console(), columns(rows)
-    widths = {name: max(len(written(row.get(name))) for row in rows) for name in names}
-    # Headings are folded between words, values are not.
-    needed = 1 + sum(3 + max(widths[name], *map(len, name.split())) for name in names)
-    if needed > console.width:
-        lines = [*([title] if title else []), *(line for row in rows for line in ("", *lines_of(row)))]
-        folded = [line for text in lines for line in fold(text, console.width) or [""]]
-        console.print("\n".join(folded), markup=False, highlight=False, soft_wrap=True)
-        return
-    table = Table(title=escape(title) or None, title_justify="left")
-    for name in names:
-        is_number = any(isinstance(row.get(name), int | float) for row in rows)
-        table.add_column(escape(name), justify="right" if is_number else "left", min_width=widths[name])
-    for row in rows:
-        table.add_row(*(escape(written(row.get(name))) for name in names))
-    console.print(table)
-
-
-def fold(text: str, width: int) -> list[str]:
-    """A line folded between words, the further lines indented."""
-    indent = " " * (len(text) - len(text.lstrip()))
-    return textwrap.wrap(
-        text, width, drop_whitespace=True, initial_indent="", subsequent_indent=f"{indent}  ",
-        break_long_words=False, break_on_hyphens=False,
-    )  # fmt: skip
-
-
-def lines_of(row: dict[str, Any]) -> list[str]:
-    """A row as lines "name: value unit", with the unit in brackets at the end of a name; empty cells are left out."""
-    lines: list[str] = []
-    for name, value in row.items():
-        words, bracket, unit = name.removesuffix("]").rpartition(" [") if name.endswith("]") else (name, "", "")
-        if text := written(value):
-            lines.append(f"{'  ' if lines else ''}{words}: {text}{' ' if bracket else ''}{unit}")
-    return lines
 
 
 def save_table(rows: Rows, path: Path) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from app.experiments import tables
+from app.formats import text_tables
 from app.stability import drift, figures, linear, rope
 from sim.files import replacing
 
@@ -27,7 +28,7 @@ def run(quick: bool = False, out: Path | None = None, workers: int = 0) -> int:
     for name, title, part, details, figure in PARTS:
         found = part.measure(quick=quick, workers=workers)
         table = part.rows(found)
-        tables.show(title, table)
+        text_tables.show(title, table)
         if out is None:
             continue
         tables.save_table(table, out / f"{name}.csv")

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from rich.progress import track
 
 from app.bench.reference import RESOLUTION, largest_distances
-from app.experiments.tables import Rows
+from app.formats.text_tables import Rows
 from benchmarks.peers.own_runs import OwnRuns
 from benchmarks.peers.record import Peer
 from sim.springs.stability import critical_step

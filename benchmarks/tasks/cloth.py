@@ -4,7 +4,7 @@ import functools
 from collections.abc import Sequence
 
 from app.bench.cases.cloth import DURATION, benchmark_cloth, expected_time, positions, reference, run, step_counts
-from app.experiments.tables import Rows
+from app.formats.text_tables import Rows
 from benchmarks.peers.cloth import SCRIPTS
 from benchmarks.peers.cloth_engines import ENGINES, OTHER_TASKS
 from benchmarks.peers.ladder import Task, tables

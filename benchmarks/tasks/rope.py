@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.bench.reference import Positions, Reference
-from app.experiments.tables import Rows
+from app.formats.text_tables import Rows
 from benchmarks.peers.ladder import Task, tables
 from benchmarks.peers.own_runs import OwnRun, OwnRuns
 from benchmarks.peers.rope import PEERS

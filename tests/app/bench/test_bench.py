@@ -6,9 +6,10 @@ import pytest
 from app.bench import command
 from app.bench.cases import rope
 from app.experiments import tables
+from app.formats import text_tables
 
 
-def ladder(order: int, method: str) -> tables.Rows:
+def ladder(order: int, method: str) -> text_tables.Rows:
     return [
         {
             "method": method,
@@ -96,6 +97,6 @@ def test_the_front_is_what_nothing_beats_in_both_time_and_error():
 
 
 def test_tables_say_what_is_missing():
-    assert tables.written(None) == ""
-    assert tables.written(np.nan) == "-"
-    assert tables.columns([{"a": 1}, {"b": 2, "a": 3}]) == ["a", "b"]
+    assert text_tables.written(None) == ""
+    assert text_tables.written(np.nan) == "-"
+    assert text_tables.columns([{"a": 1}, {"b": 2, "a": 3}]) == ["a", "b"]

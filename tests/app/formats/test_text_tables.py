@@ -11,14 +11,14 @@ import pytest
 
 from app.bench.compare import shown as shown_ratio
 from app.commands.lab import print_results
-from app.experiments import tables
+from app.formats import text_tables
 
 COMMITTED = sorted((Path(__file__).parents[3] / "assets" / "bench").glob("*.csv"))
 WIDTH = 80  # of the terminal
 LONG = 123456.789012345
 
 
-def wide_rows(number_of_columns: int) -> tables.Rows:
+def wide_rows(number_of_columns: int) -> text_tables.Rows:
     """Rows of words, numbers and a missing number, with numbers that begin alike."""
 
     def value(row: int, i: int) -> object:
@@ -34,24 +34,24 @@ def number_of(text: str) -> Any:
         return text or None
 
 
-def read(path: Path) -> tables.Rows:
+def read(path: Path) -> text_tables.Rows:
     with path.open(newline="", encoding="utf-8") as file:
         return [{name: number_of(cell) for name, cell in row.items()} for row in list(csv.DictReader(file))[:40]]
 
 
-def check_whole(said: str, rows: tables.Rows) -> None:
+def check_whole(said: str, rows: text_tables.Rows) -> None:
     """Every value of the rows is a word of what was printed, with its name before it or above it."""
     cells = [*re.split(r"[│┃\n]", said), " ".join(said.split())]
     for row in rows:
         for name, value in row.items():
-            text = tables.written(value)
+            text = text_tables.written(value)
             words = " ".join(text.split())
             if text:
                 assert any(text == cell.strip() or f": {words} " in f"{cell} " for cell in cells), (name, text)
                 assert all(word in said for word in re.sub(r"[\[\]]", " ", name).split()), name
 
 
-PRINTERS: dict[str, Callable[[], tables.Rows]] = {
+PRINTERS: dict[str, Callable[[], text_tables.Rows]] = {
     "few columns": lambda: wide_rows(3),
     "many columns": lambda: wide_rows(12),
     "long words": lambda: [{"row": "a b " * 30 + "c", "error [m]": LONG}],
@@ -71,7 +71,7 @@ def test_every_value_is_whole_in_a_narrow_terminal(
 ) -> None:
     monkeypatch.setenv("COLUMNS", str(WIDTH))
     rows = PRINTERS[name]()
-    tables.show(name, rows)
+    text_tables.show(name, rows)
     said = capsys.readouterr().out
     assert "…" not in said
     check_whole(said, rows)
@@ -83,10 +83,10 @@ def test_a_table_that_does_not_fit_is_printed_as_lines(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     row = {"method": "rk4", "error [m]": 1.25e-9, "steps": None, "least [ms]": 3.0, "of [many] kinds": 7}
-    assert tables.lines_of(row) == ["method: rk4", "  error: 1.25e-09 m", "  least: 3 ms", "  of [many] kinds: 7"]
+    assert text_tables.lines_of(row) == ["method: rk4", "  error: 1.25e-09 m", "  least: 3 ms", "  of [many] kinds: 7"]
     for width, is_table in ((100, True), (30, False)):
         monkeypatch.setenv("COLUMNS", str(width))
-        tables.show("Title", [row])
+        text_tables.show("Title", [row])
         said = capsys.readouterr().out
         assert ("│" in said) == is_table
         assert "Title" in said

@@ -23,7 +23,6 @@ from sim.ocean.ripples import Ripples
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, Spectrum
 from sim.ocean.surface import Surface
 from sim.ocean.transforms import PRECISIONS, Transforms
-from sim.parameters import check_value
 from sim.validation import (
     argument_error,
     check_finite,
@@ -67,9 +66,9 @@ class Sea:
         spectrum: a name in `SPECTRA`, or a custom record.
 
         amplitudes: "random" (Gaussian) or "fixed" (random phase only); choppiness: factor on the displacement;
-        viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of `Conditions` and `Medium`,
-        and the parameters of any spectrum (`sim.ocean.spectra.PARAMETERS`), for when it is the one in force.
-        Raises ValueError for a value that is not allowed, TypeError for an unknown name.
+        viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of the spectrum's conditions
+        (`sim.ocean.spectra`) and of `Medium`. Raises ValueError for a value that is not allowed or a condition that
+        this spectrum does not use, TypeError for an unknown name.
         """
         if not is_whole_number(size) or size % 2 or not SIZES[0] <= size <= SIZES[1]:
             raise argument_error("size", size, f"an even whole number from {SIZES[0]} to {SIZES[1]}")
@@ -115,7 +114,7 @@ class Sea:
             "tension": tension,
             "viscosity": viscosity,
         }
-        self._given: dict[str, Any] = {}  # conditions as given, those of other spectra too
+        self._given: dict[str, Any] = {}  # conditions as given, those that the spectrum uses
         self._lost = np.zeros_like(self._k)  # -ln of the share of each wave that is left of that time, a quarter plane
         # ((medium, conditions), decay rates) of the last call of `expose`
         self._other_decay: tuple[tuple[Medium, Conditions], np.ndarray] | None = None
@@ -197,7 +196,8 @@ class Sea:
 
         Phases go on without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
         relax = 0. Losses to viscosity stay: the new size is that of the new spectrum times the fraction that is left.
-        Raises ValueError for a value that is not allowed, TypeError for an unknown name.
+        Another spectrum takes what both use. Raises ValueError for a value that is not allowed or a condition that the
+        spectrum does not use, TypeError for an unknown name.
         """
         t, relax = self._checked_time(t), check_not_negative("relax", relax, "s")
         if self._ripples is not None:
@@ -382,10 +382,10 @@ class Sea:
         for name in values:
             if name not in _CONDITIONS | _MEDIUM:
                 raise TypeError(f"{name}: no such condition; there are {', '.join(sorted(_CONDITIONS | _MEDIUM))}")
-        given = self._given | {n: v for n, v in values.items() if n in _CONDITIONS}
-        for name in given.keys() & PARAMETERS.keys():
-            check_value(name, PARAMETERS[name], given[name])
-        conditions = spectrum.conditions_from(given)
+        new = {n: v for n, v in values.items() if n in _CONDITIONS}
+        spectrum.check_used(new)
+        given = {n: v for n, v in (self._given | new).items() if spectrum.uses(n)}
+        conditions = spectrum.conditions(**given)
         medium = dataclasses.replace(medium, **{n: v for n, v in values.items() if n in _MEDIUM})
         omega, decay = medium.roots(self._k, conditions)
         self.spectrum, self.conditions, self.medium, self._given = spectrum, conditions, medium, given

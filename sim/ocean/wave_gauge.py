@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.ocean import Sea
+from sim.ocean.zero_crossings import ZeroCrossings, zero_crossings
 
 SAMPLE_RATE = 10.0  # [Hz] to which the trace is resampled before its spectrum is computed
 MAX_TRACE_DURATION = 600.0  # [s] older samples of the trace are dropped
@@ -41,6 +42,11 @@ class WaveGauge:
         self.trace.append((t, self.height))
         while self.trace[-1][0] - self.trace[0][0] > MAX_TRACE_DURATION:
             self.trace.popleft()
+
+    def waves(self) -> ZeroCrossings:
+        """The waves of the trace, with their H1/3 and Tz."""
+        times, heights = np.array(self.trace).reshape(-1, 2).T
+        return zero_crossings(times, heights)
 
     def spectrum(self, sea: Sea, t: float, scale: float) -> tuple[NDArray[np.floating], ...]:
         """(frequency [Hz], measured, theory [m2/Hz]) by Welch's method (1967, IEEE Trans. Audio 15:70); empty if short.

@@ -5,7 +5,7 @@ import importlib
 
 import pytest
 
-MODULES = ("sim.ocean.kinematics",)
+MODULES = ("sim.ocean.kinematics", "sim.ocean.spectra.record", "sim.ocean.zero_crossings")
 
 
 @pytest.mark.parametrize("name", MODULES)

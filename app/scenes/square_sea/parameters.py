@@ -280,7 +280,7 @@ def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any
         "viscosity": params.viscosity,
         "dispersion_scale": params.dispersion_scale,
         "loop_period": params.loop_period or None,
-        **spectrum_values(params),
+        **{name: value for name, value in spectrum_values(params).items() if SPECTRA[params.spectrum].uses(name)},
     }
 
 

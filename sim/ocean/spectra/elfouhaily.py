@@ -25,9 +25,24 @@ class AgeConditions(Conditions):
 
 
 def density(kx: np.ndarray, ky: np.ndarray, c: AgeConditions) -> np.ndarray:
-    """S(kx, ky) [m4] = (B_l + B_h)(1 + Delta cos 2 theta)/(2 pi k^4), doubled ahead of the wind, 0 behind; eq. 67."""
-    g, U, Omega = c.gravity, c.wind_speed, c.inverse_wave_age
+    """S(kx, ky) [m4] = B (1 + Delta cos 2 theta)/(2 pi k^4), doubled ahead of the wind, 0 behind; eq. 67."""
     k = np.hypot(kx, ky)
+    B, Delta = curvature(k, c)
+    theta = angle_from(np.arctan2(ky, kx), c.wind_direction)
+    # Half the weight straight across the wind, where both halves meet.
+    ahead = 2.0 * np.heaviside(np.round(np.cos(theta), 12), 0.5)
+    return ahead * B * (1.0 + Delta * np.cos(2.0 * theta)) / (2.0 * math.pi * k**4)
+
+
+def frequency(w: np.ndarray, c: AgeConditions) -> np.ndarray:
+    """S(omega) [m2 s] = B/k^3 dk/domega, eq. 30."""
+    k = c.wavenumber(w)
+    return curvature(k, c)[0] / k**3 / c.group_speed(k)
+
+
+def curvature(k: np.ndarray, c: AgeConditions) -> tuple[np.ndarray, np.ndarray]:
+    """B = B_l + B_h of wavenumbers k [rad/m], and the share Delta that differs along and across the wind."""
+    g, U, Omega = c.gravity, c.wind_speed, c.inverse_wave_age
     s = c.tension / c.density if c.tension > 0.0 else 9.81 / KM_WATER**2
     km = math.sqrt(g / s)
     cm = math.sqrt(2.0 * g / km)
@@ -53,10 +68,7 @@ def density(kx: np.ndarray, ky: np.ndarray, c: AgeConditions) -> np.ndarray:
 
     # Spreading, eq. 57-59
     Delta = np.tanh(0.25 * math.log(2.0) + 4.0 * (speed / cp) ** 2.5 + 0.13 * u_star / cm * (cm / speed) ** 2.5)
-    theta = angle_from(np.arctan2(ky, kx), c.wind_direction)
-    # Half the weight straight across the wind, where both halves meet.
-    ahead = 2.0 * np.heaviside(np.round(np.cos(theta), 12), 0.5)
-    return ahead * (B_l + B_h) * (1.0 + Delta * np.cos(2.0 * theta)) / (2.0 * math.pi * k**4)
+    return B_l + B_h, Delta
 
 
 def friction_velocity(c: AgeConditions) -> float:
@@ -77,4 +89,5 @@ SPECTRUM = Spectrum(
     None,
     peak,
     AgeConditions,
+    frequency,
 )

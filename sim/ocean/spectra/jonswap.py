@@ -85,4 +85,5 @@ SPECTRUM = Spectrum(
     significant_height,
     peak,
     FetchConditions,
+    frequency,
 )

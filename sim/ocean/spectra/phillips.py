@@ -32,6 +32,12 @@ def density(kx: np.ndarray, ky: np.ndarray, c: PhillipsConditions) -> np.ndarray
     return c.phillips_constant * np.exp(-1.0 / (k2 * L**2)) / k2**2 * along**2 / k2
 
 
+def frequency(w: np.ndarray, c: PhillipsConditions) -> np.ndarray:
+    """S(omega) [m2 s] = pi A exp(-1/(kL)^2)/k^3 dk/domega: the mean of cos^2 is 1/2."""
+    k, L = c.wavenumber(w), c.wind_speed**2 / c.gravity
+    return math.pi * c.phillips_constant * np.exp(-1.0 / (k * L) ** 2) / k**3 / c.group_speed(k)
+
+
 def significant_height(c: PhillipsConditions) -> float:
     """Hs = 4 L sqrt(pi A/2) [m]."""
     return 4.0 * c.wind_speed**2 / c.gravity * math.sqrt(0.5 * math.pi * c.phillips_constant)
@@ -49,4 +55,5 @@ SPECTRUM = Spectrum(
     significant_height,
     peak,
     PhillipsConditions,
+    frequency,
 )

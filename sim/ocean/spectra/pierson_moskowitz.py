@@ -35,5 +35,6 @@ SPECTRUM = Spectrum(
     significant_height,
     peak,
     SpreadConditions,
+    frequency,
     wind_height=WIND_HEIGHT,
 )

@@ -7,16 +7,22 @@ from collections.abc import Callable, Mapping
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sim.interruption import pieces
 from sim.ocean.dispersion import group_speed, omega
+from sim.ocean.spectra.moments import Moments, moments_of
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
-from sim.validation import as_float, check_finite, check_number
+from sim.validation import argument_error, as_array, as_float, check_finite, check_number, check_positive
 
 WIND_HEIGHTS = {10.0: 1.0, 19.5: 1.026}  # [m] -> wind there over U10, drag coefficient 1.3e-3 (Stewart 2008, eq. 16.33)
 MIN_WIND_SPEED = 1e-3  # [m/s] below which a wind makes no waves: spectra take powers of it, which would underflow
 PIECE = 16384  # wavenumbers at a time: these stay in the cache, and the solve yields in between
+OMEGA_RANGE = (0.05, 1e6)  # of the moments, over the lowest and the highest peak
+DIRECTIONS = 360  # over which a spectrum without a formula of S(omega) is summed
+WAVENUMBER_HALVINGS = 62  # of the logarithm of 27 decades: to the last bit
+SECOND_PEAK = 3.3  # gamma of the second system
 SECOND_EXPONENT = 25.0  # s of cos2s of the second system: swell that came a short way (Goda 2010, Sec. 2.3)
 
 
@@ -66,6 +72,15 @@ class Conditions:
         """Group speed [m/s] under these conditions."""
         return group_speed(k, self.gravity, self.depth, self.tension, self.density)
 
+    def wavenumber(self, frequency: np.ndarray) -> np.ndarray:
+        """Wavenumber [rad/m], from 1e-12 to 1e15, of waves of these angular frequencies [rad/s], by bisection."""
+        low, high = np.full(np.shape(frequency), 1e-12), np.full(np.shape(frequency), 1e15)
+        for _ in range(WAVENUMBER_HALVINGS):
+            middle = np.sqrt(low * high)
+            below = self.omega(middle) < frequency
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+        return high
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class SpreadConditions(Conditions):
@@ -91,6 +106,8 @@ class Spectrum(NamedTuple, Generic[C]):
     significant_height: Callable[[C], float] | None  # Hs [m] where a closed form exists
     peak: Callable[[C], float] | None  # peak angular frequency [rad/s] where a closed form exists
     conditions: type[C]
+    # S(omega) [m2 s] over all directions, where it is known; without it `density` is integrated
+    frequency: Callable[[np.ndarray, C], np.ndarray] | None = None
     wind_height: float = 10.0  # [m] of the wind speed that it takes
     by_wind: bool = True  # whether the wind makes its waves: without wind there are none
     line: Callable[[C], tuple[float, float, float]] | None = None  # (kx, ky [rad/m], m0 [m2]) of one regular wave
@@ -115,13 +132,49 @@ class Spectrum(NamedTuple, Generic[C]):
             names |= {"second_period", "second_direction"} & set(values)
         return names if values.get("spreading") == "cos2s" else names | (set(values) & {"spread_exponent"})
 
+    def uses(self, name: str) -> bool:
+        """True for the name of one of its conditions."""
+        return name in (field.name for field in dataclasses.fields(self.conditions))
+
     def conditions_from(self, values: Mapping[str, Any]) -> C:
         """The conditions, from those of the values that this spectrum knows.
 
         Raises ValueError for a value that is not allowed.
         """
-        known = {field.name for field in dataclasses.fields(self.conditions)}
-        return self.conditions(**{name: value for name, value in values.items() if name in known})
+        return self.conditions(**{name: value for name, value in values.items() if self.uses(name)})
+
+    def check_used(self, values: Mapping[str, Any]) -> None:
+        """Raises ValueError for the first of the values, by name, that is no condition of this spectrum."""
+        for name in values:
+            if not self.uses(name):
+                known = ", ".join(field.name for field in dataclasses.fields(self.conditions))
+                raise argument_error(name, values[name], f"a condition that {self.name} uses: {known}")
+
+    def frequency_density(self, omega: ArrayLike, conditions: C | None = None, **values: Any) -> np.ndarray:
+        """S(omega) [m2 s] over all directions, of the shape of omega [rad/s]; its integral over omega is m0.
+
+        With the second system and the low-pass; the one wave of a `line` has no density. The conditions come as a
+        record or by name. S(f) [m2/Hz] is 2 pi S(2 pi f). Raises ValueError for a frequency that is not above 0, or a
+        condition that this spectrum does not use.
+        """
+        self.check_used(values)
+        c = self.conditions(**values) if conditions is None else dataclasses.replace(conditions, **values)
+        allowed = "finite numbers above 0 rad/s"
+        w = as_array("omega", omega, allowed)
+        if not ((w > 0.0) & (w < math.inf)).all():
+            raise argument_error("omega", float(w[~((w > 0.0) & (w < math.inf))][0]), allowed)
+        S, k = np.zeros(w.shape), None
+        if not self.is_level(c) and self.line is None:
+            if self.frequency is not None:
+                S = self.frequency(w, c)
+            else:
+                k = c.wavenumber(w)
+                theta = c.wind_direction + (np.arange(DIRECTIONS) + 0.5) * (2.0 * math.pi / DIRECTIONS)
+                turned = [self.density(k * math.cos(one), k * math.sin(one), c) for one in theta]
+                S = np.mean(turned, axis=0) * (2.0 * math.pi) * k / c.group_speed(k)
+        if c.second_height > 0.0:
+            S = S + peaked(w, c.second_height, 2.0 * math.pi / c.second_period, SECOND_PEAK)
+        return S * np.exp(-((c.wavenumber(w) * c.low_pass) ** 2)) if c.low_pass > 0.0 else S
 
     def __call__(self, kx: np.ndarray, ky: np.ndarray, conditions: C) -> np.ndarray:
         """S(kx, ky) [m4] with the second system and the low-pass; 0 at k = 0. kx, ky [rad/m] of one shape.
@@ -145,6 +198,32 @@ class Spectrum(NamedTuple, Generic[C]):
         if conditions.second_height > 0.0:
             found = found + second_system(kx, ky, conditions)
         return found * np.exp(-(kx**2 + ky**2) * conditions.low_pass**2)
+
+    def moments(self, conditions: C | None = None, cut_off: float = math.inf, **values: Any) -> Moments:
+        """The moments m0 to m4 of `frequency_density`, with Tp, Tz, Tm01 and the steepness.
+
+        cut_off [rad/s]: the highest frequency that counts. Without it m4 of a spectrum that falls as omega^-5 is inf.
+
+        >>> from sim.ocean.spectra import SPECTRA
+        >>> sea = SPECTRA["sea_state"].moments(hs=2.0, tp=8.0)
+        >>> f"{sea.significant_height:.2f} m, Tp {sea.peak_period:.2f} s, Tz {sea.zero_crossing_period:.2f} s"
+        '2.00 m, Tp 8.00 s, Tz 6.22 s'
+
+        Raises ValueError as `frequency_density`, and for a cut-off that is not above 0.
+        """
+        check_positive("cut_off", cut_off, "rad/s", allow_infinite=True)
+        self.check_used(values)
+        c = self.conditions(**values) if conditions is None else dataclasses.replace(conditions, **values)
+        typical = self.peak(c) if self.peak is not None and not self.is_level(c) else c.gravity / 10.0
+        own = [typical, *([2.0 * math.pi / c.second_period] if c.second_height > 0.0 else [])]
+        last = min(cut_off, max(own) * OMEGA_RANGE[1])
+        first = min(min(own) * OMEGA_RANGE[0], 0.5 * last)
+        found = moments_of(lambda omega: self.frequency_density(omega, c), first, last, c.gravity, cut_off)
+        if self.line is None or typical > cut_off:
+            return found
+        m0 = self.line(c)[2]
+        together = {f"m{n}": found[n] + m0 * typical**n for n in range(5)}
+        return found._replace(peak_period=2.0 * math.pi / typical if m0 > 0.0 else found.peak_period, **together)
 
 
 SpreadC = TypeVar("SpreadC", bound=SpreadConditions)
@@ -172,15 +251,8 @@ def from_frequency(
 
 @functools.lru_cache(maxsize=256)
 def wavenumber_of(c: Conditions, frequency: float) -> float:
-    """The wavenumber [rad/m] of waves of an angular frequency [rad/s], by bisection of `Conditions.omega`."""
-    low, high = 1e-9, 1e6
-    for _ in range(200):
-        middle = math.sqrt(low * high)
-        if float(c.omega(np.asarray(middle))) < frequency:
-            low = middle
-        else:
-            high = middle
-    return high
+    """`Conditions.wavenumber` of one frequency [rad/s], which is kept."""
+    return float(c.wavenumber(np.asarray(frequency)))
 
 
 def peaked(w: np.ndarray, height: float, peak: float, gamma: float) -> np.ndarray:
@@ -213,7 +285,7 @@ def second_system(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
     k = np.hypot(kx, ky)
     w = c.omega(k)
     theta = angle_from(np.arctan2(ky, kx), c.second_direction)
-    S = peaked(w, c.second_height, 2.0 * math.pi / c.second_period, 3.3)
+    S = peaked(w, c.second_height, 2.0 * math.pi / c.second_period, SECOND_PEAK)
     return S * cos2s(SECOND_EXPONENT, theta) * c.group_speed(k) / k
 
 

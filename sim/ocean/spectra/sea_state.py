@@ -47,5 +47,6 @@ SPECTRUM = Spectrum(
     significant_height,
     peak,
     HeightConditions,
+    frequency,
     by_wind=False,
 )

@@ -22,6 +22,11 @@ def density(kx: np.ndarray, ky: np.ndarray, c: jonswap.FetchConditions) -> np.nd
     return jonswap.density(kx, ky, c) * depth_factor(np.hypot(kx, ky), c.depth)
 
 
+def frequency(w: np.ndarray, c: jonswap.FetchConditions) -> np.ndarray:
+    """S(omega) [m2 s] of jonswap, times phi."""
+    return jonswap.frequency(w, c) * depth_factor(c.wavenumber(w), c.depth)
+
+
 SPECTRUM = Spectrum(
     "tma",
     "TMA 1985: JONSWAP limited by depth",
@@ -29,4 +34,5 @@ SPECTRUM = Spectrum(
     None,
     jonswap.peak,
     jonswap.FetchConditions,
+    frequency,
 )

@@ -28,6 +28,7 @@ from sim.ocean.slick import slick_radius
 from sim.ocean.spectra import SPECTRA, Conditions
 from sim.ocean.statistics import beaufort, expected, measured, resolved_in_time
 from sim.ocean.weathering import Spill, weather
+from sim.ocean.zero_crossings import zero_crossings
 from tests.refusals import Row, assert_refused, each
 
 NAN, INF = math.nan, math.inf
@@ -93,6 +94,15 @@ REFUSED: list[Row] = [
     *each(SPECTRA["tma"].conditions, depth=[0.0], fetch=[NAN]),
     *each(SPECTRA["elfouhaily"].conditions, inverse_wave_age=[0.5]),
     *each(SPECTRA["pierson_moskowitz"].conditions, swell=[1.5]),
+    *each(partial(small, spectrum="jonswap"), hs=[8.0], tp=[15.0], inverse_wave_age=[1.0]),
+    ("fetch", lambda: small().change(1.0, fetch=1e4), "pierson_moskowitz uses"),
+    ("fetch", lambda: small(spectrum="jonswap").change(1.0, spectrum="phillips", fetch=1e4), "phillips uses"),
+    *each(JONSWAP.frequency_density, omega=[[1.0, 0.0], -1.0, "x", [NAN]]),
+    ("hs", lambda: JONSWAP.frequency_density(1.0, hs=2.0), "jonswap uses"),
+    ("tp", lambda: JONSWAP.moments(tp=8.0), "jonswap uses"),
+    *each(JONSWAP.moments, cut_off=[0.0, -1.0, "all"], wind_speed=[NAN]),
+    *each(partial(zero_crossings, height=[0.0, 1.0]), t=[[1.0, 0.0], [[1.0, 2.0]], [0.0, NAN]]),
+    *each(partial(zero_crossings, [0.0, 1.0]), height=[[1.0], [0.0, INF]]),
     ("height", lambda: measured(np.zeros((4, 5)), 1.0, Conditions()), ""),
     ("earlier", lambda: measured(np.zeros((4, 4)), 1.0, Conditions(), np.zeros((5, 5))), ""),
     ("wind_speed", lambda: beaufort(-1.0), "-1"),

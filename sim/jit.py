@@ -8,11 +8,14 @@ kernels compile at each start.
 import contextlib
 import functools
 import hashlib
+import importlib
 import inspect
 import os
+import pkgutil
 import platform
 import re
 import shutil
+import sys
 import tempfile
 import time
 import warnings
@@ -27,11 +30,12 @@ import platformdirs
 from numba import prange  # for the kernels that are parallel
 from numba.extending import intrinsic, overload
 
-__all__ = ["CACHE", "MAX_THREADS", "chosen", "is_stopped", "kernel", "prange", "set_threads"]
+__all__ = ["CACHE", "MAX_THREADS", "chosen", "is_stopped", "kernel", "modules_of", "prange", "set_threads"]
 
 ROOT = Path(__file__).resolve().parent.parent
 OWN_PACKAGES = ("sim", "app", "tests")
 IMPORT = re.compile(r"^\s*(?:from\s+([\w.]+)\s+import\s+(\([^)]*\)|[^\n#]+)|import\s+([\w., ]+))", re.MULTILINE)
+MODULES_OF = re.compile(r"\bmodules_of\(__name__\)")
 KERNEL_FOLDER = re.compile(r"\w+-[0-9a-f]{16}")
 
 MAX_THREADS: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
@@ -62,15 +66,24 @@ def source_of(module: str) -> Path | None:
 
 @functools.cache
 def imported_files(path: Path) -> frozenset[Path]:
-    """The files of the modules of ours that a source imports by name."""
-    found = set()
-    for module, names, modules in IMPORT.findall(path.read_text("utf-8")):
+    """The files of the modules of ours that a source imports, by name or by `modules_of`."""
+    text = path.read_text("utf-8")
+    found = set(path.parent.glob("*.py")) if MODULES_OF.search(text) else set()
+    for module, names, modules in IMPORT.findall(text):
         candidates = [name.split()[0] for name in modules.split(",") if name.strip()]
         if module:
             members = [name.split()[0] for name in names.strip("()").replace("\n", " ").split(",") if name.strip()]
             candidates = [module, *(f"{module}.{name}" for name in members)]
         found.update(file for file in map(source_of, candidates) if file is not None)
     return frozenset(found)
+
+
+def modules_of(package: str) -> list[ModuleType]:
+    """All modules of a package of ours, whose kernels are to be part of others': whoever imports it imports them."""
+    return [
+        importlib.import_module(f"{package}.{module.name}")
+        for module in pkgutil.iter_modules(sys.modules[package].__path__)
+    ]
 
 
 def reachable_hash(*paths: Path) -> str:

@@ -5,6 +5,9 @@ import math
 
 import numpy as np
 
+from sim.springs.laws.slack import Slack
+from sim.springs.laws.stiffening import Stiffening
+
 
 def neighbours(net):
     """((i, j), (i', j'), family) of every link; those along a side have their part of the family's numbers."""
@@ -20,13 +23,24 @@ def neighbours(net):
                     yield (i, j), (a, b), own
 
 
+def tension(net, family, length):
+    """[N] of a link of a length [m]."""
+    stretch = length - family.rest
+    if isinstance(net.law, Slack):
+        stretch = max(0.0, stretch)
+    cubic = net.law.cubic * (stretch / family.rest) ** 2 if isinstance(net.law, Stiffening) else 0.0
+    return family.stiffness * stretch * (1.0 + cubic)
+
+
 def link_force(net, family, r, vr):
     """Force [N] on the first end of a link that spans r [m] and opens at vr [m/s]: lab eq. 4."""
     length = math.sqrt(r @ r)
     n = r / length
     if net.damping_model == "axial":
         vr = (vr @ n) * n
-    return family.stiffness * (length - family.rest) * n + family.damping * vr
+    if isinstance(net.law, Slack) and length <= family.rest:
+        vr = 0.0 * vr
+    return tension(net, family, length) * n + family.damping * vr
 
 
 def surfaces(net, x, t):

@@ -229,7 +229,9 @@ class SceneKind(Generic[P, F, R]):
     frame_units: Mapping[str, str] = field(default_factory=dict[str, str])
     packing: FramePacking | None = None  # None: a recording keeps frames as they are
     stability_map: StabilityMap | None = None
-    needs: Callable[[P], tuple[str, ...]] | None = None  # pieces of `warm_up` to run with these parameters; None: all
+    # Names of the pieces to run with these parameters, of `warm_up` and `warm_up_on_use`; None: all of `warm_up`.
+    needs: Callable[[P], tuple[str, ...]] | None = None
+    warm_up_on_use: Callable[[], Pieces] = dict[str, Callable[[], object]]  # pieces compiled only when they are needed
     # Makes the simulation with a student's functions running beside it; None: this scene has no use for them.
     make_with_student: Callable[[P, "LiveCode"], Scene[P, F, R]] | None = None
     # Where [m] a view of these parameters and one of others have the same in sight; None: at the origin.

@@ -36,8 +36,13 @@ def is_marked(name: str, piece: str, *, drawn: bool) -> bool:
 
 
 def scene_pieces(name: str) -> Pieces:
-    """The pieces of a scene without its drawing."""
+    """The pieces of a scene without its drawing that are compiled ahead."""
     return scene_named(name).warm_up()
+
+
+def pieces_on_use(name: str) -> Pieces:
+    """Those that are compiled when parameters first need them."""
+    return scene_named(name).warm_up_on_use()
 
 
 def drawing_pieces(name: str) -> Pieces:
@@ -56,15 +61,13 @@ def all_pieces(name: str) -> tuple[tuple[str, bool], ...]:
 
 def missing(name: str, params: BaseParams | None = None) -> tuple[tuple[str, bool], ...]:
     """Pieces of `all_pieces` still to be compiled. params: only those that run with these parameters; None: all."""
-    if is_marked(name, EVERYTHING, drawn=True):
-        return ()
     needs = scene_named(name).needs
     needed = None if params is None or needs is None else needs(params)
-    return tuple(
-        (piece, drawn)
-        for piece, drawn in all_pieces(name)
-        if (drawn or needed is None or piece in needed) and not is_marked(name, piece, drawn=drawn)
-    )
+    ahead = () if is_marked(name, EVERYTHING, drawn=True) else all_pieces(name)
+    wanted = [(piece, drawn) for piece, drawn in ahead if drawn or needed is None or piece in needed]
+    if needed is not None:
+        wanted = [(piece, False) for piece in pieces_on_use(name) if piece in needed] + wanted
+    return tuple((piece, drawn) for piece, drawn in wanted if not is_marked(name, piece, drawn=drawn))
 
 
 def compile_piece(name: str, piece: str, *, drawn: bool) -> None:
@@ -73,7 +76,8 @@ def compile_piece(name: str, piece: str, *, drawn: bool) -> None:
     was_enabled = gc.isenabled()
     gc.disable()
     try:
-        (drawing_pieces if drawn else scene_pieces)(name)[piece]()
+        pieces = drawing_pieces(name) if drawn else {**pieces_on_use(name), **scene_pieces(name)}
+        pieces[piece]()
     finally:
         if was_enabled:
             gc.enable()

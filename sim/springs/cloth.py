@@ -3,10 +3,12 @@
 import dataclasses
 import math
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.springs.laws import check_law
 from sim.springs.net import (
     CLOTH,
     DAMPING_MODELS,
@@ -56,6 +58,7 @@ def cloth(
     sphere: tuple[float, float, float, float] | None = None,
     damping_model: str = "isotropic",
     *,
+    law: Any = "spring",
     contact: Contact | None = None,
     radius: float = 0.0,
     air: Air | None = None,
@@ -68,7 +71,7 @@ def cloth(
     along an edge, beside half a strip of cloth, has half of both. drag [N s/m] of a particle.
     pinned: "corners" (0, 0) and (0, cols - 1), "edge" between them, "all corners", "rim", "free", or the particles.
     thickness: particles nearer to each other push with the contact's stiffness [m], 0: they pass. air: drag and lift
-    by wind. floor, sphere, damping_model, contact, radius: as of `rope`.
+    by wind. floor, sphere, damping_model, law, contact, radius: as of `rope`.
 
     Raises ValueError, naming the argument, its value and what is allowed.
     """
@@ -109,6 +112,7 @@ def cloth(
         gravity=(0.0, 0.0, -float(gravity)),
         pinned=pinned_particles(pinned, int(rows), int(cols)),
         damping_model=damping_model,
+        law=check_law(law),
         floor=None if floor is None else float(floor),
         sphere=None if sphere is None else tuple(float(c) for c in sphere),  # type: ignore[arg-type]
         contact=contact,

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from sim.interruption import stop_request
 from sim.jit import MAX_THREADS, chosen, kernel
+from sim.springs.laws import LAWS, check_law
 from sim.validation import argument_error, as_array, check_choice, check_number, check_vector, is_whole_number
 
 Vector = tuple[float, float, float]
@@ -98,6 +99,7 @@ class RopeArrays(NamedTuple):
     gz: float
     offsets: NDArray[np.int64]  # (families, 2)
     links: NDArray[np.float64]  # (families, 3): rest, stiffness, damping
+    law: Any  # numbers of the links' law, see sim/springs/laws
     damped: bool  # any link damping
     axial: bool
     has_floor: bool
@@ -200,6 +202,7 @@ class Net:
     gravity: Vector  # [m/s^2]
     pinned: frozenset[tuple[int, int]]
     damping_model: str = "isotropic"
+    law: Any = LAWS["spring"].numbers  # of the links: numbers of a law of sim/springs/laws, or its name
     floor: float | None = None  # height [m]
     sphere: tuple[float, float, float, float] | None = None  # x, y, z, radius [m]
     sphere_velocity: Vector = (0.0, 0.0, 0.0)  # [m/s]
@@ -222,8 +225,11 @@ class Net:
         """Raises ValueError with the field's name for values that kernels cannot take: they check no index."""
         object.__setattr__(self, "x0", start_positions(self.x0))
         rows, cols = self.shape
+        object.__setattr__(self, "law", check_law(self.law))
         for family in self.families:
             check_family(family)
+            if self.law != LAWS["spring"].numbers:
+                check_number("families rest", family.rest, 0, math.inf, "m", above=True)
         check_number("mass", self.mass, 0, math.inf, "kg", above=True)
         if self.mass_ratios is not None:
             check_mass_ratios(self.mass_ratios, (rows, cols))
@@ -353,6 +359,7 @@ class Net:
             gz=float(self.gravity[2]),
             offsets=np.array([f[:2] for f in self.families], dtype=np.int64).reshape(-1, 2),
             links=np.array([f[2:] for f in self.families], dtype=np.float64).reshape(-1, 3),
+            law=self.law,
             damped=any(f.damping > 0 for f in self.families),
             axial=self.damping_model == "axial",
             has_floor=self.floor is not None,

@@ -1,9 +1,11 @@
 """`rope`: a line of points joined by springs, in the lab's units; `lab_units` from a rope's material."""
 
 import math
+from typing import Any
 
 import numpy as np
 
+from sim.springs.laws import check_law
 from sim.springs.net import DAMPING_MODELS, FARTHEST, Contact, Family, Net, Vector, check_place, check_surroundings
 from sim.validation import argument_error, check_choice, check_number, is_whole_number
 
@@ -24,6 +26,7 @@ def rope(
     damping_model: str = "isotropic",
     *,
     end: Vector | None = None,
+    law: Any = "spring",
     contact: Contact | None = None,
     radius: float = 0.0,
 ) -> Net:
@@ -32,6 +35,7 @@ def rope(
     points: from 1. length: rest length of the whole [m]. mass: [kg] per point. stiffness [N/m] and damping [N s/m]
     per link; drag [N s/m] per point; gravity [m/s^2] along -z. floor: height [m]; sphere: (x, y, z, radius) [m].
     damping_model: "isotropic", the lab's eq. 4, b (v1 - v2); or "axial", its part along the link only.
+    law: of the links, a name in `LAWS` or its numbers, as Stiffening(30.0).
     end: where the last point is pinned too [m]; the points then start on the straight line from root to end.
     radius: of the points, for contact [m].
 
@@ -67,6 +71,7 @@ def rope(
         gravity=(0.0, 0.0, -float(gravity)),
         pinned=frozenset({(0, 0)} if end is None else {(0, 0), (0, n - 1)}),
         damping_model=damping_model,
+        law=check_law(law),
         floor=None if floor is None else float(floor),
         sphere=None if sphere is None else tuple(float(c) for c in sphere),  # type: ignore[arg-type]
         contact=contact,

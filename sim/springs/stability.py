@@ -8,6 +8,10 @@ in a soft rope it is the more overdamped; of axial damping it is the stiffest th
 Rayleigh quotient, exact where D is a combination of K and M, as along a straight rope. Contact or crossing links
 couple the modes: the step is then right to some per cent, except explicit Euler's, which hangs on the least damped of
 all modes and is a guide only.
+
+Each link counts as stiff as it or any other could be if it were stretched as the most stretched one now is: a slack
+line is about to be taut, and a wave carries the strain of one link of a stiffening rope to the others. What stretches
+further later needs a shorter step then.
 """
 
 import math
@@ -17,9 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
+from sim.springs.analysis.strain import largest_strain
 from sim.springs.forces.self_contact import count_touching
 from sim.springs.integrators import Integrator, integrator_named
-from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, TRANSVERSE, quotients, set_lanczos
+from sim.springs.integrators.implicit.tangent import DAMPING, STIFFEST, TRANSVERSE, quotients, set_lanczos
+from sim.springs.laws import largest_stiffness
 from sim.springs.net import Net
 from sim.springs.state import State, check_net, check_state
 from sim.validation import check_number
@@ -80,7 +86,8 @@ def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
 
 
 def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, float]:
-    """Upper bounds of frequency [rad/s] and damping rate [1/s] in any state, from Gershgorin's discs.
+    """Upper bounds of frequency [rad/s] and damping rate [1/s], from Gershgorin's discs: of springs in any state, of
+    links that stiffen in those whose links are stretched no more than the most stretched at x (None: x0).
 
     omega^2 <= max_i (2 sum_j k_ij + contact + grab)/m_i and gamma <= max_i (2 sum_j b_ij + drag + contact + grab)/m_i,
     the first tight for a long uniform rope, 4 k/m. Of a net's contact with itself as many others push a particle as
@@ -88,12 +95,13 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
     """
     rows, cols = net.shape
     stiffness, damping = np.zeros((2, rows, cols))
+    reach = largest_stiffness(net.law, largest_strain(net, net.x0 if x is None else x))
     for f in net.families:
         i, j = slice(0, max(0, rows - f.di)), slice(max(0, -f.dj), max(0, cols - max(0, f.dj)))
         ratios = net.link_ratios(f.di, f.dj)
         far = slice(f.di, rows), slice(j.start + f.dj, max(0, j.stop + f.dj))
         for end in ((i, j), far):
-            stiffness[end] += 2.0 * f.stiffness * ratios
+            stiffness[end] += 2.0 * reach * f.stiffness * ratios
             damping[end] += 2.0 * f.damping * ratios
     # The lab's sphere multiplies its damping by the depth, which no bound holds below the radius.
     depth = max(1.0, net.sphere[3] + net.radius) if net.sphere and net.contact.law == "lab" else 1.0
@@ -187,7 +195,7 @@ def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float,
     begin = along_surfaces(x, start, t, p)
     if not begin.any():
         return None
-    values, vectors, basis = ritz(x, begin / np.linalg.norm(begin), t, p, STIFFNESS)
+    values, vectors, basis = ritz(x, begin / np.linalg.norm(begin), t, p, STIFFEST)
     modes = vectors.T @ basis
     share = (along_surfaces(x, modes, t, p) ** 2).sum(axis=1)
     return modes[int((values * share).argmax())]
@@ -210,7 +218,7 @@ def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) ->
     flat = np.ascontiguousarray(x).reshape(-1)
     if not start.any():
         return []
-    parts = [(STIFFNESS, start)]
+    parts = [(STIFFEST, start)]
     if p.damped or p.has_floor or p.has_sphere or p.grabbed >= 0 or net.thickness > 0.0:
         parts.append((DAMPING, start))
     if p.damped:

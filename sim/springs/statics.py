@@ -6,9 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sim.springs.laws import law_of
 from sim.springs.net import Net
 from sim.validation import argument_error, check_number
 
+HOOKEAN = ("spring", "slack")  # laws that are the same under tension
 ITERATIONS = 200  # of Newton: a dozen is usual
 
 
@@ -21,7 +23,7 @@ class Equilibrium(NamedTuple):
 
 def hanging_chain(net: Net) -> Equilibrium:
     """The rope `net` hanging from its pinned point 0, away from floor and sphere: link i of n carries the points
-    below it, and stretches by their weight over k.
+    below it, and is as long as its law says at their weight.
 
     Raises ValueError where the net is no rope, is pinned elsewhere too, or has links without stiffness.
     """
@@ -32,7 +34,7 @@ def hanging_chain(net: Net) -> Equilibrium:
     # Without gravity any straight shape is at rest: along -x, as `rope` lays it.
     down = np.asarray(net.gravity) / g if g > 0.0 else np.array([-1.0, 0.0, 0.0])
     tension = g * net.masses[0, :0:-1].cumsum()[::-1]
-    depth = np.concatenate([[0.0], np.cumsum(family.rest + tension / family.stiffness)])
+    depth = np.concatenate([[0.0], np.cumsum(law_of(net.law).length(net.law, family.stiffness, family.rest, tension))])
     return Equilibrium(net.x0[:, 0, 0] + depth[:, None] * down, tension)
 
 
@@ -111,7 +113,8 @@ def catenary(
 def equilibrium(net: Net) -> Equilibrium:
     """Rest state of the rope `net`, hanging from point 0 or from both its ends; without floor and sphere.
 
-    Raises ValueError as `hanging_chain` and `catenary` do, and where gravity is not along z.
+    Raises ValueError as `hanging_chain` and `catenary` do, where gravity is not along z, and between two ends for links
+    that are neither springs nor lines.
     """
     family = single_family(net)
     last = net.shape[1] - 1
@@ -121,6 +124,8 @@ def equilibrium(net: Net) -> Equilibrium:
         raise argument_error("net", sorted(net.pinned), "a rope pinned at point 0, and at the last one or not")
     if net.gravity[:2] != (0.0, 0.0):
         raise argument_error("gravity", net.gravity, "along z")
+    if law_of(net.law).name not in HOOKEAN:
+        raise argument_error("law", law_of(net.law).name, "of a rope between two pins one of " + ", ".join(HOOKEAN))
     start, chord = net.x0[:, 0, 0], net.x0[:, 0, last] - net.x0[:, 0, 0]
     span = math.hypot(chord[0], chord[1])
     flat = catenary(

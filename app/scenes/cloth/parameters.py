@@ -3,6 +3,7 @@
 import dataclasses
 from typing import Any
 
+from app.scenes.springs.laws import link_parameter
 from app.scenes.springs.methods import METHODS_AND_AUTO
 from sim.parameters import parameter
 from sim.springs.cloth import PIN_CHOICES
@@ -72,6 +73,7 @@ class Params:
         group="Cloth",
         title="Bend stiffness",
     )
+    link: str = link_parameter("Cloth")
     thickness: float = parameter(
         0.0,
         0.0,

@@ -1,6 +1,7 @@
 """The cloth: curtain, flag, drape, trampoline. Arrows move its pins and a sphere; every particle can be dragged."""
 
 import dataclasses
+import functools
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,6 +18,7 @@ from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
 from app.scenes.springs.drag import Drag, PullFrame
+from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.tracking import CriticallyDampedTracker
@@ -94,23 +96,24 @@ def gusty_wind(params: Params, t: float) -> Vector:
     return c * along - s * across, s * along + c * across, params.wind * params.gust * 0.15 * math.sin(3.1 * t)
 
 
-def warm_up() -> Pieces:
-    """Everything to compile that the scene may call."""
-    net = cloth(4, 4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2), thickness=0.1)
-    return {GAUGE: compile_gauge, **integrator_pieces(net, cloth(4, 4, damping=0.0))}
+def warm_up(law: str = SPRING) -> Pieces:
+    """Everything to compile that the scene may call with links of a law."""
+    net = cloth(4, 4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2), thickness=0.1, law=law)
+    gauge = functools.partial(compile_gauge, law)
+    return {GAUGE: gauge, **integrator_pieces(net, cloth(4, 4, damping=0.0, law=law))}
 
 
-def compile_gauge() -> None:
+def compile_gauge(law: str) -> None:
     """All but the integrators."""
-    scene = ClothScene(Params(rows=4, cols=4))
+    scene = ClothScene(Params(rows=4, cols=4, link=law))
     extremes(scene.state.x, scene.state.v)
-    gershgorin(cloth(4, 4, thickness=0.1), scene.state.x)
+    gershgorin(cloth(4, 4, thickness=0.1, law=law), scene.state.x)
 
 
 def needs(params: Params) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     net = build(params, sphere_home(params))
-    return integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE
+    return pieces_of_law((integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE), params.link)
 
 
 class ClothScene:
@@ -436,6 +439,7 @@ SCENE = SceneKind(
     hidden=hidden,
     warm_up=warm_up,
     needs=needs,
+    warm_up_on_use=functools.partial(pieces_on_use, warm_up),
     series=SERIES,
     plots=PLOTS,
     frame_units={"points": "m", "strain": "", "student": "m, a student's cloth beside the program's"},

@@ -11,6 +11,7 @@ from app.lab.live_net import CLOTH, Answer, LiveNet
 from app.lab.rope_march import Segment
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.start import build, sphere_home
+from app.scenes.springs.laws import SPRING
 from app.scenes.springs.student_net import StudentNet, forces_of
 from sim.springs import INTEGRATORS, Net
 from sim.springs.resampling import resample
@@ -128,6 +129,8 @@ def unlike(params: Params) -> tuple[str, ...]:
     lines: list[str] = []
     if params.integrator not in CLOTH.exact:
         lines.append("Method: your cloth steps by symplectic Euler, the program's by the method that you chose.")
+    if params.link != SPRING:
+        lines.append("Link: the program's pulls as you chose, that of your cloth as a spring.")
     if params.thickness > 0.0:
         lines.append("Self-collision distance: the points of your cloth do not push each other.")
     return tuple(lines)

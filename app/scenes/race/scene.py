@@ -1,5 +1,6 @@
 """The race: up to six ropes side by side, each with its own method, step or stiffness, against a reference run."""
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -16,10 +17,11 @@ from app.scenes.race.measures import measures
 from app.scenes.race.names import rope_label
 from app.scenes.race.parameters import ABOUT, PRESETS, Params, hidden, method_of, offset_of
 from app.scenes.springs.drag import PullFrame
+from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
-from sim.springs import INTEGRATORS, rope
+from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.reference_run import ReferenceRun
 from sim.springs.stability import gauge
@@ -45,31 +47,31 @@ class RaceFrame(NamedTuple):
     pull: PullFrame | None
 
 
-def warm_up() -> Pieces:
-    """Everything to compile that the scene may call."""
-    methods = integrator_pieces(rope(4, floor=-1.0), rope(4, damping=0.0, drag=0.0))
-    return {GAUGE: compile_gauge, REFERENCE: compile_reference, **methods}
+def warm_up(law: str = SPRING) -> Pieces:
+    """Everything to compile that the scene may call with links of a law."""
+    net = rope(4, floor=-1.0, law=law)
+    methods = integrator_pieces(net, rope(4, damping=0.0, drag=0.0, law=law))
+    of_net = {GAUGE: compile_gauge, REFERENCE: compile_reference}
+    return {**{piece: functools.partial(function, net) for piece, function in of_net.items()}, **methods}
 
 
-def compile_gauge() -> None:
+def compile_gauge(net: Net) -> None:
     """The gauge of a rope, and the energies."""
-    net = rope(4, floor=-1.0)
     state = State.at_rest(net)
     gauge(net, INTEGRATORS["leapfrog"], 1e-3, state)
     energy(net, state)
     extremes(state.x, state.v)
 
 
-def compile_reference() -> None:
+def compile_reference(net: Net) -> None:
     """The reference run."""
-    net = rope(4, floor=-1.0)
     ReferenceRun(net, 2.0, 1).advance(net, 0.0, 1e-3)
 
 
 def needs(params: Params) -> tuple[str, ...]:
     """Compiled pieces that a race with these parameters runs."""
     methods = {method_of(params, number) for number in range(1, params.ropes + 1)}
-    return *sorted(methods), GAUGE, REFERENCE
+    return pieces_of_law((*sorted(methods), GAUGE, REFERENCE), params.link)
 
 
 class RaceScene:
@@ -215,6 +217,7 @@ SCENE = SceneKind(
     hidden=hidden,
     warm_up=warm_up,
     needs=needs,
+    warm_up_on_use=functools.partial(pieces_on_use, warm_up),
     series=(),
     plots={},
     curves=CURVES,

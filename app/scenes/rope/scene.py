@@ -1,5 +1,6 @@
 """The rope of springs, part 2 of the lab: its root and its points can be dragged."""
 
+import functools
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -25,6 +26,7 @@ from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import ABOUT, PRESETS, Params, hidden
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.drag import PullFrame
+from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
 from app.scenes.springs.speed_advice import faster_steps
@@ -96,22 +98,24 @@ def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
     return build_rope(params, root, (*sphere, params.sphere_radius) if params.sphere else None)
 
 
-def warm_up() -> Pieces:
-    """Everything to compile that the scene may call."""
-    net = rope(4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2))
-    return {GAUGE: compile_gauge, **integrator_pieces(net, rope(4, damping=0.0, drag=0.0))}
+def warm_up(law: str = SPRING) -> Pieces:
+    """Everything to compile that the scene may call with links of a law."""
+    net = rope(4, floor=-1.0, sphere=(0.0, 0.0, -1.0, 0.2), law=law)
+    gauge = functools.partial(compile_gauge, law)
+    return {GAUGE: gauge, **integrator_pieces(net, rope(4, damping=0.0, drag=0.0, law=law))}
 
 
-def compile_gauge() -> None:
+def compile_gauge(law: str) -> None:
     """All but the integrators."""
-    scene = RopeScene(Params())
+    scene = RopeScene(Params(link=law))
     extremes(scene.state.x, scene.state.v)
     scene.frame()
 
 
 def needs(params: Params) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
-    return integrator_or_fallback(params.integrator, build(params), params.time_step)[0].name, GAUGE
+    method = integrator_or_fallback(params.integrator, build(params), params.time_step)[0].name
+    return pieces_of_law((method, GAUGE), params.link)
 
 
 def rows_of(x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -394,6 +398,7 @@ SCENE = SceneKind(
     hidden=hidden,
     warm_up=warm_up,
     needs=needs,
+    warm_up_on_use=functools.partial(pieces_on_use, warm_up),
     series=SERIES,
     plots=PLOTS,
     frame_units={"points": "m", "reference": "m, the program's rope beside a student's", "tension": "N"},

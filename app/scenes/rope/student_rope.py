@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from app.lab.live_net import ROPE, step_of
 from app.lab.rope_march import Segment
 from app.scenes.rope.parameters import Params
+from app.scenes.springs.laws import SPRING
 from app.scenes.springs.student_net import StudentNet, forces_of
 from sim.springs import Net
 
@@ -33,6 +34,8 @@ def unlike(params: Params) -> tuple[str, ...]:
         )
     elif method not in ROPE.exact:
         lines.append(f"Method: your rope steps by {step_of(method)}, the program's by the method that you chose.")
+    if params.link != SPRING:
+        lines.append("Link: the program's pulls as you chose, that of spring_force as a spring.")
     if params.damping_model == "axial":
         lines.append("Damping model: the program's acts along the link, that of spring_force in all directions.")
     if params.sphere and params.contact_law == "lab":

@@ -15,6 +15,8 @@ from sim.springs.forces.contact import contact_force, surface_velocity, touches,
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import self_contact_energy, self_contact_power
 from sim.springs.forces.wind import wind_power
+from sim.springs.laws import damps, force_density
+from sim.springs.laws import energy as link_energy
 from sim.springs.net import by_net, link_ratio, mass_at
 
 
@@ -55,7 +57,7 @@ def drag_power(v, p):
 
 @kernel(allocates=False)
 def elastic_energy(x, p):
-    """1/2 k (|r| - d)^2 over the links [J]."""
+    """Of the links [J]."""
     total = 0.0
     n = p.rows * p.cols
     for q in range(p.offsets.shape[0]):
@@ -66,7 +68,8 @@ def elastic_energy(x, p):
                 a = i * p.cols + j
                 b = a + di * p.cols + dj
                 rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
-                total += 0.5 * link_ratio(p, q, i, j) * k * (math.sqrt(rx * rx + ry * ry + rz * rz) - rest) ** 2
+                own = link_ratio(p, q, i, j) * k
+                total += link_energy(p.law, own, rest, math.sqrt(rx * rx + ry * ry + rz * rz))
     return total
 
 
@@ -97,7 +100,7 @@ def contact_energy(x, t, p):
 
 
 @kernel(noalias=True, inline=True)
-def row_damping_power(x, v, a, b, count, n, axial):
+def row_damping_power(x, v, a, b, count, n, law, rest, axial):
     """Power lost to damping of 1 N s/m [W] in the links (a, b), (a + 1, b + 1), ..."""
     total = 0.0
     if axial:
@@ -105,13 +108,15 @@ def row_damping_power(x, v, a, b, count, n, axial):
             p, q = a + j, b + j
             rx, ry, rz = x[q] - x[p], x[n + q] - x[n + p], x[n + n + q] - x[n + n + p]
             du, dv, dw = v[q] - v[p], v[n + q] - v[n + p], v[n + n + q] - v[n + n + p]
-            closing = du * rx + dv * ry + dw * rz
-            total += closing * closing / (rx * rx + ry * ry + rz * rz + TINY)
+            closing, rr = du * rx + dv * ry + dw * rz, rx * rx + ry * ry + rz * rz + TINY
+            total += closing * closing / rr if damps(law, rest, math.sqrt(rr)) else 0.0
     else:
         for j in range(count):
             p, q = a + j, b + j
+            rx, ry, rz = x[q] - x[p], x[n + q] - x[n + p], x[n + n + q] - x[n + n + p]
             du, dv, dw = v[q] - v[p], v[n + q] - v[n + p], v[n + n + q] - v[n + n + p]
-            total += du * du + dv * dv + dw * dw
+            acts = damps(law, rest, math.sqrt(rx * rx + ry * ry + rz * rz))
+            total += du * du + dv * dv + dw * dw if acts else 0.0
     return total
 
 
@@ -121,7 +126,8 @@ def link_damping_power(x, v, p):
     total = 0.0
     n = np.uint64(p.rows * p.cols)
     for q in range(p.offsets.shape[0]):
-        di, dj, c = p.offsets[q, 0], p.offsets[q, 1], p.links[q, 2]
+        di, dj = p.offsets[q, 0], p.offsets[q, 1]
+        rest, c = p.links[q, 0], p.links[q, 2]
         first = max(0, -dj)
         count = max(0, p.cols - abs(dj))
         if c == 0.0 or count == 0:
@@ -130,12 +136,13 @@ def link_damping_power(x, v, p):
             a = np.uint64(i * p.cols + first)
             b = np.uint64((i + di) * p.cols + first + dj)
             ratio = link_ratio(p, q, i, 1)
-            total += ratio * c * row_damping_power(x, v, a, b, np.uint64(count), n, p.axial)
+            total += ratio * c * row_damping_power(x, v, a, b, np.uint64(count), n, p.law, rest, p.axial)
             more = link_ratio(p, q, i, 0) - ratio  # of the links in the first and the last column
             if dj == 0 and more != 0.0:
                 for j in (0, count - 1):
                     o = np.uint64(j)
-                    total += more * c * row_damping_power(x, v, a + o, b + o, np.uint64(1), n, p.axial)
+                    lost = row_damping_power(x, v, a + o, b + o, np.uint64(1), n, p.law, rest, p.axial)
+                    total += more * c * lost
     return total
 
 
@@ -162,7 +169,9 @@ def moving_pins_power(x, v, p, elastic, damping):
                     along = (du * rx + dv * ry + dw * rz) / rr
                     du, dv, dw = along * rx, along * ry, along * rz
                 ratio = link_ratio(p, q, i, j)
-                s, d = ratio * (k - k * rest / math.sqrt(rr)), ratio * c
+                length = math.sqrt(rr)
+                s = force_density(p.law, ratio * k, rest, length)
+                d = ratio * c if damps(p.law, rest, length) else 0.0
                 fx, fy, fz = s * rx + d * du, s * ry + d * dv, s * rz + d * dw
                 if p.inverse_masses[a] == 0.0:
                     work -= fx * v[a] + fy * v[n + a] + fz * v[2 * n + a]

@@ -43,6 +43,10 @@ def find_rest_positions(net: Net, x: NDArray[np.float64] | None = None) -> NDArr
     h, before = 1.0 / fastest, 0.0
     for _ in range(LOOKS):
         advance(still, state, LEAPFROG, h, STEPS)
+        if not state.is_bounded:  # its links stiffened
+            h, before = 0.5 * h, 0.0
+            state.x[:], state.v[:] = net.x0 if x is None else x, 0.0
+            continue
         now = energy(still, state)
         if now.kinetic < before:
             if before < REST_ENERGY_SHARE * max(abs(now.gravity), now.elastic, 1e-12):

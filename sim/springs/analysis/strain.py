@@ -1,9 +1,23 @@
-"""How far the links of a cloth are stretched or pressed."""
+"""How far the links of a net are stretched or pressed."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs.net import Net
+
+
+def largest_strain(net: Net, x: NDArray[np.float64]) -> float:
+    """Largest |length / rest length - 1| of all links with a rest length, at positions x (3, rows, cols) [m]."""
+    rows, cols = net.shape
+    largest = 0.0
+    for f in net.families:
+        first = max(0, -f.dj), max(0, cols - max(0, f.dj))
+        near, far = x[:, : max(0, rows - f.di), first[0] : first[1]], x[:, f.di :, first[0] + f.dj : first[1] + f.dj]
+        if f.rest > 0.0 and near.size:
+            r = far - near
+            strain = np.abs(np.sqrt(np.einsum("eij,eij->ij", r, r)) / f.rest - 1.0)
+            largest = max(largest, float(strain.max()))
+    return largest
 
 
 def structural_strain(net: Net, x: NDArray[np.float64]) -> NDArray[np.float64]:

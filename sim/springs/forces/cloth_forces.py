@@ -4,7 +4,10 @@ The links of a row go into a buffer of the last three rows, padded with zeros to
 its twelve in one loop: every link is worked out once, written once and read twice, all within the fastest cache.
 """
 
+from typing import NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.jit import kernel, prange
 from sim.springs.forces.links import link_forces, scale_ends
@@ -43,9 +46,32 @@ def sum_row(f, w, mass, v, a, o, ow, n, g, c, f01, f10, g10, f11, g11, f1m, g1m,
         a[o + j] = w[ow + j] * (mass[ow + j] * g - c * v[o + j] + along + across + far)
 
 
+class Sheet(NamedTuple):
+    """The kernel data that rows need: a parallel loop takes no record within a record, as the law is in a net's."""
+
+    rows: int
+    cols: int
+    offsets: NDArray[np.int64]
+    links: NDArray[np.float64]
+    inverse_masses: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    gx: float
+    gy: float
+    gz: float
+    side: float
+    axial: bool
+
+
+@kernel(inline=True)
+def sheet_of(p):
+    return Sheet(
+        p.rows, p.cols, p.offsets, p.links, p.inverse_masses, p.mass, p.gx, p.gy, p.gz, p.side, p.axial
+    )  # fmt: skip
+
+
 @kernel(noalias=True, allocates=False)
-def accelerate_rows(x, v, p, b, c, f, o, a, start, stop):
-    """Accelerations of the rows from `start` up to `stop`; f: the buffer, from index o.
+def accelerate_rows(x, v, p, law, b, c, f, o, a, start, stop):
+    """Accelerations of the rows from `start` up to `stop`; p: a `Sheet`; f: the buffer, from index o.
 
     The links that reach in from up to two rows before are worked out here too.
     """
@@ -72,7 +98,7 @@ def accelerate_rows(x, v, p, b, c, f, o, a, start, stop):
                 ratio = p.side if di == 0 and (i == 0 or i == p.rows - 1) else 1.0
                 link_forces(
                     x, v, f, ia, ib, of + np.uint64(first), count, n, m,
-                    ratio * p.links[q, 1], ratio * b * p.links[q, 2], p.links[q, 0], axial,
+                    law, ratio * p.links[q, 1], ratio * b * p.links[q, 2], p.links[q, 0], axial,
                 )  # fmt: skip
                 if dj == 0 and p.side != 1.0:
                     scale_ends(f, of, count, m, p.side)
@@ -96,12 +122,12 @@ def accelerate_rows(x, v, p, b, c, f, o, a, start, stop):
 
 
 @kernel(parallel=True)
-def accelerate_bands(x, v, p, b, c, f, a):
-    """`accelerate_rows` in p.bands bands of rows at once, each on a thread and in a buffer of its own."""
-    for k in prange(p.bands):
+def accelerate_bands(x, v, p, law, bands, b, c, f, a):
+    """`accelerate_rows` in bands of rows at once, each on a thread and in a buffer of its own."""
+    for k in prange(bands):
         accelerate_rows(
-            x, v, p, b, c, f, np.uint64(k * cloth_scratch_size(p.cols)), a,
-            p.rows * k // p.bands, p.rows * (k + 1) // p.bands,
+            x, v, p, law, b, c, f, np.uint64(k * cloth_scratch_size(p.cols)), a,
+            p.rows * k // bands, p.rows * (k + 1) // bands,
         )  # fmt: skip
 
 
@@ -109,6 +135,6 @@ def accelerate_bands(x, v, p, b, c, f, a):
 def accelerate_cloth(x, v, p, b, c, f, a):
     """Accelerations of the six families, gravity and drag; f: the buffers, (p.bands cloth_scratch_size,)."""
     if p.bands > 1:
-        accelerate_bands(x, v, p, b, c, f, a)
+        accelerate_bands(x, v, sheet_of(p), p.law, p.bands, b, c, f, a)
     else:
-        accelerate_rows(x, v, p, b, c, f, np.uint64(0), a, 0, p.rows)
+        accelerate_rows(x, v, sheet_of(p), p.law, b, c, f, np.uint64(0), a, 0, p.rows)

@@ -20,6 +20,7 @@ from sim.jit import kernel
 from sim.springs.forces.contact import surface_velocity, touches, touching
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import damp_self_contacts
+from sim.springs.laws import by_damping, damps
 from sim.springs.net import by_net, link_ratio
 
 PAD = 4  # numbers beside a component in the room of `cross_gap`, the width of its window
@@ -194,9 +195,12 @@ def damp_grab(v, s, p):
 @kernel
 def make_decay(p, s):
     """Factors of `damp` for a time s [s], (families + 1, rows cols): the share of each family's link that begins at a
-    point, then what drag leaves of each point's velocity, 1 of pins."""
+    point, then what drag leaves of each point's velocity, 1 of pins.
+
+    Where links are not damped at any length, the shares once more: `damp` has those that act just now in the first.
+    """
     families, n, w = p.offsets.shape[0], p.rows * p.cols, p.inverse_masses
-    decay = np.zeros((families + 1, n))
+    decay = np.zeros((kept_shares(p.law, families) + families + 1, n))
     for q in range(families):
         di, dj, b = p.offsets[q, 0], p.offsets[q, 1], p.links[q, 2]
         last, before, share = 0.0, 0.0, 0.0
@@ -214,7 +218,47 @@ def make_decay(p, s):
         if w[j] != last:
             last, keep = w[j], math.exp(-p.drag * w[j] * s)
         decay[families, j] = keep
+    for q in range(kept_shares(p.law, families)):
+        for j in range(n):
+            decay[families + 1 + q, j] = decay[q, j]
     return decay
+
+
+@kernel(inline=True)
+def no_kept_shares(law, families):
+    return 0
+
+
+@kernel(inline=True)
+def all_kept_shares(law, families):
+    return families
+
+
+# Rows of `make_decay` that keep the shares of links whose damping comes and goes.
+kept_shares = by_damping(always=no_kept_shares, at_some_lengths=all_kept_shares)
+
+
+@kernel(inline=True)
+def keep_all_shares(law, x, decay, p):
+    """Every link is damped."""
+
+
+@kernel(allocates=False)
+def choose_shares(law, x, decay, p):
+    """Shares of 0 for the links whose damping does not act at positions x, and their own for the others."""
+    n, families = p.rows * p.cols, p.offsets.shape[0]
+    for q in range(families):
+        di, dj = p.offsets[q, 0], p.offsets[q, 1]
+        for i in range(p.rows - di):
+            for j in range(max(0, -dj), p.cols - max(0, dj)):
+                a = i * p.cols + j
+                b = a + di * p.cols + dj
+                rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+                acts = damps(law, p.links[q, 0], math.sqrt(rx * rx + ry * ry + rz * rz))
+                decay[q, a] = decay[families + 1 + q, a] if acts else 0.0
+
+
+set_shares = by_damping(always=keep_all_shares, at_some_lengths=choose_shares)
 
 
 @kernel(noalias=True, inline=True)
@@ -251,6 +295,7 @@ def damp_motion(x, v, decay, p, reverse):
     for turn in range(2):
         if (turn == 0) != reverse:
             if p.damped:
+                set_shares(p.law, x, decay, p)
                 damp_all_links(x, v, decay, p, reverse)
         elif p.drag > 0.0:
             scale(v, keep, np.uint64(0), n)
@@ -329,6 +374,8 @@ damp = by_net(rope=damp_inline, grid=damp_wide)
 @kernel(inline=True)
 def rope_gaps_merge(p):
     """Links on their own, damped alike in all directions, act on each component of the velocities alone."""
+    if kept_shares(p.law, 1) > 0:
+        return False
     return p.damped and not (p.axial or p.has_floor or p.has_sphere) and p.grabbed < 0
 
 

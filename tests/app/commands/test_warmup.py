@@ -15,8 +15,12 @@ def compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     found: list[str] = []
 
     def side(*pieces: str) -> Callable[[str], SimpleNamespace]:
-        table = {piece: lambda piece=piece: found.append(piece) for piece in pieces}
-        return lambda name: SimpleNamespace(warm_up=lambda: table, needs=lambda params: params)
+        table = {piece: lambda piece=piece: found.append(piece) for piece in (*pieces, "on use")}
+        ahead = {piece: table[piece] for piece in pieces}
+        on_use = {"on use": table["on use"]}
+        return lambda name: SimpleNamespace(
+            warm_up=lambda: ahead, needs=lambda params: params, warm_up_on_use=lambda: on_use
+        )
 
     monkeypatch.setattr(warmup, "CACHE", tmp_path)
     monkeypatch.setattr(warmup, "scene_named", side("gauge", "rk4"))
@@ -48,11 +52,26 @@ def test_parameters_need_only_their_own_pieces(compiled: list[str]) -> None:
     assert not warmup.missing("rope")
 
 
+def test_a_piece_on_use_is_compiled_when_parameters_first_need_it(compiled: list[str]) -> None:
+    warmup.prepare("rope")
+    assert "on use" not in compiled
+    assert not warmup.missing("rope")
+    needed = ("rk4", "on use")
+    assert warmup.missing("rope", needed) == (("on use", False),)  # type: ignore[arg-type]
+    warmup.compile_piece("rope", "on use", drawn=False)
+    assert compiled[-1] == "on use"
+    assert not warmup.missing("rope", needed)  # type: ignore[arg-type]
+
+
 def test_what_fails_is_not_remembered(compiled: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     def fails() -> None:
         raise RuntimeError
 
-    monkeypatch.setattr(warmup, "scene_named", lambda name: SimpleNamespace(warm_up=lambda: {"rk4": fails}, needs=None))
+    monkeypatch.setattr(
+        warmup,
+        "scene_named",
+        lambda name: SimpleNamespace(warm_up=lambda: {"rk4": fails}, needs=None, warm_up_on_use=dict),
+    )
     with pytest.raises(RuntimeError):
         warmup.compile_piece("rope", "rk4", drawn=False)
     assert ("rk4", False) in warmup.missing("rope")

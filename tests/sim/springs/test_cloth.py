@@ -107,6 +107,7 @@ def test_strips_without_cross_springs_hang_as_chains():
     net = dataclasses.replace(
         net, families=tuple(f._replace(stiffness=0.0) if f[:2] == (0, 1) else f for f in net.families)
     )
+    assert net.mass_ratios is not None
     chain = dataclasses.replace(rope(8, 1.0, net.mass, 50.0), mass_ratios=net.mass_ratios[None, :, 1])
     depth = hanging_chain(chain).x[:, 2]
     state = State.at_rest(net)
@@ -252,7 +253,7 @@ def lowest_frequency(net):
     size = net.x0.size
     matrix, p = np.empty((size, size)), net.kernel_view(1.0)
     for unit, out in zip(np.eye(size), matrix, strict=True):
-        set_tangent(net.x0.reshape(-1), unit, 0.0, p, STIFFNESS, out)
+        set_tangent(net.x0.reshape(-1), unit, 0.0, p, STIFFNESS, 0.0, out)
     plane = 2 * size // 3  # x and y
     squares = np.linalg.eigvalsh(matrix[:plane, :plane])
     return math.sqrt(squares[squares > 1e-3 * squares[-1] / size][0])

@@ -41,7 +41,7 @@ def products(net, x, part, t=0.0):
     for j in range(x.size):
         unit, out = np.zeros(x.size), np.empty(x.size)
         unit[j] = 1.0 if p.inverse_masses[j % p.inverse_masses.size] else 0.0
-        set_tangent(x.reshape(-1), unit, t, p, part, out)
+        set_tangent(x.reshape(-1), unit, t, p, part, 0.0, out)
         matrix[:, j] = out
     return matrix
 

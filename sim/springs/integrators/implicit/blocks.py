@@ -12,9 +12,10 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.forces.contact import surface_velocity, touching
-from sim.springs.forces.links import TINY
+from sim.springs.forces.links import TINY, linearised
 from sim.springs.forces.self_contact import refresh_pairs
 from sim.springs.forces.wind import cell_areas
+from sim.springs.laws import damps
 from sim.springs.net import by_net, link_ratio, mass_at
 
 KEPT = 0.4  # part of the mass that pressed links may take from a particle
@@ -43,7 +44,7 @@ def least_across(p, a, b):
 
 @kernel(allocates=False)
 def set_link_blocks(x, g, p, links):
-    """H = g b (I or n n^T) + g^2 k [n n^T + (1 - l0/l) (I - n n^T)] of every link, at its first end."""
+    """H = g b (I or n n^T) + g^2 [T' n n^T + T/l (I - n n^T)] of every link, at its first end."""
     n = p.rows * p.cols
     for j in range(links.shape[0]):
         links[j] = 0.0
@@ -57,11 +58,12 @@ def set_link_blocks(x, g, p, links):
                 rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
                 length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
                 ratio = link_ratio(p, r, i, j)
-                k, b = ratio * p.links[r, 1], ratio * p.links[r, 2]
-                across = max(g * g * k * (1.0 - rest / length), least_across(p, a, c))
+                b = ratio * p.links[r, 2] if damps(p.law, rest, length) else 0.0
+                along, turning = linearised(p.law, ratio * p.links[r, 1], rest, length)
+                across = max(g * g * turning, least_across(p, a, c))
                 if not p.axial:
                     across += g * b
-                s = math.sqrt(max(0.0, g * g * k + g * b - across)) / length
+                s = math.sqrt(max(0.0, g * g * along + g * b - across)) / length
                 at = SYMMETRIC * n * r + a
                 links[at], links[at + n], links[at + 2 * n], links[at + 3 * n] = across, s * rx, s * ry, s * rz
 

@@ -11,18 +11,24 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.forces.contact import touching
+from sim.springs.forces.links import linearised
 from sim.springs.forces.self_contact import refresh_pairs
+from sim.springs.laws import TAUT, damps, stiffness
 from sim.springs.net import by_net, link_ratio, mass_at
 
 STIFFNESS = 0  # K
 DAMPING = 1  # D
 TRANSVERSE = 2  # the part of K across the links, which axial damping does not reach
 FRICTION = 3  # M over what slides along floor or sphere: friction's strongest damping, times h
+STIFFEST = 4  # K of links that are as stiff as any may soon be
 
 
 @kernel(noalias=True, allocates=False)
-def add_links(x, u, p, part, out):
-    """Links: K = k [n n^T + (1 - l0/l) (I - n n^T)]; D = b I, or b n n^T where damping is axial."""
+def add_links(x, u, p, part, longest, out):
+    """Links: K = T' n n^T + T/l (I - n n^T), of `linearised`; D = b I, or b n n^T where damping is axial.
+
+    longest: strain of part STIFFEST, see `longest_strain`.
+    """
     n = p.rows * p.cols
     for q in range(p.offsets.shape[0]):
         di, dj = p.offsets[q, 0], p.offsets[q, 1]
@@ -36,12 +42,15 @@ def add_links(x, u, p, part, out):
                 rr = rx * rx + ry * ry + rz * rz
                 ratio = link_ratio(p, q, i, j)
                 k, b = ratio * p.links[q, 1], ratio * p.links[q, 2]
-                # Of a link shorter than half its rest length only -k counts: it buckles, which no step can mend.
-                across = k - k * rest / math.sqrt(rr) if 4.0 * rr > rest * rest else -k
-                along = k
+                length = math.sqrt(rr)
+                along, across = linearised(p.law, k, rest, length)
+                # Of a link that is pressed further only this counts: it buckles, which no step can mend.
+                across = max(across, -along) if rr > 0.0 else -along
                 if part == DAMPING:
-                    across = 0.0 if p.axial else b
-                    along = b
+                    along = b if damps(p.law, rest, length) else 0.0
+                    across = 0.0 if p.axial else along
+                elif part == STIFFEST:
+                    along = max(along, stiffness(p.law, k, rest, (1.0 + longest) * rest))
                 elif part == TRANSVERSE:
                     along = 0.0
                 s = (along - across) * (rx * du + ry * dv + rz * dw) / rr if rr > 0.0 else 0.0
@@ -52,6 +61,23 @@ def add_links(x, u, p, part, out):
                 out[c] += fx
                 out[n + c] += fy
                 out[2 * n + c] += fz
+
+
+@kernel(allocates=False)
+def longest_strain(x, p):
+    """Largest |l/l0 - 1| of any link, at least that of a link which is just taut: what another may soon come to."""
+    n = p.rows * p.cols
+    longest = TAUT
+    for q in range(p.offsets.shape[0]):
+        di, dj = p.offsets[q, 0], p.offsets[q, 1]
+        rest = p.links[q, 0]
+        for i in range(p.rows - di if rest > 0.0 else 0):
+            for j in range(max(0, -dj), p.cols - max(0, dj)):
+                a = i * p.cols + j
+                c = a + di * p.cols + dj
+                rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
+                longest = max(longest, abs(math.sqrt(rx * rx + ry * ry + rz * rz) / rest - 1.0))
+    return longest
 
 
 @kernel(noalias=True, allocates=False)
@@ -138,8 +164,10 @@ def set_over_root_mass(y, p, out):
 
 
 @kernel(noalias=True)
-def set_tangent(x, y, t, p, part, out):
+def set_tangent(x, y, t, p, part, longest, out):
     """out = M^-1/2 K M^-1/2 y, or with D for K (part DAMPING), about x at time t; all flat (3 rows cols,).
+
+    longest: strain to which links count as stretched, of part STIFFEST.
 
     Friction is apart, as its strongest damping is 1/h by construction: h D of it is part FRICTION. Air is left out.
     """
@@ -148,7 +176,7 @@ def set_tangent(x, y, t, p, part, out):
     for j in range(y.shape[0]):
         out[j] = p.drag * u[j] if part == DAMPING else 0.0
     if part != FRICTION:
-        add_links(x, u, p, part, out)
+        add_links(x, u, p, part, longest, out)
         if part != TRANSVERSE:
             add_own_contacts(x, u, p, part, out)
     if part != TRANSVERSE:
@@ -185,8 +213,9 @@ def set_lanczos(x, t, p, part, basis, diagonal, beside):
     count = basis.shape[0]
     w = np.empty_like(x)
     largest = 0.0
+    longest = longest_strain(x, p)
     for s in range(count):
-        set_tangent(x, basis[s], t, p, part, w)
+        set_tangent(x, basis[s], t, p, part, longest, w)
         diagonal[s] = dot(w, basis[s])
         for _ in range(2):
             for r in range(s + 1):
@@ -208,17 +237,18 @@ def quotients(x, y, t, p):
     The fourth is the share of u M u that slides on floor or sphere, 0 without friction.
     """
     u, w = np.empty_like(x), np.empty_like(x)
-    set_tangent(x, y, t, p, STIFFNESS, w)
+    longest = longest_strain(x, p)
+    set_tangent(x, y, t, p, STIFFEST, longest, w)
     stiffness = dot(y, w)
     for j in range(w.shape[0]):
         w[j] = 0.0
     set_over_root_mass(y, p, u)
-    add_links(x, u, p, STIFFNESS, w)
+    add_links(x, u, p, STIFFEST, longest, w)
     links = dot(u, w)
-    set_tangent(x, y, t, p, DAMPING, w)
+    set_tangent(x, y, t, p, DAMPING, longest, w)
     rate = dot(y, w)
     sliding = 0.0
     if p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere):
-        set_tangent(x, y, t, p, FRICTION, w)
+        set_tangent(x, y, t, p, FRICTION, longest, w)
         sliding = dot(y, w)
     return stiffness, links, rate, sliding

@@ -1,0 +1,36 @@
+"""The choice of a link's law, and the compiled pieces that are of one law only."""
+
+from collections.abc import Callable
+from typing import Any
+
+from app.scenes.contract import Pieces
+from sim.parameters import parameter
+from sim.springs import LAWS
+
+SPRING = next(iter(LAWS))  # the law whose kernels are compiled ahead
+
+
+def link_parameter(group: str) -> Any:
+    """The parameter of the links' law."""
+    return parameter(
+        SPRING,
+        choices={name: law.title for name, law in LAWS.items()},
+        doc="How a link pulls: as a spring, as a line, which never pushes, or harder the more it is stretched",
+        group=group,
+        title="Link",
+    )
+
+
+def pieces_of_law(names: tuple[str, ...], law: str) -> tuple[str, ...]:
+    """The names of pieces as they are compiled for a law."""
+    return names if law == SPRING else tuple(f"{name}, {law}" for name in names)
+
+
+def pieces_on_use(pieces: Callable[[str], Pieces]) -> Pieces:
+    """The pieces of all laws but the spring. pieces: those of one law."""
+    found: dict[str, Callable[[], object]] = {}
+    for law in LAWS:
+        if law != SPRING:
+            own = pieces(law)
+            found |= zip(pieces_of_law(tuple(own), law), own.values(), strict=True)
+    return found

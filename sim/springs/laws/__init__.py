@@ -1,0 +1,103 @@
+"""The interchangeable laws of a link: one file each, found by being here. Nothing else knows how a link pulls.
+
+To add one, write a module in this folder with
+
+1. a NamedTuple class of the law's own numbers, which may have none. `Net.law` is one of these, and kernels take the law
+   by its class: what runs is compiled for that law alone.
+2. kernels of one line, `force_density`, `stiffness` and `energy`, as `Law` says. A tension is proportional to k, and at
+   the same strain to the rest length.
+3. `length`, the length at a tension, for the rope at rest.
+4. `LAW = Law(...)`, from which the panel, the command line and the tests take it.
+"""
+
+from typing import Any
+
+from sim.jit import chosen, kernel, modules_of
+from sim.springs.laws.record import Law, at_any_length
+from sim.validation import check_choice, check_number
+
+TAUT = 1e-9  # strain of a link that is just taut
+FAR_APART = 1e-3  # difference of two lengths over their extensions, above which that of their energies is exact enough
+
+LAWS: dict[str, Law] = {
+    law.name: law
+    for law in sorted(
+        (module.LAW for module in modules_of(__name__) if hasattr(module, "LAW")),
+        key=lambda law: (law.name != "spring", law.name),
+    )
+}
+BY_NUMBERS: dict[type, Law] = {type(law.numbers): law for law in LAWS.values()}
+
+
+def by_law(name: str) -> Any:
+    """The kernel that stands for a function of the laws, by the class of its argument `law`."""
+    return chosen({numbers: getattr(law, name) for numbers, law in BY_NUMBERS.items()})
+
+
+force_density = by_law("force_density")
+stiffness = by_law("stiffness")
+energy = by_law("energy")
+damps = by_law("damps")
+
+
+@kernel(inline=True)
+def tension(law, k, rest, length):
+    """[N], negative where the link is pressed."""
+    return length * force_density(law, k, rest, length)
+
+
+@kernel(inline=True)
+def mean_tension(law, k, rest, before, after):
+    """The mean of the tension [N] over all lengths from `before` to `after` [m]: their energies' difference quotient.
+
+    Of nearby lengths, whose energies round-off would spoil, by Gauss's three points, exact to the fifth power.
+    """
+    gap = after - before
+    if abs(gap) > FAR_APART * (abs(before - rest) + abs(after - rest)):
+        return (energy(law, k, rest, after) - energy(law, k, rest, before)) / gap
+    mean, away = 0.5 * (before + after), 0.3872983346207417 * gap  # sqrt(3/5)/2
+    beside = tension(law, k, rest, mean - away) + tension(law, k, rest, mean + away)
+    return (8.0 * tension(law, k, rest, mean) + 5.0 * beside) / 18.0
+
+
+@kernel(inline=True)
+def general_over_step(law, k, rest, before, after):
+    """`over_step` of any law."""
+    mean, gap, pull = 0.5 * (before + after), after - before, mean_tension(law, k, rest, before, after)
+    rise = 0.5 * stiffness(law, k, rest, after)
+    if abs(gap) > FAR_APART * (abs(before - rest) + abs(after - rest)):
+        rise = (tension(law, k, rest, after) - pull) / gap
+    return pull / mean, (2.0 * rise - pull / mean) / mean
+
+
+# Of a link that goes from one length to another: the mean of its tension over the mean length [N/m], and twice the
+# derivative of that by the second length [N/m^2].
+over_step = chosen({numbers: law.over_step or general_over_step for numbers, law in BY_NUMBERS.items()})
+
+
+def by_damping(always: Any, at_some_lengths: Any) -> Any:
+    """A kernel that stands for one of these, by whether damping acts at any length by its argument `law`."""
+    return chosen(
+        {numbers: always if law.damps is at_any_length else at_some_lengths for numbers, law in BY_NUMBERS.items()}
+    )
+
+
+def law_of(numbers: Any) -> Law:
+    """The law that these numbers are of."""
+    return BY_NUMBERS[type(numbers)]
+
+
+def check_law(law: Any) -> Any:
+    """The numbers of a law, given as its name or as they are. Raises ValueError with the names there are."""
+    if type(law) not in BY_NUMBERS:
+        return LAWS[check_choice("law", law, LAWS)].numbers
+    for name, value in law._asdict().items():
+        check_number(f"law.{name}", value, 0, float("inf"), "")
+    return type(law)(*map(float, law))
+
+
+def largest_stiffness(law: Any, strain: float) -> float:
+    """Largest stiffness over k of a link that is stretched or pressed by up to a strain, or just taut."""
+    function = law_of(law).stiffness
+    plain = getattr(function, "py_func", function)
+    return max(plain(law, 1.0, 1.0, 1.0 + e) for e in (-min(strain, 1.0), -TAUT, TAUT, max(strain, TAUT)))

@@ -11,7 +11,6 @@ MAX_FUNCTION, MAX_CLASS = 80, 300  # lines
 LONG_FUNCTIONS = {"app/panel/panel.py: __init__", "sim/springs/integrators/embedded/march.py: march"}
 LONG_CLASSES = {
     "app/panel/panel.py: Panel",
-    "app/scenes/cloth/scene.py: ClothScene",
     "app/scenes/radial_sea/scene.py: RadialSeaScene",
     "app/scenes/square_sea/scene.py: SquareSeaScene",
     "app/server/loop.py: SimLoop",

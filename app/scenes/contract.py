@@ -172,8 +172,8 @@ class View(Protocol[P, F, R]):
         ...
 
 
-class SpringParams(BaseParams, Protocol):
-    """Additional parameters of a scene with a stability map."""
+class MethodParams(BaseParams, Protocol):
+    """Additional parameters of a scene with one spring network."""
 
     @property
     def integrator(self) -> str:
@@ -184,6 +184,10 @@ class SpringParams(BaseParams, Protocol):
     def time_step(self) -> float:
         """Step h [s]."""
         ...
+
+
+class SpringParams(MethodParams, Protocol):
+    """Additional parameters of a scene with a stability map."""
 
     @property
     def points(self) -> int:

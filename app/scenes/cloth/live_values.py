@@ -1,14 +1,10 @@
 """Values of the cloth for the tasks of the lab: its springs, its strain, the limit of its step."""
 
-from typing import TYPE_CHECKING
-
 from app.messages import Snapshot
+from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.parameters import Params
 from app.scenes.contract import Measure
 from app.scenes.springs.live_values import stability_values
-
-if TYPE_CHECKING:
-    from app.scenes.cloth.scene import ClothFrame, ClothReadings
 
 
 def live_values(snapshot: Snapshot) -> dict[str, Measure]:

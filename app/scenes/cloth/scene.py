@@ -3,22 +3,21 @@
 import dataclasses
 import functools
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, StudentAnswer, Vector
+from app.messages import Grab, Place, Release, SceneCommand, StudentAnswer, Vector
 from app.scenes.charts import PlotAxes
+from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.live_values import live_values
 from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
-from app.scenes.moments import copied, restore
-from app.scenes.plot_rows import PlotRows
-from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
 from app.scenes.springs.drag import Drag, PullFrame
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
+from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.tracking import CriticallyDampedTracker
@@ -26,20 +25,17 @@ from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from sim.springs import Air, Net, cloth
 from sim.springs import Grab as Pull
 from sim.springs.analysis.energy_account import EnergyAccount
-from sim.springs.analysis.extremes import extremes
+from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.strain import structural_strain
-from sim.springs.automatic import AUTO
 from sim.springs.integrator_fallback import integrator_or_fallback
 from sim.springs.net import PinPath
-from sim.springs.resampling import resample
 from sim.springs.stability import Gauge, gauge, gershgorin
-from sim.springs.state import State, advance, energy, velocities
+from sim.springs.state import State, advance, energy
 
 if TYPE_CHECKING:
     from app.lab.live_code import LiveCode
     from app.scenes.cloth.student_cloth import StudentCloth
 
-ASSESSMENT_INTERVAL = 1.0  # [s] of simulated time between two assessments of the stability
 MAX_ASSESSED_PARTICLES = 1100  # above this an assessment takes too long, and Gershgorin's bound is shown
 MAX_SPHERE_SPEED = 3.0  # [m/s] along an axis, however fast it is dragged: faster, it would pass through the cloth
 MIN_PARTICLES_FOR_TWO_THREADS = 2000
@@ -49,42 +45,10 @@ MAX_PULL_STIFFNESS_STEP = 0.1  # stiffness of a pull over mass / step^2, so that
 BOB_RATE = 4.0  # [rad/s] of the sphere's motion up and down
 ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact", "dissipated")
 SERIES = (*ENERGY_SERIES, "largest strain")
-CHANGING = (  # as a cloth moves
-    "net", "state", "account", "account_kept", "sphere", "handles", "ends", "anchors", "corrections",
-)  # fmt: skip
 PLOTS = {
     "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES),
     "plot_strain": PlotAxes("Largest strain", "%", ("largest strain",)),
 }
-
-
-class ClothFrame(NamedTuple):
-    """Drawn state of a cloth."""
-
-    points: NDArray[np.float32]  # (rows, cols, 3) [m], C-contiguous
-    strain: NDArray[np.float32]  # (rows, cols), largest of the structural springs at a particle
-    full_strain: float  # strain at the end of the colour scale
-    pins: tuple[Vector, Vector] | None  # [m] where the two ends of the first row are going to
-    pole: bool
-    sphere: tuple[float, float, float, float] | None  # x, y, z, radius [m]
-    sphere_home: Vector  # [m] where the sphere's arrows are
-    handles: bool
-    floor: bool
-    grid: bool
-    colour: str
-    pull: PullFrame | None
-    student: NDArray[np.float32] | None  # (r, c, 3) [m] the student's cloth beside the program's
-
-
-class ClothReadings(NamedTuple):
-    """The stability of the time step, and the cost of a step."""
-
-    stability: Gauge
-    exact: bool  # the gauge is that of the state; otherwise a bound for all states
-    corrections: float  # Newton corrections a step, of implicit methods
-    note: str  # why another method runs than the one chosen, or ""
-    threads: int  # that compute the forces
-    left_out: int = 0  # most particles that self-collision has left out, its list of pairs being full
 
 
 def gusty_wind(params: Params, t: float) -> Vector:
@@ -116,39 +80,27 @@ def needs(params: Params) -> tuple[str, ...]:
     return pieces_of_law((integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE), params.link)
 
 
-class ClothScene:
+class ClothScene(NetScene[Params]):
     """The cloth on the simulation thread."""
 
+    CHANGING = (
+        "net", "state", "account", "account_kept", "sphere", "handles", "ends", "anchors", "corrections",
+    )  # fmt: skip
+    ASSESSMENT_INTERVAL = 1.0
     frame_interval = FRAME_INTERVAL
+    max_reach = MAX_DISTANCE
+    student: "StudentCloth | None" = None
+    stability: ClothReadings
 
     def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
         """live: runs a student's functions, where there are any."""
-        self.params = params
-        self.student: StudentCloth | None = None
         if live is not None:
             from app.scenes.cloth import student_cloth  # only `springtide lab DIR` pays for it
 
             self.student = student_cloth.StudentCloth(live.cloth)
-        self.plot_rows = PlotRows(len(SERIES))
-        self.last_moments = LastMoments()
         self.tuner = ThreadTuner()
         self.drag = Drag()
-        self.reset()
-
-    @property
-    def step(self) -> float:
-        """Time step [s]."""
-        return self.params.time_step
-
-    @property
-    def time(self) -> float:
-        """Simulated time [s]."""
-        return self.state.t
-
-    @property
-    def note(self) -> str:
-        """Why another method runs than the one chosen, or ""."""
-        return "" if self.params.integrator == AUTO else self.fallback_note
+        super().__init__(params, len(SERIES))
 
     @property
     def faster(self) -> str:
@@ -171,37 +123,32 @@ class ClothScene:
     def reset(self) -> None:
         """The cloth, its pins and the sphere where the parameters start them."""
         self.sphere = CriticallyDampedTracker(sphere_home(self.params), MAX_SPHERE_SPEED)
-        self.net = build(self.params, self.sphere.position)
-        self.state = State.at_rest(self.net)
-        self.account = EnergyAccount(self.net, self.state)
+        self.place_at_rest(build(self.params, self.sphere.position))
         self.account_kept = self.with_account
         self.drag.clear()
-        self.hold_pins()
-        self.corrections = 0.0
-        self.plot_rows.restart()
-        self.last_moments.clear()
+        self.place_handles()
         self.assess_stability()
         if self.student is not None:
             self.student.start(self.params, self.state)
 
-    def keep(self) -> dict[str, object]:
-        """Checkpoint: state, energy account and moved objects."""
-        return copied({name: getattr(self, name) for name in CHANGING})
-
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
-        restore(self, kept)
-        self.drag.clear()
+        super().resume(kept)
         self.tuner.restart()
-        self.plot_rows.resume()
-        self.last_moments.clear()
         self.assess_stability()
         if self.student is not None:
             self.student.set_up(self.params)
             self.student.begin(self.student.rows_of(self.state.x), self.student.rows_of(self.state.v), self.state.t)
 
-    def hold_pins(self) -> None:
-        """Hold the pinned particles where they are, with a handle at each end of the first row."""
+    def hold_pins(self, before: Net) -> None:
+        """Hold the pins where they are, and still, if the net before had others."""
+        if (self.net.shape, self.net.pinned) != (before.shape, before.pinned):
+            self.place_handles()
+            for i, j in self.net.pinned:
+                self.state.v[:, i, j] = 0.0
+
+    def place_handles(self) -> None:
+        """Put a handle at each end of the first row, and hold the pinned particles where they are."""
         x = self.state.x
         self.ends = [x[:, 0, 0].copy(), x[:, 0, -1].copy()]
         self.handles = [CriticallyDampedTracker(tuple(float(c) for c in end)) for end in self.ends]  # type: ignore[arg-type]
@@ -210,18 +157,8 @@ class ClothScene:
     def change_forces(self, params: Params) -> None:
         """Take new parameters. The motion goes on, interpolated where the grid changes."""
         old, self.params = self.params, params
-        stored = self.account.stored(self.net, self.state)
         self.tuner.restart()
-        self.net = build(params, self.sphere_at(self.state.t))
-        if (params.rows, params.cols) != (old.rows, old.cols):
-            self.state.x = resample(self.state.x, params.rows, params.cols)
-            self.state.v = resample(self.state.v, params.rows, params.cols)
-            self.drag.clear()
-        if (params.rows, params.cols, params.pinned) != (old.rows, old.cols, old.pinned):
-            self.hold_pins()
-            for i, j in self.net.pinned:
-                self.state.v[:, i, j] = 0.0
-        self.account.book_change(stored, self.net, self.state)
+        self.take_net(build(params, self.sphere_at(self.state.t)))
         self.assess_stability()
         if self.student is not None:
             self.student.change(params, old, self.state)
@@ -245,15 +182,12 @@ class ClothScene:
             case _:
                 pass
 
-    def advance(self, steps: int) -> None:
-        """Take steps. Raises DivergenceError where the cloth leaves its bounds, and keeps the last good state."""
-        duration = steps * self.step
+    def take_steps(self, net: Net, state: State, steps: int) -> Net:
+        """Take steps of `net` in place, on one or two threads. Returns the net that took the last one."""
         with_account = self.with_account
         if with_account and not self.account_kept:
             self.account = EnergyAccount(self.net, self.state)
         self.account_kept = with_account
-        good, state = self.state, self.state.copy()  # what is shown in the middle of the steps, and what moves
-        net = self.net_during(good.t, duration)
 
         def take(threads: int, count: int) -> None:
             nonlocal net
@@ -261,37 +195,23 @@ class ClothScene:
                 net = dataclasses.replace(net, threads=threads)
             advance(net, state, self.integrator, self.step, count, with_account=with_account)
 
-        try:
-            self.tuner.advance(steps, take, large=self.particles >= MIN_PARTICLES_FOR_TWO_THREADS)
-        finally:  # where it is ended early the steps that were taken count
-            if extremes(state.x, state.v).max_coordinate < MAX_DISTANCE:  # false of a NaN as well
-                self.state = state
-        if self.state is good:
-            self.repeat_to_divergence(net, good, steps)
-            raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
+        self.tuner.advance(steps, take, large=self.particles >= MIN_PARTICLES_FOR_TWO_THREADS)
+        return net
+
+    def distance(self, found: Extremes) -> float:
+        """Distance [m] of the farthest particle from the origin, along an axis."""
+        return found.max_coordinate
+
+    def moved(self, good: State, steps: int, found: Extremes) -> None:
+        """Count the corrections, and let the student's cloth follow."""
         if self.integrator.implicit:
             self.corrections = (self.state.force_evals - good.force_evals) / steps
-        self.net = net
         if self.student is not None:
-            self.student.follow_cloth(net, good, self.state, self.step)
-        if self.particles <= MAX_ASSESSED_PARTICLES and self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL:
-            self.assess_stability()
-        if self.plot_rows.is_due(self.state.t):
-            self.add_plot_row()
+            self.student.follow_cloth(self.net, good, self.state, self.step)
 
-    def repeat_to_divergence(self, net: Net, good: State, steps: int) -> None:
-        """Take the steps that left the bounds once more, keep a frame of each, and go back to the last good state."""
-        self.state = good.copy()
-        try:
-            for _ in range(steps):
-                advance(net, self.state, self.integrator, self.step, 1, with_account=False)
-                distance = extremes(self.state.x, self.state.v).max_coordinate
-                if distance < MAX_OVERSHOOT * MAX_DISTANCE:  # false of a NaN as well
-                    self.frame()
-                if not distance < MAX_DISTANCE:
-                    break
-        finally:  # it may be ended early
-            self.state = good
+    def has_news(self) -> bool:
+        """True if an assessment is quick."""
+        return self.particles <= MAX_ASSESSED_PARTICLES
 
     def net_during(self, t: float, duration: float) -> Net:
         """The net with the motions of pins, sphere and pull, and the wind, over the next `duration` [s] from time t."""
@@ -363,14 +283,9 @@ class ClothScene:
         self.stability = ClothReadings(stability, exact, self.corrections, self.fallback_note, self.tuner.threads)
         self.assessed_at = self.state.t
 
-    def diagnosis(self) -> str:
-        """Cause of the divergence, and settings that would hold."""
-        alternative = "" if self.integrator.implicit else "implicit Euler, which is stable at every step"
-        return divergence_text(self.state.t, self.integrator, self.step, self.stability.stability, alternative)
-
-    def curves(self) -> None:
-        """This scene has charts over time only."""
-        return
+    def alternative(self) -> str:
+        """A method that would hold."""
+        return "" if self.integrator.implicit else "implicit Euler, which is stable at every step"
 
     def add_plot_row(self) -> None:
         """Add the energies and the largest strain at the scene's time."""
@@ -378,10 +293,6 @@ class ClothScene:
         dissipated = state.dissipated if self.account_kept else math.nan
         strain = 100.0 * float(structural_strain(self.net, self.state.x).max())
         self.plot_rows.add(state.t, e.total, e.kinetic, e.elastic, e.gravity, e.contact, dissipated, strain)
-
-    def take_plot_rows(self) -> tuple[PlotRow, ...]:
-        """The plot rows since the last call."""
-        return self.plot_rows.take()
 
     def readings(self) -> ClothReadings:
         """Stability as last assessed, and the cost of the last steps."""
@@ -418,13 +329,9 @@ class ClothScene:
         self.last_moments.add(self.state.t, frame, frame.points)
         return frame
 
-    def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
-        """The state for a file: name -> (array, unit)."""
-        return {
-            "x": (np.moveaxis(self.state.x, 0, -1).copy(), "m"),
-            "v": (np.moveaxis(velocities(self.net, self.state), 0, -1).copy(), "m/s"),
-            "energy": (np.array([*energy(self.net, self.state)]), "J: kinetic, elastic, gravity, contact"),
-        }
+    def laid_out(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Positions or velocities (3, rows, cols) as (rows, cols, 3)."""
+        return np.moveaxis(values, 0, -1).copy()
 
 
 SCENE = SceneKind(

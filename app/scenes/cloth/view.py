@@ -16,8 +16,8 @@ from app.render.html import fill, join
 from app.render.meshes import ball
 from app.render.surroundings import Surroundings, set_dark
 from app.render.viser_inside import set_arrays
+from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.parameters import Params
-from app.scenes.cloth.scene import ClothFrame, ClothReadings
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 

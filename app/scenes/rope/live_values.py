@@ -1,17 +1,13 @@
 """Values of the rope for the tasks of the lab: its stretch, its tension, the limits of its step and stiffness."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from app.messages import Snapshot
 from app.scenes.contract import Measure
+from app.scenes.rope.frame import RopeFrame, RopeReadings
 from app.scenes.rope.parameters import Params
 from app.scenes.springs.live_values import stability_values
 from app.scenes.springs.rope_parameters import ROPE_RADIUS, link_and_point
-
-if TYPE_CHECKING:
-    from app.scenes.rope.scene import RopeFrame, RopeReadings
 
 
 def live_values(snapshot: Snapshot) -> dict[str, Measure]:

@@ -1,16 +1,14 @@
 """The rope of springs, part 2 of the lab: its root and its points can be dragged."""
 
 import functools
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import (
-    DivergenceError,
     Grab,
     Place,
-    PlotRow,
     Release,
     SceneCommand,
     StudentAnswer,
@@ -19,78 +17,38 @@ from app.messages import (
 )
 from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
-from app.scenes.moments import copied, restore
-from app.scenes.plot_rows import PlotRows
+from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.live_values import live_values
 from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import ABOUT, PRESETS, Params, hidden
-from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text, leapfrog_alternative
-from app.scenes.springs.drag import PullFrame
+from app.scenes.springs.divergence import leapfrog_alternative
+from app.scenes.springs.drag import Drag
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
+from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from sim.springs import Net, rope
-from sim.springs.analysis.energy_account import EnergyAccount
-from sim.springs.analysis.extremes import extremes
+from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.tension import rope_tension
-from sim.springs.automatic import AUTO
 from sim.springs.integrator_fallback import integrator_or_fallback
-from sim.springs.resampling import resample
-from sim.springs.stability import Gauge, critical_stiffness, gauge, top_modes
-from sim.springs.state import State, advance, energy, velocities
+from sim.springs.stability import critical_stiffness, gauge, top_modes
+from sim.springs.state import State, energy
 
 if TYPE_CHECKING:
     from app.lab.live_code import LiveCode
     from app.scenes.rope.student_rope import StudentRope
 
-ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
 MIN_MOVE_TO_ASSESS = 1e-3  # of a link: a rope that has moved by less since the last assessment is as stable as it was
 FULL_RATE_SPEED = 0.6  # [m/s] on screen: 10 mm, about two pixels, between frames at the highest rate
 QUARTER_RATE_SPEED = 0.075  # [m/s] on screen: 5 mm between frames at a quarter of it
 ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact", "dissipated", "error")
 SERIES = (*ENERGY_SERIES, "tip height")
-CHANGING = ("net", "state", "account", "handles", "corrections", "max_reach")  # as a rope moves
 PLOTS = {
     "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES),
     "plot_tip": PlotAxes("Height of the tip", "m", ("tip height",)),
 }
-
-
-class RopeFrame(NamedTuple):
-    """Drawn state of a rope: the student's if there is one, with the program's beside it."""
-
-    points: NDArray[np.float32]  # (n, 3) [m], C-contiguous
-    reference: NDArray[np.float32] | None  # (n, 3) [m] the program's rope beside the student's
-    tension: NDArray[np.float32]  # (n - 1,) [N]
-    full_scale: float  # [N] tension at the end of the colour scale
-    root: Vector  # [m] where the root is going to
-    sphere: tuple[float, float, float, float] | None  # x, y, z, radius [m]
-    handles: bool
-    floor: bool
-    grid: bool
-    colour: str
-    show_points: bool
-    pull: PullFrame | None
-
-
-class NumericalCost(NamedTuple):
-    """Cost of an implicit method since it was chosen."""
-
-    corrections: float  # Newton corrections a step, lately
-    numerical_dissipation: float  # [J] that the method took, negative where it fed the motion
-    damping_dissipation: float  # [J] that the rope's own damping took
-
-
-class RopeReadings(NamedTuple):
-    """The stability of the time step, and the largest values that would be stable."""
-
-    stability: Gauge
-    parameter: str  # name of the stiffness parameter in use
-    largest_stiffness: float  # in that parameter's unit
-    note: str  # why another method runs than the one chosen, or ""
-    cost: NumericalCost | None  # None for explicit methods
 
 
 def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
@@ -128,32 +86,27 @@ def state_of(points: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.ascontiguousarray(points.T[:, None])
 
 
-class RopeScene:
+class RopeScene(NetScene[Params]):
     """The rope on the simulation thread."""
+
+    CHANGING = ("net", "state", "account", "handles", "corrections", "max_reach")
+    ASSESSMENT_INTERVAL = 0.5
+    student: "StudentRope | None" = None
+    stability: RopeReadings
 
     def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
         """live: runs a student's functions, where there are any."""
-        self.params = params
-        self.student: StudentRope | None = None
         if live is not None:
             from app.scenes.rope import student_rope  # only `springtide lab DIR` pays for it
 
             self.student = student_rope.StudentRope(live.rope)
         self.handles = RopeHandles()
-        self.plot_rows = PlotRows(len(SERIES))
-        self.last_moments = LastMoments()
-        self.checks = 0  # of the stability, while it moves
-        self.reset()
+        super().__init__(params, len(SERIES))
 
     @property
-    def step(self) -> float:
-        """Time step [s]."""
-        return self.params.time_step
-
-    @property
-    def time(self) -> float:
-        """Simulated time [s]."""
-        return self.state.t
+    def drag(self) -> Drag:  # type: ignore[override]
+        """The drag of a point."""
+        return self.handles.drag
 
     @property
     def frame_interval(self) -> float:
@@ -166,11 +119,6 @@ class RopeScene:
         return 2.0 * FRAME_INTERVAL if speed_on_screen > QUARTER_RATE_SPEED or is_plotted else 4.0 * FRAME_INTERVAL
 
     @property
-    def note(self) -> str:
-        """Why another method runs than the one chosen, or ""."""
-        return "" if self.params.integrator == AUTO else self.fallback_note
-
-    @property
     def faster(self) -> str:
         """Advice on a faster step."""
         return faster_steps(self.integrator, self.stability.stability, "points")
@@ -178,29 +126,17 @@ class RopeScene:
     def reset(self) -> None:
         """The rope at rest, level from its root; root and sphere where a new scene has them."""
         self.handles.restart()
-        self.net = build(self.params, self.handles.root.position, self.handles.sphere.position)
-        self.state = State.at_rest(self.net)
-        self.account = EnergyAccount(self.net, self.state)
+        self.place_at_rest(build(self.params, self.handles.root.position, self.handles.sphere.position))
         self.counted = 0, 0  # force evaluations and steps at the last assessment
-        self.corrections = 0.0
-        self.plot_rows.restart()
-        self.last_moments.clear()
         self.set_bounds()
         self.assess_stability()
         if self.student is not None:
             self.student.restart(rows_of(self.state.x), rows_of(self.state.v))
 
-    def keep(self) -> dict[str, object]:
-        """Checkpoint: state, energy account and moved objects."""
-        return copied({name: getattr(self, name) for name in CHANGING})
-
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
-        restore(self, kept)
-        self.handles.drag.clear()
+        super().resume(kept)
         self.counted = self.state.force_evals, self.state.steps
-        self.plot_rows.resume()
-        self.last_moments.clear()
         self.max_speed = np.inf
         self.assess_stability()
         if self.student is not None:
@@ -218,13 +154,7 @@ class RopeScene:
     def change_forces(self, params: Params) -> None:
         """Take new parameters. The motion goes on, interpolated where the number of points changes."""
         old, self.params = self.params, params
-        stored = self.account.stored(self.net, self.state)
-        self.net = build(params, self.handles.root.position, self.handles.sphere.position)
-        if params.points != old.points:
-            self.state.x = resample(self.state.x, 1, params.points)
-            self.state.v = resample(self.state.v, 1, params.points)
-            self.handles.drag.clear()
-        self.account.book_change(stored, self.net, self.state)
+        self.take_net(build(params, self.handles.root.position, self.handles.sphere.position))
         if (params.integrator, params.time_step) != (old.integrator, old.time_step):
             self.account.start_method(self.net, self.state)
         self.set_bounds()
@@ -250,46 +180,23 @@ class RopeScene:
             case _:
                 pass
 
-    def advance(self, steps: int) -> None:
-        """Take steps. Raises DivergenceError where the rope leaves its bounds, and keeps the last good state."""
-        good, state = self.state, self.state.copy()  # what is shown in the middle of the steps, and what moves
-        net = self.handles.net_during(self.net, good.t, steps * self.step, self.step, self.params)
-        try:
-            advance(net, state, self.integrator, self.step, steps, with_account=True)
-        finally:  # where it is ended early the steps that were taken count
-            found = extremes(state.x, state.v)
-            if found.reach < self.max_reach:  # false of a NaN as well
-                self.state = state
-        if self.state is good:
-            self.repeat_to_divergence(net, good, steps)
-            raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
+    def net_during(self, t: float, duration: float) -> Net:
+        """The net with the motions of root, sphere and pull over the next `duration` [s] from time t [s]."""
+        return self.handles.net_during(self.net, t, duration, self.step, self.params)
+
+    def distance(self, found: Extremes) -> float:
+        """Distance [m] of the farthest point from the root, along an axis."""
+        return found.reach
+
+    def moved(self, good: State, steps: int, found: Extremes) -> None:
+        """Put a root that has just come to rest in its place, and let the student's rope follow."""
         self.max_speed = found.speed
-        if net.pin_paths and self.handles.root.at_rest:  # it has just come to rest
+        if self.net.pin_paths and self.handles.root.at_rest:
             self.state.x[:, 0, 0] = self.handles.root.position
             self.state.v[:, 0, 0] = 0.0
-        self.net = net
         if self.student is not None:
             x, v = rows_of(self.state.x), rows_of(self.state.v)
-            self.student.follow_rope(net, good.t, steps, self.params, x, v)
-        if self.state.t - self.assessed_at >= ASSESSMENT_INTERVAL and self.has_news():
-            self.checks += 1
-            self.assess_stability()
-        if self.plot_rows.is_due(self.state.t):
-            self.add_plot_row()
-
-    def repeat_to_divergence(self, net: Net, good: State, steps: int) -> None:
-        """Take the steps that left the bounds once more, keep a frame of each, and go back to the last good state."""
-        self.state = good.copy()
-        try:
-            for _ in range(steps):
-                advance(net, self.state, self.integrator, self.step, 1, with_account=True)
-                reach = extremes(self.state.x, self.state.v).reach
-                if reach < MAX_OVERSHOOT * self.max_reach:  # false of a NaN as well
-                    self.frame()
-                if not reach < self.max_reach:
-                    break
-        finally:  # it may be ended early
-            self.state = good
+            self.student.follow_rope(self.net, good.t, steps, self.params, x, v)
 
     def has_news(self) -> bool:
         """True if the stability, or the cost of an implicit method, may have changed since the last assessment."""
@@ -321,11 +228,9 @@ class RopeScene:
         taken = account.numerical_dissipation(self.net, self.state)
         return NumericalCost(self.corrections, taken, account.damping_dissipation(self.state))
 
-    def diagnosis(self) -> str:
-        """Cause of the divergence, and settings that would hold."""
-        g = self.stability.stability
-        alternative = leapfrog_alternative(self.integrator, g)
-        return divergence_text(self.state.t, self.integrator, self.step, g, alternative)
+    def alternative(self) -> str:
+        """The step at which leapfrog would hold."""
+        return leapfrog_alternative(self.integrator, self.stability.stability)
 
     def add_plot_row(self) -> None:
         """Add the energy account and the tip's height at the scene's time."""
@@ -336,17 +241,9 @@ class RopeScene:
         total = e.kinetic + e.elastic + gained + e.contact
         self.plot_rows.add(state.t, total, e.kinetic, e.elastic, gained, e.contact, state.dissipated, error, tip)
 
-    def take_plot_rows(self) -> tuple[PlotRow, ...]:
-        """The plot rows since the last call."""
-        return self.plot_rows.take()
-
     def readings(self) -> RopeReadings:
         """Stability and cost, as last assessed."""
         return self.stability
-
-    def curves(self) -> None:
-        """This scene has charts over time only."""
-        return
 
     def tension(self) -> NDArray[np.float64]:
         """(n - 1,) spring force along each link [N], negative under compression."""
@@ -376,13 +273,9 @@ class RopeScene:
         self.last_moments.add(self.state.t, frame, frame.points)
         return frame
 
-    def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
-        """The state for a file: name -> (array, unit)."""
-        return {
-            "x": (self.state.x[:, 0].T.copy(), "m"),
-            "v": (velocities(self.net, self.state)[:, 0].T.copy(), "m/s"),
-            "energy": (np.array([*energy(self.net, self.state)]), "J: kinetic, elastic, gravity, contact"),
-        }
+    def laid_out(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Positions or velocities (3, 1, points) as (points, 3)."""
+        return values[:, 0].T.copy()
 
 
 SCENE = SceneKind(

@@ -17,8 +17,8 @@ from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
 from app.render.surroundings import set_dark
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
+from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import Params
-from app.scenes.rope.scene import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROPE_RADIUS, SPHERE
 from app.scenes.springs.view import RopeSurroundings

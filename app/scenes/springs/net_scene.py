@@ -1,0 +1,197 @@
+"""The common part of rope and cloth: the course of one spring network, its checkpoints, divergence and plot rows."""
+
+import abc
+from typing import Any, ClassVar, Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import DivergenceError, PlotRow
+from app.scenes.contract import MethodParams
+from app.scenes.moments import copied, restore
+from app.scenes.plot_rows import PlotRows
+from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
+from app.scenes.springs.drag import Drag
+from sim.springs import Net
+from sim.springs.analysis.energy_account import EnergyAccount
+from sim.springs.analysis.extremes import Extremes, extremes
+from sim.springs.automatic import AUTO
+from sim.springs.integrators import Integrator
+from sim.springs.resampling import resample
+from sim.springs.state import State, advance, energy, velocities
+
+P = TypeVar("P", bound=MethodParams)
+
+
+class NetScene(abc.ABC, Generic[P]):
+    """A spring network on the simulation thread."""
+
+    CHANGING: ClassVar[tuple[str, ...]]  # attributes that change as the net moves
+    ASSESSMENT_INTERVAL: ClassVar[float]  # [s] of simulated time between two assessments of the stability
+
+    drag: Drag
+    stability: Any  # readings, as last assessed
+    integrator: Integrator
+    fallback_note: str
+    assessed_at: float  # [s]
+    max_reach: float  # [m] as `distance` measures it; farther out the run has diverged
+
+    def __init__(self, params: P, columns: int) -> None:
+        """columns: number of values in a plot row."""
+        self.params = params
+        self.plot_rows = PlotRows(columns)
+        self.last_moments = LastMoments()
+        self.checks = 0  # of the stability, while the net moves
+        self.reset()
+
+    @property
+    def step(self) -> float:
+        """Time step [s]."""
+        return self.params.time_step
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self.state.t
+
+    @property
+    def note(self) -> str:
+        """Why another method runs than the one chosen, or ""."""
+        return "" if self.params.integrator == AUTO else self.fallback_note
+
+    @property
+    def with_account(self) -> bool:
+        """True if the energy account is kept."""
+        return True
+
+    @abc.abstractmethod
+    def reset(self) -> None:
+        """Begin again with `params`."""
+
+    @abc.abstractmethod
+    def net_during(self, t: float, duration: float) -> Net:
+        """The net with the motions of what a user moves over the next `duration` [s] from time t [s]."""
+
+    @abc.abstractmethod
+    def distance(self, found: Extremes) -> float:
+        """Distance [m] of the farthest particle; NaN if a number is not finite."""
+
+    @abc.abstractmethod
+    def moved(self, good: State, steps: int, found: Extremes) -> None:
+        """React to steps from the state `good` to one with these extremes."""
+
+    @abc.abstractmethod
+    def assess_stability(self) -> None:
+        """Compare the step with its limit at the state as it is."""
+
+    @abc.abstractmethod
+    def has_news(self) -> bool:
+        """True if the stability may have changed since the last assessment, and it is known quickly."""
+
+    @abc.abstractmethod
+    def alternative(self) -> str:
+        """Another setting that would hold, after a divergence; "" without one."""
+
+    @abc.abstractmethod
+    def add_plot_row(self) -> None:
+        """Add a plot row at the scene's time."""
+
+    @abc.abstractmethod
+    def frame(self) -> object:
+        """Frame to draw; kept for a while, to be shown again if the run diverges."""
+
+    @abc.abstractmethod
+    def laid_out(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Positions or velocities (3, rows, cols) with the axis last, in an array of their own."""
+
+    def place_at_rest(self, net: Net) -> None:
+        """Begin a run of this net."""
+        self.net = net
+        self.state = State.at_rest(net)
+        self.account = EnergyAccount(net, self.state)
+        self.corrections = 0.0  # Newton corrections a step, of implicit methods
+        self.plot_rows.restart()
+        self.last_moments.clear()
+
+    def keep(self) -> dict[str, object]:
+        """Checkpoint: state, energy account and moved objects."""
+        return copied({name: getattr(self, name) for name in self.CHANGING})
+
+    def resume(self, kept: object) -> None:
+        """Go on from a checkpoint of `keep`."""
+        restore(self, kept)
+        self.drag.clear()
+        self.plot_rows.resume()
+        self.last_moments.clear()
+
+    def take_net(self, net: Net) -> None:
+        """Go on with another net; the motion is interpolated where its points are others."""
+        stored, before, self.net = self.account.stored(self.net, self.state), self.net, net
+        if net.shape != before.shape:
+            self.state.x, self.state.v = (resample(values, *net.shape) for values in (self.state.x, self.state.v))
+            self.drag.clear()
+        self.hold_pins(before)
+        self.account.book_change(stored, net, self.state)
+
+    def hold_pins(self, before: Net) -> None:
+        """Hold pins that the net before did not have."""
+
+    def advance(self, steps: int) -> None:
+        """Take steps. Raises DivergenceError where the net leaves its bounds, and keeps the last good state."""
+        good, state = self.state, self.state.copy()  # what is shown in the middle of the steps, and what moves
+        net = self.net_during(good.t, steps * self.step)
+        try:
+            net = self.take_steps(net, state, steps)
+        finally:  # where it is ended early the steps that were taken count
+            found = extremes(state.x, state.v)
+            if self.distance(found) < self.max_reach:  # false of a NaN as well
+                self.state = state
+        if self.state is good:
+            self.repeat_to_divergence(net, good, steps)
+            raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
+        self.net = net
+        self.moved(good, steps, found)
+        if self.state.t - self.assessed_at >= self.ASSESSMENT_INTERVAL and self.has_news():
+            self.checks += 1
+            self.assess_stability()
+        if self.plot_rows.is_due(self.state.t):
+            self.add_plot_row()
+
+    def take_steps(self, net: Net, state: State, steps: int) -> Net:
+        """Take steps of `net` in place. Returns the net that took the last one."""
+        advance(net, state, self.integrator, self.step, steps, with_account=self.with_account)
+        return net
+
+    def repeat_to_divergence(self, net: Net, good: State, steps: int) -> None:
+        """Take the steps that left the bounds once more, keep a frame of each, and go back to the last good state."""
+        self.state = good.copy()
+        try:
+            for _ in range(steps):
+                advance(net, self.state, self.integrator, self.step, 1, with_account=self.with_account)
+                distance = self.distance(extremes(self.state.x, self.state.v))
+                if distance < MAX_OVERSHOOT * self.max_reach:  # false of a NaN as well
+                    self.frame()
+                if not distance < self.max_reach:
+                    break
+        finally:  # it may be ended early
+            self.state = good
+
+    def diagnosis(self) -> str:
+        """Cause of the divergence, and settings that would hold."""
+        return divergence_text(self.state.t, self.integrator, self.step, self.stability.stability, self.alternative())
+
+    def take_plot_rows(self) -> tuple[PlotRow, ...]:
+        """The plot rows since the last call."""
+        return self.plot_rows.take()
+
+    def curves(self) -> None:
+        """This scene has charts over time only."""
+        return
+
+    def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
+        """The state for a file: name -> (array, unit)."""
+        return {
+            "x": (self.laid_out(self.state.x), "m"),
+            "v": (self.laid_out(velocities(self.net, self.state)), "m/s"),
+            "energy": (np.array([*energy(self.net, self.state)]), "J: kinetic, elastic, gravity, contact"),
+        }

@@ -139,6 +139,10 @@ def make_parser() -> argparse.ArgumentParser:
     add_lab(commands.add_parser("lab", help="the course lab: make a folder of exercises, check it"))
 
     warmup = commands.add_parser("warmup", help="compile all kernels and plan all transforms, once")
+    into = "for all users, into a folder that SPRINGTIDE_KERNELS names; without a name into that of the installation"
+    warmup.add_argument("--into", nargs="?", const="", metavar="FOLDER", help=into)
+    level = "with --into: for all processors of a level: x86-64-v3, x86-64-v4 or arm64 (default: for this processor)"
+    warmup.add_argument("--processor", default="", metavar="LEVEL", help=level)
     warmup.set_defaults(command=run_warmup)
     return parser
 
@@ -405,8 +409,14 @@ def run_hydrodynamics(arguments: argparse.Namespace) -> int:
 
 def run_warmup(arguments: argparse.Namespace) -> int:
     """`springtide warmup`."""
-    from app.commands.warmup import warm_up
+    from app.commands.warmup import warm_up, warm_up_into
+    from sim.cache import INSTALLED
+    from sim.validation import argument_error
 
+    if arguments.into is not None:
+        return warm_up_into(Path(arguments.into) if arguments.into else INSTALLED, arguments.processor)
+    if arguments.processor:
+        raise argument_error("--processor", arguments.processor, "a level together with --into")
     return warm_up()
 
 

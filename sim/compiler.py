@@ -14,9 +14,13 @@ This file alone uses names of numba that are not public. `check` tries all of th
 """
 
 import contextlib
+import functools
+import hashlib
+import sys
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import FunctionType
+from types import CodeType, FunctionType
 from typing import Any, NamedTuple
 
 import llvmlite.binding as llvm
@@ -38,11 +42,19 @@ from sim.files import locked
 cpu_target.options.noalias = TargetOptions.Mapping("noalias")  # type: ignore[attr-defined]
 
 
-class KernelFile(IndexDataCacheFile):
-    """numba's cache file of one kernel. After a full disk or with a corrupt file the kernel compiles again.
+class Folders(NamedTuple):
+    """Where kernels of one source are kept."""
 
-    numba keeps the kernels of each checkout apart by the path and the time of the source. The folder is already named
-    by the contents, so that checkouts and environments with the same sources share their kernels.
+    own: Path | None  # None if none is writable
+    shared: tuple[Path, ...]  # only read, if the kernel is not in the writable one
+
+
+class KernelFile(IndexDataCacheFile):
+    """numba's cache file of one kernel in one folder.
+
+    numba keeps the kernels of each checkout apart by the path and the time of the source, and those of processors by
+    their names. The folder is already named by the code and by the processor, so that checkouts, environments and
+    processors share their kernels.
     """
 
     def load(self, key: Any) -> Any:
@@ -71,6 +83,61 @@ class KernelFile(IndexDataCacheFile):
             except Exception:  # the index is rubbish: an empty one
                 self.flush()
                 super().save(key, data)
+
+
+class KernelFiles:
+    """The cache files of one kernel, as numba asks them. With a corrupt file or a full disk it compiles again."""
+
+    def __init__(self, folders: Folders, name: str) -> None:
+        self.own = KernelFile(str(folders.own), name, "") if folders.own is not None else None
+        self.all = [self.own] if self.own is not None else []
+        self.all += [KernelFile(str(folder), name, "") for folder in folders.shared]
+
+    def load(self, key: Any) -> Any:
+        """What is kept under numba's key, or None."""
+        key = without_processor(key)
+        return next((data for data in (file.load(key) for file in self.all) if data is not None), None)
+
+    def has(self, key: Any) -> bool:
+        """True if an index lists it."""
+        key = without_processor(key)
+        return any(file.has(key) for file in self.all)
+
+    def locked(self) -> contextlib.AbstractContextManager[None]:
+        """Inside, no other process compiles this kernel into the same folder."""
+        return self.own.locked() if self.own is not None else contextlib.nullcontext()
+
+    def save(self, key: Any, data: Any) -> None:
+        """Keep what was compiled, where a folder is writable."""
+        if self.own is not None:
+            self.own.save(without_processor(key), data)
+        else:
+            say_nothing_is_kept()
+
+
+@functools.cache  # once
+def say_nothing_is_kept() -> None:
+    """Warn that kernels are lost when the program ends."""
+    warnings.warn("no folder for kernels is writable: what is missing compiles at each start", stacklevel=2)
+
+
+def without_processor(key: Any) -> tuple[Any, Any]:
+    """numba's key of a compiled function: its types and the hash of its code."""
+    types_of, _, code = key
+    return types_of, code
+
+
+def file_name(function: Callable[..., Any]) -> str:
+    """Name of a kernel's files: by its name and its code, wherever it stands in its source."""
+    digest = hashlib.sha256(repr(contents(function.__code__)).encode()).hexdigest()[:8]
+    name = function.__qualname__.replace("<", "").replace(">", "")
+    return f"{name}-{digest}.{sys.implementation.cache_tag}"
+
+
+def contents(code: CodeType) -> tuple[Any, ...]:
+    """The code, names and constants of a function but strings, of which its docstring is one."""
+    constants = [contents(c) if isinstance(c, CodeType) else repr(c) for c in code.co_consts if not isinstance(c, str)]
+    return code.co_code, code.co_names, constants
 
 
 class KernelFlags(Flags):
@@ -323,15 +390,15 @@ class VariantEntry(Entry):
 
 
 def make_kernel(
-    function: Callable[..., Any], folder: Path | None, options: dict[str, Any], *, noalias: bool, counts: bool
+    function: Callable[..., Any], folders: Folders | None, options: dict[str, Any], *, noalias: bool, counts: bool
 ) -> Entry:
-    """numba's function of a kernel with njit's `options`, kept in `folder`, numba's cache folder just now.
+    """numba's function of a kernel with njit's `options`, kept in `folders` while numba's cache folder is writable.
 
     noalias, counts: whether arrays that are written overlap no other, and whether array arguments are counted.
     """
     options = {**options, "_nrt": counts, "no_cfunc_wrapper": True, **({"noalias": True} if noalias else {})}
-    entry = compiled(function, folder, "", EntryCompiler, CompileResultCacheImpl, options)
-    part = compiled(function, folder, "-part", PartCompiler, PartResult, {**options, "no_cpython_wrapper": True})
+    entry = compiled(function, folders, "", EntryCompiler, CompileResultCacheImpl, options)
+    part = compiled(function, folders, "-part", PartCompiler, PartResult, {**options, "no_cpython_wrapper": True})
     entry.__class__, part.__class__ = Entry, Part
     entry.part = part
     return entry
@@ -339,18 +406,18 @@ def make_kernel(
 
 def compiled(
     function: Callable[..., Any],
-    folder: Path | None,
+    folders: Folders | None,
     suffix: str,
     pipeline: type,
     result: type,
     options: dict[str, Any],
 ) -> Any:
-    """numba's function of one form of a kernel, kept in `folder`, in files with `suffix`, as `result` says."""
-    made = numba.njit(cache=folder is not None, pipeline_class=pipeline, **options)(function)
+    """numba's function of one form of a kernel, kept in `folders`, in files with `suffix`, as `result` says."""
+    made = numba.njit(cache=folders is not None, pipeline_class=pipeline, **options)(function)
     made._compiler._customize_flags = KernelFlags  # type: ignore[attr-defined]
-    if folder is not None:
+    if folders is not None:
         cache = made._cache  # type: ignore[attr-defined]
-        cache._cache_file = KernelFile(str(folder), cache._impl.filename_base + suffix, "")
+        cache._cache_file = KernelFiles(folders, file_name(function) + suffix)
         cache._impl.__class__ = result
     return made
 
@@ -389,12 +456,12 @@ def check(folder: Path) -> None:
 
     Raises whatever a part of numba that has changed leads to.
     """
-    pair = Pair(1.0, 2.0)
+    pair, folders = Pair(1.0, 2.0), Folders(folder, ())
     for caller, expected in ((stored, 3.0), (doubled, 6.0), (stored, 3.0)):
         kept = len(list(folder.glob(f"*{caller.__name__}*.nbc")))  # none on a full disk
-        callee = make_kernel(added, folder, {"nogil": True}, noalias=True, counts=False)
+        callee = make_kernel(added, folders, {"nogil": True}, noalias=True, counts=False)
         function = FunctionType(caller.__code__, {**globals(), "added": choose({Pair: callee})})
-        entry = make_kernel(function, folder, {"nogil": True}, noalias=False, counts=True)
+        entry = make_kernel(function, folders, {"nogil": True}, noalias=False, counts=True)
         values = callee(pair), entry(pair), sum(entry.stats.cache_hits.values())
         if values != (3.0, expected, kept):
             raise RuntimeError(f"kernels give {values} instead of {(3.0, expected, kept)}")

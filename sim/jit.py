@@ -1,10 +1,12 @@
 """`kernel`: the only compiler decorator of the repository, and the cache of compiled code.
 
 numba does not notice an edit in a *callee's* file, so the cache folder of a module's kernels is named by a hash of the
-module and of all modules of ours that it imports: an edit in one of them makes a new folder. If no folder is writable,
-kernels compile at each start.
+code of the module and of all modules of ours that it imports: an edit in one of them makes a new folder, an edit of
+comments and docstrings does not. Kernels are looked for in the user's folder, then in those of `sim/cache.py` that are
+only read. What is in none of them is compiled into the user's folder; if that is not writable, at each start.
 """
 
+import atexit
 import contextlib
 import functools
 import hashlib
@@ -26,9 +28,10 @@ from typing import Any
 
 import llvmlite
 import numba
-import platformdirs
 from numba import prange  # for the kernels that are parallel
 from numba.extending import intrinsic, overload
+
+from sim.cache import own_folder, processor, shared_kernels
 
 __all__ = ["CACHE", "MAX_THREADS", "chosen", "is_stopped", "kernel", "modules_of", "prange", "set_threads"]
 
@@ -36,6 +39,14 @@ ROOT = Path(__file__).resolve().parent.parent
 OWN_PACKAGES = ("sim", "app", "tests")
 IMPORT = re.compile(r"^\s*(?:from\s+([\w.]+)\s+import\s+(\([^)]*\)|[^\n#]+)|import\s+([\w., ]+))", re.MULTILINE)
 MODULES_OF = re.compile(r"\bmodules_of\(__name__\)")
+# A string, or the rest of a line and the lines after it that hold nothing but spaces and comments.
+STRING = r'''"""(?:\\.|[^\\])*?"""|\'\'\'(?:\\.|[^\\])*?\'\'\'|"(?:\\.|[^\\\n"])*"|'(?:\\.|[^\\\n'])*\''''
+NO_CODE = re.compile(rf"({STRING})|(?:[ \t]*(?:#[^\n]*)?\n)+", re.DOTALL)
+# What a docstring follows: the last line of a `def` or `class`, or nothing.
+DOCSTRING = re.compile(
+    rf"(\A\n?|^[ \t]*(?:(?:async +)?def|class)\b[^\n]*:\n|^[ \t]*\)[^\n]*:\n)[ \t]*[rRuU]?(?:{STRING})\n",
+    re.DOTALL | re.MULTILINE,
+)
 KERNEL_FOLDER = re.compile(r"\w+-[0-9a-f]{16}")
 
 MAX_THREADS: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
@@ -65,9 +76,19 @@ def source_of(module: str) -> Path | None:
 
 
 @functools.cache
+def code_of(path: Path) -> str:
+    """A source without its comments, docstrings and empty lines.
+
+    By regular expressions, as Python's parser takes a second for all of ours.
+    """
+    code = NO_CODE.sub(lambda found: found[1] or "\n", path.read_text("utf-8") + "\n")
+    return DOCSTRING.sub(r"\1", code)
+
+
+@functools.cache
 def imported_files(path: Path) -> frozenset[Path]:
     """The files of the modules of ours that a source imports, by name or by `modules_of`."""
-    text = path.read_text("utf-8")
+    text = code_of(path)
     found = set(path.parent.glob("*.py")) if MODULES_OF.search(text) else set()
     for module, names, modules in IMPORT.findall(text):
         candidates = [name.split()[0] for name in modules.split(",") if name.strip()]
@@ -87,7 +108,7 @@ def modules_of(package: str) -> list[ModuleType]:
 
 
 def reachable_hash(*paths: Path) -> str:
-    """Hash of these sources and of all of ours that they import, directly or not: names and contents."""
+    """Hash of these sources and of all of ours that they import, directly or not: names and code."""
     found, waiting = set(), list(paths)
     while waiting:
         path = waiting.pop()
@@ -97,18 +118,18 @@ def reachable_hash(*paths: Path) -> str:
     digest = hashlib.sha256()
     for path in sorted(found):
         digest.update(path.name.encode() if ROOT not in path.parents else path.relative_to(ROOT).as_posix().encode())
-        digest.update(path.read_bytes())
+        digest.update(code_of(path).encode())
     return digest.hexdigest()[:16]
 
 
 def cache_directory() -> Path | None:
     """The writable directory below which compiled kernels are cached, or None if no directory is writable."""
-    base = Path(os.environ.get("SPRINGTIDE_CACHE") or platformdirs.user_cache_dir("springtide")) / "kernels"
+    base = own_folder() / "kernels" / processor()
     try:
         base.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=base):
             pass
-        for other in base.iterdir():
+        for other in base.parent.glob("*/*"):
             if KERNEL_FOLDER.fullmatch(other.name) and time.time() - other.stat().st_mtime > STALE_AFTER:
                 shutil.rmtree(other, ignore_errors=True)
     except OSError:
@@ -117,20 +138,50 @@ def cache_directory() -> Path | None:
 
 
 CACHE = cache_directory()
+SHARED = shared_kernels()  # only read
+
+
+@functools.cache
+def folder_name(path: Path) -> str:
+    """Name of the folders of a source's kernels: of the module and of the hash of all modules that it can reach."""
+    return f"{path.stem}-{reachable_hash(path)}"
 
 
 @functools.cache
 def kernel_folder(path: Path) -> Path | None:
-    """Cache folder of a source's kernels: named by the module and by the hash of all modules that it can reach."""
-    if CACHE is None:
+    """The writable folder of a source's kernels; None also of what is typed in and has no file."""
+    if CACHE is None or not path.is_file():
         return None
     try:
-        folder = CACHE / f"{path.stem}-{reachable_hash(path)}"
+        folder = CACHE / folder_name(path)
         folder.mkdir(exist_ok=True)
         os.utime(folder)
     except OSError:
         return None
     return folder
+
+
+def is_kept(name: str) -> bool:
+    """True if a file of this name is in the writable folder of this processor or in one that is only read."""
+    return any((folder / name).exists() for folder in (CACHE, *SHARED) if folder is not None)
+
+
+def keep(name: str) -> None:
+    """Put an empty file of this name into the writable folder, if there is one and its disk is not full."""
+    if CACHE is not None:
+        with contextlib.suppress(OSError):
+            (CACHE / name).touch()
+
+
+@functools.cache
+def scratch() -> Path | None:
+    """A folder for numba, which makes no cache without one that is writable; nothing is kept there."""
+    try:
+        folder = tempfile.mkdtemp(prefix="springtide-")
+    except OSError:
+        return None
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return Path(folder)
 
 
 @contextlib.contextmanager
@@ -154,13 +205,12 @@ def load_compiler() -> tuple[ModuleType | None, str]:
     except (AttributeError, ImportError, TypeError) as error:
         return None, str(error)
     try:
-        works = f"compiler-{numba.__version__}-{llvmlite.__version__}-{platform.python_version()}-{MAX_THREADS}"
-        mark = CACHE / f"{works}-{reachable_hash(Path(compiler.__file__))}" if CACHE is not None else None
-        if mark is None or not mark.exists():
+        works = f"compiler-{numba.__version__}-{llvmlite.__version__}-{platform.python_version()}"
+        mark = f"{works}-{reachable_hash(Path(compiler.__file__))}"
+        if not is_kept(mark):
             with tempfile.TemporaryDirectory() as folder, kept_in(Path(folder)):
                 compiler.check(Path(folder))
-            if mark is not None:
-                mark.touch()
+            keep(mark)
     except OSError:  # no folder to try it in
         return compiler, ""
     except Exception as error:  # anything may happen where numba's inner parts have changed
@@ -204,11 +254,17 @@ def kernel(
         "parallel": parallel,
         "forceinline": inline,
     }
-    folder = kernel_folder(Path(function.__code__.co_filename).resolve())
-    with kept_in(folder):
-        if COMPILER is None:
+    path = Path(function.__code__.co_filename).resolve()
+    folder = kernel_folder(path)
+    if COMPILER is None:
+        with kept_in(folder):
             return numba.njit(cache=folder is not None, **options)(function)
-        return COMPILER.make_kernel(function, folder, options, noalias=noalias, counts=allocates and not inline)
+    place = folder or (scratch() if path.is_file() else None)
+    folders = None
+    if place is not None:
+        folders = COMPILER.Folders(folder, tuple(other / folder_name(path) for other in SHARED))
+    with kept_in(place):
+        return COMPILER.make_kernel(function, folders, options, noalias=noalias, counts=allocates and not inline)
 
 
 def chosen(variants: dict[type, Any]) -> Any:

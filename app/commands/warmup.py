@@ -1,9 +1,15 @@
 """`springtide warmup`: compile every kernel and plan every transform, with progress."""
 
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 from rich import get_console
 
 from app.scenes import NAMES
 from app.scenes.warmup import all_pieces, compile_here
+from sim.cache import SHARED_VARIABLE, level_environment
 from sim.jit import CACHE
 
 
@@ -16,3 +22,17 @@ def warm_up() -> int:
         compile_here(name, all_pieces(name), lambda text: None)
     print(f"Kept in {CACHE}" if CACHE else "Nothing could be kept: no cache directory is writable")
     return 0
+
+
+def warm_up_into(folder: Path, level: str) -> int:
+    """`warm_up` into a folder that others only read; returns the exit status.
+
+    level: of processors; "" for this one. In a process of its own, as numba takes both from its environment.
+
+    Raises ValueError where this processor does not have the level, and OSError where the folder cannot be made.
+    """
+    processor = level_environment(level) if level else {}
+    folder.mkdir(parents=True, exist_ok=True)
+    # Nothing is taken from other folders: this one is to have all.
+    environment = {**os.environ, **processor, "SPRINGTIDE_CACHE": str(folder.resolve()), SHARED_VARIABLE: ""}
+    return subprocess.run([sys.executable, "-m", "app", "warmup"], env=environment, check=False).returncode

@@ -1,15 +1,13 @@
 """Compiling ahead: the pieces of each scene, and a marker file for each compiled piece."""
 
-import contextlib
 import functools
 import gc
 from collections.abc import Callable, Iterable
-from pathlib import Path
 
 from app.messages import BaseParams
 from app.scenes import scene_named, view_module
 from app.scenes.contract import Pieces
-from sim.jit import CACHE, ROOT, reachable_hash
+from sim.jit import ROOT, is_kept, keep, reachable_hash
 
 EVERYTHING = "everything"  # stands for all pieces of a scene, so that a later start need not ask it for them
 
@@ -21,18 +19,15 @@ def hash_of(name: str, drawn: bool) -> str:
     return reachable_hash(folder / "scene.py", *([folder / "view.py"] if drawn else []))
 
 
-def mark_of(name: str, piece: str, *, drawn: bool) -> Path | None:
-    """The file that stands for a compiled piece; None where nothing can be kept. drawn: of the drawing."""
-    if CACHE is None:
-        return None
+def mark_of(name: str, piece: str, *, drawn: bool) -> str:
+    """Name of the file that stands for a compiled piece. drawn: of the drawing."""
     kind = "drawn" if drawn else "headless"
-    return CACHE / f"{name}-{kind}-{piece.replace(' ', '_')}-{hash_of(name, drawn)}.warm"
+    return f"{name}-{kind}-{piece.replace(' ', '_')}-{hash_of(name, drawn)}.warm"
 
 
 def is_marked(name: str, piece: str, *, drawn: bool) -> bool:
-    """True if this version of a piece has been compiled before."""
-    mark = mark_of(name, piece, drawn=drawn)
-    return mark is not None and mark.exists()
+    """True if this version of a piece has been compiled before, here or into a folder that is only read."""
+    return is_kept(mark_of(name, piece, drawn=drawn))
 
 
 def scene_pieces(name: str) -> Pieces:
@@ -81,19 +76,11 @@ def compile_piece(name: str, piece: str, *, drawn: bool) -> None:
     finally:
         if was_enabled:
             gc.enable()
-    remember(name, piece, drawn=drawn)
+    keep(mark_of(name, piece, drawn=drawn))
     # The drawing, and with it viser, is asked only where all else is compiled.
     done = all(is_marked(name, other, drawn=False) for other in scene_pieces(name))
     if done and all(is_marked(name, other, drawn=True) for other in drawing_pieces(name)):
-        remember(name, EVERYTHING, drawn=True)
-
-
-def remember(name: str, piece: str, *, drawn: bool) -> None:
-    """Mark a piece as compiled."""
-    mark = mark_of(name, piece, drawn=drawn)
-    if mark is not None:
-        with contextlib.suppress(OSError):  # a full disk
-            mark.touch()
+        keep(mark_of(name, EVERYTHING, drawn=True))
 
 
 def compile_here(name: str, pieces: Iterable[tuple[str, bool]], show: Callable[[str], None]) -> None:

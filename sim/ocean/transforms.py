@@ -6,13 +6,12 @@ pyfftw is imported here and only when the first plan is made. No 1/N^2: the grid
 import base64
 import binascii
 import json
-import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import platformdirs
 
+from sim.cache import own_folder, shared_folders
 from sim.files import replacing
 from sim.ocean.buffer_pool import BufferPool
 
@@ -51,9 +50,10 @@ def make_plan(spectrum: np.ndarray, grid: np.ndarray) -> Any:
     """The plan from wisdom if available, else one that is measured now (up to a second) and remembered."""
     import pyfftw
 
-    path = wisdom_path()
+    path, *others = wisdom_paths()
     if path not in _loaded:
-        load_wisdom(path)
+        for each in (*others, path):
+            load_wisdom(each)
         _loaded.add(path)
     options: dict[str, Any] = {"axes": (0, 1), "direction": "FFTW_BACKWARD", "threads": 1}
     flags = ("FFTW_MEASURE", "FFTW_DESTROY_INPUT")
@@ -65,9 +65,9 @@ def make_plan(spectrum: np.ndarray, grid: np.ndarray) -> Any:
         return plan
 
 
-def wisdom_path() -> Path:
-    """Path of FFTW's wisdom: beside the compiled kernels, in the user's cache directory."""
-    return Path(os.environ.get("SPRINGTIDE_CACHE") or platformdirs.user_cache_dir("springtide")) / "fftw-wisdom.json"
+def wisdom_paths() -> list[Path]:
+    """Paths of FFTW's wisdom, beside the compiled kernels: the user's, and those that are only read."""
+    return [folder / "fftw-wisdom.json" for folder in (own_folder(), *shared_folders())]
 
 
 def load_wisdom(path: Path) -> bool:

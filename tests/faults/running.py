@@ -51,13 +51,14 @@ def link_cache(work: Path) -> None:
     """The compiled kernels, as links, so that what a fault compiles is not kept beside them."""
     cache, own = Path(os.environ.get("SPRINGTIDE_CACHE", "none")) / "kernels", work / "cache" / "kernels"
     own.mkdir(parents=True, exist_ok=True)
-    for folder in cache.iterdir() if cache.exists() else ():
-        if folder.is_dir() and not (own / folder.name).exists():
-            shutil.copytree(folder, own / folder.name, copy_function=os.link)
+    for folder in cache.glob("*/*"):
+        target = own / folder.relative_to(cache)
+        if folder.is_dir() and not target.exists():
+            shutil.copytree(folder, target, copy_function=os.link)
 
 
 def forget_new_kernels(work: Path, known: set[str]) -> None:
-    for folder in (work / "cache" / "kernels").iterdir():
+    for folder in (work / "cache" / "kernels").glob("*/*"):
         if folder.is_dir() and folder.name not in known:
             shutil.rmtree(folder)
 
@@ -179,7 +180,7 @@ def write_results(results: dict[tuple[str, ...], dict[str, str]]) -> None:
     """Those of the list, in its order."""
     keys = [key_of_fault(listed) for listed in read_list()]
     with RESULTS.open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer: csv.DictWriter[str] = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         writer.writerows(results[key] for key in keys if key in results)
 
@@ -213,7 +214,7 @@ class Trials:
         reaching = self.calling.of(files, fault.module, first, plain=False) if same_kernels else []
         if reaching and not self.plain_only:
             plain = []
-        known = {folder.name for folder in (self.work / "cache" / "kernels").iterdir()}
+        known = {folder.name for folder in (self.work / "cache" / "kernels").glob("*/*")}
         try:
             path.write_text(wrong)
             return self.first_failure(plain, reaching, files, same_kernels=same_kernels)

@@ -15,6 +15,8 @@ with pytest.MonkeyPatch.context() as patch:
     # It remembers the answer: the kernels of this file are not kept, and each run of the tests compiles them.
     jit.kernel_folder(Path(__file__).resolve())
 
+pytestmark = pytest.mark.filterwarnings("ignore:no folder for kernels is writable")
+
 
 class Round(NamedTuple):
     radius: float

@@ -1,15 +1,23 @@
+import ast
+import contextlib
+import io
 import os
 import subprocess
 import sys
+import tokenize
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from app.__main__ import main
 from sim import jit
+from sim.cache import processor
 from sim.jit import kernel, reachable_hash, sources_hash
 
 ROOT = Path(__file__).parents[2]
+WITH_DOCSTRINGS = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 def python(code: str, **environment: str) -> str:
@@ -60,7 +68,8 @@ def test_other_files_do_not_change_the_hash(tmp_path):
 def test_a_kernels_folder_is_named_by_what_the_kernel_can_reach(tmp_path):
     code = "import sim.jit as j, pathlib; print(j.kernel_folder(pathlib.Path('sim/ocean/evolve.py').resolve()))"
     found = Path(python(code, SPRINGTIDE_CACHE=str(tmp_path)))
-    assert found == tmp_path / "kernels" / f"evolve-{reachable_hash(ROOT / 'sim' / 'ocean' / 'evolve.py')}"
+    name = f"evolve-{reachable_hash(ROOT / 'sim' / 'ocean' / 'evolve.py')}"
+    assert found == tmp_path / "kernels" / processor() / name
     assert found.is_dir()
 
 
@@ -76,8 +85,7 @@ def test_the_hash_of_a_kernel_follows_its_imports_and_nothing_else(tmp_path, mon
     (tmp_path / "sim").mkdir()
 
     def reached() -> str:
-        jit.source_of.cache_clear()
-        jit.imported_files.cache_clear()
+        forget_sources()
         return reachable_hash(tmp_path / "sim" / "kernel.py")
 
     for name, text in sources.items():
@@ -88,8 +96,78 @@ def test_the_hash_of_a_kernel_follows_its_imports_and_nothing_else(tmp_path, mon
     (tmp_path / "sim" / "far.py").write_text("x = 2\n")
     assert reached() != first
     monkeypatch.undo()
-    jit.source_of.cache_clear()
-    jit.imported_files.cache_clear()
+    forget_sources()
+
+
+def forget_sources() -> None:
+    for remembered in (jit.source_of, jit.code_of, jit.imported_files):
+        remembered.cache_clear()
+
+
+COMMENTED = '''\
+# A comment: don't "count" it.
+"""Docstring of a module."""
+from sim.near import a
+
+TEXT = "# no comment"
+
+
+def first(
+    x,  # of any type
+) -> None:
+
+    r"""Docstring of a function.
+
+    # Two lines of it.
+    """
+    return """not
+    # a docstring""" * 2
+
+
+class Second:
+    'Docstring of a class.'
+
+    def third(self): # ends a line
+        "Docstring of a method."
+'''
+BARE = '''
+from sim.near import a
+TEXT = "# no comment"
+def first(
+    x,
+) -> None:
+    return """not
+    # a docstring""" * 2
+class Second:
+    def third(self):
+'''
+
+
+def test_code_is_a_source_without_comments_and_docstrings(tmp_path):
+    (tmp_path / "a.py").write_text(COMMENTED)
+    assert jit.code_of(tmp_path / "a.py") == BARE
+
+
+def tokens_of(text: str) -> list[str]:
+    """Words and signs of a source, by Python's own tokenizer."""
+    kept = (tokenize.NAME, tokenize.NUMBER, tokenize.OP, tokenize.STRING)
+    with contextlib.suppress(tokenize.TokenError, IndentationError):
+        return [token.string for token in tokenize.generate_tokens(io.StringIO(text).readline) if token.type in kept]
+    raise AssertionError
+
+
+def docstrings_of(text: str) -> Counter[str]:
+    nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, WITH_DOCSTRINGS)]
+    segments = [ast.get_source_segment(text, node.body[0]) for node in nodes if ast.get_docstring(node) is not None]
+    return Counter(filter(None, segments))
+
+
+@pytest.mark.parametrize("folder", ["sim", "app/scenes/springs", "app/scenes/rope"])
+def test_the_code_of_our_sources_has_all_of_their_tokens_but_docstrings(folder):
+    for path in (ROOT / folder).rglob("*.py"):
+        text = path.read_text("utf-8")
+        left_out = Counter(tokens_of(text)) - Counter(tokens_of(jit.code_of(path)))
+        assert left_out == docstrings_of(text), path
 
 
 def test_kernels_are_kept_in_the_cache(tmp_path):
@@ -111,15 +189,15 @@ from sim.jit import CACHE, kernel
 def doubled(x):
     return 2.0 * x
 print(CACHE, doubled(21.0))
-"""
+"""  # of a kernel without a file, too
     assert python(code, SPRINGTIDE_CACHE=str(nowhere)) == "None 42.0"
     assert nowhere.read_text() == "not a folder"
 
 
 def test_directories_of_long_edited_sources_are_removed(tmp_path):
-    stale = tmp_path / "kernels" / "leapfrog-0123456789abcdef"
-    fresh = tmp_path / "kernels" / "leapfrog-fedcba9876543210"
-    other = tmp_path / "kernels" / "somebody_elses"
+    stale = tmp_path / "kernels" / "a processor" / "leapfrog-0123456789abcdef"
+    fresh = tmp_path / "kernels" / "a processor" / "leapfrog-fedcba9876543210"
+    other = tmp_path / "kernels" / "a processor" / "somebody_elses"
     for folder in (stale, fresh, other):
         folder.mkdir(parents=True)
     for folder in (stale, other):

@@ -6,7 +6,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from app.__main__ import main
 from app.scenes import warmup
+from sim import jit
+from sim.cache import host_levels
 
 
 @pytest.fixture
@@ -22,7 +25,8 @@ def compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
             warm_up=lambda: ahead, needs=lambda params: params, warm_up_on_use=lambda: on_use
         )
 
-    monkeypatch.setattr(warmup, "CACHE", tmp_path)
+    monkeypatch.setattr(jit, "CACHE", tmp_path)
+    monkeypatch.setattr(jit, "SHARED", ())
     monkeypatch.setattr(warmup, "scene_named", side("gauge", "rk4"))
     monkeypatch.setattr(warmup, "view_module", side("drawing"))
     warmup.hash_of.cache_clear()
@@ -75,3 +79,14 @@ def test_what_fails_is_not_remembered(compiled: list[str], monkeypatch: pytest.M
     with pytest.raises(RuntimeError):
         warmup.compile_piece("rope", "rk4", drawn=False)
     assert ("rk4", False) in warmup.missing("rope")
+
+
+def test_a_level_that_this_processor_does_not_have_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for level in {"x86-64-v3", "arm64", "i386"} - set(host_levels()):
+        assert main(["warmup", "--into", str(tmp_path / "shared"), "--processor", level]) == 2
+        assert capsys.readouterr().err.startswith(f"springtide: --processor: '{level}' is not allowed; allowed: what")
+    assert not list(tmp_path.iterdir())
+    assert main(["warmup", "--processor", "x86-64-v3"]) == 2
+    assert "together with --into" in capsys.readouterr().err

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from app.scenes import compiling, warmup
+from app.scenes import compiling
 from app.scenes.compiling import Compiling, Job
 
 ROOT = Path(__file__).parents[3]
@@ -82,7 +82,7 @@ def test_the_rest_is_compiled_by_another_worker(queue: Compiling, monkeypatch: p
     assert queue.missing("race", None) == []
 
 
-@pytest.mark.skipif(warmup.CACHE is None, reason="nothing can be kept here")
+@pytest.mark.skipif(compiling.CACHE is None, reason="nothing can be kept here")
 def test_a_worker_compiles_a_piece_that_the_next_process_only_loads(tmp_path: Path) -> None:
     environment = {**os.environ, "SPRINGTIDE_CACHE": str(tmp_path), "PYTHONPATH": str(ROOT)}
     worker = [sys.executable, "-m", "app.scenes.compile_worker", "--ahead"]

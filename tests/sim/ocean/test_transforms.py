@@ -5,7 +5,7 @@ import pytest
 
 from sim.ocean import Sea, transforms
 from sim.ocean.buffer_pool import BufferPool
-from sim.ocean.transforms import Transforms, load_wisdom, save_wisdom, wisdom_path
+from sim.ocean.transforms import Transforms, load_wisdom, save_wisdom, wisdom_paths
 
 
 @pytest.fixture
@@ -25,12 +25,12 @@ def test_wisdom_is_written_once_and_found_again(cache):
     import pyfftw
 
     Transforms(24, "double")
-    assert wisdom_path().parent == cache
-    written = wisdom_path().read_bytes()
+    assert wisdom_paths()[0].parent == cache
+    written = wisdom_paths()[0].read_bytes()
     pyfftw.forget_wisdom()
-    assert load_wisdom(wisdom_path())
+    assert load_wisdom(wisdom_paths()[0])
     Transforms(24, "double")
-    assert wisdom_path().read_bytes() == written
+    assert wisdom_paths()[0].read_bytes() == written
 
 
 @pytest.mark.parametrize(
@@ -38,21 +38,21 @@ def test_wisdom_is_written_once_and_found_again(cache):
     ["", "{", "null", "[]", '{"wisdom": 3}', '{"wisdom": ["*", "", ""]}', '{"wisdom": ["YQ==", "YQ==", "YQ=="]}'],
 )
 def test_corrupt_wisdom_is_ignored_and_replaced(cache, text):
-    wisdom_path().write_text(text)
-    assert not load_wisdom(wisdom_path())
+    wisdom_paths()[0].write_text(text)
+    assert not load_wisdom(wisdom_paths()[0])
     assert np.isfinite(Sea(12, 50.0).surface(1.0).height).all()
-    assert load_wisdom(wisdom_path())
+    assert load_wisdom(wisdom_paths()[0])
 
 
 def test_unreadable_and_unwritable_wisdom_is_no_error(cache, monkeypatch):
-    wisdom_path().mkdir()  # a directory where the file should be: neither read nor replaced, whoever runs this
-    assert not load_wisdom(wisdom_path())
-    assert not save_wisdom(wisdom_path())
+    wisdom_paths()[0].mkdir()  # a directory where the file should be: neither read nor replaced, whoever runs this
+    assert not load_wisdom(wisdom_paths()[0])
+    assert not save_wisdom(wisdom_paths()[0])
     assert np.isfinite(Sea(12, 50.0).surface(1.0).height).all()
-    assert list(cache.iterdir()) == [wisdom_path()]
+    assert list(cache.iterdir()) == [wisdom_paths()[0]]
     (cache / "file").write_text("")
     monkeypatch.setenv("SPRINGTIDE_CACHE", str(cache / "file" / "below"))
-    assert not save_wisdom(wisdom_path())
+    assert not save_wisdom(wisdom_paths()[0])
     assert np.isfinite(Sea(14, 50.0).surface(1.0).height).all()
 
 

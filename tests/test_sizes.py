@@ -12,7 +12,6 @@ LONG_FUNCTIONS = {"app/panel/panel.py: __init__", "sim/springs/integrators/embed
 LONG_CLASSES = {
     "app/panel/panel.py: Panel",
     "app/scenes/radial_sea/scene.py: RadialSeaScene",
-    "app/scenes/square_sea/scene.py: SquareSeaScene",
     "app/server/loop.py: SimLoop",
     "sim/ocean/sea.py: Sea",
 }

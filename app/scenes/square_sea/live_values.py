@@ -1,20 +1,17 @@
 """Values of the square sea for the tasks of the lab: heights, lengths and speeds here, in other winds, on the Earth."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from app.messages import Snapshot
 from app.scenes.contract import Measure
+from app.scenes.square_sea.frame import SeaReadings
 from app.scenes.square_sea.parameters import Params, conditions, gravity
 from sim.ocean.gerstner import peak_wavenumber
 from sim.ocean.planets import EARTH_GRAVITY, gravity_of
 from sim.ocean.spectra import SPECTRA, Conditions, Spectrum
 from sim.ocean.statistics import open_sea_height
-
-if TYPE_CHECKING:
-    from app.scenes.square_sea.scene import SeaReadings
 
 LIGHT, HEAVY = 0.01, 100.0  # [Earth masses] of the planets of the lab
 

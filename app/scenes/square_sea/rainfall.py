@@ -38,6 +38,16 @@ class RainFrame(NamedTuple):
     span: float  # [m] side of the window
 
 
+class RainReadings(NamedTuple):
+    """How much of the rain is drawn."""
+
+    rate: float  # [mm/h]
+    drawn: int  # drops in the air that are drawn
+    weight: float  # real drops that each of them stands for
+    fallen: float  # real drops that have fallen on the window so far
+    drops_per_ring: float  # real drops, all at one place, that would make a ring as drawn; 0 where no rings are drawn
+
+
 class Rainfall:
     """The rain above one sea, on the simulation thread."""
 
@@ -104,3 +114,8 @@ class Rainfall:
         velocity[:, 0], velocity[:, 1] = r.wind
         velocity[:, 2] = -r.speed
         return RainFrame(drops, velocity, self.splashes.copy(), self.span)
+
+    def readings(self) -> RainReadings:
+        """Numbers for the panel."""
+        r = self.rain
+        return RainReadings(r.rate, r.diameter.size, r.weight, r.fallen, self.drops_per_ring)

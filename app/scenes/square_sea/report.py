@@ -1,13 +1,14 @@
 """The texts of the panel: the statistics of the sea beside theory, and statements of the course lab beside physics."""
 
 import math
-from typing import TYPE_CHECKING
 
 from app.formats.formatting import count, fixed, metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, join, lines, table
+from app.scenes.square_sea.frame import SeaReadings
 from app.scenes.square_sea.live_values import spectrum_conditions
 from app.scenes.square_sea.parameters import Params, gravity
+from app.scenes.square_sea.rainfall import RainReadings
 from app.scenes.square_sea.statistics import Report
 from sim.ocean.dispersion import viscous_root
 from sim.ocean.planets import EARTH_GRAVITY, RADIUS_RULES, gravity_of
@@ -15,9 +16,6 @@ from sim.ocean.spectra import SPECTRA
 from sim.ocean.spectra.jonswap import FetchConditions, fetch_of_full_growth
 from sim.ocean.spectra.regular import RegularConditions
 from sim.ocean.statistics import BREAKING_HEIGHT, beaufort, open_sea_height, resolved_in_time
-
-if TYPE_CHECKING:
-    from app.scenes.square_sea.scene import RainReadings, SeaReadings
 
 MIN_SLOPE_LEFT = 0.98  # share of the mean square slope below which the sea counts as damped
 MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather

@@ -3,25 +3,27 @@
 import collections
 import functools
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import PlotRow, Point, SceneCommand, StudentAnswer, Vector
+from app.messages import PlotRow, Point, SceneCommand, StudentAnswer
 from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
-from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
+from app.scenes.packed_surface import SentSurface
 from app.scenes.plot_rows import PlotRows
+from app.scenes.square_sea.foam_limit import FoamLimit
+from app.scenes.square_sea.frame import SeaFrame, SeaReadings, pack_frame, unpack_frame
 from app.scenes.square_sea.live_values import live_values
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import ABOUT, PRESETS, Params, conditions, hidden, rain_settings
-from app.scenes.square_sea.rainfall import Rainfall, RainFrame
-from app.scenes.square_sea.statistics import Report, Theory, measure, theory
+from app.scenes.square_sea.rainfall import Rainfall
+from app.scenes.square_sea.statistics import INTERVAL, LiveStatistics
 from app.scenes.square_sea.tile_mesh import set_mesh
 from sim.ocean import Sea
-from sim.ocean.foam import pace, threshold, whitecaps
+from sim.ocean.foam import pace, whitecaps
 from sim.ocean.wave_gauge import WaveGauge, where_hit
 from sim.parameters import effect_of_change
 
@@ -31,8 +33,8 @@ if TYPE_CHECKING:
 
 SERIES = ("wave gauge",)
 CHANGING = (  # as time passes
-    "steps", "sea", "rainfall", "foam", "drawn_at", "foam_cover", "foam_correction", "foam_cover_before", "foam_limit",
-    "jacobian_deviation", "slope_left", "pace", "paced_at", "paced_of", "changed_at", "transition", "viscous_area",
+    "steps", "sea", "rainfall", "foam", "drawn_at", "foam_cover", "foam_limit", "foam_cover_before", "slope_left",
+    "pace", "paced_at", "paced_of", "changed_at", "transition", "viscous_area",
 )  # fmt: skip
 PLOTS = {"plot_wave_gauge": PlotAxes("Height at the wave gauge", "m", SERIES)}
 CURVES = {
@@ -40,64 +42,12 @@ CURVES = {
 }
 STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
 START_WIND_SPEEDS = {"calm": 3.0, "storm": 24.0}  # [m/s] wind of the sea at a reset, by the parameter `start`
-STATISTICS_INTERVAL = 0.5  # [s] of simulated time between two updates of the statistics, or of the spectrum
 SETTLING_TRANSITIONS = 16.0  # transition times after which nothing is left of the old weather (e^-16 = 1e-7)
 PLOT_ROW_INTERVAL = 0.1  # [s] of simulated time between two plot rows
 GAUGE_OFFSET_SHARE = (0.06, -0.015)  # of the tile's side: where the wave gauge stands, from the middle of the tile,
 MAX_GAUGE_OFFSET = (12.0, 3.0)  # [m] but no farther than this: before a click has placed it
 
 PACE_INTERVAL = 0.5  # [s] of simulated time between two calculations of the sea's slope and frequency, for the foam
-FULL_FOAM_DEPTH = 0.35  # the Jacobian of full foam lies this many standard deviations of the Jacobian below the limit
-FOAM_CORRECTION_RATE = 0.15  # [1/s] standard deviations by which the limit moves where e times too little is drawn
-INITIAL_FOAM_CORRECTION = 0.5  # standard deviations that the limit starts above the formula's
-MIN_FOAM_COVER = 1e-4  # share of the sea below which differences of foam do not count
-FOAM_VISIBLE_SHARE = 1.2  # multiple of the fading time for which a patch of foam counts as foam
-
-
-class SeaFrame(NamedTuple):
-    """Drawn state of a sea."""
-
-    params: Params
-    time: float  # [s]
-    vertices: NDArray[np.float32]  # (n, n, 3) [m]
-    slopes: NDArray[np.float32]  # (n, n, 2)
-    foam: NDArray[np.float32]  # (n, n), 0 to 1
-    slope_resolved: float  # mean square slope of the solved waves
-    rain: RainFrame | None
-    gauge: Vector | None  # [m] position of the wave gauge; None while it is not shown
-    sent: SentSurface
-
-
-class PackedFrame(NamedTuple):
-    """A frame as a recording keeps it."""
-
-    frame: SeaFrame  # without a surface
-    side: int  # points along a side
-    surface: NDArray[np.float32]
-
-
-@functools.lru_cache(maxsize=2)
-def resting_points(length: float, side: int) -> NDArray[np.float32]:
-    """(2, side side) [m]: where the points of the mesh are when the water rests."""
-    along = np.arange(side) * (length / side)
-    return np.stack(np.meshgrid(along, along, indexing="ij")).reshape(2, -1).astype(np.float32)
-
-
-def pack_frame(frame: SeaFrame) -> PackedFrame:
-    """A frame for the recording."""
-    side, nothing = len(frame.vertices), np.empty(0, np.float32)
-    rest = resting_points(frame.params.length, side)
-    surface = pack_surface(frame.vertices, frame.slopes, frame.foam, rest, side, frame.sent)
-    return PackedFrame(
-        frame._replace(vertices=nothing, slopes=nothing, foam=nothing, sent=SentSurface()), side, surface
-    )
-
-
-def unpack_frame(packed: PackedFrame) -> SeaFrame:
-    """The frame, to draw it."""
-    frame, side, surface = packed
-    vertices, slopes, foam = unpack_surface(surface, resting_points(frame.params.length, side), (side, side))
-    return frame._replace(vertices=vertices, slopes=slopes, foam=foam, sent=SentSurface())
 
 
 def gauge_home(length: float) -> tuple[float, float]:
@@ -107,29 +57,6 @@ def gauge_home(length: float) -> tuple[float, float]:
         for share, limit in zip(GAUGE_OFFSET_SHARE, MAX_GAUGE_OFFSET, strict=True)
     )
     return 0.5 * length + x, 0.5 * length + y
-
-
-class RainReadings(NamedTuple):
-    """How much of the rain is drawn."""
-
-    rate: float  # [mm/h]
-    drawn: int  # drops in the air that are drawn
-    weight: float  # real drops that each of them stands for
-    fallen: float  # real drops that have fallen on the window so far
-    drops_per_ring: float  # real drops, all at one place, that would make a ring as drawn; 0 where no rings are drawn
-
-
-class SeaReadings(NamedTuple):
-    """The numbers of the sea for the panel."""
-
-    foam_cover: float  # share of the drawn sea that is foam
-    expected_foam_cover: float  # by Monahan's law, times the share of the slope that is left
-    slope_left: float  # share of the mean square slope that damping and a small height factor leave
-    foam_limit: float  # Jacobian below which there is foam; -inf without foam
-    is_choppy: bool  # whether water moves level at all, which presses the surface together
-    viscous_area: float  # [m2] sum of viscosity times time, since the start
-    rain: RainReadings | None
-    report: Report | None
 
 
 def warm_up() -> Pieces:
@@ -198,8 +125,7 @@ class SquareSeaScene:
         while self.gauge.trace and self.gauge.trace[-1][0] > self.time:
             self.gauge.trace.pop()
         self.plot_rows.resume()
-        self.spectrum_at = self.measured_at = -math.inf
-        self.report = self.theory = self.drawn = self.earlier_height = None
+        self.spectrum_at, self.drawn, self.statistics = -math.inf, None, LiveStatistics()
         if self.student is not None:
             self.student.taken = {}  # the sea is that of another moment
             self.take_student(self.student)
@@ -224,8 +150,7 @@ class SquareSeaScene:
         if start_wind is not None or self.student is not None:
             self.sea.change(self.time, transition, **self.conditions())
         self.changed_at, self.transition, self.viscous_area = self.time, transition, 0.0
-        self.report: Report | None = None
-        self.theory: Theory | None = None
+        self.statistics = LiveStatistics()
         self.clear_mesh()
         self.make_rainfall()
 
@@ -246,16 +171,15 @@ class SquareSeaScene:
         self.slope_left = 1.0  # share of the mean square slope that damping and a small height factor leave
         self.pace = 0.0, 0.0  # mean square slope, and the frequency [rad/s] at which it changes
         self.paced_of: tuple[int, float] | None = None  # of which waves they are, where these are steady
-        self.paced_at = self.measured_at = -math.inf
-        self.earlier_height: NDArray[np.floating] | None = None
-        self.foam_cover, self.foam_correction, self.jacobian_deviation = 0.0, INITIAL_FOAM_CORRECTION, 0.0
-        self.foam_limit = -math.inf
+        self.paced_at = self.statistics.measured_at = -math.inf
+        self.statistics.earlier_height = None
+        self.foam_cover, self.foam_limit = 0.0, FoamLimit()
 
     def change_forces(self, params: Params) -> None:
         """Take new parameters: new weather grows out of the present sea, another grid shows the same sea."""
         old, foam_cover = self.params, self.undamped_foam_cover(self.time)
         self.params = params
-        self.theory = None
+        self.statistics.theory = None
         if params.size != old.size:
             self.sea = self.sea.resized(int(params.size))
         if params.size != old.size or params.mesh != old.mesh:
@@ -276,7 +200,7 @@ class SquareSeaScene:
         """Let the sea adapt to its conditions in this time [s]."""
         self.sea.change(self.time, transition, **self.conditions())
         self.changed_at, self.transition = self.time, transition
-        self.paced_at = self.measured_at = -math.inf
+        self.paced_at = self.statistics.measured_at = -math.inf
 
     def conditions(self) -> dict[str, Any]:
         """The arguments of `Sea.change`, by a student's functions where the sea runs by them."""
@@ -290,7 +214,7 @@ class SquareSeaScene:
         before = self.sea.conditions.gravity
         self.viscous_area += self.params.viscosity * (self.time - self.changed_at)
         self.change_sea(transition)
-        self.theory = self.drawn = None
+        self.statistics.theory = self.drawn = None
         if self.sea.conditions.gravity != before:
             self.make_rainfall()
             student.want(self.params)
@@ -319,11 +243,6 @@ class SquareSeaScene:
         """True if the wave gauge is drawn and read."""
         return self.gauge_placed or self.params.plot_wave_gauge or self.params.plot_wave_spectrum
 
-    @property
-    def statistics_due(self) -> bool:
-        """True if the statistics are shown and out of date."""
-        return self.params.statistics and abs(self.time - self.measured_at) >= STATISTICS_INTERVAL
-
     def frame(self) -> SeaFrame:
         """The sea as it is now; a surface that has not changed is not evaluated again."""
         p, drawn = self.params, self.drawn
@@ -331,7 +250,7 @@ class SquareSeaScene:
             drawn is None
             or drawn.time != self.time
             or effect_of_change(drawn.params, p) not in (None, "look")
-            or self.statistics_due
+            or self.statistics.is_due(p, self.time)
             or (self.gauge_shown and drawn.gauge is None)
         ):
             drawn = self.draw()
@@ -363,9 +282,9 @@ class SquareSeaScene:
             gauge = (*self.gauge.at, self.gauge.height)
         if row_is_due:
             self.plot_rows.add(t, self.gauge.height)
-        self.update_statistics(height, dt)
+        changing = p.viscosity > 0.0 or t - self.changed_at < SETTLING_TRANSITIONS * self.transition
+        self.counts["statistics"] += self.statistics.update(self.sea, p, t, height, dt, changing=changing)
         self.update_spectrum()
-        self.earlier_height = height if p.statistics else None
         self.counts["frames"] += 1
         self.counts["transforms"] += self.sea.transforms.count - transforms_before
         return frame._replace(rain=rain, gauge=gauge)
@@ -376,33 +295,21 @@ class SquareSeaScene:
         """The mesh of these fields, (n, n) and (n, n, 2) [m], with the foam of the last one faded over dt [s]."""
         p, n = self.params, len(self.foam)
         D = np.empty((1, 1, 2), np.float32) if displacement is None else displacement
-        limit, full_depth = self.update_foam_limit(self.time, dt)
+        self.update_pace()
+        full_depth = self.foam_limit.update(p, dt, *self.pace, self.expected_foam_cover(self.time), self.foam_cover)
         vertices, slopes = np.empty((n, n, 3), np.float32), np.empty((n, n, 2), np.float32)
         self.foam = self.foam.copy()
-        self.foam_cover, self.jacobian_deviation = set_mesh(
+        self.foam_cover, self.foam_limit.deviation = set_mesh(
             height, D[..., 0], D[..., 1], displacement is not None, p.amplitude, self.sea.size // n,
-            self.sea.length / self.sea.size, limit, full_depth, math.exp(-dt / p.foam_fade), vertices, slopes,
-            self.foam,
+            self.sea.length / self.sea.size, self.foam_limit.value, full_depth, math.exp(-dt / p.foam_fade), vertices,
+            slopes, self.foam,
         )  # fmt: skip
         return SeaFrame(p, self.time, vertices, slopes, self.foam, self.pace[0], None, None, SentSurface())
-
-    def update_statistics(self, height: NDArray[np.floating], dt: float) -> None:
-        """Compare the drawn sea with theory, where that is shown and out of date. height: (n, n) [m]; dt [s]: since the
-        frame before."""
-        if not self.statistics_due:
-            return
-        p, t = self.params, self.time
-        changing = p.viscosity > 0.0 or t - self.changed_at < SETTLING_TRANSITIONS * self.transition
-        if self.theory is None or changing:
-            self.theory = theory(self.sea, t, p)
-        self.report = Report(measure(self.sea, height, self.earlier_height, p, dt), self.theory, dt)
-        self.measured_at = t
-        self.counts["statistics"] += 1
 
     def update_spectrum(self) -> None:
         """The spectrum at the wave gauge, where it is shown and out of date."""
         p, t = self.params, self.time
-        if p.plot_wave_spectrum and abs(t - self.spectrum_at) >= STATISTICS_INTERVAL:
+        if p.plot_wave_spectrum and abs(t - self.spectrum_at) >= INTERVAL:
             columns = self.gauge.spectrum(self.sea, t, p.amplitude)
             self.spectrum_at = t
             self.curve_columns = {"plot_wave_spectrum": columns} if columns[0].size else None
@@ -419,30 +326,17 @@ class SquareSeaScene:
             return cover
         return cover + (self.foam_cover_before - cover) * math.exp(-(t - self.changed_at) / self.transition)
 
-    def update_foam_limit(self, t: float, dt: float) -> tuple[float, float]:
-        """(Jacobian below which there is foam, how far below it foam is full)."""
-        p = self.params
-        if abs(t - self.paced_at) >= PACE_INTERVAL:
-            waves = (self.sea.version, p.amplitude) if self.sea.is_steady(t) else None
-            if waves is None or waves != self.paced_of:
-                self.pace = pace(self.sea, t)
-                self.slope_left = self.sea.slope_left(t) * min(p.amplitude, 1.0) ** 2
-                self.counts["paces"] += 1
-            self.paced_at, self.paced_of = t, waves
-        slope, frequency = self.pace
-        deviation = self.jacobian_deviation or max(self.sea.choppiness * math.sqrt(slope), 1e-6)
-        self.foam_limit = p.foam_threshold
-        if not p.foam:
-            self.foam_limit = -math.inf
-        elif p.foam_by_wind:
-            cover = self.expected_foam_cover(t)
-            # The formula holds for small slopes. The drawn foam tells what it misses, and corrects it slowly.
-            missing = math.log((cover + MIN_FOAM_COVER) / (self.foam_cover + MIN_FOAM_COVER))
-            correction = self.foam_correction + FOAM_CORRECTION_RATE * dt * min(max(missing, -1.0), 1.0)
-            self.foam_correction = min(max(correction, -1.0), 2.0)
-            limit = threshold(cover, deviation, frequency, FOAM_VISIBLE_SHARE * p.foam_fade)
-            self.foam_limit = limit + self.foam_correction * deviation
-        return self.foam_limit, FULL_FOAM_DEPTH * deviation
+    def update_pace(self) -> None:
+        """Calculate slope and frequency of the waves anew, where they are out of date."""
+        p, t = self.params, self.time
+        if abs(t - self.paced_at) < PACE_INTERVAL:
+            return
+        waves = (self.sea.version, p.amplitude) if self.sea.is_steady(t) else None
+        if waves is None or waves != self.paced_of:
+            self.pace = pace(self.sea, t)
+            self.slope_left = self.sea.slope_left(t) * min(p.amplitude, 1.0) ** 2
+            self.counts["paces"] += 1
+        self.paced_at, self.paced_of = t, waves
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
         """The plot rows since the last call."""
@@ -450,19 +344,15 @@ class SquareSeaScene:
 
     def readings(self) -> SeaReadings:
         """Numbers for the panel."""
-        rain = None
-        if self.rainfall is not None:
-            fall, drops = self.rainfall, self.rainfall.rain
-            rain = RainReadings(drops.rate, drops.diameter.size, drops.weight, drops.fallen, fall.drops_per_ring)
         return SeaReadings(
             foam_cover=self.foam_cover,
             expected_foam_cover=self.expected_foam_cover(self.time),
             slope_left=self.slope_left,
-            foam_limit=self.foam_limit,
+            foam_limit=self.foam_limit.value,
             is_choppy=self.sea.choppiness > 0.0,
             viscous_area=self.viscous_area + self.params.viscosity * (self.time - self.changed_at),
-            rain=rain,
-            report=self.report if self.params.statistics else None,
+            rain=None if self.rainfall is None else self.rainfall.readings(),
+            report=self.statistics.report if self.params.statistics else None,
         )
 
     def curves(self) -> dict[str, tuple[NDArray[np.floating], ...]] | None:

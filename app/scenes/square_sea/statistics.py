@@ -9,6 +9,7 @@ from app.scenes.square_sea.parameters import Params
 from sim.ocean import Sea
 from sim.ocean.statistics import Statistics, expected, height_scatter, measured, open_sea_height
 
+INTERVAL = 0.5  # [s] of simulated time between two reports, and between two spectra at the wave gauge
 PEAK_WIDTH = 0.08  # of the peak frequency: waves no farther from the peak are called dominant
 
 
@@ -68,3 +69,31 @@ def dominant(sea: Sea, t: float, period: float) -> tuple[float, float]:
         return math.nan, math.nan
     k = float((energy * np.hypot(sea.k[:, None], sea.k[None, :])).sum()) / total
     return 2.0 * math.pi / k, peak / k
+
+
+class LiveStatistics:
+    """The newest report of a sea that runs."""
+
+    def __init__(self) -> None:
+        self.report: Report | None = None
+        self.theory: Theory | None = None  # None: it is another since the last report
+        self.measured_at = -math.inf  # [s] of simulated time
+        self.earlier_height: np.ndarray | None = None  # (n, n) [m] of the frame before, while reports are shown
+
+    def is_due(self, params: Params, t: float) -> bool:
+        """True if reports are shown and the last one is out of date."""
+        return params.statistics and abs(t - self.measured_at) >= INTERVAL
+
+    def update(self, sea: Sea, params: Params, t: float, height: np.ndarray, dt: float, *, changing: bool) -> bool:
+        """Compare the drawn sea with theory if that is due; True if it was.
+
+        height: (n, n) [m] at time t [s]; dt: [s] since the frame before. changing: the sea adapts to other conditions.
+        """
+        due = self.is_due(params, t)
+        if due:
+            if self.theory is None or changing:
+                self.theory = theory(sea, t, params)
+            self.report = Report(measure(sea, height, self.earlier_height, params, dt), self.theory, dt)
+            self.measured_at = t
+        self.earlier_height = height if params.statistics else None
+        return due

@@ -20,9 +20,9 @@ from app.render.viser_inside import set_arrays
 from app.render.water import Water
 from app.scenes.contract import Pieces
 from app.scenes.square_sea import report
+from app.scenes.square_sea.frame import SeaFrame
 from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity, rain_settings
 from app.scenes.square_sea.rain_view import RainMesh
-from app.scenes.square_sea.scene import SeaFrame
 from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
 

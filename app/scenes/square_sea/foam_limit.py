@@ -1,0 +1,40 @@
+"""How far the water has to be pressed together to be foam, so that as much of the sea is foam as is expected."""
+
+import math
+
+from app.scenes.square_sea.parameters import Params
+from sim.ocean.foam import threshold
+
+FULL_FOAM_DEPTH = 0.35  # the Jacobian of full foam lies this many standard deviations of the Jacobian below the limit
+FOAM_CORRECTION_RATE = 0.15  # [1/s] standard deviations by which the limit moves where e times too little is drawn
+INITIAL_FOAM_CORRECTION = 0.5  # standard deviations that the limit starts above the formula's
+MIN_FOAM_COVER = 1e-4  # share of the sea below which differences of foam do not count
+FOAM_VISIBLE_SHARE = 1.2  # multiple of the fading time for which a patch of foam counts as foam
+
+
+class FoamLimit:
+    """The Jacobian below which there is foam."""
+
+    def __init__(self) -> None:
+        self.value = -math.inf
+        self.correction = INITIAL_FOAM_CORRECTION  # standard deviations of the Jacobian above the formula's
+        self.deviation = 0.0  # standard deviation of the Jacobian as drawn; 0: not drawn yet
+
+    def update(self, p: Params, dt: float, slope: float, frequency: float, expected: float, drawn: float) -> float:
+        """Update the limit over dt [s]. Returns the Jacobian's distance below it at which foam is full.
+
+        slope: mean square slope of the waves, which changes at `frequency` [rad/s]; expected and drawn: shares of the
+        sea that are foam.
+        """
+        deviation = self.deviation or max(p.choppiness * p.amplitude * math.sqrt(slope), 1e-6)
+        self.value = p.foam_threshold
+        if not p.foam:
+            self.value = -math.inf
+        elif p.foam_by_wind:
+            # The formula holds for small slopes. The drawn foam tells what it misses, and corrects it slowly.
+            missing = math.log((expected + MIN_FOAM_COVER) / (drawn + MIN_FOAM_COVER))
+            correction = self.correction + FOAM_CORRECTION_RATE * dt * min(max(missing, -1.0), 1.0)
+            self.correction = min(max(correction, -1.0), 2.0)
+            limit = threshold(expected, deviation, frequency, FOAM_VISIBLE_SHARE * p.foam_fade)
+            self.value = limit + self.correction * deviation
+        return FULL_FOAM_DEPTH * deviation

@@ -14,6 +14,7 @@ from sim.floating.motion import MotionCoefficients, step
 from sim.floating.periods import heave_period, roll_period
 from sim.floating.prediction import HydrostaticPrediction, predict
 from sim.floating.shapes import SHAPES, Shape
+from sim.floating.stability import metacentric_height, righting_arm
 
 __all__ = [
     "SHAPES",
@@ -31,9 +32,11 @@ __all__ = [
     "lowest",
     "make_fleet",
     "make_water",
+    "metacentric_height",
     "predict",
     "pressure_force",
     "pull",
+    "righting_arm",
     "roll_period",
     "shape_from_file",
     "step",

@@ -2,31 +2,118 @@
 
 `Body` describes one body and where it starts; `make_fleet` packs many into a `Fleet` with state arrays that `step`
 (motion.py) advances in place. A hull used by several bodies is packed once.
+
+    >>> barge = Body(Hull.box(60.0, 16.0, 6.0), mass=2.952e6, center_of_gravity=(0.0, 0.0, 1.0))
+    >>> round(barge.afloat().position[2], 6)  # the centre of gravity 4 m over the keel, the keel 3 m deep
+    1.0
 """
 
+import dataclasses
+import functools
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from sim.floating.closed_mesh import area_vectors, check_hull
-from sim.floating.equilibrium import SEA_WATER, Layers, check_layers
+from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, equilibrium_draft
 from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import POLES, afloat
 from sim.floating.rotation import rotation_matrix
 from sim.floating.shapes.record import COLLISION_FORMS
-from sim.validation import argument_error, as_array, check_not_negative, check_positive, is_whole_number
+from sim.floating.stability import rest_of, with_heading
+from sim.validation import (
+    argument_error,
+    as_array,
+    check_not_negative,
+    check_positive,
+    check_vector,
+    is_whole_number,
+)
+
+UNIFORM_DENSITY = 500.0  # [kg/m3] of a body that is given neither density nor mass
 
 
 class Body(NamedTuple):
-    """One body and how it starts."""
+    """One body and how it starts. It has a uniform density, or a mass, and then a centre of gravity and an inertia."""
 
     hull: Hull
-    density: float = 500.0  # [kg/m3], uniform
+    density: float | None = None  # [kg/m3], uniform; None: 500, or by the mass
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m] of the centre of mass
     rotation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)  # quaternion (w, x, y, z) from body to world
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m/s]
     spin: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [rad/s] in world axes
+    mass: float | None = None  # [kg], in place of the density
+    # [m] in the coordinates that the hull was given in: those of a file, or from the middle of a box; None: its middle
+    center_of_gravity: tuple[float, float, float] | None = None
+    inertia: np.ndarray | Sequence[float] | None = None  # (3,) or (3, 3) [kg m2] about it; None: as if uniform
+
+    def loaded(self) -> tuple[Hull, float]:
+        """The hull about the centre of gravity, with the inertia at unit density, and the mean density [kg/m3].
+
+        Bodies of the same hull and load share one. Raises ValueError for a load that is not allowed.
+        """
+        check_hull("hull", self.hull)
+        if self.mass is None:
+            density = UNIFORM_DENSITY if self.density is None else check_positive("density", self.density, "kg/m3")
+        elif self.density is not None:
+            raise argument_error("density", self.density, "None where a mass is given")
+        else:
+            density = check_positive("mass", self.mass, "kg") / self.hull.volume
+        if self.center_of_gravity is None and self.inertia is None:
+            return self.hull, density
+        at = self.hull.centre if self.center_of_gravity is None else self.center_of_gravity
+        centre = check_vector("center_of_gravity", at, "m")
+        inertia = density * self.hull.inertia if self.inertia is None else checked_inertia(self.inertia)
+        return loaded_hull(self.hull, centre, (inertia / density).tobytes()), density
+
+    def afloat(self, layers: Layers = SEA_WATER) -> "Body":
+        """The body at rest in these fluids, the surface at z = 0: upright where no arm turns it, or with its trim.
+
+        Its x, y and heading stay. Raises ValueError for a body that sinks, or finds no stable rest within 60 degrees.
+        """
+        hull, density = self.loaded()
+        draft = equilibrium_draft(hull, density, layers)
+        if math.isinf(draft):
+            raise argument_error("density", density, f"at most {check_layers(layers)[-1][0]:g} kg/m3, or it sinks")
+        x, y, _ = self.position
+        z, turn = rest_of(hull, density, check_layers(layers), -draft - float(hull.extents[2, 0]))
+        return self._replace(
+            position=(x, y, z),
+            rotation=with_heading(turn, self.rotation),
+            velocity=(0.0, 0.0, 0.0),
+            spin=(0.0, 0.0, 0.0),
+        )
+
+
+def checked_inertia(inertia: object) -> np.ndarray:
+    """The inertia (3, 3) [kg m2] of a matrix, or of the moments about three axes. Raises ValueError for another."""
+    allowed = "(3,) moments or a symmetric (3, 3) matrix, positive definite [kg m2]"
+    given = as_array("inertia", inertia, allowed)
+    matrix = np.diag(given) if given.shape == (3,) else given
+    if matrix.shape != (3, 3) or not np.isfinite(matrix).all() or not np.allclose(matrix, matrix.T):
+        raise argument_error("inertia", inertia, allowed)
+    if not np.linalg.eigvalsh(matrix)[0] > 0.0:
+        raise argument_error("inertia", inertia, allowed)
+    return matrix
+
+
+@functools.lru_cache(maxsize=256)
+def loaded_hull(hull: Hull, centre: tuple[float, float, float], inertia: bytes) -> Hull:
+    """The hull with vertices relative to another centre [m], and an inertia (3, 3) [m5] at unit density."""
+    shift = np.array(centre) - hull.centre
+    level = np.abs(shift[:2]).max() < 1e-12 * hull.size.max()
+    shape = dataclasses.replace(hull.shape, immersed=hull.shape.immersed if level else None, is_round=False)
+    return dataclasses.replace(
+        hull,
+        vertices=hull.vertices - shift,
+        extents=hull.extents - shift[:, None],
+        centre=np.array(centre),
+        inertia=np.frombuffer(inertia).reshape(3, 3),
+        shape=shape,
+        axis=(hull.axis[0] - float(shift[0]), hull.axis[1] - float(shift[1])),
+    )
 
 
 class PackedHulls(NamedTuple):
@@ -101,9 +188,12 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
     layers: (density [kg/m3], thickness [m]) from the top. The bodies take their linear coefficients at the
     drafts that they have in these fluids. Raises ValueError, naming the body, unless all is finite and it has a mass.
     """
+    loaded = []
     for i, body in enumerate(bodies):
-        check_hull(f"bodies[{i}].hull", body.hull)
-        check_positive(f"bodies[{i}].density", body.density, "kg/m3")
+        try:
+            loaded.append(body.loaded())
+        except ValueError as error:
+            raise ValueError(f"bodies[{i}].{error}") from None
         for name, length in (("position", 3), ("rotation", 4), ("velocity", 3), ("spin", 3)):
             value = as_array(f"bodies[{i}].{name}", getattr(body, name), f"{length} finite numbers")
             if value.shape != (length,) or not np.isfinite(value).all():
@@ -111,11 +201,12 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
         if not np.linalg.norm(body.rotation) > 0:
             raise argument_error(f"bodies[{i}].rotation", body.rotation, "a quaternion that is not zero")
     n = len(bodies)
-    hulls = list({id(body.hull): body.hull for body in bodies}.values())
+    own, densities = [hull for hull, _ in loaded], [density for _, density in loaded]
+    hulls = list({id(hull): hull for hull in own}.values())
     number = {id(hull): i for i, hull in enumerate(hulls)}
     rotation = np.array([body.rotation for body in bodies], dtype=float).reshape(n, 4)
-    counts = [len(body.hull.vertices) for body in bodies]
-    linear_hull, linear = pack_linear([body.hull for body in bodies], [body.density for body in bodies], layers)
+    counts = [len(hull.vertices) for hull in own]
+    linear_hull, linear = pack_linear(own, densities, layers)
     return Fleet(
         position=np.array([body.position for body in bodies], dtype=float).reshape(n, 3),
         rotation=rotation / np.linalg.norm(rotation, axis=1, keepdims=True),
@@ -130,9 +221,9 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
         pull_target=np.zeros((n, 3)),
         pull_limit=np.zeros(n),
         mooring=np.zeros((n, 2)),
-        hull=np.array([number[id(body.hull)] for body in bodies], dtype=np.int64),
-        density=np.array([body.density for body in bodies], dtype=float),
-        mass=np.array([body.density * body.hull.volume for body in bodies], dtype=float),
+        hull=np.array([number[id(hull)] for hull in own], dtype=np.int64),
+        density=np.array(densities, dtype=float),
+        mass=np.array([density * hull.volume for hull, density in loaded], dtype=float),
         vertex_start=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
         hulls=pack_hulls(hulls),
         linear_hull=linear_hull,

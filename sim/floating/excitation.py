@@ -84,7 +84,7 @@ class WaveExcitation:
     def __init__(self, bodies: Sequence[Body], widths: np.ndarray, layers: Layers = SEA_WATER) -> None:
         """bodies as in `make_fleet`; widths (n,) [m]: over which the surface at each is averaged in `RadialSea.at`."""
         fluids = check_layers(layers)
-        keys = [(body.hull, float(body.density), float(width)) for body, width in zip(bodies, widths, strict=True)]
+        keys = [(*body.loaded(), float(width)) for body, width in zip(bodies, widths, strict=True)]
         unique = list(dict.fromkeys(keys))
         self.kinds = [HullExcitation(hull, afloat(hull, rho, fluids).linear, width) for hull, rho, width in unique]
         self.kind = np.array([unique.index(key) for key in keys], dtype=np.int64)

@@ -32,6 +32,8 @@ class Hull(ClosedMesh):
     """A closed mesh about its centre of mass, and the shape that it stands for."""
 
     shape: Shape
+    # x, y [m] of the vertical axis that the shape's closed forms and linear coefficients are about
+    axis: tuple[float, float] = (0.0, 0.0)
 
     @staticmethod
     def of(shape: Shape, mesh: ClosedMesh) -> "Hull":

@@ -142,12 +142,15 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
     # into metres, and from the waterline to the centre of mass: v_waterline = S v, S = [[1, -[r]], [0, 1]]
     unit = length ** np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
     rise = low + draft  # [m] of the waterline over the centre of mass
-    S = np.eye(6)
-    S[0, 4], S[1, 3] = rise, -rise
+    S = velocity_at(*hull.axis, rise)
     scale = np.outer(unit, unit) * length
     root = math.sqrt(length)
+    frequency = table.frequency / root
+    # the wave reaches the axis of the table and the centre of mass one after the other; k = frequency^2
+    path = hull.axis[0] * np.cos(DIRECTIONS) + hull.axis[1] * np.sin(DIRECTIONS)
+    excitation = excitation * np.exp(1j * np.square(frequency)[:, None] * path)[:, :, None]
     return LinearHull(
-        frequency=table.frequency / root,
+        frequency=frequency,
         added_mass=S.T @ (a * scale) @ S,
         damping=S.T @ (b * scale / root) @ S,
         infinite=S.T @ (infinite * scale) @ S,
@@ -157,6 +160,13 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
         volume=upright(hull, draft).volume,
         is_round=is_round,
     )
+
+
+def velocity_at(x: float, y: float, z: float) -> np.ndarray:
+    """(6, 6): velocity and spin at a place x, y, z [m] from a point of a rigid body, of those at the point."""
+    S = np.eye(6)
+    S[:3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+    return S
 
 
 def table_length(hull: ClosedMesh) -> float:

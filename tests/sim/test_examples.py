@@ -5,7 +5,13 @@ import importlib
 
 import pytest
 
-MODULES = ("sim.ocean.kinematics", "sim.ocean.spectra.record", "sim.ocean.zero_crossings")
+MODULES = (
+    "sim.floating.body",
+    "sim.floating.stability",
+    "sim.ocean.kinematics",
+    "sim.ocean.spectra.record",
+    "sim.ocean.zero_crossings",
+)
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -334,6 +334,15 @@ def test_the_wave_gauge_finds_the_energy_of_the_sea_in_its_trace():
     assert (f * measured).sum() / measured.sum() == pytest.approx((f * theory).sum() / theory.sum(), rel=0.15)
 
 
+def test_the_wave_gauge_forgets_what_comes_after_a_checkpoint_and_nothing_else():
+    scene = SquareSeaScene(Params(**SMALL, plot_wave_spectrum=True, statistics=False))
+    run(scene, 10)
+    kept, trace = scene.keep(), list(scene.gauge.trace)
+    run(scene, 10)
+    scene.resume(kept)
+    assert list(scene.gauge.trace) == trace != []
+
+
 def test_another_size_shows_the_same_sea_and_keeps_time():
     scene = SquareSeaScene(Params(size="128", mesh="64"))
     scene.advance(100)

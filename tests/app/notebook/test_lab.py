@@ -15,11 +15,12 @@ import pytest
 
 import app
 from app.messages import DivergenceError
+from app.notebook.dataset import to_dataset
 from app.notebook.lab import Lab, read_setup
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import write_query
 from app.scenes.stepping import steps_to
-from sim.parameters import parameters_of
+from sim.parameters import check_record, parameters_of
 from tests.waiting import wait_for
 
 pytest.importorskip("xarray", reason="the extra jupyter is not installed")
@@ -187,6 +188,19 @@ def test_the_data_have_units_and_say_what_was_set(rope: Lab) -> None:
     assert data.energy.attrs == {"units": "J", "long_name": "kinetic, elastic, gravity, contact"}
     assert read_setup(data.attrs["link"], "", {})[1] == ROPE.params(stiffness=2000)
     assert json.loads(data.attrs["parameters"])["stiffness"] == 2000
+
+
+def test_a_chart_that_is_not_over_time_is_in_the_data_over_its_own_columns() -> None:
+    kind = scene_named("race")
+    scene = kind.make(check_record(kind.params, {"ropes": 1, "points": 3}))
+    for _ in range(20):
+        scene.advance(4)
+    data = to_dataset(kind, scene, (), "")
+    columns = scene.curves()["plot_errors"].columns
+    assert (data.errors_t.units, data.errors_below_what_the_reference_can_tell.units) == ("s", "m")
+    assert len(columns[0]) > 1
+    np.testing.assert_array_equal(data.errors_t, columns[0])
+    np.testing.assert_array_equal(data.errors_below_what_the_reference_can_tell, columns[1])
 
 
 def test_without_a_browser_there_is_no_picture_and_the_error_says_so(rope: Lab, monkeypatch) -> None:

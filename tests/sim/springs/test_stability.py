@@ -1,14 +1,15 @@
 import dataclasses
 import math
+from collections import Counter
 
 import numpy as np
 import pytest
 
 from sim.springs import INTEGRATORS, Contact, Grab, cloth, rope, simulate
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, set_tangent
-from sim.springs.stability import critical_step, critical_stiffness, gauge, gershgorin, top_modes
+from sim.springs.stability import critical_step, critical_stiffness, gauge, gershgorin, most_touching, top_modes
 from sim.springs.state import State, advance
-from tests.naive import tangent
+from tests.naive import own_contacts, tangent
 from tests.sim.springs.nets import DAMPABLE, patch, touching_patch
 
 ZETAS = (0.0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.707, 1.0, 2.0)
@@ -245,6 +246,9 @@ def test_a_net_s_contact_with_itself_counts_in_its_modes_and_bounds():
     for bound in (gershgorin(net), gershgorin(net, net.x0)):
         assert stiffest.omega <= bound[0]
         assert most_damped.rate <= bound[1]
+    xs = np.moveaxis(net.x0, 0, -1)
+    touched = Counter(particle for a, b, _ in own_contacts(net, xs, 0.0 * xs) for particle in (a, b))
+    assert most_touching(net, net.x0) == max(touched.values())
     apart = np.stack([*np.mgrid[:2, :8].astype(float), np.zeros((2, 8))])
     assert gershgorin(net, apart) == gershgorin(dataclasses.replace(net, thickness=0.0))
 

@@ -92,6 +92,11 @@ def test_a_table_that_does_not_fit_is_printed_as_lines(
         assert "Title" in said
 
 
+def test_a_line_is_folded_between_words_and_indented_further() -> None:
+    lines = text_tables.fold("  " + "word " * 9, 20)
+    assert lines == ["  word word word", *["    word word word"] * 2]
+
+
 def test_the_results_of_the_lab_are_folded_and_not_cut(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

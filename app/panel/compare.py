@@ -41,14 +41,22 @@ class Compare:
         setup_of: Callable[[str], Setup],
         beside: Beside,
     ) -> None:
-        """buttons: that play, step and reset. names: of the available set-ups; setup_of: returns one of them."""
+        """buttons: that play, step and reset. names: of the available set-ups; setup_of: returns one of them.
+
+        The line and its button stand in no tab: the page reads them also where no tab was opened.
+        """
         self.names, self.setup_of, self.beside, self.buttons = names, setup_of, beside, buttons
         self.shown: tuple[PaneWords, ...] | None = None
         self.line = gui.add_html("")
         self.end: GuiHandle = gui.add_button("One lab again", visible=False)
         self.end.on_click(self.on_end)
+        self.gui = gui
+
+    def add(self) -> None:
+        """The folder, in the container that is open."""
+        gui = self.gui
         with gui.add_folder("Compare side by side", expand_by_default=False):
-            self.choice = gui.add_dropdown("This beside", names(), hint="What is set now, beside a preset")
+            self.choice = gui.add_dropdown("This beside", self.names(), hint="What is set now, beside a preset")
             self.start = gui.add_button("Show side by side")
             self.start.on_click(self.on_start)
             links = (

@@ -71,7 +71,7 @@ class Control:
     def __init__(
         self,
         gui: viser.GuiApi,
-        folder: viser.GuiFolderHandle,
+        folder: viser.GuiFolderHandle | viser.GuiTabHandle,
         name: str,
         parameter: Parameter,
         read: Callable[[], Value],

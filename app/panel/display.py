@@ -1,7 +1,4 @@
-"""How a browser shows the lab: dark or light, how large its text is, and how finely it draws.
-
-Each browser has its own (`js/display.js`, `js/quality.js`).
-"""
+"""How a browser shows the lab: dark or light, how large its text is, and how finely it draws."""
 
 # pyright: reportPrivateUsage=false
 
@@ -23,7 +20,7 @@ def set_theme(gui: viser.GuiApi, *, dark: bool) -> None:
 
 
 class Display:
-    """The switches, and two hidden buttons: by them a browser says whether panel and floor are to be dark.
+    """Two hidden buttons, by which a browser says whether panel and floor are to be dark.
 
     They are buttons because two browsers may say the same: viser passes on only what changes the value of a checkbox.
     """
@@ -40,19 +37,19 @@ class Display:
                     set_theme(event.client.gui, dark=dark)
                     view.set_dark(event.client, dark)
 
-        switches = fill(
-            '<div class="springtide-switches springtide-display" data-springtide-dark="{}" data-springtide-light="{}">'
-            '<button type="button" data-springtide-switch="dark">Dark</button>'
-            '<button type="button" data-springtide-switch="large">Large text</button></div>',
+        told = fill(
+            '<span data-springtide-dark="{}" data-springtide-light="{}"></span>',
             uuid_of(self.dark),
             uuid_of(self.light),
         )
-        gui.add_html(str(switches))
+        gui.add_html(str(told))
 
 
-def add_quality(gui: viser.GuiApi) -> None:
-    """The choice of how finely this browser draws."""
+def add_switches(gui: viser.GuiApi) -> None:
+    """What each browser chooses for itself; the page does the rest (`js/display.js`, `js/quality.js`)."""
     gui.add_html(
+        '<div class="springtide-switches"><button type="button" data-springtide-switch="dark">Dark</button>'
+        '<button type="button" data-springtide-switch="large">Large text</button></div>'
         '<div class="springtide-switches"><label>Quality <select data-springtide-quality>'
         '<option value="automatic">automatic</option><option value="high">high</option>'
         '<option value="medium">medium</option><option value="low">low</option></select> '

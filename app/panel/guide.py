@@ -149,10 +149,17 @@ class QuestionWidgets:
 
 
 class Guide:
-    """The folder of the panel."""
+    """The tab of the panel."""
 
-    def __init__(self, gui: viser.GuiApi, kind: AnyKind, workbook: Workbook, set_up: Callable[[Setup], None]) -> None:
-        """set_up: shows a set-up of a task; raises ValueError where it does not exist."""
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        kind: AnyKind,
+        workbook: Workbook,
+        set_up: Callable[[Setup], None],
+        tab: viser.GuiTabHandle,
+    ) -> None:
+        """set_up: shows a set-up of a task; raises ValueError where it does not exist. tab: that it stands in."""
         self.gui, self.kind, self.workbook, self.set_up = gui, kind, workbook, set_up
         self.values: LiveValues = {}
         self.stale = True  # whether something other than live values is to be shown anew
@@ -165,8 +172,8 @@ class Guide:
         self.questions: list[QuestionWidgets] = []
         workbook.go_to_scene(kind.name)
         self.titles = tuple(title_of(task) for task in workbook.tasks)
-        self.folder = gui.add_folder("Lab guide" if workbook.folder is None else "Workbook")
-        with self.folder:
+        self.tab = tab
+        with self.tab:
             if workbook.folder is not None:
                 self.name = gui.add_text("Your name", workbook.answers.name)
                 self.name.on_update(self.on_name)
@@ -286,7 +293,7 @@ class Guide:
             self.chooser.value = title
         self.questions = []
         if self.workbook.folder is not None:
-            with self.folder:
+            with self.tab:
                 self.questions = [QuestionWidgets(self, task, question) for question in task.questions]
         self.show_values(task)
         self.shown = task

@@ -13,37 +13,28 @@ import viser
 
 from app.lab import task
 from app.lab.workbook import Workbook
-from app.messages import (
-    BaseParams,
-    Command,
-    KeptState,
-    Load,
-    Pause,
-    Play,
-    PlotRow,
-    Reset,
-    StepOnce,
-    TogglePlay,
-)
+from app.messages import BaseParams, KeptState, Load, PlotRow, Reset, StepOnce, TogglePlay
 from app.panel.compare import Beside, Compare
-from app.panel.control import Control
-from app.panel.display import Display, add_quality
+from app.panel.controls import Controls
+from app.panel.display import Display, add_switches
 from app.panel.files import MakeReplay
 from app.panel.guide import Guide
+from app.panel.head import Actions, Head
 from app.panel.history import History, Settings
 from app.panel.plots import Plots
 from app.panel.questions import Questions
+from app.panel.readings import Readings
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
 from app.panel.share import Share
 from app.render.cameras import ClientCamera, place_camera
-from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, note
+from app.render.html import Html, fill, note
 from app.render.viser_types import ViserEvent
 from app.scenes import scene_named
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
 from app.scenes.own_setups import own_files
 from app.scenes.setups import Setup
-from sim.parameters import Value, changed_names, check_record, in_words, parameters_of
+from sim.parameters import Value, changed_names, check_record
 from sim.validation import argument_error
 
 if TYPE_CHECKING:
@@ -53,12 +44,16 @@ if TYPE_CHECKING:
 
 STATUS_INTERVAL = 0.25  # [s]
 MARKS_INTERVAL = 0.5  # [s]
-BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
 Key = Literal["space", "G", "N", "P", "R", "U", "1", "2", "3", "4", "5", "6", "7", "8", "9"]
 DIGITS: tuple[Key, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
 OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
-OPEN_GROUPS = 1  # the first groups of parameters start open
-BUTTONS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce(), "Reset": Reset()}
+OPEN_GROUP = "Main"  # the group of parameters that starts open
+VIEW_GROUPS = ("Look", "Plots")  # the groups that stand in the tab of the view
+CONTROLS, LAB, SHARE, VIEW = "Controls", "Lab", "Share", "View"  # the tabs
+KEYS = Html(
+    "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset view · <b>P</b> plots · "
+    "<b>G</b> grid · <b>U</b> undo · <b>C</b> to the first control · <b>1-9</b> presets"
+)
 
 
 # Takes a scene to show, its parameters if any, and a camera for one browser if any.
@@ -99,85 +94,75 @@ class Panel:
         # Parameters as set now, and how many presets were loaded: read by another thread.
         self.state: tuple[BaseParams, int] = params, 0
         self.status_at = self.marks_at = 0.0
-        self.halted: str = ""
-        self.visitors = 0
         self.history = History()
         self.plots = Plots(server, kind)
-        # Who needs dark or large text finds the switches first.
         self.display = Display(gui, view)
-        # The block stays in sight while the rest is scrolled (page.css): what says "springtide-panel" is in it.
-        with gui.add_folder("Lab") as self.lab:
-            self.add_chooser(scenes)
-            presets = tuple(kind.presets)
-            self.own = own_presets(kind)  # name in the list -> set-up of the user
-            # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
-            self.loaded = min(presets, key=lambda name: len(changed_names(self.params_of(name), params)))
-            self.preset = gui.add_dropdown(
-                "Preset", (*presets, *self.own), hint="Loads all settings and starts again from rest"
-            )
-            self.preset.on_update(self.on_preset)
-            self.running = True  # as the buttons show it
-            self.buttons = gui.add_button_group("", button_names(self.running))
-            self.buttons.on_click(self.on_button)
-            self.tools = gui.add_button_group("", ("Reset view", "Plots", "Undo"))
-            self.tools.on_click(self.on_tool)
-            self.status = gui.add_html("")
-            self.code_line = None if session is None else gui.add_html("")
-            self.readout = gui.add_html("")
-        self.guide = None if workbook is None else Guide(gui, kind, workbook, self.set_up)
+        self.own = own_presets(kind)  # name in the list -> set-up of the user
+        # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
+        self.loaded = min(kind.presets, key=lambda name: len(changed_names(self.params_of(name), params)))
+        actions = Actions(post, self.load, self.open_first_view_of, self.place_first_view, self.toggle_plots, self.undo)
+        self.head = Head(gui, kind, view, scenes, actions)
+        self.shown = Controls(gui, lambda: self.params, self.on_change)
+        self.controls, self.folders = self.shown.own, self.shown.folders
+        self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
+        self.recorder = Recorder(kind.packing)
+        self.share = Share(self, wake, make_replay, questions)
+        self.guide: Guide | None = None
         self.code: CodePanel | None = None
-        if session is not None:
-            from app.panel import code_panel  # only `springtide lab DIR` pays for it
-
-            self.code = code_panel.CodePanel(gui, session, kind.name)
-        self.help = gui.add_html("")
-        keys = fill(
-            '<div class="springtide-note">'
-            "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset view · <b>P</b> plots · "
-            "<b>G</b> grid · <b>U</b> undo · <b>1-9</b> presets</div>"
-        )
-        gui.add_html(str(keys))
         self.map: StabilityMapPanel | None = None
+        self.compare = (
+            None if beside is None else Compare(gui, self.head.buttons, self.comparable_names, self.comparable, beside)
+        )
+        self.fill_tabs(workbook, session)
+        self.refresh()
+        self.add_keys()
+
+    def fill_tabs(self, workbook: Workbook | None, session: "Session | None") -> None:
+        """The tabs. Who works in a folder of exercises finds these first, others the controls."""
+        has_folder = workbook is not None and workbook.folder is not None
+        names = (LAB, CONTROLS, SHARE, VIEW) if has_folder else (CONTROLS, LAB, SHARE, VIEW)
+        group = self.gui.add_tab_group()
+        tabs = {name: group.add_tab(name) for name in names if name != LAB or workbook is not None}
+        with tabs[CONTROLS]:
+            self.add_controls(tabs[CONTROLS])
+        if workbook is not None:
+            self.guide = Guide(self.gui, self.kind, workbook, self.set_up, tabs[LAB])
+            if session is not None:
+                from app.panel import code_panel  # only `springtide lab DIR` pays for it
+
+                with tabs[LAB]:
+                    self.code = code_panel.CodePanel(self.gui, session, self.kind.name)
+        with tabs[SHARE]:
+            self.share.add()
+            if self.compare is not None:
+                self.compare.add()
+        with tabs[VIEW]:
+            add_switches(self.gui)
+            for name in VIEW_GROUPS:
+                self.shown.add_group(name, is_open=True)
+
+    def add_controls(self, tab: viser.GuiTabHandle) -> None:
+        """The tab of the controls: the parameters by their groups, the readings, the stability map, and the help."""
+        gui, kind = self.gui, self.kind
+        groups = dict.fromkeys(parameter.group for parameter in self.shown.parameters.values())
+        for name in groups:
+            if name not in VIEW_GROUPS:
+                self.shown.add_group(name, is_open=name == OPEN_GROUP)
+            if name == OPEN_GROUP:
+                self.readings = Readings(gui, self.view, tab)
         if kind.stability_map is not None:
             from app.panel import stability_map  # no sea imports what springs need
 
             read = cast(Callable[[], SpringParams], lambda: self.params)
             with gui.add_folder("Stability map", expand_by_default=False):
                 self.map = stability_map.StabilityMapPanel(gui, kind.stability_map, read, self.set)
-        self.controls: dict[str, Control] = {}
-        self.folders: dict[str, viser.GuiFolderHandle] = {}
-        for name, parameter in parameters_of(params).items():
-            if parameter.group not in self.folders:
-                is_open = len(self.folders) < OPEN_GROUPS
-                self.folders[parameter.group] = gui.add_folder(parameter.group, expand_by_default=is_open)
-            folder = self.folders[parameter.group]
-            with folder:
-                self.controls[name] = Control(gui, folder, name, parameter, self.reader(name), self.on_change)
-        self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
-        self.recorder = Recorder(kind.packing)
-        self.share = Share(self, wake, make_replay, questions)
-        self.compare = (
-            None if beside is None else Compare(gui, self.buttons, self.comparable_names, self.comparable, beside)
-        )
-        add_quality(gui)
-        self.notes: dict[str, viser.GuiHtmlHandle] = {}
-        self.hide()
-        self.show_preset()
-        self.add_keys()
+        with gui.add_folder("Help", expand_by_default=False):
+            self.help = gui.add_html("")
 
     @property
     def params(self) -> BaseParams:
         """The parameters as set now."""
         return self.state[0]
-
-    def reader(self, name: str) -> Callable[[], Value]:
-        """A function that reads the present value of one parameter."""
-        return lambda: getattr(self.params, name)
-
-    def add_chooser(self, scenes: tuple[str, ...]) -> None:
-        """The list of scenes, where there is more than one."""
-        if len(scenes) > 1:
-            add_scene_chooser(self.gui, scenes, self.kind.name, lambda name: self.open_scene(name, None, None))
 
     def add_keys(self) -> None:
         """Keyboard and command palette. W A S D Q E and the arrows already move the camera."""
@@ -217,26 +202,13 @@ class Panel:
             return
         self.history.note(Settings(params, self.loaded), name)
         self.state = dataclasses.replace(params, **{name: value}), number
-        self.hide()
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the parameters as they are set, and tell who wants to know."""
+        self.shown.show(self.kind.hidden(self.params))
         self.show_preset()
         self.changed(self.params)
-
-    def hide(self) -> None:
-        """Hide the controls that mean nothing just now, and the folders in which nothing is left."""
-        hidden = self.kind.hidden(self.params)
-        shown: set[str] = set()
-        for name, control in self.controls.items():
-            control.show(name not in hidden)
-            if name not in hidden:
-                shown.add(control.parameter.group)
-        for group, folder in self.folders.items():
-            if folder.visible != (group in shown):
-                folder.visible = group in shown
-
-    async def on_preset(self, event: ViserEvent) -> None:
-        """A browser has chosen a preset; viser also calls this where `show_preset` assigns it, without a client."""
-        if event.client_id is not None and event.target.value in (*self.kind.presets, *self.own):
-            self.load(event.target.value)
 
     def params_of(self, preset: str) -> BaseParams:
         """The parameters of a preset. The hull from a file, which is not a parameter, stays."""
@@ -317,47 +289,27 @@ class Panel:
     def take(self, params: BaseParams, preset: str, number: int) -> None:
         """Take and show parameters. preset: that they come from. number: how many presets have been loaded."""
         self.state, self.loaded = (params, number), preset
-        for name, control in self.controls.items():
-            control.show_value(getattr(params, name))
-        self.hide()
-        self.show_preset()
-        self.changed(self.params)
+        self.refresh()
 
     def show_preset(self) -> None:
-        """The list of presets, with "(changed)" where a parameter is not as the preset has it.
-
-        "(changed)" is an entry of its own, so that the preset itself can be chosen again.
-        """
-        look = {name for name, parameter in parameters_of(self.params).items() if parameter.affects == "look"}
+        """Show which preset is loaded, and whether a parameter that matters is not as it has it."""
+        look = {name for name, parameter in self.shown.parameters.items() if parameter.affects == "look"}
         changed = changed_names(self.params_of(self.loaded), self.params) - look
-        shown = f"{self.loaded} (changed)" if changed else self.loaded
-        text = note(fill("{} {}", Html(self.kind.help), self.kind.about.get(self.loaded, "")))
-        if self.help.content != text:
-            self.help.content = text
-        options = (*self.kind.presets, *self.own, *((shown,) if changed else ()))
-        if self.preset.options != options:
-            self.preset.options = options
-        if self.preset.value != shown:
-            self.preset.value = shown
-
-    async def on_button(self, event: ViserEvent) -> None:
-        """Play or pause, step, reset: the action on the label of the pressed button."""
-        self.post(BUTTONS[event.target.value])
-
-    async def on_tool(self, event: ViserEvent) -> None:
-        """Reset the view, open or close the plots, undo a change."""
-        match event.target.value:
-            case "Plots":
-                self.toggle_plots()
-            case "Undo":
-                self.undo()
-            case _:
-                await self.reset_view(event)
+        self.head.show_preset((*self.kind.presets, *self.own), self.loaded, changed=bool(changed))
+        self.help.content = note(fill("{} {}<br>{}", Html(self.kind.help), self.kind.about.get(self.loaded, ""), KEYS))
 
     async def reset_view(self, event: ViserEvent) -> None:
         """Put the camera of this browser where a new one would be."""
         if event.client is not None:
-            place_camera(event.client.camera, *self.view.first_view(self.params), self.view.FIELD_OF_VIEW)
+            self.place_first_view(event.client)
+
+    def open_first_view_of(self, scene: str) -> None:
+        """Show another scene as it is shown first."""
+        self.open_scene(scene, None, None)
+
+    def place_first_view(self, client: viser.ClientHandle) -> None:
+        """Put the camera of a browser where a new one would be."""
+        place_camera(client.camera, *self.view.first_view(self.params), self.view.FIELD_OF_VIEW)
 
     def toggle_plots(self) -> None:
         """Open all plots, or close them where one is open."""
@@ -374,34 +326,19 @@ class Panel:
         now = time.monotonic()
         shown = self.recorder.shown
         self.plots.update(snapshot, rows, None if shown is None else shown.time)
-        if snapshot.status.halted != self.halted:
-            self.halted = snapshot.status.halted
-            self.status_at = 0.0
-            if self.halted:
-                self.notify(self.halted)
-        if snapshot.status.running != self.running:
-            self.running = snapshot.status.running
-            self.buttons.options = button_names(self.running)
-            self.status_at = 0.0
         visitors = len(self.server.get_clients())
-        if visitors != self.visitors:
-            self.visitors = visitors
-            self.status_at = 0.0
-        refresh = now - self.status_at >= STATUS_INTERVAL
+        refresh = self.head.is_stale(snapshot, visitors) or now - self.status_at >= STATUS_INTERVAL
         if refresh:
             self.status_at = now
-            self.status.content = str(status_line(snapshot, busy, visitors))
-            readout = self.view.readout(snapshot)
-            self.readout.content = note(Html(readout))
+            self.head.show(snapshot, busy, visitors)
+            self.readings.show(snapshot)
             if self.code is not None:
                 self.code.update({} if self.guide is None else self.guide.values)
-            if self.code_line is not None and self.code is not None:
-                self.code_line.content = note(self.code.headline())
+                self.head.show_code(self.code.headline())
         if now - self.marks_at >= MARKS_INTERVAL:
             self.marks_at = now
             for name, text in self.view.marks(snapshot).items():
                 self.controls[name].write(text)
-            self.write_notes(self.view.notes(snapshot))
             if self.map is not None:
                 self.map.draw()
         if self.guide is not None:
@@ -409,19 +346,6 @@ class Panel:
         self.share.update()
         if self.compare is not None:
             self.compare.update()
-
-    def write_notes(self, notes: dict[str, str]) -> None:
-        """Foldable texts below the controls, as HTML: made once, then kept up to date."""
-        for heading, text in notes.items():
-            if heading not in self.notes:
-                with self.gui.add_folder(heading, expand_by_default=False):
-                    self.notes[heading] = self.gui.add_html("")
-            self.notes[heading].content = note(Html(text))
-
-    def notify(self, text: str) -> None:
-        """Tell every browser."""
-        for client in self.server.get_clients().values():
-            client.add_notification("Paused", text, color="red", auto_close_seconds=10.0)
 
     def close(self) -> None:
         """Stop the threads of this panel, and keep unfinished input."""
@@ -452,50 +376,3 @@ def with_fields_of(old: BaseParams, new: BaseParams) -> BaseParams:
     """`new`, with the hull from a file, which is not a parameter, as in `old`."""
     kept = {f.name: getattr(old, f.name) for f in dataclasses.fields(old) if "parameter" not in f.metadata}
     return dataclasses.replace(new, **kept)
-
-
-def button_names(running: bool) -> tuple[str, str, str]:
-    """Labels of the buttons: the first names its next action."""
-    return "Pause" if running else "Play", "Step", "Reset"
-
-
-def add_scene_chooser(
-    gui: viser.GuiApi, scenes: tuple[str, ...], shown: str | None, open_scene: Callable[[str], None]
-) -> None:
-    """The list of scenes, each with its name in words."""
-    names = {in_words(name): name for name in scenes}
-    chooser = gui.add_dropdown("Scene", tuple(names), initial_value=None if shown is None else in_words(shown))
-
-    @chooser.on_update
-    async def _(event: ViserEvent) -> None:
-        if event.client_id is not None:
-            open_scene(names[event.target.value])
-
-
-def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> Html:
-    """Running or not, the clock, the pace, and why the run stopped; how many browsers share the lab."""
-    s = snapshot.status
-    state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
-    if s.replayed is not None and not s.halted:
-        state = coloured("Slow motion", WARNING_COLOUR)
-    if s.halted:
-        state = coloured("Stopped", ERROR_COLOUR)
-    pace = fill("×{:.2f} real time, {:.0f} frames/s", s.actual_speed, s.frame_rate)
-    if s.capped:
-        pace = fill(
-            "{}: ×{:.2f} instead of ×{:g}",
-            coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed,
-        )  # fmt: skip
-    return fill(
-        '<div class="springtide-panel" data-state="{}" data-snapshot="{}">{} t = {:.2f} s{}{}{}{}{}{}</div>',
-        "running" if s.running else "paused",
-        snapshot.serial,  # so that one sees that it is fresh, where its words repeat
-        state,
-        s.time,
-        fill(' · <span class="springtide-pace">{}</span>', pace) if s.running else "",
-        fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
-        fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
-        fill("<br>Faster: {}.", s.faster) if s.faster else "",
-        fill("<br>{} browsers share this lab.", visitors) if visitors > 1 else "",
-        fill('<div class="springtide-stopped" role="alert">{}</div>', s.halted) if s.halted else "",
-    )

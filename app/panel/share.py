@@ -50,29 +50,33 @@ class Share:
         """
         self.server, self.panel, self.questions = panel.server, panel, questions
         gui = panel.gui
-        self.ballot = Ballot(panel.server, panel.lab, questions, self.show, self.refuse)
-        with panel.lab:
-            moment = gui.add_html("", visible=False)
+        self.wake, self.make_replay = wake, make_replay
+        self.ballot = Ballot(panel.server, panel.head.folder, questions, self.show, self.refuse)
+        with panel.head.folder:
+            self.moment = gui.add_html("", visible=False)
         self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
         holder = fill('<span data-springtide-inbox="{}"></span>', uuid_of(self.inbox))
         gui.add_html(str(holder))
-        with gui.add_folder("Record and share", expand_by_default=False):
-            self.timeline = Timeline(panel, moment, wake, self.say)
-            self.curves = gui.add_button_group("", (KEEP_CURVES, DROP_CURVES))
-            self.curves.on_click(self.on_curves)
-            self.name = gui.add_text(
-                "Name", "", hint=f"Of the set-up that is saved, kept or removed, at most {MAX_NAME} characters"
-            )
-            self.note = gui.add_text("Note", "", hint=f"Kept with the set-up, at most {MAX_NOTE} characters")
-            gui.add_button_group("", (COPY, SAVE)).on_click(self.on_link)
-            gui.add_button_group("", (KEEP, REMOVE)).on_click(self.on_own)
-            gui.add_html(
-                '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
-                '<input type="file" accept=".json,.html,.npz" data-springtide-load></label></div>'
-            )
-            self.files = Files(panel, wake, make_replay, self.say)
-            self.line = gui.add_html("")
+
+    def add(self) -> None:
+        """The controls, in the container that is open."""
+        gui, panel = self.panel.gui, self.panel
+        self.timeline = Timeline(panel, self.moment, self.wake, self.say)
+        self.curves = gui.add_button_group("", (KEEP_CURVES, DROP_CURVES))
+        self.curves.on_click(self.on_curves)
+        self.name = gui.add_text(
+            "Name", "", hint=f"Of the set-up that is saved, kept or removed, at most {MAX_NAME} characters"
+        )
+        self.note = gui.add_text("Note", "", hint=f"Kept with the set-up, at most {MAX_NOTE} characters")
+        gui.add_button_group("", (COPY, SAVE)).on_click(self.on_link)
+        gui.add_button_group("", (KEEP, REMOVE)).on_click(self.on_own)
+        gui.add_html(
+            '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
+            '<input type="file" accept=".json,.html,.npz" data-springtide-load></label></div>'
+        )
+        self.files = Files(panel, self.wake, self.make_replay, self.say)
+        self.line = gui.add_html("")
 
     def say(self, text: object) -> None:
         """A line at the end of the folder."""

@@ -151,8 +151,12 @@ class View(Protocol[P, F, R]):
         """Assign a frame to the handles; called where a picture is handed over as one."""
         ...
 
+    def figures(self, snapshot: Snapshot[P, F, R]) -> str:
+        """HTML under the panel's status line: the one or two figures that matter, in one line of text."""
+        ...
+
     def readout(self, snapshot: Snapshot[P, F, R]) -> str:
-        """HTML under the panel's status line."""
+        """HTML under the first controls: short, as the key of the colours."""
         ...
 
     def marks(self, snapshot: Snapshot[P, F, R]) -> dict[str, str]:

@@ -15,7 +15,8 @@ from app.lab.workbook import Workbook
 from app.messages import BaseParams, Command, Release, Reset, StudentAnswer
 from app.panel.compare import PaneWords
 from app.panel.display import set_theme
-from app.panel.panel import Panel, add_scene_chooser
+from app.panel.head import add_scene_chooser
+from app.panel.panel import Panel
 from app.panel.questions import Questions
 from app.render.cameras import ClientCamera, place_client_camera
 from app.render.html import fill, note

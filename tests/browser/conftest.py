@@ -140,6 +140,12 @@ class Tab:
         mark.remove()
         self.errors = [error for error in self.errors if LATE_UPDATE not in error]
 
+    def show(self, name: str) -> None:
+        """Open one of the panel's tabs."""
+        name_of_tab = self.page.get_by_role("tab", name=name, exact=True)
+        self.wait(name_of_tab.is_visible, 20)
+        name_of_tab.click()
+
     def vertices(self, node: str) -> np.ndarray:
         """The drawn vertices (n, 3) that the page holds of a mesh; empty where it has none."""
         return vertices_of(self.page, node)

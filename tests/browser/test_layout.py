@@ -35,7 +35,7 @@ def test_nothing_covers_a_text_a_control_or_the_picture(resized: tuple[Viewer, T
     ("style", "fault"),
     [
         (".springtide-panel[data-state] { height: 0; }", "text over text: Running"),  # what follows moves up into it
-        ("[data-floating-window] { left: 700px !important; }", "out of reach: Reset"),
+        ("[data-floating-window] { left: 700px !important; }", "out of reach: Undo"),
         ("[data-floating-window] { left: 0 !important; width: 880px !important; }", "the picture shows in"),
     ],
 )

@@ -32,7 +32,8 @@ def page(chromium: Any) -> Iterator[Any]:
     page = new_page(chromium, 420, 300, drawn=False)
     page.add_init_script(SLOW_FRAMES)
     page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo")
-    page.wait_for_function("() => window.__springtide?.quality && document.querySelector('[data-springtide-quality]')")
+    page.wait_for_function("() => window.__springtide?.quality")
+    page.get_by_role("tab", name="View", exact=True).click(timeout=60_000)
     yield page
     page.close()
     viewer.shut()

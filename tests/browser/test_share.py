@@ -16,6 +16,7 @@ from app.scenes import NAMES, scene_named
 from app.scenes.own_setups import own_files
 from app.scenes.setups import setup_block
 from app.server.viewer import Viewer
+from sim.parameters import check_record
 from tests.browser.conftest import Tab
 
 SCENE = "rope"
@@ -28,11 +29,8 @@ MOMENT_PLACES = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).f
 
 @pytest.fixture
 def opened(shown: tuple[Viewer, Tab]) -> tuple[Viewer, Tab]:
-    """The folder, unfolded."""
-    _, tab = shown
-    if not tab.page.get_by_role("button", name="Copy link").is_visible():
-        tab.page.get_by_role("button", name="Record and share", exact=True).click()
-        tab.wait(lambda: tab.page.get_by_role("button", name="Copy link").is_visible(), 20)
+    """The tab, opened."""
+    shown[1].show("Share")
     return shown
 
 
@@ -83,7 +81,7 @@ def test_a_file_is_loaded_or_refused_in_one_line(opened: tuple[Viewer, Tab], tmp
         tab.wait(lambda notice=notice: notice.count() == 0, 20)
     assert vars(lab.panel.params)["points"] == 23
     rope = scene_named("rope")
-    block = setup_block(rope, rope.params(points=24))
+    block = setup_block(rope, check_record(rope.params, {"points": 24}))
     load(tab, tmp_path / "c.html", f"<!doctype html><html><body>{'x' * 100_000}{block}</body></html>")
     tab.wait(lambda: vars(lab.panel.params)["points"] == 24, 20)
 
@@ -150,7 +148,7 @@ def test_film_clip_and_plots_are_made_as_files(
     lab, _ = one_page
     tab = open_tab(lab.port, drawn="colorMap")  # draws the background image too: its sky is checked
     tab.follow(lab, SCENE)
-    tab.page.get_by_role("button", name="Record and share", exact=True).click()
+    tab.show("Share")
     lab.panel.set("plot_tip", True)
     tab.wait(lambda: len(lab.panel.recorder.frames) > 10 and "plot_tip" in lab.panel.plots.charts, 30)
     tab.page.get_by_role("button", name="Record clip").click()

@@ -61,7 +61,7 @@ def test_a_key_answers_soon_over_a_slow_line(chromium: Any, scene: str) -> None:
     with served("--scene", scene) as lab, slow_line(lab.port, RATE, DELAY, BUFFER) as line:
         page = new_page(chromium, 480, 320, drawn=False)
         page.goto(f"http://127.0.0.1:{line.port}/?hideViserLogo&fixedDpr=0.2", timeout=60_000)
-        page.get_by_text("Look", exact=True).first.click(timeout=60_000)
+        page.get_by_role("tab", name="View", exact=True).click(timeout=60_000)
         page.evaluate(WATCH, WATER_UNIFORMS.index("extent"))
         page.wait_for_function("springtideWatch.ready", timeout=60_000)
         page.wait_for_timeout(3000)

@@ -18,6 +18,7 @@ import pytest
 
 from app.messages import BaseParams, Pause
 from app.panel.control import title
+from app.panel.panel import VIEW_GROUPS
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import AnyKind
 from app.server.viewer import Viewer
@@ -139,6 +140,7 @@ def show_number(lab: Viewer, tab: Tab, name: str, parameter: Parameter) -> None:
     lab.loop.commands.put(Pause())
     field = tab.page.get_by_role("textbox", name=title(name, parameter), exact=True)
     tab.page.wait_for_timeout(400)
+    tab.show("View" if parameter.group in VIEW_GROUPS else "Controls")
     if not field.is_visible():
         tab.page.get_by_role("button", name=parameter.group, exact=True).click()
         tab.wait(field.is_visible, 20)

@@ -53,7 +53,7 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
     assert lab.loop.running
 
     page.get_by_role("button", name="Set this up").click()
-    tab.wait(lambda: lab.panel.preset.value == "Lab code: 10 points")
+    tab.wait(lambda: lab.panel.head.preset.value == "Lab code: 10 points")
     lab.panel.set("stiffness", 8000.0)
     lab.panel.set("time_step", 1 / 500)
 

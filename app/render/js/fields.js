@@ -104,15 +104,68 @@
     }
   }
 
-  // The block that stays in sight: the folder that says whether the lab plays.
+  // The block that stays in sight: the folder that says whether the lab plays. The tabs stand below it.
+  const HINTS = {
+    Play: "Play (space)", Pause: "Pause (space)", Step: "One step (N)", Reset: "Back to the start (R)",
+    View: "Reset the view (V)", Plots: "Open or close the plots (P)", Undo: "Undo the last change (U)",
+  };
+  const sizes = new ResizeObserver(([{ target }]) => {
+    document.documentElement.style.setProperty("--springtide-head", `${target.offsetHeight}px`);
+  });
   function markLab() {
-    document.querySelector(".springtide-panel[data-state]")?.closest(".mantine-Paper-root")?.classList.add("springtide-lab");
+    const status = document.querySelector(".springtide-panel[data-state]"), lab = status?.closest(".mantine-Paper-root");
+    if (!lab) return;
+    if (!lab.classList.contains("springtide-lab")) {
+      lab.classList.add("springtide-lab");
+      sizes.disconnect();
+      sizes.observe(lab);
+    }
+    const head = status.parentElement.parentElement;
+    head.classList.add("springtide-head");
+    for (const button of head.querySelectorAll(".mantine-Button-root")) {
+      const name = button.textContent;
+      if (!(name in HINTS) || button.dataset.springtideIcon === name) continue;
+      button.dataset.springtideIcon = name;
+      button.title = HINTS[name];
+    }
   }
+
+  // One stop of Tab for the buttons of the block, and one for the tabs: the arrows go on from there.
+  function roveStops() {
+    const groups = [
+      [...document.querySelectorAll("[data-springtide-icon]")],
+      [...document.querySelectorAll('[data-dock-area^="gui-tabs-"] [role="tab"]')],
+    ];
+    for (const group of groups) {
+      const first = group.find((one) => one === document.activeElement || one.ariaSelected === "true") ?? group[0];
+      for (const one of group) if (one.tabIndex !== (one === first ? 0 : -1)) one.tabIndex = one === first ? 0 : -1;
+    }
+  }
+  document.addEventListener("keydown", (event) => {
+    const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!by || !(event.target instanceof HTMLElement) || !event.target.dataset.springtideIcon) return;
+    const row = [...document.querySelectorAll("[data-springtide-icon]")];
+    row[(row.indexOf(event.target) + by + row.length) % row.length].focus();
+    event.preventDefault();
+    event.stopPropagation();
+  }, true);
+
+  // C goes to the first control of the tab that is shown.
+  const CONTROL = "input, textarea, .mantine-Slider-thumb, button";
+  document.addEventListener("keydown", (event) => {
+    const typing = event.target instanceof Element && event.target.matches("input, textarea, select");
+    if (event.key.toLowerCase() !== "c" || typing || event.ctrlKey || event.metaKey || event.altKey) return;
+    const controls = document.querySelectorAll(`[data-dock-area^="gui-tabs-"] :is(${CONTROL}), .mantine-Tabs-panel :is(${CONTROL})`);
+    [...controls].find((one) => one.checkVisibility() && !one.disabled)?.focus();
+    event.preventDefault();
+  });
 
   function adorn() {
     nameFields();
     markLab();
+    roveStops();
   }
-  new MutationObserver(adorn).observe(document.body, { childList: true, subtree: true });
+  new MutationObserver(adorn).observe(document.body, { childList: true, subtree: true, characterData: true });
+  document.addEventListener("focusin", roveStops);
   adorn();
 })();

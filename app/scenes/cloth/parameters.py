@@ -60,7 +60,7 @@ class Params:
         "N/m",
         "Stiffness of the shear springs, across a cell",
         log_from=1.0,
-        group="Cloth",
+        group="Main",
         title="Shear stiffness",
     )
     bend: float = parameter(
@@ -70,7 +70,7 @@ class Params:
         "N/m",
         "Stiffness of the bend springs, to the next particle but one",
         log_from=0.1,
-        group="Cloth",
+        group="Main",
         title="Bend stiffness",
     )
     link: str = link_parameter("Cloth")

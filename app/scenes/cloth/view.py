@@ -12,7 +12,7 @@ from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import PullLine, SurfaceDrag
 from app.render.gizmo import Gizmo
-from app.render.html import fill, join
+from app.render.html import Html, fill, join
 from app.render.meshes import ball
 from app.render.surroundings import Surroundings, set_dark
 from app.render.viser_inside import set_arrays
@@ -159,10 +159,14 @@ class View:
         if self.student is not None:
             self.student.visible = points is not None
 
+    def figures(self, snapshot: ClothSnapshot) -> str:
+        """The stability bar."""
+        return stability_bar(snapshot.readings.stability, exact=snapshot.readings.exact)
+
     def readout(self, snapshot: ClothSnapshot) -> str:
-        """The stability bar, the cost of an implicit step and the colour scale, as HTML."""
+        """The cost of an implicit step and the colour scale, as HTML."""
         readings, frame = snapshot.readings, snapshot.frame
-        parts = [stability_bar(readings.stability, exact=readings.exact)]
+        parts: list[Html] = []
         if readings.corrections:
             parts.append(fill("<div>{:.1f} Newton iterations a step</div>", readings.corrections))
         if readings.left_out:

@@ -68,6 +68,15 @@ def reference_text(readings: RaceReadings) -> Html:
     return fill("Grey: reference (Dormand-Prince 5, tolerance 1e-10), reliable to {}.", metres(floor, 2))
 
 
+def errors_line(readings: RaceReadings) -> Html:
+    """The ropes that are nearest to the reference run and farthest from it."""
+    known = sorted((r for r in readings.results if r.error >= r.error_floor), key=lambda result: result.error)
+    if not known:
+        return fill("All ropes are as near to the reference as can be told.")
+    least, most = (fill("{} (rope {})", bold(metres(r.error, 2)), r.number) for r in (known[0], known[-1]))
+    return fill("Error: {} to {}", least, most) if len(known) > 1 else fill("Error: {}", most)
+
+
 def results_table(readings: RaceReadings) -> Html:
     """The results of all ropes, and remarks on the reference run."""
     stiffness_differs = len({result.stiffness for result in readings.results}) > 1

@@ -107,12 +107,8 @@ class Params(RaceMethods, RopeParams, RaceRules):
         RopeParams, "time_step", default=1 / 240, doc="Step of rope 1", affects="start", title="1: time step"
     )
     units: str = redeclare(RopeParams, "units", affects="start")
-    points: int = redeclare(RopeParams, "points", affects="start", group="Rope")
+    points: int = redeclare(RopeParams, "points", affects="start")
     length: float = redeclare(RopeParams, "length", affects="start")
-    stiffness: float = redeclare(RopeParams, "stiffness", group="Rope")
-    damping: float = redeclare(RopeParams, "damping", group="Rope")
-    axial_stiffness: float = redeclare(RopeParams, "axial_stiffness", group="Rope")
-    axial_viscosity: float = redeclare(RopeParams, "axial_viscosity", group="Rope")
 
     plot_errors: bool = parameter(
         True,

@@ -18,7 +18,7 @@ from app.render.viser_inside import set_arrays, update_node
 from app.scenes.charts import PALETTE
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.race.entrants import RaceReadings
-from app.scenes.race.html import results_table
+from app.scenes.race.html import errors_line, results_table
 from app.scenes.race.parameters import Params
 from app.scenes.race.scene import RaceFrame
 from app.scenes.springs.html import step_mark
@@ -239,9 +239,13 @@ class View:
         root = frame.root if frame.handles else None
         self.surroundings.show(frame.floor, frame.grid, root, frame.pull, self.points)
 
+    def figures(self, snapshot: RaceSnapshot) -> str:
+        """The ropes that are nearest to the reference and farthest from it."""
+        return errors_line(snapshot.readings)
+
     def readout(self, snapshot: RaceSnapshot) -> str:
-        """The table of results, as HTML."""
-        return results_table(snapshot.readings)
+        """Nothing: the table of results has a folder of its own."""
+        return ""
 
     def marks(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest step of rope 1 that is stable."""
@@ -249,8 +253,8 @@ class View:
         return {"time_step": step_mark(step)}
 
     def notes(self, snapshot: RaceSnapshot) -> dict[str, str]:
-        """No folders."""
-        return {}
+        """The table of results."""
+        return {"Results": results_table(snapshot.readings)}
 
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Draw sky, floor and ropes dark, or light again, for one browser."""

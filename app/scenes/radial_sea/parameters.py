@@ -70,7 +70,7 @@ class Params:
 
     waves: bool = parameter(True, doc="Waves; without them the sea is level", group="Waves")
     wind_direction: float = parameter(
-        25.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y", group="Waves"
+        25.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y", group="Main"
     )
     spectrum: str = parameter(
         "jonswap", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from", group="Waves"
@@ -151,9 +151,9 @@ class Params:
     )
 
     bodies: int = parameter(
-        3, 0, 200, "", "Number of floating bodies: two buoys, a box, then all kinds in turn", group="Bodies"
+        3, 0, 200, "", "Number of floating bodies: two buoys, a box, then all kinds in turn", group="Main"
     )
-    density: float = parameter(450.0, 50.0, 1020.0, "kg/m³", "Density of the bodies", group="Bodies")
+    density: float = parameter(450.0, 50.0, 1020.0, "kg/m³", "Density of the bodies", group="Main")
     own_densities: bool = parameter(
         False, doc="Densities of their own for the first three bodies", group="Bodies", title="Own densities"
     )
@@ -167,7 +167,7 @@ class Params:
     density_3: float = parameter(
         900.0, 50.0, 1020.0, "kg/m³", "Density of the third body, the box", group="Bodies", title="Box"
     )
-    size: float = parameter(1.5, 0.3, 4.0, "", "Size of the bodies; at 1 the box is 1.2 m wide", group="Bodies")
+    size: float = parameter(1.5, 0.3, 4.0, "", "Size of the bodies; at 1 the box is 1.2 m wide", group="Main")
     ripples: bool = parameter(
         True, doc="Bodies that move make waves of their own", group="Bodies", title="Radiated waves"
     )

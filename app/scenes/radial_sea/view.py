@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 import viser
 
+from app.formats.formatting import fixed, number
 from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Place, Snapshot, Vector, finite_vector, vector_of
 from app.render.cameras import place_cameras
 from app.render.dragging import PullLine, drag
 from app.render.follow_camera import FollowCamera
+from app.render.html import bold, fill
 from app.render.material import Material
 from app.render.meshes import ball
 from app.render.skies import set_sky
@@ -252,9 +254,18 @@ class View:
             if place is not None:
                 self.post(Place("camera", place))
 
+    def figures(self, snapshot: Snapshot) -> str:
+        """The draft of the first body, and the height of the waves."""
+        height = number(snapshot.readings.height)
+        waves = fill("Waves: {} m high", bold(height)) if snapshot.readings.height > 0.0 else fill("No waves")
+        if not snapshot.readings.bodies:
+            return waves
+        body = snapshot.readings.bodies[0]
+        return fill("{}: {} m deep in the water · {}", body.title, bold(fixed(body.draft, 2)), waves)
+
     def readout(self, snapshot: Snapshot) -> str:
-        """HTML under the status line: drafts, periods, waves."""
-        return readout_of(snapshot)
+        """Nothing: drafts and waves have a folder of their own."""
+        return ""
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
         """Parameter -> the line under its control."""
@@ -262,7 +273,7 @@ class View:
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
-        return notes_of(snapshot)
+        return {"Drafts and waves": readout_of(snapshot), **notes_of(snapshot)}
 
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Nothing to do: the light of a sea is that of its sky, a parameter."""

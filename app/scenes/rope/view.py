@@ -200,12 +200,16 @@ class View:
                 self.ball.position = frame.sphere[:3]
                 self.ball.scale = frame.sphere[3]
 
+    def figures(self, snapshot: RopeSnapshot) -> str:
+        """The stability bar."""
+        return stability_bar(snapshot.readings.stability)
+
     def readout(self, snapshot: RopeSnapshot) -> str:
-        """The stability bar, the cost of an implicit method and the colour scale, as HTML."""
+        """The cost of an implicit method and the colour scale, as HTML."""
         frame, scale = snapshot.frame, ""
         if frame.colour == "tension":
             scale = colour_scale("slack", "tension", f"{number(frame.full_scale)} N")
-        return stability_bar(snapshot.readings.stability) + cost_text(snapshot.readings.cost) + scale
+        return cost_text(snapshot.readings.cost) + scale
 
     def marks(self, snapshot: RopeSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest value that is stable with the others as they are."""

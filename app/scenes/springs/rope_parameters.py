@@ -72,9 +72,9 @@ class RopeParams:
         group="Surroundings",
     )
     root_swing: float = parameter(
-        0.0, 0.0, 1.0, "m", "Amplitude of the root's motion to and fro; 0 is off", group="Surroundings"
+        0.0, 0.0, 1.0, "m", "Amplitude of the root's motion to and fro; 0 is off", group="Main"
     )
-    swing_period: float = parameter(1.0, 0.2, 10.0, "s", "Period of the root's motion to and fro", group="Surroundings")
+    swing_period: float = parameter(1.0, 0.2, 10.0, "s", "Period of the root's motion to and fro", group="Main")
     pull: float = parameter(
         300.0,
         1.0,

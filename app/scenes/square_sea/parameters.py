@@ -56,7 +56,7 @@ class Params:
         "pierson_moskowitz", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from", group="Waves"
     )
     wind_direction: float = parameter(
-        20.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y", group="Waves"
+        20.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y", group="Main"
     )
     transition: float = parameter(
         3.0,
@@ -89,7 +89,7 @@ class Params:
     depth: float = parameter(20.0, 0.1, 5000.0, "m", "Depth of the water", log_from=0.1, group="Water and planet")
     choppiness: float = parameter(
         1.0, 0.0, 2.0, "", "Factor on the horizontal motion, which sharpens the crests; 1 is physics",
-        group="Water and planet",
+        group="Main",
     )  # fmt: skip
     amplitude: float = parameter(
         1.0, 0.0, 5.0, "", "Factor on every height; 1 is physics", group="Water and planet", title="Height factor"

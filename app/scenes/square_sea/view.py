@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 import viser
 
+from app.formats.formatting import number
 from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
+from app.render.html import bold, fill
 from app.render.material import RAIN_HEIGHT, Material, as_linear_bytes
 from app.render.meshes import ball, tube_faces
 from app.render.skies import set_sky
@@ -195,9 +197,19 @@ class View:
                 # viser moves the target along with the position, so that both are set.
                 camera.position, camera.look_at = there, there + target - position
 
+    def figures(self, snapshot: Snapshot) -> str:
+        """Height and period of the waves."""
+        measured = snapshot.readings.report
+        if measured is None:
+            return ""
+        waves = measured.measured
+        return fill(
+            "Waves: {} m high, {} s apart", bold(number(waves.significant_height)), bold(number(waves.peak_period))
+        )
+
     def readout(self, snapshot: Snapshot) -> str:
-        """Statistics, foam, rain and wave gauge, as HTML."""
-        return report.readout(snapshot)
+        """Nothing: the statistics have a folder of their own."""
+        return ""
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
         """Parameter -> the line under its control."""
@@ -205,7 +217,7 @@ class View:
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
-        return {}
+        return {"Waves, foam and rain": report.readout(snapshot)}
 
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Nothing to do: the light of a sea is that of its sky, a parameter."""

@@ -82,15 +82,17 @@ def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) 
     posted: list[Any] = []
     panel = lab.panel
     panel.post = posted.append
-    before = panel.preset.value
+    before = panel.head.preset.value
     command = next(c for c in lab.server.gui._command_handle_from_uuid.values() if "Pendulum" in c._impl.props.label)
-    for callback in command._impl.trigger_cb:
+    pressed: list[Any] = command._impl.trigger_cb
+    for callback in pressed:
         coroutines.run(callback(SimpleNamespace(target=command, client_id=1)))
-    assert panel.preset.value == "Pendulum" != before
+    assert panel.head.preset.value == "Pendulum" != before
     time.sleep(0.3)  # viser tells of the assignment to the list, too
     assert [type(c) for c in posted] == [Load]
-    panel.preset.value = before
-    for callback in panel.preset._impl.update_cb:
-        coroutines.run(callback(SimpleNamespace(target=panel.preset, client_id=1)))
+    panel.head.preset.value = before
+    chosen: list[Any] = panel.head.preset._impl.update_cb
+    for callback in chosen:
+        coroutines.run(callback(SimpleNamespace(target=panel.head.preset, client_id=1)))
     time.sleep(0.3)
     assert [c.number for c in posted] == [1, 2]

@@ -8,25 +8,25 @@ from app.server.viewer import Viewer
 
 def test_a_changed_preset_says_so_and_can_be_loaded_again(lab: Viewer) -> None:
     panel = lab.panel
-    first = panel.preset.value
+    first = panel.head.preset.value
     panel.set("stiffness", 2000.0)
-    assert panel.preset.value == f"{first} (changed)"
-    assert first in panel.preset.options  # so that a browser can choose it
+    assert panel.head.preset.value == f"{first} (changed)"
+    assert first in panel.head.preset.options  # so that a browser can choose it
     panel.load(first)
-    assert panel.preset.value == first
-    assert f"{first} (changed)" not in panel.preset.options
+    assert panel.head.preset.value == first
+    assert f"{first} (changed)" not in panel.head.preset.options
     assert panel.params == Params()
 
 
 def test_a_change_of_the_look_leaves_the_preset_as_it_is(lab: Viewer) -> None:
     lab.panel.set("speed", 0.5)
-    assert "changed" not in lab.panel.preset.value
+    assert "changed" not in lab.panel.head.preset.value
 
 
 def test_a_value_set_back_is_no_change(lab: Viewer) -> None:
     lab.panel.set("stiffness", 2000.0)
     lab.panel.set("stiffness", 800.0)
-    assert "changed" not in lab.panel.preset.value
+    assert "changed" not in lab.panel.head.preset.value
 
 
 def test_a_preset_starts_running(lab: Viewer) -> None:
@@ -38,12 +38,12 @@ def test_a_preset_starts_running(lab: Viewer) -> None:
 
 def test_a_preset_and_a_change_can_be_undone(lab: Viewer) -> None:
     panel = lab.panel
-    first = panel.preset.value
+    first = panel.head.preset.value
     panel.set("stiffness", 2000.0)
     panel.load("Lab scene: 50 points")
     panel.undo()
     assert panel.params == Params(stiffness=2000.0)
-    assert panel.preset.value == f"{first} (changed)"
+    assert panel.head.preset.value == f"{first} (changed)"
     assert panel.controls["stiffness"].field.value == "2000"
     panel.undo()
     assert panel.params == Params()

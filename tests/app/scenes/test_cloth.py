@@ -2,12 +2,13 @@
 
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 from app.messages import DivergenceError, Grab, Place, Release
-from app.panel.panel import status_line
+from app.panel.head import status_line
 from app.scenes.cloth.parameters import PRESETS, Params
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
 from app.scenes.cloth.view import View, faces
@@ -17,6 +18,7 @@ from app.server.loop import SimLoop
 from sim.parameters import check_record
 
 SMALL = Params(rows=10, cols=10, time_step=1 / 1200, wind=0.0)
+Loop: Any = SimLoop  # of a scene whose types the tests know
 
 
 def run(scene: ClothScene, seconds: float) -> None:
@@ -26,12 +28,12 @@ def run(scene: ClothScene, seconds: float) -> None:
 
 def marks_of(scene: ClothScene) -> dict[str, str]:
     """The lines under the controls."""
-    return View.marks(object.__new__(View), SimLoop(scene, paused=True).latest)
+    return View.marks(object.__new__(View), Loop(scene, paused=True).latest)
 
 
 def change(scene: ClothScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    SimLoop(scene, paused=True).take(dataclasses.replace(scene.params, **changes))
+    Loop(scene, paused=True).take(dataclasses.replace(scene.params, **changes))
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -59,7 +61,9 @@ def test_a_dragged_particle_follows_and_is_released():
     run(scene, 0.7)
     stiffness = min(scene.params.pull / 0.1, 0.1 * scene.net.mass / scene.step**2)
     stretch = np.linalg.norm(np.array(target) - scene.state.x[:, 7, 4])
-    assert scene.frame().pull.load == pytest.approx(min(1.0, stretch * stiffness / scene.params.pull), rel=1e-4)
+    pull = scene.frame().pull
+    assert pull is not None
+    assert pull.load == pytest.approx(min(1.0, stretch * stiffness / scene.params.pull), rel=1e-4)
     assert scene.state.x[1, 7, 4] < before[1] - 0.2
     scene.handle(Release())
     run(scene, 0.1)
@@ -96,7 +100,8 @@ def test_a_sphere_that_is_pulled_through_the_curtain_takes_the_cloth_along():
     scene = ClothScene(dataclasses.replace(Params(), sphere=True, wind=0.0))
     run(scene, 0.3)
     scene.handle(Place("sphere", (0.0, 50.0, 1.2)))
-    fastest, before, least = 0.0, np.array(scene.frame().sphere), np.inf
+    sphere = before = np.array(scene.frame().sphere)
+    fastest, least = 0.0, np.inf
     for _ in range(20):
         scene.advance(round(1 / 60 / scene.step))
         sphere = np.array(scene.frame().sphere)
@@ -158,7 +163,7 @@ def test_one_step_a_frame_is_taken_while_it_takes_longer_than_a_frame_and_droppe
             spent += 0.3 * steps
 
     params = dataclasses.replace(SMALL, integrator="implicit_euler", time_step=1 / 240, stiffness=1e5)
-    loop = SimLoop(ExpensiveScene(params), effort=lambda: spent)
+    loop = Loop(ExpensiveScene(params), effort=lambda: spent)
     for _ in range(12):
         before = loop.counts["steps"]
         loop.tick(0.3)
@@ -198,7 +203,7 @@ def test_a_change_of_look_leaves_the_energy_account_alone_bit_for_bit_and_costs_
     """Compared where both have taken the same number of steps, as another speed takes other steps in a frame."""
     params = dataclasses.replace(SMALL, wind=3.0, gust=0.0)
     alone, changed = ClothScene(params), ClothScene(params)
-    loops = [SimLoop(scene, clock=lambda: 0.0, effort=lambda: 0.0) for scene in (alone, changed)]
+    loops = [Loop(scene, clock=lambda: 0.0, effort=lambda: 0.0) for scene in (alone, changed)]
     accounts: list[dict[int, tuple[float, ...]]] = [{}, {}]
     for frame in range(80):
         if frame % 9 == 5:

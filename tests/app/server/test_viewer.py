@@ -62,7 +62,8 @@ def test_the_first_picture_of_a_sea_of_another_size_leaves_the_camera_where_it_w
     kind = scene_named("square_sea")
     params = check_record(kind.params, {**kind.presets["Storm over"], "size": "64", "mesh": "32"})
     lab.open("square_sea", params, paused=True)
-    wait_for(lambda: lab.view.last is not None)
+    view: Any = lab.view
+    wait_for(lambda: view.last is not None)
     camera = lab.server.initial_camera
     np.testing.assert_allclose([camera.position, camera.look_at], lab.view.first_view(params))
 
@@ -75,14 +76,15 @@ class Client:
 
 
 def test_a_browser_that_goes_lets_go_of_what_it_held_and_of_nothing_else(lab: Viewer) -> None:
+    scene: Any = lab.scene
     lab.commands.put(Grab(5, (0.0, 0.0, 2.0), client=1))
-    wait_for(lambda: lab.scene.handles.drag.hold is not None)
+    wait_for(lambda: scene.handles.drag.hold is not None)
     coroutines.run(lab.on_disconnect(Client(2)))  # type: ignore[arg-type]
     ticks = lab.loop.counts["ticks"]
     wait_for(lambda: lab.loop.counts["ticks"] > ticks + 3)
-    assert lab.scene.handles.drag.hold is not None
+    assert scene.handles.drag.hold is not None
     coroutines.run(lab.on_disconnect(Client(1)))  # type: ignore[arg-type]
-    wait_for(lambda: lab.scene.handles.drag.hold is None)
+    wait_for(lambda: scene.handles.drag.hold is None)
 
 
 def panel_text(viewer: Viewer) -> str:
@@ -116,7 +118,7 @@ def test_a_scene_that_cannot_be_opened_leaves_a_page_that_says_why_and_offers_th
 
 
 def test_a_scene_comes_back_with_the_parameters_it_was_first_opened_with(lab: Viewer) -> None:
-    params = scene_named("cloth").params(stiffness=321.0)
+    params = check_record(scene_named("cloth").params, {"stiffness": 321.0})
     lab.open("cloth", params)
     lab.open("rope")
     lab.open("cloth")
@@ -222,7 +224,7 @@ def test_a_long_solve_is_said_in_the_status(lab: Viewer, monkeypatch: pytest.Mon
     said = threading.Event()
     monkeypatch.setattr(lab.scene, "advance", lambda steps: said.wait(30.0))
     lab.loop.audience = lambda: 1
-    wait_for(lambda: "This step has taken" in lab.panel.status.content)
+    wait_for(lambda: "This step has taken" in lab.panel.head.status.content)
     said.set()
 
 
@@ -231,8 +233,9 @@ def test_presets_under_load_each_start_on_exactly_their_own_record(lab: Viewer, 
     """Presets and sliders at once, as fast as they can be put, while the simulation runs."""
     lab.loop.audience = lambda: 1
     starts: list[Any] = []
-    reset = lab.scene.reset
-    lab.scene.reset = lambda: (starts.append(lab.scene.params), reset())
+    scene: Any = lab.scene
+    reset = scene.reset
+    scene.reset = lambda: (starts.append(scene.params), reset())
     presets = list(lab.panel.kind.presets)
     records = []
     for number in range(count):

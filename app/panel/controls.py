@@ -1,0 +1,57 @@
+"""The controls of a scene's parameters: one record, and any number of controls that show it and set it."""
+
+from collections.abc import Callable
+
+import viser
+
+from app.messages import BaseParams
+from app.panel.control import Control
+from sim.parameters import Value, parameters_of
+
+
+class Controls:
+    """All controls of a panel. A parameter has one in its folder, and another one in a task that is about it."""
+
+    def __init__(
+        self, gui: viser.GuiApi, read: Callable[[], BaseParams], changed: Callable[[str, Value], None]
+    ) -> None:
+        """read: the record as it is set now. changed: takes what a browser sets."""
+        self.gui, self.read, self.changed = gui, read, changed
+        self.parameters = parameters_of(read())
+        self.own: dict[str, Control] = {}
+        self.folders: dict[str, viser.GuiFolderHandle] = {}
+        self.beside: tuple[Control, ...] = ()  # those in a task, of which one is shown
+
+    def add_group(self, group: str, *, is_open: bool) -> None:
+        """The folder of a group of parameters, where there are any, in the container that is open."""
+        names = [name for name, parameter in self.parameters.items() if parameter.group == group]
+        if not names:
+            return
+        self.folders[group] = folder = self.gui.add_folder(group, expand_by_default=is_open)
+        with folder:
+            for name in names:
+                self.own[name] = self.make(folder, name)
+
+    def make(self, folder: viser.GuiFolderHandle | viser.GuiTabHandle, name: str) -> Control:
+        """A control of a parameter, in the container that is open."""
+        return Control(
+            self.gui, folder, name, self.parameters[name], lambda: getattr(self.read(), name), self.on_change
+        )
+
+    def on_change(self, name: str, value: Value) -> None:
+        """A control was set: its twin shows the same."""
+        self.changed(name, value)
+        for control in (self.own[name], *self.beside):
+            if control.name == name:
+                control.show_value(value)
+
+    def show(self, hidden: set[str]) -> None:
+        """Show the record; hide the controls that mean nothing just now, and the folders in which nothing is left."""
+        params = self.read()
+        for control in (*self.own.values(), *self.beside):
+            control.show_value(getattr(params, control.name))
+            control.show(control.name not in hidden)
+        shown = {self.parameters[name].group for name in self.own if name not in hidden}
+        for group, folder in self.folders.items():
+            if folder.visible != (group in shown):
+                folder.visible = group in shown

@@ -1,0 +1,148 @@
+"""The block above the tabs, which stays in sight: scene, preset, buttons, state, and the figures that matter."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import viser
+
+from app.messages import Command, Pause, Play, Reset, StepOnce
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
+from app.render.viser_types import ViserEvent
+from app.scenes.contract import AnyKind, AnySnapshot, AnyView
+from sim.parameters import in_words
+
+BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
+COMMANDS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce(), "Reset": Reset()}
+
+
+class Actions(NamedTuple):
+    """Actions of the block's lists and buttons; each runs on viser's event loop."""
+
+    post: Callable[[Command], None]  # takes a command for the simulation
+    load: Callable[[str], None]  # shows a preset
+    open_scene: Callable[[str], None]
+    reset_view: Callable[[viser.ClientHandle], None]
+    toggle_plots: Callable[[], None]
+    undo: Callable[[], None]
+
+
+class Head:
+    """The block; `page.css` keeps it in sight while the rest is scrolled, and gives the buttons their icons."""
+
+    def __init__(
+        self, gui: viser.GuiApi, kind: AnyKind, view: AnyView, scenes: tuple[str, ...], actions: Actions
+    ) -> None:
+        """scenes: to choose from."""
+        self.kind, self.view, self.actions = kind, view, actions
+        self.names = tuple(kind.presets)
+        self.running = True  # as the buttons show it
+        self.told: tuple[object, ...] = ()  # what is shown at once when it changes
+        # The page finds the block by the status line in it, which says "springtide-panel".
+        with gui.add_folder("Lab") as self.folder:
+            if len(scenes) > 1:
+                add_scene_chooser(gui, scenes, kind.name, actions.open_scene)
+            self.preset = gui.add_dropdown("Preset", self.names, hint="Loads all settings and starts again from rest")
+            self.preset.on_update(self.on_preset)
+            self.buttons = gui.add_button_group("", button_names(running=True))
+            self.buttons.on_click(self.on_button)
+            self.status = gui.add_html("")
+            self.figures = gui.add_html("")
+            self.code_line = gui.add_html("", visible=False)
+
+    async def on_preset(self, event: ViserEvent) -> None:
+        """A browser has chosen a preset; viser also calls this where `show_preset` assigns it, without a client."""
+        if event.client_id is not None and event.target.value in self.names:
+            self.actions.load(event.target.value)
+
+    async def on_button(self, event: ViserEvent) -> None:
+        """Do what the label of the pressed button says."""
+        match event.target.value:
+            case "Plots":
+                self.actions.toggle_plots()
+            case "Undo":
+                self.actions.undo()
+            case "View":
+                if event.client is not None:
+                    self.actions.reset_view(event.client)
+            case name:
+                self.actions.post(COMMANDS[name])
+
+    def show_preset(self, names: tuple[str, ...], loaded: str, *, changed: bool) -> None:
+        """The list of presets, with "(changed)" where a parameter is not as the loaded one has it.
+
+        "(changed)" is an entry of its own, so that the preset itself can be chosen again.
+        """
+        self.names = names
+        shown = f"{loaded} (changed)" if changed else loaded
+        options = (*names, *((shown,) if changed else ()))
+        if self.preset.options != options:
+            self.preset.options = options
+        if self.preset.value != shown:
+            self.preset.value = shown
+
+    def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
+        """True if what changes seldom, and is to be seen at once, is not as it is shown."""
+        running = snapshot.status.running
+        if running != self.running:
+            self.running = running
+            self.buttons.options = button_names(running=running)
+        told, self.told = self.told, (running, snapshot.status.halted, visitors)
+        return self.told != told
+
+    def show(self, snapshot: AnySnapshot, busy: float, visitors: int) -> None:
+        """Show the state and the figures. busy: [s] that the present tick has taken."""
+        self.status.content = str(status_line(snapshot, busy, visitors))
+        self.figures.content = str(fill('<div class="springtide-figures">{}</div>', Html(self.view.figures(snapshot))))
+
+    def show_code(self, line: Html) -> None:
+        """Show one line on the state of a student's files."""
+        self.code_line.visible = True
+        self.code_line.content = str(fill('<div class="springtide-figures">{}</div>', line))
+
+
+def button_names(*, running: bool) -> tuple[str, ...]:
+    """Labels of the buttons: the first names its next action."""
+    return "Pause" if running else "Play", "Step", "Reset", "View", "Plots", "Undo"
+
+
+def add_scene_chooser(
+    gui: viser.GuiApi, scenes: tuple[str, ...], shown: str | None, open_scene: Callable[[str], None]
+) -> None:
+    """The list of scenes, each with its name in words."""
+    names = {in_words(name): name for name in scenes}
+    chooser = gui.add_dropdown("Scene", tuple(names), initial_value=None if shown is None else in_words(shown))
+
+    @chooser.on_update
+    async def _(event: ViserEvent) -> None:
+        if event.client_id is not None:
+            open_scene(names[event.target.value])
+
+
+def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> Html:
+    """Running or not, the clock, the pace, and why the run stopped; how many browsers share the lab."""
+    s = snapshot.status
+    state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
+    if s.replayed is not None and not s.halted:
+        state = coloured("Slow motion", WARNING_COLOUR)
+    if s.halted:
+        state = coloured("Stopped", ERROR_COLOUR)
+    pace = fill("×{:.2f}", s.actual_speed)
+    if s.capped:
+        pace = fill(
+            "{}: ×{:.2f} instead of ×{:g}",
+            coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed,
+        )  # fmt: skip
+    return fill(
+        '<div class="springtide-panel" data-state="{}" data-snapshot="{}" title="{}">{} t = {:.2f} s{}{}{}{}{}{}</div>',
+        "running" if s.running else "paused",
+        snapshot.serial,  # so that one sees that it is fresh, where its words repeat
+        f"Simulated over real time, at {s.frame_rate:.0f} pictures a second" if s.running else "",
+        state,
+        s.time,
+        fill(' · <span class="springtide-pace">{}</span>', pace) if s.running else "",
+        fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
+        fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
+        fill("<br>Faster: {}.", s.faster) if s.faster else "",
+        fill("<br>{} browsers share this lab.", visitors) if visitors > 1 else "",
+        fill('<div class="springtide-stopped" role="alert">{}</div>', s.halted) if s.halted else "",
+    )

@@ -1,0 +1,26 @@
+"""The scene's texts among the controls: short ones that are always shown, and foldable ones."""
+
+import viser
+
+from app.render.html import Html, note
+from app.scenes.contract import AnySnapshot, AnyView
+
+
+class Readings:
+    """The texts, in the container that is open where this is made."""
+
+    def __init__(self, gui: viser.GuiApi, view: AnyView, tab: viser.GuiTabHandle) -> None:
+        """tab: the container, in which folders are made when a scene first has a text for them."""
+        self.gui, self.view, self.tab = gui, view, tab
+        self.readout = gui.add_html("")
+        self.notes: dict[str, viser.GuiHtmlHandle] = {}
+
+    def show(self, snapshot: AnySnapshot) -> None:
+        """Bring all texts up to date."""
+        self.readout.content = note(Html(self.view.readout(snapshot)))
+        for heading, text in self.view.notes(snapshot).items():
+            if heading not in self.notes:
+                order = None if self.notes else self.readout.order + 0.5  # the first below the short texts
+                with self.tab, self.gui.add_folder(heading, order=order, expand_by_default=False):
+                    self.notes[heading] = self.gui.add_html("")
+            self.notes[heading].content = note(Html(text))

@@ -12,23 +12,9 @@ import numpy as np
 from sim.jit import kernel
 from sim.ocean.wave_sum import QUARTER
 from sim.ocean.wave_sum import sine as quarter_sine
+from sim.wave_motion import sincos_turns
 
 SINGLE = 4  # [bytes] of a number of single precision
-
-
-@kernel
-def sincos_turns(turns):
-    """(cos, sin) of 2 pi turns. turns is brought to [-1/2, 1/2] in double, so that it is exact after days."""
-    x = np.pi * (turns - np.rint(turns))
-    y = x * x
-    # Taylor series of sin x, cos x on |x| <= pi/2, remainders x^21/21! and x^22/22! under 3e-16 and 2e-17; then 2x.
-    s = 1 / 355687428096000 - y / 121645100408832000
-    s = -1 / 39916800 + y * (1 / 6227020800 + y * (-1 / 1307674368000 + y * s))
-    s = x * (1.0 + y * (-1 / 6 + y * (1 / 120 + y * (-1 / 5040 + y * (1 / 362880 + y * s)))))
-    c = -1 / 6402373705728000 + y / 2432902008176640000
-    c = 1 / 479001600 + y * (-1 / 87178291200 + y * (1 / 20922789888000 + y * c))
-    c = 1.0 + y * (-1 / 2 + y * (1 / 24 + y * (-1 / 720 + y * (1 / 40320 + y * (-1 / 3628800 + y * c)))))
-    return 1.0 - 2.0 * s * s, 2.0 * s * c
 
 
 @kernel

@@ -25,13 +25,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.jit import kernel
-from sim.ocean.evolve import sincos_turns
 from sim.ocean.gerstner import Waves
 from sim.ocean.spectra import Conditions
 from sim.validation import argument_error, check_choice, check_finite, check_positions, is_whole_number
+from sim.wave_motion import flow_at, sincos_turns
 
 STRETCHINGS = ("constant", "wheeler")
-DEEPEST = 40.0  # kz beyond which the motion is under 1e-17 of that at the surface
 
 
 class Kinematics(NamedTuple):
@@ -109,30 +108,12 @@ def components_of(waves: Waves, conditions: Conditions) -> Components:
     return Components(waves.kx, waves.ky, waves.amplitude, omega, waves.phase, conditions.depth, conditions.density)
 
 
-@kernel(inline=True)
-def exponential(x):
-    """e^x for -DEEPEST <= x <= 0 within 1e-13: Taylor's series of x/1024, squared ten times."""
-    y = x / 1024.0
-    e = 1.0 + y * (1.0 + y / 2.0 * (1.0 + y / 3.0 * (1.0 + y / 4.0 * (1.0 + y / 5.0 * (1.0 + y / 6.0)))))
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    return e * e
-
-
 @kernel(noalias=True, allocates=False)
 def set_flow(points, t, waves, depth, density, wheeler, velocity, acceleration, pressure):
     """Set velocity (n, 3), acceleration (n, 3) and pressure (n,) at points (n, 3) at time t; waves as `table` has them.
 
     wheeler: whether heights are stretched. depth may be inf. Other kernels may call it with the same arrays each step.
     """
-    turn = 2.0 * math.pi
     for p in range(points.shape[0]):
         x, y, z = points[p, 0], points[p, 1], points[p, 2]
         if wheeler:
@@ -141,22 +122,7 @@ def set_flow(points, t, waves, depth, density, wheeler, velocity, acceleration, 
                 c, _ = sincos_turns(waves[0, i] * x + waves[1, i] * y + waves[2, i] - waves[3, i] * t)
                 eta += waves[8, i] * c
             z = (z - eta) / (1.0 + eta / depth)
-        z = min(max(z, -depth), 0.0)
-        u = v = w = du = dv = dw = pushed = 0.0
-        for i in range(waves.shape[1]):
-            kx, ky, nx, ny, speed = waves[0, i], waves[1, i], waves[4, i], waves[5, i], waves[6, i]
-            c, s = sincos_turns(kx * x + ky * y + waves[2, i] - waves[3, i] * t)
-            k, omega = turn * (kx * nx + ky * ny), turn * waves[3, i]
-            e = exponential(max(k * z, -DEEPEST))
-            back = waves[7, i] / e
-            level, upward = speed * (e + back), speed * (e - back)
-            u += nx * level * c
-            v += ny * level * c
-            w += upward * s
-            du += nx * omega * level * s
-            dv += ny * omega * level * s
-            dw -= omega * upward * c
-            pushed += omega / k * level * c
+        u, v, w, du, dv, dw, pushed = flow_at(x, y, z, t, waves, depth)
         velocity[p, 0], velocity[p, 1], velocity[p, 2] = u, v, w
         acceleration[p, 0], acceleration[p, 1], acceleration[p, 2] = du, dv, dw
         pressure[p] = density * pushed

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sim.interruption import stop_request
 from sim.jit import MAX_THREADS, chosen, kernel
 from sim.springs.laws import LAWS, check_law
+from sim.springs.lines.arrays import LineArrays
 from sim.validation import argument_error, as_array, check_choice, check_number, check_vector, is_whole_number
 
 Vector = tuple[float, float, float]
@@ -156,9 +157,13 @@ GridArrays = namedtuple("GridArrays", RopeArrays._fields + WideArrays._fields)
 ClothArrays = namedtuple("ClothArrays", RopeArrays._fields + WideArrays._fields)
 
 
-def by_net(rope: Any, grid: Any, cloth: Any = None) -> Any:
-    """A kernel that stands for one of these, by the class of its argument p. cloth: None for that of any other net."""
-    return chosen({RopeArrays: rope, GridArrays: grid, ClothArrays: cloth or grid})
+def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None) -> Any:
+    """A kernel that stands for one of these, by the class of its argument p.
+
+    cloth: None for that of any other net. lines: those under water; None where they have no such kernel.
+    """
+    variants = {RopeArrays: rope, GridArrays: grid, ClothArrays: cloth or grid}
+    return chosen(variants if lines is None else {**variants, LineArrays: lines})
 
 
 @kernel(inline=True)

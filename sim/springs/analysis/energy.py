@@ -17,6 +17,7 @@ from sim.springs.forces.self_contact import self_contact_energy, self_contact_po
 from sim.springs.forces.wind import wind_power
 from sim.springs.laws import damps, force_density
 from sim.springs.laws import energy as link_energy
+from sim.springs.lines.energy import lines_energies, lines_kinetic_energy, lines_pins_damping_power, lines_power
 from sim.springs.net import by_net, link_ratio, mass_at
 
 
@@ -34,14 +35,18 @@ class Energy(NamedTuple):
 
 
 @kernel(allocates=False)
-def kinetic_energy(v, p):
-    """1/2 m v^2 over the free particles [J]."""
+def net_kinetic_energy(v, p):
+    """1/2 m v^2 over the free particles."""
     total = 0.0
     n = p.rows * p.cols
     for j in range(n):
         if p.inverse_masses[j] > 0.0:
             total += mass_at(p, j) * (v[j] ** 2 + v[n + j] ** 2 + v[2 * n + j] ** 2)
     return 0.5 * total
+
+
+# Kinetic energy [J].
+kinetic_energy = by_net(rope=net_kinetic_energy, grid=net_kinetic_energy, lines=lines_kinetic_energy)
 
 
 @kernel(allocates=False)
@@ -258,8 +263,7 @@ energy_of_own_contacts = by_net(rope=no_self_contact_energy, grid=wide_self_cont
 
 
 @kernel(allocates=False)
-def power(x, v, t, p, with_damping):
-    """(dissipated, put in) [W]. with_damping False: without every force that depends on v."""
+def net_power(x, v, t, p, with_damping):
     dissipated, work = 0.0, moving_pins_power(x, v, p, 1.0, 1.0 if with_damping else 0.0)
     if with_damping:
         dissipated += link_damping_power(x, v, p)
@@ -281,12 +285,25 @@ def power(x, v, t, p, with_damping):
     return dissipated, work
 
 
+# (dissipated, put in) [W]. with_damping False: without every force that depends on v.
+power = by_net(rope=net_power, grid=net_power, lines=lines_power)
+
+
 @kernel(allocates=False)
 def add_power(x, v, t, p, with_damping, weight, ledger):
     """Add weight [s] times the power dissipated to ledger[0] [J], and times the power supplied to ledger[1]."""
     dissipated, work = power(x, v, t, p, with_damping)
     ledger[0] += weight * dissipated
     ledger[1] += weight * work
+
+
+@kernel(allocates=False)
+def net_pins_damping_power(x, v, p):
+    return moving_pins_power(x, v, p, 0.0, 1.0) + damping_work_of_width(x, v, p)
+
+
+# What moving pins put in [W] through all damping.
+pins_damping_power = by_net(rope=net_pins_damping_power, grid=net_pins_damping_power, lines=lines_pins_damping_power)
 
 
 @kernel(inline=True)
@@ -314,14 +331,17 @@ def close_damping(x, v, p, s, kinetic, by_sphere, before, ledger):
     if p.pins.shape[0] > 0:
         for j in range(v.shape[0]):
             before[j] = 0.5 * (before[j] + v[j])
-        put_in += s * (moving_pins_power(x, before, p, 0.0, 1.0) + damping_work_of_width(x, before, p))
+        put_in += s * pins_damping_power(x, before, p)
     ledger[0] += kinetic - kinetic_energy(v, p) + put_in
     ledger[1] += put_in
 
 
 @kernel(allocates=False)
-def energies(x, v, t, p):
-    """(kinetic, elastic, gravity, contact) [J]."""
+def net_energies(x, v, t, p):
     contact = contact_energy(x, t, p) if p.has_floor or p.has_sphere else 0.0
     contact += energy_of_own_contacts(x, p)
     return kinetic_energy(v, p), elastic_energy(x, p), gravity_energy(x, p), contact
+
+
+# (kinetic, elastic, gravity, contact) [J].
+energies = by_net(rope=net_energies, grid=net_energies, lines=lines_energies)

@@ -14,8 +14,10 @@ from sim.jit import kernel
 from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size
 from sim.springs.forces.contact import add_contacts
 from sim.springs.forces.links import link_forces, scale_ends
+from sim.springs.forces.pins import set_paths
 from sim.springs.forces.self_contact import add_self_contacts
 from sim.springs.forces.wind import add_wind, wind_scratch_size
+from sim.springs.lines.forces import accelerate_lines, lines_scratch_size, set_line_pins
 from sim.springs.net import by_net
 
 
@@ -149,7 +151,7 @@ def accelerate_wide(x, v, t, p, with_damping, f, a):
 
 # Acceleration a of every particle at time t, 0 where pinned. with_damping False leaves out every force that depends on
 # v, for integrators that treat damping apart. f: scratch of `make_scratch`.
-accelerate = by_net(rope=accelerate_inline, grid=accelerate_wide)
+accelerate = by_net(rope=accelerate_inline, grid=accelerate_wide, lines=accelerate_lines)
 
 
 @kernel(inline=True)
@@ -167,7 +169,9 @@ def whole_cloth_scratch_size(p):
     return p.bands * cloth_scratch_size(p.cols) + wind_scratch_size(p)
 
 
-scratch_size = by_net(rope=rope_scratch_size, grid=grid_scratch_size, cloth=whole_cloth_scratch_size)
+scratch_size = by_net(
+    rope=rope_scratch_size, grid=grid_scratch_size, cloth=whole_cloth_scratch_size, lines=lines_scratch_size
+)
 
 
 @kernel
@@ -175,16 +179,8 @@ def make_scratch(p):
     return np.zeros(scratch_size(p))
 
 
-@kernel(inline=True)
-def set_pins(x, v, t, p):
-    """Put moving pins where their paths are at time t, with their paths' velocity."""
-    n = p.rows * p.cols
-    for q in range(p.pins.shape[0]):
-        s = t - p.paths[q, 4, 0]
-        for e in range(3):
-            c0, c1, c2, c3 = p.paths[q, 0, e], p.paths[q, 1, e], p.paths[q, 2, e], p.paths[q, 3, e]
-            x[e * n + p.pins[q]] = c0 + s * (c1 + s * (c2 + s * c3))
-            v[e * n + p.pins[q]] = c1 + s * (2.0 * c2 + s * 3.0 * c3)
+# Put moved pins where their paths are at time t, with their paths' velocity, and what bodies carry.
+set_pins = by_net(rope=set_paths, grid=set_paths, lines=set_line_pins)
 
 
 @kernel(noalias=True)

@@ -21,6 +21,7 @@ from sim.springs.forces.contact import surface_velocity, touches, touching
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import damp_self_contacts
 from sim.springs.laws import by_damping, damps
+from sim.springs.lines.damping import damp_lines, no_decay
 from sim.springs.net import by_net, link_ratio
 
 PAD = 4  # numbers beside a component in the room of `cross_gap`, the width of its window
@@ -193,9 +194,9 @@ def damp_grab(v, s, p):
 
 
 @kernel
-def make_decay(p, s):
-    """Factors of `damp` for a time s [s], (families + 1, rows cols): the share of each family's link that begins at a
-    point, then what drag leaves of each point's velocity, 1 of pins.
+def make_net_decay(p, s):
+    """(families + 1, rows cols): the share of each family's link that begins at a point, then what drag leaves of each
+    point's velocity, 1 of pins.
 
     Where links are not damped at any length, the shares once more: `damp` has those that act just now in the first.
     """
@@ -234,7 +235,7 @@ def all_kept_shares(law, families):
     return families
 
 
-# Rows of `make_decay` that keep the shares of links whose damping comes and goes.
+# Rows of `make_net_decay` that keep the shares of links whose damping comes and goes.
 kept_shares = by_damping(always=no_kept_shares, at_some_lengths=all_kept_shares)
 
 
@@ -259,6 +260,9 @@ def choose_shares(law, x, decay, p):
 
 
 set_shares = by_damping(always=keep_all_shares, at_some_lengths=choose_shares)
+
+# Factors of `damp` for a time s [s].
+make_decay = by_net(rope=make_net_decay, grid=make_net_decay, lines=no_decay)
 
 
 @kernel(noalias=True, inline=True)
@@ -313,7 +317,7 @@ def wide_pushes_itself(p):
     return p.thickness > 0.0
 
 
-pushes_itself = by_net(rope=never_pushes_itself, grid=wide_pushes_itself)
+pushes_itself = by_net(rope=never_pushes_itself, grid=wide_pushes_itself, lines=never_pushes_itself)
 
 
 @kernel(inline=True)
@@ -368,7 +372,7 @@ def damp_wide(x, v, t, s, decay, p, reverse):
 
 # All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards. Returns the work [J]
 # that a moving sphere did.
-damp = by_net(rope=damp_inline, grid=damp_wide)
+damp = by_net(rope=damp_inline, grid=damp_wide, lines=damp_lines)
 
 
 @kernel(inline=True)
@@ -385,7 +389,7 @@ def grid_gaps_merge(p):
 
 
 # Whether `cross_gap` knows the net's damping.
-gaps_merge = by_net(rope=rope_gaps_merge, grid=grid_gaps_merge)
+gaps_merge = by_net(rope=rope_gaps_merge, grid=grid_gaps_merge, lines=grid_gaps_merge)
 
 
 class Gap(NamedTuple):
@@ -419,7 +423,7 @@ def make_grid_gap(p, decay):
 
 
 # The `Gap` of a net, with decay = make_decay(p, h/2).
-make_gap = by_net(rope=make_rope_gap, grid=make_grid_gap)
+make_gap = by_net(rope=make_rope_gap, grid=make_grid_gap, lines=make_grid_gap)
 
 
 @kernel(noalias=True, inline=True)
@@ -497,4 +501,4 @@ def cross_grid_gap(v, a, s, gap, p, reverse):
 
 # From kick to kick, each of a time s [s], past the damping that ends a step and that which begins the next, in the same
 # order: of a rope both are one pass over the points. a: accelerations (3 cols,) [m/s2]; gap: of `make_gap`.
-cross_gap = by_net(rope=cross_rope_gap, grid=cross_grid_gap)
+cross_gap = by_net(rope=cross_rope_gap, grid=cross_grid_gap, lines=cross_grid_gap)

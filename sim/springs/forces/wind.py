@@ -154,7 +154,7 @@ def drift_wide(x, v, h, p, f, a, middle, with_account, ledger):
 
 
 # x += h v; where there is air, it pushes in the middle.
-drift = by_net(rope=drift_rope, grid=drift_wide)
+drift = by_net(rope=drift_rope, grid=drift_wide, lines=drift_rope)
 
 
 @kernel(inline=True)
@@ -167,4 +167,4 @@ def wide_air_scratch_size(x, p):
     return x.shape[0] if p.has_air else 0
 
 
-air_scratch_size = by_net(rope=no_air_scratch_size, grid=wide_air_scratch_size)
+air_scratch_size = by_net(rope=no_air_scratch_size, grid=wide_air_scratch_size, lines=no_air_scratch_size)

@@ -176,9 +176,17 @@ def accelerate_all(x, v, t, p, f, a):
 
 
 @kernel(inline=True)
-def is_bare(p):
-    """True if links, gravity and drag of a rope are all there is."""
+def is_bare_net(p):
     return not (p.has_floor or p.has_sphere) and p.grabbed < 0 and p.pins.shape[0] == 0
+
+
+@kernel(inline=True)
+def never_bare(p):
+    return False
+
+
+# Whether links, gravity and drag are all there is.
+is_bare = by_net(rope=is_bare_net, grid=is_bare_net, lines=never_bare)
 
 
 @kernel(noalias=True, inline=True)
@@ -279,7 +287,7 @@ def step_rope(method, x, v, t, h, p, stages, xn, vn, ledger, with_account):
 
 # The state a step h after x, v at t into xn, vn, and its acceleration into the last row of stages.k. The acceleration
 # at x, v is given in its first row. With `with_account`, ledger gets what was dissipated and put in [J].
-take_step = by_net(rope=step_rope, grid=step_any)
+take_step = by_net(rope=step_rope, grid=step_any, lines=step_any)
 
 
 @kernel(noalias=True, allocates=False)

@@ -1,0 +1,17 @@
+"""Mooring lines: ropes under water, between the bed, points and floating bodies.
+
+system = read_moordyn("line.txt")     # or System(lines, points, depth)
+rest = system.at_rest()
+run = simulate(system, motion={2: lambda t: (0.5 * math.sin(t), 0.0, 0.0)}, duration=60.0)
+"""
+
+from sim.mooring.gauge import critical_step
+from sim.mooring.moordyn import read_moordyn, write_moordyn
+from sim.mooring.simulate import MooringRun, simulate
+from sim.mooring.statics import Rest, at_rest
+from sim.mooring.system import Body, Line, LineType, Point, System
+
+__all__ = [
+    "Body", "Line", "LineType", "MooringRun", "Point", "Rest", "System", "at_rest", "critical_step",
+    "read_moordyn", "simulate", "write_moordyn",
+]  # fmt: skip

@@ -1,0 +1,317 @@
+"""`System`: lines between fixed, moved, free and floating points, in water above a bed.
+
+z is up from still water [m]; node 0 of a line is at its start. What a System holds does not change; kernels see it as
+`LineArrays`, with one link a segment and half a segment's mass at each end.
+"""
+
+import dataclasses
+import functools
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.interruption import stop_request
+from sim.mooring.statics import Rest, at_rest
+from sim.mooring.tangent import motion_of
+from sim.springs.laws import LAWS
+from sim.springs.lines.arrays import LineArrays
+from sim.validation import argument_error, check_choice, check_number, check_vector, is_whole_number
+
+Vector = tuple[float, float, float]
+
+KINDS = ("fixed", "coupled", "free", "body")
+FARTHEST = 1e5  # [m] from the origin
+MOST_SEGMENTS = 2000  # of a line
+
+
+class LineType(NamedTuple):
+    """Material and hydrodynamic coefficients of a line."""
+
+    name: str
+    diameter: float  # [m], of the volume
+    mass: float  # [kg/m] in air
+    stiffness: float  # EA [N]
+    damping: float = -1.0  # BA [N s]; negative: the damping ratio of a segment, with the sign changed
+    added_across: float = 1.0  # C_an
+    drag_across: float = 1.2  # C_dn
+    added_along: float = 0.0  # C_at
+    drag_along: float = 0.05  # C_dt
+
+
+class Point(NamedTuple):
+    """Where lines end: fixed, "coupled" (moved by the caller), free, or carried by a body."""
+
+    id: int
+    kind: str
+    position: Vector  # [m]; of a body's, at the body's place of rest
+    mass: float = 0.0  # [kg]
+    volume: float = 0.0  # [m^3]
+    drag_area: float = 0.0  # C_d A [m^2]
+    added_mass: float = 0.0  # C_a
+    body: int | None = None  # id of the body that carries it
+
+
+class Line(NamedTuple):
+    """A line from point `start` to point `end`."""
+
+    id: int
+    type: LineType
+    start: int
+    end: int
+    length: float  # [m], unstretched
+    segments: int
+
+
+class Body(NamedTuple):
+    """A floating body of linear theory about its place of rest without lines: M q'' + B q' + C q = forces.
+
+    q: displacement [m] and small rotation [rad] about `place`. mass holds the added mass.
+    """
+
+    id: int
+    place: Vector  # [m]
+    mass: NDArray[np.float64]  # (6, 6) [kg, kg m, kg m^2]
+    stiffness: NDArray[np.float64]  # (6, 6) [N/m, N, N m]
+    damping: NDArray[np.float64] | None = None  # (6, 6)
+
+
+@dataclasses.dataclass(frozen=True)
+class System:
+    """Lines, points and bodies in water of one depth."""
+
+    lines: tuple[Line, ...]
+    points: tuple[Point, ...]
+    depth: float  # [m]
+    bodies: tuple[Body, ...] = ()
+    gravity: float = 9.81  # [m/s^2]
+    density: float = 1025.0  # [kg/m^3]; 0: no water
+    bed_stiffness: float = 3e6  # [Pa/m]; 0: no bed
+    bed_damping: float = 3e5  # [Pa s/m]
+    friction: float = 0.0  # Coulomb coefficient
+    current: Vector = (0.0, 0.0, 0.0)  # [m/s]
+    waves: Any = None  # `sim.ocean.kinematics.Components`, None: still water
+
+    def __post_init__(self) -> None:
+        """Raises ValueError with the name of the value that cannot be: kernels check no index."""
+        for name in ("lines", "points", "bodies"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        check_number("depth", self.depth, 0, FARTHEST, "m", above=True)
+        check_number("gravity", self.gravity, 0, 1e4, "m/s^2")
+        for name, unit in (
+            ("density", "kg/m^3"),
+            ("bed_stiffness", "Pa/m"),
+            ("bed_damping", "Pa s/m"),
+            ("friction", ""),
+        ):
+            check_number(name, getattr(self, name), 0, math.inf, unit)
+        check_vector("current", self.current, "m/s")
+        check_ids("bodies", self.bodies)
+        for body in self.bodies:
+            check_body(body)
+        check_ids("points", self.points)
+        for point in self.points:
+            self.check_point(point)
+        check_ids("lines", self.lines)
+        if not self.lines:
+            raise argument_error("lines", (), "at least one line")
+        for line in self.lines:
+            self.check_line(line)
+        ended = {end for line in self.lines for end in (line.start, line.end)}
+        for point in self.points:
+            if point.kind == "free" and point.id not in ended and point.mass == 0.0:
+                raise argument_error(f"point {point.id}", "free, without a line", "a mass, or a line that ends there")
+
+    def check_point(self, point: Point) -> None:
+        name = f"point {point.id}"
+        check_choice(f"{name}: kind", point.kind, KINDS)
+        x, y, z = check_vector(f"{name}: position", point.position, "m")
+        if not max(abs(x), abs(y), abs(z)) < FARTHEST:
+            raise argument_error(f"{name}: position", point.position, f"nearer to the origin than {FARTHEST:g} m")
+        if point.kind == "fixed" and self.bed_stiffness > 0.0 and z < -self.depth - 1e-6 * self.depth:
+            raise argument_error(f"{name}: position", point.position, f"on or above the bed at z = {-self.depth:g} m")
+        for field, unit in (("mass", "kg"), ("volume", "m^3"), ("drag_area", "m^2"), ("added_mass", "")):
+            check_number(f"{name}: {field}", getattr(point, field), 0, math.inf, unit)
+        if (point.kind == "body") != (point.body is not None):
+            raise argument_error(f"{name}: body", point.body, "the id of a body, for points of kind 'body' only")
+        if point.body is not None and point.body not in [body.id for body in self.bodies]:
+            raise argument_error(f"{name}: body", point.body, f"one of {[body.id for body in self.bodies]}")
+
+    def check_line(self, line: Line) -> None:
+        name = f"line {line.id}"
+        check_type(line.type)
+        ids = [point.id for point in self.points]
+        for field in ("start", "end"):
+            if getattr(line, field) not in ids:
+                raise argument_error(f"{name}: {field}", getattr(line, field), f"the id of a point: {ids}")
+        if line.start == line.end:
+            raise argument_error(f"{name}: end", line.end, "another point than its start")
+        check_number(f"{name}: length", line.length, 0, FARTHEST, "m", above=True)
+        if not is_whole_number(line.segments) or not 1 <= line.segments <= MOST_SEGMENTS:
+            raise argument_error(f"{name}: segments", line.segments, f"a whole number from 1 to {MOST_SEGMENTS}")
+
+    def at_rest(self) -> Rest:
+        """The static state: see `sim.mooring.statics.at_rest`."""
+        return at_rest(self)
+
+    @functools.cached_property
+    def nodes_of(self) -> dict[int, NDArray[np.int64]]:
+        """Node numbers of each line (segments + 1,), by its id: points first, in their order, then inner nodes."""
+        index = {point.id: i for i, point in enumerate(self.points)}
+        found, used = {}, len(self.points)
+        for line in self.lines:
+            inner = np.arange(used, used + line.segments - 1)
+            found[line.id] = np.concatenate(([index[line.start]], inner, [index[line.end]])).astype(np.int64)
+            used += line.segments - 1
+        return found
+
+    @functools.cached_property
+    def node_count(self) -> int:
+        return len(self.points) + sum(line.segments - 1 for line in self.lines)
+
+    def kernel_view(self, h: float) -> LineArrays:
+        """The kernels' view for steps of h [s]."""
+        return self._unit_step_view._replace(stop_rate=1.0 / h, stop=stop_request())
+
+    @functools.cached_property
+    def _unit_step_view(self) -> LineArrays:
+        nodes, bodies = self.node_count, len(self.bodies)
+        n = nodes + 2 * bodies
+        mass = np.zeros(n)
+        ends, links, places, parts = [], [], [], []
+        for line in self.lines:
+            kind, at = line.type, self.nodes_of[line.id]
+            length = line.length / line.segments
+            damping = kind.damping
+            if damping < 0.0:
+                damping = -damping * length * math.sqrt(kind.stiffness * kind.mass)
+            displaced = self.density * math.pi / 4.0 * kind.diameter**2
+            drag = 0.5 * self.density * kind.diameter
+            row = np.array((
+                kind.mass, displaced, 0.0, 0.0,
+                drag * kind.drag_across, drag * math.pi * kind.drag_along, kind.diameter,
+            ))  # fmt: skip
+            for i in range(line.segments):
+                ends.append((at[i], at[i + 1]))
+                links.append((length, kind.stiffness / length, damping / length))
+            for i in range(line.segments + 1):
+                share = 0.5 * length if i in (0, line.segments) else length
+                part = share * row
+                part[2:4] = kind.added_across, kind.added_along
+                places.append((at[i], at[max(i - 1, 0)], at[min(i + 1, line.segments)]))
+                parts.append(part)
+                mass[at[i]] += part[0]
+        knots_at, knots = [], []
+        for i, point in enumerate(self.points):
+            mass[i] += point.mass
+            if point.mass > 0.0 or point.volume > 0.0 or point.drag_area > 0.0:
+                displaced = self.density * point.volume
+                knots_at.append(i)
+                knots.append(
+                    (point.mass, displaced, point.added_mass * displaced, 0.5 * self.density * point.drag_area)
+                )
+        free = np.array([point.kind == "free" for point in self.points] + [True] * (nodes - len(self.points)))
+        inverse = np.zeros(n)
+        inverse[:nodes][free] = 1.0 / np.maximum(mass[:nodes][free], 1e-12)
+        moved = [i for i, point in enumerate(self.points) if point.kind == "coupled"]
+        paths = np.zeros((len(moved), 5, 3))
+        for q, i in enumerate(moved):
+            paths[q, 0] = self.points[i].position
+        carried, arms, rows = self.body_rows(mass)
+        waves = np.zeros((9, 0)) if self.waves is None else np.ascontiguousarray(self.waves.table(), dtype=np.float64)
+        return LineArrays(
+            rows=1,
+            cols=n,
+            nodes=nodes,
+            inverse_masses=inverse,
+            mass=mass,
+            gravity=float(self.gravity),
+            law=LAWS["slack"].numbers,
+            ends=np.array(ends, dtype=np.int64),
+            links=np.array(links, dtype=np.float64),
+            places=np.array(places, dtype=np.int64),
+            parts=np.array(parts, dtype=np.float64),
+            knots_at=np.array(knots_at, dtype=np.int64),
+            knots=np.array(knots, dtype=np.float64).reshape(-1, 4),
+            bed=-float(self.depth),
+            bed_stiffness=float(self.bed_stiffness),
+            bed_damping=float(self.bed_damping),
+            friction=float(self.friction),
+            stop_rate=1.0,
+            current=np.array(self.current, dtype=np.float64),
+            depth=float(self.depth),
+            waves=waves,
+            pins=np.array(moved, dtype=np.int64),
+            paths=paths,
+            carried=carried,
+            arms=arms,
+            bodies=rows,
+            push=np.zeros((6 * bodies, 2, waves.shape[1])),
+            stop=stop_request(),
+        )
+
+    def body_rows(self, mass: NDArray[np.float64]) -> tuple[Any, Any, Any]:
+        """`carried`, `arms` and `bodies` of the kernels' view; a body's mass holds that of what it carries."""
+        index = {body.id: i for i, body in enumerate(self.bodies)}
+        carried, arms = [], []
+        for i, point in enumerate(self.points):
+            if point.body is not None:
+                body = self.bodies[index[point.body]]
+                carried.append((i, index[point.body]))
+                arms.append(np.subtract(point.position, body.place))
+        rows = np.zeros((len(self.bodies), 147))
+        for b, body in enumerate(self.bodies):
+            full = np.array(body.mass, dtype=np.float64)
+            for (node, owner), arm in zip(carried, arms, strict=True):
+                if owner == b:
+                    motion = motion_of(arm)
+                    full += mass[node] * motion.T @ motion
+            rows[b, :36] = np.linalg.inv(full).ravel()
+            rows[b, 36:72] = full.ravel()
+            rows[b, 72:108] = np.ravel(body.stiffness)
+            rows[b, 108:144] = 0.0 if body.damping is None else np.ravel(body.damping)
+            rows[b, 144:] = body.place
+        return (
+            np.array(carried, dtype=np.int64).reshape(-1, 2),
+            np.array(arms, dtype=np.float64).reshape(-1, 3),
+            rows,
+        )
+
+
+def check_ids(name: str, items: Sequence[Any]) -> None:
+    """Raises ValueError unless each has a whole number of its own."""
+    ids = [item.id for item in items]
+    for one in ids:
+        if not is_whole_number(one):
+            raise argument_error(f"{name}: id", one, "a whole number")
+    if len(set(ids)) < len(ids):
+        raise argument_error(f"{name}: id", ids, "a number of its own for each")
+
+
+def check_type(kind: LineType) -> None:
+    """Raises ValueError with the name of the coefficient that no line has."""
+    name = f"line type {kind.name}"
+    for field, unit in (("diameter", "m"), ("mass", "kg/m"), ("stiffness", "N")):
+        check_number(f"{name}: {field}", getattr(kind, field), 0, math.inf, unit, above=True)
+    check_number(f"{name}: damping", kind.damping, -math.inf, math.inf, "N s")
+    for field in ("added_across", "drag_across", "added_along", "drag_along"):
+        check_number(f"{name}: {field}", getattr(kind, field), 0, math.inf, "")
+
+
+def check_body(body: Body) -> None:
+    """Raises ValueError for matrices that no body has."""
+    check_vector(f"body {body.id}: place", body.place, "m")
+    for field in ("mass", "stiffness", "damping"):
+        matrix = getattr(body, field)
+        if matrix is None and field == "damping":
+            continue
+        matrix = np.asarray(matrix, dtype=np.float64)
+        if matrix.shape != (6, 6) or not np.isfinite(matrix).all():
+            raise argument_error(f"body {body.id}: {field}", matrix.shape, "finite numbers of shape (6, 6)")
+        if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-9 * np.abs(matrix).max(initial=0.0)):
+            raise argument_error(f"body {body.id}: {field}", "not symmetric", "a symmetric matrix")
+        least = np.linalg.eigvalsh(matrix)[0]
+        if least < -1e-9 * np.abs(matrix).max(initial=0.0) or (field == "mass" and least <= 0.0):
+            raise argument_error(f"body {body.id}: {field}", least, "a matrix without negative eigenvalues")

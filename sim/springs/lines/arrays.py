@@ -1,0 +1,51 @@
+"""`LineArrays`: the kernels' record of lines under water, and the columns of its tables.
+
+Nodes of all lines stand in one row of points; the last two points of a body are its displacement and its small
+rotation. A link joins any two nodes. What water does is summed over parts: an inner node of a line is one part, a free
+point where several lines end has one for each of them, half a segment long.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Columns of `parts`.
+MASS, DISPLACED, ACROSS, ALONG, DRAG_ACROSS, DRAG_ALONG, BED_AREA = range(7)
+# Columns of `knots`.
+KNOT_MASS, KNOT_DISPLACED, KNOT_ADDED, KNOT_DRAG = range(4)
+# Where a row of `bodies` holds its (6, 6) matrices, flat, and its place.
+INVERSE_MASS, BODY_MASS, STIFFNESS, DAMPING, PLACE = 0, 36, 72, 108, 144
+
+
+class LineArrays(NamedTuple):
+    """Kernel data of lines under water. n points: nodes, then two a body."""
+
+    rows: int  # 1
+    cols: int  # n
+    nodes: int  # points that are nodes
+    inverse_masses: NDArray[np.float64]  # (n,) [1/kg] without the water's; 0 where prescribed or carried by a body
+    mass: NDArray[np.float64]  # (n,) [kg] without the water's
+    gravity: float  # [m/s^2], downwards
+    law: Any  # numbers of the law of the links, see sim/springs/laws
+    ends: NDArray[np.int64]  # (links, 2) nodes
+    links: NDArray[np.float64]  # (links, 3): rest length [m], stiffness [N/m], damping [N s/m]
+    places: NDArray[np.int64]  # (parts, 3): node, and the nodes before and after it along the line
+    parts: NDArray[np.float64]  # (parts, 7): mass, displaced mass [kg], added masses and drags over speed, bed area
+    knots_at: NDArray[np.int64]  # (knots,) nodes with a mass or a float of their own
+    knots: NDArray[np.float64]  # (knots, 4): mass, displaced mass, added mass [kg], drag over speed^2 [kg/m]
+    bed: float  # height [m]
+    bed_stiffness: float  # [Pa/m]
+    bed_damping: float  # [Pa s/m]
+    friction: float  # Coulomb coefficient of the bed
+    stop_rate: float  # 1/h [1/s]: friction takes at most the force that stops a node within the step
+    current: NDArray[np.float64]  # (3,) [m/s]
+    depth: float  # [m]
+    waves: NDArray[np.float64]  # (9, waves) of `sim.wave_motion.set_flow`
+    pins: NDArray[np.int64]  # (pins,) nodes that are moved
+    paths: NDArray[np.float64]  # (pins, 5, 3): four coefficients, and the start time in [4, 0]
+    carried: NDArray[np.int64]  # (fairleads, 2): node, body
+    arms: NDArray[np.float64]  # (fairleads, 3) [m] from the body's reference point
+    bodies: NDArray[np.float64]  # (bodies, 147): inverse mass, mass, stiffness and damping matrix; place at rest [m]
+    push: NDArray[np.float64]  # (6 bodies, 2, waves): force of each wave with its cosine and sine at the place of rest
+    stop: NDArray[np.int64]  # (2,) that ends a long solve, see sim.interruption

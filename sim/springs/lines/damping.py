@@ -1,0 +1,181 @@
+"""All damping of lines for a time, for methods that split it off: links, drag, bed and bodies, each exact on its own.
+
+A link's damping acts on two nodes, drag and bed on one, with the inverse masses at the place where the step is: so
+damping limits no step. In reverse order the parts undo their order, as a symmetric composition asks.
+"""
+
+import math
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.laws import damps
+from sim.springs.lines.arrays import BED_AREA, DAMPING, DRAG_ACROSS, DRAG_ALONG, INVERSE_MASS, KNOT_DRAG
+from sim.springs.lines.forces import (
+    TINY,
+    carried_motion,
+    matrix_times,
+    over_mass,
+    pushed_body,
+    set_inverse_masses,
+    set_six,
+    six,
+    tangent_at,
+    water_at,
+)
+
+
+@kernel(allocates=False)
+def push_node(v, p, f, j, fx, fy, fz):
+    """An impulse [N s] at node j; a body takes it where it carries the node."""
+    n = p.cols
+    if p.inverse_masses[j] > 0.0:
+        dx, dy, dz = over_mass(f, n, j, fx, fy, fz)
+        v[j] += dx
+        v[n + j] += dy
+        v[2 * n + j] += dz
+        return
+    for i in range(p.carried.shape[0]):
+        if p.carried[i, 0] != j:
+            continue
+        b = p.carried[i, 1]
+        at = p.nodes + 2 * b
+        d, q = pushed_body(p, i, fx, fy, fz), six(v, n, at)
+        set_six(v, n, at, (q[0] + d[0], q[1] + d[1], q[2] + d[2], q[3] + d[3], q[4] + d[4], q[5] + d[5]))
+        for k in range(p.carried.shape[0]):
+            if p.carried[k, 1] == b:
+                c = p.carried[k, 0]
+                v[c], v[n + c], v[2 * n + c] = carried_motion(p, k, *six(v, n, at))
+        return
+
+
+@kernel(inline=True)
+def mobility(p, f, j, x, y, z):
+    """e M^-1 e of node j along the unit vector (x, y, z) [1/kg]."""
+    a, b, c = over_mass(f, p.cols, j, x, y, z)
+    return a * x + b * y + c * z
+
+
+@kernel(allocates=False)
+def damp_link(x, v, s, p, f, q):
+    """The damping of link q for a time s [s]: its two nodes' closing speed decays exponentially."""
+    n, a, b = p.cols, p.ends[q, 0], p.ends[q, 1]
+    rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+    length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+    if not damps(p.law, p.links[q, 0], length):
+        return
+    rx, ry, rz = rx / length, ry / length, rz / length
+    both = mobility(p, f, a, rx, ry, rz) + mobility(p, f, b, rx, ry, rz)
+    if both == 0.0:
+        return
+    rate = (v[b] - v[a]) * rx + (v[n + b] - v[n + a]) * ry + (v[2 * n + b] - v[2 * n + a]) * rz
+    push = -math.expm1(-p.links[q, 2] * both * s) / both * rate
+    push_node(v, p, f, a, push * rx, push * ry, push * rz)
+    push_node(v, p, f, b, -push * rx, -push * ry, -push * rz)
+
+
+@kernel(allocates=False)
+def drag_along(v, s, p, f, j, drag, x, y, z):
+    """Quadratic drag against the relative velocity (x, y, z) of node j for a time s: |w| falls as w/(1 + D w s/m)."""
+    speed = math.sqrt(x * x + y * y + z * z)
+    if speed == 0.0 or drag == 0.0:
+        return
+    x, y, z = x / speed, y / speed, z / speed
+    over = mobility(p, f, j, x, y, z)
+    push = drag * speed * speed * s / (1.0 + drag * over * speed * s)
+    push_node(v, p, f, j, push * x, push * y, push * z)
+
+
+@kernel(allocates=False)
+def damp_part(x, v, t, s, p, f, i, reverse):
+    """Drag and the bed's damping on part i."""
+    n, j = p.cols, p.places[i, 0]
+    qx, qy, qz = tangent_at(x, p, i)
+    u, w, c, _, _, _ = water_at(x, t, p, j)
+    for turn in range(2):
+        rx, ry, rz = u - v[j], w - v[n + j], c - v[2 * n + j]
+        along = rx * qx + ry * qy + rz * qz
+        if (turn == 0) != reverse:
+            drag_along(v, s, p, f, j, p.parts[i, DRAG_ACROSS], rx - along * qx, ry - along * qy, rz - along * qz)
+        else:
+            drag_along(v, s, p, f, j, p.parts[i, DRAG_ALONG], along * qx, along * qy, along * qz)
+
+
+@kernel(allocates=False)
+def damp_on_bed(x, v, s, p, f, i):
+    """The bed's damping and friction on part i."""
+    n, j = p.cols, p.places[i, 0]
+    depth = p.bed - x[2 * n + j]
+    if depth <= 0.0:
+        return
+    area = p.parts[i, BED_AREA]
+    over = mobility(p, f, j, 0.0, 0.0, 1.0)
+    if over > 0.0:
+        push = math.expm1(-area * p.bed_damping * over * s) / over * v[2 * n + j]
+        push_node(v, p, f, j, 0.0, 0.0, push)
+    speed = math.sqrt(v[j] * v[j] + v[n + j] * v[n + j])
+    if p.friction > 0.0 and speed > 0.0:
+        ex, ey = v[j] / speed, v[n + j] / speed
+        over = mobility(p, f, j, ex, ey, 0.0)
+        if over > 0.0:
+            push = min(p.friction * area * p.bed_stiffness * depth * s, speed / over)
+            push_node(v, p, f, j, -push * ex, -push * ey, 0.0)
+
+
+@kernel(allocates=False)
+def damp_body(v, s, p, b):
+    """A body's linear damping for a time s, to second order in s."""
+    n, j = p.cols, p.nodes + 2 * b
+    q = six(v, n, j)
+    d = matrix_times(p, b, INVERSE_MASS, *matrix_times(p, b, DAMPING, *q))
+    e = matrix_times(p, b, INVERSE_MASS, *matrix_times(p, b, DAMPING, *d))
+    c = 0.5 * s * s
+    set_six(
+        v, n, j,
+        (
+            q[0] - s * d[0] + c * e[0], q[1] - s * d[1] + c * e[1], q[2] - s * d[2] + c * e[2],
+            q[3] - s * d[3] + c * e[3], q[4] - s * d[4] + c * e[4], q[5] - s * d[5] + c * e[5],
+        ),
+    )  # fmt: skip
+    for k in range(p.carried.shape[0]):
+        if p.carried[k, 1] == b:
+            i = p.carried[k, 0]
+            v[i], v[n + i], v[2 * n + i] = carried_motion(p, k, *six(v, n, j))
+
+
+@kernel(allocates=False)
+def damp_knot(x, v, t, s, p, f, i):
+    """Drag on knot i."""
+    n, j = p.cols, p.knots_at[i]
+    u, w, c, _, _, _ = water_at(x, t, p, j)
+    drag_along(v, s, p, f, j, p.knots[i, KNOT_DRAG], u - v[j], w - v[n + j], c - v[2 * n + j])
+
+
+@kernel
+def damp_lines(x, v, t, s, decay, p, reverse):
+    """All damping for a time s [s]; `reverse` runs through it backwards. Returns 0: there is no sphere to do work."""
+    f = np.empty(9 * p.cols)
+    set_inverse_masses(x, p, f)
+    links, parts, knots, bodies = p.ends.shape[0], p.places.shape[0], p.knots_at.shape[0], p.bodies.shape[0]
+    for turn in range(5):
+        what = 4 - turn if reverse else turn
+        count = links if what == 0 else bodies if what == 4 else knots if what == 2 else parts
+        for step in range(count):
+            i = count - 1 - step if reverse else step
+            if what == 0:
+                damp_link(x, v, s, p, f, i)
+            elif what == 1:
+                damp_part(x, v, t, s, p, f, i, reverse)
+            elif what == 2:
+                damp_knot(x, v, t, s, p, f, i)
+            elif what == 3:
+                damp_on_bed(x, v, s, p, f, i)
+            else:
+                damp_body(v, s, p, i)
+    return 0.0
+
+
+@kernel
+def no_decay(p, s):
+    """Nothing is known beforehand: masses in water change with the tangents."""
+    return np.zeros((1, 1))

@@ -1,0 +1,205 @@
+"""The account of lines under water: stored energies, and the power of damping, pins and water.
+
+The water's inertia belongs to the water: kinetic energy is that of lines and bodies alone (a body's with its constant
+added mass), and what the water's added mass, waves and current give or take is work.
+"""
+
+import math
+
+import numpy as np
+
+from sim.jit import kernel
+from sim.springs.laws import damps
+from sim.springs.laws import energy as link_energy
+from sim.springs.lines.arrays import (
+    BED_AREA,
+    BODY_MASS,
+    DAMPING,
+    DISPLACED,
+    DRAG_ACROSS,
+    DRAG_ALONG,
+    KNOT_DISPLACED,
+    KNOT_DRAG,
+    KNOT_MASS,
+    MASS,
+    STIFFNESS,
+)
+from sim.springs.lines.forces import (
+    TINY,
+    accelerate_lines,
+    bed_force,
+    lines_scratch_size,
+    matrix_times,
+    six,
+    tangent_at,
+    tension_of,
+    water_at,
+)
+
+
+@kernel(inline=True)
+def half_form(p, b, start, q):
+    """1/2 q M q of a body's matrix."""
+    m = matrix_times(p, b, start, *q)
+    return 0.5 * (q[0] * m[0] + q[1] * m[1] + q[2] * m[2] + q[3] * m[3] + q[4] * m[4] + q[5] * m[5])
+
+
+@kernel(allocates=False)
+def lines_kinetic_energy(v, p):
+    """1/2 m v^2 over the free nodes, and that of the bodies [J]."""
+    n = p.cols
+    total = 0.0
+    for j in range(p.nodes):
+        if p.inverse_masses[j] > 0.0:
+            total += 0.5 * p.mass[j] * (v[j] ** 2 + v[n + j] ** 2 + v[2 * n + j] ** 2)
+    for b in range(p.bodies.shape[0]):
+        total += half_form(p, b, BODY_MASS, six(v, n, p.nodes + 2 * b))
+    return total
+
+
+@kernel(inline=True)
+def is_moving(p, j):
+    """Whether a node is free or carried, so that gravity on it counts."""
+    found = p.inverse_masses[j] > 0.0
+    for i in range(p.carried.shape[0]):
+        found |= p.carried[i, 0] == j
+    return found
+
+
+@kernel(allocates=False)
+def lines_energies(x, v, t, p):
+    """(kinetic, elastic, gravity, contact) [J]; gravity holds buoyancy, and elastic the stiffness of bodies."""
+    n = p.cols
+    elastic = gravity = contact = 0.0
+    for q in range(p.ends.shape[0]):
+        a, b = p.ends[q, 0], p.ends[q, 1]
+        rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+        elastic += link_energy(p.law, p.links[q, 1], p.links[q, 0], length)
+    for b in range(p.bodies.shape[0]):
+        elastic += half_form(p, b, STIFFNESS, six(x, n, p.nodes + 2 * b))
+    for i in range(p.places.shape[0]):
+        j = p.places[i, 0]
+        if is_moving(p, j):
+            gravity += (p.parts[i, MASS] - p.parts[i, DISPLACED]) * p.gravity * x[2 * n + j]
+            depth = max(0.0, p.bed - x[2 * n + j])
+            contact += 0.5 * p.parts[i, BED_AREA] * p.bed_stiffness * depth * depth
+    for i in range(p.knots_at.shape[0]):
+        j = p.knots_at[i]
+        if is_moving(p, j):
+            gravity += (p.knots[i, KNOT_MASS] - p.knots[i, KNOT_DISPLACED]) * p.gravity * x[2 * n + j]
+    return lines_kinetic_energy(v, p), elastic, gravity, contact
+
+
+@kernel(allocates=False)
+def stored_rate(x, v, a, p):
+    """Rate of the stored energy [W], with the accelerations a."""
+    n = p.cols
+    rate = 0.0
+    for j in range(p.nodes):
+        if p.inverse_masses[j] > 0.0:
+            rate += p.mass[j] * (v[j] * a[j] + v[n + j] * a[n + j] + v[2 * n + j] * a[2 * n + j])
+    for q in range(p.ends.shape[0]):
+        c, d = p.ends[q, 0], p.ends[q, 1]
+        rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[2 * n + d] - x[2 * n + c]
+        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+        closing = (v[d] - v[c]) * rx + (v[n + d] - v[n + c]) * ry + (v[2 * n + d] - v[2 * n + c]) * rz
+        rate += tension_of(p, q, length, 0.0) * closing / length
+    for b in range(p.bodies.shape[0]):
+        j = p.nodes + 2 * b
+        u, k = six(v, n, j), matrix_times(p, b, STIFFNESS, *six(x, n, j))
+        m = matrix_times(p, b, BODY_MASS, *six(a, n, j))
+        for e in range(6):
+            rate += u[e] * (m[e] + k[e])
+    for i in range(p.places.shape[0]):
+        j = p.places[i, 0]
+        if is_moving(p, j):
+            depth = max(0.0, p.bed - x[2 * n + j])
+            lift = p.parts[i, BED_AREA] * p.bed_stiffness * depth
+            rate += ((p.parts[i, MASS] - p.parts[i, DISPLACED]) * p.gravity - lift) * v[2 * n + j]
+    for i in range(p.knots_at.shape[0]):
+        j = p.knots_at[i]
+        if is_moving(p, j):
+            rate += (p.knots[i, KNOT_MASS] - p.knots[i, KNOT_DISPLACED]) * p.gravity * v[2 * n + j]
+    return rate
+
+
+@kernel(allocates=False)
+def lost_in_links(x, v, p):
+    """Power [W] that the links' damping takes."""
+    n = p.cols
+    lost = 0.0
+    for q in range(p.ends.shape[0]):
+        c, d = p.ends[q, 0], p.ends[q, 1]
+        rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[2 * n + d] - x[2 * n + c]
+        closing = (v[d] - v[c]) * rx + (v[n + d] - v[n + c]) * ry + (v[2 * n + d] - v[2 * n + c]) * rz
+        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+        if damps(p.law, p.links[q, 0], length):
+            lost += p.links[q, 2] * (closing / length) ** 2
+    return lost
+
+
+@kernel(allocates=False)
+def lost_in_water(x, v, t, p):
+    """Power [W] that drag, the bed and the damping of bodies take."""
+    n = p.cols
+    lost = 0.0
+    for i in range(p.places.shape[0]):
+        j = p.places[i, 0]
+        qx, qy, qz = tangent_at(x, p, i)
+        u, w, s, _, _, _ = water_at(x, t, p, j)
+        u, w, s = u - v[j], w - v[n + j], s - v[2 * n + j]
+        along = u * qx + w * qy + s * qz
+        across = math.sqrt(max(0.0, u * u + w * w + s * s - along * along))
+        lost += p.parts[i, DRAG_ACROSS] * across**3 + p.parts[i, DRAG_ALONG] * abs(along) ** 3
+        if is_moving(p, j):
+            bx, by, bz = bed_force(x, v, p, i, j, p.parts[i, MASS], True)
+            _, _, lift = bed_force(x, v, p, i, j, p.parts[i, MASS], False)
+            lost -= bx * v[j] + by * v[n + j] + (bz - lift) * v[2 * n + j]
+    for i in range(p.knots_at.shape[0]):
+        j = p.knots_at[i]
+        u, w, s, _, _, _ = water_at(x, t, p, j)
+        u, w, s = u - v[j], w - v[n + j], s - v[2 * n + j]
+        lost += p.knots[i, KNOT_DRAG] * math.sqrt(u * u + w * w + s * s) ** 3
+    for b in range(p.bodies.shape[0]):
+        lost += 2.0 * half_form(p, b, DAMPING, six(v, n, p.nodes + 2 * b))
+    return lost
+
+
+@kernel
+def lines_power(x, v, t, p, with_damping):
+    """(dissipated, put in) [W]. What is put in is by moved nodes, waves, current and the water's inertia."""
+    a = np.empty(v.shape[0])
+    accelerate_lines(x, v, t, p, with_damping, np.empty(lines_scratch_size(p)), a)
+    lost = lost_in_links(x, v, p) + lost_in_water(x, v, t, p) if with_damping else 0.0
+    return lost, stored_rate(x, v, a, p) + lost
+
+
+@kernel(allocates=False)
+def lines_pins_damping_power(x, v, p):
+    """What prescribed nodes put in [W] through the damping of their links."""
+    n = p.cols
+    work = 0.0
+    for q in range(p.ends.shape[0]):
+        c, d = p.ends[q, 0], p.ends[q, 1]
+        rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[2 * n + d] - x[2 * n + c]
+        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+        closing = (v[d] - v[c]) * rx + (v[n + d] - v[n + c]) * ry + (v[2 * n + d] - v[2 * n + c]) * rz
+        s = p.links[q, 2] * closing / length**2 if damps(p.law, p.links[q, 0], length) else 0.0
+        if not is_moving(p, c):
+            work -= s * (v[c] * rx + v[n + c] * ry + v[2 * n + c] * rz)
+        if not is_moving(p, d):
+            work += s * (v[d] * rx + v[n + d] * ry + v[2 * n + d] * rz)
+    return work
+
+
+@kernel
+def set_tensions(x, v, p, out):
+    """Set the tension (links,) [N] of every link, its damping included."""
+    n = p.cols
+    for q in range(p.ends.shape[0]):
+        c, d = p.ends[q, 0], p.ends[q, 1]
+        rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[2 * n + d] - x[2 * n + c]
+        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+        closing = (v[d] - v[c]) * rx + (v[n + d] - v[n + c]) * ry + (v[2 * n + d] - v[2 * n + c]) * rz
+        out[q] = tension_of(p, q, length, closing / length)

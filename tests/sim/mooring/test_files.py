@@ -1,0 +1,184 @@
+"""MoorDyn's files: read, written, and refused in one line that names the place."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from sim.mooring import Line, LineType, Point, System, read_moordyn, simulate, write_moordyn
+from tests.refusals import assert_refused
+from tests.sim.mooring.systems import chain_on_bed, floating_body
+
+TEXT = """--------------------- MoorDyn Input File ------------------------------------
+A chain on the bed, as MoorDyn's own examples are laid out
+----------------------- LINE TYPES ------------------------------------------
+TypeName   Diam    Mass/m     EA     BA/-zeta     EI         Cd     Ca     CdAx    CaAx
+(name)     (m)     (kg/m)     (N)    (N-s/-)    (N-m^2)      (-)    (-)    (-)     (-)
+chain      0.09    80.0      5e7     -0.8        0          1.6    1.0    0.1     0.0
+---------------------- POINTS -----------------------------------------------
+ID  Attachment  X       Y      Z      M      V      CdA    CA
+(#)   (-)       (m)    (m)    (m)    (kg)   (m^3)  (m^2)  (-)
+1     Fixed    -140.0   0.0   -40.0    0      0      0      0
+2     Coupled    0.0    0.0     0.0    0      0      0      0
+---------------------- LINES ------------------------------------------------
+ID    LineType   AttachA  AttachB  UnstrLen  NumSegs   LineOutputs
+(#)    (name)      (#)      (#)      (m)       (-)        (-)
+1      chain        1        2       160.0      40         pt
+---------------------- OPTIONS ----------------------------------------------
+0.001    dtM
+3.0e6    kBot
+3.0e5    cBot
+1025     rhoW
+40       WtrDpth
+9.81     g
+2        dtIC
+------------------------- OUTPUTS -------------------------------------------
+FairTen1
+------------------------- need this line ------------------------------------
+"""
+
+
+def written(tmp_path, text: str):
+    path = tmp_path / "line.txt"
+    path.write_text(text)
+    return path
+
+
+def test_a_file_in_the_form_of_moordyn_is_the_system_that_it_describes(tmp_path):
+    assert read_moordyn(written(tmp_path, TEXT)) == chain_on_bed(40)
+
+
+def test_a_system_that_is_written_is_read_as_it_was(tmp_path):
+    kind = LineType("rope", 0.1 / 3.0, 7.0, 1e7 / 3.0, 2e4, 1.1, 1.2, 0.3, 0.04)
+    points = (
+        Point(3, "fixed", (1.0 / 3.0, 0.0, -20.0)), Point(4, "free", (5.0, 0.0, -9.0), 12.0, 0.1, 0.2, 0.5),
+        Point(8, "coupled", (9.0, 1.0, 0.0)),
+    )  # fmt: skip
+    lines = (Line(5, kind, 3, 4, 13.0, 7), Line(6, kind, 4, 8, 11.0, 5))
+    system = System(lines, points, 20.0, gravity=9.8, friction=0.4)
+    path = tmp_path / "out.txt"
+    write_moordyn(path, system)
+    assert read_moordyn(path) == system
+
+
+def replaced(old: str, new: str) -> str:
+    assert old in TEXT
+    return TEXT.replace(old, new)
+
+
+BROKEN = [
+    ("LINE TYPES, line 6", replaced("5e7", "stiff"), "'stiff'"),
+    ("LINE TYPES, line 6", replaced("5e7     -0.8", "ea.dat  -0.8"), "curve"),
+    ("LINE TYPES, line 6", replaced("5e7     -0.8", "5e7|1e6 -0.8"), "constant"),
+    ("LINE TYPES, line 6: EI", replaced("-0.8        0  ", "-0.8        1e4"), "bending"),
+    (
+        "LINE TYPES, line 6",
+        replaced("chain      0.09    80.0      5e7     -0.8        0 ", "chain 0.09 80.0 5e7"),
+        "10",
+    ),
+    ("line type chain: diameter", replaced("0.09", "0"), "0"),
+    ("line type chain: diameter", replaced("0.09", "-1"), "-1"),
+    ("LINE TYPES, line 6", replaced("0.09", "nan"), "nan"),
+    ("line type chain: mass", replaced("80.0", "0.0"), "0.0"),
+    ("LINE TYPES, line 6", replaced("80.0", "inf"), "inf"),
+    ("line type chain: drag_across", replaced("1.6", "-1.6"), "-1.6"),
+    ("line 7: section", replaced("---------------------- POINTS -", "----- RODS -"), "RODS"),
+    ("line 7: section", replaced("---------------------- POINTS -", "----- BODIES -"), "BODIES"),
+    ("line 12: section", replaced("- LINES -", "- POINTS -"), "POINTS"),
+    ("file", replaced("---------------------- LINES --", "---------------------- OUTPUTS -"), "LINES"),
+    ("file", TEXT.split("----------------------- LINE TYPES")[0], "LINE TYPES"),
+    ("POINTS, line 10: attachment", replaced("Fixed  ", "Nailed "), "'Nailed'"),
+    ("POINTS, line 10", replaced("-140.0 ", "west  "), "'west'"),
+    ("POINTS, line 11: ID", replaced("2     Coupled", "1     Coupled"), "1"),
+    ("POINTS, line 10", replaced("1     Fixed ", "1.5   Fixed "), "'1.5'"),
+    (
+        "POINTS, line 11",
+        replaced("2     Coupled    0.0    0.0     0.0    0      0      0      0", "2 Coupled 0 0"),
+        "9",
+    ),
+    ("point 1: position", replaced("-40.0 ", "-41.0 "), "bed"),
+    ("point 1: position", replaced("-140.0", "-1.4e7"), "nearer"),
+    ("POINTS, line 10", replaced("-140.0 ", "1e999  "), "'1e999'"),
+    ("point 2: mass", replaced("0.0    0      0      0      0\n----", "0.0   -5      0      0      0\n----"), "-5"),
+    ("LINES, line 15: type", replaced("1      chain   ", "1      wire    "), "'wire'"),
+    ("LINES, line 15: attachment", replaced("1        2       160", "1        3       160"), "'3'"),
+    ("LINES, line 15: attachment", replaced("1        2       160", "1      Body1     160"), "'Body1'"),
+    ("LINES, line 15: attachment", replaced("1        2       160", "1      R1A       160"), "'R1A'"),
+    ("line 1: end", replaced("1        2       160", "1        1       160"), "1"),
+    ("line 1: length", replaced("160.0 ", "0     "), "0"),
+    ("line 1: length", replaced("160.0 ", "-160  "), "-160"),
+    ("LINES, line 15", replaced("160.0 ", "nan   "), "nan"),
+    ("line 1: segments", replaced("   40         pt", "    0         pt"), "0"),
+    ("LINES, line 15", replaced("   40         pt", "  4.5         pt"), "4.5"),
+    ("line 1: segments", replaced("   40         pt", " 1e9          pt"), "1000000000"),
+    ("LINES, line 15", replaced("160.0      40         pt", "160.0"), "6 columns"),
+    ("OPTIONS, line 18", replaced("3.0e6", "much "), "'much'"),
+    ("OPTIONS, line 18: option", replaced("kBot", "kTop"), "'kTop'"),
+    ("bed_stiffness", replaced("3.0e6", "-3e6 "), "-3"),
+    ("density", replaced("1025 ", "-1025"), "-1025"),
+    ("depth", replaced("40       WtrDpth", "0        WtrDpth"), "0"),
+    ("OPTIONS, line 23: WaveKin", replaced("2        dtIC", "1        WaveKin"), "still"),
+    ("OPTIONS, line 23", replaced("2        dtIC", "dtIC"), "2 columns"),
+    (
+        "OPTIONS: WtrDpth",
+        replaced("40       WtrDpth\n", "").replace("Fixed    -140.0   0.0   -40.0", "Free -140 0 -40"),
+        "depth",
+    ),
+]
+
+
+@pytest.mark.parametrize(("name", "text", "words"), BROKEN)
+def test_what_is_not_understood_is_refused_in_one_line(tmp_path, name, text, words):
+    path = written(tmp_path, text)
+    with pytest.raises(ValueError, match="is not allowed; allowed: ") as error:
+        read_moordyn(path)
+    assert str(error.value).startswith(name)
+    assert words in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_file_that_cannot_be_read_is_named(tmp_path):
+    assert_refused("file", lambda: read_moordyn(tmp_path / "none.txt"), "none.txt")
+    binary = tmp_path / "binary"
+    binary.write_bytes(bytes(range(256)) * 10)
+    assert_refused("file", lambda: read_moordyn(binary))
+
+
+SYSTEM = chain_on_bed(4)
+POINTS, LINES = SYSTEM.points, SYSTEM.lines
+BODY = floating_body()
+ROWS = [
+    ("lines", lambda: System((), POINTS, 40.0)),
+    ("lines: id", lambda: System((LINES[0], LINES[0]), POINTS, 40.0)),
+    ("points: id", lambda: System(LINES, (*POINTS, POINTS[0]), 40.0)),
+    ("points: id", lambda: System(LINES, (*POINTS, POINTS[0]._replace(id="3")), 40.0)),
+    ("depth", lambda: dataclasses.replace(SYSTEM, depth=math.nan)),
+    ("gravity", lambda: dataclasses.replace(SYSTEM, gravity=-1.0)),
+    ("current", lambda: dataclasses.replace(SYSTEM, current=(1.0, math.inf, 0.0))),
+    ("friction", lambda: dataclasses.replace(SYSTEM, friction=-0.1)),
+    ("point 1: kind", lambda: System(LINES, (POINTS[0]._replace(kind="nail"), POINTS[1]), 40.0)),
+    ("point 1: body", lambda: System(LINES, (POINTS[0]._replace(kind="body", body=7), POINTS[1]), 40.0)),
+    ("point 2: body", lambda: System(LINES, (POINTS[0], POINTS[1]._replace(body=1)), 40.0, bodies=(BODY,))),
+    ("point 5", lambda: System(LINES, (*POINTS, Point(5, "free", (0.0, 0.0, -1.0))), 40.0)),
+    ("body 1: mass", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(mass=np.zeros((6, 6))),))),
+    ("body 1: mass", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(mass=np.triu(np.ones((6, 6)))),))),
+    ("body 1: stiffness", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(stiffness=-np.eye(6)),))),
+    ("body 1: damping", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(damping=np.eye(5)),))),
+    ("system", lambda: simulate(None)),  # type: ignore[arg-type]
+    ("motion", lambda: simulate(SYSTEM, {1: lambda t: (0.0, 0.0, 0.0)})),
+    ("motion[2]", lambda: simulate(SYSTEM, {2: 3.0})),  # type: ignore[dict-item]
+    ("motion[2](0)", lambda: simulate(SYSTEM, {2: lambda t: (0.0, math.nan, 0.0)})),
+    ("duration", lambda: simulate(SYSTEM, duration=0.0)),
+    ("frames", lambda: simulate(SYSTEM, frames=1)),
+    ("step", lambda: simulate(SYSTEM, step=-1.0)),
+    ("step", lambda: simulate(SYSTEM, step=1e-12)),
+    ("integrator", lambda: simulate(SYSTEM, integrator="implicit_midpoint")),
+    ("integrator", lambda: simulate(SYSTEM, integrator="nosuch")),
+    ("system: bodies", lambda: write_moordyn("none.txt", dataclasses.replace(SYSTEM, bodies=(BODY,)))),
+]
+
+
+@pytest.mark.parametrize(("name", "call"), ROWS)
+def test_what_no_mooring_has_is_refused(name, call):
+    assert_refused(name, call)

@@ -1,0 +1,214 @@
+"""Lines in motion: MoorDyn, ropes without water, orders of the integrators, energy, and the longest stable step."""
+
+import dataclasses
+import math
+import warnings
+
+import numpy as np
+import pytest
+
+from sim import springs
+from sim.mooring import Line, LineType, Point, System, critical_step, simulate
+from sim.mooring.simulate import LineState, paths_of
+from sim.mooring.statics import Rest
+from sim.ocean.kinematics import Components
+from tests.sim.mooring.systems import Shaking, chain_on_bed, floating_body, in_vacuum, taut_rope
+
+
+def harmonic(t: np.ndarray, y: np.ndarray, period: float) -> tuple[float, float]:
+    """Mean and amplitude of the first harmonic over the last three periods."""
+    last = t > t[-1] - 3.0 * period + 1e-9
+    phase = 2.0 * math.pi * t[last] / period
+    basis = np.stack([np.ones_like(phase), np.sin(phase), np.cos(phase)], axis=1)
+    mean, sine, cosine = np.linalg.lstsq(basis, y[last], rcond=None)[0]
+    return float(mean), math.hypot(sine, cosine)
+
+
+@pytest.mark.parametrize(
+    ("system", "motion", "period", "mean", "first"),
+    # MoorDyn 2.7.2 in steps of 1e-4 s, its fairlead set every 1e-3 s: set every 1e-2 s, the first harmonic of the chain
+    # is a tenth more, as the fairlead then goes in straight lines.
+    [
+        (chain_on_bed(40), Shaking((0.0, 0.0, 0.0), 0, 1.5, 7.0), 7.0, 44796.2, 1431.1),
+        (taut_rope(20), Shaking((0.0, 0.0, -1.0), 2, 0.15, 5.0), 5.0, 26625.9, 4004.3),
+    ],
+    ids=["chain on the bed", "taut rope"],
+)
+def test_tension_of_a_shaken_line_is_that_of_moordyn(system, motion, period, mean, first):
+    run = simulate(system, {2: motion}, 8.0 * period, round(400 * period) + 1)
+    found = harmonic(run.t, run.tension[1][:, -1], period)
+    assert found[0] == pytest.approx(mean, rel=1e-3)
+    assert found[1] == pytest.approx(first, rel=0.02)
+
+
+@pytest.mark.parametrize("integrator", ["leapfrog", "rk4"])
+def test_a_line_without_water_and_bed_is_a_rope(integrator):
+    kind = LineType("rope", 0.02, 3.0, 2000.0, 0.0 if integrator == "leapfrog" else 15.0)
+    points = (Point(1, "fixed", (0.0, 0.0, 0.0)), Point(2, "fixed", (2.0, 0.0, 0.3)))
+    system = System((Line(1, kind, 1, 2, 1.5, 12),), points, 10.0, density=0.0, bed_stiffness=0.0)
+    spacing = 1.5 / 12
+    net = springs.rope(
+        13, 1.5, 3.0 * spacing, 2000.0 / spacing, kind.damping / spacing, 0.0, root=(0.0, 0.0, 0.0),
+        end=(2.0, 0.0, 0.3), damping_model="axial",
+    )  # fmt: skip
+    expected = springs.simulate(net, integrator, 1e-3, 0.5, 6)
+    start = Rest({}, {}, {}, np.ascontiguousarray(net.x0[:, 0, [0, 12, *range(1, 12)]]))
+    found = simulate(system, duration=0.5, frames=6, step=1e-3, integrator=integrator, start=start)
+    assert np.abs(found.x[1] - expected.x).max() < 1e-12
+    assert np.abs(found.energy[:, :2] - expected.energy[:, :2]).max() < 1e-9
+
+
+def suspended_in_waves() -> tuple[System, Rest]:
+    """A taut line in a regular wave and a current, displaced so that it swings."""
+    waves = Components(
+        kx=np.array([0.1]), ky=np.array([0.05]), amplitude=np.array([0.8]), omega=np.array([1.05]),
+        phase=np.array([0.1]), depth=60.0, density=1025.0,
+    )  # fmt: skip
+    kind = LineType("rope", 0.08, 12.0, 4e4, 200.0, 1.0, 1.2, 0.3, 0.05)
+    points = (Point(1, "fixed", (0.0, 0.0, -40.0)), Point(2, "fixed", (30.0, 5.0, -2.0)))
+    system = System((Line(1, kind, 1, 2, 46.0, 8),), points, 60.0, current=(0.4, 0.1, 0.0), waves=waves)
+    return system, system.at_rest()
+
+
+def end_of(system: System, rest: Rest, integrator: str, h: float, duration: float) -> np.ndarray:
+    state = LineState(system, rest)
+    steps = round(duration / h)
+    state.advance(springs.INTEGRATORS[integrator], h, steps, paths_of(system, {}, 0.0, duration))
+    return state.x
+
+
+@pytest.mark.parametrize(
+    "integrator",
+    [
+        "leapfrog", "rk4", "dopri5",
+        *(pytest.param(name, marks=pytest.mark.stress) for name in ("explicit_euler", "symplectic_euler", "dop853")),
+    ],
+)  # fmt: skip
+def test_each_integrator_has_its_order_on_a_line_in_waves(integrator):
+    system, rest = suspended_in_waves()
+    order = springs.INTEGRATORS[integrator].order
+    duration = 2.0
+    finest = end_of(system, rest, "dopri5", duration / 8192, duration)
+    first = {1: 1024, 2: 64, 4: 64, 5: 64, 8: 32}[order]
+    errors = [
+        np.abs(end_of(system, rest, integrator, duration / n, duration) - finest).max() for n in (first, 2 * first)
+    ]
+    assert errors[0] < 0.5
+    assert math.log2(errors[0] / errors[1]) > order - 0.35
+
+
+@pytest.mark.parametrize("integrator", ["leapfrog", "rk4"])
+def test_the_account_balances_with_everything_at_work(integrator):
+    system = dataclasses.replace(chain_on_bed(20), friction=0.3, current=(0.3, 0.2, 0.0))
+    motion = Shaking((0.0, 0.0, 0.0), 0, 1.5, 7.0)
+    errors = []
+    for step in (2e-3, 1e-3):
+        run = simulate(system, {2: motion}, 8.0, 17, step, integrator=integrator, with_account=True)
+        stored = run.energy[:, :4].sum(axis=1)
+        error = stored + run.energy[:, 4] - run.energy[:, 5]
+        errors.append(np.abs(error - error[0]).max())
+        assert run.energy[-1, 4] > 1e3  # J
+    assert errors[1] < 0.02 * run.energy[-1, 4]
+    assert errors[1] < 0.7 * errors[0]
+
+
+def moored_body(surge: float) -> System:
+    """A body on two taut lines along x, without water or losses."""
+    kind = in_vacuum(LineType("wire", 0.02, 1.0, 4e5))
+    points = (
+        Point(1, "fixed", (-40.0, 0.0, 0.0)), Point(2, "body", (-2.0, 0.0, 0.0), body=1),
+        Point(3, "body", (2.0, 0.0, 0.0), body=1), Point(4, "fixed", (40.0, 0.0, 0.0)),
+    )  # fmt: skip
+    lines = (Line(1, kind, 1, 2, 37.9, 10), Line(2, kind, 3, 4, 37.9, 10))
+    return System(lines, points, 100.0, bodies=(floating_body(surge),), gravity=0.0, density=0.0, bed_stiffness=0.0)
+
+
+def test_a_moored_body_without_losses_keeps_its_energy_and_surges_at_the_linear_frequency():
+    system = moored_body(0.0)
+    system = dataclasses.replace(
+        system, bodies=(system.bodies[0]._replace(mass=np.diag([2e4, 2e4, 3e4, 8e4, 8e4, 9e4])),)
+    )
+    rest = system.at_rest()
+    x = rest.nodes.copy()
+    m = system.node_count
+    push = 0.01
+    x[0, m] += push
+    for line in system.lines:
+        at = system.nodes_of[line.id]
+        share = np.linspace(0.0, 1.0, len(at)) if line.id == 1 else np.linspace(1.0, 0.0, len(at))
+        x[0, at] += push * share
+    step = 0.5 * critical_step(system, "leapfrog", rest)
+    run = simulate(system, duration=1000.0, frames=8001, step=step, start=rest._replace(nodes=x))
+    total = run.energy[:, :4].sum(axis=1)
+    stiffness = 2.0 * 4e5 / 37.9
+    assert np.abs(total - total[0]).max() < 1e-4 * 0.5 * stiffness * push**2
+    surge = run.bodies[1][:, 0] - run.bodies[1][:, 0].mean()
+    spectrum = np.abs(np.fft.rfft(surge * np.hanning(len(surge))))
+    peak = int(spectrum.argmax())
+    left, middle, right = np.log(spectrum[peak - 1 : peak + 2])
+    found = (peak + 0.5 * (left - right) / (left - 2.0 * middle + right)) / 1000.0 * (8000 / 8001)
+    # A third of each line's mass moves with the body.
+    expected = math.sqrt(stiffness / (2e4 + 2.0 * 37.9 / 3.0)) / (2.0 * math.pi)
+    assert found == pytest.approx(expected, rel=0.01)
+
+
+def test_a_body_takes_the_pull_of_its_lines_as_a_rope_of_heavy_ends_does():
+    """Momentum passes through the joint: a body of mass alone is one more point of the rope."""
+    kind = in_vacuum(LineType("wire", 0.02, 1.0, 4e4))
+    body = floating_body()._replace(mass=np.diag([50.0] * 3 + [1e9] * 3), stiffness=np.zeros((6, 6)))
+    points = (Point(1, "fixed", (0.0, 0.0, 0.0)), Point(2, "body", (10.0, 0.0, 0.0), body=1))
+    carried = System(
+        (Line(1, kind, 1, 2, 10.0, 5),), points, 100.0, bodies=(body._replace(place=(10.0, 0.0, 0.0)),), gravity=0.0,
+        density=0.0, bed_stiffness=0.0,
+    )  # fmt: skip
+    free = System(
+        (Line(1, kind, 1, 2, 10.0, 5),), (points[0], Point(2, "free", (10.0, 0.0, 0.0), mass=50.0)), 100.0, gravity=0.0,
+        density=0.0, bed_stiffness=0.0,
+    )  # fmt: skip
+    nodes = np.zeros((3, 6))
+    nodes[0] = (0.0, 10.4, *np.linspace(0.0, 10.4, 6)[1:-1])
+    nodes[1, 2:] = 0.1
+    expected = simulate(free, duration=5.0, frames=11, step=2e-3, start=Rest({}, {}, {}, nodes))
+    with_body = np.concatenate((nodes, [[0.4, 0.0], [0.0, 0.0], [0.0, 0.0]]), axis=1)
+    found = simulate(carried, duration=5.0, frames=11, step=2e-3, start=Rest({}, {}, {}, with_body))
+    assert np.abs(found.x[1] - expected.x[1]).max() < 1e-9
+
+
+def grows(system: System, rest: Rest, integrator: str, h: float) -> bool:
+    """Whether a small disturbance grows a thousandfold in 400 steps of h."""
+    state = LineState(system, rest)
+    noise = 1e-7 * np.random.default_rng(0).standard_normal(state.x.shape)
+    free = system.kernel_view(1.0).inverse_masses > 0.0
+    state.x[:, free] += noise[:, free]
+    with np.errstate(all="ignore"):
+        state.advance(springs.INTEGRATORS[integrator], h, 400, paths_of(system, {}, 0.0, 1.0))
+    return not np.abs(state.x - rest.nodes).max() < 1e-4
+
+
+@pytest.mark.parametrize("lines", [5, pytest.param(50, marks=pytest.mark.stress)])
+@pytest.mark.parametrize("integrator", ["leapfrog", "rk4"])
+def test_a_line_diverges_at_the_step_of_the_gauge(lines, integrator):
+    rng = np.random.default_rng(1)
+    for _ in range(lines):
+        depth, length = rng.uniform(20.0, 80.0), rng.uniform(100.0, 200.0)
+        kind = LineType("chain", rng.uniform(0.05, 0.12), rng.uniform(40.0, 150.0), 10 ** rng.uniform(7.0, 8.5),
+                        -rng.uniform(0.1, 0.8))  # fmt: skip
+        span = rng.uniform(0.95, 0.99) * math.sqrt(length**2 - depth**2)  # no link of it is slack
+        points = (Point(1, "fixed", (-span, 0.0, -depth)), Point(2, "fixed", (0.0, 0.0, 0.0)))
+        system = System((Line(1, kind, 1, 2, length, int(rng.integers(10, 30))),), points, depth)
+        rest = system.at_rest()
+        h = critical_step(system, integrator, rest)
+        assert not grows(system, rest, integrator, 0.95 * h)
+        assert grows(system, rest, integrator, 1.05 * h)
+
+
+def test_a_run_that_diverges_ends_with_a_warning_and_what_it_has():
+    system = taut_rope(10)
+    motion = Shaking((0.0, 0.0, -1.0), 2, 0.15, 5.0)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        run = simulate(system, {2: motion}, 5.0, 51, 20.0 * critical_step(system, "rk4"), integrator="rk4")
+    assert run.diverged_at is not None
+    assert "critical_step" in str(caught[-1].message)
+    assert np.isfinite(run.x[1][0]).all()
+    assert np.isnan(run.x[1][-1]).all()

@@ -70,18 +70,21 @@ def test_a_dragged_particle_follows_and_is_released():
     assert scene.frame().pull is None
 
 
-def test_a_moved_pin_moves_its_end_of_the_edge():
+@pytest.mark.parametrize(("pin", "end"), [("pin a", 0), ("pin b", 1)])
+def test_a_moved_pin_moves_its_end_of_the_edge(pin, end):
     scene = ClothScene(SMALL)
     run(scene, 0.1)
     ends = scene.state.x[:, 0, [0, -1]].copy()
-    scene.handle(Place("pin b", (float(ends[0, 1]) + 0.3, float(ends[1, 1]), float(ends[2, 1]))))
+    x, y, z = ends[:, end]
+    scene.handle(Place(pin, (float(x) + 0.3, float(y), float(z))))
     run(scene, 1.0)
-    assert scene.state.x[:, 0, 0] == pytest.approx(ends[:, 0], abs=1e-6)
-    assert scene.state.x[:, 0, -1] == pytest.approx(ends[:, 1] + (0.3, 0.0, 0.0), abs=1e-4)
+    now = scene.state.x[:, 0, [0, -1]]
+    assert now[:, 1 - end] == pytest.approx(ends[:, 1 - end], abs=1e-6)
+    assert now[:, end] == pytest.approx(ends[:, end] + (0.3, 0.0, 0.0), abs=1e-4)
     middle = 0.5 * (scene.state.x[0, 0, 4] + scene.state.x[0, 0, 5])
     assert middle > 0.5 * (ends[0, 0] + ends[0, 1]) + 0.1
     scene.reset()
-    assert scene.state.x[:, 0, -1] == pytest.approx(ends[:, 1], abs=1e-9)
+    assert scene.state.x[:, 0, [0, -1]] == pytest.approx(ends, abs=1e-9)
 
 
 def test_the_sphere_pushes_the_cloth():

@@ -113,7 +113,7 @@ def test_the_largest_waves_state_what_they_leave_out():
     assert len(few.kx) == 100
     total = 0.5 * np.square(waves.amplitude).sum()
     assert few.elevation_error**2 + 0.5 * np.square(few.amplitude).sum() == pytest.approx(total, rel=1e-12)
-    assert few.largest(40).velocity_error == pytest.approx(waves.largest(40).velocity_error, rel=1e-12)
+    assert few.largest(40)[-2:] == pytest.approx(waves.largest(40)[-2:], rel=1e-12)  # the two errors
     points = points_below(4000)
     points[:, 2] = 0.0
     missed = waves.kinematics(points, T).velocity[:, 2] - few.kinematics(points, T).velocity[:, 2]

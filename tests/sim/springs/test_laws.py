@@ -10,7 +10,7 @@ from sim.jit import kernel
 from sim.springs import INTEGRATORS, LAWS, PinPath, State, advance, rope
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS
 from sim.springs.laws import energy as link_energy
-from sim.springs.laws import over_step, stiffness, tension
+from sim.springs.laws import largest_stiffness, over_step, stiffness, tension
 from sim.springs.state import energy
 from tests import naive
 from tests.sim.springs.nets import patch
@@ -73,6 +73,13 @@ def test_the_laws_are_their_formulas(name):
     lengths = REST * (1.0 + STRAINS)
     expected = [naive.tension(net, net.families[0], length) for length in lengths]
     assert laws_at(name, lengths)[0] == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("strain", [0.3, 1.5])
+@pytest.mark.parametrize("name", LAWS)
+def test_the_largest_stiffness_is_that_of_all_lengths_within_a_strain(name, strain):
+    lengths = REST * (1.0 + np.linspace(max(-strain, -0.999), strain, 401))
+    assert largest_stiffness(LAWS[name].numbers, strain) * K == pytest.approx(laws_at(name, lengths)[1].max(), rel=5e-3)
 
 
 @pytest.mark.parametrize("name", LAWS)

@@ -215,8 +215,6 @@ def add_lab(lab: argparse.ArgumentParser) -> None:
 def add_serving(parser: argparse.ArgumentParser) -> None:
     """The options of `springtide` without a command."""
     parser.add_argument("--scene", default="rope", metavar="SCENE", help=", ".join(NAMES) + " (default: rope)")
-    resume = "begin with the set-up that the last lab with this option was left with, if there was one"
-    parser.add_argument("--resume", action="store_true", help=resume)
     add_address(parser)
     add_parameters(parser)
 
@@ -285,26 +283,14 @@ def with_hull(params: Any, path: Path) -> Any:
 
 def serve(arguments: argparse.Namespace, session: Any = None) -> int:
     """`springtide`: the lab in a browser. session: of a student's folder."""
-    name, params = opening_setup(arguments)
+    scene = scene_named(arguments.scene)
+    nothing_asked = arguments.preset is None and not arguments.set and arguments.hull is None
+    params = scene.opening_params() if nothing_asked else read_params(scene, arguments)
     from app.commands.serve import serve_lab
     from app.lab.workbook import Workbook
 
     workbook = None if session is None else Workbook(session.tasks, session.folder)
-    common = serving(arguments)
-    return serve_lab(name, params, **common, workbook=workbook, session=session, resumes=arguments.resume)
-
-
-def opening_setup(arguments: argparse.Namespace) -> tuple[str, Any]:
-    """Name and parameters of the scene that the lab begins with."""
-    if arguments.resume:
-        from app.scenes.last_setup import read_last
-
-        last = read_last()
-        if last is not None:
-            return last.scene, last.params
-    scene = scene_named(arguments.scene)
-    nothing_asked = arguments.preset is None and not arguments.set and arguments.hull is None
-    return arguments.scene, scene.opening_params() if nothing_asked else read_params(scene, arguments)
+    return serve_lab(arguments.scene, params, **serving(arguments), workbook=workbook, session=session)
 
 
 def serve_beside(arguments: argparse.Namespace) -> int:

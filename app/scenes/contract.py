@@ -34,7 +34,6 @@ FRAME_INTERVAL = 1 / 60  # [s] between ticks of the loop, and between two frames
 
 F_co = TypeVar("F_co", covariant=True)
 R_co = TypeVar("R_co", covariant=True)
-F_contra = TypeVar("F_contra", contravariant=True)
 
 
 Pieces: TypeAlias = Mapping[str, Callable[[], object]]  # name of what is compiled -> compiles it, by running it

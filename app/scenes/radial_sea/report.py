@@ -19,7 +19,6 @@ from sim.ocean.oil_film import appearance
 from sim.ocean.weathering.components import WARM
 from sim.parameters import parameters_of
 
-SAMPLE_WAVE = 10.0  # [m] length of the wave in statements about the speed of waves
 SHORT_WAVE = 1.0  # [m] length of the wave in statements about viscosity
 LEAST_LEFT = 1e-3  # share of a wave below which nothing is said of how much it is
 SURFACES = (("sum", "radial sum"), ("fft", "square FFT"))

@@ -1,5 +1,6 @@
 """A blowout of the well under the rig: it burns, and oil shoots into the sea and spreads there as a slick."""
 
+import dataclasses
 import functools
 import math
 from typing import NamedTuple
@@ -10,7 +11,7 @@ from app.scenes.radial_sea.parameters import Params
 from sim.interruption import raise_if_stopped
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import RadialSea
-from sim.ocean.slick import slick_radius, slick_thickness, spreading_coefficient
+from sim.ocean.slick import SlickCover, slick_radius, slick_thickness, spreading_coefficient
 from sim.ocean.tile_sea import TileSea
 from sim.ocean.weathering.laws import DRIFT
 from sim.particles.fire import Fire
@@ -29,6 +30,7 @@ MAX_FLIGHT_TIME = 4.0  # [s] that a parcel of oil is in the air, about
 MIN_JET_PARCELS = 50
 SMOKE_LIFE = 20.0  # [s] of a parcel of fire and smoke on average
 BURN_IN_TIME, BURN_IN_STEP = 60.0, 0.2  # [s] for which the fire burns before the scene begins, and the steps of that
+CALMING_STEP = 1.05  # ratio of two thicknesses of the slick for which the decay of waves is found
 CROSSING_WAVE = 1.0  # [m] length of the wave in what is said of how the slick calms waves
 SAMPLE_GRID, SAMPLE_SPACING = 16, 3.0  # points a side and their distance [m], of the sea that parcels fall into
 
@@ -164,6 +166,16 @@ class WellBlowout:
         radius = spread_radius(volume, age, column)
         return Slick((x, y), radius, slick_thickness(volume, radius))
 
+    def cover(self, column: FluidColumn) -> SlickCover | None:
+        """The slick as the waves meet it; None without one, or where oil and water are mixed anyway."""
+        slick = self.slick(column)
+        if slick is None or column.kind == "mixed":
+            return None
+        # Rounded, as the decay of all waves is found again with each thickness.
+        steps = round(math.log(slick.thickness) / math.log(CALMING_STEP))
+        thickness = column.thickness + CALMING_STEP**steps
+        return SlickCover(slick.centre, slick.radius, dataclasses.replace(column, thickness=thickness))
+
     def oil_budget(self, column: FluidColumn) -> OilBudget:
         """Budget of the oil."""
         slick, jet, closed = self.slick(column), self.jet, self.closed_jets_total
@@ -201,3 +213,15 @@ def wind_of(params: Params) -> tuple[float, float]:
 def slick_reach(slick: Slick, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """How far inside the slick points (n,) [m] are, (n,) [m], negative outside. It is round; it is drawn ragged."""
     return slick.radius - np.hypot(x - slick.centre[0], y - slick.centre[1])
+
+
+@functools.lru_cache(maxsize=4)
+def crossing_loss(inside: FluidColumn, outside: FluidColumn) -> float:
+    """Loss [1/m] of a wave of `CROSSING_WAVE` under a slick; kept, as over thin oil it takes 30 ms to find."""
+    k = np.array([2.0 * math.pi / CROSSING_WAVE])
+    return float(SlickCover((0.0, 0.0), 0.0, inside).attenuation(k, outside)[0])
+
+
+def wave_left(cover: SlickCover | None, outside: FluidColumn) -> float:
+    """Share of its height that a wave of `CROSSING_WAVE` keeps across a slick; NaN without one."""
+    return math.nan if cover is None else math.exp(-2.0 * cover.radius * crossing_loss(cover.column, outside))

@@ -7,7 +7,7 @@ import itertools
 import math
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -15,10 +15,12 @@ import trimesh
 
 from app.__main__ import main
 from app.messages import Grab, Place, Release
+from app.scenes.contract import AnyScene
 from app.scenes.radial_sea.bodies import BODY_KINDS, place_of
+from app.scenes.radial_sea.drawn_surface import FOAM_RADIUS, mean_square_slope, tile_of
 from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden
 from app.scenes.radial_sea.report import marks_of
-from app.scenes.radial_sea.scene import FOAM_RADIUS, RadialSeaScene, mean_square_slope
+from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import LANDING, WellBlowout, slick_reach
 from app.server.loop import SimLoop
 from sim.floating import Hull, equilibrium_draft, heave_period
@@ -463,7 +465,7 @@ def test_a_spill_ages_and_its_parameter_sets_its_age_anew(surface: str) -> None:
     heavy = {"spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 10.0, "bodies": 0, "surface": surface}
     heavy["compare"] = True  # so that the surface that is not drawn is made too
     scene = RadialSeaScene(with_parameters(**heavy))
-    before, square = scene.sum.significant_height, scene.make_tile().significant_height
+    before, square = scene.sum.significant_height, tile_of(scene).significant_height
     run(scene, 60.0)
     assert scene.readings().age == pytest.approx(70.0, abs=0.2)
     aged = RadialSea(scene.sum.waves, scene.column, 70.0)
@@ -505,7 +507,7 @@ def test_what_oil_took_of_the_waves_stays_taken_and_the_panel_says_how_much_is_l
     assert left[4] == pytest.approx(left[3], rel=1e-9)
     first, second = (dataclasses.replace(scene.column, thickness=thickness) for thickness in (0.5, 0.3))
     assert scene.sum.past == {first: 1200.0, second: 1200.0}
-    loop = SimLoop(scene)
+    loop = SimLoop(cast(AnyScene, scene))
     loop.tick(0.1)
     said = marks_of(loop.latest)["exposure"].replace("\u202f", "")
     k = np.array([peak_wavenumber(SPECTRA[scene.wave_choice.spectrum], scene.wave_choice.conditions)])

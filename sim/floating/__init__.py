@@ -5,7 +5,9 @@ step(fleet, still_water(fleet), 1 / 60)
 """
 
 from sim.floating.body import Body, Fleet, lowest, make_fleet, pull, vertices
+from sim.floating.dataset import with_dataset
 from sim.floating.equilibrium import equilibrium_draft
+from sim.floating.float_in import FloatRun, float_in
 from sim.floating.fluid_state import Water, make_water, still_water
 from sim.floating.heave_meter import HeaveMeter
 from sim.floating.hull import Hull, shape_from_file
@@ -13,6 +15,7 @@ from sim.floating.hydrostatics import Submerged, pressure_force, submerged
 from sim.floating.motion import MotionCoefficients, step
 from sim.floating.periods import heave_period, roll_period
 from sim.floating.prediction import HydrostaticPrediction, predict
+from sim.floating.response import response_amplitude
 from sim.floating.shapes import SHAPES, Shape
 from sim.floating.stability import metacentric_height, righting_arm
 
@@ -20,6 +23,7 @@ __all__ = [
     "SHAPES",
     "Body",
     "Fleet",
+    "FloatRun",
     "HeaveMeter",
     "Hull",
     "HydrostaticPrediction",
@@ -28,6 +32,7 @@ __all__ = [
     "Submerged",
     "Water",
     "equilibrium_draft",
+    "float_in",
     "heave_period",
     "lowest",
     "make_fleet",
@@ -36,6 +41,7 @@ __all__ = [
     "predict",
     "pressure_force",
     "pull",
+    "response_amplitude",
     "righting_arm",
     "roll_period",
     "shape_from_file",
@@ -43,4 +49,5 @@ __all__ = [
     "still_water",
     "submerged",
     "vertices",
+    "with_dataset",
 ]

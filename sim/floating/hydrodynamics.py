@@ -32,6 +32,7 @@ FIT_WIDTH = 0.12  # share of a hull's own frequency about which the memory is fi
 FIT_FLOOR = 0.06  # weight of the other frequencies
 STEADY_WEIGHT = 30.0  # of the condition that a steady motion meets no force
 DEEPEST = 0.98  # of the height of a hull: the draft at which one that is wholly under water has its coefficients
+ONE_DRAFT = 0.01  # by how much a body's draft may differ from the only one of its table
 MAX_TURNS = 60  # of the search for a natural frequency
 # Signs of the motions under a mirror that turns x, or y
 MIRROR_X = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
@@ -111,7 +112,8 @@ def outside_table(hull: Hull, draft: float) -> str:
         ("draft over half the width", place.depth, place.table.draft),
     ):
         low, high = float(nodes[0]), float(nodes[-1])
-        if not low * (1 - 1e-9) <= value <= high * (1 + 1e-9):
+        margin = 1e-9 if len(nodes) > 1 or name != "draft over half the width" else ONE_DRAFT
+        if not low * (1 - margin) <= value <= high * (1 + margin):
             beyond.append(f"{name} {value:.3g} (table: {low:g} to {high:g})")
     return " and ".join(beyond)
 

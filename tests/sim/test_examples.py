@@ -7,6 +7,8 @@ import pytest
 
 MODULES = (
     "sim.floating.body",
+    "sim.floating.float_in",
+    "sim.floating.response",
     "sim.floating.stability",
     "sim.ocean.kinematics",
     "sim.ocean.spectra.record",

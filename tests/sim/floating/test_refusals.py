@@ -14,21 +14,25 @@ from sim.floating import (
     Hull,
     MotionCoefficients,
     equilibrium_draft,
+    float_in,
     heave_period,
     make_fleet,
     make_water,
     metacentric_height,
     pressure_force,
     pull,
+    response_amplitude,
     righting_arm,
     roll_period,
     step,
     still_water,
     submerged,
 )
+from sim.ocean import Sea
 from tests.refusals import Row, assert_refused, each
 
 BOX = Hull.box(1.0, 1.0, 1.0)
+CALM = Sea(16, 50.0, wind_speed=0.0)
 WATER = [(1025.0, math.inf)]
 SPILL = [(850.0, 0.2), (1025.0, math.inf)]
 NAN, INF = math.nan, math.inf
@@ -99,6 +103,12 @@ REFUSED: list[Row] = [
     ("center_of_gravity", lambda: Body(BOX, mass=500.0, center_of_gravity=(0.4, 0.0, 3.0)).afloat(), "60 degrees"),
     *each(partial(metacentric_height, Body(BOX)), axis=[2, True, "roll"]),
     *each(partial(righting_arm, Body(BOX)), heel=[4.0, [0.1, NAN], "flat"]),
+    *each(partial(response_amplitude, Body(BOX)), frequency=[1.0, [0.0], [NAN], "fast"]),
+    *each(partial(response_amplitude, Body(BOX), [1.0]), heading=[NAN, "ahead"], gravity=[0.0], layers=LAYERS),
+    ("center_of_gravity", lambda: response_amplitude(Body(BOX, mass=500.0, center_of_gravity=(0.1, 0, -0.4)), [1]), ""),
+    *each(partial(float_in, bodies=[], duration=1.0), sea=[None, "calm"]),
+    *each(partial(float_in, CALM, []), duration=[0.0, NAN, "1"]),
+    *each(partial(float_in, CALM, [], 1.0), frames=[1, 2.5, True]),
     *each(step_box, duration=[True, "a", NAN], substeps=[1.7, True, 0]),
     *each(step_box, gravity=[True, NAN], restitution=["a", 2.0], linear_drag=[-1.0]),
     ("duration", lambda: step_box(1e6), "s for bodies this stiff"),

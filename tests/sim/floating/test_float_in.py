@@ -1,0 +1,64 @@
+"""Bodies in a sea, run by one call, beside the response that linear theory gives them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sim.floating import Body, Hull, MotionCoefficients, float_in, response_amplitude
+from sim.ocean import Sea
+from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.gerstner import Waves
+from sim.ocean.radial import RadialSea
+
+FREE = MotionCoefficients(quadratic_drag=0.0)
+
+
+def regular(k: float, amplitude: float, heading: float = 0.0, **more) -> RadialSea:
+    one = np.ones(1)
+    return RadialSea(
+        Waves(k * math.cos(heading) * one, k * math.sin(heading) * one, amplitude * one, 0.0 * one), **more
+    )
+
+
+@pytest.mark.parametrize("heading", [0.0, 2.0])
+def test_a_loaded_barge_heaves_and_pitches_as_its_response_amplitude(heading):
+    hull = Hull.box(30.0, 10.0, 5.0)
+    density = FluidColumn().surface.density
+    mass = 0.5 * density * hull.volume
+    inertia = (mass * 3.5**2, mass * 8.0**2, mass * 8.0**2)
+    body = Body(hull, mass=mass, center_of_gravity=(0.0, 0.0, 0.5), inertia=inertia).afloat([(density, math.inf)])
+    w, amplitude = 0.8, 0.02
+    sea = regular(w * w / 9.81, amplitude, heading)
+    period = 2.0 * math.pi / float(sea.rate[0])
+    run = float_in(sea, [body], 25.0 * period, frames=25 * 40 + 1, coefficients=FREE)
+    xi = response_amplitude(body, [w], heading, [(density, math.inf)])[0]
+    last = slice(-10 * 40, None)  # ten periods, when what the start brought has radiated
+    wave = np.exp(-1j * float(sea.rate[0]) * run.t[last])
+    for motion, measured in ((2, run.x[last, 0, 2]), (4, 2.0 * run.rotation[last, 0, 2])):
+        found = 2.0 * np.mean(measured * wave.conj()) / amplitude
+        assert abs(found) == pytest.approx(abs(xi[motion]), rel=0.03)
+
+
+@pytest.mark.parametrize("kind", ["radial", "square"])
+def test_a_small_buoy_follows_a_long_wave(kind):
+    body = Body(Hull.cylinder(0.5, 1.0), density=500.0).afloat()
+    if kind == "radial":
+        sea = regular(2.0 * math.pi / 80.0, 0.3)
+    else:
+        sea = Sea(64, 80.0, "regular", wave_height=0.6, wave_period=7.16, wind_speed=0.0, density=1025.0)
+    run = float_in(sea, [body], 30.0, frames=301)
+    assert run.t[-1] == 30.0
+    rise = run.x[:, 0, 2] - body.position[2]
+    assert np.std(rise[150:] - run.surface[150:, 0]) < 0.05 * np.std(run.surface[150:, 0])
+    balance = run.lift[100:, 0].sum(axis=1).mean() / (500.0 * body.hull.volume * 9.81)
+    assert balance == pytest.approx(1.0, abs=0.02)
+
+
+def test_in_still_layers_a_body_at_rest_stays():
+    column = FluidColumn(thickness=0.3)
+    sea = regular(1.0, 0.0, column=column)
+    body = Body(Hull.box(1.0, 1.2, 0.8), density=600.0).afloat(column.layers)
+    run = float_in(sea, [body], 2.0, frames=5)
+    assert run.x[-1, 0] == pytest.approx(body.position, abs=1e-9)
+    assert float_in(sea, [], 1.0, frames=3).x.shape == (3, 0, 3)

@@ -27,12 +27,12 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Jupyter]:
 
 def run(server: Jupyter, notebook: Any) -> Any:
     """Execute a notebook in a kernel of the server, and return it with its outputs; fails where a cell does."""
-    import jupyter_client
     import nbclient
+    from jupyter_client.asynchronous.client import AsyncKernelClient
 
     async def execute(connection: Path) -> None:
         client = nbclient.NotebookClient(notebook, timeout=600)
-        client.kc = jupyter_client.AsyncKernelClient()
+        client.kc = AsyncKernelClient()
         client.kc.load_connection_file(str(connection))
         client.kc.start_channels(hb=False)
         try:
@@ -57,11 +57,23 @@ def outputs(notebook: Any) -> list[Any]:
 def test_the_examples_are_there_and_are_no_other_than_what_is_tested() -> None:
     import nbformat
 
-    assert [path.stem for path in NOTEBOOKS] == ["race", "rope", "sea"]
+    assert [path.stem for path in NOTEBOOKS] == ["barge", "race", "rope", "sea"]
     for path in NOTEBOOKS:
         notebook = nbformat.read(path, as_version=4)
         nbformat.validate(notebook)
-        assert "app.show(" in "".join(cell.source for cell in notebook.cells)
+        assert ("app.show(" in "".join(cell.source for cell in notebook.cells)) == (path.stem != "barge")
+
+
+def test_the_notebook_of_the_barge_runs() -> None:
+    """In this process, as it shows no lab."""
+    import nbformat
+
+    pytest.importorskip("xarray")
+    pytest.importorskip("matplotlib").use("Agg")
+    names: dict = {}
+    for cell in nbformat.read(ROOT / "docs" / "notebooks" / "barge.ipynb", as_version=4).cells:
+        if cell.cell_type == "code":
+            exec(compile(cell.source, "barge.ipynb", "exec"), names)
 
 
 def test_two_labs_in_a_notebook_and_a_cell_that_is_run_again(server: Jupyter) -> None:
@@ -108,13 +120,13 @@ def test_an_example_runs_clean(server: Jupyter, path: Path) -> None:
 
 @pytest.mark.stress
 def test_a_kernel_that_restarts_or_ends_leaves_no_process(server: Jupyter) -> None:
-    import jupyter_client
+    from jupyter_client.blocking.client import BlockingKernelClient
 
     psutil = pytest.importorskip("psutil")
     kernel = server.ask("api/kernels", "POST")["id"]
     connection = server.runtime / f"kernel-{kernel}.json"
     for ending in ("restart", "DELETE"):
-        client = jupyter_client.BlockingKernelClient()
+        client = BlockingKernelClient()
         client.load_connection_file(str(connection))
         client.start_channels(hb=False)
         client.wait_for_ready(timeout=60)

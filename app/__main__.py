@@ -289,7 +289,11 @@ def serve(arguments: argparse.Namespace, session: Any = None) -> int:
     from app.commands.serve import serve_lab
     from app.lab.workbook import Workbook
 
-    workbook = None if session is None else Workbook(session.tasks, session.folder)
+    workbook = None
+    if session is not None:
+        verdicts = session.check
+        states = lambda: {name: verdict.state for name, verdict in verdicts.verdicts.items()}  # noqa: E731
+        workbook = Workbook(session.tasks, session.folder, states)
     return serve_lab(arguments.scene, params, **serving(arguments), workbook=workbook, session=session)
 
 

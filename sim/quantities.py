@@ -8,6 +8,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 PREFIXES = {"n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "k": 3, "K": 3, "M": 6, "G": 9}
+CENTI = {"c": -2}  # with a unit only: "5 c" is none
 MAX_LENGTH = 64  # characters of a number
 MAX_EXPONENT = 400  # beyond it every float is 0 or infinite
 MAX_DENOMINATOR = 100_000  # of a number that is written as 1/n
@@ -31,8 +32,11 @@ def exponent_of(suffix: str, unit: str) -> int | None:
     suffix, unit = plain_unit(suffix), plain_unit(unit)
     if suffix in ("", unit):
         return 0
-    prefix = suffix.removesuffix(unit).strip() if unit else suffix
-    return PREFIXES.get(prefix)
+    if not unit or not suffix.endswith(unit):
+        return PREFIXES.get(suffix)
+    power = re.match(r"[A-Za-z]+\^(\d)", unit)  # of a prefix: 1 mm² is 1e-6 m²
+    exponent = (PREFIXES | CENTI).get(suffix.removesuffix(unit).strip())
+    return None if exponent is None else exponent * (int(power[1]) if power else 1)
 
 
 def fraction_of(digits: str) -> Fraction:
@@ -46,7 +50,8 @@ def fraction_of(digits: str) -> Fraction:
 def read_number(text: str, unit: str = "") -> float:
     """Parse a number, rounded once.
 
-    It may be a quotient, have a decimal comma, and end in a prefix (n, µ or u, m, k, M, G), in the unit, or in both.
+    It may be a quotient, have a decimal comma, and end in a prefix (n, µ or u, m, k, M, G), in the unit, or in both;
+    "cm" too.
     "5m" is five metres if the unit is m, and five thousandths otherwise.
     Raises ValueError for text that is no number, and for "1,000", whose meaning depends on the country.
     """

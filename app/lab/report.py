@@ -1,7 +1,9 @@
 """The page to hand in: one HTML file that needs no network. Everything that a student wrote is escaped."""
 
+import ast
 import base64
 import inspect
+import re
 import time
 from collections.abc import Sequence
 
@@ -10,7 +12,7 @@ from app.lab.answers import Answers, Value
 from app.lab.chart import chart
 from app.lab.check import FolderResult, TaskResult
 from app.lab.folder import MAX_PICTURES, PICTURES
-from app.lab.program_check import SAMPLES
+from app.lab.program_check import SAMPLES, is_empty
 from app.lab.task import Task
 from app.render.formula import formula
 from app.render.html import Html, fill, join
@@ -19,6 +21,7 @@ MAX_CODE = 20_000  # characters of a student's file that are shown
 MAX_PICTURE = 4 * 2**20  # [bytes]
 # The first bytes of a picture -> its type; other files are left out, whatever their names.
 SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
+BEGINNING = re.compile(r"\w+")  # of a picture's name, which may be that of a task
 PARTS = {"Predict": "Predicted", "Measure": "Measured", "Explain": "Explained"}
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #1b2a3a; max-width: 60em; margin: 2em auto; padding: 0 1em; }
@@ -41,7 +44,7 @@ pre { background: #f3f5f7; padding: 0.7em; overflow-x: auto; font-size: 13px; } 
 
 def page_of(results: Sequence[FolderResult]) -> str:
     """The page of one student, or of a class with an overview first."""
-    title = "Lab report" if len(results) == 1 else f"Lab reports of {len(results)} folders"
+    title = heading(results[0]) if len(results) == 1 else f"Lab reports of {len(results)} folders"
     overview = class_overview(results) if len(results) > 1 else Html()
     body = join(student_section(result, number) for number, result in enumerate(results))
     return fill(
@@ -76,25 +79,37 @@ def class_overview(results: Sequence[FolderResult]) -> Html:
 def student_section(result: FolderResult, number: int) -> Html:
     """Everything of one student."""
     (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
-    name = result.answers.name or f"Folder {result.folder.name}"
     error = fill('<p class="failed">{}</p>', result.answers.error) if result.answers.error else Html()
     found = pictures(result)
     tasks = join(
         task_section(result, entry, f"student-{number}-{entry.task.name}", of_task(found, entry.task.name))
         for entry in result.tasks
+        if entry.state != "not begun"
     )
-    rest = of_task(found, "")
+    rest, written = of_task(found, ""), code(result)
     return fill(
-        '<section id="student-{0}"><h1>{1}</h1><p>Springs and waves, the course lab. Checked on {2}.</p>'
-        "<p>{3} of {4} mandatory tasks are right, and {5} of {6} optional ones.</p>{7}{8}{9}{10}"
-        "<h2>Code</h2>{11}</section>",
-        number, name, time.strftime("%Y-%m-%d %H:%M"), right, count, more, optional, error, overview(result, number),
-        tasks, fill("<h2>More pictures</h2>{}", rest) if rest else Html(), code(result),
+        '<section id="student-{0}"><h1>{1}</h1><p>Checked on {2}.</p>'
+        "<p>{3} of {4} mandatory tasks are right, and {5} of {6} optional ones.</p>{7}{8}{9}{10}{11}{12}</section>",
+        number, heading(result), time.strftime("%Y-%m-%d %H:%M"), right, count, more, optional, error,
+        overview(result, number), tasks, fill("<h2>More pictures</h2>{}", rest) if rest else Html(),
+        fill("<h2>Code</h2>{}", written) if written else Html(), not_begun(result),
     )  # fmt: skip
 
 
+def heading(result: FolderResult) -> str:
+    """The subject and the name of the student."""
+    return f"Lab report: Springs and waves – {result.answers.name or f'folder {result.folder.name}'}"
+
+
+def not_begun(result: FolderResult) -> Html:
+    """A folded list of the tasks that are not begun; nothing if all are."""
+    titles = [f"{entry.task.item} {entry.task.title}" for entry in result.tasks if entry.state == "not begun"]
+    rows = join(fill("<li>{}</li>", title) for title in titles)
+    return fill("<details><summary>Not begun: {}</summary><ul>{}</ul></details>", len(titles), rows) if rows else Html()
+
+
 def overview(result: FolderResult, number: int) -> Html:
-    """The state of every task, with a link to its section."""
+    """The state of every task that is begun, with a link to its section."""
     rows = join(
         fill(
             '<tr><td>{}</td><td><a href="#student-{}-{}">{}</a>{}</td><td class="{}">{}</td></tr>',
@@ -102,6 +117,7 @@ def overview(result: FolderResult, number: int) -> Html:
             " (optional)" if entry.task.optional else "", state_class(entry.state), entry.state,
         )
         for entry in result.tasks
+        if entry.state != "not begun"
     )  # fmt: skip
     return fill('<table class="overview">{}</table>', rows)
 
@@ -114,7 +130,9 @@ def state_class(state: str) -> str:
 def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Html) -> Html:
     """One task: its statement, law, steps done, check and answers. shown: its pictures."""
     task = entry.task
-    laws = join(formula(law) for law in task.guide.law) if task.guide is not None else Html()
+    # A law may be the answer to a question that is still open.
+    is_open = any(answer.state == "not begun" for answer in entry.answers)
+    laws = Html() if task.guide is None or is_open else join(formula(law) for law in task.guide.law)
     return fill(
         '<h3 id="{}">{} {}{}: <span class="{}">{}</span></h3><p class="faint">{}</p>{}{}{}{}{}{}',
         anchor, task.item, task.title, " (optional)" if task.optional else "", state_class(entry.state), entry.state,
@@ -202,11 +220,11 @@ def pictures(result: FolderResult) -> list[tuple[str, Html]]:
         kind = next((kind for head, kind in SIGNATURES.items() if data.startswith(head)), None)
         if kind is not None:
             source = f"data:{kind};base64,{base64.b64encode(data).decode()}"
-            first = path.stem.partition(" ")[0]
+            first = BEGINNING.match(path.stem)
             figure = fill(
                 '<figure><img src="{}" alt="{}"><figcaption>{}</figcaption></figure>', source, path.stem, path.name
             )
-            found.append((first if first in names else "", figure))
+            found.append((first[0] if first and first[0] in names else "", figure))
     return found
 
 
@@ -216,10 +234,28 @@ def of_task(found: Sequence[tuple[str, Html]], task: str) -> Html:
 
 
 def code(result: FolderResult) -> Html:
-    """The student's files, as they were checked."""
-    names = dict.fromkeys(entry.task.file for entry in result.tasks if entry.task.file)
+    """The student's files as they were checked, without the functions that are not begun."""
+    names = dict.fromkeys(
+        entry.task.file for entry in result.tasks if entry.program and entry.program.state != "not begun"
+    )
     return join(
-        fill("<h3>{}</h3><pre>{}</pre>", name, (result.folder / name).read_text("utf-8", "replace")[:MAX_CODE])
+        fill("<h3>{}</h3><pre>{}</pre>", name, written((result.folder / name).read_text("utf-8", "replace"))[:MAX_CODE])
         for name in names
         if (result.folder / name).is_file()
     )
+
+
+def written(source: str) -> str:
+    """A Python file without the functions that have no body, and their headings; as it is if it cannot be parsed."""
+    try:
+        nodes = ast.parse(source).body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return source
+    lines = source.splitlines()
+    for node in reversed(nodes):
+        if isinstance(node, ast.FunctionDef) and all(is_empty(line) for line in node.body):
+            first = node.lineno - 1
+            while first and lines[first - 1].startswith("#"):
+                first -= 1
+            del lines[first : node.end_lineno]
+    return re.sub(r"\n{4,}", "\n\n\n", "\n".join(lines)).strip() + "\n"

@@ -22,7 +22,7 @@ TASKS = Path(__file__).parent / "tasks"  # those of the course
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 QUESTION_KINDS = ("choice", "number", "text")
 CONDITIONS = ("when", "needs")  # keys of tables of conditions
-LISTS = ("law", "show")  # keys of lists, which may be one text
+LISTS = ("law", "show", "hide")  # keys of lists, which may be one text
 PREDICTION = "predict"  # key of the question that is answered before
 
 
@@ -85,6 +85,8 @@ class Setup(Table, frozen=True):
     preset: str = ""
     parameters: dict[str, Any] = {}  # beside the preset
     show: tuple[str, ...] = ()  # names of the live values to keep in sight
+    # Parameters and headings whose lines answer a question: in a workbook they are shown once it is answered.
+    hide: tuple[str, ...] = ()
 
 
 class Step(Table, frozen=True):

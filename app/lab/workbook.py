@@ -8,7 +8,7 @@ the file that began before it. What the student wrote with an editor meanwhile i
 import itertools
 import threading
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from app.lab.answer_check import AnswerVerdict, check_answer
@@ -29,12 +29,19 @@ ALLOWED_CONTROLS = "\n\t"
 class Workbook:
     """The tasks to go through, one at a time, and the answers so far."""
 
-    def __init__(self, tasks: Sequence[Task], folder: Path | None = None) -> None:
+    def __init__(
+        self,
+        tasks: Sequence[Task],
+        folder: Path | None = None,
+        programs: Callable[[], Mapping[str, str]] = dict[str, str],
+    ) -> None:
         """folder: made by `springtide lab new`; without one only the guides of the items are shown.
+
+        programs: function -> state of its check, as far as it is known.
 
         Raises ValueError where there is nothing to show, or a law is no formula.
         """
-        self.all_tasks, self.folder = tuple(tasks), folder
+        self.all_tasks, self.folder, self.programs = tuple(tasks), folder, programs
         self.tasks = tuple(task for task in tasks if folder is not None or task.guide is not None)
         if not self.tasks:
             raise argument_error("tasks", "none", "at least one task")
@@ -106,6 +113,22 @@ class Workbook:
         """True if every question is answered, and none wrongly."""
         return all(self.verdict(task, question).state in ("right", "given") for question in task.questions)
 
+    def state(self, task: Task) -> str:
+        """ "right", "begun" or "open", by the answers and the check of the function."""
+        program = self.programs().get(task.name, "not begun") if task.file else ""
+        if program in ("right", "") and self.is_complete(task):
+            return "right"
+        answered = any(self.verdict(task, question).answer is not None for question in task.questions)
+        return "begun" if answered or self.done(task) or program not in ("", "not begun") else "open"
+
+    def hidden(self) -> frozenset[str]:
+        """Parameters and headings whose lines would answer a question of the task that is shown."""
+        task = self.task
+        judged = (question for question in task.questions if question.right is not None)
+        if self.folder is None or all(self.verdict(task, q).state != "not begun" for q in judged):
+            return frozenset()
+        return frozenset(self.set_up_of(task).hide)
+
     def answer(self, task: Task, question: Question, text: str) -> None:
         """Keep an answer as it was typed or chosen; an empty one takes it back.
 
@@ -142,7 +165,9 @@ class Workbook:
             self.refresh()
 
     def add_picture(self, task: Task, words: str, picture: bytes) -> str:
-        """Keep a picture that was taken for a task; returns its name. words: its subject, as a part of the name.
+        """Keep a picture that was taken for a task; returns its name.
+
+        words: its subject, as a part of the name, without spaces and dots.
 
         Raises ValueError where there are as many as the report shows, OSError where it cannot be written.
         """
@@ -151,9 +176,8 @@ class Workbook:
         folder.mkdir(exist_ok=True)
         if sum(1 for _ in folder.iterdir()) >= MAX_PICTURES:
             raise ValueError(f"The report shows {MAX_PICTURES} pictures. Delete some in {PICTURES} first.")
-        names = (
-            f"{task.name} {words}{end}.jpg" for end in itertools.chain([""], map(" ({})".format, itertools.count(2)))
-        )
+        stem = f"{task.name}-{words}"
+        names = (f"{stem}{end}.jpg" for end in itertools.chain([""], map("-{}".format, itertools.count(2))))
         path = next(folder / name for name in names if not (folder / name).exists())
         with replacing(path) as draft:
             draft.write_bytes(picture)

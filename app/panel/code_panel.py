@@ -46,6 +46,7 @@ HINTS = {  # scene -> what to begin with
 }
 
 
+NEEDS_SCIPY = "Plain Python is fast enough here. With SciPy installed np.linalg can be compiled."
 TRANSLUCENT = {"rope": "rope (translucent)", "cloth": "cloth (yours is the translucent one)"}
 
 
@@ -69,7 +70,9 @@ class CodePanel:
     def headline(self) -> Html:
         """One line on the state of the files."""
         session = self.session
-        return headline(state_of(session), self.net.report, tables_of(session), self.scene)
+        return headline(
+            state_of(session), self.net.report, tables_of(session), self.scene, mistake_of(session, begun_of(session))
+        )
 
     def update(self, live: LiveValues) -> None:
         """Show changes; called a few times a second. live: the values of the scene."""
@@ -94,7 +97,7 @@ def state_of(session: Session) -> CodeState:
 
 def tables_of(session: Session) -> TableReport:
     """Functions that run by tables, and of the others those that the student has begun."""
-    report, begun = session.tables.report, frozenset[str]() if session.saved is None else session.saved.begun
+    report, begun = session.tables.report, begun_of(session)
     idle = {name: why for name, why in report.idle.items() if name in begun}
     return report._replace(idle=idle, off=bool(session.tables.tables) and not session.tables.shown)
 
@@ -104,17 +107,35 @@ def place_of(error: RunError) -> str:
     return f"{error.file}, line {error.line}" if error.line else error.file
 
 
-def headline(state: CodeState, report: StudentReport, tables: TableReport, scene: str) -> Html:
-    """The state of the files on one line, for the block of the panel that is always in sight."""
+def begun_of(session: Session) -> frozenset[str]:
+    """Functions of the saved version that have a body."""
+    return frozenset() if session.saved is None else session.saved.begun
+
+
+def mistake_of(session: Session, begun: frozenset[str]) -> str:
+    """The first mistake of a function that is begun, in the order of the lab; "" if none is known."""
+    verdicts = ((task.name, session.check.verdicts.get(task.name)) for task in session.tasks if task.name in begun)
+    found = next(((name, verdict) for name, verdict in verdicts if verdict and verdict.state == "wrong"), None)
+    return "" if found is None else f"{found[0]} is wrong: {found[1].mistake or found[1].sentence}"
+
+
+def headline(state: CodeState, report: StudentReport, tables: TableReport, scene: str, mistake: str = "") -> Html:
+    """The state of the files on one line, for the block of the panel that is always in sight.
+
+    mistake: of a function that runs.
+    """
     if state.error is not None:
         place, text = place_of(state.error), state.error.text
         return fill("Your code: {}: {}: {}", coloured("stopped", ERROR_COLOUR), place, text)
     if report.left_at == report.left_at:
         left = f"the {scene} left its bounds at t = {report.left_at:.2f} s"
         return fill("Your code: {}", coloured(left, ERROR_COLOUR))
-    if not report.version and not tables.running:
-        saved = f"saved at {state.saved_at}, runs nothing here" if state.version else "reading your files …"
-        return fill("Your code: {}", saved)
+    runs = bool(report.version or tables.running)
+    if mistake:
+        return fill("Your code: {}", coloured(f"{'runs, but ' if runs else ''}{mistake}", WARNING_COLOUR))
+    if not runs:
+        nothing = "this scene uses none of your functions yet"
+        return fill("Your code: {}", nothing if state.version else "reading your files …")
     return fill("Your code: {} since {}", coloured("runs", GOOD_COLOUR), state.saved_at)
 
 
@@ -176,7 +197,8 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
         how += f", {', '.join(rest)} plain Python" if kept and rest else ""
         said.append(fill("{}: {}.", how, speed if pace > 1.0 else coloured(speed, WARNING_COLOUR)))
         if state.not_compiled and not kept:
-            said.append(faint(f"Not compiled: {state.not_compiled}"))
+            needs_scipy = "scipy" in state.not_compiled.lower()
+            said.append(faint(NEEDS_SCIPY if needs_scipy else f"Not compiled: {state.not_compiled}"))
     if report.left_at == report.left_at:
         said.append(coloured(f"Your {scene} left its bounds at t = {report.left_at:.2f} s.", ERROR_COLOUR))
     elif report.difference == report.difference:
@@ -190,7 +212,7 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
         said += [faint(line) for line in report.unlike]
     if report.restarts:
         often = "once" if report.restarts == 1 else f"{report.restarts} times"
-        said.append(faint(f"Too slow: it started again from the program's {scene} {often}."))
+        said.append(faint(f"It fell behind {often}, and went on from the program's {scene}."))
     return said
 
 

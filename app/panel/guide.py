@@ -11,13 +11,12 @@ from collections.abc import Callable
 
 import viser
 
-from app.formats.formatting import number
 from app.lab.live_values import LiveNumber, LiveValues, fill_in
 from app.lab.task import PREDICTION, Question, Setup, Task
 from app.lab.workbook import Workbook, read_off
 from app.panel.picture import take_picture
 from app.render.formula import formula
-from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, faint, fill, join, note
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, join, note
 from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.contract import AnyKind, AnySnapshot
 from sim.parameters import Value, in_words, parameters_of
@@ -28,6 +27,7 @@ SET_UP, SHOW, HIDE = "Set this up", "Show the answer", "Hide the answer"
 PICTURE = "Take a picture"
 PICTURE_WIDTH = 1280  # [pixels] of a picture for the report
 STATE_COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "given": GOOD_COLOUR}
+SIGNS = {"right": "✓", "begun": "●", "open": "○"}  # before a task, by its state
 STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Kept."}
 
 
@@ -56,10 +56,10 @@ class QuestionWidgets:
         self.refusal = ""
         self.typed = self.flushed = "", 0.0  # the text as typed, and when [s] it last changed; the one that was kept
         gui = guide.gui
-        heading = question.part
+        heading = in_words(question.key)
         self.widgets: list[GuiHandle] = []
         unit = f" [{question.unit}]" if question.unit else ""
-        self.widgets.append(gui.add_html(note(fill("<b>{}</b> {}", heading, question.ask))))
+        self.widgets.append(gui.add_html(note(fill("<b>{}</b>", question.ask))))
         shown = self.kept_text()
         if question.kind == "choice":
             self.field: GuiHandle = gui.add_dropdown(heading, (UNANSWERED, *question.choices), initial_value=shown)
@@ -69,7 +69,7 @@ class QuestionWidgets:
         self.widgets.append(self.field)
         self.reader: GuiHandle | None = None
         if question.read_off:
-            self.reader = gui.add_button("Read off")
+            self.reader = gui.add_button("Read off", visible=False)
             self.reader.on_click(self.on_read_off)
             self.widgets.append(self.reader)
         self.line = gui.add_html("")
@@ -102,6 +102,8 @@ class QuestionWidgets:
     def keep(self, text: str) -> None:
         """Keep an answer, or remember why it was refused."""
         self.refusal = self.guide.attempt(lambda: self.workbook.answer(self.task, self.question, text))
+        if not self.refusal:
+            self.guide.refusal = ""  # as that a prediction comes first
         self.guide.stale = True
 
     def flush(self, now: float) -> None:
@@ -121,12 +123,9 @@ class QuestionWidgets:
         if self.typed is self.flushed and not self.refusal and self.field.value.strip() != shown:
             self.field.value = shown
         if self.reader is not None:
-            value = self.guide.values.get(self.question.read_off)
-            label = "Read off: not in this scene"
-            if isinstance(value, LiveNumber):
-                label = f"Read off: {number(value.value, 4)} {value.unit}"
-            if self.reader.label != label:
-                self.reader.label = label
+            can_read = bool(read_off(self.question, self.guide.values))
+            if self.reader.visible != can_read:
+                self.reader.visible = can_read
         said = Html()
         if self.refusal:
             said = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal)
@@ -171,7 +170,7 @@ class Guide:
         self.shown: Task | None = None
         self.questions: list[QuestionWidgets] = []
         workbook.go_to_scene(kind.name)
-        self.titles = tuple(title_of(task) for task in workbook.tasks)
+        self.titles = self.titles_now()
         self.tab = tab
         with self.tab:
             if workbook.folder is not None:
@@ -229,7 +228,7 @@ class Guide:
         """Keep a picture in the student's folder; whatever goes wrong is said. In a thread of its own."""
         try:
             time_now = self.values.get("time")
-            at = f" {time_now.value:.2f} s" if isinstance(time_now, LiveNumber) else ""
+            at = f"-{time_now.value:.0f}s" if isinstance(time_now, LiveNumber) else ""
             picture = take_picture(client, (PICTURE_WIDTH, 0), jpeg=True)
             name = self.workbook.add_picture(task, f"{self.kind.name}{at}", picture)
             self.picture_said = f"The report has the picture “{name}”."
@@ -288,9 +287,6 @@ class Guide:
         self.flush()
         for widgets in self.questions:
             widgets.remove()
-        title = self.titles[self.workbook.tasks.index(task)]
-        if self.chooser.value != title:
-            self.chooser.value = title
         self.questions = []
         if self.workbook.folder is not None:
             with self.tab:
@@ -301,6 +297,7 @@ class Guide:
     def show_values(self, task: Task) -> None:
         """Show the texts of the task with the values of now."""
         shown = self.workbook.is_shown(task)
+        self.show_titles(task)
         tools = (SET_UP, HIDE if shown and self.workbook.folder is None else SHOW)
         if self.tools.options != tools:
             self.tools.options = tools
@@ -313,17 +310,41 @@ class Guide:
         for widgets in self.questions:
             widgets.show()
 
+    def titles_now(self) -> tuple[str, ...]:
+        """The tasks in the list, in a workbook each with the sign of its state."""
+        book = self.workbook
+        if book.folder is None:
+            return tuple(map(title_of, book.tasks))
+        return tuple(f"{SIGNS[book.state(task)]} {title_of(task)}" for task in book.tasks)
+
+    def show_titles(self, task: Task) -> None:
+        """Show the list of tasks, with this one chosen."""
+        titles = self.titles_now()
+        if titles != self.titles:
+            self.titles = titles
+            self.chooser.options = titles
+        title = titles[self.workbook.tasks.index(task)]
+        if self.chooser.value != title:
+            self.chooser.value = title
+
+    def hidden(self) -> frozenset[str]:
+        """Parameters and headings of which nothing is to be shown that answers a question of the task."""
+        return self.workbook.hidden()
+
     def statement(self, task: Task) -> Html:
-        """The task's question, and where to look."""
+        """The task, and where to look."""
         setup = self.workbook.set_up_of(task)
-        asked = task.guide.question if task.guide is not None else task.title
-        more = Html()
+        asked = bold(task.guide.question if task.guide is not None else task.title)
         if self.workbook.folder is not None:
             code = fill(" Write <code>{}</code> in <code>{}</code>.", task.name, task.file) if task.file else ""
-            more = fill("<div>{}{}</div>", task.statement, code)
+            asked = fill("{}{}", task.statement, code)
+        elsewhere = Html()
+        if not self.is_set_up_here(task) and setup.scene:
+            scene = in_words(setup.scene).lower()
+            elsewhere = coloured(f"This task is about the {scene}: press “{SET_UP}”.", WARNING_COLOUR)
         return fill(
-            '<div class="springtide-guide"><b>{}</b>{}<div class="springtide-faint">{}</div></div>',
-            asked, more, setup.look,
+            '<div class="springtide-guide">{}<div>{}</div><div class="springtide-faint">{}</div></div>',
+            elsewhere, asked, setup.look,
         )  # fmt: skip
 
     def now(self, task: Task) -> Html:

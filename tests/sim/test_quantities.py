@@ -28,6 +28,8 @@ from sim.quantities import plain, read_number, write_number
         ("\u22123", "", -3.0),
         ("0.1", "", 0.1),
         ("0.3u", "m", 3e-7),
+        ("11.25 cm", "m", 0.1125),
+        ("3 mm²", "m²", 3e-6),
     ],
 )
 def test_a_number_is_read_in_the_ways_that_people_write_it(text: str, unit: str, value: float) -> None:
@@ -36,7 +38,22 @@ def test_a_number_is_read_in_the_ways_that_people_write_it(text: str, unit: str,
 
 @pytest.mark.parametrize(
     "text",
-    ["", "abc", "nan", "inf", "1/0", "1e999", "1e99999999999", "--3", "1/2/3", "5 kg", "0x10", "1_000", "9" * 65],
+    [
+        "",
+        "abc",
+        "nan",
+        "inf",
+        "1/0",
+        "1e999",
+        "1e99999999999",
+        "--3",
+        "1/2/3",
+        "5 kg",
+        "5 c",
+        "0x10",
+        "1_000",
+        "9" * 65,
+    ],
 )
 def test_what_is_no_number_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r"\w"):

@@ -113,6 +113,7 @@ def body_values(body: "BodyReading") -> dict[str, Measure]:
         f"{name}_draft": Measure(p.draft, "m", f"{body.title}: draft at rest"),
         f"{name}_draft_in_water": Measure(p.draft_in_water, "m", f"{body.title}: draft at rest in water"),
         f"{name}_added_draft": Measure(p.draft - p.draft_in_water, "m", f"{body.title}: extra draft"),
+        f"{name}_deeper": Measure(body.mean_draft - p.draft_in_water, "m", f"{body.title}: deeper than in clean water"),
         f"{name}_mean_draft": Measure(body.mean_draft, "m", f"{body.title}: mean draft over a minute"),
         f"{name}_height": Measure(p.height, "m", f"{body.title}: height"),
         f"{name}_density": Measure(body.density, "kg/m³", f"{body.title}: density"),

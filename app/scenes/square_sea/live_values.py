@@ -59,7 +59,9 @@ def live_values(snapshot: Snapshot) -> dict[str, Measure]:
         "earth_speed": Measure(earth_speed, "m/s", "Speed of the peak waves on the Earth, same wind"),
         "height_over_earth": Measure(ratio, "1", "Height over that on the Earth"),
         "height_by_wind": Measure(by_wind, "1", "Height in twice the wind over this one"),
-        "damping_so_far": Measure(2.0 * math.sqrt(readings.viscous_area), "m", "Length l of the decay so far, 2√(νT)"),
+        "damping_so_far": Measure(
+            2.0 * math.sqrt(readings.viscous_area), "m", "Length l of the decay by viscosity so far"
+        ),
         "minute_length": Measure(2.0 * math.sqrt(60.0 * p.viscosity), "m", "Length l of a minute of this viscosity"),
         "square_grid_points": Measure(int(p.size) ** 2, "1", "Points of the square grid"),
         "square_spacing": Measure(p.length / int(p.size), "m", "Spacing of the square grid"),
@@ -68,6 +70,11 @@ def live_values(snapshot: Snapshot) -> dict[str, Measure]:
         measured, theory = readings.report.measured, readings.report.theory
         length, phase_speed = theory.wave
         found |= {
+            "measured_over_earth": Measure(
+                measured.significant_height / earth_height if earth_height else math.nan,
+                "1",
+                "Height as drawn over that on the Earth",
+            ),
             "significant_height": Measure(measured.significant_height, "m", "Significant height"),
             "peak_period": Measure(measured.peak_period, "s", "Peak period"),
             "mean_square_slope": Measure(measured.mean_square_slope, "1", "Mean square slope"),

@@ -12,6 +12,8 @@ from app.lab.folder import MAX_PICTURES, PICTURES, make_folder
 from app.lab.live_values import LiveNumber
 from app.lab.task import Question, Task, load_tasks
 from app.lab.workbook import DONE, MAX_TEXT, Workbook, read_off
+from app.scenes import scene_named
+from sim.parameters import parameters_of
 
 TASKS = load_tasks()  # with their checks: the folder's files are made of them
 DRAFT = next(task for task in TASKS if task.name == "extra_draft")
@@ -258,15 +260,15 @@ def test_edits_of_the_file_are_seen(folder: Path) -> None:
 
 
 def test_what_is_read_off_is_a_number_of_the_scene() -> None:
-    assert read_off(MEASURE, {"added_draft": LiveNumber(0.0310244, "m")}) == "0.0310244"
+    assert read_off(MEASURE, {"box_deeper": LiveNumber(0.0310244, "m")}) == "0.0310244"
     assert read_off(MEASURE, {}) == ""
-    assert read_off(MEASURE, {"added_draft": LiveNumber(float("nan"), "m")}) == ""
+    assert read_off(MEASURE, {"box_deeper": LiveNumber(float("nan"), "m")}) == ""
 
 
 def test_pictures_are_named_by_their_task_and_none_replaces_another(folder: Path) -> None:
     book = Workbook(TASKS, folder)
-    names = [book.add_picture(DRAFT, "radial_sea 1.00 s", bytes([i])) for i in range(3)]
-    assert names == [f"extra_draft radial_sea 1.00 s{end}.jpg" for end in ("", " (2)", " (3)")]
+    names = [book.add_picture(DRAFT, "radial_sea-1s", bytes([i])) for i in range(3)]
+    assert names == [f"extra_draft-radial_sea-1s{end}.jpg" for end in ("", "-2", "-3")]
     assert [(folder / PICTURES / name).read_bytes() for name in names] == [b"\0", b"\1", b"\2"]
     for i in range(MAX_PICTURES - 3):
         (folder / PICTURES / str(i)).touch()
@@ -289,3 +291,44 @@ def test_the_name_is_changed_in_its_place(folder: Path, end: str) -> None:
     book.rename("Ada")
     assert read_answers(folder).name == "Ada"
     assert read_answers(folder).values["extra_draft", "explain"] == "name = 1\n"
+
+
+def test_what_would_answer_a_question_is_hidden_until_it_is_answered(folder: Path) -> None:
+    book = Workbook(TASKS, folder)
+    task = next(task for task in TASKS if task.name == "step_euler")
+    book.go(book.tasks.index(task))
+    assert book.hidden() == {"stiffness", "time_step"}
+    for question in task.questions:
+        book.answer(task, question, "720" if question.kind == "number" else "It trembles and flies apart.")
+    assert book.hidden() == frozenset()
+    assert Workbook(TASKS).hidden() == frozenset()
+
+
+def test_what_a_task_hides_is_a_parameter_or_a_heading_of_its_scene() -> None:
+    for task in TASKS:
+        if task.setup is not None and task.setup.hide:
+            kind = scene_named(task.setup.scene)
+            headings = {"Archimedes' principle", "Fluids"} if kind.name == "radial_sea" else set()
+            assert set(task.setup.hide) <= {*parameters_of(kind.params), *headings}, task.name
+
+
+def test_a_task_is_open_begun_or_right_by_its_answers_and_its_function(folder: Path) -> None:
+    states: dict[str, str] = {}
+    book = Workbook(TASKS, folder, lambda: states)
+    task = next(task for task in TASKS if task.name == "rope_acceleration")
+    assert book.state(task) == "open"
+    states[task.name] = "wrong"
+    assert book.state(task) == "begun"
+    states[task.name] = "right"
+    assert book.state(task) == "begun"
+    book.answer(task, task.questions[0], "Damping and air take energy.")
+    assert book.state(task) == "right"
+
+
+@pytest.mark.parametrize("text", ["11.25 cm", "112.5mm", "0.1125 m", "0,1125"])
+def test_a_length_is_taken_in_its_common_units(folder: Path, text: str) -> None:
+    book = Workbook(TASKS, folder)
+    task = next(task for task in TASKS if task.name == "spring_force")
+    question = next(question for question in task.questions if question.key == "stretch")
+    book.answer(task, question, text)
+    assert book.verdict(task, question).state == "right"

@@ -100,7 +100,9 @@ class Panel:
         self.own = own_presets(kind)  # name in the list -> set-up of the user
         # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
         self.loaded = min(kind.presets, key=lambda name: len(changed_names(self.params_of(name), params)))
-        actions = Actions(post, self.load, self.open_first_view_of, self.place_first_view, self.toggle_plots, self.undo)
+        actions = Actions(
+            post, self.load, self.open_first_view_of, self.place_first_view, self.toggle_plots, self.undo, self.follow
+        )  # fmt: skip
         self.head = Head(gui, kind, view, scenes, actions)
         self.shown = Controls(gui, lambda: self.params, self.on_change)
         self.controls, self.folders = self.shown.own, self.shown.folders
@@ -311,6 +313,11 @@ class Panel:
         """Put the camera of a browser where a new one would be."""
         place_camera(client.camera, *self.view.first_view(self.params), self.view.FIELD_OF_VIEW)
 
+    def follow(self, step: float) -> None:
+        """Set a time step [s], and start again."""
+        self.set("time_step", step)
+        self.post(Reset())
+
     def toggle_plots(self) -> None:
         """Open all plots, or close them where one is open."""
         shown = [c for name, c in self.controls.items() if name in self.kind.plots or name in self.kind.curves]
@@ -331,14 +338,15 @@ class Panel:
         if refresh:
             self.status_at = now
             self.head.show(snapshot, busy, visitors)
-            self.readings.show(snapshot)
+            self.readings.show(snapshot, frozenset[str]() if self.guide is None else self.guide.hidden())
             if self.code is not None:
                 self.code.update({} if self.guide is None else self.guide.values)
                 self.head.show_code(self.code.headline())
         if now - self.marks_at >= MARKS_INTERVAL:
             self.marks_at = now
+            hidden = frozenset[str]() if self.guide is None else self.guide.hidden()
             for name, text in self.view.marks(snapshot).items():
-                self.controls[name].write(text)
+                self.controls[name].write("" if name in hidden else text)
             if self.map is not None:
                 self.map.draw()
         if self.guide is not None:

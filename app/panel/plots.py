@@ -27,6 +27,8 @@ CHART_HEIGHT, TALL_CHART_HEIGHT = 220, 260  # [pixels] of a chart, and of one wi
 PADDING = (12, 16, 0, 0)  # [pixels] above, right, below, left: room for half of the highest tick's words
 DIGIT_WIDTH, TICK_ROOM = 7.5, 16.0  # [pixels] of a digit of a tick, and beside the words
 LOGARITHMIC_TICK_WIDTH = 66.0  # [pixels] for the words at a logarithmic scale
+WORDS = {"t": "time", "f": "frequency"}  # of the symbols at the first axes
+LABEL_HEIGHT = 20  # [pixels] of the name below the first axis
 TICKS = 4  # about so many intervals between two ends of a scale
 MIN_SPAN = 1e-3  # of a scale, over the size of its numbers: a constant has a scale too
 MIN_FILLED = 0.3  # share of a scale that its data must fill, or the scale is made anew
@@ -63,10 +65,13 @@ class Scale(NamedTuple):
         return self.low <= low and high <= self.high and high - low >= MIN_FILLED * (self.high - self.low)
 
 
-def scale_of(low: float, high: float) -> Scale:
-    """A scale for data from low to high."""
+def scale_of(low: float, high: float, least: float = 0.0) -> Scale:
+    """A scale for data from low to high; it spans at least `least`, about the middle of the data."""
     size = max(abs(low), abs(high))
-    rough = max(high - low, MIN_SPAN * size) / TICKS if size else 1.0 / TICKS
+    if high - low < least:
+        middle = 0.5 * (low + high)
+        low, high = middle - 0.5 * least, middle + 0.5 * least
+    rough = max(high - low, MIN_SPAN * size) / TICKS if size or least else 1.0 / TICKS
     step = round_step(rough)
     first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
     return Scale(first * step, max(last, first + 1) * step, step)
@@ -212,7 +217,7 @@ class Plots:
                 handle.scales = {**(handle.scales or {}), "x": time_scale}
             else:
                 handle.scales = {"x": time_scale, "y": uplot.Scale(auto=False, range=(scale.low, scale.high))}
-                handle.axes = axes_of(scale.ticks, scale.words)
+                handle.axes = axes_of(first, scale.ticks, scale.words)
         handle.data = tuple(np.asarray(column, float) for column in columns)
         self.drawn += 1
 
@@ -225,10 +230,11 @@ class Plots:
         finite = np.concatenate(columns)
         finite = finite[np.isfinite(finite)]
         low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+        least = {**self.kind.plots, **self.kind.curves}[name].least
         last = self.looks.get(name)
-        if last is not None and last[3] is not None and last[3].fits(low, high):
+        if last is not None and last[3] is not None and last[3].fits(low, max(high, low + least)):
             return last[3]
-        return scale_of(low, high)
+        return scale_of(low, high, least)
 
     def add(self, name: str) -> viser.GuiUplotHandle:
         """The chart that a parameter opens, in the dock."""
@@ -240,11 +246,11 @@ class Plots:
             plot = self.kind.plots[name]
             title, first, names, ticks = plot.heading, "t [s]", plot.series, ()
         scales = {"x": uplot.Scale(time=False, auto=True)}
-        looks = axes_of((0.0, 1.0), ("0", "1"))
+        looks = axes_of(first, (0.0, 1.0), ("0", "1"))
         if ticks:
             places, words = tuple(place for place, _ in ticks), tuple(word for _, word in ticks)
             scales["y"] = uplot.Scale(distr=3, log=10, range=(places[0], places[-1]), auto=False)
-            looks = axes_of(places, words, LOGARITHMIC_TICK_WIDTH)
+            looks = axes_of(first, places, words, LOGARITHMIC_TICK_WIDTH)
         with self.dock.tab:
             return self.server.gui.add_uplot(
                 (EMPTY, *(np.full(2, math.nan) for _ in names)),
@@ -295,10 +301,21 @@ def kept_line(line: Line) -> Line:
     return Line(f"{line.label}, kept", line.colour + KEPT_OPACITY, 1.5, KEPT_DASH)
 
 
-def axes_of(ticks: tuple[float, ...], words: tuple[str, ...], width: float | None = None) -> tuple[uplot.Axis, ...]:
-    """The two axes of a chart, with words at the ticks of the second; width: [pixels] for the words."""
+def axes_of(
+    first: str, ticks: tuple[float, ...], words: tuple[str, ...], width: float | None = None
+) -> tuple[uplot.Axis, ...]:
+    """The two axes of a chart, the first with its name and unit, the second with words at its ticks.
+
+    width: [pixels] for the words.
+    """
     size = width or TICK_ROOM + DIGIT_WIDTH * max(map(len, words))
-    return uplot.Axis(), uplot.Axis(splits=ticks, values=words, size=size)
+    return uplot.Axis(label=named(first), labelSize=LABEL_HEIGHT), uplot.Axis(splits=ticks, values=words, size=size)
+
+
+def named(first: str) -> str:
+    """Label of a first axis with the word of its symbol."""
+    word = WORDS.get(first.partition(" ")[0], "")
+    return f"{word} {first}".lstrip()
 
 
 def series_of(first: str, lines: Sequence[Line]) -> tuple[uplot.Series, ...]:

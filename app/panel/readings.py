@@ -5,6 +5,8 @@ import viser
 from app.render.html import Html, note
 from app.scenes.contract import AnySnapshot, AnyView
 
+WITHHELD = "Shown once you have answered the questions of the task in the lab."
+
 
 class Readings:
     """The texts, in the container that is open where this is made."""
@@ -15,12 +17,12 @@ class Readings:
         self.readout = gui.add_html("")
         self.notes: dict[str, viser.GuiHtmlHandle] = {}
 
-    def show(self, snapshot: AnySnapshot) -> None:
-        """Bring all texts up to date."""
+    def show(self, snapshot: AnySnapshot, hidden: frozenset[str]) -> None:
+        """Bring all texts up to date. hidden: headings of texts that would answer a question of the workbook."""
         self.readout.content = note(Html(self.view.readout(snapshot)))
         for heading, text in self.view.notes(snapshot).items():
             if heading not in self.notes:
                 order = None if self.notes else self.readout.order + 0.5  # the first below the short texts
                 with self.tab, self.gui.add_folder(heading, order=order, expand_by_default=False):
                     self.notes[heading] = self.gui.add_html("")
-            self.notes[heading].content = note(Html(text))
+            self.notes[heading].content = note(WITHHELD if heading in hidden else Html(text))

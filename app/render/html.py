@@ -100,6 +100,14 @@ def coloured(text: object, colour: str) -> Html:
     return fill('<b style="color:{}">{}</b>', colour, text)
 
 
+def info(text: object) -> Html:
+    """A sign that shows a text below it under mouse or finger. text: two sentences, and where there is more."""
+    return fill(
+        '<span class="springtide-info" tabindex="0" role="note" aria-label="{0}" data-text="{0}">ⓘ</span>',
+        text,
+    )
+
+
 def table_row(cells: Iterable[object], tag: LiteralString = "td") -> Html:
     """A row of a table. The style sheet puts the first cell to the left, and the others, numbers, to the right."""
     return fill("<tr>{}</tr>", join(fill("<{0}>{1}</{0}>", tag, cell) for cell in cells))

@@ -21,6 +21,7 @@ class PlotAxes(NamedTuple):
     title: str
     unit: str
     series: tuple[str, ...]  # names in the scene's `series`
+    least: float = 0.0  # range of the scale, at least, so that rounding does not fill it
 
     @property
     def heading(self) -> str:
@@ -36,6 +37,7 @@ class CurveAxes(NamedTuple):
     first: str  # label of the first column
     names: tuple[str, ...]  # of the others
     ticks: tuple[tuple[float, str], ...] = ()  # (value, word) from end to end of a logarithmic scale
+    least: float = 0.0  # range of a linear scale, at least
 
     @property
     def heading(self) -> str:

@@ -246,6 +246,8 @@ class SceneKind(Generic[P, F, R]):
     about: Mapping[str, str] = field(
         default_factory=dict[str, str]
     )  # preset -> a sentence: what it shows and what to try
+    # Of a snapshot of a run that diverged: the time step [s] that would hold, 0 for none; None: a run does not diverge.
+    remedy: Callable[..., float] | None = None
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
 
     def opening_params(self) -> P:

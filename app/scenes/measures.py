@@ -13,7 +13,7 @@ def plotted(scene: SceneKind[Any, Any, Any], row: PlotRow) -> dict[str, Measure]
     values = dict(zip(scene.series, row[1:], strict=True)) if row else {}
     taken = parameters_of(scene.params)
     found = {}
-    for title, unit, series in scene.plots.values():
+    for title, unit, series, _ in scene.plots.values():
         for column in series:
             name = slug(column)
             # The energy of gravity is not the parameter gravity.

@@ -15,6 +15,7 @@ from app.scenes.cloth.live_values import live_values
 from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
+from app.scenes.springs.divergence import holding_step
 from app.scenes.springs.drag import Drag, PullFrame
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.net_scene import NetScene
@@ -46,8 +47,8 @@ BOB_RATE = 4.0  # [rad/s] of the sphere's motion up and down
 ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact", "dissipated")
 SERIES = (*ENERGY_SERIES, "largest strain")
 PLOTS = {
-    "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES),
-    "plot_strain": PlotAxes("Largest strain", "%", ("largest strain",)),
+    "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES, least=0.01),
+    "plot_strain": PlotAxes("Largest strain", "%", ("largest strain",), least=0.5),
 }
 
 
@@ -351,4 +352,5 @@ SCENE = SceneKind(
     plots=PLOTS,
     frame_units={"points": "m", "strain": "", "student": "m, a student's cloth beside the program's"},
     live_values=live_values,
+    remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
 )

@@ -12,7 +12,7 @@ from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import PullLine, SurfaceDrag
 from app.render.gizmo import Gizmo
-from app.render.html import Html, fill, join
+from app.render.html import Html, fill, info, join
 from app.render.meshes import ball
 from app.render.surroundings import Surroundings, set_dark
 from app.render.viser_inside import set_arrays
@@ -50,6 +50,9 @@ def faces(rows: int, cols: int) -> np.ndarray:
     return np.concatenate([first, second]).astype(np.uint32)
 
 
+STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 100 mm."
+
+
 class View:
     """Draws `ClothFrame`s."""
 
@@ -79,6 +82,7 @@ class View:
         self.pull = PullLine(server)
         self.student: viser.MeshHandle | None = None  # the student's cloth, once there was one
         self.student_shape = (0, 0)
+        self.labels: tuple[viser.LabelHandle, ...] = ()  # of the student's cloth and the program's
 
     def build(self, frame: ClothFrame) -> None:
         """Make the mesh for another grid."""
@@ -156,8 +160,16 @@ class View:
                 )  # fmt: skip
             else:
                 self.student.vertices = vertices
-        if self.student is not None:
-            self.student.visible = points is not None
+            if not self.labels:
+                self.labels = (
+                    self.server.scene.add_label("/yours", "yours (translucent)", anchor="top-right"),
+                    self.server.scene.add_label("/program", "the program's", anchor="top-left"),
+                )
+            for label, corner in zip(self.labels, (vertices[-1], self.points[-1]), strict=True):
+                label.position = tuple(corner.tolist())
+        for handle in (self.student, *self.labels):
+            if handle is not None:
+                handle.visible = points is not None
 
     def figures(self, snapshot: ClothSnapshot) -> str:
         """The stability bar."""
@@ -174,7 +186,10 @@ class View:
         if readings.threads > 1:
             parts.append(fill("<div>forces computed on {} threads</div>", readings.threads))
         if frame.colour == "strain":
-            parts.append(colour_scale("0", "strain", f"{number(100 * frame.full_strain)} %"))
+            parts.append(colour_scale(
+                "0", fill("strain {}", info(STRAIN)), f"{number(100 * frame.full_strain)} %",
+                clipped=float(frame.strain.max()) > frame.full_strain,
+            ))  # fmt: skip
         return join(parts)
 
     def marks(self, snapshot: ClothSnapshot) -> dict[str, str]:

@@ -177,8 +177,8 @@ class Entrant:
         g = self.gauge
         h_omega, limit = stability_number(g.h_omega), stability_number(g.limit)
         if g.h_omega > g.limit:
-            return f"diverged at {t:.2f} s: hω = {h_omega} exceeds the limit {limit}"
-        return f"diverged at {t:.2f} s: hω = {h_omega} is below the limit {limit}, but an impact was too sudden"
+            return f"diverged at {t:.2f} s: its step is too long (hω {h_omega} of {limit})"
+        return f"diverged at {t:.2f} s: an impact was too sudden for its step (hω {h_omega} of {limit})"
 
     def move_root(self, position: Vector) -> None:
         """Put the root to rest at a position [m]."""

@@ -1,16 +1,17 @@
 """The table of a race's results as HTML. Only the view imports it."""
 
-import math
-
-from app.formats.formatting import metres, metres_above, number, seconds
-from app.render.html import ERROR_COLOUR, Html, bold, coloured, escape, fill, join, table_head, table_row
+from app.formats.formatting import metres, metres_above, number, percent, seconds
+from app.render.html import ERROR_COLOUR, Html, bold, coloured, escape, fill, info, join, table_head, table_row
 from app.scenes.charts import PALETTE
 from app.scenes.race.entrants import RaceReadings, Result
 from app.scenes.race.names import rope_name
-from app.scenes.springs.divergence import stability_number
 
 MIN_SHOWN_ENERGY = 1e-10  # [J]: less is round-off and is shown as 0
-HEAD = (("error", ""), ("energy error", "J"), ("hω", "of limit"), ("forces", "1/s"), ("time", "a step"))
+TABLE_INFO = (
+    "Step: the time step relative to the largest stable one; above 100 % a rope diverges. Forces: how often they are "
+    "computed in a second of the run; time: for one step on this computer. More in docs/physics.md, 1. Springs."
+)
+HEAD = (("error", ""), ("energy error", "J"), ("step", "of limit"), ("forces", "a second"), ("time", "a step"))
 
 
 def error_text(result: Result) -> Html:
@@ -26,10 +27,12 @@ def energy_text(result: Result) -> str:
 
 
 def stability_text(result: Result) -> Html:
-    """h omega, and the limit of the method."""
-    limit = "∞" if math.isinf(result.gauge.limit) else stability_number(result.gauge.limit)
-    text = f"{stability_number(result.gauge.h_omega)} / {limit}"
-    return escape(text) if result.gauge.h_omega <= result.gauge.limit else coloured(text, ERROR_COLOUR)
+    """The step relative to the largest stable one."""
+    gauge = result.gauge
+    if gauge.limit <= 0.0:
+        return coloured("none", ERROR_COLOUR)
+    text = percent(gauge.h_omega / gauge.limit)
+    return escape(text) if gauge.h_omega <= gauge.limit else coloured(text, ERROR_COLOUR)
 
 
 def result_rows(result: Result, stiffness_differs: bool) -> Html:
@@ -82,6 +85,6 @@ def results_table(readings: RaceReadings) -> Html:
     stiffness_differs = len({result.stiffness for result in readings.results}) > 1
     rows = join(result_rows(result, stiffness_differs) for result in readings.results)
     return fill(
-        '<table class="springtide-table">{}<tbody>{}</tbody></table><div>{}</div>',
-        table_head(HEAD), rows, reference_text(readings),
+        '<table class="springtide-table">{}<tbody>{}</tbody></table><div>{} {}</div>',
+        table_head(HEAD), rows, info(TABLE_INFO), reference_text(readings),
     )  # fmt: skip

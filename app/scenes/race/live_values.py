@@ -18,8 +18,8 @@ def live_values(snapshot: Snapshot) -> dict[str, Measure]:
         found |= {
             f"error_{n}": Measure(r.error, "m", f"Error of rope {n}", r.error_floor),
             f"energy_error_{n}": Measure(-r.numerical_dissipation, "J", f"Energy that the method of rope {n} added"),
-            f"h_omega_{n}": Measure(r.gauge.h_omega, "1", f"hω of rope {n}"),
-            f"limit_{n}": Measure(r.gauge.limit, "1", f"Limit of hω of rope {n}"),
+            f"h_omega_{n}": Measure(r.gauge.h_omega, "1", f"hω (step times highest frequency) of rope {n}"),
+            f"limit_{n}": Measure(r.gauge.limit, "1", f"Limit of hω (step times highest frequency) of rope {n}"),
             f"stiffness_{n}": Measure(r.stiffness, "N/m", f"Stiffness of rope {n}"),
             f"own_step_{n}": Measure(r.step, "s", f"Time step of rope {n}"),
             f"evaluations_{n}": Measure(r.evals, "1", f"Evaluations of the forces in a step of rope {n}"),

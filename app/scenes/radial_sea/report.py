@@ -7,7 +7,7 @@ import numpy as np
 
 from app.formats.formatting import fixed, metres, number, percent, seconds
 from app.messages import Snapshot
-from app.render.html import Html, bold, faint, fill, join, table
+from app.render.html import Html, bold, faint, fill, info, join, table
 from app.scenes.radial_sea.budget import budget_html, budget_marks
 from app.scenes.radial_sea.frame import RadialReadings
 from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
@@ -20,6 +20,10 @@ from sim.ocean.weathering.components import WARM
 from sim.parameters import parameters_of
 
 SHORT_WAVE = 1.0  # [m] length of the wave in statements about viscosity
+HEIGHT = (
+    "Significant height: the mean of the highest third of the waves, from trough to crest. Mean slope: the root of the "
+    "mean squared slope. More in docs/physics.md, 2. Waves."
+)
 LEAST_LEFT = 1e-3  # share of a wave below which nothing is said of how much it is
 SURFACES = (("sum", "radial sum"), ("fft", "square FFT"))
 
@@ -42,20 +46,24 @@ def drafts_html(readings: RadialReadings, waves: bool) -> Html:
     """The draft of each body; waves: whether there are any."""
     if not readings.bodies:
         return Html("<div>No bodies.</div>")
-    drafts = []
+    drafts = [(body.title, fixed(body.draft, 3), bold(fixed(body.mean_draft, 3))) for body in readings.bodies]
+    disturbed = " Waves disturb it: switch them off to compare it with theory." if waves else ""
+    return join((
+        table((("draft", ""), ("now", "m"), ("mean of 60 s", "m")), drafts),
+        faint(f"Draft: how deep a body reaches into the water.{disturbed}"),
+    ))  # fmt: skip
+
+
+def theory_html(readings: RadialReadings) -> Html:
+    """The draft of each body at rest by Archimedes' principle."""
+    rows = []
     for body in readings.bodies:
         p = body.prediction
         added = "sinks" if math.isinf(p.draft) else fixed(p.draft - p.draft_in_water, 3, sign=True)
-        drafts.append((
-            body.title, fixed(body.draft, 3), fixed(body.mean_draft, 3), bold(draft_text(p.draft)), added,
-        ))  # fmt: skip
+        rows.append((body.title, bold(draft_text(p.draft)), added))
     return join((
-        table((("draft", ""), ("now", "m"), ("mean, 60 s", "m"), ("at rest", "m"), ("oil adds", "m")), drafts),
-        faint(
-            "At rest: by Archimedes' principle in these fluids. Waves disturb it: switch them off to compare exactly."
-            if waves
-            else "At rest: by Archimedes' principle in these fluids."
-        ),
+        table((("draft", ""), ("at rest", "m"), ("oil adds", "m")), rows),
+        faint("A body at rest displaces its own weight of these fluids."),
     ))  # fmt: skip
 
 
@@ -101,7 +109,7 @@ def weight_tables(readings: RadialReadings) -> tuple[Html, ...]:
     ]  # fmt: skip
     wet = (("wet in oil", "m³"), ("in water", "m³")) if layered else (("wet volume", "m³"),)
     return (
-        table((("weight", ""), ("density", "kg/m³"), ("volume V", "m³"), ("mass ρV", "kg"), ("weight gρV", "N")),
+        table((("weight", ""), ("density", "kg/m³"), ("volume", "m³"), ("mass", "kg"), ("weight", "N")),
               weights),
         table((("buoyancy now", ""), *wet, ("buoyancy", "N")), forces),
         table((("mean upward force, 60 s", ""), ("weight", "N"), ("buoyancy", "N"), ("waves", "N"), ("drag", "N"),
@@ -118,7 +126,7 @@ def waves_text(readings: RadialReadings) -> Html:
     height, clean = number(readings.height), number(readings.clean_height)
     lowered = f" ({clean} m without oil)" if clean != height else ""
     slope = number(math.sqrt(readings.slope), 2)
-    return fill("<div>Waves: H<sub>s</sub> = {} m{}, rms slope {}.</div>", height, lowered, slope)
+    return fill("<div>Significant height {} {} m{}, mean slope {}.</div>", info(HEIGHT), height, lowered, slope)
 
 
 def oil_budget_text(budget: OilBudget) -> Html:
@@ -137,6 +145,7 @@ def oil_budget_text(budget: OilBudget) -> Html:
 def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
     return {
+        "Archimedes' principle": theory_html(snapshot.readings),
         "Weight, buoyancy, heave": forces_html(snapshot.readings),
         "Fluids": fluids_html(snapshot),
         "Spill budget": budget_html(snapshot.frame.params, snapshot.readings.weathering),
@@ -185,7 +194,7 @@ def fluids_html(snapshot: Snapshot) -> Html:
     column: FluidColumn = snapshot.readings.column
     p = snapshot.frame.params
     warmth = p.temperature if p.spill == "layer" else WARM
-    head = (("", ""), ("ρ", "kg/m³"), ("μ", "mPa·s"), ("ν", "m²/s"), ("n", ""))
+    head = (("", ""), ("density ρ", "kg/m³"), ("viscosity μ", "mPa·s"), ("ν = μ/ρ", "m²/s"), ("index n", ""))
     fluids = [column.water, column.oil, *([column.surface] if column.kind == "mixed" else [])]
     rows = [
         (f"{f.name}, {warmth if f is column.oil else WARM:g} °C", fixed(f.density, 1), number(f.viscosity * 1e3),
@@ -195,7 +204,7 @@ def fluids_html(snapshot: Snapshot) -> Html:
     return join((
         table(head, rows),
         mixture_html(column, law) if column.kind == "mixed" else "",
-        faint("ρ density, μ dynamic and ν kinematic viscosity, n refractive index. Oils: NOAA's records."),
+        faint("ν: kinematic viscosity; n: refractive index. Oils: NOAA's records."),
     ))  # fmt: skip
 
 
@@ -211,8 +220,8 @@ def surfaces_html(snapshot: Snapshot) -> Html:
         ("waves", *(number(s.waves) for _, s in found)),
         ("shortest wave", *(metres(s.shortest, 2) for _, s in found)),
         ("extent", *(metres(s.extent, 3) for _, s in found)),
-        (Html("height H<sub>s</sub> [m]"), *(fixed(s.height, 2) for _, s in found)),
-        (Html("error of H<sub>s</sub>"), *(percent(s.error) for _, s in found)),
+        ("significant height [m]", *(fixed(s.height, 2) for _, s in found)),
+        ("error of the height", *(percent(s.error) for _, s in found)),
         ("mean square slope", *(number(s.slope) for _, s in found)),
     )
     return join((
@@ -230,11 +239,12 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
     column, grid = readings.column, snapshot.frame.grid
     oil = column.oil
     marks = {
-        "wind_speed": f"Hs = {number(readings.clean_height)} m, half of the energy above "
+        "wind_speed": f"waves of {number(readings.clean_height)} m, half of the energy above "
         f"{seconds(readings.middle_period, 2)}"
         if readings.clean_height > 0.0
         else "no waves",
-        "oil": f"{number(oil.density, 4)} kg/m³, {number(oil.viscosity * 1e3)} mPa·s, n = {oil.refractive_index:.3f}",
+        "oil": f"{number(oil.density, 4)} kg/m³, {number(oil.viscosity * 1e3)} mPa·s, "
+        f"refractive index {oil.refractive_index:.3f}",
         "rings": f"{number(len(grid))} points, spacing {metres(grid.spacing[0], 2)} in the middle, "
         f"{metres(grid.spacing[-2], 2)} at the rim",
     }

@@ -67,8 +67,8 @@ BODY_SERIES = tuple(kind_of(i).title.lower() for i in range(PLOTTED_BODIES))
 HEIGHT_SERIES = ("surface", f"height of the {BODY_SERIES[0]}")
 SERIES = (*BODY_SERIES, *HEIGHT_SERIES)
 PLOTS = {
-    "plot_draft": PlotAxes("Draft", "m", BODY_SERIES),
-    "plot_surface": PlotAxes(f"Surface and {BODY_SERIES[0]}", "m", HEIGHT_SERIES),
+    "plot_draft": PlotAxes("Draft", "m", BODY_SERIES, least=0.02),
+    "plot_surface": PlotAxes(f"Surface and {BODY_SERIES[0]}", "m", HEIGHT_SERIES, least=0.02),
 }
 CURVES = {"plot_budget": CurveAxes("Oil budget", "%", "t [h]", tuple(line.label for line in BUDGET_LINES))}
 CHANGING = (  # as time passes

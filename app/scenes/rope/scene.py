@@ -21,7 +21,7 @@ from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.live_values import live_values
 from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import ABOUT, PRESETS, Params, hidden
-from app.scenes.springs.divergence import leapfrog_alternative
+from app.scenes.springs.divergence import holding_step, leapfrog_alternative
 from app.scenes.springs.drag import Drag
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.net_scene import NetScene
@@ -46,8 +46,8 @@ QUARTER_RATE_SPEED = 0.075  # [m/s] on screen: 5 mm between frames at a quarter 
 ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact", "dissipated", "error")
 SERIES = (*ENERGY_SERIES, "tip height")
 PLOTS = {
-    "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES),
-    "plot_tip": PlotAxes("Height of the tip", "m", ("tip height",)),
+    "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES, least=0.1),
+    "plot_tip": PlotAxes("Height of the tip", "m", ("tip height",), least=0.02),
 }
 
 
@@ -297,5 +297,6 @@ SCENE = SceneKind(
     frame_units={"points": "m", "reference": "m, the program's rope beside a student's", "tension": "N"},
     measures=measures,
     stability_map=StabilityMap(stiffness_parameter, build),
+    remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
     live_values=live_values,
 )

@@ -54,6 +54,7 @@ class View:
         self.tube: ColouredMesh | None = None
         self.beads: viser.BatchedMeshHandle | None = None
         self.reference: viser.MeshHandle | None = None  # the program's rope beside the student's, once there was one
+        self.labels: tuple[viser.LabelHandle, ...] = ()  # of the student's rope and the program's
         self.count = 0  # points that tube and beads are made for
         self.tube_drag = SurfaceDrag(post)
         self.shown_sphere: tuple[float, float, float, float] | None = None
@@ -184,8 +185,16 @@ class View:
                 )  # fmt: skip
             else:
                 self.reference.vertices = vertices
-        if self.reference is not None:
-            self.reference.visible = points is not None
+            if not self.labels:
+                self.labels = (
+                    self.server.scene.add_label("/yours", "yours", anchor="top-right"),
+                    self.server.scene.add_label("/program", "the program's", anchor="top-left"),
+                )
+            for label, tip in zip(self.labels, (self.points[-1], points[-1]), strict=True):
+                label.position = tuple(tip.tolist())
+        for handle in (self.reference, *self.labels):
+            if handle is not None:
+                handle.visible = points is not None
 
     def show_sphere(self, frame: RopeFrame) -> None:
         """Assign the sphere and its arrows."""
@@ -208,7 +217,10 @@ class View:
         """The cost of an implicit method and the colour scale, as HTML."""
         frame, scale = snapshot.frame, ""
         if frame.colour == "tension":
-            scale = colour_scale("slack", "tension", f"{number(frame.full_scale)} N")
+            scale = colour_scale(
+                "slack", "tension", f"{number(frame.full_scale)} N",
+                clipped=float(frame.tension.max()) > frame.full_scale,
+            )  # fmt: skip
         return cost_text(snapshot.readings.cost) + scale
 
     def marks(self, snapshot: RopeSnapshot) -> dict[str, str]:

@@ -7,13 +7,16 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from app.formats.formatting import number, seconds
+from app.formats.formatting import number, percent, seconds
 from app.messages import Moment, vector_of
 from app.scenes.springs.methods import method_name
 from sim.springs.integrators import Integrator
 from sim.springs.stability import Gauge
 
 MOMENTS = 60  # that are kept: a second at 60 frames a second
+MARGIN = 0.9  # of the largest stable step: the fastest motion of a run grows with its pulls
+FIRST_RATE = 60  # [1/s] steps a second; others are this times a power of two
+SHORTEST_STEP = 1e-5  # [s] that the parameter allows
 MAX_OVERSHOOT = 3.0  # of the bounds, up to which a moment beyond them is kept too
 
 
@@ -46,18 +49,16 @@ def stability_number(value: float) -> str:
 def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge, alternative: str) -> str:
     """The sentences for the panel. t [s]; step [s]; alternative: another setting that would hold, or ""."""
     method = method_name(integrator.name)
-    start = f"Unstable: the run diverged at t = {t:.2f} s."
-    limit = stability_number(gauge.limit)
+    start = f"The run became unstable at t = {t:.2f} s: its time step was"
+    limit = f"hω {stability_number(gauge.h_omega)} of {stability_number(gauge.limit)}"
     if gauge.h_omega > gauge.limit:
-        holds = f"h < {seconds(gauge.critical_step, 2)}" if gauge.critical_step > 0 else ""
+        holds = f"a time step below {seconds(gauge.critical_step, 2)}" if gauge.critical_step > 0 else ""
         proposals = " or ".join(words for words in (holds, alternative) if words)
-        return (
-            f"{start} hω = {stability_number(gauge.h_omega)} exceeds the limit of {method}, "
-            f"{limit} (ζ = {number(gauge.zeta, 2)}). Use {proposals or 'another method'}."
-        )
+        over = f"{percent(gauge.h_omega / gauge.limit, 3)} of the largest stable one" if gauge.limit > 0 else "too long"
+        return f"{start} {over} for {method} ({limit}). Use {proposals or 'another method'}."
     return (
-        f"{start} hω = {stability_number(gauge.h_omega)} is below the limit of {method}, {limit}, "
-        f"so an impact or a pull was too sudden for this step. Try h = {seconds(step / 4, 2)}."
+        f"{start} within the limit of {method} ({limit}), so an impact or a pull was too sudden for it. "
+        f"Try a time step of {seconds(step / 4, 2)}."
     )
 
 
@@ -65,4 +66,15 @@ def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
     """The step at which leapfrog would hold; "" where that is no news."""
     if integrator.name == "leapfrog" or not 0.0 < gauge.omega < math.inf:
         return ""
-    return f"leapfrog with h < {seconds(2.0 / gauge.omega, 2)}"
+    return f"leapfrog with one below {seconds(2.0 / gauge.omega, 2)}"
+
+
+def holding_step(step: float, gauge: Gauge) -> float:
+    """A time step [s], 1/n with a round n, that would have held in a run that diverged; 0 if there is none."""
+    largest = MARGIN * gauge.critical_step if gauge.h_omega > gauge.limit else step / 4
+    if not SHORTEST_STEP <= largest < math.inf:
+        return 0.0
+    rate = FIRST_RATE
+    while 1 / rate > largest:
+        rate *= 2
+    return 1 / rate if 1 / rate >= SHORTEST_STEP else 0.0

@@ -2,33 +2,45 @@
 
 import math
 
-from app.formats.formatting import number, seconds
+from app.formats.formatting import number, percent, seconds
 from app.render.colormap import css_scale
-from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, info
 from app.scenes.springs.divergence import stability_number
 from sim.springs.stability import Gauge
 
+STEP_INFO = (
+    "hω is the time step h times the highest frequency ω of the springs. Above its limit, which depends on the damping "
+    "ratio ζ = {}, the motion grows without end. More in docs/physics.md, 1. Springs."
+)
 WARNING_SHARE = 0.8  # of the limit, from which h omega is shown in the colour of a warning
 
 
 def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
-    """h omega as a bar up to its limit. exact: h omega is that of the state, not an upper bound of it."""
+    """The step relative to the largest stable one, as a bar. exact: it is that of the state, not a bound of it."""
     share = gauge.h_omega / gauge.limit if gauge.limit > 0 else math.inf
     colour = GOOD_COLOUR if share < WARNING_SHARE else WARNING_COLOUR if share <= 1.0 else ERROR_COLOUR
-    verdict = "stable" if share <= 1.0 else "unstable" if exact else "may be unstable"
-    limit = "no limit"
-    if gauge.limit < math.inf:
-        limit = f"limit {stability_number(gauge.limit)} at ζ = {number(gauge.zeta, 2)}"
     return fill(
-        '<div style="display:flex;justify-content:space-between"><b>hω {} {}</b><span>{}</span>{}</div>'
+        '<div><span class="springtide-step-share">{}</span> {}</div>'
         '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 8px">'
         '<div style="height:8px;border-radius:4px;width:{:.0f}%;background:{}"></div></div>',
-        "=" if exact else "≤",
-        stability_number(gauge.h_omega),
-        limit,
-        coloured(verdict, colour),
+        share_text(gauge, share, colour, exact=exact),
+        info(STEP_INFO.format(number(gauge.zeta, 2))),
         100.0 * min(share, 1.0),
         colour,
+    )
+
+
+def share_text(gauge: Gauge, share: float, colour: str, *, exact: bool) -> Html:
+    """The step relative to the largest stable one, in words and then in symbols."""
+    if gauge.limit == math.inf:
+        return fill("Step: {}", coloured("any is stable", colour))
+    if gauge.limit <= 0.0:
+        return fill("Step: {}", coloured("none is stable with this method", colour))
+    return fill(
+        "Step: {} of the largest stable one (hω {} of {})",
+        coloured(f"{'' if exact else 'at most '}{percent(share)}", colour),
+        stability_number(gauge.h_omega),
+        stability_number(gauge.limit),
     )
 
 
@@ -39,8 +51,11 @@ def step_mark(critical_step: float) -> str:
     return f"stable up to {seconds(critical_step)}" if critical_step > 0 else "no step is stable with this method"
 
 
-def colour_scale(low: str, name: str, high: str) -> Html:
-    """The colour scale with the values of its two ends, and the name of the quantity."""
+def colour_scale(low: str, name: object, high: str, *, clipped: bool) -> Html:
+    """The colour scale with the values of its two ends, and the name of the quantity.
+
+    clipped: something has a larger value than the end of the scale.
+    """
     return fill(
         '<div class="springtide-scale" style="--light-scale:{};--dark-scale:{}"></div>'
         '<div style="display:flex;justify-content:space-between">'
@@ -49,5 +64,5 @@ def colour_scale(low: str, name: str, high: str) -> Html:
         Html(css_scale(dark=True)),
         low,
         name,
-        high,
+        f"{high} and more" if clipped else high,
     )

@@ -4,7 +4,7 @@ import math
 
 from app.formats.formatting import count, fixed, metres, number, percent, seconds
 from app.messages import Snapshot
-from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, join, lines, table
+from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, lines, table
 from app.scenes.square_sea.frame import SeaReadings
 from app.scenes.square_sea.live_values import spectrum_conditions
 from app.scenes.square_sea.parameters import Params, gravity
@@ -19,6 +19,11 @@ from sim.ocean.statistics import BREAKING_HEIGHT, beaufort, open_sea_height, res
 
 MIN_SLOPE_LEFT = 0.98  # share of the mean square slope below which the sea counts as damped
 MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
+HEIGHT = (
+    "Significant height: the mean of the highest third of the waves, from trough to crest. "
+    "The band holds 19 of 20 seas. More in docs/physics.md, 2. Waves."
+)
+SLOPE = "Mean square slope: the mean of the squared slope of the water, on which its glitter depends."
 BAND_WIDTH = 2.0  # standard deviations to each side: 95 of 100 seas lie within
 WATER_VISCOSITY, HEAVY_OIL_VISCOSITY = 1e-6, 2e-2  # [m2/s] kinematic, to compare with
 
@@ -65,8 +70,8 @@ def breaking_text(params: Params) -> str:
         return ""
     other = "" if spectrum.name == "tma" else " Of the wind seas only TMA is limited by depth."
     return (
-        f"Hs = {number(height)} m is {number(height / params.depth, 2)} times the depth. Above {BREAKING_HEIGHT:g} "
-        f"such waves break, which these do not.{other}"
+        f"A wave height of {number(height)} m is {number(height / params.depth, 2)} times the depth. "
+        f"Above {BREAKING_HEIGHT:g} such waves break, which these do not.{other}"
     )
 
 
@@ -105,12 +110,12 @@ def statistics_table(r: Report) -> Html:
         (("", ""), ("as drawn", ""), ("theory", "95 % band")),
         (
             (
-                Html("height H<sub>s</sub> [m]"),
+                fill("significant height [m] {}", info(HEIGHT)),
                 bold(height) if inside else coloured(height, WARNING_COLOUR),
                 f"{number(e.significant_height)} ± {number(band, 2)}",
             ),
-            (Html("period T<sub>p</sub> [s]"), bold(number(m.peak_period)), number(e.peak_period)),
-            ("mean square slope", bold(number(m.mean_square_slope)), number(e.mean_square_slope)),
+            ("peak period [s]", bold(number(m.peak_period)), number(e.peak_period)),
+            (fill("mean square slope {}", info(SLOPE)), bold(number(m.mean_square_slope)), number(e.mean_square_slope)),
             ("direction [°]", direction, fixed(math.degrees(e.direction), 0)),
         ),
     )
@@ -118,11 +123,9 @@ def statistics_table(r: Report) -> Html:
         return measured
     share = e.significant_height / endless
     if share < MAX_SHARE_OF_ENDLESS_SEA:
-        text = fill("The tile captures {} of the open-sea H<sub>s</sub> ({} m).", percent(share, 3), number(endless))
+        text = fill("These waves have {} of the height of an open sea ({} m).", percent(share, 3), number(endless))
     else:
-        text = fill(
-            "Waves of the earlier weather are still here; this wind alone makes H<sub>s</sub> = {} m.", number(endless)
-        )
+        text = fill("Waves of the earlier weather are still here; this wind alone makes {} m.", number(endless))
     return join((measured, faint(text)))
 
 
@@ -141,14 +144,16 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     c = spectrum_conditions(p, p.wind_speed, gravity(p))
     found = {
         "wind_speed": wind_line(p),
-        "planet": f"g = {number(gravity(p))} m/s²",
+        "planet": f"gravity {number(gravity(p))} m/s²",
         "radius_rule": radius_line(p),
         "low_pass": low_pass_line(p),
         "viscosity": viscosity_line(p, snapshot.readings.viscous_area),
         "loop_period": loop_line(p),
         "size": f"grid spacing {metres(cell)}, shortest wave {metres(2 * cell)}",
         "mesh": f"grid spacing {metres(p.length / len(snapshot.frame.vertices))}",
-        "foam_by_wind": f"foam where the Jacobian is below {fixed(limit, 2)}" if math.isfinite(limit) else "no foam",
+        "foam_by_wind": f"foam where the surface is pressed below {percent(limit)} of its area"
+        if math.isfinite(limit)
+        else "no foam",
     }
     if not p.deep:
         found["depth"] = depth_line(p)
@@ -168,7 +173,7 @@ def wind_line(params: Params) -> str:
     if spectrum.wind_height == 10.0:
         return f"Beaufort {force}, {name}"
     there = number(spectrum.wind_speed(params.wind_speed))
-    return f"Beaufort {force}, {name}; {there} m/s at {spectrum.wind_height:g} m, which this spectrum takes"
+    return f"Beaufort {force}, {name}; {there} m/s at {spectrum.wind_height:g} m, where this spectrum needs it"
 
 
 def radius_line(params: Params) -> str:
@@ -176,7 +181,7 @@ def radius_line(params: Params) -> str:
     each = ", ".join(
         f"{number(gravity_of(params.planet_mass, rule))} ({rule.replace('_', ' ')})" for rule in RADIUS_RULES
     )
-    return f"g in m/s² by each rule: {each}"
+    return f"gravity in m/s² by each rule: {each}"
 
 
 def low_pass_line(params: Params) -> str:
@@ -193,7 +198,7 @@ def viscosity_line(params: Params, area: float) -> str:
     length = 2.0 * math.sqrt(area)
     so_far = ""
     if length > 0.0 and is_weak(1.0 / length, params.viscosity, gravity(params)):
-        so_far = f"; the decay so far is that of the lab's l = 2√(νT) = {metres(length, 2)}"
+        so_far = f"; the decay so far is that of the lab's length l = {metres(length, 2)}"
     if params.viscosity == 0.0:
         return f"no decay{so_far}; a reset gives the waves back" if so_far else "no decay"
     omega, decay = viscous_root(2.0 * math.pi, params.viscosity, gravity(params))

@@ -130,7 +130,7 @@ def test_a_new_grid_keeps_the_shape():
 
 def test_an_explosion_keeps_the_last_good_state_and_names_a_step_that_holds():
     scene = ClothScene(dataclasses.replace(SMALL, integrator="explicit_euler", time_step=0.01))
-    with pytest.raises(DivergenceError, match=r"hω = .* exceeds the limit of explicit Euler"):
+    with pytest.raises(DivergenceError, match=r"of the largest stable one for explicit Euler"):
         run(scene, 20.0)
     assert np.isfinite(scene.frame().points).all()
 

@@ -90,7 +90,7 @@ def test_ropes_over_their_limit_diverge_and_the_others_go_on(preset, held):
         assert over == (number > held) == bool(rope.failure)
         if over:
             assert rope.failure.startswith("diverged at ")
-            assert f"hω = {rope.gauge.h_omega:.2f} exceeds the limit {rope.gauge.limit:.2f}" in rope.failure
+            assert f"step is too long (hω {rope.gauge.h_omega:.2f} of {rope.gauge.limit:.2f})" in rope.failure
             assert np.isnan(rope.error)
         else:
             assert rope.error < 0.1

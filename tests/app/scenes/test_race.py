@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+from typing import Any
 
 import numpy as np
 import pytest
@@ -35,17 +36,20 @@ from sim.springs.analysis.reference_run import (
 )  # fmt: skip
 from sim.springs.state import steps_for
 
+RaceOf: Any = RaceScene  # whose types the tests know
+Loop: Any = SimLoop  # of a scene whose types the tests know
+
 ALIKE = {"integrator": "leapfrog", "integrator_3": "symplectic_euler", "time_step": 1 / 60, "race_steps": "same step"}
 
 
-def race(**changes) -> RaceScene:
+def race(**changes) -> Any:
     """A race of ropes at one step."""
-    return RaceScene(Params(**{**ALIKE, **changes}))
+    return RaceOf(Params(**{**ALIKE, **changes}))
 
 
 def change(scene: RaceScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    SimLoop(scene, paused=True).take(dataclasses.replace(scene.params, **changes))
+    Loop(scene, paused=True).take(dataclasses.replace(scene.params, **changes))
 
 
 def run(scene: RaceScene, seconds: float) -> None:
@@ -55,8 +59,8 @@ def run(scene: RaceScene, seconds: float) -> None:
         scene.advance(ticks)
 
 
-def raced(preset: str, seconds: float, **others) -> RaceScene:
-    scene = RaceScene(dataclasses.replace(check_record(Params, PRESETS[preset]), **others))
+def raced(preset: str, seconds: float, **others) -> Any:
+    scene = RaceOf(dataclasses.replace(check_record(Params, PRESETS[preset]), **others))
     run(scene, seconds)
     return scene
 
@@ -262,7 +266,7 @@ def test_a_change_of_forces_is_booked_as_work_and_no_method_is_charged_with_it()
 def test_a_change_of_look_costs_nothing_and_leaves_the_accounts_alone():
     """Bit for bit the same as in a race that is left alone."""
     alone, changed = race(ropes=2, speed=2.0), race(ropes=2, speed=2.0)
-    loops = [SimLoop(scene, clock=lambda: 0.0, effort=lambda: 0.0) for scene in (alone, changed)]
+    loops = [Loop(scene, clock=lambda: 0.0, effort=lambda: 0.0) for scene in (alone, changed)]
     looks = (
         {"grid": False},
         {"spacing": 1.0},
@@ -305,7 +309,7 @@ def test_a_drag_of_one_rope_pulls_all_alike_and_the_reference_run_too():
 def test_the_first_view_shows_the_whole_fall_of_all_ropes_and_their_labels(changes):
     """The ropes of the reference runs: one that gains energy by its method may leave the picture."""
     params = check_record(Params, changes)
-    scene = RaceScene(params)
+    scene = RaceOf(params)
     corners = [scene.frame().ropes.reshape(-1, 3)]
     for _ in range(30):
         run(scene, 0.1)
@@ -416,7 +420,7 @@ def test_a_sweep_records_each_rope_of_a_race():
 
 
 def test_the_gauge_is_compiled_ahead_as_it_is_called():
-    compile_gauge()
+    compile_gauge(RaceOf(Params()).race.entrants[0].net)
 
 
 def test_all_roots_swing_as_the_root_of_a_rope_does():

@@ -2,6 +2,7 @@
 
 import math
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,10 +23,12 @@ from sim.parameters import check_record, parameters_of
 from tests import naive_spill
 from tests.naive_ocean import layer_roots
 
+Loop: Any = SimLoop  # of a scene whose types the tests know
+
 
 @pytest.mark.parametrize("name", list(PRESETS))
 def test_each_preset_is_reported_without_a_number_that_is_none(name: str) -> None:
-    loop = SimLoop(RadialSeaScene(check_record(Params, PRESETS[name])))
+    loop = Loop(RadialSeaScene(check_record(Params, PRESETS[name])))
     loop.tick(0.1)
     snapshot = loop.latest
     texts = [readout_of(snapshot), *notes_of(snapshot).values(), *marks_of(snapshot).values()]
@@ -35,13 +38,13 @@ def test_each_preset_is_reported_without_a_number_that_is_none(name: str) -> Non
 
 
 def test_sinking_bodies_are_said_to_sink() -> None:
-    loop = SimLoop(RadialSeaScene(check_record(Params, {"spill": "mixed", "fraction": 0.6, "density": 1010.0})))
+    loop = Loop(RadialSeaScene(check_record(Params, {"spill": "mixed", "fraction": 0.6, "density": 1010.0})))
     loop.tick(0.1)
     assert "sinks" in notes_of(loop.latest)["Archimedes' principle"]
 
 
 def test_no_bodies_and_no_waves_are_reported_too() -> None:
-    loop = SimLoop(RadialSeaScene(check_record(Params, {"bodies": 0, "waves": False, "spill": "layer"})))
+    loop = Loop(RadialSeaScene(check_record(Params, {"bodies": 0, "waves": False, "spill": "layer"})))
     loop.tick(0.1)
     assert readout_of(loop.latest) == "<div>No bodies.</div><div>No waves.</div>"
     assert marks_of(loop.latest)["wind_speed"] == "no waves"
@@ -51,7 +54,7 @@ def test_no_bodies_and_no_waves_are_reported_too() -> None:
 @pytest.mark.parametrize(("density", "is_said"), [(50.0, True), (450.0, False)])
 def test_a_body_outside_its_table_of_coefficients_is_said_to_be(density: float, is_said: bool) -> None:
     """The box of 50 kg/m3 floats at 0.058 of half its width, where the table begins at 0.06."""
-    loop = SimLoop(RadialSeaScene(check_record(Params, {"density": density, "bodies": 3, "waves": False})))
+    loop = Loop(RadialSeaScene(check_record(Params, {"density": density, "bodies": 3, "waves": False})))
     loop.tick(0.1)
     words = "Box: draft over half the width 0.0569 (table: 0.06 to 4.2) is outside"
     assert (words in notes_of(loop.latest)["Weight, buoyancy, heave"]) == is_said
@@ -59,7 +62,7 @@ def test_a_body_outside_its_table_of_coefficients_is_said_to_be(density: float, 
 
 def live(**values) -> dict[str, float]:
     """The live values of a scene."""
-    loop = SimLoop(RadialSeaScene(check_record(Params, values)))
+    loop = Loop(RadialSeaScene(check_record(Params, values)))
     loop.tick(0.1)
     return {name: measure.value for name, measure in live_values(loop.latest).items()}
 
@@ -221,7 +224,7 @@ def test_lines_on_the_waves_are_jonswap_s_and_those_of_the_exact_root(
     oil: str, thickness: float, wind: float, exposure: float
 ) -> None:
     values = {"spill": "layer", "oil": oil, "thickness": thickness, "wind_speed": wind, "exposure": exposure}
-    loop = SimLoop(RadialSeaScene(check_record(Params, {**values, "bodies": 0, "ageing": False})))
+    loop = Loop(RadialSeaScene(check_record(Params, {**values, "bodies": 0, "ageing": False})))
     loop.tick(0.1)
     said = {name: text.replace("\u202f", "") for name, text in marks_of(loop.latest).items()}
     # JONSWAP from 100 km, at most full growth (22 x 1.026/0.87716)^3, where the peak factor is 1.
@@ -238,7 +241,7 @@ def test_lines_on_the_waves_are_jonswap_s_and_those_of_the_exact_root(
     assert float(period) == pytest.approx(2.0 * math.pi / middle, rel=0.03)
     fluid, water = fluids()[oil], fluids()["sea water"]
     k = np.array([wp**2 / g])
-    root = layer_roots(
+    root: Any = layer_roots(
         k, np.array([thickness]), (fluid.density, water.density), (fluid.viscosity, water.viscosity), g,
         (fluid.surface_tension or 0.0, fluid.interface_tension or 0.0), steps=30,
     )  # fmt: skip
@@ -255,7 +258,7 @@ def test_what_a_slick_leaves_of_a_wave_is_said_in_words_where_it_is_nothing() ->
 
 @pytest.mark.parametrize(("values", "calms"), [({}, True), ({"surface": "fft"}, False), ({"spill": "mixed"}, False)])
 def test_a_slick_is_said_to_calm_the_sea_where_it_does(values: dict[str, str], calms: bool) -> None:
-    loop = SimLoop(RadialSeaScene(check_record(Params, {"jet": True, "jet_flow": 20.0, "bodies": 0, **values})))
+    loop = Loop(RadialSeaScene(check_record(Params, {"jet": True, "jet_flow": 20.0, "bodies": 0, **values})))
     for _ in range(60):
         loop.tick(0.1)
     assert loop.latest.readings.oil_budget.fed > 0.0
@@ -263,7 +266,7 @@ def test_a_slick_is_said_to_calm_the_sea_where_it_does(values: dict[str, str], c
 
 
 def test_the_cost_of_a_surface_is_shown_in_milliseconds() -> None:
-    loop = SimLoop(RadialSeaScene(check_record(Params, {"compare": True, "bodies": 0, "wave_count": 16})))
+    loop = Loop(RadialSeaScene(check_record(Params, {"compare": True, "bodies": 0, "wave_count": 16})))
     loop.tick(0.1)
     costs = [surface.cost for surface in loop.latest.readings.surfaces.values()]
     assert len(costs) == 2
@@ -278,7 +281,7 @@ def test_the_cost_of_a_surface_is_shown_in_milliseconds() -> None:
 @pytest.mark.parametrize(("fraction", "beyond"), [(0.05, False), (0.3, True)])
 def test_the_line_under_a_mixture_says_where_its_law_ends(fraction: float, beyond: bool) -> None:
     values = {"spill": "mixed", "mixture_law": "taylor", "fraction": fraction, "bodies": 0, "oil": "Arabian Light"}
-    loop = SimLoop(RadialSeaScene(check_record(Params, {"wave_count": 16, **values})))
+    loop = Loop(RadialSeaScene(check_record(Params, {"wave_count": 16, **values})))
     loop.tick(0.1)
     said = marks_of(loop.latest)
     ending = "; the law holds up to 10%" if beyond else ""

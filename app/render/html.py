@@ -103,7 +103,7 @@ def coloured(text: object, colour: str) -> Html:
 def info(text: object) -> Html:
     """A sign that shows a text below it under mouse or finger. text: two sentences, and where there is more."""
     return fill(
-        '<span class="springtide-info" tabindex="0" role="note" aria-label="{0}" data-text="{0}">ⓘ</span>',
+        '<span class="springtide-info" tabindex="0" role="note" aria-label="{0}" data-text="{0}">i</span>',
         text,
     )
 

@@ -162,8 +162,8 @@ class View:
                 self.student.vertices = vertices
             if not self.labels:
                 self.labels = (
-                    self.server.scene.add_label("/yours", "yours (translucent)", anchor="top-right"),
-                    self.server.scene.add_label("/program", "the program's", anchor="top-left"),
+                    self.server.scene.add_label("/yours", "yours (translucent)", anchor="top-center"),
+                    self.server.scene.add_label("/program", "the program's", anchor="bottom-left"),
                 )
             for label, corner in zip(self.labels, (vertices[-1], self.points[-1]), strict=True):
                 label.position = tuple(corner.tolist())

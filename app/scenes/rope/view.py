@@ -187,8 +187,8 @@ class View:
                 self.reference.vertices = vertices
             if not self.labels:
                 self.labels = (
-                    self.server.scene.add_label("/yours", "yours", anchor="top-right"),
-                    self.server.scene.add_label("/program", "the program's", anchor="top-left"),
+                    self.server.scene.add_label("/yours", "yours", anchor="top-center"),
+                    self.server.scene.add_label("/program", "the program's", anchor="bottom-left"),
                 )
             for label, tip in zip(self.labels, (self.points[-1], points[-1]), strict=True):
                 label.position = tuple(tip.tolist())

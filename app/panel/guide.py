@@ -327,10 +327,6 @@ class Guide:
         if self.chooser.value != title:
             self.chooser.value = title
 
-    def hidden(self) -> frozenset[str]:
-        """Parameters and headings of which nothing is to be shown that answers a question of the task."""
-        return self.workbook.hidden()
-
     def statement(self, task: Task) -> Html:
         """The task, and where to look."""
         setup = self.workbook.set_up_of(task)

@@ -100,9 +100,8 @@ class Panel:
         self.own = own_presets(kind)  # name in the list -> set-up of the user
         # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
         self.loaded = min(kind.presets, key=lambda name: len(changed_names(self.params_of(name), params)))
-        actions = Actions(
-            post, self.load, self.open_first_view_of, self.place_first_view, self.toggle_plots, self.undo, self.follow
-        )  # fmt: skip
+        first_views = self.open_first_view_of, self.place_first_view
+        actions = Actions(post, self.load, *first_views, self.toggle_plots, self.undo, self.follow)
         self.head = Head(gui, kind, view, scenes, actions)
         self.shown = Controls(gui, lambda: self.params, self.on_change)
         self.controls, self.folders = self.shown.own, self.shown.folders
@@ -334,17 +333,17 @@ class Panel:
         shown = self.recorder.shown
         self.plots.update(snapshot, rows, None if shown is None else shown.time)
         visitors = len(self.server.get_clients())
+        hidden = frozenset[str]() if self.guide is None else self.guide.workbook.hidden()
         refresh = self.head.is_stale(snapshot, visitors) or now - self.status_at >= STATUS_INTERVAL
         if refresh:
             self.status_at = now
             self.head.show(snapshot, busy, visitors)
-            self.readings.show(snapshot, frozenset[str]() if self.guide is None else self.guide.hidden())
+            self.readings.show(snapshot, hidden)
             if self.code is not None:
                 self.code.update({} if self.guide is None else self.guide.values)
                 self.head.show_code(self.code.headline())
         if now - self.marks_at >= MARKS_INTERVAL:
             self.marks_at = now
-            hidden = frozenset[str]() if self.guide is None else self.guide.hidden()
             for name, text in self.view.marks(snapshot).items():
                 self.controls[name].write("" if name in hidden else text)
             if self.map is not None:

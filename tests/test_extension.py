@@ -98,6 +98,18 @@ def test_an_integrator_is_one_file(tmp_path):
     assert parameters_in(copy / "rk2.npz")["integrator"] == "rk2"
 
 
+def test_a_law_of_a_link_is_one_file(tmp_path):
+    copy = copy_of_sources(tmp_path)
+    blocks = section("Add a law of a link")
+    assert len(add(blocks, copy)) == 1
+    test, headless = commands(blocks)
+    said = run_command(copy, test)
+    assert " passed" in said
+    assert " failed" not in said
+    run_command(copy, headless)
+    assert parameters_in(copy / "rubber.npz")["link"] == "rubber"
+
+
 @pytest.mark.stress  # five processes; the other examples are tried in fewer
 def test_a_spectrum_with_new_parameters_is_one_file(tmp_path):
     copy = copy_of_sources(tmp_path)
@@ -181,6 +193,7 @@ def test_the_examples_pass_the_type_checker(tmp_path):
     copy = copy_of_sources(tmp_path)
     headings = (
         "Add an integrator",
+        "Add a law of a link",
         "Add a spectrum",
         "Add a parameter",
         "Add a body shape",

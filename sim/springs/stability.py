@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
-from sim.springs.analysis.strain import largest_strain
+from sim.springs.analysis.strain import strain_range
 from sim.springs.forces.self_contact import count_touching
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFEST, TRANSVERSE, quotients, set_lanczos
@@ -95,7 +95,7 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
     """
     rows, cols = net.shape
     stiffness, damping = np.zeros((2, rows, cols))
-    reach = largest_stiffness(net.law, largest_strain(net, net.x0 if x is None else x))
+    reach = largest_stiffness(net.law, *strain_range(net, net.x0 if x is None else x))
     for f in net.families:
         i, j = slice(0, max(0, rows - f.di)), slice(max(0, -f.dj), max(0, cols - max(0, f.dj)))
         ratios = net.link_ratios(f.di, f.dj)

@@ -1,16 +1,15 @@
 """Exact equilibria of ropes: the chain of links itself, not a continuum. Whatever an integrator does, it ends here."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.springs.laws import law_of
+from sim.springs.laws import TAUT, check_law, law_of, of_arrays
 from sim.springs.net import Net
 from sim.validation import argument_error, check_number
 
-HOOKEAN = ("spring", "slack")  # laws that are the same under tension
 ITERATIONS = 200  # of Newton: a dozen is usual
 
 
@@ -39,17 +38,25 @@ def hanging_chain(net: Net) -> Equilibrium:
 
 
 def catenary(
-    points: int, length: float, span: float, rise: float, stiffness: float, mass: ArrayLike, gravity: float
+    points: int,
+    length: float,
+    span: float,
+    rise: float,
+    stiffness: float,
+    mass: ArrayLike,
+    gravity: float,
+    law: Any = "spring",
 ) -> Equilibrium:
     """The discrete elastic catenary between pins at (0, 0, 0) and (span, 0, rise) [m], hanging in the x-z plane.
 
     length: rest length of the whole [m]; stiffness [N/m] per link; mass [kg] of every point, or (points,) of each;
-    gravity [m/s^2] along -z, above 0 where the rope is not stretched straight.
+    gravity [m/s^2] along -z, above 0 where the rope is not stretched straight; law: as of `rope`.
 
     With the first link's tension (H, V) the others carry (H, V + (i - 1) m g), each link is the vector
-    (l0 + T_i/k) (H, V_i)/T_i, and H and V follow from where the last one ends (H. M. Irvine, Cable Structures, 1981,
-    for the continuum). The end is the gradient of sum_i (l0 T_i + T_i^2/(2k)), which is convex: Newton's method with a
-    line search on that, less (span, rise) . (H, V), comes down to the one answer from any start.
+    l(T_i) (H, V_i)/T_i with l the length at a tension, and H and V follow from where the last one ends (H. M. Irvine,
+    Cable Structures, 1981, for the continuum). The end is the gradient of sum_i (l T_i - U(l)), U the energy, which is
+    convex: Newton's method with a line search on that, less (span, rise) . (H, V), comes to the one answer from any
+    start.
 
     Raises ValueError, naming the argument, its value and what is allowed.
     """
@@ -63,25 +70,47 @@ def catenary(
     check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
     links = int(points) - 1
     rest = length / links
+    numbers = check_law(law)
+    found = law_of(numbers)
+    length_at, energy_at, slope_at = found.length, of_arrays(found.energy), of_arrays(found.stiffness)
     load = gravity * np.concatenate([[0.0], np.broadcast_to(mass, (links + 1,))[1:-1].cumsum()])
     end = np.array([span, rise])
 
     def value(force):
         T = np.hypot(force[0], force[1] + load)
-        return float((rest * T + T * T / (2.0 * stiffness)).sum() - end @ force)
+        lengths = length_at(numbers, stiffness, rest, T)
+        return float((lengths * T - energy_at(numbers, stiffness, rest, lengths)).sum() - end @ force)
 
     def gap_and_jacobian(force):
         H, V = force[0], force[1] + load
         T = np.maximum(np.hypot(H, V), 1e-300)
-        per_force = rest / T + 1.0 / stiffness
-        # d(per_force H)/dH = 1/k + l0 V^2/T^3 and so on: each link's compliance, along it and across.
-        hh, vv = (rest * V * V / T**3 + 1.0 / stiffness).sum(), (rest * H * H / T**3 + 1.0 / stiffness).sum()
-        hv = -(rest * H * V / T**3).sum()
-        return np.array([(per_force * H).sum(), (per_force * V).sum()]) - end, np.array([[hh, hv], [hv, vv]])
+        lengths = length_at(numbers, stiffness, rest, T)
+        # Each link's compliance: across it l/T, and along it 1 over its stiffness, of a taut one.
+        across, taut = lengths / T, np.maximum(lengths, (1.0 + TAUT) * rest)
+        more = (1.0 / slope_at(numbers, stiffness, rest, taut) - across) / T**2
+        hh, vv, hv = (across + more * H * H).sum(), (across + more * V * V).sum(), (more * H * V).sum()
+        return np.array([(across * H).sum(), (across * V).sum()]) - end, np.array([[hh, hv], [hv, vv]])
 
     # Half the weight hangs on each end; the pull is that of a rope as steep as it is long, or of the stretch.
     stretch = max(math.hypot(span, rise) / length - 1.0, 0.0) * stiffness * rest
     force = np.array([math.copysign(abs(load[-1]) / 4.0 + stretch + 1e-9 * stiffness * rest, span), -load[-1] / 2.0])
+    force, gap = minimise(value, gap_and_jacobian, force, 1e-12 * (length + math.hypot(span, rise)))
+    if not np.hypot(*gap) <= 1e-11 * (length + math.hypot(span, rise)):
+        raise argument_error("span", span, "a distance at which gravity or stretch keeps every link taut")
+    H, V = force[0], force[1] + load
+    T = np.hypot(H, V)
+    links_xz = (length_at(numbers, stiffness, rest, T) / T)[:, None] * np.stack([np.full_like(V, H), V], axis=1)
+    x = np.zeros((links + 1, 3))
+    x[1:, 0], x[1:, 2] = np.cumsum(links_xz, axis=0).T
+    x[-1] = span, 0.0, rise
+    return Equilibrium(x, T)
+
+
+def minimise(value: Any, gap_and_jacobian: Any, force: Any, small: float) -> tuple[Any, Any]:
+    """The least of a convex value(force) and the gap there, its gradient: Newton's method with a line search.
+
+    gap_and_jacobian(force): gradient (2,) and its derivative (2, 2). small: of a gap that may be the last.
+    """
     gap, jacobian = gap_and_jacobian(force)
     for _ in range(ITERATIONS):
         step = -np.linalg.solve(jacobian, gap)
@@ -96,25 +125,16 @@ def catenary(
             share *= 0.5
             if share < 1e-12:
                 break
-        if np.hypot(*new_gap) >= np.hypot(*gap) and np.hypot(*gap) <= 1e-12 * (length + math.hypot(span, rise)):
+        if np.hypot(*new_gap) >= np.hypot(*gap) and np.hypot(*gap) <= small:
             break
         force, gap, jacobian = new, new_gap, new_jacobian
-    if not np.hypot(*gap) <= 1e-11 * (length + math.hypot(span, rise)):
-        raise argument_error("span", span, "a distance at which gravity or stretch keeps every link taut")
-    H, V = force[0], force[1] + load
-    T = np.hypot(H, V)
-    links_xz = (rest / T + 1.0 / stiffness)[:, None] * np.stack([np.full_like(V, H), V], axis=1)
-    x = np.zeros((links + 1, 3))
-    x[1:, 0], x[1:, 2] = np.cumsum(links_xz, axis=0).T
-    x[-1] = span, 0.0, rise
-    return Equilibrium(x, T)
+    return force, gap
 
 
 def equilibrium(net: Net) -> Equilibrium:
     """Rest state of the rope `net`, hanging from point 0 or from both its ends; without floor and sphere.
 
-    Raises ValueError as `hanging_chain` and `catenary` do, where gravity is not along z, and between two ends for links
-    that are neither springs nor lines.
+    Raises ValueError as `hanging_chain` and `catenary` do, and where gravity is not along z.
     """
     family = single_family(net)
     last = net.shape[1] - 1
@@ -124,12 +144,11 @@ def equilibrium(net: Net) -> Equilibrium:
         raise argument_error("net", sorted(net.pinned), "a rope pinned at point 0, and at the last one or not")
     if net.gravity[:2] != (0.0, 0.0):
         raise argument_error("gravity", net.gravity, "along z")
-    if law_of(net.law).name not in HOOKEAN:
-        raise argument_error("law", law_of(net.law).name, "of a rope between two pins one of " + ", ".join(HOOKEAN))
     start, chord = net.x0[:, 0, 0], net.x0[:, 0, last] - net.x0[:, 0, 0]
     span = math.hypot(chord[0], chord[1])
     flat = catenary(
-        last + 1, family.rest * last, span, float(chord[2]), family.stiffness, net.masses[0], -net.gravity[2]
+        last + 1, family.rest * last, span, float(chord[2]), family.stiffness, net.masses[0], -net.gravity[2],
+        net.law,
     )  # fmt: skip
     away = np.array([chord[0] / span, chord[1] / span, 0.0]) if span > 0.0 else np.array([1.0, 0.0, 0.0])
     return Equilibrium(start + flat.x[:, :1] * away + flat.x[:, 2:] * (0.0, 0.0, 1.0), flat.tension)

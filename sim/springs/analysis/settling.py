@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs.integrators.leapfrog import RECORD as LEAPFROG
+from sim.springs.laws import largest_stiffness
 from sim.springs.net import Net
 from sim.springs.stability import gershgorin
 from sim.springs.state import State, advance, energy
@@ -41,12 +42,11 @@ def find_rest_positions(net: Net, x: NDArray[np.float64] | None = None) -> NDArr
     if fastest == 0.0:
         return state.x
     h, before = 1.0 / fastest, 0.0
+    stiffens = largest_stiffness(net.law, -0.5, 1.0) > largest_stiffness(net.law, 0.0, 0.0)
     for _ in range(LOOKS):
         advance(still, state, LEAPFROG, h, STEPS)
-        if not state.is_bounded:  # its links stiffened
-            h, before = 0.5 * h, 0.0
-            state.x[:], state.v[:] = net.x0 if x is None else x, 0.0
-            continue
+        if stiffens:
+            h = 1.0 / gershgorin(still, state.x)[0]
         now = energy(still, state)
         if now.kinetic < before:
             if before < REST_ENERGY_SHARE * max(abs(now.gravity), now.elastic, 1e-12):

@@ -6,18 +6,17 @@ from numpy.typing import NDArray
 from sim.springs.net import Net
 
 
-def largest_strain(net: Net, x: NDArray[np.float64]) -> float:
-    """Largest |length / rest length - 1| of all links with a rest length, at positions x (3, rows, cols) [m]."""
+def strain_range(net: Net, x: NDArray[np.float64]) -> tuple[float, float]:
+    """Least and largest length / rest length - 1, and 0, of all links with a rest length at x (3, rows, cols) [m]."""
     rows, cols = net.shape
-    largest = 0.0
+    least = largest = 0.0
     for f in net.families:
-        first = max(0, -f.dj), max(0, cols - max(0, f.dj))
-        near, far = x[:, : max(0, rows - f.di), first[0] : first[1]], x[:, f.di :, first[0] + f.dj : first[1] + f.dj]
+        first, last = max(0, -f.dj), max(0, cols - max(0, f.dj))
+        near, far = x[:, : max(0, rows - f.di), first:last], x[:, f.di :, first + f.dj : last + f.dj]
         if f.rest > 0.0 and near.size:
-            r = far - near
-            strain = np.abs(np.sqrt(np.einsum("eij,eij->ij", r, r)) / f.rest - 1.0)
-            largest = max(largest, float(strain.max()))
-    return largest
+            strain = np.linalg.norm(far - near, axis=0) / f.rest - 1.0
+            least, largest = min(least, float(strain.min())), max(largest, float(strain.max()))
+    return least, largest
 
 
 def structural_strain(net: Net, x: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -12,6 +12,8 @@ To add one, write a module in this folder with
 
 from typing import Any
 
+import numpy as np
+
 from sim.jit import chosen, kernel, modules_of
 from sim.springs.laws.record import Law, at_any_length
 from sim.validation import check_choice, check_number
@@ -96,8 +98,12 @@ def check_law(law: Any) -> Any:
     return type(law)(*map(float, law))
 
 
-def largest_stiffness(law: Any, strain: float) -> float:
-    """Largest stiffness over k of a link that is stretched or pressed by up to a strain, or just taut."""
-    function = law_of(law).stiffness
-    plain = getattr(function, "py_func", function)
-    return max(plain(law, 1.0, 1.0, 1.0 + e) for e in (-min(strain, 1.0), -TAUT, TAUT, max(strain, TAUT)))
+def of_arrays(function: Any) -> Any:
+    """A kernel of a law for numpy, which nothing compiles."""
+    return np.vectorize(getattr(function, "py_func", function), otypes=[float], excluded={0})
+
+
+def largest_stiffness(law: Any, least: float, largest: float) -> float:
+    """Largest stiffness over k of a link at these strains, at most 0 and at least 0, or nearly at its rest length."""
+    strains = np.array([least, -TAUT, TAUT, max(largest, TAUT)])
+    return float(of_arrays(law_of(law).stiffness)(law, 1.0, 1.0, 1.0 + strains).max())

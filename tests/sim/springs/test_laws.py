@@ -5,27 +5,39 @@ import itertools
 
 import numpy as np
 import pytest
+from scipy.special import ellipk
 
 from sim.jit import kernel
-from sim.springs import INTEGRATORS, LAWS, PinPath, State, advance, rope
+from sim.springs import INTEGRATORS, LAWS, PinPath, State, advance, critical_step, rope, simulate
+from sim.springs.analysis.growth import STABLE, outcome
+from sim.springs.analysis.settling import find_rest_positions
+from sim.springs.analysis.strain import strain_range
+from sim.springs.analysis.tension import rope_tension
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS
 from sim.springs.laws import energy as link_energy
 from sim.springs.laws import largest_stiffness, over_step, stiffness, tension
-from sim.springs.state import energy
+from sim.springs.laws.stiffening import Stiffening
+from sim.springs.net import Family
+from sim.springs.stability import gershgorin
+from sim.springs.state import acceleration, energy
+from sim.springs.statics import equilibrium, hanging_chain
 from tests import naive
 from tests.sim.springs.nets import patch
+from tests.sim.springs.reference import exact, integrated, slope
+from tests.sim.springs.test_energy import residual
 from tests.sim.springs.test_forces import agrees, own_power, shaken
 from tests.sim.springs.test_stability import products
 
 K, REST = 700.0, 0.4
 STRAINS = np.array([-0.7, -0.2, -1e-3, 1e-3, 0.05, 0.3, 1.5])
-OTHERS = [name for name in LAWS if name != "spring"]
+KNOWN = ["spring", "slack", "stiffening"]  # laws that `tests.naive` has as well
+OTHERS = KNOWN[1:]
 PATH = PinPath(0.0, ((0.0, 0.0, 0.0), (0.5, 0.2, 0.3), (-0.5, 0.4, 1.0), (0.4, 0.5, -1.0)))
 
 
 @kernel
 def set_laws(law, k, rest, lengths, found):
-    """found (4, n): tension, stiffness and energy at each length, and the mean tension from each to the last."""
+    """found (5, n): tension, stiffness and energy at each length, and the mean tension from each to the last, twice."""
     n = lengths.shape[0]
     for j in range(n):
         found[0, j] = tension(law, k, rest, lengths[j])
@@ -67,7 +79,7 @@ def test_the_mean_tension_of_a_step_does_the_work_of_the_energy(name):
             assert density == pytest.approx(found[4, 0], rel=1e-5, abs=1e-3 * K)
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", KNOWN)
 def test_the_laws_are_their_formulas(name):
     net = rope(2, REST, stiffness=K, law=name)
     lengths = REST * (1.0 + STRAINS)
@@ -78,8 +90,9 @@ def test_the_laws_are_their_formulas(name):
 @pytest.mark.parametrize("strain", [0.3, 1.5])
 @pytest.mark.parametrize("name", LAWS)
 def test_the_largest_stiffness_is_that_of_all_lengths_within_a_strain(name, strain):
-    lengths = REST * (1.0 + np.linspace(max(-strain, -0.999), strain, 401))
-    assert largest_stiffness(LAWS[name].numbers, strain) * K == pytest.approx(laws_at(name, lengths)[1].max(), rel=5e-3)
+    least = max(-strain, -0.999)
+    expected = laws_at(name, REST * (1.0 + np.linspace(least, strain, 401)))[1].max()
+    assert largest_stiffness(LAWS[name].numbers, least, strain) * K == pytest.approx(expected, rel=5e-3)
 
 
 @pytest.mark.parametrize("name", LAWS)
@@ -120,3 +133,167 @@ def test_a_short_step_books_the_powers_of_the_formulas(name, method):
     assert state.dissipated / h == pytest.approx(dissipated, rel=3e-3)
     assert state.work / h == pytest.approx(work, rel=3e-3)
     assert (energy(net, state).total - before.total) / h == pytest.approx(work - dissipated, rel=3e-3, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_hanging_rope_is_at_rest(name):
+    net = rope(12, stiffness=60.0, law=name)
+    still = hanging_chain(net)
+    x = np.ascontiguousarray(still.x.T[:, None, :])
+    assert rope_tension(net, x) == pytest.approx(still.tension, rel=1e-10)
+    assert np.abs(acceleration(net, State(x, np.zeros_like(x)), 0.5)).max() < 1e-9
+
+
+@pytest.mark.parametrize("end", [(1.2, 0.0, 0.3), (3.0, 0.0, 0.0)])
+@pytest.mark.parametrize("name", LAWS)
+def test_a_rope_between_two_pins_is_at_rest(name, end):
+    net = rope(9, stiffness=150.0, end=end, law=name)
+    x = np.ascontiguousarray(equilibrium(net).x.T[:, None, :])
+    assert np.abs(acceleration(net, State(x, np.zeros_like(x)), 0.5)).max() < 1e-8
+    assert np.linalg.norm(find_rest_positions(net) - x, axis=0).max() < 5e-4
+
+
+@pytest.mark.parametrize("method", ["leapfrog", "implicit_midpoint"])
+@pytest.mark.parametrize("stretch", [0.05, 0.4])
+def test_a_mass_on_a_stiffening_link_has_duffing_s_period(stretch, method):
+    """4 K(m)/(omega sqrt(1 + c A^2)) with m = c A^2/2/(1 + c A^2), of DLMF 22.19(ii) and 19.2.8."""
+    net = rope(2, 1.0, 1.0, 30.0, 0.0, 0.0, 0.0, law=Stiffening(20.0))
+    push = 20.0 * stretch**2
+    period = 4.0 * ellipk(0.5 * push / (1.0 + push)) / np.sqrt(30.0 * (1.0 + push))
+    start = State.at_rest(net)
+    start.x[0, 0, 1] -= stretch
+    ends = []
+    for steps in (500, 2000):
+        state = start.copy()
+        advance(net, state, method, period / steps, steps)
+        ends.append(abs(state.v[0, 0, 1]) / np.sqrt(30.0) / stretch)
+    assert ends[1] < 1e-3
+    assert ends[1] == pytest.approx(ends[0] / 16.0, rel=0.05)
+
+
+def bouncing(steps, method):
+    """How far a mass on a line that only pulls is from its start after one period, part of which it flies freely."""
+    net, v0 = rope(2, 2.0, 1.0, 400.0, 0.0, 0.0, 10.0, law="slack"), 4.0
+    state = State.at_rest(net)
+    state.x[:, 0, 1] = 0.0, 0.0, -2.0
+    state.v[2, 0, 1] = v0
+    period = 2.0 * v0 / 10.0 + 2.0 * (np.pi - np.arctan(v0 * 20.0 / 10.0)) / 20.0
+    advance(net, state, method, period / steps, steps)
+    return np.hypot(state.x[2, 0, 1] + 2.0, (state.v[2, 0, 1] - v0) / 20.0)
+
+
+@pytest.mark.parametrize("method", ["leapfrog", "implicit_midpoint"])
+def test_a_mass_on_a_line_flies_free_and_bounces_at_the_closed_form_s_period(method):
+    assert bouncing(4000, method) < 0.1 * bouncing(1000, method)
+    assert bouncing(16_000, method) < 1e-6
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_the_midpoint_method_keeps_the_energy_of_any_law(name):
+    net = rope(20, stiffness=1e5, damping=0.0, drag=0.0, law=name)
+    run = simulate(net, "implicit_midpoint", 1 / 120, 1.0, 61)
+    total = run.energy[:, :4].sum(axis=1)
+    assert run.energy[:, 0].max() > 100.0
+    assert np.abs(total - total[0]).max() < 1e-8
+    assert run.force_evals < 120 * 25
+
+
+def totals(name, step):
+    """Energies [J] of 100 s of an undamped rope by leapfrog, and its largest kinetic energy."""
+    run = simulate(rope(10, damping=0.0, drag=0.0, law=name), "leapfrog", step, 100.0, 1001)
+    return run.energy[:, :4].sum(axis=1), run.energy[:, 0].max()
+
+
+def test_undamped_leapfrog_keeps_the_energy_of_a_stiffening_rope():
+    total, kinetic = totals("stiffening", 5e-4)
+    off = np.abs(total - total[0]).max()
+    assert off < 1e-3 * kinetic
+    # No drift, once the motion has spread over all modes: each quarter's mean is the last one's.
+    assert abs(total[501:751].mean() - total[751:].mean()) < 0.1 * off
+
+
+def test_what_leapfrog_misses_of_a_line_s_energy_where_it_goes_taut_falls_with_the_square_of_the_step():
+    coarse, kinetic = totals("slack", 1e-3)
+    fine, _ = totals("slack", 2.5e-4)
+    off = [np.abs(total - total[0]).max() for total in (coarse, fine)]
+    assert off[0] < 2e-3 * kinetic
+    assert off[1] < 0.15 * off[0]
+
+
+@pytest.mark.parametrize(("method", "order"), [("leapfrog", 2), ("rk4", 4), ("implicit_midpoint", 2)])
+def test_steps_of_a_stiffening_rope_are_of_the_declared_order(method, order):
+    net = rope(8, damping=1.0, gravity=10.0, law="stiffening")
+    truth, counts = exact(net, 0.4), [200 * 2**i for i in range(4)]
+    errors = [np.abs(integrated(net, method, 0.4, steps).x - truth[0]).max() for steps in counts]
+    assert slope(counts, errors) == pytest.approx(order, abs=0.15)
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_long_implicit_steps_follow_the_motion_of_short_explicit_ones(name):
+    net = rope(20, stiffness=1e4, law=name)
+    truth = integrated(net, "leapfrog", 0.5, 20_000).x
+    errors = [np.abs(integrated(net, "implicit_midpoint", 0.5, steps).x - truth).max() for steps in (60, 240)]
+    assert errors[0] < 0.02
+    assert errors[1] < 0.2 * errors[0]
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_the_ledger_closes_where_links_go_slack_and_a_root_moves(name):
+    net = dataclasses.replace(rope(8, law=name), pin_paths=(((0, 0), PATH),))
+    for method in ("leapfrog", "implicit_midpoint"):
+        errors = [residual(net, method, 0.4, steps) for steps in (500, 4000)]
+        spent = integrated(net, method, 0.4, 4000, with_account=True)
+        assert errors[1] < 0.3 * errors[0]
+        assert errors[1] < 1e-3 * spent.dissipated
+
+
+def stretched(name, strain, points=12):
+    """A rope between two pins without gravity, stretched evenly: at rest."""
+    return rope(
+        points, 2.0, stiffness=500.0, damping=0.0, drag=0.0, gravity=0.0, end=(2.0 + 2.0 * strain, 0.0, 0.0), law=name
+    )
+
+
+@pytest.mark.parametrize("strain", [0.01, 0.2])
+@pytest.mark.parametrize("name", KNOWN)
+def test_a_stretched_rope_holds_to_its_critical_step_and_no_further(name, strain):
+    """Its stiffest mode is the longitudinal sawtooth, at the stiffness of the stretched links."""
+    net, record = stretched(name, strain), INTEGRATORS["leapfrog"]
+    step = critical_step(net, record)
+    stiff = 500.0 * (1.0 + 300.0 * strain**2 if name == "stiffening" else 1.0)
+    assert step == pytest.approx(1.0 / np.sqrt(stiff) / np.sin(0.5 * np.pi * 10 / 11), rel=1e-3)
+    assert outcome(record, net, 0.99 * step, net.x0) == STABLE
+    assert outcome(record, net, 1.01 * step, net.x0) != STABLE
+    assert gershgorin(net)[0] >= 2.0 / step * (1.0 - 1e-9)
+
+
+def test_a_slack_rope_counts_as_about_to_be_taut():
+    """In a kink each way its links have no tension; the next pull makes them springs."""
+    slack, taut = stretched("slack", -0.1), stretched("slack", 1e-6)
+    assert critical_step(slack, "leapfrog") == pytest.approx(critical_step(taut, "leapfrog"), rel=1e-3)
+
+
+def test_one_stretched_link_counts_for_all():
+    """A wave carries its strain to the others: they are as stiff then."""
+    net = stretched("stiffening", 0.01)
+    x = net.x0.copy()
+    x[0, 0, 1:-1] += 0.05
+    _, longest = strain_range(net, x)
+    assert critical_step(net, "leapfrog", State(x, np.zeros_like(x))) == pytest.approx(
+        critical_step(stretched("stiffening", longest), "leapfrog"), rel=1e-3
+    )
+
+
+@pytest.mark.parametrize(
+    ("bad", "said"), [("elastic", "law"), (None, "law"), (1.0, "law"), (Stiffening(-1.0), "law.cubic")]
+)
+def test_an_unknown_law_is_refused(bad, said):
+    with pytest.raises(ValueError, match=said):
+        rope(law=bad)
+    with pytest.raises(ValueError, match=said):
+        dataclasses.replace(rope(), law=bad)
+
+
+def test_a_law_of_strain_asks_for_a_rest_length():
+    with pytest.raises(ValueError, match="families rest"):
+        dataclasses.replace(rope(law="stiffening"), families=(Family(0, 1, 0.0, 1.0, 0.0),))

@@ -65,7 +65,7 @@ def add_links(x, u, p, part, longest, out):
 
 @kernel(allocates=False)
 def longest_strain(x, p):
-    """Largest |l/l0 - 1| of any link, at least that of a link which is just taut: what another may soon come to."""
+    """Largest l/l0 - 1 of any link, at least that of a link which is just taut: what another may soon come to."""
     n = p.rows * p.cols
     longest = TAUT
     for q in range(p.offsets.shape[0]):
@@ -76,7 +76,7 @@ def longest_strain(x, p):
                 a = i * p.cols + j
                 c = a + di * p.cols + dj
                 rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
-                longest = max(longest, abs(math.sqrt(rx * rx + ry * ry + rz * rz) / rest - 1.0))
+                longest = max(longest, math.sqrt(rx * rx + ry * ry + rz * rz) / rest - 1.0)
     return longest
 
 

@@ -215,6 +215,8 @@ def add_lab(lab: argparse.ArgumentParser) -> None:
 def add_serving(parser: argparse.ArgumentParser) -> None:
     """The options of `springtide` without a command."""
     parser.add_argument("--scene", default="rope", metavar="SCENE", help=", ".join(NAMES) + " (default: rope)")
+    resume = "begin with the set-up that the last lab with this option was left with, if there was one"
+    parser.add_argument("--resume", action="store_true", help=resume)
     add_address(parser)
     add_parameters(parser)
 
@@ -283,9 +285,7 @@ def with_hull(params: Any, path: Path) -> Any:
 
 def serve(arguments: argparse.Namespace, session: Any = None) -> int:
     """`springtide`: the lab in a browser. session: of a student's folder."""
-    scene = scene_named(arguments.scene)
-    nothing_asked = arguments.preset is None and not arguments.set and arguments.hull is None
-    params = scene.opening_params() if nothing_asked else read_params(scene, arguments)
+    name, params = opening_setup(arguments)
     from app.commands.serve import serve_lab
     from app.lab.workbook import Workbook
 
@@ -294,7 +294,21 @@ def serve(arguments: argparse.Namespace, session: Any = None) -> int:
         verdicts = session.check
         states = lambda: {name: verdict.state for name, verdict in verdicts.verdicts.items()}  # noqa: E731
         workbook = Workbook(session.tasks, session.folder, states)
-    return serve_lab(arguments.scene, params, **serving(arguments), workbook=workbook, session=session)
+    common = serving(arguments)
+    return serve_lab(name, params, **common, workbook=workbook, session=session, resumes=arguments.resume)
+
+
+def opening_setup(arguments: argparse.Namespace) -> tuple[str, Any]:
+    """Name and parameters of the scene that the lab begins with."""
+    if arguments.resume:
+        from app.scenes.last_setup import read_last
+
+        last = read_last()
+        if last is not None:
+            return last.scene, last.params
+    scene = scene_named(arguments.scene)
+    nothing_asked = arguments.preset is None and not arguments.set and arguments.hull is None
+    return arguments.scene, scene.opening_params() if nothing_asked else read_params(scene, arguments)
 
 
 def serve_beside(arguments: argparse.Namespace) -> int:

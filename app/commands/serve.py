@@ -1,17 +1,19 @@
 """`springtide`: serve the lab until it is interrupted."""
 
+import contextlib
 import os
 import signal
 import socket
 import sys
 import threading
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.scenes.setups import Setup
+from app.scenes.last_setup import keep_last
+from app.scenes.setups import Setup, write_query
 from app.server.access import KEY_VARIABLE, Access, read_base_path, read_key, read_origin
 from app.server.guard import is_loopback
 from app.server.viewer import Viewer
@@ -51,10 +53,11 @@ def serve_lab(
     workbook: Workbook | None = None,
     session: "Session | None" = None,
     others: Sequence[Setup] = (),
+    resumes: bool = False,
 ) -> int:
     """Print the address that is bound, open the scene, and wait. Returns the exit status. session: a student's folder.
 
-    others: set-ups to show beside it.
+    others: set-ups to show beside it. resumes: keep the set-up for the next start that does.
 
     The page is there before the scene is, and shows what is compiled. workbook: None for the guide of the course lab.
     base_path, origins: of a proxy; see `app/server/access.py`. The key is taken from the environment.
@@ -72,7 +75,7 @@ def serve_lab(
     except OSError as error:
         print(f"springtide: cannot serve on {host}:{port}: {error.strerror or error}; try --port 0", file=sys.stderr)
         return 1
-    done = threading.Event()
+    done, keeper = threading.Event(), Keeper(viewer)
     before = signal.getsignal(signal.SIGINT)
 
     def end(*_: object) -> None:
@@ -95,11 +98,13 @@ def serve_lab(
         viewer.open(name, params, paused=paused)
         if others:
             viewer.comparing.begin(others, False)
-        wait_until(done)
+        wait_until(done, keeper.keep if resumes else lambda: None)
     except KeyboardInterrupt:
         pass
     finally:
         signal.signal(signal.SIGINT, before)
+        if resumes:
+            keeper.keep()
         viewer.shut()
     return 0
 
@@ -113,7 +118,27 @@ def say(text: str) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
-def wait_until(done: threading.Event) -> None:
-    """Wait for an event, so that Ctrl-C interrupts it on every system."""
+def wait_until(done: threading.Event, meanwhile: Callable[[], None] = lambda: None) -> None:
+    """Wait for an event, so that Ctrl-C interrupts it on every system. meanwhile: called again and again."""
     while not done.wait(WAIT_INTERVAL):
-        pass
+        meanwhile()
+
+
+class Keeper:
+    """Keeps the set-up of a lab as it changes: a lab that is killed loses half a second."""
+
+    def __init__(self, viewer: Viewer) -> None:
+        self.viewer = viewer
+        self.kept: object = None
+
+    def keep(self) -> None:
+        """Keep the set-up, if it is another than before and can be written."""
+        served = self.viewer.current
+        if served is None:
+            return
+        panel = served.panel
+        setup = panel.kind, panel.params, panel.loaded
+        if setup != self.kept:
+            with contextlib.suppress(OSError):
+                keep_last(write_query(*setup))
+            self.kept = setup

@@ -17,7 +17,7 @@ def springtide() -> dict[str, object]:
     python = sys.executable.replace("{", "{{").replace("}", "}}")  # it fills in what is in braces
     return {
         # -P: a file of a student's that is called app.py is not the program.
-        "command": [python, "-P", "-m", "app", "--no-open", "--port", "{port}"],
+        "command": [python, "-P", "-m", "app", "--no-open", "--resume", "--port", "{port}"],
         "environment": {KEY_VARIABLE: key},
         "request_headers_override": {KEY_HEADER: key},
         "timeout": START_TIMEOUT,

@@ -18,10 +18,14 @@ MAX_OWN = 100  # of one scene
 FILE_NAME = re.compile(r"[^a-z0-9]+")  # what is replaced in a name
 
 
+def data_folder() -> Path:
+    """Folder of what the user keeps."""
+    return Path(os.environ.get("SPRINGTIDE_DATA") or platformdirs.user_data_dir("springtide"))
+
+
 def folder_of(kind: AnyKind) -> Path:
     """Folder of the set-ups of a scene."""
-    base = os.environ.get("SPRINGTIDE_DATA") or platformdirs.user_data_dir("springtide")
-    return Path(base) / "set-ups" / kind.name
+    return data_folder() / "set-ups" / kind.name
 
 
 def own_files(kind: AnyKind) -> dict[str, tuple[Path, Setup]]:

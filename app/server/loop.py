@@ -52,6 +52,7 @@ PART_GROWTH = 8  # ratio of two successive parts of a frame's steps while the co
 MAX_BLIND_TIME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
 PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
+ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody looks: a browser that comes, or a command, ends it
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 MAX_CATCH_UP = 0.25  # [s] of wall time that one tick makes up for
 KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least
@@ -661,7 +662,8 @@ class SimLoop:
                     self.publish()
                 self.busy_since = None
             last = now
-            rest = (self.frame_interval if busy else IDLE_INTERVAL) - (self.clock() - now)
+            idle = IDLE_INTERVAL if self.audience() else ALONE_INTERVAL
+            rest = (self.frame_interval if busy else idle) - (self.clock() - now)
             if rest > 0:
                 self.wait(rest, stop)
 
@@ -671,7 +673,7 @@ class SimLoop:
         start, left = self.clock(), seconds
         while left > MAX_DEAF_TIME and not self.waiting and not stop.is_set():
             with contextlib.suppress(queue.Empty):
-                self.take_in(self.commands.get(timeout=MAX_DEAF_TIME))
+                self.take_in(self.commands.get(timeout=MAX_DEAF_TIME if self.audience() else left))
                 stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # not more ticks than frames
                 return
             if self.poll()[0] != self.scene.params or self.waiting:

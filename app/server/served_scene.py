@@ -17,7 +17,7 @@ from app.scenes import NAMES, view_named
 from app.scenes.compiling import describe
 from app.scenes.contract import AnyKind
 from app.server.compile_gate import CompileGate
-from app.server.loop import PATIENCE, SimLoop
+from app.server.loop import ALONE_INTERVAL, PATIENCE, SimLoop
 from app.server.replay_file import replay_html
 from sim.interruption import STOP
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 PLAYED_INTERVAL = 1 / 30  # [s] between two frames of a recording that is played
 HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
+ALONE_HEARTBEAT = 1.0  # [s] the same while nobody looks
 MAX_JOIN_TIME = 1.0  # [s] for which leaving a scene waits for its last solve, and the end of the lab for a picture
 
 
@@ -77,9 +78,11 @@ class ServedScene:
         loop, recorder = self.loop, self.panel.recorder
         shown_at = loop.clock()
         while not self.stop.is_set():
-            woken = loop.fresh.wait(min(PATIENCE, PLAYED_INTERVAL))
+            alone = not self.viewer.audience()
+            woken = loop.fresh.wait(ALONE_INTERVAL if alone else min(PATIENCE, PLAYED_INTERVAL))
             loop.ask_for_turn()
-            if not woken and loop.clock() - shown_at < (PLAYED_INTERVAL if recorder.playing else HEARTBEAT):
+            beat = PLAYED_INTERVAL if recorder.playing else ALONE_HEARTBEAT if alone else HEARTBEAT
+            if not woken and loop.clock() - shown_at < beat:
                 continue
             loop.fresh.clear()
             shown_at = loop.clock()

@@ -82,7 +82,8 @@ class Viewer:
         send_at_once(self.server)
         self.transport = Transport(self.server)
         self.port = self.server.get_port()
-        self.server.on_client_disconnect(self.on_disconnect)
+        self.server.on_client_connect(self.release)  # it holds nothing: the command wakes a lab that was alone
+        self.server.on_client_disconnect(self.release)
         self.questions = Questions(self.server)
         self.ended = False
         self.current: ServedScene | None = None  # the scene that was opened last; it may be closed
@@ -267,8 +268,8 @@ class Viewer:
         if comparison is not None:
             comparison.share(self, params)
 
-    async def on_disconnect(self, client: viser.ClientHandle) -> None:
-        """Release the objects that a disconnected browser dragged."""
+    async def release(self, client: viser.ClientHandle) -> None:
+        """Release the objects that a browser drags."""
         if self.current is not None:
             self.current.commands.put(Release(client.client_id))
 

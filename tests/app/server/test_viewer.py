@@ -79,11 +79,11 @@ def test_a_browser_that_goes_lets_go_of_what_it_held_and_of_nothing_else(lab: Vi
     scene: Any = lab.scene
     lab.commands.put(Grab(5, (0.0, 0.0, 2.0), client=1))
     wait_for(lambda: scene.handles.drag.hold is not None)
-    coroutines.run(lab.on_disconnect(Client(2)))  # type: ignore[arg-type]
+    coroutines.run(lab.release(Client(2)))  # type: ignore[arg-type]
     ticks = lab.loop.counts["ticks"]
     wait_for(lambda: lab.loop.counts["ticks"] > ticks + 3)
     assert scene.handles.drag.hold is not None
-    coroutines.run(lab.on_disconnect(Client(1)))  # type: ignore[arg-type]
+    coroutines.run(lab.release(Client(1)))  # type: ignore[arg-type]
     wait_for(lambda: scene.handles.drag.hold is None)
 
 

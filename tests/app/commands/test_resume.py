@@ -1,0 +1,97 @@
+"""A lab that was ended comes back with its set-up."""
+
+import dataclasses
+import signal
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from app.__main__ import main
+from app.commands.serve import Keeper
+from app.scenes import scene_named
+from app.scenes.last_setup import keep_last, last_path, read_last
+
+ROOT = Path(__file__).parents[3]
+ROPE = scene_named("rope")
+STIFF = dataclasses.replace(ROPE.params(), stiffness=1234.0)
+
+
+@pytest.fixture
+def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("SPRINGTIDE_DATA", str(tmp_path))
+    return tmp_path
+
+
+def viewer_with(params: Any) -> Any:
+    """A lab that shows a rope."""
+    return SimpleNamespace(current=SimpleNamespace(panel=SimpleNamespace(kind=ROPE, params=params, loaded="")))
+
+
+@pytest.fixture
+def opened(monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[Any, ...]]:
+    """The scene and parameters with which a command line would begin."""
+    served: list[tuple[Any, ...]] = []
+    monkeypatch.setattr("app.commands.serve.serve_lab", lambda *a, **k: served.append(a) or 0)
+
+    def opened_by(*words: str) -> tuple[Any, ...]:
+        assert main([*words, "--no-open"]) == 0
+        return served[-1]
+
+    return opened_by
+
+
+def test_the_next_start_has_the_setup_that_was_left(data: Path, opened: Callable[..., tuple[Any, ...]]) -> None:
+    assert opened("--resume") == opened()  # nothing was left
+    lab = viewer_with(STIFF)
+    keeper = Keeper(lab)
+    keeper.keep()
+    assert opened("--resume", "--scene", "cloth") == ("rope", STIFF)
+    assert opened() != ("rope", STIFF)
+    written = last_path().stat().st_mtime_ns
+    keeper.keep()
+    assert last_path().stat().st_mtime_ns == written  # nothing has changed
+    lab.current.panel.params = ROPE.params()
+    keeper.keep()
+    assert opened("--resume") == ("rope", ROPE.params())
+
+
+@pytest.mark.parametrize("text", ["", "?scene=nothing", "?scene=rope&stiffness=much", "\0", "?" + "a" * 10**6])
+def test_what_cannot_be_read_is_as_if_nothing_was_left(data: Path, text: str) -> None:
+    keep_last(text)
+    assert read_last() is None
+
+
+def test_where_nothing_can_be_written_the_lab_goes_on(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (data / "file").write_text("")
+    monkeypatch.setenv("SPRINGTIDE_DATA", str(data / "file" / "below"))
+    Keeper(viewer_with(STIFF)).keep()
+    Keeper(SimpleNamespace(current=None)).keep()  # type: ignore[arg-type]  # before a scene is open
+    assert read_last() is None
+
+
+def test_a_lab_that_is_told_to_end_keeps_its_setup(data: Path) -> None:
+    command = [sys.executable, "-m", "app", "--no-open", "--port", "0", "--resume", "--set", "stiffness=1234"]
+    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    try:
+        address = next(word for line in process.stdout for word in line.split() if word.startswith("http"))
+        assert urllib.request.urlopen(address, timeout=30).status == 200
+        while not last_path().exists():
+            assert process.poll() is None
+            time.sleep(0.05)
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(60) == 0
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()
+    last = read_last()
+    assert last is not None
+    assert (last.scene, last.params) == ("rope", STIFF)

@@ -13,6 +13,7 @@ from sim.mooring.gauge import critical_step
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.system import System
 from sim.springs.analysis.energy import energies
+from sim.springs.analysis.energy_history import EnergyHistory, energy_history
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.lines.energy import set_tensions
@@ -35,7 +36,7 @@ class MooringRun(NamedTuple):
     x: dict[int, NDArray[np.float64]]  # by line: (frames, segments + 1, 3) [m]
     tension: dict[int, NDArray[np.float64]]  # by line: (frames, segments) [N], internal damping included
     bodies: dict[int, NDArray[np.float64]]  # by body: (frames, 6) [m, rad] from its place
-    energy: NDArray[np.float64]  # (frames, 6) [J]: kinetic, elastic, gravity, bed, dissipated, work
+    energy: EnergyHistory  # by name, (frames,) each [J]; `contact` is the bed's
     force_evals: int
     diverged_at: float | None  # [s]
     step: float  # [s] that was taken
@@ -210,4 +211,14 @@ def run_of(
         body.id: np.concatenate((xs[:, :, m + 2 * b], xs[:, :, m + 2 * b + 1]), axis=1)
         for b, body in enumerate(system.bodies)
     }
-    return MooringRun(t, x_of, tension_of, bodies, ledger, state.force_evals, diverged_at, h, record.name)
+    return MooringRun(
+        t,
+        x_of,
+        tension_of,
+        bodies,
+        energy_history(ledger, with_account),
+        state.force_evals,
+        diverged_at,
+        h,
+        record.name,
+    )

@@ -4,10 +4,11 @@ import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from sim.springs.laws import check_law
 from sim.springs.net import DAMPING_MODELS, FARTHEST, Contact, Family, Net, Vector, check_place, check_surroundings
-from sim.validation import argument_error, check_choice, check_number, is_whole_number
+from sim.validation import argument_error, as_array, check_choice, check_number, is_whole_number
 
 MAX_POINTS = 1_000_000
 
@@ -15,7 +16,7 @@ MAX_POINTS = 1_000_000
 def rope(
     points: int = 10,
     length: float = 2.0,
-    mass: float = 1.0,
+    mass: float | ArrayLike = 1.0,
     stiffness: float = 800.0,
     damping: float = 7.0,
     drag: float = 1.0,
@@ -32,9 +33,9 @@ def rope(
 ) -> Net:
     """A rope in the lab's units, at rest from `root` along -x; point 0 is the fixed root.
 
-    points: from 1. length: rest length of the whole [m]. mass: [kg] per point. stiffness [N/m] and damping [N s/m]
-    per link; drag [N s/m] per point; gravity [m/s^2] along -z. floor: height [m]; sphere: (x, y, z, radius) [m].
-    damping_model: "isotropic", the lab's eq. 4, b (v1 - v2); or "axial", its part along the link only.
+    points: from 1. length: rest length of the whole [m]. mass: [kg] per point, one number or (points,). stiffness [N/m]
+    and damping [N s/m] per link; drag [N s/m] per point; gravity [m/s^2] along -z. floor: height [m]; sphere: (x, y, z,
+    radius) [m]. damping_model: "isotropic", the lab's eq. 4, b (v1 - v2); or "axial", its part along the link only.
     law: of the links, a name in `LAWS` or its numbers, as Stiffening(30.0).
     end: where the last point is pinned too [m]; the points then start on the straight line from root to end.
     radius: of the points, for contact [m].
@@ -43,7 +44,7 @@ def rope(
     """
     check_points(points)
     check_number("length", length, 0, FARTHEST, "m", above=True)
-    check_number("mass", mass, 0, math.inf, "kg", above=True)
+    each, ratios = masses_of(mass, points)
     check_number("stiffness", stiffness, 0, math.inf, "N/m")
     check_number("damping", damping, 0, math.inf, "N s/m")
     check_number("drag", drag, 0, math.inf, "N s/m")
@@ -66,7 +67,8 @@ def rope(
     return Net(
         x0=np.ascontiguousarray(x0.reshape(3, 1, n)),
         families=(Family(0, 1, rest, float(stiffness), float(damping)),),
-        mass=float(mass),
+        mass=each,
+        mass_ratios=ratios,
         drag=float(drag),
         gravity=(0.0, 0.0, -float(gravity)),
         pinned=frozenset({(0, 0)} if end is None else {(0, 0), (0, n - 1)}),
@@ -77,6 +79,17 @@ def rope(
         contact=contact,
         radius=float(radius),
     )
+
+
+def masses_of(mass: Any, points: int) -> tuple[float, NDArray[np.float64] | None]:
+    """A net's mass [kg] and ratios of one number or (points,). Raises ValueError for others."""
+    if not isinstance(mass, list | tuple | np.ndarray):
+        return check_number("mass", mass, 0, math.inf, "kg", above=True), None
+    allowed = f"a number above 0 kg, or {points} of them"
+    array = as_array("mass", mass, allowed)
+    if array.shape != (points,) or not ((array > 0.0) & (array < math.inf)).all():
+        raise argument_error("mass", mass, allowed)
+    return float(array[0]), (array / array[0]).reshape(1, -1).astype(np.float64)
 
 
 def check_points(points: object) -> None:

@@ -1,22 +1,24 @@
 """`simulate`: a net from rest to the end, sampled at equal times."""
 
+import dataclasses
 import math
 import warnings
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from sim.interruption import raise_if_stopped
 from sim.springs.analysis.energy import energies
+from sim.springs.analysis.energy_history import EnergyHistory, energy_history
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.automatic import AUTO, choose_for_step, choose_for_tolerance
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import PAIRS, Net
 from sim.springs.stability import critical_step, gershgorin
 from sim.springs.state import State, advance, check_damping, check_net, energy, steps_for, velocities
-from sim.validation import argument_error, check_number, is_whole_number
+from sim.validation import argument_error, as_array, check_number, is_whole_number
 
 CALM = 1e-3 * DIVERGENCE_BOUND  # [m]: a net within this has not yet been out of the sane bound
 STEP = 1 / 1200  # [s], or SAFETY of the critical step where that is shorter
@@ -36,7 +38,7 @@ class Run(NamedTuple):
     t: NDArray[np.float64]  # (frames,) [s]
     x: NDArray[np.float64]  # [m]
     v: NDArray[np.float64]  # [m/s]
-    energy: NDArray[np.float64]  # (frames, 6) [J]: kinetic, elastic, gravity, contact, dissipated, work
+    energy: EnergyHistory  # by name, (frames,) each [J]
     force_evals: int
     diverged_at: float | None  # [s]
     step: float | None  # [s] that was taken; None where the method chose its own
@@ -51,20 +53,25 @@ def simulate(
     duration: float = 2.0,
     frames: int = 61,
     *,
+    x: ArrayLike | None = None,
+    v: ArrayLike | None = None,
     rtol: float | None = None,
     atol: float | None = None,
     with_account: bool = False,
     progress: Progress = None,
 ) -> Run:
-    """Integrate `net` from rest and sample it at `frames` equal times from 0 to `duration` [s].
+    """Integrate `net` and sample it at `frames` equal times from 0 to `duration` [s].
 
     integrator: a name in `INTEGRATORS`, or "auto", which takes an adaptive method by the net's damping and the
     tolerance, or by the step (sim/springs/automatic.py); `integrator` of the run says which.
     step: [s], 1/1200 by default, or half the critical step at the start where that is shorter; shortened equally where
     it does not divide a frame interval, and `step` of the run is the one taken. A step that is given is taken, however
-    long: see `sim.springs.stability.critical_step`. rtol, atol: adaptive methods choose steps with an error within
-    atol + rtol |value| of each position [m] and velocity [m/s], 1e-6 and 1e-9 by default; given a step instead they
-    take that. with_account: also integrate what damping takes and pins put in; the stored energies are always there.
+    long: see `sim.springs.stability.critical_step`.
+    x, v: positions [m] and velocities [m/s] at the start, (points, 3) of a rope, (rows, cols, 3) of another net, as a
+    run has them; None: as the net was built, at rest. Pinned points are where x has them, and do not move.
+    rtol, atol: adaptive methods choose steps with an error within atol + rtol |value| of each position [m] and velocity
+    [m/s], 1e-6 and 1e-9 by default; given a step instead they take that.
+    with_account: also integrate what damping takes and pins put in; the stored energies are always there.
     progress: called with (frames done, frames).
     A run that diverges ends there: `diverged_at` is the time of the first step that left any sane bound, or of an
     adaptive method's that found none short enough, later frames are NaN, and a RuntimeWarning says so.
@@ -72,6 +79,7 @@ def simulate(
     Raises ValueError, naming the argument, its value and what is allowed.
     """
     check_net(net)
+    net, velocity = begun(net, x, v)
     record = None if integrator == AUTO else integrator_named(integrator)
     if step is not None:
         check_number("step", step, 0, math.inf, "s", above=True)
@@ -99,13 +107,30 @@ def simulate(
         longest = (may_be_endless and critical_step(net, record)) or math.inf  # 0 where no step is stable for ever
         if duration / longest > MOST_STEPS:
             raise argument_error("duration", duration, f"up to {MOST_STEPS:g} steps of {longest:g} s")
-        return warned(marched(net, record, t, rtol or RTOL, atol or ATOL, with_account, progress))
+        return warned(marched(net, velocity, record, t, rtol or RTOL, atol or ATOL, with_account, progress))
     if step is not None and duration / step > MOST_STEPS:
         raise argument_error("step", step, f"at least duration / {MOST_STEPS:g} = {duration / MOST_STEPS:g} s")
     step = step or default_step(net, record)
     if duration / step > MOST_STEPS:
         raise argument_error("duration", duration, f"up to {MOST_STEPS:g} steps of {step:g} s")
-    return warned(stepped(net, record, t, step, with_account, progress))
+    return warned(stepped(net, velocity, record, t, step, with_account, progress))
+
+
+def begun(net: Net, x: ArrayLike | None, v: ArrayLike | None) -> tuple[Net, NDArray[np.float64]]:
+    """The net with the positions x, and the velocities v (3, rows, cols), of `simulate`'s arguments."""
+    shape = (net.shape[1], 3) if net.is_rope else (*net.shape, 3)
+    found = {"x": net.x0, "v": np.zeros_like(net.x0)}
+    for name, given in (("x", x), ("v", v)):
+        if given is None:
+            continue
+        array = as_array(name, given, f"numbers of shape {shape}")
+        if array.shape != shape or not np.isfinite(array).all():
+            raise argument_error(name, array.shape, f"finite numbers of shape {shape}")
+        found[name] = np.ascontiguousarray(np.moveaxis(array, -1, 0).reshape(3, *net.shape), dtype=np.float64)
+    if v is not None:
+        for i, j in net.pinned:
+            found["v"][:, i, j] = 0.0
+    return net if x is None else dataclasses.replace(net, x0=found["x"]), found["v"]
 
 
 def warned(run: Run) -> Run:
@@ -139,14 +164,20 @@ def default_step(net: Net, record: Integrator) -> float:
 
 
 def stepped(
-    net: Net, record: Integrator, t: NDArray[np.float64], step: float, with_account: bool, progress: Progress
+    net: Net,
+    velocity: NDArray[np.float64],
+    record: Integrator,
+    t: NDArray[np.float64],
+    step: float,
+    with_account: bool,
+    progress: Progress,
 ) -> Run:
     """The run at times `t` [s] in equal steps of at most `step` [s]."""
     interval = float(t[-1]) / (len(t) - 1)
     steps = steps_for(interval, step)
     h = interval / steps
 
-    state = State.at_rest(net)
+    state = State(net.x0.copy(), velocity.copy())
     calm, calm_frame = state.copy(), 0
     xs = np.full((len(t), *net.x0.shape), np.nan)
     vs = np.full_like(xs, np.nan)
@@ -171,7 +202,7 @@ def stepped(
         t,
         per_point(net, xs),
         per_point(net, vs),
-        ledger,
+        energy_history(ledger, with_account or is_closed(net)),
         state.force_evals,
         diverged_at,
         h,
@@ -182,6 +213,7 @@ def stepped(
 
 def marched(
     net: Net,
+    velocity: NDArray[np.float64],
     record: Integrator,
     t: NDArray[np.float64],
     rtol: float,
@@ -194,7 +226,7 @@ def marched(
     xs = np.full((len(t), net.x0.size), np.nan)
     vs = np.full_like(xs, np.nan)
     taken = np.zeros((len(t), 2))
-    x, v = net.x0.reshape(-1).copy(), np.zeros(net.x0.size)
+    x, v = net.x0.reshape(-1).copy(), velocity.reshape(-1).copy()
     p = net.kernel_view(FRICTION_STEP)
     evals, _, filled, stopped_at = record.march(x, v, t, rtol, atol, p, with_account, xs, vs, taken)
     raise_if_stopped()
@@ -208,7 +240,14 @@ def marched(
     diverged_at = None if filled == len(t) else float(stopped_at)
     x_frames, v_frames = per_point(net, xs.reshape(shape)), per_point(net, vs.reshape(shape))
     left_out = max(0, int(p.pairs[-1, 1])) if net.thickness > 0.0 else 0
-    return Run(t, x_frames, v_frames, ledger, evals, diverged_at, None, record.name, left_out)
+    energies_of = energy_history(ledger, with_account or is_closed(net))
+    return Run(t, x_frames, v_frames, energies_of, evals, diverged_at, None, record.name, left_out)
+
+
+def is_closed(net: Net) -> bool:
+    """True if nothing takes energy out of the net or puts any in."""
+    moved = net.pin_paths or net.grab is not None or any(net.sphere_velocity)
+    return not (net.is_damped or moved)
 
 
 def first_insane_time(net: Net, state: State, integrator: Integrator, h: float, steps: int) -> float:

@@ -78,6 +78,11 @@ def test_a_dataset_about_another_point_of_a_shifted_hull_is_the_same(tmp_path, d
     assert response_amplitude(other, w, 1.0) == pytest.approx(response_amplitude(body, w, 1.0), rel=1e-6, abs=1e-9)
 
 
+def test_the_velocity_at_a_place_of_a_rigid_body_is_its_own_and_that_of_its_spin():
+    v, spin, r = np.random.default_rng(4).normal(size=(3, 3))
+    assert velocity_at(*r) @ np.append(v, spin) == pytest.approx(np.append(v + np.cross(spin, r), spin))
+
+
 def test_long_waves_carry_the_body_and_tilt_it_as_they_are_steep():
     body = Body(Hull.box(30.0, 10.0, 6.0), density=512.5)
     w = np.array([0.2])
@@ -90,8 +95,10 @@ def test_long_waves_carry_the_body_and_tilt_it_as_they_are_steep():
 
 def test_in_two_fluids_the_heave_of_a_long_wave_is_the_wave():
     body = Body(Hull.box(30.0, 10.0, 6.0), density=512.5)
-    found = response_amplitude(body, [0.03], 0.3, [(850.0, 1.0), (1025.0, math.inf)])[0]
-    assert abs(found[2]) == pytest.approx(1.0, abs=5e-3)
+    spill = [(850.0, 1.0), (1025.0, math.inf)]
+    assert abs(response_amplitude(body, [0.03], 0.3, spill)[0, 2]) == pytest.approx(1.0, abs=5e-3)
+    pitch, alone = (response_amplitude(body, [0.2], 0.3, layers)[0, 4] for layers in (spill, spill[1:]))
+    assert pitch == pytest.approx(alone, rel=0.02)
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,13 @@
 """The entry of jupyter-server-proxy: a lab of one's own behind Jupyter's login, at BASE_URL/springtide/."""
 
+import os
 import sys
+from pathlib import Path
 
 from app.server.access import KEY_HEADER, KEY_VARIABLE, make_key
 
 START_TIMEOUT = 60.0  # [s]
+LAB_VARIABLE = "SPRINGTIDE_LAB"  # the student's folder
 
 
 def springtide() -> dict[str, object]:
@@ -14,12 +17,33 @@ def springtide() -> dict[str, object]:
     no key and is refused: another page, or another user of the same machine.
     """
     key = make_key()
-    python = sys.executable.replace("{", "{{").replace("}", "}}")  # it fills in what is in braces
+    # -P: a file of a student's that is called app.py is not the program.
+    command = [sys.executable, "-P", "-m", "app", *lab_words(), "--no-open", "--resume"]
     return {
-        # -P: a file of a student's that is called app.py is not the program.
-        "command": [python, "-P", "-m", "app", "--no-open", "--resume", "--port", "{port}"],
+        "command": [*(word.replace("{", "{{").replace("}", "}}") for word in command), "--port", "{port}"],
         "environment": {KEY_VARIABLE: key},
         "request_headers_override": {KEY_HEADER: key},
         "timeout": START_TIMEOUT,
         "launcher_entry": {"title": "Springtide"},
     }
+
+
+def lab_words() -> list[str]:
+    """The words of a command line that runs the student's folder, made with the exercises at the first start.
+
+    None where the environment names no folder, or one that cannot be made.
+    """
+    named = os.environ.get(LAB_VARIABLE)
+    if not named:
+        return []
+    from app.lab.folder import make_folder
+    from app.lab.task import load_tasks
+
+    folder = Path(named).expanduser().absolute()
+    try:
+        if not folder.exists() or not any(folder.iterdir()):
+            make_folder(folder, load_tasks())
+    except OSError as error:
+        print(f"springtide: {LAB_VARIABLE}: {error}", file=sys.stderr)
+        return []
+    return ["lab", str(folder)]

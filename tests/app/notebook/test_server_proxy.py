@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.notebook.server_proxy import springtide
+from app.notebook.server_proxy import LAB_VARIABLE, springtide
 from app.server.access import KEY_HEADER, KEY_VARIABLE, read_key
 
 ROOT = Path(__file__).parents[3]
@@ -17,6 +17,27 @@ def test_each_start_has_a_key_of_its_own_that_no_command_line_shows() -> None:
     assert read_key(key) == key != second["environment"][KEY_VARIABLE]  # type: ignore[index]
     assert first["request_headers_override"] == {KEY_HEADER: key}
     assert key not in " ".join(first["command"])  # type: ignore[arg-type]
+
+
+def test_the_students_folder_is_made_once_and_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def words() -> list[str]:
+        return list(springtide()["command"])[3:]  # type: ignore[call-overload]
+
+    end = ["--no-open", "--resume", "--port", "{port}"]
+    monkeypatch.delenv(LAB_VARIABLE, raising=False)
+    assert words() == ["app", *end]
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv(LAB_VARIABLE, "~/{mine}")
+    assert words() == ["app", "lab", f"{tmp_path}/{{{{mine}}}}", *end]
+    readme = tmp_path / "{mine}" / "README.md"
+    readme.write_text("changed")
+    words()
+    assert readme.read_text() == "changed"
+    monkeypatch.setenv(LAB_VARIABLE, str(readme / "below"))
+    assert words() == ["app", *end]
+    assert capsys.readouterr().err.startswith("springtide: SPRINGTIDE_LAB: ")
 
 
 def test_the_entry_point_is_declared_and_is_taken_by_the_proxy() -> None:

@@ -49,6 +49,13 @@ def test_a_file_in_the_form_of_moordyn_is_the_system_that_it_describes(tmp_path)
     assert read_moordyn(written(tmp_path, TEXT)) == chain_on_bed(40)
 
 
+def test_without_a_depth_the_water_is_as_deep_as_its_lowest_anchor(tmp_path):
+    text = TEXT.replace("40       WtrDpth\n", "").replace(
+        "2     Coupled    0.0    0.0     0.0", "2  Fixed  0.0  0.0  -9.0"
+    )
+    assert read_moordyn(written(tmp_path, text)).depth == 40.0
+
+
 def test_a_system_that_is_written_is_read_as_it_was(tmp_path):
     kind = LineType("rope", 0.1 / 3.0, 7.0, 1e7 / 3.0, 2e4, 1.1, 1.2, 0.3, 0.04)
     points = (

@@ -34,6 +34,9 @@ def test_the_catenary_is_that_of_moorpy():
         tension = math.hypot(case["horizontal"], case["vertical"])
         assert found.horizontal == pytest.approx(case["horizontal"], abs=1e-6 * tension)
         assert found.vertical == pytest.approx(case["vertical"], abs=1e-6 * tension)
+        lower = 0.0 if found.lying > 0.0 else found.vertical - found.weight * found.length
+        ends = math.hypot(found.horizontal, lower), math.hypot(found.horizontal, found.vertical)
+        assert found.tension(np.array([0.0, found.length])) == pytest.approx(ends, rel=1e-12)
 
 
 def upper_tension(case: dict[str, float], segments: int) -> float:

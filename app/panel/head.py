@@ -84,7 +84,7 @@ class Head:
             self.preset.value = shown
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
-        """True if what changes seldom, and is to be seen at once, is not as it is shown."""
+        """True if the rarely changing parts of the head are not as shown."""
         running = snapshot.status.running
         if running != self.running:
             self.running = running

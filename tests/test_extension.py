@@ -107,7 +107,7 @@ def test_a_law_of_a_link_is_one_file(tmp_path):
     assert " passed" in said
     assert " failed" not in said
     run_command(copy, headless)
-    assert parameters_in(copy / "rubber.npz")["link"] == "rubber"
+    assert parameters_in(copy / "rubber.npz")["law"] == "rubber"
 
 
 @pytest.mark.stress  # five processes; the other examples are tried in fewer

@@ -19,7 +19,7 @@ from sim.springs.stability import Mode, step_limit
 
 
 def inverse_root_masses(x: NDArray[np.float64], p: LineArrays) -> NDArray[np.float64]:
-    """M^-1/2 of what is free about x (3, n), the water's inertia in it."""
+    """M^-1/2 of the free coordinates about x (3, n), with the water's inertia."""
     nodes = np.flatnonzero(p.inverse_masses[: p.nodes] > 0.0)
     count, first = len(nodes), 3 * len(nodes)
     root = np.zeros((first + 6 * len(p.bodies),) * 2)

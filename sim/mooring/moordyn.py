@@ -159,7 +159,7 @@ def read_options(rows: list[tuple[int, list[str]]]) -> dict[str, float]:
 
 
 def read_moordyn(path: str | Path) -> System:
-    """The System of a MoorDyn v2 file. Raises ValueError with the section and the line of what is not understood."""
+    """The System of a MoorDyn v2 file. Raises ValueError with the section and the line that it cannot read."""
     path = Path(path)
     found = sections(path)
     kinds: dict[str, LineType] = {}

@@ -92,7 +92,7 @@ def first_guess(system: "System", placed: dict[int, NDArray[np.float64]]) -> NDA
 
 
 def pull(x: NDArray[np.float64], p: LineArrays) -> tuple[NDArray[np.float64], float]:
-    """Forces [N] on what is free at rest, and the largest on any node."""
+    """Forces [N] on the free coordinates at rest, and the largest on any node."""
     f = np.zeros(9 * p.cols)
     set_rest_forces(np.ascontiguousarray(x).reshape(-1), p, f)
     forces = f[: 3 * p.cols].reshape(3, p.cols)[:, : p.nodes]

@@ -42,7 +42,7 @@ class LineType(NamedTuple):
 
 
 class Point(NamedTuple):
-    """Where lines end: fixed, "coupled" (moved by the caller), free, or carried by a body."""
+    """An end of lines: fixed, "coupled" (moved by the caller), free, or carried by a body."""
 
     id: int
     kind: str
@@ -253,7 +253,7 @@ class System:
         )
 
     def body_rows(self, mass: NDArray[np.float64]) -> tuple[Any, Any, Any]:
-        """`carried`, `arms` and `bodies` of the kernels' view; a body's mass holds that of what it carries."""
+        """`carried`, `arms` and `bodies` of the kernels' view; a body's mass includes its fairleads' nodes."""
         index = {body.id: i for i, body in enumerate(self.bodies)}
         carried, arms = [], []
         for i, point in enumerate(self.points):

@@ -1,4 +1,4 @@
-"""The linearised forces of a mooring: how nodes move by what is free, and the stiffness and damping about a state."""
+"""The linearised forces of a mooring: free coordinates, and the stiffness and damping about a state."""
 
 from collections.abc import Sequence
 
@@ -53,14 +53,14 @@ def links_matrix(x: Array, p: LineArrays, along: Array, across: Array) -> Array:
 
 
 def add_bed(matrix: Array, x: Array, p: LineArrays, by_area: float) -> None:
-    """Add what resists upwards by the plan area of the nodes that lie on the bed."""
+    """Add the bed's vertical resistance by the plan area of the nodes on it."""
     node = p.places[:, 0]
     upwards = 2 * p.nodes + node
     np.add.at(matrix, (upwards, upwards), np.where(x[2, node] <= p.bed, p.parts[:, BED_AREA] * by_area, 0.0))
 
 
 def with_bodies(matrix: Array, p: LineArrays, start: int) -> Array:
-    """`matrix` (3 nodes, 3 nodes) for what is free, and of the bodies that from column `start` of their rows added."""
+    """`matrix` (3 nodes, 3 nodes) in free coordinates, plus the bodies' own from column `start` of their rows."""
     free = free_coordinates(p)
     if not len(p.bodies):
         return matrix[np.ix_(free, free)]
@@ -73,7 +73,7 @@ def with_bodies(matrix: Array, p: LineArrays, start: int) -> Array:
 
 
 def stiffness_matrix(x: Array, p: LineArrays) -> Array:
-    """The matrix K [N/m] of links, bed and bodies about x (3, n), for what is free; slack links have none."""
+    """The matrix K [N/m] of links, bed and bodies about x (3, n), in free coordinates; slack links have none."""
     length, tension, slope, _ = links_at(x, p)
     found = links_matrix(x, p, slope, tension / length)
     add_bed(found, x, p, p.bed_stiffness)
@@ -81,14 +81,14 @@ def stiffness_matrix(x: Array, p: LineArrays) -> Array:
 
 
 def damping_matrix(x: Array, p: LineArrays) -> Array:
-    """The matrix D [N s/m] of links, bed and bodies about x (3, n), for what is free; drag is none at rest."""
+    """The matrix D [N s/m] of links, bed and bodies about x (3, n), in free coordinates; drag is none at rest."""
     found = links_matrix(x, p, links_at(x, p)[3], np.zeros(len(p.links)))
     add_bed(found, x, p, p.bed_damping)
     return with_bodies(found, p, DAMPING)
 
 
 def forces_on_free(forces: Array, x: Array, p: LineArrays) -> Array:
-    """Of forces (3, nodes) on all nodes, those on what is free; bodies also pull by their own stiffness."""
+    """Forces (3, nodes) on all nodes in free coordinates, with the bodies' own stiffness."""
     flat = forces.reshape(-1)
     carried, moves = carried_coordinates(p)
     six = moves.T @ flat[carried]
@@ -98,7 +98,7 @@ def forces_on_free(forces: Array, x: Array, p: LineArrays) -> Array:
 
 
 def moved(x: Array, step: Array, p: LineArrays) -> Array:
-    """Positions x (3, n) after a step of what is free."""
+    """Positions x (3, n) after a step of the free coordinates."""
     free = free_coordinates(p)
     carried, moves = carried_coordinates(p)
     nodes, six = x[:, : p.nodes].reshape(-1).copy(), step[len(free) :]

@@ -3,7 +3,7 @@
 import dataclasses
 from typing import Any
 
-from app.scenes.springs.laws import link_parameter
+from app.scenes.springs.laws import law_parameter
 from app.scenes.springs.methods import METHODS_AND_AUTO
 from sim.parameters import parameter
 from sim.springs.cloth import PIN_CHOICES
@@ -73,7 +73,7 @@ class Params:
         group="Main",
         title="Bend stiffness",
     )
-    link: str = link_parameter("Cloth")
+    law: str = law_parameter("Cloth")
     thickness: float = parameter(
         0.0,
         0.0,

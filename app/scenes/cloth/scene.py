@@ -70,7 +70,7 @@ def warm_up(law: str = SPRING) -> Pieces:
 
 def compile_gauge(law: str) -> None:
     """All but the integrators."""
-    scene = ClothScene(Params(rows=4, cols=4, link=law))
+    scene = ClothScene(Params(rows=4, cols=4, law=law))
     extremes(scene.state.x, scene.state.v)
     gershgorin(cloth(4, 4, thickness=0.1, law=law), scene.state.x)
 
@@ -78,7 +78,7 @@ def compile_gauge(law: str) -> None:
 def needs(params: Params) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     net = build(params, sphere_home(params))
-    return pieces_of_law((integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE), params.link)
+    return pieces_of_law((integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE), params.law)
 
 
 class ClothScene(NetScene[Params]):

@@ -48,7 +48,7 @@ def build(params: Params, sphere: Vector) -> Net:
         sphere=(*sphere, params.sphere_radius) if params.sphere else None,
         contact=Contact(params.contact_stiffness, params.contact_damping, params.friction),
         radius=CONTACT_DISTANCE,
-        law=params.link,
+        law=params.law,
         air=Air(density=params.air) if params.air > 0.0 else None,
         thickness=params.thickness,
     )

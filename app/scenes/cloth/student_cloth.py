@@ -129,7 +129,7 @@ def unlike(params: Params) -> tuple[str, ...]:
     lines: list[str] = []
     if params.integrator not in CLOTH.exact:
         lines.append("Method: your cloth steps by symplectic Euler, the program's by the method that you chose.")
-    if params.link != SPRING:
+    if params.law != SPRING:
         lines.append("Link: the program's pulls as you chose, that of your cloth as a spring.")
     if params.thickness > 0.0:
         lines.append("Self-collision distance: the points of your cloth do not push each other.")

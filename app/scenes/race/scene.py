@@ -71,7 +71,7 @@ def compile_reference(net: Net) -> None:
 def needs(params: Params) -> tuple[str, ...]:
     """Compiled pieces that a race with these parameters runs."""
     methods = {method_of(params, number) for number in range(1, params.ropes + 1)}
-    return pieces_of_law((*sorted(methods), GAUGE, REFERENCE), params.link)
+    return pieces_of_law((*sorted(methods), GAUGE, REFERENCE), params.law)
 
 
 class RaceScene:

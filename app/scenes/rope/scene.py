@@ -65,7 +65,7 @@ def warm_up(law: str = SPRING) -> Pieces:
 
 def compile_gauge(law: str) -> None:
     """All but the integrators."""
-    scene = RopeScene(Params(link=law))
+    scene = RopeScene(Params(law=law))
     extremes(scene.state.x, scene.state.v)
     scene.frame()
 
@@ -73,7 +73,7 @@ def compile_gauge(law: str) -> None:
 def needs(params: Params) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     method = integrator_or_fallback(params.integrator, build(params), params.time_step)[0].name
-    return pieces_of_law((method, GAUGE), params.link)
+    return pieces_of_law((method, GAUGE), params.law)
 
 
 def rows_of(x: NDArray[np.float64]) -> NDArray[np.float64]:

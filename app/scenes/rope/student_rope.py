@@ -34,7 +34,7 @@ def unlike(params: Params) -> tuple[str, ...]:
         )
     elif method not in ROPE.exact:
         lines.append(f"Method: your rope steps by {step_of(method)}, the program's by the method that you chose.")
-    if params.link != SPRING:
+    if params.law != SPRING:
         lines.append("Link: the program's pulls as you chose, that of spring_force as a spring.")
     if params.damping_model == "axial":
         lines.append("Damping model: the program's acts along the link, that of spring_force in all directions.")

@@ -10,7 +10,7 @@ from sim.springs import LAWS
 SPRING = next(iter(LAWS))  # the law whose kernels are compiled ahead
 
 
-def link_parameter(group: str) -> Any:
+def law_parameter(group: str) -> Any:
     """The parameter of the links' law."""
     return parameter(
         SPRING,

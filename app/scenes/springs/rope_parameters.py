@@ -3,7 +3,7 @@
 import dataclasses
 
 from app.messages import Vector
-from app.scenes.springs.laws import link_parameter
+from app.scenes.springs.laws import law_parameter
 from app.scenes.springs.methods import METHODS_AND_AUTO
 from sim.parameters import parameter
 from sim.springs import Contact, Net, lab_units, rope
@@ -48,7 +48,7 @@ class RopeParams:
     drag_per_length: float = parameter(
         4.5, 0.0, 1e3, "N·s/m²", "Air drag per metre of rope", log_from=1e-3, group="Rope", title="Drag per metre"
     )
-    link: str = link_parameter("Rope")
+    law: str = law_parameter("Rope")
     damping_model: str = parameter(
         "isotropic",
         choices={DAMPING_MODELS[0]: "Isotropic (lab eq. 2)", DAMPING_MODELS[1]: "Along the link"},
@@ -147,7 +147,7 @@ def build_rope(params: RopeParams, root: Vector = ROOT, sphere: tuple[float, flo
         floor=0.0 if params.floor else None,
         sphere=sphere,
         damping_model=params.damping_model,
-        law=params.link,
+        law=params.law,
         contact=contact,
         radius=ROPE_RADIUS,
     )

@@ -32,7 +32,7 @@ class EnergyHistory(NamedTuple):
 
 
 def energy_history(ledger: NDArray[np.float64], is_known: bool) -> EnergyHistory:
-    """The record of rows (frames, 6); is_known: whether what was dissipated and put in is."""
+    """The record of rows (frames, 6). is_known: whether dissipation and work were accounted for."""
     if not is_known:
         ledger[:, 4:] = np.nan
     return EnergyHistory(*np.ascontiguousarray(ledger.T))

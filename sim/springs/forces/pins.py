@@ -1,4 +1,4 @@
-"""Where moved pins are."""
+"""Prescribed motion of pins."""
 
 from sim.jit import kernel
 

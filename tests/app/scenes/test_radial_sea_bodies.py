@@ -137,7 +137,7 @@ def test_weights_and_forces_are_on_screen_and_in_sweeps() -> None:
     loop.tick(0.1)
     text = forces_html(loop.latest.readings)
     box = loop.latest.readings.bodies[2]
-    for shown in (f"{box.mass:,.0f}", "wet in oil", "in water", "weight gρV"):
+    for shown in (f"{box.mass:,.0f}", "wet in oil", "in water", "mean upward force"):
         assert shown.replace(",", "") in text.replace("\u202f", "").replace(",", ""), shown
     found = measures(loop.scene)
     assert found["box_mass"].value == pytest.approx(box.density * box.volume)

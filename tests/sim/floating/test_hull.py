@@ -103,7 +103,7 @@ def test_a_mesh_that_is_no_hull_is_refused(fault):
 
 
 def test_a_file_that_is_no_hull_is_refused(tmp_path):
-    with pytest.raises(ValueError, match=r"path: .*nothing\.stl.* is not allowed"):
+    with pytest.raises(ValueError, match=r"path: .*nothing\.stl: no such file"):
         Hull.load(tmp_path / "nothing.stl")
     (tmp_path / "noise.stl").write_bytes(b"\x00\xff" * 100)
     with pytest.raises(ValueError, match=r"noise\.stl"):

@@ -15,7 +15,7 @@ class Controls:
     def __init__(
         self, gui: viser.GuiApi, read: Callable[[], BaseParams], changed: Callable[[str, Value], None]
     ) -> None:
-        """read: the record as it is set now. changed: takes what a browser sets."""
+        """read: the record as it is set now. changed: takes a value that a browser sets."""
         self.gui, self.read, self.changed = gui, read, changed
         self.parameters = parameters_of(read())
         self.own: dict[str, Control] = {}

@@ -46,7 +46,7 @@ class Display:
 
 
 def add_switches(gui: viser.GuiApi) -> None:
-    """What each browser chooses for itself; the page does the rest (`js/display.js`, `js/quality.js`)."""
+    """The choices of each browser; the page does the rest (`js/display.js`, `js/quality.js`)."""
     gui.add_html(
         '<div class="springtide-switches"><button type="button" data-springtide-switch="dark">Dark</button>'
         '<button type="button" data-springtide-switch="large">Large text</button></div>'

@@ -1,9 +1,10 @@
-"""Files of the recording and of a browser's view, in the folder "Record and share".
+"""Files of the recording and of a browser's view, in the tab "Share".
 
 Callbacks run on viser's event loop. Each file is made in a thread of its own.
 """
 
 import io
+import re
 import threading
 import time
 import traceback
@@ -30,7 +31,7 @@ PICTURE_SIZES = {  # [pixels]
     "3840 x 2160": (3840, 2160),
 }
 PLOTS, PICTURE, REPLAY = "Plots as CSV", "Picture", "Replay"
-CHARTS, ARRAYS, FILM = "Plots as SVG", "Arrays", "Film pictures"
+CHARTS, ARRAYS, FILM = "Plots as SVG", "Data (.npz)", "Film pictures"
 MAX_PICTURES = 900  # of a film: half a minute of a recording
 MAX_FILM = 400e6  # [bytes] of all pictures of a film
 BARRIER_SIZE = (16, 16)  # [pixels] of a picture that is asked for only to know that what was sent before it has come
@@ -105,22 +106,22 @@ class Files:
     def plots_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """All plots as CSV with names and units. Raises ValueError where there are none."""
         kind = self.panel.kind
-        return f"springtide-{kind.name}.csv", plots_csv(kind, self.panel.plotted()).encode()
+        return file_name(self.panel, ".csv"), plots_csv(kind, self.panel.plotted()).encode()
 
     def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """One browser's view, drawn again at the chosen size."""
         picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
-        return f"springtide-{self.panel.kind.name}.png", picture
+        return file_name(self.panel, ".png"), picture
 
     def charts_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """All plots as SVG. Raises ValueError where there are none."""
         kind = self.panel.kind
-        return f"springtide-{kind.name}.svg", plots_svg(kind, self.panel.plotted()).encode()
+        return file_name(self.panel, ".svg"), plots_svg(kind, self.panel.plotted()).encode()
 
     def arrays_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """The arrays of the recording. Raises ValueError where nothing was recorded."""
         kind = self.panel.kind
-        return f"springtide-{kind.name}.npz", recording_npz(kind, self.recorder.kept())
+        return file_name(self.panel, ".npz"), recording_npz(kind, self.recorder.kept())
 
     def film_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """A PNG of every frame of the recording from the one that is shown on, drawn by one browser, in a ZIP file.
@@ -149,7 +150,7 @@ class Files:
                 if content.tell() > MAX_FILM:
                     break
             film.writestr("times.csv", "\n".join(times) + "\n")
-        return f"springtide-{self.panel.kind.name}-film.zip", content.getvalue()
+        return file_name(self.panel, "-film.zip"), content.getvalue()
 
     def wait_until_sent(self, kept: Kept) -> None:
         """Wait until the viewer's thread has sent a frame of the recording. Raises TimeoutError."""
@@ -166,4 +167,10 @@ class Files:
         shown = self.recorder.shown
         frames = [kept for kept in self.recorder.kept() if shown is None or kept.time <= shown.time]
         page = self.make_replay(self.panel.kind, frames, self.panel.plotted())
-        return f"springtide-{self.panel.kind.name}.html", page.encode()
+        return file_name(self.panel, ".html"), page.encode()
+
+
+def file_name(panel: "Panel", end: str, name: str = "") -> str:
+    """Name of a file of a panel's set-up. end: its extension and the word before it. name: of the set-up, if any."""
+    said = name or f"{panel.kind.name} {panel.head.preset.value}"
+    return "springtide-" + "-".join(re.findall(r"[\w.]+", said.removeprefix("Mine: "))).lower() + end

@@ -1,8 +1,10 @@
-"""The folder "Record and share": the timeline, links, set-ups and files.
+"""The tab "Share": the timeline, links, set-ups and files.
 
 Callbacks run on viser's event loop; `update` runs on the viewer's thread.
 """
 
+import threading
+import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -10,7 +12,7 @@ import numpy as np
 import viser
 
 from app.messages import Vector
-from app.panel.files import Files, MakeReplay
+from app.panel.files import Files, MakeReplay, file_name
 from app.panel.questions import Asker, Ballot, Questions, Subject
 from app.panel.timeline import Timeline
 from app.render.cameras import place_camera
@@ -34,6 +36,7 @@ from app.scenes.setups import (
 if TYPE_CHECKING:
     from app.panel.panel import Panel
 
+CONFIRMED_TIME = 2.0  # [s] for which a button says that it has done what it names
 COPY, SAVE = "Copy link", "Save set-up"
 KEEP_CURVES, DROP_CURVES = "Keep curves", "Drop curves"
 KEEP, REMOVE = "Keep as preset", "Remove preset"
@@ -41,7 +44,7 @@ COMPARE = "?compare="  # begins the address of a comparison that is ready
 
 
 class Share:
-    """The folder, and the hidden field through which a page sends its address or a file."""
+    """The tab, and the hidden field through which a page sends its address or a file."""
 
     def __init__(self, panel: "Panel", wake: Callable[[], None], make_replay: MakeReplay, questions: Questions) -> None:
         """wake: makes the viewer's thread look at the recorder. make_replay: makes the page of a replay.
@@ -51,6 +54,11 @@ class Share:
         self.server, self.panel, self.questions = panel.server, panel, questions
         gui = panel.gui
         self.wake, self.make_replay = wake, make_replay
+        self.lines: dict[str, viser.GuiHtmlHandle] = {}  # of each group
+        self.confirmed: dict[
+            GuiHandle, tuple[tuple[str, ...], float]
+        ] = {}  # buttons -> their names, and until when [s]
+        self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
         self.ballot = Ballot(panel.server, panel.head.folder, questions, self.show, self.refuse)
         with panel.head.folder:
             self.moment = gui.add_html("", visible=False)
@@ -62,25 +70,53 @@ class Share:
     def add(self) -> None:
         """The controls, in the container that is open."""
         gui, panel = self.panel.gui, self.panel
-        self.timeline = Timeline(panel, self.moment, self.wake, self.say)
-        self.curves = gui.add_button_group("", (KEEP_CURVES, DROP_CURVES))
-        self.curves.on_click(self.on_curves)
-        self.name = gui.add_text(
-            "Name", "", hint=f"Of the set-up that is saved, kept or removed, at most {MAX_NAME} characters"
-        )
-        self.note = gui.add_text("Note", "", hint=f"Kept with the set-up, at most {MAX_NOTE} characters")
-        gui.add_button_group("", (COPY, SAVE)).on_click(self.on_link)
-        gui.add_button_group("", (KEEP, REMOVE)).on_click(self.on_own)
-        gui.add_html(
-            '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
-            '<input type="file" accept=".json,.html,.npz" data-springtide-load></label></div>'
-        )
-        self.files = Files(panel, self.wake, self.make_replay, self.say)
-        self.line = gui.add_html("")
+        with gui.add_folder("Recording"):
+            self.timeline = Timeline(panel, self.moment, self.wake, lambda text: self.say("Recording", text))
+            self.add_line("Recording")
+        with gui.add_folder("Curves"):
+            gui.add_button_group("", (KEEP_CURVES, DROP_CURVES)).on_click(self.on_curves)
+            self.add_line("Curves")
+        with gui.add_folder("Set-up"):
+            self.name = gui.add_text(
+                "Name", "", hint=f"Of the set-up that is saved, kept or removed, at most {MAX_NAME} characters"
+            )
+            self.note = gui.add_text(
+                "Note in the file", "", hint=f"Kept with the set-up, at most {MAX_NOTE} characters"
+            )
+            gui.add_button_group("", (COPY, SAVE)).on_click(self.on_link)
+            gui.add_button_group("", (KEEP, REMOVE)).on_click(self.on_own)
+            gui.add_html(
+                '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
+                '<input type="file" accept=".json,.html,.npz" data-springtide-load></label></div>'
+            )
+            self.add_line("Set-up")
+        with gui.add_folder("Files"):
+            self.files = Files(panel, self.wake, self.make_replay, lambda text: self.say("Files", text))
+            self.add_line("Files")
 
-    def say(self, text: object) -> None:
-        """A line at the end of the folder."""
-        self.line.content = note(text) if text else ""
+    def add_line(self, group: str) -> None:
+        """The line of a group, below its buttons."""
+        self.lines[group] = self.panel.gui.add_html("")
+
+    def say(self, group: str, text: object) -> None:
+        """Say something below the buttons of a group."""
+        self.lines[group].content = note(text) if text else ""
+
+    def confirm(self, buttons: GuiHandle, name: str, done: str) -> None:
+        """Have a button say for a moment that its action was done."""
+        with self.confirming:
+            options = self.confirmed.get(buttons, (buttons.options, 0.0))[0]
+            self.confirmed[buttons] = options, time.monotonic() + CONFIRMED_TIME
+            buttons.options = tuple(done if option == name else option for option in options)
+
+    def end_confirmations(self) -> None:
+        """Give the buttons their names back."""
+        now = time.monotonic()
+        with self.confirming:
+            for buttons, (options, end) in list(self.confirmed.items()):
+                if now > end:
+                    buttons.options = options
+                    del self.confirmed[buttons]
 
     async def on_inbox(self, event: ViserEvent) -> None:
         """A page has sent its address ("?scene=...") or a file ("{...}"), below a line with the page's own word."""
@@ -139,25 +175,30 @@ class Share:
         camera = camera_of(client)
         if event.target.value == COPY:
             query = write_query(panel.kind, panel.params, panel.loaded, camera)
-            self.say(fill('<a class="springtide-link" data-springtide-link="{}" href="{}">{}</a>', query, query, query))
+            link = fill('<a class="springtide-link" data-springtide-link="{}" href="{}">{}</a>', query, query, query)
+            self.say("Set-up", link)
+            self.confirm(event.target, COPY, "Copied")
+            return
+        if event.target.value != SAVE:
             return
         try:
             name, words = self.name.value.strip(), self.note.value.strip()
             text = write_file(panel.kind, panel.params, panel.loaded, camera, name=name, note=words)
         except ValueError as reason:
-            self.say(str(reason))
+            self.say("Set-up", str(reason))
             return
-        client.send_file_download(f"springtide-{panel.kind.name}.json", text.encode(), save_immediately=True)
-        self.say("The set-up was sent to the browser as a file.")
+        client.send_file_download(file_name(panel, ".json", name), text.encode(), save_immediately=True)
+        self.say("Set-up", "")
+        self.confirm(event.target, SAVE, "Saved")
 
     async def on_curves(self, event: ViserEvent) -> None:
         """Keep the curves of the plots over time beside those of the next run, or drop them."""
         on = event.target.value == KEEP_CURVES
         end = self.panel.keep_curves(on)
         if end is None:
-            self.say("There are no curves over time to keep." if on else "")
+            self.say("Curves", "There are no curves over time to keep." if on else "")
         else:
-            self.say(fill("Kept: the curves up to t = {:.2f} s. They are dashed.", end))
+            self.say("Curves", fill("Kept: the curves up to t = {:.2f} s. They are dashed.", end))
 
     async def on_own(self, event: ViserEvent) -> None:
         """Keep the present set-up in the list of presets under its name, or remove the one of that name."""
@@ -169,17 +210,19 @@ class Share:
                 text = write_file(panel.kind, panel.params, panel.loaded, name=name, note=self.note.value.strip())
                 keep_own(panel.kind, name, text)
                 panel.show_own(name)
-                self.say(fill("{} is now in the list of presets.", name))
-            else:
+                self.confirm(event.target, KEEP, "Kept in the list")
+            elif event.target.value == REMOVE:
                 remove_own(panel.kind, name)
                 panel.show_own()
-                self.say(fill("{} was removed from the list of presets.", name))
+                self.confirm(event.target, REMOVE, "Removed")
+            self.say("Set-up", "")
         except (ValueError, OSError) as reason:
-            self.say(str(reason))
+            self.say("Set-up", str(reason))
 
     def update(self) -> None:
         """Keep questions and timeline up to date."""
         self.ballot.draw()
+        self.end_confirmations()
         self.timeline.update()
 
 

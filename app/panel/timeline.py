@@ -1,4 +1,4 @@
-"""The timeline of the recording, in the folder "Record and share".
+"""The timeline of the recording, in the tab "Share".
 
 Callbacks run on viser's event loop; `update` runs on the viewer's thread.
 """
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SPAN_INTERVAL = 0.5  # [s] between two updates of the timeline's ends
 SLIDER_STEP = 0.01  # [s] of the timeline
 HAND_TIME = 1.0  # [s] after a hand has moved the timeline in which it is left to the hand
-BACK, FORWARD, PRESENT = "◀ Back", "Forward ▶", "Now"
+BACK, FORWARD, PRESENT = "◀ Back", "Forward ▶", "Back to live"
 CONTINUE = "Continue from here"
 # `app/render/js/charts.js` reads the time of the line in the charts from it.
 MOMENT = '<b data-springtide-moment="{}">Shown: t = {:.2f} s of the recording.</b>'
@@ -48,9 +48,11 @@ class Timeline:
             CONTINUE, disabled=True, hint="From the moment that is shown; what came later is forgotten"
         )
         self.resume.on_click(self.on_resume)
-        self.rate = gui.add_dropdown("Rate", tuple(f"×{rate:g}" for rate in RATES), hint="Of playing the recording")
+        self.rate = gui.add_dropdown(
+            "Playback speed", tuple(f"×{rate:g}" for rate in RATES), hint="Of playing the recording"
+        )
         self.rate.on_update(self.on_rate)
-        self.loop = gui.add_checkbox("Repeat", initial_value=False, hint="Play the recording again and again")
+        self.loop = gui.add_checkbox("Loop", initial_value=False, hint="Play the recording again and again")
         self.loop.on_update(self.on_loop)
         self.state = gui.add_html("")
 
@@ -112,10 +114,15 @@ class Timeline:
         held = now - self.moved_at < HAND_TIME and not self.recorder.playing  # what comes late would pull it back
         if not held and self.span[1] > self.span[0] and abs(self.time.value - at) > 0.5 * SLIDER_STEP:
             self.time.value = round(min(max(at, self.time.min), self.time.max), 2)
-        words = note(fill("Recorded: {:.1f} s, {:.0f} MB", high - low, self.recorder.memory.bytes / 1e6))
+        words = note(fill("Recorded: {:.1f} s, {}", high - low, size_words(self.recorder.memory.bytes)))
         if self.state.content != words:
             self.state.content = words
         words = "" if shown is None else note(fill(MOMENT, shown.time, shown.time))
         if self.moment.content != words:
             self.moment.content, self.moment.visible = words, bool(words)
             self.resume.disabled = not words
+
+
+def size_words(size: float) -> str:
+    """A number of bytes in words."""
+    return "less than 1 MB" if size < 1e6 else f"{size / 1e6:.0f} MB"

@@ -12,6 +12,7 @@ A replay (HTML) holds such a file in a block of its own, and a recording (.npz) 
 """
 
 import dataclasses
+import difflib
 import io
 import json
 import struct
@@ -124,33 +125,68 @@ def write_query(kind: AnyKind, params: BaseParams, preset: str = "", camera: Cam
     if base:
         said["preset"] = base
     said.update({name: write_value(value) for name, value in differing_values(kind, params, base).items()})
+    if len(said) == 1 and kind.opening:  # a scene alone opens as it is shown first
+        said["preset"] = next(name for name, values in kind.presets.items() if not values)
     if camera is not None:
         said["camera"] = ",".join(f"{c:g}" for c in camera_numbers(camera))
     return "?" + urlencode(said, safe=",")
 
 
 def read_query(query: str) -> Setup:
-    """The set-up of a query, with or without its "?". Raises ValueError if it is not allowed."""
+    """The set-up of a query, with or without its "?"; of a scene alone, the one that is shown first.
+
+    Raises ValueError with everything in it that is not allowed.
+    """
     check_length("address", query)
     pairs = parse_qsl(query.removeprefix("?"), keep_blank_values=True)
     given = dict(pairs)
     for name in given:
         if sum(other == name for other, _ in pairs) > 1:
             raise ValueError(f"{shortened(name)!r}: given more than once in the address")
-    kind = kind_named(given.get("scene"))
-    preset = given.get("preset", "")
+    scene, wrong = given.get("scene", ""), Refusals()
+    with wrong:
+        kind_named(scene)
+    kind = scene_named(next(iter(difflib.get_close_matches(scene, NAMES, 1)), NAMES[0]))
     known = parameters_of(kind.params)
-    values = dict(preset_named("preset", preset, kind)) if preset else {}
+    preset = given.get("preset", "" if given.keys() & known.keys() else kind.opening)
+    values: dict[str, Value] = {}
+    if preset:
+        with wrong:
+            values |= preset_named("preset", preset, kind)
     for name, text in given.items():
         if name in OWN_KEYS:
             continue
-        if name not in known:
-            raise unknown_parameter(name, known)
-        values[name] = parse_value(name, known[name], text)
+        with wrong:
+            if name not in known:
+                raise unknown_parameter(name, known)
+            values[name] = parse_value(name, known[name], text)
     camera = None
     if "camera" in given:
-        camera = read_camera([camera_number(text, given["camera"]) for text in given["camera"].split(",")])
+        with wrong:
+            camera = read_camera([camera_number(text, given["camera"]) for text in given["camera"].split(",")])
+    wrong.check()
     return Setup(kind.name, check_record(kind.params, values), values, preset, camera)
+
+
+class Refusals:
+    """Collects the ValueErrors of its `with` blocks, so that a user learns of all mistakes at once."""
+
+    def __init__(self) -> None:
+        self.reasons: list[str] = []
+
+    def __enter__(self) -> None:
+        """Begin a block."""
+
+    def __exit__(self, kind: object, error: object, trace: object) -> bool:
+        """Keep the reason of a block that was refused."""
+        if isinstance(error, ValueError):
+            self.reasons.append(str(error))
+        return isinstance(error, ValueError)
+
+    def check(self) -> None:
+        """Raises ValueError with all reasons, if there are any."""
+        if self.reasons:
+            raise ValueError("; ".join(self.reasons))
 
 
 def read_setup(text: str) -> Setup:

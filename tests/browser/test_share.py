@@ -116,7 +116,7 @@ def test_the_timeline_shows_what_was(opened: tuple[Viewer, Tab]) -> None:
     shown = lab.panel.recorder.shown
     assert shown is not None
     tab.wait(lambda: f"t = {shown.time:.2f} s of the recording" in tab.page.locator("body").inner_text(), 20)
-    tab.page.get_by_role("button", name="Now", exact=True).click()
+    tab.page.get_by_role("button", name="Back to live", exact=True).click()
     tab.wait(lambda: lab.panel.recorder.shown is None, 20)
 
 

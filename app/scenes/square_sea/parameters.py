@@ -187,6 +187,7 @@ class Params:
     frame_rate: float = parameter(30.0, 5.0, 60.0, "Hz", "Frames per second", group="Time", affects="look")
 
     grid: bool = parameter(False, doc="Lines of the drawn grid (key G)", group="Look", affects="look")
+    gauge: bool = parameter(True, doc="Draw the wave gauge, a buoy", group="Look", affects="look", title="Wave gauge")
     sky: str = parameter("park", choices=SKY_TITLES, doc="Sky and its light", group="Look", affects="look")
     sun: float = parameter(
         18.0, -180.0, 180.0, "°", "Where the sun stands, from +x towards +y", group="Look", affects="look",

@@ -241,7 +241,8 @@ class SquareSeaScene:
     @property
     def gauge_shown(self) -> bool:
         """True if the wave gauge is drawn and read."""
-        return self.gauge_placed or self.params.plot_wave_gauge or self.params.plot_wave_spectrum
+        p = self.params
+        return self.gauge_placed or p.gauge or p.plot_wave_gauge or p.plot_wave_spectrum
 
     def frame(self) -> SeaFrame:
         """The sea as it is now; a surface that has not changed is not evaluated again."""

@@ -85,8 +85,7 @@ class Panel:
 
         workbook: the tasks of the lab, shown above the parameters. session: of a student's folder. wake: has the
         recording looked at once more. make_replay: makes the page of a replay. beside: shows other set-ups beside this
-        one; None where this one is beside another.
-        changed: is told of parameters that were set. questions: of visitors, which outlive the panel.
+        one; None where this one is beside another. changed: takes parameters that were set. questions: of visitors.
         """
         self.server, self.kind, self.view, self.post = server, kind, view, post
         self.open_scene, self.beside, self.changed = open_scene, beside, changed
@@ -115,7 +114,8 @@ class Panel:
             None if beside is None else Compare(gui, self.head.buttons, self.comparable_names, self.comparable, beside)
         )
         self.fill_tabs(workbook, session)
-        self.refresh()
+        self.shown.show(kind.hidden(params))
+        self.show_preset()
         self.add_keys()
 
     def fill_tabs(self, workbook: Workbook | None, session: "Session | None") -> None:
@@ -206,7 +206,7 @@ class Panel:
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the parameters as they are set, and tell who wants to know."""
+        """Show the parameters as they are set, and pass them on."""
         self.shown.show(self.kind.hidden(self.params))
         self.show_preset()
         self.changed(self.params)

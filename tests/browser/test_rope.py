@@ -100,7 +100,7 @@ def test_an_explosion_pauses_with_a_finite_picture_and_says_why(shown: tuple[Vie
     tab.wait(lambda: lab.loop.halted)
     assert "explicit Euler" in lab.loop.halted
     assert "hω" in lab.loop.halted
-    tab.wait(lambda: tab.page.get_by_text("diverged at").count() > 0)
+    tab.wait(lambda: tab.page.get_by_text("became unstable at").count() > 0)
     assert np.isfinite(tab.vertices("/rope")).all()
     assert not lab.loop.running
 

@@ -68,7 +68,7 @@ class Line(NamedTuple):
 class Body(NamedTuple):
     """A floating body of linear theory about its place of rest without lines: M q'' + B q' + C q = forces.
 
-    q: displacement [m] and small rotation [rad] about `place`. mass holds the added mass.
+    q: displacement [m] and small rotation [rad] about `place`. mass holds the added mass. Waves act on its lines only.
     """
 
     id: int
@@ -248,7 +248,6 @@ class System:
             carried=carried,
             arms=arms,
             bodies=rows,
-            push=np.zeros((6 * bodies, 2, waves.shape[1])),
             stop=stop_request(),
         )
 

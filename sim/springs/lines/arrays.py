@@ -47,5 +47,4 @@ class LineArrays(NamedTuple):
     carried: NDArray[np.int64]  # (fairleads, 2): node, body
     arms: NDArray[np.float64]  # (fairleads, 3) [m] from the body's reference point
     bodies: NDArray[np.float64]  # (bodies, 147): inverse mass, mass, stiffness and damping matrix; place at rest [m]
-    push: NDArray[np.float64]  # (6 bodies, 2, waves): force of each wave with its cosine and sine at the place of rest
     stop: NDArray[np.int64]  # (2,) that ends a long solve, see sim.interruption

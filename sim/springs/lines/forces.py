@@ -34,7 +34,7 @@ from sim.springs.lines.arrays import (
     PLACE,
     STIFFNESS,
 )
-from sim.wave_motion import flow_at, sincos_turns
+from sim.wave_motion import flow_at
 
 TINY = 1e-300  # [m^2] under the root: coincident nodes have no direction, and no force
 
@@ -267,26 +267,16 @@ def set_six(y, n, j, q):
     y[j], y[n + j], y[2 * n + j], y[k], y[n + k], y[2 * n + k] = q
 
 
-@kernel(allocates=False)
-def wave_push(p, t, c):
-    """Force of the waves on a body at rest, c = 6 body + axis [N] or [N m]."""
-    total = 0.0
-    for i in range(p.waves.shape[1]):
-        cosine, sine = sincos_turns(p.waves[2, i] - p.waves[3, i] * t)
-        total += p.push[c, 0, i] * cosine + p.push[c, 1, i] * sine
-    return total
-
-
 @kernel(noalias=True, allocates=False)
-def accelerate_bodies(x, v, t, p, with_damping, f, a):
-    """Accelerations of bodies, by their lines' forces in f, their own stiffness and damping, and waves."""
+def accelerate_bodies(x, v, p, with_damping, f, a):
+    """Accelerations of bodies, by their lines' forces in f and their own stiffness and damping."""
     n = p.cols
     for b in range(p.bodies.shape[0]):
         j = p.nodes + 2 * b
         k = matrix_times(p, b, STIFFNESS, *six(x, n, j))
         for e in range(6):
             at = e * n + j if e < 3 else (e - 3) * n + j + 1
-            f[at] = wave_push(p, t, 6 * b + e) - k[e]
+            f[at] = -k[e]
         if with_damping:
             d = matrix_times(p, b, DAMPING, *six(v, n, j))
             for e in range(6):
@@ -324,7 +314,7 @@ def accelerate_lines(x, v, t, p, with_damping, f, a):
     set_forces(x, v, t, p, with_damping, f)
     for j in range(p.nodes):
         a[j], a[n + j], a[2 * n + j] = over_mass(f, n, j, f[j], f[n + j], f[2 * n + j])
-    accelerate_bodies(x, v, t, p, with_damping, f, a)
+    accelerate_bodies(x, v, p, with_damping, f, a)
 
 
 @kernel(inline=True)

@@ -212,3 +212,42 @@ def test_a_run_that_diverges_ends_with_a_warning_and_what_it_has():
     assert "critical_step" in str(caught[-1].message)
     assert np.isfinite(run.x[1][0]).all()
     assert np.isnan(run.x[1][-1]).all()
+
+
+@pytest.mark.parametrize("integrator", ["leapfrog", "rk4"])
+def test_a_damped_body_decays_as_a_damped_oscillator_does(integrator):
+    """Heave and roll of a body on a line that hangs slack, and too light to be felt."""
+    kind = LineType("thread", 0.001, 1e-6, 1.0, 0.0)
+    damping = np.diag([0.0, 0.0, 2e4, 3e4, 0.0, 0.0])
+    body = floating_body()._replace(mass=np.diag([2e4, 2e4, 3e4, 8e4, 8e4, 9e4]), damping=damping)
+    points = (Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "body", (0.0, 0.0, 0.0), body=1))
+    system = System((Line(1, kind, 1, 2, 50.0, 2),), points, 100.0, bodies=(body,), density=0.0, bed_stiffness=0.0)
+    nodes = np.zeros((3, 5))
+    nodes[2] = (-5.0, 0.3, -2.0, 0.3, 0.0)
+    nodes[0, 4] = 0.1
+    run = simulate(
+        system,
+        duration=8.0,
+        frames=41,
+        step=1e-3,
+        integrator=integrator,
+        start=Rest({}, {}, {}, nodes),
+        with_account=True,
+    )
+    for axis, start, (mass, resistance, stiffness) in ((2, 0.3, (3e4, 2e4, 2e5)), (3, 0.1, (8e4, 3e4, 5e5))):
+        rate, square = 0.5 * resistance / mass, stiffness / mass
+        omega = math.sqrt(square - rate * rate)
+        expected = start * np.exp(-rate * run.t) * (np.cos(omega * run.t) + rate / omega * np.sin(omega * run.t))
+        assert np.abs(run.bodies[1][:, axis] - expected).max() < 1e-5
+    assert run.energy.dissipated[-1] > 0.9 * run.energy.elastic[0]
+    assert np.abs(run.energy.error).max() < 1e-4 * run.energy.elastic[0]
+
+
+def test_a_moved_point_needs_no_velocity_and_one_without_motion_stays():
+    system, motion = taut_rope(6), Shaking((0.0, 0.0, -1.0), 2, 0.15, 5.0)
+    with_velocity = simulate(system, {2: motion}, 4.0, 21)
+    without = simulate(system, {2: lambda t: motion(t)}, 4.0, 21)
+    assert np.abs(with_velocity.x[1] - without.x[1]).max() < 1e-6
+    still = simulate(system, duration=1.0, frames=3)
+    assert np.abs(still.x[1][:, -1] - (0.0, 0.0, -1.0)).max() == 0.0
+    assert np.abs(still.tension[1] - still.tension[1][0]).max() < 1e-3

@@ -25,7 +25,7 @@ SHARED_VARIABLE = "SPRINGTIDE_KERNELS"
 
 
 class Level(NamedTuple):
-    """What a family of processors has in common. A newer one of the family has more."""
+    """Common features of a family of processors. A newer one of the family has more."""
 
     machines: tuple[str, ...]  # as `platform.machine` names them, in small letters
     cpu: str  # LLVM's name
@@ -48,7 +48,7 @@ LEVELS = {
 
 
 def host_features() -> dict[str, bool]:
-    """What this processor has, by LLVM's names; empty where LLVM cannot tell."""
+    """Features of this processor, by LLVM's names; empty where LLVM cannot tell."""
     try:
         return dict(llvm.get_host_cpu_features())
     except RuntimeError:

@@ -43,7 +43,7 @@ cpu_target.options.noalias = TargetOptions.Mapping("noalias")  # type: ignore[at
 
 
 class Folders(NamedTuple):
-    """Where kernels of one source are kept."""
+    """Folders of the kernels of one source."""
 
     own: Path | None  # None if none is writable
     shared: tuple[Path, ...]  # only read, if the kernel is not in the writable one
@@ -94,7 +94,7 @@ class KernelFiles:
         self.all += [KernelFile(str(folder), name, "") for folder in folders.shared]
 
     def load(self, key: Any) -> Any:
-        """What is kept under numba's key, or None."""
+        """Data stored under numba's key, or None."""
         key = without_processor(key)
         return next((data for data in (file.load(key) for file in self.all) if data is not None), None)
 

@@ -86,28 +86,23 @@ def parameters_in(path) -> dict:
         return json.loads(str(file["about"]))["parameters"]
 
 
-def test_an_integrator_is_one_file(tmp_path):
+@pytest.mark.parametrize(
+    ("heading", "written", "parameter", "value"),
+    [
+        ("Add an integrator", "rk2.npz", "integrator", "rk2"),
+        ("Add a law of a link", "rubber.npz", "law", "rubber"),
+    ],
+)
+def test_an_integrator_and_a_law_of_a_link_are_one_file_each(tmp_path, heading, written, parameter, value):
     copy = copy_of_sources(tmp_path)
-    blocks = section("Add an integrator")
+    blocks = section(heading)
     assert len(add(blocks, copy)) == 1
     test, headless = commands(blocks)
     said = run_command(copy, test)
     assert " passed" in said
     assert " failed" not in said
     run_command(copy, headless)
-    assert parameters_in(copy / "rk2.npz")["integrator"] == "rk2"
-
-
-def test_a_law_of_a_link_is_one_file(tmp_path):
-    copy = copy_of_sources(tmp_path)
-    blocks = section("Add a law of a link")
-    assert len(add(blocks, copy)) == 1
-    test, headless = commands(blocks)
-    said = run_command(copy, test)
-    assert " passed" in said
-    assert " failed" not in said
-    run_command(copy, headless)
-    assert parameters_in(copy / "rubber.npz")["law"] == "rubber"
+    assert parameters_in(copy / written)[parameter] == value
 
 
 @pytest.mark.stress  # five processes; the other examples are tried in fewer

@@ -27,7 +27,7 @@ def warm_up() -> int:
 def warm_up_into(folder: Path, level: str) -> int:
     """`warm_up` into a folder that others only read; returns the exit status.
 
-    level: of processors; "" for this one. In a process of its own, as numba takes both from its environment.
+    level: of processors; "" for this processor. Runs in a separate process, as numba reads folder and level at import.
 
     Raises ValueError where this processor does not have the level, and OSError where the folder cannot be made.
     """

@@ -15,7 +15,7 @@ MAX_PICTURES = 60  # that the report shows
 
 
 def check_is_folder(folder: Path) -> None:
-    """Raises ValueError where there is no such folder."""
+    """Raises ValueError if the folder does not exist."""
     if not folder.is_dir():
         what = "not a folder" if folder.exists() else "no such folder"
         raise ValueError(f"DIR: {folder}: {what}; `springtide lab new DIR` makes one with the exercises")

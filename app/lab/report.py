@@ -246,7 +246,7 @@ def code(result: FolderResult) -> Html:
 
 
 def written(source: str) -> str:
-    """A Python file without the functions that have no body, and their headings; as it is if it cannot be parsed."""
+    """A Python file without empty functions and their headings; unchanged if it cannot be parsed."""
     try:
         nodes = ast.parse(source).body
     except (SyntaxError, ValueError, RecursionError, MemoryError):

@@ -37,7 +37,7 @@ class Workbook:
     ) -> None:
         """folder: made by `springtide lab new`; without one only the guides of the items are shown.
 
-        programs: function -> state of its check, as far as it is known.
+        programs: function -> state of its latest check.
 
         Raises ValueError where there is nothing to show, or a law is no formula.
         """

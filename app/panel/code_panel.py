@@ -120,7 +120,7 @@ def mistake_of(session: Session, begun: frozenset[str]) -> str:
 
 
 def headline(state: CodeState, report: StudentReport, tables: TableReport, scene: str, mistake: str = "") -> Html:
-    """The state of the files on one line, for the block of the panel that is always in sight.
+    """State of the files on one line, for the head of the panel.
 
     mistake: of a function that runs.
     """

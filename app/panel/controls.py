@@ -1,4 +1,4 @@
-"""The controls of a scene's parameters: one record, and any number of controls that show it and set it."""
+"""The controls of a scene's parameters, which show and set one record."""
 
 from collections.abc import Callable
 
@@ -10,17 +10,16 @@ from sim.parameters import Value, parameters_of
 
 
 class Controls:
-    """All controls of a panel. A parameter has one in its folder, and another one in a task that is about it."""
+    """All controls of a panel, one a parameter, in the folders of their groups."""
 
     def __init__(
         self, gui: viser.GuiApi, read: Callable[[], BaseParams], changed: Callable[[str, Value], None]
     ) -> None:
-        """read: the record as it is set now. changed: takes a value that a browser sets."""
+        """read: returns the present record. changed: takes a value that a browser sets."""
         self.gui, self.read, self.changed = gui, read, changed
         self.parameters = parameters_of(read())
         self.own: dict[str, Control] = {}
         self.folders: dict[str, viser.GuiFolderHandle] = {}
-        self.beside: tuple[Control, ...] = ()  # those in a task, of which one is shown
 
     def add_group(self, group: str, *, is_open: bool) -> None:
         """The folder of a group of parameters, where there are any, in the container that is open."""
@@ -39,16 +38,14 @@ class Controls:
         )
 
     def on_change(self, name: str, value: Value) -> None:
-        """A control was set: its twin shows the same."""
+        """A control was set."""
         self.changed(name, value)
-        for control in (self.own[name], *self.beside):
-            if control.name == name:
-                control.show_value(value)
+        self.own[name].show_value(value)
 
     def show(self, hidden: set[str]) -> None:
         """Show the record; hide the controls that mean nothing just now, and the folders in which nothing is left."""
         params = self.read()
-        for control in (*self.own.values(), *self.beside):
+        for control in self.own.values():
             control.show_value(getattr(params, control.name))
             control.show(control.name not in hidden)
         shown = {self.parameters[name].group for name in self.own if name not in hidden}

@@ -7,6 +7,7 @@ not understood is refused in one line that names the section: nothing of a moori
 import math
 import re
 from pathlib import Path
+from typing import Any
 
 from sim.files import replacing
 from sim.mooring.system import Line, LineType, Point, System
@@ -31,8 +32,7 @@ IGNORED = {"dtm", "dtic", "tmaxic", "cdscaleic", "cddampscaleic", "threshic", "w
            "dtout", "disableoutput", "disableouttime", "fricdamp", "staticdynamicfrictionscale", "mu_ka", "mc",
            "icdfac", "icdt", "ictmax", "icthresh", "inertialf", "inertialf_rampt", "outswitch", "ic_gen",
            "startic", "cv"}  # fmt: skip
-ZERO = {"wavekin", "waves", "currentmod", "currents", "unifyCurrentGrid".lower(), "dtwave", "wavegrid", "waterkin"}
-FRICTION_DEFAULT = 0.0
+ZERO = {"wavekin", "waves", "currentmod", "currents", "unifycurrentgrid", "dtwave", "wavegrid", "waterkin"}
 
 
 def sections(path: Path) -> dict[str, list[tuple[int, list[str]]]]:
@@ -154,8 +154,14 @@ def read_options(rows: list[tuple[int, list[str]]]) -> dict[str, float]:
             found[FIELDS[key]] = number_in(f"{where}: {name}", value)
         else:
             raise argument_error(f"{where}: option", name, f"one of {sorted({*FIELDS, *IGNORED, *ZERO})}")
-    found.setdefault("friction", FRICTION_DEFAULT)
     return found
+
+
+def add_new(found: dict[Any, Any], key: object, value: object, where: str) -> None:
+    """Add an entry. Raises ValueError where there is one of that key."""
+    if key in found:
+        raise argument_error(where, key, "one that no other has")
+    found[key] = value
 
 
 def read_moordyn(path: str | Path) -> System:
@@ -165,15 +171,11 @@ def read_moordyn(path: str | Path) -> System:
     kinds: dict[str, LineType] = {}
     for number, row in found[TYPES]:
         kind = read_type(number, row)
-        if kind.name in kinds:
-            raise argument_error(f"{TYPES}, line {number}: name", kind.name, "a name of its own for each type")
-        kinds[kind.name] = kind
+        add_new(kinds, kind.name, kind, f"{TYPES}, line {number}: name")
     points: dict[int, Point] = {}
     for number, row in found[POINTS]:
         point = read_point(number, row)
-        if point.id in points:
-            raise argument_error(f"{POINTS}, line {number}: ID", point.id, "an ID of its own for each point")
-        points[point.id] = point
+        add_new(points, point.id, point, f"{POINTS}, line {number}: ID")
     lines = tuple(read_line(number, row, kinds, points) for number, row in found[LINES])
     options = read_options(found.get(OPTIONS, []))
     if "depth" not in options:

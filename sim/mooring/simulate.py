@@ -16,6 +16,7 @@ from sim.springs.analysis.energy import energies
 from sim.springs.analysis.energy_history import EnergyHistory, energy_history
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.integrators import Integrator, integrator_named
+from sim.springs.lines.arrays import LineArrays
 from sim.springs.lines.energy import set_tensions
 from sim.validation import argument_error, check_number, check_vector, is_whole_number
 
@@ -65,15 +66,21 @@ class LineState:
     ) -> None:
         """Advance by `steps` steps of h [s]; coupled points follow `paths`, (coupled points, 5, 3) of `PinPath`s."""
         p = self.system.kernel_view(h)._replace(paths=paths)
-        x, v = self.x.reshape(-1), self.v.reshape(-1)
-        if self.lag != integrator.lag * h:
-            a = np.empty_like(x)
-            set_acceleration(x, v, self.t, p, a)
-            v += (self.lag - integrator.lag * h) * a
-            self.lag = integrator.lag * h
+        x, lag = self.x.reshape(-1), integrator.lag * h
+        v = self.v.reshape(-1)
+        v[:], self.lag = self.velocities(p, lag), lag
         raise_if_stopped()
         self.force_evals += integrator.advance(x, v, self.ledger, self.t, h, steps, p, with_account)
         self.t += steps * h
+
+    def velocities(self, p: LineArrays, lag: float) -> NDArray[np.float64]:
+        """Velocities (3 n,) at time t - lag [s]: those stored, where they are of that time."""
+        v = self.v.reshape(-1)
+        if lag == self.lag:
+            return v
+        a = np.empty_like(v)
+        set_acceleration(self.x.reshape(-1), v, self.t, p, a)
+        return v + (self.lag - lag) * a
 
 
 def check_motion(system: System, motion: Mapping[int, Motion]) -> None:
@@ -189,23 +196,14 @@ def run_of(
                     stacklevel=3,
                 )
                 break
-        x, v = state.x.reshape(-1), state.v.reshape(-1)
-        if state.lag:
-            a = np.empty_like(x)
-            set_acceleration(x, v, state.t, p, a)
-            v = v + state.lag * a
+        x, v = state.x.reshape(-1), state.velocities(p, 0.0)
         xs[frame] = state.x
         set_tensions(x, v, p, tensions[frame])
         ledger[frame] = *energies(x, v, state.t, p), *state.ledger
         if progress:
             progress(frame + 1, len(t))
-    x_of = {
-        line.id: np.ascontiguousarray(np.moveaxis(xs[:, :, system.nodes_of[line.id]], 1, -1)) for line in system.lines
-    }
-    tension_of, first = {}, 0
-    for line in system.lines:
-        tension_of[line.id] = tensions[:, first : first + line.segments]
-        first += line.segments
+    x_of = {one: np.ascontiguousarray(np.moveaxis(xs[:, :, nodes], 1, -1)) for one, nodes in system.nodes_of.items()}
+    tension_of = {one: tensions[:, links] for one, links in system.links_of.items()}
     m = p.nodes
     bodies = {
         body.id: np.concatenate((xs[:, :, m + 2 * b], xs[:, :, m + 2 * b + 1]), axis=1)

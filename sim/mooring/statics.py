@@ -80,8 +80,7 @@ def first_guess(system: "System", placed: dict[int, NDArray[np.float64]]) -> NDA
         x[:, i] = placed.get(point.id, np.asarray(point.position, dtype=np.float64))
     for line in system.lines:
         at = system.nodes_of[line.id]
-        displaced = system.density * math.pi / 4.0 * line.type.diameter**2
-        weight = (line.type.mass - displaced) * system.gravity
+        weight = (line.type.mass - system.density * line.type.volume) * system.gravity
         bed = -system.depth if system.bed_stiffness > 0.0 else -math.inf
         x[:, at[1:-1]] = first_shape(line, x[:, at[0]], x[:, at[-1]], bed, weight)[1:-1].T
         # What lies is as deep in the bed as it is heavy.
@@ -130,9 +129,6 @@ def at_rest(system: "System", placed: dict[int, NDArray[np.float64]] | None = No
 def rest_of(system: "System", x: NDArray[np.float64], p: LineArrays) -> Rest:
     """The named parts of positions (3, n)."""
     tension = links_at(x, p)[1]
-    xs, tensions, first = {}, {}, 0
-    for line in system.lines:
-        xs[line.id] = np.ascontiguousarray(x[:, system.nodes_of[line.id]].T)
-        tensions[line.id] = tension[first : first + line.segments]
-        first += line.segments
+    xs = {one: np.ascontiguousarray(x[:, nodes].T) for one, nodes in system.nodes_of.items()}
+    tensions = {one: tension[links] for one, links in system.links_of.items()}
     return Rest(xs, tensions, {body.id: six_of(x, p, b) for b, body in enumerate(system.bodies)}, x)

@@ -17,7 +17,7 @@ from sim.interruption import stop_request
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
 from sim.springs.laws import LAWS
-from sim.springs.lines.arrays import LineArrays
+from sim.springs.lines.arrays import BODY_MASS, DAMPING, INVERSE_MASS, PLACE, STIFFNESS, LineArrays
 from sim.validation import argument_error, check_choice, check_number, check_vector, is_whole_number
 
 Vector = tuple[float, float, float]
@@ -39,6 +39,11 @@ class LineType(NamedTuple):
     drag_across: float = 1.2  # C_dn
     added_along: float = 0.0  # C_at
     drag_along: float = 0.05  # C_dt
+
+    @property
+    def volume(self) -> float:
+        """Of a metre of line [m^3/m]."""
+        return math.pi / 4.0 * self.diameter**2
 
 
 class Point(NamedTuple):
@@ -168,6 +173,12 @@ class System:
         return found
 
     @functools.cached_property
+    def links_of(self) -> dict[int, slice]:
+        """Places of each line's links among all, by its id."""
+        ends = np.cumsum([line.segments for line in self.lines]).tolist()
+        return {line.id: slice(end - line.segments, end) for line, end in zip(self.lines, ends, strict=True)}
+
+    @functools.cached_property
     def node_count(self) -> int:
         return len(self.points) + sum(line.segments - 1 for line in self.lines)
 
@@ -187,22 +198,18 @@ class System:
             damping = kind.damping
             if damping < 0.0:
                 damping = -damping * length * math.sqrt(kind.stiffness * kind.mass)
-            displaced = self.density * math.pi / 4.0 * kind.diameter**2
             drag = 0.5 * self.density * kind.diameter
-            row = np.array((
-                kind.mass, displaced, 0.0, 0.0,
-                drag * kind.drag_across, drag * math.pi * kind.drag_along, kind.diameter,
-            ))  # fmt: skip
             for i in range(line.segments):
                 ends.append((at[i], at[i + 1]))
                 links.append((length, kind.stiffness / length, damping / length))
             for i in range(line.segments + 1):
                 share = 0.5 * length if i in (0, line.segments) else length
-                part = share * row
-                part[2:4] = kind.added_across, kind.added_along
                 places.append((at[i], at[max(i - 1, 0)], at[min(i + 1, line.segments)]))
-                parts.append(part)
-                mass[at[i]] += part[0]
+                parts.append((
+                    share * kind.mass, share * self.density * kind.volume, kind.added_across, kind.added_along,
+                    share * drag * kind.drag_across, share * drag * math.pi * kind.drag_along, share * kind.diameter,
+                ))  # fmt: skip
+                mass[at[i]] += share * kind.mass
         knots_at, knots = [], []
         for i, point in enumerate(self.points):
             mass[i] += point.mass
@@ -260,18 +267,18 @@ class System:
                 body = self.bodies[index[point.body]]
                 carried.append((i, index[point.body]))
                 arms.append(np.subtract(point.position, body.place))
-        rows = np.zeros((len(self.bodies), 147))
+        rows = np.zeros((len(self.bodies), PLACE + 3))
         for b, body in enumerate(self.bodies):
             full = np.array(body.mass, dtype=np.float64)
             for (node, owner), arm in zip(carried, arms, strict=True):
                 if owner == b:
                     motion = motion_of(arm)
                     full += mass[node] * motion.T @ motion
-            rows[b, :36] = np.linalg.inv(full).ravel()
-            rows[b, 36:72] = full.ravel()
-            rows[b, 72:108] = np.ravel(body.stiffness)
-            rows[b, 108:144] = 0.0 if body.damping is None else np.ravel(body.damping)
-            rows[b, 144:] = body.place
+            rows[b, INVERSE_MASS:BODY_MASS] = np.linalg.inv(full).ravel()
+            rows[b, BODY_MASS:STIFFNESS] = full.ravel()
+            rows[b, STIFFNESS:DAMPING] = np.ravel(body.stiffness)
+            rows[b, DAMPING:PLACE] = 0.0 if body.damping is None else np.ravel(body.damping)
+            rows[b, PLACE:] = body.place
         return (
             np.array(carried, dtype=np.int64).reshape(-1, 2),
             np.array(arms, dtype=np.float64).reshape(-1, 3),

@@ -50,14 +50,14 @@ def test_the_measure_finds_what_is_wrong(shown: tuple[Viewer, Tab], style: str, 
 
 
 def test_viser_s_note_on_software_drawing_does_not_cover_the_picture(
-    one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
+    shown: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
 ) -> None:
-    lab, _ = one_page
+    lab, _ = shown
     tab = open_tab(lab.port)  # a new page: an older one has closed its note
     note = tab.page.locator("#webgl-software-rendering")
     tab.wait(note.count, 30)  # this Chromium draws in software
     assert not note.is_visible()
-    assert tab.page.evaluate(ON_TOP, (100, 100)) == "CANVAS"
+    tab.wait(lambda: tab.page.evaluate(ON_TOP, (100, 100)) == "CANVAS", 30)  # the cover goes
 
 
 def test_a_phone_shows_the_race_first_and_its_plots_when_asked(

@@ -81,7 +81,7 @@ def start_times(scene: str, cache: str | None) -> tuple[float, float]:
 
 
 def both(name: str, timed: Any, quick: bool, repeats: int) -> dict[str, Any]:
-    """A row: with a warm cache, after a run that fills it, and with an empty one. Quick: once, as it is."""
+    """A row: start with a warm cache and with an empty one. Quick: one start with the present cache."""
     first = timed(None)
     if quick:
         return {"what": name, "warm [s]": first}

@@ -8,7 +8,7 @@ from sim.jit import kernel
 
 @kernel(inline=True)
 def at_any_length(law, rest, length):
-    """Whether damping acts, of a law whose damping always does."""
+    """True: the damping of the law acts at any length."""
     return True
 
 

@@ -9,17 +9,19 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.laws import damps
 from sim.springs.lines.arrays import BED_AREA, DAMPING, DRAG_ACROSS, DRAG_ALONG, INVERSE_MASS, KNOT_DRAG
 from sim.springs.lines.forces import (
-    TINY,
-    carried_motion,
+    damping_of,
+    lines_scratch_size,
     matrix_times,
     over_mass,
     pushed_body,
+    rate_of,
+    set_carried,
     set_inverse_masses,
     set_six,
     six,
+    span_of,
     tangent_at,
     water_at,
 )
@@ -38,14 +40,10 @@ def push_node(v, p, f, j, fx, fy, fz):
     for i in range(p.carried.shape[0]):
         if p.carried[i, 0] != j:
             continue
-        b = p.carried[i, 1]
-        at = p.nodes + 2 * b
+        at = p.nodes + 2 * p.carried[i, 1]
         d, q = pushed_body(p, i, fx, fy, fz), six(v, n, at)
         set_six(v, n, at, (q[0] + d[0], q[1] + d[1], q[2] + d[2], q[3] + d[3], q[4] + d[4], q[5] + d[5]))
-        for k in range(p.carried.shape[0]):
-            if p.carried[k, 1] == b:
-                c = p.carried[k, 0]
-                v[c], v[n + c], v[2 * n + c] = carried_motion(p, k, *six(v, n, at))
+        set_carried(v, p)
         return
 
 
@@ -59,17 +57,14 @@ def mobility(p, f, j, x, y, z):
 @kernel(allocates=False)
 def damp_link(x, v, s, p, f, q):
     """The damping of link q for a time s [s]: its two nodes' closing speed decays exponentially."""
-    n, a, b = p.cols, p.ends[q, 0], p.ends[q, 1]
-    rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
-    length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-    if not damps(p.law, p.links[q, 0], length):
-        return
+    a, b = p.ends[q, 0], p.ends[q, 1]
+    rx, ry, rz, length = span_of(x, p, q)
+    damping, rate = damping_of(p, q, length), rate_of(v, p, q, rx, ry, rz, length)
     rx, ry, rz = rx / length, ry / length, rz / length
     both = mobility(p, f, a, rx, ry, rz) + mobility(p, f, b, rx, ry, rz)
-    if both == 0.0:
+    if both == 0.0 or damping == 0.0:
         return
-    rate = (v[b] - v[a]) * rx + (v[n + b] - v[n + a]) * ry + (v[2 * n + b] - v[2 * n + a]) * rz
-    push = -math.expm1(-p.links[q, 2] * both * s) / both * rate
+    push = -math.expm1(-damping * both * s) / both * rate
     push_node(v, p, f, a, push * rx, push * ry, push * rz)
     push_node(v, p, f, b, -push * rx, -push * ry, -push * rz)
 
@@ -88,7 +83,7 @@ def drag_along(v, s, p, f, j, drag, x, y, z):
 
 @kernel(allocates=False)
 def damp_part(x, v, t, s, p, f, i, reverse):
-    """Drag and the bed's damping on part i."""
+    """Drag across and along part i."""
     n, j = p.cols, p.places[i, 0]
     qx, qy, qz = tangent_at(x, p, i)
     u, w, c, _, _, _ = water_at(x, t, p, j)
@@ -137,10 +132,7 @@ def damp_body(v, s, p, b):
             q[3] - s * d[3] + c * e[3], q[4] - s * d[4] + c * e[4], q[5] - s * d[5] + c * e[5],
         ),
     )  # fmt: skip
-    for k in range(p.carried.shape[0]):
-        if p.carried[k, 1] == b:
-            i = p.carried[k, 0]
-            v[i], v[n + i], v[2 * n + i] = carried_motion(p, k, *six(v, n, j))
+    set_carried(v, p)
 
 
 @kernel(allocates=False)
@@ -154,21 +146,21 @@ def damp_knot(x, v, t, s, p, f, i):
 @kernel
 def damp_lines(x, v, t, s, decay, p, reverse):
     """All damping for a time s [s]; `reverse` runs through it backwards. Returns 0: there is no sphere to do work."""
-    f = np.empty(9 * p.cols)
+    f = np.empty(lines_scratch_size(p))
     set_inverse_masses(x, p, f)
     links, parts, knots, bodies = p.ends.shape[0], p.places.shape[0], p.knots_at.shape[0], p.bodies.shape[0]
     for turn in range(5):
-        what = 4 - turn if reverse else turn
-        count = links if what == 0 else bodies if what == 4 else knots if what == 2 else parts
+        kind = 4 - turn if reverse else turn
+        count = links if kind == 0 else bodies if kind == 4 else knots if kind == 2 else parts
         for step in range(count):
             i = count - 1 - step if reverse else step
-            if what == 0:
+            if kind == 0:
                 damp_link(x, v, s, p, f, i)
-            elif what == 1:
+            elif kind == 1:
                 damp_part(x, v, t, s, p, f, i, reverse)
-            elif what == 2:
+            elif kind == 2:
                 damp_knot(x, v, t, s, p, f, i)
-            elif what == 3:
+            elif kind == 3:
                 damp_on_bed(x, v, s, p, f, i)
             else:
                 damp_body(v, s, p, i)

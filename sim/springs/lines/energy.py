@@ -9,7 +9,6 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.laws import damps
 from sim.springs.laws import energy as link_energy
 from sim.springs.lines.arrays import (
     BED_AREA,
@@ -25,12 +24,14 @@ from sim.springs.lines.arrays import (
     STIFFNESS,
 )
 from sim.springs.lines.forces import (
-    TINY,
     accelerate_lines,
     bed_force,
+    damping_of,
     lines_scratch_size,
     matrix_times,
+    rate_of,
     six,
+    span_of,
     tangent_at,
     tension_of,
     water_at,
@@ -59,7 +60,7 @@ def lines_kinetic_energy(v, p):
 
 @kernel(inline=True)
 def is_moving(p, j):
-    """Whether a node is free or carried, so that gravity on it counts."""
+    """True if a node is free or carried, so that gravity on it counts."""
     found = p.inverse_masses[j] > 0.0
     for i in range(p.carried.shape[0]):
         found |= p.carried[i, 0] == j
@@ -72,9 +73,7 @@ def lines_energies(x, v, t, p):
     n = p.cols
     elastic = gravity = contact = 0.0
     for q in range(p.ends.shape[0]):
-        a, b = p.ends[q, 0], p.ends[q, 1]
-        rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
-        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+        _, _, _, length = span_of(x, p, q)
         elastic += link_energy(p.law, p.links[q, 1], p.links[q, 0], length)
     for b in range(p.bodies.shape[0]):
         elastic += half_form(p, b, STIFFNESS, six(x, n, p.nodes + 2 * b))
@@ -100,11 +99,8 @@ def stored_rate(x, v, a, p):
         if p.inverse_masses[j] > 0.0:
             rate += p.mass[j] * (v[j] * a[j] + v[n + j] * a[n + j] + v[2 * n + j] * a[2 * n + j])
     for q in range(p.ends.shape[0]):
-        c, d = p.ends[q, 0], p.ends[q, 1]
-        rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[2 * n + d] - x[2 * n + c]
-        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-        closing = (v[d] - v[c]) * rx + (v[n + d] - v[n + c]) * ry + (v[2 * n + d] - v[2 * n + c]) * rz
-        rate += tension_of(p, q, length, 0.0) * closing / length
+        rx, ry, rz, length = span_of(x, p, q)
+        rate += tension_of(p, q, length) * rate_of(v, p, q, rx, ry, rz, length)
     for b in range(p.bodies.shape[0]):
         j = p.nodes + 2 * b
         u, k = six(v, n, j), matrix_times(p, b, STIFFNESS, *six(x, n, j))
@@ -127,15 +123,10 @@ def stored_rate(x, v, a, p):
 @kernel(allocates=False)
 def lost_in_links(x, v, p):
     """Power [W] that the links' damping takes."""
-    n = p.cols
     lost = 0.0
     for q in range(p.ends.shape[0]):
-        c, d = p.ends[q, 0], p.ends[q, 1]
-        rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[2 * n + d] - x[2 * n + c]
-        closing = (v[d] - v[c]) * rx + (v[n + d] - v[n + c]) * ry + (v[2 * n + d] - v[2 * n + c]) * rz
-        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-        if damps(p.law, p.links[q, 0], length):
-            lost += p.links[q, 2] * (closing / length) ** 2
+        rx, ry, rz, length = span_of(x, p, q)
+        lost += damping_of(p, q, length) * rate_of(v, p, q, rx, ry, rz, length) ** 2
     return lost
 
 
@@ -177,15 +168,13 @@ def lines_power(x, v, t, p, with_damping):
 
 @kernel(allocates=False)
 def lines_pins_damping_power(x, v, p):
-    """What prescribed nodes put in [W] through the damping of their links."""
+    """Power [W] of prescribed nodes through the damping of their links."""
     n = p.cols
     work = 0.0
     for q in range(p.ends.shape[0]):
         c, d = p.ends[q, 0], p.ends[q, 1]
-        rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[2 * n + d] - x[2 * n + c]
-        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-        closing = (v[d] - v[c]) * rx + (v[n + d] - v[n + c]) * ry + (v[2 * n + d] - v[2 * n + c]) * rz
-        s = p.links[q, 2] * closing / length**2 if damps(p.law, p.links[q, 0], length) else 0.0
+        rx, ry, rz, length = span_of(x, p, q)
+        s = damping_of(p, q, length) * rate_of(v, p, q, rx, ry, rz, length) / length
         if not is_moving(p, c):
             work -= s * (v[c] * rx + v[n + c] * ry + v[2 * n + c] * rz)
         if not is_moving(p, d):
@@ -196,10 +185,6 @@ def lines_pins_damping_power(x, v, p):
 @kernel
 def set_tensions(x, v, p, out):
     """Set the tension (links,) [N] of every link, its damping included."""
-    n = p.cols
     for q in range(p.ends.shape[0]):
-        c, d = p.ends[q, 0], p.ends[q, 1]
-        rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[2 * n + d] - x[2 * n + c]
-        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-        closing = (v[d] - v[c]) * rx + (v[n + d] - v[n + c]) * ry + (v[2 * n + d] - v[2 * n + c]) * rz
-        out[q] = tension_of(p, q, length, closing / length)
+        rx, ry, rz, length = span_of(x, p, q)
+        out[q] = tension_of(p, q, length) + damping_of(p, q, length) * rate_of(v, p, q, rx, ry, rz, length)

@@ -1,4 +1,4 @@
-"""What acts on lines under water: tension, weight and buoyancy, added mass, waves, drag and the bed.
+"""Forces on lines under water: tension, weight and buoyancy, added mass, waves, drag and the bed.
 
 Morison's law on each node as lumped-mass programs have it (Hall & Goupee 2015, Ocean Eng. 104:590), with q the unit
 tangent, along r_{i+1} - r_{i-1}, and u, du/dt the water's velocity and acceleration:
@@ -46,10 +46,30 @@ def lines_scratch_size(p):
 
 
 @kernel(inline=True)
-def tension_of(p, q, length, rate):
-    """Tension [N] of link q at a length [m] that grows by `rate` [m/s]."""
-    pull = tension(p.law, p.links[q, 1], p.links[q, 0], length)
-    return pull + p.links[q, 2] * rate if damps(p.law, p.links[q, 0], length) else pull
+def span_of(x, p, q):
+    """(x, y, z) [m] from the first end of link q to the second, and its length [m]."""
+    n, a, b = p.cols, p.ends[q, 0], p.ends[q, 1]
+    rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+    return rx, ry, rz, math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+
+
+@kernel(inline=True)
+def rate_of(v, p, q, rx, ry, rz, length):
+    """Rate [m/s] at which link q grows, along its `span_of`."""
+    n, a, b = p.cols, p.ends[q, 0], p.ends[q, 1]
+    return ((v[b] - v[a]) * rx + (v[n + b] - v[n + a]) * ry + (v[2 * n + b] - v[2 * n + a]) * rz) / length
+
+
+@kernel(inline=True)
+def damping_of(p, q, length):
+    """Damping [N s/m] of link q that acts at a length [m]."""
+    return p.links[q, 2] if damps(p.law, p.links[q, 0], length) else 0.0
+
+
+@kernel(inline=True)
+def tension_of(p, q, length):
+    """Tension [N] of link q at a length [m], without its damping."""
+    return tension(p.law, p.links[q, 1], p.links[q, 0], length)
 
 
 @kernel(inline=True)
@@ -120,8 +140,7 @@ def set_carried_mass(p, i, f):
     for e in range(3):
         # M^-1 J^T of a unit force along axis e, then J of it.
         ux, uy, uz = 1.0 if e == 0 else 0.0, 1.0 if e == 1 else 0.0, 1.0 if e == 2 else 0.0
-        q = pushed_body(p, i, ux, uy, uz)
-        moved = carried_motion(p, i, q[0], q[1], q[2], q[3], q[4], q[5])
+        moved = carried_motion(p, i, *pushed_body(p, i, ux, uy, uz))
         for d in range(e, 3):
             f[row * n + j] = moved[d]
             row += 1
@@ -135,21 +154,25 @@ def carried_motion(p, i, x, y, z, a, b, c):
 
 
 @kernel(inline=True)
+def moment_of(p, i, fx, fy, fz):
+    """Moment [N m] of a force at fairlead i about its body's reference point."""
+    ax, ay, az = p.arms[i, 0], p.arms[i, 1], p.arms[i, 2]
+    return ay * fz - az * fy, az * fx - ax * fz, ax * fy - ay * fx
+
+
+@kernel(inline=True)
 def pushed_body(p, i, fx, fy, fz):
     """The six accelerations of a body by a force at its fairlead i."""
-    ax, ay, az = p.arms[i, 0], p.arms[i, 1], p.arms[i, 2]
-    mx, my, mz = ay * fz - az * fy, az * fx - ax * fz, ax * fy - ay * fx
-    return matrix_times(p, p.carried[i, 1], INVERSE_MASS, fx, fy, fz, mx, my, mz)
+    return matrix_times(p, p.carried[i, 1], INVERSE_MASS, fx, fy, fz, *moment_of(p, i, fx, fy, fz))
 
 
 @kernel(allocates=False)
 def matrix_times(p, body, start, a, b, c, d, e, g):
     """A (6, 6) matrix of a body's row, from column `start`, times six numbers."""
-    m = p.bodies
+    m, numbers = p.bodies, (a, b, c, d, e, g)
     s0 = s1 = s2 = s3 = s4 = s5 = 0.0
     for k in range(6):
-        u = a if k == 0 else b if k == 1 else c if k == 2 else d if k == 3 else e if k == 4 else g
-        # Symmetric, or applied by columns: entry (row, k) is at 6 row + k.
+        u = numbers[k]
         s0 += m[body, start + k] * u
         s1 += m[body, start + 6 + k] * u
         s2 += m[body, start + 12 + k] * u
@@ -176,10 +199,11 @@ def add_link_forces(x, v, p, with_damping, f):
     n = p.cols
     for q in range(p.ends.shape[0]):
         a, b = p.ends[q, 0], p.ends[q, 1]
-        rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
-        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-        rate = (v[b] - v[a]) * rx + (v[n + b] - v[n + a]) * ry + (v[2 * n + b] - v[2 * n + a]) * rz
-        s = tension_of(p, q, length, rate / length if with_damping else 0.0) / length
+        rx, ry, rz, length = span_of(x, p, q)
+        s = tension_of(p, q, length)
+        if with_damping:
+            s += damping_of(p, q, length) * rate_of(v, p, q, rx, ry, rz, length)
+        s /= length
         f[a] += s * rx
         f[n + a] += s * ry
         f[2 * n + a] += s * rz
@@ -245,7 +269,7 @@ def add_water_and_bed(x, v, t, p, with_damping, f):
 
 @kernel(noalias=True, allocates=False)
 def set_forces(x, v, t, p, with_damping, f):
-    """Set the forces [N] on every node, prescribed ones too, and the inverse mass matrices."""
+    """Set the forces [N] on every node, prescribed ones too."""
     n = p.cols
     for j in range(3 * n):
         f[j] = 0.0
@@ -272,25 +296,25 @@ def accelerate_bodies(x, v, p, with_damping, f, a):
     """Accelerations of bodies, by their lines' forces in f and their own stiffness and damping."""
     n = p.cols
     for b in range(p.bodies.shape[0]):
-        j = p.nodes + 2 * b
-        k = matrix_times(p, b, STIFFNESS, *six(x, n, j))
-        for e in range(6):
-            at = e * n + j if e < 3 else (e - 3) * n + j + 1
-            f[at] = -k[e]
-        if with_damping:
-            d = matrix_times(p, b, DAMPING, *six(v, n, j))
-            for e in range(6):
-                f[e * n + j if e < 3 else (e - 3) * n + j + 1] -= d[e]
+        j, s = p.nodes + 2 * b, 1.0 if with_damping else 0.0
+        k, d = matrix_times(p, b, STIFFNESS, *six(x, n, j)), matrix_times(p, b, DAMPING, *six(v, n, j))
+        set_six(
+            f, n, j,
+            (
+                -k[0] - s * d[0], -k[1] - s * d[1], -k[2] - s * d[2],
+                -k[3] - s * d[3], -k[4] - s * d[4], -k[5] - s * d[5],
+            ),
+        )  # fmt: skip
     for i in range(p.carried.shape[0]):
         c, j = p.carried[i, 0], p.nodes + 2 * p.carried[i, 1]
         fx, fy, fz = f[c], f[n + c], f[2 * n + c]
-        ax, ay, az = p.arms[i, 0], p.arms[i, 1], p.arms[i, 2]
+        mx, my, mz = moment_of(p, i, fx, fy, fz)
         f[j] += fx
         f[n + j] += fy
         f[2 * n + j] += fz
-        f[j + 1] += ay * fz - az * fy
-        f[n + j + 1] += az * fx - ax * fz
-        f[2 * n + j + 1] += ax * fy - ay * fx
+        f[j + 1] += mx
+        f[n + j + 1] += my
+        f[2 * n + j + 1] += mz
     for b in range(p.bodies.shape[0]):
         j = p.nodes + 2 * b
         set_six(a, n, j, matrix_times(p, b, INVERSE_MASS, *six(f, n, j)))
@@ -341,7 +365,7 @@ def set_rest_forces(x, p, f):
 @kernel
 def inverse_mass_matrices(x, p):
     """Scratch with the inverse mass matrices of lines at x."""
-    f = np.zeros(9 * p.cols)
+    f = np.zeros(lines_scratch_size(p))
     set_inverse_masses(x, p, f)
     return f
 
@@ -349,13 +373,10 @@ def inverse_mass_matrices(x, p):
 @kernel
 def link_state(x, p):
     """(links, 4) of links at x: length [m], tension [N], its derivative [N/m], and the damping that acts [N s/m]."""
-    n = p.cols
     found = np.empty((p.ends.shape[0], 4))
     for q in range(p.ends.shape[0]):
-        a, b, rest, k = p.ends[q, 0], p.ends[q, 1], p.links[q, 0], p.links[q, 1]
-        rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
-        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-        found[q, 0], found[q, 1] = length, tension(p.law, k, rest, length)
-        found[q, 2] = stiffness(p.law, k, rest, length)
-        found[q, 3] = p.links[q, 2] if damps(p.law, rest, length) else 0.0
+        _, _, _, length = span_of(x, p, q)
+        found[q, 0], found[q, 1] = length, tension_of(p, q, length)
+        found[q, 2] = stiffness(p.law, p.links[q, 1], p.links[q, 0], length)
+        found[q, 3] = damping_of(p, q, length)
     return found

@@ -18,6 +18,7 @@ from app.lab.live_values import LiveNumber, LiveValues
 from app.lab.task import PREDICTION, Question, Setup, Task
 from app.render.formula import formula
 from sim.files import replacing
+from sim.parameters import choice_error
 from sim.quantities import read_number
 from sim.validation import argument_error
 
@@ -68,6 +69,13 @@ class Workbook:
         last = max((i for i, task in enumerate(self.tasks) if task.name in begun), default=0)
         is_open = [i for i, task in enumerate(self.tasks) if not self.is_complete(task)]
         return next((i for i in is_open if i >= last), is_open[0] if is_open else 0)
+
+    def named(self, name: str) -> Task:
+        """Task of a name, or the first of an item such as 3.2-1. Raises ValueError where there is none."""
+        for task in self.tasks:
+            if name in (task.name, task.item):
+                return task
+        raise choice_error("task", name, dict.fromkeys(task.item for task in self.tasks))
 
     def go(self, index: int) -> None:
         """Show another task; beyond the first and the last one nothing happens."""

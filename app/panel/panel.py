@@ -27,15 +27,14 @@ from app.panel.readings import Readings
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
 from app.panel.share import Share
+from app.panel.task_setups import params_of_setup
 from app.render.cameras import ClientCamera, place_camera
 from app.render.html import Html, fill, note
 from app.render.viser_types import ViserEvent
-from app.scenes import scene_named
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
 from app.scenes.own_setups import own_files
 from app.scenes.setups import Setup
 from sim.parameters import Value, changed_names, check_record
-from sim.validation import argument_error
 
 if TYPE_CHECKING:
     from app.lab.session import Session
@@ -360,18 +359,6 @@ class Panel:
             self.guide.flush()
         if self.map is not None:
             self.map.close()
-
-
-def params_of_setup(setup: task.Setup) -> tuple[AnyKind, BaseParams, str]:
-    """The scene of a task of the lab, its parameters, and the preset that they come from.
-
-    Raises ValueError where there is no such scene, preset or parameter.
-    """
-    kind = scene_named(setup.scene)
-    preset = setup.preset or next(iter(kind.presets))
-    if preset not in kind.presets:
-        raise argument_error("preset", preset, "one of " + ", ".join(kind.presets))
-    return kind, check_record(kind.params, {**kind.presets[preset], **setup.parameters}), preset
 
 
 def own_presets(kind: AnyKind) -> dict[str, Setup]:

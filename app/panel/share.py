@@ -14,6 +14,7 @@ import viser
 from app.messages import Vector
 from app.panel.files import Files, MakeReplay, file_name
 from app.panel.questions import Asker, Ballot, Questions, Subject
+from app.panel.task_setups import read_link
 from app.panel.timeline import Timeline
 from app.render.cameras import place_camera
 from app.render.html import fill, note
@@ -28,7 +29,6 @@ from app.scenes.setups import (
     Setup,
     missing_hull,
     read_file,
-    read_query,
     write_file,
     write_query,
 )
@@ -133,6 +133,7 @@ class Share:
         if missing:
             client.add_notification("A hull is missing", missing, color="orange", auto_close_seconds=30.0)
         if isinstance(subject, Setup) and (subject.scene, subject.params) == (self.panel.kind.name, self.panel.params):
+            self.turn(subject)
             self.place(subject, client)
         elif isinstance(subject, str) and self.panel.beside is None:
             return  # a lab beside another opens no comparison
@@ -144,7 +145,9 @@ class Share:
     def read(self, text: str) -> Subject:
         """Content of a page's message. Raises ValueError if it is not allowed."""
         if not text.startswith(COMPARE):
-            return read_query(text) if text.startswith("?") else read_file(text)
+            if not text.startswith("?"):
+                return read_file(text)
+            return read_link(text, None if self.panel.guide is None else self.panel.guide.workbook)
         name = text.removeprefix(COMPARE)
         comparison_named(name)
         return name
@@ -152,9 +155,16 @@ class Share:
     def show(self, subject: Subject, client: int) -> None:
         """Show a set-up, with its camera for one browser, or a comparison."""
         if isinstance(subject, Setup):
+            self.turn(subject)
             self.panel.show_setup(subject, client)
         elif self.panel.beside is not None:
             self.panel.beside.compare(comparison_named(subject), True)
+
+    def turn(self, setup: Setup) -> None:
+        """Turn the workbook to the task that a link opens, if it names one."""
+        if setup.task and self.panel.guide is not None:
+            book = self.panel.guide.workbook
+            book.go(book.tasks.index(book.named(setup.task)))
 
     def refuse(self, client: viser.ClientHandle | None, reason: str) -> None:
         """Tell one browser why a set-up was not taken."""

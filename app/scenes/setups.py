@@ -75,6 +75,7 @@ class Setup(NamedTuple):
     name: str = ""
     note: str = ""
     hull: str = ""  # file name of a mesh that floated too; the mesh itself is in no file
+    task: str = ""  # of the lab, that a link opens too
 
 
 def file_name(path: str) -> str:
@@ -137,12 +138,7 @@ def read_query(query: str) -> Setup:
 
     Raises ValueError with everything in it that is not allowed.
     """
-    check_length("address", query)
-    pairs = parse_qsl(query.removeprefix("?"), keep_blank_values=True)
-    given = dict(pairs)
-    for name in given:
-        if sum(other == name for other, _ in pairs) > 1:
-            raise ValueError(f"{shortened(name)!r}: given more than once in the address")
+    given = entries(query)
     scene, wrong = given.get("scene", ""), Refusals()
     with wrong:
         kind_named(scene)
@@ -166,6 +162,23 @@ def read_query(query: str) -> Setup:
             camera = read_camera([camera_number(text, given["camera"]) for text in given["camera"].split(",")])
     wrong.check()
     return Setup(kind.name, check_record(kind.params, values), values, preset, camera)
+
+
+def split_task(query: str) -> tuple[str, str]:
+    """The task that a query names, "" for none, and the rest of the query. Raises ValueError as `read_query` does."""
+    given = entries(query)
+    return given.pop("task", ""), urlencode(given)
+
+
+def entries(query: str) -> dict[str, str]:
+    """The values of a query by name. Raises ValueError where it is too long or names one twice."""
+    check_length("address", query)
+    pairs = parse_qsl(query.removeprefix("?"), keep_blank_values=True)
+    given = dict(pairs)
+    for name in given:
+        if sum(other == name for other, _ in pairs) > 1:
+            raise ValueError(f"{shortened(name)!r}: given more than once in the address")
+    return given
 
 
 class Refusals:

@@ -22,7 +22,8 @@
   ]);
   const PAGE = Math.random().toString(36).slice(2, 10); // tells what this page asks from what others ask
   const asked = new URLSearchParams(location.search);
-  let query = asked.has("scene") || asked.has("compare") ? location.search : "";
+  let query = ["scene", "task", "compare"].some((name) => asked.has(name)) ? location.search : "";
+  let showsLab = asked.has("task"); // show the tab "Lab", also of a scene that the link opens, until another is chosen
   let pressed = -Infinity;
 
   function send(text) {
@@ -57,6 +58,10 @@
   function update() {
     if (query && document.querySelector(".springtide-panel[data-state]") && send(ofLab(query))) query = "";
     completeLinks();
+    if (showsLab) {
+      const found = [...document.querySelectorAll('[role="tab"]')].find((one) => one.textContent.trim() === "Lab");
+      if (found && found.ariaSelected !== "true") found.click();
+    }
   }
 
   function download(content, name) {
@@ -151,6 +156,8 @@
     sheet.toBlob((content) => download(content, "springtide-plots.png"));
   }
 
+  for (const kind of ["pointerdown", "keydown"])
+    document.addEventListener(kind, ({ target }) => (showsLab &&= !target.closest?.('[role="tab"]')), true);
   document.addEventListener("click", (event) => {
     const button = event.target instanceof Element && event.target.closest("button");
     if (!button) return;

@@ -9,7 +9,7 @@ import pytest
 from app.lab.live_values import LiveNumber, LiveValues, fill_in, names_in
 from app.lab.task import Task, load_tasks
 from app.panel.guide import live_values
-from app.panel.panel import params_of_setup
+from app.panel.task_setups import params_of_setup
 from app.render.formula import formula
 from app.scenes import scene_named
 from app.server.loop import SimLoop

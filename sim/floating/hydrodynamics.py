@@ -126,7 +126,7 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
     raise_if_stopped()
     beyond = outside_table(hull, draft)
     if beyond:
-        advice = "a mesh file has a table of its own by the command `springtide hydrodynamics`"
+        advice = "`with_dataset` takes a table by Capytaine, and `springtide hydrodynamics` makes one for a mesh file"
         words = f"{hull.shape.name}: {beyond} is outside; added mass, damping and wave forces are those of the border"
         warnings.warn(f"{words}; {advice}", UserWarning, stacklevel=2)
     low = float(hull.extents[2, 0])

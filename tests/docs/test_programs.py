@@ -1,6 +1,8 @@
 """The short programs of the page: each runs, and has at most 12 lines."""
 
 import re
+import warnings
+from pathlib import Path
 
 import pytest
 
@@ -8,21 +10,28 @@ from tests.docs.pages import ROOT, text_of
 
 PROGRAMS = re.findall(r"^## ([^\n]+)\n\n```python\n(.*?)^```$", text_of(ROOT / "docs" / "programs.md"), re.M | re.S)
 MAX_LINES = 12
+OPTIONAL = {"with_dataset": "xarray", "import capytaine": "capytaine"}
+WARNS = "A step that is too long"
 
 
 @pytest.mark.parametrize(("title", "code"), PROGRAMS, ids=[title for title, _ in PROGRAMS])
 def test_a_program_runs_and_is_short(
-    title: str, code: str, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+    title: str, code: str, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    if "with_dataset" in code:
-        pytest.importorskip("xarray")
-    monkeypatch.chdir(ROOT)
     assert len([line for line in code.splitlines() if line.strip()]) <= MAX_LINES
-    exec(compile(code, title, "exec"), {})
+    compiled = compile(code, title, "exec")
+    for word, package in OPTIONAL.items():
+        if word in code:
+            pytest.importorskip(package)
+    (tmp_path / "assets").symlink_to(ROOT / "assets")
+    monkeypatch.chdir(tmp_path)
+    with warnings.catch_warnings(record=True) as caught:
+        exec(compiled, {})
+    assert any("diverged" in str(warning.message) for warning in caught) == (title == WARNS)
     said = capsys.readouterr().out
     assert said
     assert "nan" not in said
 
 
-def test_there_are_programs() -> None:
-    assert len(PROGRAMS) == 6
+def test_there_are_fifteen_programs() -> None:
+    assert len(PROGRAMS) == 15

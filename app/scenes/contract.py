@@ -6,7 +6,7 @@ To add a scene, add one folder here, named as the scene is on the command line:
    each declaring what its change affects, and `PRESETS`, name -> the values that differ from the defaults; the first
    preset is the defaults. `ABOUT` holds a sentence on each: what it shows and what to try.
 2. `scene.py`: the simulation, a class that satisfies `Scene`, and `SCENE = SceneKind(...)`. It imports no viewer.
-3. `view.py`: the drawing, a class `View` that satisfies `View` below and `warm_up()`. Only it and `*_view.py` beside it
+3. `view.py`: the drawing, a class `View` derived from `View` below, and `warm_up()`. Only it and `*_view.py` beside it
    import viser.
 
 The folder is found by being here: command line, panel, sweeps, benchmarks and tests take it up from there.
@@ -137,14 +137,15 @@ class Scene(Protocol[P, F_co, R_co]):
 class View(Protocol[P, F, R]):
     """The drawing of a scene, used on the viewer's thread only: `View(server, post)`, and `post` takes commands.
 
-    FIELD_OF_VIEW: of a new camera, vertical [rad].
+    FIELD_OF_VIEW: of a new camera, vertical [rad]. CAMERA: position and target [m] of a camera that has not been moved.
     """
 
     FIELD_OF_VIEW: float
+    CAMERA: tuple[Vector, Vector]
 
     def first_view(self, params: P) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved, with these parameters."""
-        ...
+        return self.CAMERA
 
     def show(self, frame: F) -> None:
         """Assign a frame to the handles; called where a picture is handed over as one."""
@@ -156,23 +157,21 @@ class View(Protocol[P, F, R]):
 
     def readout(self, snapshot: Snapshot[P, F, R]) -> str:
         """HTML under the first controls: short, as the key of the colours."""
-        ...
+        return ""
 
     def marks(self, snapshot: Snapshot[P, F, R]) -> dict[str, str]:
         """Parameter -> the line under its control."""
-        ...
+        return {}
 
     def notes(self, snapshot: Snapshot[P, F, R]) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
-        ...
+        return {}
 
     def set_dark(self, client: "ClientHandle", dark: bool) -> None:
-        """Draw the surroundings of the scene dark, or light again, for one browser."""
-        ...
+        """Draw the surroundings of the scene dark, or light again, for one browser; a sea's light is a parameter."""
 
     def close(self) -> None:
         """Release callbacks and threads, which outlive the scene's nodes."""
-        ...
 
 
 class MethodParams(BaseParams, Protocol):

@@ -7,7 +7,7 @@ import viser
 
 from app.formats.formatting import number
 from app.formats.packing import compile_packing
-from app.messages import Snapshot, Vector
+from app.messages import Snapshot
 from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import PullLine, SurfaceDrag
@@ -19,6 +19,7 @@ from app.render.viser_inside import set_arrays
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.parameters import Params
 from app.scenes.contract import Pieces, PostCommand
+from app.scenes.contract import View as SceneView
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 
 CLOTH_COLOUR = (176, 58, 72)
@@ -53,7 +54,7 @@ def faces(rows: int, cols: int) -> np.ndarray:
 STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 100 mm."
 
 
-class View:
+class View(SceneView[Params, ClothFrame, ClothReadings]):
     """Draws `ClothFrame`s."""
 
     CAMERA = ((1.15, -2.15, 2.05), (0.42, 0.0, 1.3))  # position, target [m]
@@ -111,10 +112,6 @@ class View:
         if frame.colour == "plain":
             return np.tile(np.array(CLOTH_COLOUR, np.float32) / 255, (frame.strain.size, 1))
         return scale_colours(frame.strain.ravel().astype(np.float64), 0.0, frame.full_strain)
-
-    def first_view(self, params: Params) -> tuple[Vector, Vector]:
-        """Position and target [m] of a camera that has not been moved."""
-        return self.CAMERA
 
     def show(self, frame: ClothFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
@@ -197,16 +194,9 @@ class View:
         readings = snapshot.readings
         return {"integrator": readings.note, "time_step": step_mark(readings.stability.critical_step)}
 
-    def notes(self, snapshot: ClothSnapshot) -> dict[str, str]:
-        """No folders."""
-        return {}
-
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Draw sky and floor dark, or light again, for one browser."""
         set_dark(client, dark)
-
-    def close(self) -> None:
-        """Removing the nodes of the scene removes everything."""
 
 
 def warm_up() -> Pieces:

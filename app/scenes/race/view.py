@@ -17,6 +17,7 @@ from app.render.surroundings import set_dark
 from app.render.viser_inside import set_arrays, update_node
 from app.scenes.charts import PALETTE
 from app.scenes.contract import Pieces, PostCommand
+from app.scenes.contract import View as SceneView
 from app.scenes.race.entrants import RaceReadings
 from app.scenes.race.html import errors_line, results_table
 from app.scenes.race.parameters import Params
@@ -185,7 +186,7 @@ class RopesDrawing:
             handle.remove()
 
 
-class View:
+class View(SceneView[Params, RaceFrame, RaceReadings]):
     """Draws `RaceFrame`s."""
 
     FIELD_OF_VIEW = 0.06  # [rad], from so far away that all ropes look equally large
@@ -243,10 +244,6 @@ class View:
         """The ropes that are nearest to the reference and farthest from it."""
         return errors_line(snapshot.readings)
 
-    def readout(self, snapshot: RaceSnapshot) -> str:
-        """Nothing: the table of results has a folder of its own."""
-        return ""
-
     def marks(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest step of rope 1 that is stable."""
         step = snapshot.readings.results[0].gauge.critical_step
@@ -262,9 +259,6 @@ class View:
         (self.dark.add if dark else self.dark.discard)(client)
         if self.ropes is not None:
             self.ropes.set_dark(client, dark)
-
-    def close(self) -> None:
-        """Removing the nodes of the scene removes everything."""
 
 
 def warm_up() -> Pieces:

@@ -22,11 +22,12 @@ from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
 from app.render.water import Water
 from app.scenes.contract import Pieces
+from app.scenes.contract import View as SceneView
 from app.scenes.radial_sea.bodies import BODY_KINDS
 from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.fire_view import Flames
-from app.scenes.radial_sea.frame import RadialFrame
+from app.scenes.radial_sea.frame import RadialFrame, RadialReadings
 from app.scenes.radial_sea.materials import material_of, waterlines_of
 from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
@@ -64,7 +65,7 @@ def model(name: str) -> bytes:
     return importlib.resources.files("assets").joinpath(f"{name}.glb").read_bytes()
 
 
-class View:
+class View(SceneView[Params, RadialFrame, RadialReadings]):
     """Draws `RadialFrame`s."""
 
     CAMERA = ((-6.5, -7.5, 3.0), (3.9, 3.2, 1.0))  # position, target [m]
@@ -263,10 +264,6 @@ class View:
         body = snapshot.readings.bodies[0]
         return fill("{}: {} m deep in the water · {}", body.title, bold(fixed(body.draft, 2)), waves)
 
-    def readout(self, snapshot: Snapshot) -> str:
-        """Nothing: drafts and waves have a folder of their own."""
-        return ""
-
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
         """Parameter -> the line under its control."""
         return marks_of(snapshot)
@@ -274,12 +271,6 @@ class View:
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
         return {"Drafts and waves": readout_of(snapshot), **notes_of(snapshot)}
-
-    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
-        """Nothing to do: the light of a sea is that of its sky, a parameter."""
-
-    def close(self) -> None:
-        """Nothing to give back: removing the nodes removes everything."""
 
 
 def keel_of(frame: RadialFrame) -> float | None:

@@ -7,7 +7,7 @@ import viser
 
 from app.formats.formatting import number
 from app.formats.packing import compile_packing
-from app.messages import Snapshot, Vector
+from app.messages import Snapshot
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
@@ -17,6 +17,7 @@ from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
 from app.render.surroundings import set_dark
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
+from app.scenes.contract import View as SceneView
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import Params
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
@@ -42,7 +43,7 @@ COLOUR_TOLERANCE = 2e-3  # of the colour scale that a link may be from its drawn
 RopeSnapshot: TypeAlias = Snapshot[Params, RopeFrame, RopeReadings]
 
 
-class View:
+class View(SceneView[Params, RopeFrame, RopeReadings]):
     """Draws `RopeFrame`s."""
 
     CAMERA = ((-0.4, -4.3, 2.35), (-0.3, 0.0, 1.75))  # position, target [m]
@@ -134,10 +135,6 @@ class View:
         if self.painted != (frame.colour, frame.full_scale):
             return True
         return float(np.abs(frame.tension - self.tension).max()) >= COLOUR_TOLERANCE * frame.full_scale
-
-    def first_view(self, params: Params) -> tuple[Vector, Vector]:
-        """Position and target [m] of a camera that has not been moved."""
-        return self.CAMERA
 
     def show(self, frame: RopeFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
@@ -233,16 +230,9 @@ class View:
             text = "every stiffness is stable"
         return {"integrator": g.note, "time_step": step_mark(step), g.parameter: text}
 
-    def notes(self, snapshot: RopeSnapshot) -> dict[str, str]:
-        """No folders."""
-        return {}
-
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Draw sky and floor dark, or light again, for one browser."""
         set_dark(client, dark)
-
-    def close(self) -> None:
-        """Removing the nodes of the scene removes everything."""
 
 
 def bead_radius(points: np.ndarray) -> float:

@@ -21,8 +21,9 @@ from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
 from app.render.water import Water
 from app.scenes.contract import Pieces
+from app.scenes.contract import View as SceneView
 from app.scenes.square_sea import report
-from app.scenes.square_sea.frame import SeaFrame
+from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity, rain_settings
 from app.scenes.square_sea.rain_view import RainMesh
 from sim.particles.rain import rainfall
@@ -66,7 +67,7 @@ def rain_look(rate: float, gravity: float) -> tuple[tuple[float, float, float], 
     return (ring_flux(rate, gravity), length, speed), rainfall(rate, gravity).extinction
 
 
-class View:
+class View(SceneView[Params, SeaFrame, SeaReadings]):
     """Draws `SeaFrame`s."""
 
     FIELD_OF_VIEW = 0.65  # [rad]
@@ -207,10 +208,6 @@ class View:
             "Waves: {} m high, {} s apart", bold(number(waves.significant_height)), bold(number(waves.peak_period))
         )
 
-    def readout(self, snapshot: Snapshot) -> str:
-        """Nothing: the statistics have a folder of their own."""
-        return ""
-
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
         """Parameter -> the line under its control."""
         return report.marks(snapshot)
@@ -218,9 +215,6 @@ class View:
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
         return {"Waves, foam and rain": report.readout(snapshot)}
-
-    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
-        """Nothing to do: the light of a sea is that of its sky, a parameter."""
 
     def close(self) -> None:
         """Remove the click callback, which viser keeps when it removes the nodes of a scene."""

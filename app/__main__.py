@@ -110,6 +110,7 @@ def make_parser() -> argparse.ArgumentParser:
         help="in a checkout: compare with the other programs that are installed; with words of names: only with those",
     )
     bench.add_argument("--out", type=Path, metavar="DIR", help="write tables (CSV) and figures to this folder")
+    bench.add_argument("--students", type=int, metavar="N", help="of the benchmark class: 1 to 100 (default: 8)")
     bench.add_argument(
         "--compare", nargs=2, metavar=("A", "B"), help="measure two commits of this repository in turns instead"
     )
@@ -369,7 +370,7 @@ def run_bench(arguments: argparse.Namespace) -> int:
         return compare(arguments.names, tuple(arguments.compare), arguments.quick, arguments.out)
     from app.bench.command import run
 
-    return run(arguments.names, arguments.quick, arguments.peers, arguments.out)
+    return run(arguments.names, arguments.quick, arguments.peers, arguments.out, arguments.students)
 
 
 def run_stability(arguments: argparse.Namespace) -> int:

@@ -16,4 +16,4 @@ def places() -> dict[str, str]:
     packages = ["app.bench.cases", *(["benchmarks.cases"] if in_checkout() else [])]
     folders = {package: str(CHECKOUT.joinpath(*package.split("."))) for package in packages}
     found = {info.name: package for package in packages for info in pkgutil.iter_modules([folders[package]])}
-    return {name: f"{found[name]}.{name}" for name in sorted(found)}
+    return {name.rstrip("_"): f"{found[name]}.{name}" for name in sorted(found)}  # `class_` for the word `class`

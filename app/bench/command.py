@@ -16,6 +16,7 @@ from app.experiments import tables
 from app.formats import text_tables
 from sim.files import replacing
 from sim.parameters import choice_error
+from sim.validation import argument_error
 
 ELSEWHERE = "comparisons with C and other programs work in a checkout, where benchmarks/ lies"
 
@@ -25,12 +26,19 @@ def benchmarks() -> dict[str, ModuleType]:
     return {name: importlib.import_module(place) for name, place in places().items()}
 
 
-def run(names: list[str], quick: bool = False, peers: Sequence[str] | None = None, out: Path | None = None) -> int:
+def run(
+    names: list[str],
+    quick: bool = False,
+    peers: Sequence[str] | None = None,
+    out: Path | None = None,
+    students: int | None = None,
+) -> int:
     """Run the named benchmarks, or all; print their tables and, with `out`, write tables and figures there.
 
     peers: None, or words; then the ladders of other programs are measured too; with words only those that have one of
-    them in the names of task and peer, and nothing else. Returns the exit status, 0. Raises ValueError for an unknown
-    benchmark, words that no ladder has, an `out` that is not a folder, and for peers outside a checkout.
+    them in the names of task and peer, and nothing else. students: of the benchmark "class". Returns the exit status,
+    0. Raises ValueError for an unknown benchmark, students without "class", words that no ladder has, an `out` that is
+    not a folder, and for peers outside a checkout.
     """
     known = benchmarks()
     for name in names:
@@ -38,11 +46,13 @@ def run(names: list[str], quick: bool = False, peers: Sequence[str] | None = Non
             raise choice_error("bench", name, known, "" if in_checkout() else f"; {ELSEWHERE}")
     if peers is not None and not in_checkout():
         raise ValueError(f"--peers: {ELSEWHERE}")
+    if students is not None and "class" not in names:
+        raise argument_error("--students", students, "a number together with the benchmark class")
     tables.make_folder(out)
     print(tables.machine())
     for name in (names or known) if not peers else ():
         case = known[name]
-        found = {name: case.rows(quick)}
+        found = {name: case.rows(quick, students) if name == "class" else case.rows(quick)}
         if hasattr(case, "findings"):
             found[f"{name}_findings"] = case.findings(found[name])
         for title, rows in found.items():

@@ -84,3 +84,22 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
     assert "The top spring carries all nine points" in page.locator(".springtide-verdict").last.inner_text()
     assert tab.errors == []
     page.evaluate("address => history.replaceState(null, '', address)", address)
+
+
+def test_a_link_to_a_task_shows_its_tab_until_another_is_chosen(one_page: tuple[Viewer, Tab]) -> None:
+    """In a lab without a folder, whose first tab is another, also where the link opens another scene."""
+    lab, tab = one_page
+    lab.workbook = Workbook(TASKS)
+    tab.follow(lab, "rope")
+    address = tab.page.url
+    chosen = tab.page.locator('[role="tab"][aria-selected="true"]')
+    try:
+        tab.page.goto(f"{address}&task=3.3-3")
+        tab.wait(lambda: lab.panel.kind.name == "cloth" and chosen.all_inner_texts() == ["Lab"])
+        tab.show("View")
+        tab.page.wait_for_timeout(500)  # in which the page hears of new frames
+        assert chosen.all_inner_texts() == ["View"]
+    finally:
+        tab.page.evaluate("address => history.replaceState(null, '', address)", address)
+        lab.workbook = None
+        lab.loop.commands.put(Pause())

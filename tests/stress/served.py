@@ -6,7 +6,6 @@ import os
 import re
 import select
 import signal
-import struct
 import subprocess
 import sys
 import threading
@@ -16,9 +15,9 @@ from typing import Any
 
 import msgspec
 import viser
-import zstandard
 from websockets.sync.client import ClientConnection, connect
 
+from app.bench.pupil import decoded
 from tests.stress.clients import CAMERA
 
 STATUS_WORDS = 'class="springtide-panel"'  # in the panel's status line, and nowhere else
@@ -36,13 +35,6 @@ def join(port: int) -> ClientConnection:
     )
     connection.send(msgspec.msgpack.encode(CAMERA))
     return connection
-
-
-def decoded(message: bytes) -> list[dict[str, Any]]:
-    """The messages in one transmission of viser's: lengths, a compressed part, and arrays, which are left out."""
-    _, size = struct.unpack_from("<QQ", message)
-    inner = zstandard.ZstdDecompressor().decompress(message[16 : 16 + size])
-    return list(msgspec.msgpack.decode(inner)["messages"])
 
 
 class Watcher:

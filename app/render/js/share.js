@@ -60,7 +60,8 @@
     completeLinks();
     if (showsLab) {
       const found = [...document.querySelectorAll('[role="tab"]')].find((one) => one.textContent.trim() === "Lab");
-      if (found && found.ariaSelected !== "true") found.click();
+      const press = (kind) => found.dispatchEvent(new PointerEvent(kind, { bubbles: true, isPrimary: true, pointerId: 1 }));
+      if (found && found.ariaSelected !== "true") ["pointerdown", "pointerup"].forEach(press); // viser hears no click
     }
   }
 
@@ -157,7 +158,9 @@
   }
 
   for (const kind of ["pointerdown", "keydown"])
-    document.addEventListener(kind, ({ target }) => (showsLab &&= !target.closest?.('[role="tab"]')), true);
+    document.addEventListener(kind, ({ isTrusted, target }) => {
+      if (isTrusted && target.closest?.('[role="tab"]')) showsLab = false;
+    }, true);
   document.addEventListener("click", (event) => {
     const button = event.target instanceof Element && event.target.closest("button");
     if (!button) return;

@@ -1,0 +1,183 @@
+"""A class on one machine: a lab for each student, with a client that plays a lesson on the rope.
+
+The clients run in one process of their own, and its processor time is not counted. The first student comes to a
+machine where kernels are compiled; the others follow one after the other.
+"""
+
+import asyncio
+import itertools
+import math
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack, contextmanager
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from app.bench.pupil import Pupil
+from app.lab.folder import make_folder
+from app.lab.task import load_tasks
+from sim.validation import argument_error
+
+STUDENTS, QUICK_STUDENTS, MAX_STUDENTS = 8, 2, 100
+LESSON, QUICK_LESSON = 60.0, 15.0  # [s] that a student acts
+BETWEEN = 2.0  # [s] from one student's start to the next one's
+LIMIT = 0.2  # [s] for an answer, beyond which the table counts it as late
+ACTIONS = ("button", "value", "task", "saved function")
+Quantiles = tuple[float, float, float]
+
+
+class Result(NamedTuple):
+    """What a student's client has seen."""
+
+    answers: list[tuple[str, float]]
+    rate: float  # pictures a second
+    pace: float  # simulated time over real time while the rope ran
+
+
+class Usage(NamedTuple):
+    """Of one lab and its processes."""
+
+    private: float  # memory that no other process has [MB]
+    proportional: float  # that, and its fraction of what several have [MB]
+    seconds: float  # processor time so far [s]
+
+
+def rows(quick: bool = False, students: int | None = None) -> list[dict[str, Any]]:
+    """Starts, answers, pictures, memory and processor time of a class. Works on Linux only.
+
+    Raises ValueError for a number of students that is not allowed, or another system.
+    """
+    if not sys.platform.startswith("linux"):
+        raise argument_error("class", sys.platform, "Linux, which says how much memory processes share")
+    count = (QUICK_STUDENTS if quick else STUDENTS) if students is None else students
+    if not 1 <= count <= MAX_STUDENTS:
+        raise argument_error("--students", count, f"1 to {MAX_STUDENTS}")
+    lesson = QUICK_LESSON if quick else LESSON
+    with tempfile.TemporaryDirectory(prefix="springtide-") as place, ExitStack() as stack:
+        folders = [Path(place, f"student-{number}") for number in range(count)]
+        tasks = load_tasks()
+        for folder in folders:
+            make_folder(folder, tasks)
+        clients = stack.enter_context(ProcessPoolExecutor(1, get_context("spawn")))
+        starts, labs = [], []
+        for folder in folders:
+            began = time.monotonic()
+            labs.append(stack.enter_context(lab(folder)))
+            starts.append(time.monotonic() - began)
+            time.sleep(max(0.0, BETWEEN - starts[-1]))
+        ports = [port for _, port in labs]
+        playing = clients.submit(play, ports, folders, lesson)
+        time.sleep(0.25 * lesson)
+        before, began = [usage(pid) for pid, _ in labs], time.monotonic()
+        time.sleep(0.5 * lesson)
+        after, spent = [usage(pid) for pid, _ in labs], time.monotonic() - began
+        results = playing.result()
+    return [
+        {"what": f"{count} students: command to address [s]", **spread(starts)},
+        *(answer_row(action, results) for action in ACTIONS),
+        {"what": "answers later than 0.2 s [%]", "median": late(results)},
+        {"what": "pictures [1/s]", **spread([r.rate for r in results], least=True)},
+        {"what": "simulated over real time", **spread([r.pace for r in results], least=True)},
+        {"what": "processor of a lab [% of a core]", **spread(
+            [100.0 * (b.seconds - a.seconds) / spent for a, b in zip(before, after, strict=True)]
+        )},
+        {"what": "private memory of a lab [MB]", **spread([u.private for u in after])},
+        {"what": "memory of all labs [MB]", "median": sum(u.proportional for u in after)},
+        {"what": "processes waiting (load)", "median": os.getloadavg()[0]},
+    ]  # fmt: skip
+
+
+@contextmanager
+def lab(folder: Path) -> Iterator[tuple[int, int]]:
+    """A lab on a folder: its process, and its port."""
+    command = [sys.executable, "-m", "app", "lab", str(folder), "--no-open", "--port", "0"]
+    data = {"SPRINGTIDE_DATA": str(folder.with_name(f"{folder.name}-data"))}
+    server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, **data})
+    try:
+        assert server.stdout is not None
+        address = next(word for line in server.stdout for word in line.split() if word.startswith("http"))
+        yield server.pid, int(address.rpartition(":")[2])
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def play(ports: Sequence[int], folders: Sequence[Path], lesson: float) -> list[Result]:
+    """A lesson of one client for each lab; in a process of its own."""
+
+    async def all_of_them() -> list[Result]:
+        pupils = [Pupil(port, folder, seed) for seed, (port, folder) in enumerate(zip(ports, folders, strict=True))]
+        await asyncio.gather(*(pupil.attend(lesson) for pupil in pupils))
+        return [result_of(pupil) for pupil in pupils]
+
+    return asyncio.run(all_of_them())
+
+
+def result_of(pupil: Pupil) -> Result:
+    """Answers and rates of a client."""
+    frames = pupil.frames
+    # Steps between two status lines in which the clock of the rope went on: it is not paused, and was not set back.
+    steps = [(b[0] - a[0], b[1] - a[1]) for a, b in itertools.pairwise(pupil.clock) if b[1] > a[1]]
+    wall = sum(step[0] for step in steps)
+    gaps = [b - a for a, b in itertools.pairwise(frames)]
+    rate = 1.0 / statistics.median(gaps) if gaps else 0.0
+    return Result(pupil.answers, rate, sum(step[1] for step in steps) / wall if wall else math.nan)
+
+
+def answer_row(action: str, results: Sequence[Result]) -> dict[str, Any]:
+    """Answer times of one kind of action."""
+    times = [time if math.isfinite(time) else math.inf for r in results for name, time in r.answers if name == action]
+    return {"what": f"answer: {action} [s]", **spread(times)}
+
+
+def late(results: Sequence[Result]) -> float:
+    """Fraction of answers beyond the limit [%], without those to a saved file, which is tried first."""
+    times = [time for r in results for action, time in r.answers if action != "saved function"]
+    return 100.0 * sum(not time <= LIMIT for time in times) / max(1, len(times))
+
+
+def spread(values: Sequence[float], *, least: bool = False) -> dict[str, float]:
+    """Median, the value that 95 % do not exceed, and the largest; with `least`, from the other end."""
+    if not values:
+        return {"median": math.nan, "95 %": math.nan, "worst": math.nan}
+    ordered = sorted(values, reverse=least)
+    return {
+        "median": statistics.median(values),
+        "95 %": ordered[math.ceil(0.95 * len(ordered)) - 1],
+        "worst": ordered[-1],
+    }
+
+
+def usage(pid: int) -> Usage:
+    """Memory and processor time of a process and those that it has started."""
+    private = proportional = ticks = 0.0
+    for one in family(pid):
+        try:
+            lines = Path(f"/proc/{one}/smaps_rollup").read_text().splitlines()[1:]
+            fields = Path(f"/proc/{one}/stat").read_text().rpartition(")")[2].split()
+        except OSError:  # it has ended
+            continue
+        size = {line.partition(":")[0]: float(line.split()[1]) for line in lines}  # [kB]
+        private += size["Private_Clean"] + size["Private_Dirty"]
+        proportional += size["Pss"]
+        ticks += sum(map(int, fields[11:15]))  # of its own, and of its children that have ended
+    return Usage(private / 1e3, proportional / 1e3, ticks / os.sysconf("SC_CLK_TCK"))
+
+
+def family(pid: int) -> list[int]:
+    """A process and all that descend from it."""
+    found = [pid]
+    for one in found:
+        for path in Path(f"/proc/{one}/task").glob("*/children"):
+            try:
+                found += map(int, path.read_text().split())
+            except OSError:  # the thread has ended
+                continue
+    return found

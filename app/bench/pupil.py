@@ -1,0 +1,160 @@
+"""A student without a browser: a websocket client of a lab that presses, sets, opens tasks and saves functions."""
+
+import asyncio
+import contextlib
+import random
+import re
+import struct
+import time
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import websockets
+import zstandard
+from websockets.asyncio.client import ClientConnection, connect
+
+from app.bench.listener import CAMERA
+
+STATUS = re.compile(r'data-state="(\w+)".*? t = ([\d.]+) s')
+STIFFNESS = "Stiffness [N/m]"
+TASKS = ("3.2-1", "3.2-2", "3.2-3", "3.3-1")  # of the rope
+PAUSE = (1.0, 5.0)  # [s] between two actions
+ANSWER_LIMIT = 30.0  # [s] after which an action counts as not answered
+SPRING_FORCE = """# version {number}
+import numpy as np
+
+def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):
+    r = x2 - x1
+    length = np.linalg.norm(r)
+    return stiffness * (length - rest_length) * r / length - damping * (v1 - v2)
+"""
+
+
+def decoded(message: bytes) -> list[dict[str, Any]]:
+    """The messages in one transmission of viser's: lengths, a compressed part, and arrays, which are left out."""
+    _, size = struct.unpack_from("<QQ", message)
+    inner = zstandard.ZstdDecompressor().decompress(message[16 : 16 + size])
+    return list(msgspec.msgpack.decode(inner)["messages"])
+
+
+class Pupil:
+    """One client. Answers are in `answers`: (action, time [s]); NaN for none within `ANSWER_LIMIT`."""
+
+    def __init__(self, port: int, folder: Path, seed: int) -> None:
+        self.port, self.folder, self.random = port, folder, random.Random(seed)
+        self.answers: list[tuple[str, float]] = []
+        self.frames: list[float] = []  # [s] when a picture came
+        self.clock: list[tuple[float, float]] = []  # [s] when a status line came, and the simulated time in it
+        self.controls: dict[str, str] = {}  # label of a control or command -> uuid
+        self.state = ""  # "running" or "paused"
+        self.headline = ""  # on the student's files
+        self.task = ""  # as the list of tasks shows it
+        self.label = ""  # of the newest control
+        self.slider: Any = None  # of the stiffness
+        self.saves = 0
+        self.news = asyncio.Event()
+
+    async def attend(self, seconds: float) -> None:
+        """Join the lab, and act for so long."""
+        protocol = websockets.Subprotocol(f"viser-v{version('viser')}")
+        async with connect(f"ws://127.0.0.1:{self.port}", subprotocols=[protocol], max_size=None) as socket:
+            reading = asyncio.ensure_future(self.read(socket))
+            await socket.send(msgspec.msgpack.encode(CAMERA))
+            async with asyncio.timeout(ANSWER_LIMIT):
+                while not {"Play or pause", STIFFNESS, "From the page", "Task"} <= self.controls.keys():
+                    await self.hear()
+            end = time.monotonic() + seconds
+            actions = (self.press, self.press, self.set_value, self.set_value, self.open_task, self.save)
+            while time.monotonic() < end:
+                await asyncio.sleep(self.random.uniform(*PAUSE))
+                await self.random.choice(actions)(socket)
+            reading.cancel()
+
+    async def hear(self) -> None:
+        """Wait for the next message."""
+        self.news.clear()
+        await self.news.wait()
+
+    async def read(self, socket: ClientConnection) -> None:
+        """Take in what comes."""
+        async for message in socket:
+            assert isinstance(message, bytes)
+            now, is_frame = time.monotonic(), False
+            for part in decoded(message):
+                is_frame = is_frame or part["type"] == "SceneNodeUpdateMessage"
+                self.learn(part, now)
+            if is_frame:
+                self.frames.append(now)
+            self.news.set()
+
+    def learn(self, message: dict[str, Any], now: float) -> None:
+        """Note a control, its value, or a text of the panel."""
+        uuid, props = message.get("uuid", ""), message.get("props") or {}
+        updates = message.get("updates") or {}
+        if message["type"] == "GuiMultiSliderMessage":
+            self.controls[f"slider of {self.label}"] = uuid
+        elif props.get("label"):
+            self.label = props["label"]
+            self.controls[self.label] = uuid
+        value = updates.get("value", message.get("value"))
+        if uuid == self.controls.get("Task"):
+            self.task = value or self.task
+        elif uuid == self.controls.get(f"slider of {STIFFNESS}"):
+            self.slider = value or self.slider
+        text = str(updates.get("content") or props.get("content") or "")
+        if found := STATUS.search(text):
+            self.state = found[1]
+            self.clock.append((now, float(found[2])))
+        elif "Your code:" in text:
+            self.headline = text
+
+    async def act(self, action: str, change: Callable[[], Any], seen: Callable[[], bool]) -> None:
+        """Do something, and note how long it took until it was seen."""
+        start = time.monotonic()
+        await change()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(ANSWER_LIMIT):
+                while not seen():
+                    await self.hear()
+        self.answers.append((action, time.monotonic() - start if seen() else float("nan")))
+
+    async def send(self, socket: ClientConnection, control: str, value: str) -> None:
+        """Send the value of a control."""
+        uuid = self.controls[control]
+        message = {"type": "GuiUpdateMessage", "uuid": uuid, "updates": {"value": value}}
+        await socket.send(msgspec.msgpack.encode(message))
+
+    async def press(self, socket: ClientConnection) -> None:
+        """Pause the rope, and let it go on, or the other way round."""
+        command = msgspec.msgpack.encode({"type": "CommandTriggerMessage", "uuid": self.controls["Play or pause"]})
+        for _ in range(2):
+            was = self.state
+            await self.act("button", lambda: socket.send(command), lambda was=was: self.state != was)
+
+    async def set_value(self, socket: ClientConnection) -> None:
+        """Change the stiffness in its field; the slider beside it follows."""
+        was, stiffness = self.slider, f"{self.random.uniform(400.0, 1200.0):.1f}"
+        await self.act("value", lambda: self.send(socket, STIFFNESS, stiffness), lambda: self.slider != was)
+
+    async def open_task(self, socket: ClientConnection) -> None:
+        """Follow a link to a task."""
+        item = self.random.choice([item for item in TASKS if item not in self.task])
+        await self.act(
+            "task", lambda: self.send(socket, "From the page", f"pupil\n?task={item}"), lambda: item in self.task
+        )
+
+    async def save(self, socket: ClientConnection) -> None:
+        """Save a function that works, after one with an error, and wait until each is noticed."""
+        del socket
+        for text, word in (("def spring_force(:\n", "stopped"), (SPRING_FORCE, "runs")):
+            self.saves += 1
+            await self.act(
+                "saved function",
+                lambda text=text: asyncio.to_thread(
+                    (self.folder / "rope.py").write_text, text.replace("{number}", str(self.saves)), "utf-8"
+                ),
+                lambda word=word: word in self.headline,
+            )

@@ -8,6 +8,7 @@ np.float64(1.0)
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +18,17 @@ from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_st
 from sim.floating.excitation import HullExcitation, plane_force
 from sim.floating.hydrodynamics import DIRECTIONS, lagrange, linear_hull
 from sim.validation import argument_error, as_array, check_finite, check_positive
+
+
+class LinearForces(NamedTuple):
+    """Of a body about its centre of gravity: (-w^2 (M + A) - i w B + C) xi = X in waves of amplitude 1 m."""
+
+    mass: np.ndarray  # M (6, 6) [kg, kg m, kg m2]
+    stiffness: np.ndarray  # C (6, 6) [N/m, N, N m], that of the waterline
+    added: np.ndarray  # A (n, 6, 6)
+    damping: np.ndarray  # B (n, 6, 6)
+    excitation: np.ndarray  # X (n, 6) complex [N/m, N]
+    centre: tuple[float, float, float]  # [m] of the centre of gravity at rest
 
 
 def response_amplitude(
@@ -32,6 +44,16 @@ def response_amplitude(
 
     Raises ValueError for a value that is not allowed, a body that sinks, or one with a trim.
     """
+    f = linear_forces(body, frequency, heading, layers, gravity)
+    w = np.asarray(frequency, dtype=float)[:, None, None]
+    D = f.stiffness - w * w * (f.mass + f.added) - 1j * w * f.damping
+    return np.linalg.solve(D, f.excitation[..., None])[..., 0]
+
+
+def linear_forces(
+    body: Body, frequency: ArrayLike, heading: float = 0.0, layers: Layers = SEA_WATER, gravity: float = 9.81
+) -> LinearForces:
+    """The terms of the equation that `response_amplitude` solves, with the same arguments and errors."""
     w = as_array("frequency", frequency, "finite numbers above 0 rad/s, shape (n,)")
     if w.ndim != 1 or not ((w > 0.0) & (w < math.inf)).all():
         raise argument_error("frequency", w.tolist(), "finite numbers above 0 rad/s, shape (n,)")
@@ -57,9 +79,6 @@ def response_amplitude(
     for density_step, plane in [*planes, (-fluid, planes[0][1])]:
         slope = math.cos(heading) * plane.slope[0] + math.sin(heading) * plane.slope[1]
         X += density_step * (plane.rise + 1j * k[:, None] * slope)
-    found, root = np.empty((len(w), 6), complex), math.sqrt(gravity)
-    for i, one in enumerate(w):
-        a, b = linear.at(one / root)
-        D = C - one * one * (mass + fluid * a) - 1j * one * fluid * root * b
-        found[i] = np.linalg.solve(D, gravity * X[i])
-    return found
+    root = math.sqrt(gravity)
+    added, damping = (fluid * np.array(part) for part in zip(*(linear.at(one / root) for one in w), strict=True))
+    return LinearForces(mass, C, added, root * damping, gravity * X, rest.position)

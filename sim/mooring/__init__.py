@@ -7,11 +7,12 @@ run = simulate(system, motion={2: lambda t: (0.5 * math.sin(t), 0.0, 0.0)}, dura
 
 from sim.mooring.gauge import critical_step
 from sim.mooring.moordyn import read_moordyn, write_moordyn
+from sim.mooring.moored import moored
 from sim.mooring.simulate import MooringRun, simulate
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.system import Body, Line, LineType, Point, System
 
 __all__ = [
     "Body", "Line", "LineType", "MooringRun", "Point", "Rest", "System", "at_rest", "critical_step",
-    "read_moordyn", "simulate", "write_moordyn",
+    "moored", "read_moordyn", "simulate", "write_moordyn",
 ]  # fmt: skip

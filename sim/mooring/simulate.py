@@ -62,10 +62,19 @@ class LineState:
         return bool(np.abs(self.x).max() < FARTHEST)
 
     def advance(
-        self, integrator: Integrator, h: float, steps: int, paths: NDArray[np.float64], with_account: bool = False
+        self,
+        integrator: Integrator,
+        h: float,
+        steps: int,
+        paths: NDArray[np.float64],
+        with_account: bool = False,
+        driven: Mapping[str, NDArray[np.float64]] | None = None,
     ) -> None:
-        """Advance by `steps` steps of h [s]; coupled points follow `paths`, (coupled points, 5, 3) of `PinPath`s."""
-        p = self.system.kernel_view(h)._replace(paths=paths)
+        """Advance by `steps` steps of h [s]; coupled points follow `paths`, (coupled points, 5, 3) of `PinPath`s.
+
+        driven: other fields of `LineArrays` that a caller changes as time passes, as `steady` or `waves`.
+        """
+        p = self.system.kernel_view(h)._replace(paths=paths, **(driven or {}))
         x, lag = self.x.reshape(-1), integrator.lag * h
         v = self.v.reshape(-1)
         v[:], self.lag = self.velocities(p, lag), lag

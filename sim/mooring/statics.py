@@ -99,11 +99,11 @@ def pull(x: NDArray[np.float64], p: LineArrays) -> tuple[NDArray[np.float64], fl
 
 
 def at_rest(system: "System", placed: dict[int, NDArray[np.float64]] | None = None) -> Rest:
-    """The static state, with points at their own places or at those in `placed`, by id.
+    """The static state without waves, with points at their own places or at those in `placed`, by id.
 
     Raises ValueError where no state of rest is found.
     """
-    p = system.kernel_view(1.0)
+    p = system.kernel_view(1.0)._replace(waves=np.zeros((9, 0)))
     x = first_guess(system, placed or {})
     force, scale = pull(x, p)
     # What nothing is stiff against, such as slack links, is held by a share of taut links' stiffness, less and less.

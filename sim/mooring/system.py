@@ -73,7 +73,7 @@ class Line(NamedTuple):
 class Body(NamedTuple):
     """A floating body of linear theory about its place of rest without lines: M q'' + B q' + C q = forces.
 
-    q: displacement [m] and small rotation [rad] about `place`. mass holds the added mass. Waves act on its lines only.
+    q: displacement [m] and small rotation [rad] about `place`. mass holds the added mass. `moored` makes it of a hull.
     """
 
     id: int
@@ -81,6 +81,9 @@ class Body(NamedTuple):
     mass: NDArray[np.float64]  # (6, 6) [kg, kg m, kg m^2]
     stiffness: NDArray[np.float64]  # (6, 6) [N/m, N, N m]
     damping: NDArray[np.float64] | None = None  # (6, 6)
+    # (waves, 6) complex [N/m, N]: each of the system's waves pushes by a Re(X exp(i theta)) where the body is; None: 0
+    excitation: NDArray[np.complex128] | None = None
+    steady: Sequence[float] = (0.0,) * 6  # [N, N m] force and moment that stay
 
 
 @dataclasses.dataclass(frozen=True)
@@ -115,7 +118,7 @@ class System:
         check_vector("current", self.current, "m/s")
         check_ids("bodies", self.bodies)
         for body in self.bodies:
-            check_body(body)
+            check_body(body, 0 if self.waves is None else len(self.waves.kx))
         check_ids("points", self.points)
         for point in self.points:
             self.check_point(point)
@@ -255,8 +258,21 @@ class System:
             carried=carried,
             arms=arms,
             bodies=rows,
+            steady=np.array([body.steady for body in self.bodies], dtype=np.float64).reshape(-1, 6),
+            excitation=self.excitations(waves.shape[1]),
             stop=stop_request(),
         )
+
+    def excitations(self, waves: int) -> NDArray[np.float64]:
+        """`excitation` of the kernels' view, of so many waves; none where no wave pushes a body."""
+        if all(body.excitation is None for body in self.bodies):
+            return np.zeros((len(self.bodies), 12, 0))
+        found = np.zeros((len(self.bodies), 12, waves))
+        for b, body in enumerate(self.bodies):
+            if body.excitation is not None:
+                X = np.asarray(body.excitation).T
+                found[b] = np.concatenate((X.real, X.imag))
+        return found
 
     def body_rows(self, mass: NDArray[np.float64]) -> tuple[Any, Any, Any]:
         """`carried`, `arms` and `bodies` of the kernels' view; a body's mass includes its fairleads' nodes."""
@@ -306,8 +322,8 @@ def check_type(kind: LineType) -> None:
         check_number(f"{name}: {field}", getattr(kind, field), 0, math.inf, "")
 
 
-def check_body(body: Body) -> None:
-    """Raises ValueError for matrices that no body has."""
+def check_body(body: Body, waves: int) -> None:
+    """Raises ValueError for matrices that no body has, and forces that are not those of so many waves."""
     check_vector(f"body {body.id}: place", body.place, "m")
     for field in ("mass", "stiffness", "damping"):
         matrix = getattr(body, field)
@@ -321,3 +337,8 @@ def check_body(body: Body) -> None:
         least = np.linalg.eigvalsh(matrix)[0]
         if least < -1e-9 * np.abs(matrix).max(initial=0.0) or (field == "mass" and least <= 0.0):
             raise argument_error(f"body {body.id}: {field}", least, "a matrix without negative eigenvalues")
+    check_vector(f"body {body.id}: steady", body.steady, "N, N m", 6)
+    if body.excitation is not None:
+        X = np.asarray(body.excitation)
+        if X.shape != (waves, 6) or not np.isfinite(X).all():
+            raise argument_error(f"body {body.id}: excitation", X.shape, f"finite numbers of shape ({waves}, 6)")

@@ -88,12 +88,12 @@ def damping_matrix(x: Array, p: LineArrays) -> Array:
 
 
 def forces_on_free(forces: Array, x: Array, p: LineArrays) -> Array:
-    """Forces (3, nodes) on all nodes in free coordinates, with the bodies' own stiffness."""
+    """Forces (3, nodes) on all nodes in free coordinates, with the bodies' own stiffness and steady forces."""
     flat = forces.reshape(-1)
     carried, moves = carried_coordinates(p)
     six = moves.T @ flat[carried]
     for b, row in enumerate(p.bodies):
-        six[6 * b : 6 * b + 6] -= row[STIFFNESS : STIFFNESS + 36].reshape(6, 6) @ six_of(x, p, b)
+        six[6 * b : 6 * b + 6] += p.steady[b] - row[STIFFNESS : STIFFNESS + 36].reshape(6, 6) @ six_of(x, p, b)
     return np.concatenate((flat[free_coordinates(p)], six))
 
 

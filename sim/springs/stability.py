@@ -347,8 +347,11 @@ def gauge(net: Net, integrator: str | Integrator, h: float, state: State, modes:
 
     modes: the `top_modes` of the state, where they are known.
     """
-    record = integrator_named(integrator)
-    modes = modes_at(net, state) if modes is None else modes
+    return gauge_of(modes_at(net, state) if modes is None else modes, integrator_named(integrator), h)
+
+
+def gauge_of(modes: list[Mode], record: Integrator, h: float) -> Gauge:
+    """h omega of the mode nearest to its limit at step h [s], and that limit; of no modes there is none."""
     if not modes:
         return Gauge(0.0, 0.0, 0.0, math.inf, math.inf)
     mode = min(modes, key=lambda mode: step_limit(mode, record))

@@ -47,4 +47,6 @@ class LineArrays(NamedTuple):
     carried: NDArray[np.int64]  # (fairleads, 2): node, body
     arms: NDArray[np.float64]  # (fairleads, 3) [m] from the body's reference point
     bodies: NDArray[np.float64]  # (bodies, 147): inverse mass, mass, stiffness and damping matrix; place at rest [m]
+    steady: NDArray[np.float64]  # (bodies, 6) [N, N m] steady forces on bodies
+    excitation: NDArray[np.float64]  # (bodies, 12, waves) [N/m, N]: real, then imaginary part of X, see `wave_force`
     stop: NDArray[np.int64]  # (2,) that ends a long solve, see sim.interruption

@@ -34,7 +34,7 @@ from sim.springs.lines.arrays import (
     PLACE,
     STIFFNESS,
 )
-from sim.wave_motion import flow_at
+from sim.wave_motion import flow_at, sincos_turns
 
 TINY = 1e-300  # [m^2] under the root: coincident nodes have no direction, and no force
 
@@ -291,18 +291,38 @@ def set_six(y, n, j, q):
     y[j], y[n + j], y[2 * n + j], y[k], y[n + k], y[2 * n + k] = q
 
 
+@kernel(allocates=False)
+def wave_force(x, t, p, b):
+    """Steady force and that of waves on body b: a Re(X exp(i theta)) of each wave, theta where the body is now."""
+    n, j, w = p.cols, p.nodes + 2 * b, p.excitation[b]
+    px, py = p.bodies[b, PLACE] + x[j], p.bodies[b, PLACE + 1] + x[n + j]
+    f = p.steady[b]
+    s0, s1, s2, s3, s4, s5 = f[0], f[1], f[2], f[3], f[4], f[5]
+    for i in range(w.shape[1]):
+        c, s = sincos_turns(p.waves[0, i] * px + p.waves[1, i] * py + p.waves[2, i] - p.waves[3, i] * t)
+        c, s = p.waves[8, i] * c, p.waves[8, i] * s
+        s0 += w[0, i] * c - w[6, i] * s
+        s1 += w[1, i] * c - w[7, i] * s
+        s2 += w[2, i] * c - w[8, i] * s
+        s3 += w[3, i] * c - w[9, i] * s
+        s4 += w[4, i] * c - w[10, i] * s
+        s5 += w[5, i] * c - w[11, i] * s
+    return s0, s1, s2, s3, s4, s5
+
+
 @kernel(noalias=True, allocates=False)
-def accelerate_bodies(x, v, p, with_damping, f, a):
-    """Accelerations of bodies, by their lines' forces in f and their own stiffness and damping."""
+def accelerate_bodies(x, v, t, p, with_damping, f, a):
+    """Accelerations of bodies, by their lines' forces in f, waves, and their own stiffness and damping."""
     n = p.cols
     for b in range(p.bodies.shape[0]):
         j, s = p.nodes + 2 * b, 1.0 if with_damping else 0.0
         k, d = matrix_times(p, b, STIFFNESS, *six(x, n, j)), matrix_times(p, b, DAMPING, *six(v, n, j))
+        e = wave_force(x, t, p, b)
         set_six(
             f, n, j,
             (
-                -k[0] - s * d[0], -k[1] - s * d[1], -k[2] - s * d[2],
-                -k[3] - s * d[3], -k[4] - s * d[4], -k[5] - s * d[5],
+                e[0] - k[0] - s * d[0], e[1] - k[1] - s * d[1], e[2] - k[2] - s * d[2],
+                e[3] - k[3] - s * d[3], e[4] - k[4] - s * d[4], e[5] - k[5] - s * d[5],
             ),
         )  # fmt: skip
     for i in range(p.carried.shape[0]):
@@ -338,7 +358,7 @@ def accelerate_lines(x, v, t, p, with_damping, f, a):
     set_forces(x, v, t, p, with_damping, f)
     for j in range(p.nodes):
         a[j], a[n + j], a[2 * n + j] = over_mass(f, n, j, f[j], f[n + j], f[2 * n + j])
-    accelerate_bodies(x, v, p, with_damping, f, a)
+    accelerate_bodies(x, v, t, p, with_damping, f, a)
 
 
 @kernel(inline=True)

@@ -1,0 +1,1 @@
+"""The mooring: a floating body on lines between the bed and the water's surface."""

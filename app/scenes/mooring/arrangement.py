@@ -1,0 +1,148 @@
+"""The mooring that the parameters describe: sea, body, anchors, fairleads and lines as a `System`."""
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import Vector, vector_of
+from app.scenes.mooring.parameters import Params
+from sim import floating
+from sim.mooring import Body, Line, LineType, Point, System, moored
+from sim.ocean.gerstner import Waves, draw_waves
+from sim.ocean.kinematics import Components, components_of
+from sim.ocean.spectra import SPECTRA
+
+GRAVITY, DENSITY = 9.81, 1025.0  # [m/s2], [kg/m3]
+WAVE_COUNT = 16  # of an irregular sea: each node feels each of them
+BODY = 1
+BODY_DRAG = 1.0  # coefficient of drag on the wet side of the body
+HEIGHT_OVER_WIDTH = 0.55  # of a buoy and of a box
+BOX_LENGTH = 1.6  # of a box, over its width
+FLOATING_PART = 0.4, 0.65  # of the length from the anchor: where floats are
+
+
+class Places(NamedTuple):
+    """What a user may move."""
+
+    anchors: tuple[Vector, ...]  # [m]
+    fairleads: tuple[Vector, ...]  # [m] from the body's centre
+
+
+def hull_of(params: Params) -> floating.Hull:
+    """The body's hull."""
+    width, height = params.size, HEIGHT_OVER_WIDTH * params.size
+    if params.body == "buoy":
+        return floating.Hull.cylinder(0.5 * width, height)
+    return floating.Hull.box(BOX_LENGTH * width, width, height)
+
+
+def bearings(params: Params) -> NDArray[np.float64]:
+    """Where the lines lead to (lines,) [rad]; the first against the waves."""
+    return math.radians(params.direction) + math.pi * (1.0 + 2.0 * np.arange(params.lines) / params.lines)
+
+
+def first_places(params: Params) -> Places:
+    """Anchors and fairleads that nobody has moved."""
+    (x, y, z), _ = np.abs(hull_of(params).extents).T
+    anchors, fairleads = [], []
+    for bearing in bearings(params):
+        c, s = math.cos(bearing), math.sin(bearing)
+        anchors.append((params.reach * c, params.reach * s, -params.depth))
+        # On the lower edge of the hull.
+        rim = min(x, y) if params.body == "buoy" else min(x / max(abs(c), 1e-9), y / max(abs(s), 1e-9))
+        fairleads.append((rim * c, rim * s, -float(z)))
+    return Places(tuple(anchors), tuple(fairleads))
+
+
+def sea_of(params: Params) -> Components | None:
+    """The waves, all in one direction; None for a level sea."""
+    if params.wave_height == 0.0:
+        return None
+    spectrum = SPECTRA["sea_state"]
+    conditions = spectrum.conditions(hs=params.wave_height, tp=params.wave_period, depth=params.depth)
+    c, s = math.cos(math.radians(params.direction)), math.sin(math.radians(params.direction))
+    if params.regular:
+        k = conditions.wavenumber(2.0 * math.pi / params.wave_period)
+        drawn = Waves(*(np.array([value]) for value in (k, 0.0, 0.5 * params.wave_height, 0.0)))
+    else:
+        drawn = draw_waves(spectrum, conditions, WAVE_COUNT)
+    return components_of(Waves(drawn.k * c, drawn.k * s, drawn.amplitude, drawn.phase), conditions)
+
+
+def heights(sea: Components | None, along: NDArray[np.float64], t: float, fade: float) -> NDArray[np.float64]:
+    """Height of the water [m] at distances (n,) [m] along the direction of the waves at time t [s]; fade: of all."""
+    if sea is None:
+        return np.zeros_like(along)
+    k = np.hypot(sea.kx, sea.ky)
+    phase = np.outer(along, k) + 2.0 * math.pi * sea.phase - sea.omega * t
+    return fade * (np.cos(phase) @ sea.amplitude)
+
+
+def line_types(params: Params) -> tuple[LineType, LineType]:
+    """The line, and its part with floats."""
+    plain = LineType(
+        "line", params.diameter, params.line_mass, params.axial_stiffness, -params.line_damping, params.added_mass,
+        params.drag_across, 0.0, params.drag_along,
+    )  # fmt: skip
+    area = (params.line_mass + params.lift / GRAVITY) / DENSITY
+    return plain, plain._replace(name="line with floats", diameter=math.sqrt(4.0 * area / math.pi))
+
+
+def sections(params: Params) -> tuple[tuple[LineType, float, int], ...]:
+    """Of a line from its anchor: (type, length [m], segments) of each part."""
+    plain, lifted = line_types(params)
+    if not params.floats:
+        return ((plain, params.length, params.segments),)
+    ends = (0.0, *FLOATING_PART, 1.0)
+    at = [round(end * params.segments) for end in ends]
+    counts = [b - a for a, b in itertools.pairwise(at)]
+    types = plain, lifted, plain
+    return tuple((kind, params.length * n / params.segments, n) for kind, n in zip(types, counts, strict=True))
+
+
+def body_of(params: Params, sea: Components | None) -> Body:
+    """The body, with the forces of waves and the steady force."""
+    body = floating.Body(hull_of(params), density=params.density)
+    found = moored(BODY, body, 2.0 * math.pi / params.wave_period, sea, GRAVITY)
+    c, s = math.cos(math.radians(params.direction)), math.sin(math.radians(params.direction))
+    force = 1e3 * params.steady_force
+    return found._replace(steady=(force * c, force * s, 0.0, 0.0, 0.0, 0.0))
+
+
+def build(params: Params, places: Places, body: Body, sea: Components | None) -> System:
+    """The system. Anchors are points that are moved, since a user may drag them."""
+    # Drag on the body acts in the middle of its wet side.
+    draft = params.density / DENSITY * HEIGHT_OVER_WIDTH * params.size
+    points = [Point(1, "body", (0.0, 0.0, -0.5 * draft), drag_area=BODY_DRAG * params.size * draft, body=BODY)]
+    lines: list[Line] = []
+    parts = sections(params)
+    for i, (anchor, fairlead) in enumerate(zip(places.anchors, places.fairleads, strict=True)):
+        first = 10 * (i + 1)
+        points.append(Point(first, "coupled", anchor))
+        end = vector_of(np.add(body.place, fairlead))
+        points.append(Point(first + 9, "body", end, body=BODY))
+        for j, (kind, length, count) in enumerate(parts):
+            last = j == len(parts) - 1
+            if not last:
+                place = np.array(anchor) + (j + 1) / len(parts) * np.subtract(end, anchor)
+                points.append(Point(first + j + 1, "free", vector_of(place)))
+            lines.append(Line(first + j, kind, first + j, first + 9 if last else first + j + 1, length, count))
+    c, s = math.cos(math.radians(params.direction)), math.sin(math.radians(params.direction))
+    return System(
+        tuple(lines), tuple(points), params.depth, (body,), GRAVITY, DENSITY, friction=params.friction,
+        current=(params.current * c, params.current * s, 0.0), waves=sea,
+    )  # fmt: skip
+
+
+def nodes_and_links(system: System, params: Params) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Numbers of each line's nodes (lines, segments + 1) and links (lines, segments), from the anchor on."""
+    nodes, links = [], []
+    for i in range(params.lines):
+        ids = [10 * (i + 1) + j for j in range(len(sections(params)))]
+        chains = [system.nodes_of[one] for one in ids]
+        nodes.append(np.concatenate([chains[0], *(chain[1:] for chain in chains[1:])]))
+        links.append(np.concatenate([np.arange(system.links_of[one].start, system.links_of[one].stop) for one in ids]))
+    return np.array(nodes), np.array(links)

@@ -1,0 +1,53 @@
+"""Frames and readings of the mooring for its view and the panel, immutable."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import Vector
+from app.scenes.mooring.parameters import Params
+from sim.springs.stability import Gauge
+
+
+class MooringFrame(NamedTuple):
+    """Drawn state of a mooring."""
+
+    params: Params
+    time: float  # [s]
+    body: NDArray[np.float32]  # (3,) [m] the body's centre
+    rotation: NDArray[np.float32]  # (4,) its quaternion
+    points: NDArray[np.float32]  # (lines, n, 3) [m]
+    tension: NDArray[np.float32]  # (lines, n - 1) [N]
+    full_scale: float  # [N] tension at the end of the colour scale
+    surface: NDArray[np.float32]  # (m, m) [m] heights of the water
+    side: float  # [m] of the square that it covers, about the origin
+    path: NDArray[np.float32]  # (k, 2) [m] where the body has been
+    rest: tuple[float, float]  # [m] where it rests
+    offset: float  # [m] largest level distance from there
+    uplift: NDArray[np.bool_]  # (lines,) whether the anchor is pulled upwards
+    pull: Vector | None  # [m] where the mouse pulls the body to
+
+
+class LineReading(NamedTuple):
+    """One line."""
+
+    fairlead: float  # [N] tension
+    anchor: float  # [N]
+    most_at_fairlead: float  # [N] the largest since the start
+    most_at_anchor: float  # [N]
+    uplift: float  # [N] upward force on the anchor
+    most_uplift: float  # [N]
+    lying: float  # [m] of unstretched length on the bed
+    slack_since: float  # [s] of simulated time; NaN: the line is taut at the fairlead
+    slack_share: float  # of the time so far
+
+
+class MooringReadings(NamedTuple):
+    """Numbers for the panel."""
+
+    lines: tuple[LineReading, ...]
+    offset: float  # [m] level distance of the body from its place of rest
+    most_offset: float  # [m]
+    most_at: tuple[int, float]  # line, from 0, and time [s] of the largest tension
+    stability: Gauge

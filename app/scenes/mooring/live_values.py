@@ -1,0 +1,23 @@
+"""Values of the mooring for the tasks of the lab: tensions, slack and the limit of the step."""
+
+from app.messages import Snapshot
+from app.scenes.contract import Measure
+from app.scenes.mooring.frame import MooringReadings
+from app.scenes.springs.live_values import stability_values
+
+
+def live_values(snapshot: Snapshot) -> dict[str, Measure]:
+    """The numbers of a snapshot."""
+    readings: MooringReadings = snapshot.readings
+    first = readings.lines[0]
+    return stability_values(readings.stability) | {
+        "fairlead_tension": Measure(first.fairlead, "N", "Tension of line 1 at the fairlead"),
+        "anchor_tension": Measure(first.anchor, "N", "Tension of line 1 at the anchor"),
+        "largest_tension": Measure(
+            max(line.most_at_fairlead for line in readings.lines), "N", "Largest tension so far"
+        ),
+        "uplift": Measure(first.uplift, "N", "Upward force of line 1 on its anchor"),
+        "lying_length": Measure(first.lying, "m", "Length of line 1 on the bed"),
+        "slack_share": Measure(first.slack_share, "1", "Share of time that line 1 is slack"),
+        "offset": Measure(readings.offset, "m", "Level distance of the body from its place of rest"),
+    }

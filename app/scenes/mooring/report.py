@@ -1,0 +1,93 @@
+"""Texts of the mooring's panel."""
+
+import math
+
+from app.formats.formatting import metres, number, percent, seconds
+from app.messages import Snapshot
+from app.render.html import ERROR_COLOUR, Html, bold, coloured, faint, fill, join, table
+from app.scenes.mooring.frame import LineReading, MooringReadings
+from app.scenes.springs.html import colour_scale, stability_bar, step_mark
+
+
+def kilonewtons(force: float) -> str:
+    """A force [N] in kN."""
+    return number(1e-3 * force)
+
+
+def figures_of(snapshot: Snapshot) -> str:
+    """The largest tension so far, and the stability bar."""
+    found: MooringReadings = snapshot.readings
+    line, t = found.most_at
+    largest = max(one.most_at_fairlead for one in found.lines)
+    tension = fill(
+        '<div class="springtide-largest">Largest tension: {} kN, line {} at {}</div>',
+        bold(kilonewtons(largest)),
+        line + 1,
+        seconds(t),
+    )
+    return join((tension, stability_bar(found.stability)))
+
+
+def slack_text(found: LineReading, now: float) -> Html:
+    """Whether a line is slack, and since when."""
+    if math.isnan(found.slack_since):
+        return fill("{}", percent(found.slack_share) if found.slack_share > 0.0 else "never")
+    return coloured(f"since {seconds(now - found.slack_since)}", ERROR_COLOUR)
+
+
+def tension_table(snapshot: Snapshot) -> Html:
+    """Tensions now and their maxima, and slack, by line."""
+    found: MooringReadings = snapshot.readings
+    columns = (("Line", ""), ("Fairlead", "kN"), ("largest", "kN"), ("Anchor", "kN"), ("largest", "kN"))
+    rows = [
+        (i + 1, kilonewtons(one.fairlead), kilonewtons(one.most_at_fairlead), kilonewtons(one.anchor),
+         kilonewtons(one.most_at_anchor))
+        for i, one in enumerate(found.lines)
+    ]  # fmt: skip
+    return table(columns, rows)
+
+
+def bed_table(snapshot: Snapshot) -> Html:
+    """What lies on the bed, the uplift at the anchors, and slack, by line."""
+    found: MooringReadings = snapshot.readings
+    columns = (("Line", ""), ("Uplift", "kN"), ("largest", "kN"), ("On the bed", "m"), ("Slack", ""))
+    rows = [
+        (i + 1, kilonewtons(one.uplift), kilonewtons(one.most_uplift), number(one.lying),
+         slack_text(one, snapshot.frame.time))
+        for i, one in enumerate(found.lines)
+    ]  # fmt: skip
+    return table(columns, rows)
+
+
+def offset_text(snapshot: Snapshot) -> Html:
+    """Offset and watch circle."""
+    found: MooringReadings = snapshot.readings
+    return fill(
+        "<div>Offset {}, watch circle of {} radius</div>",
+        bold(metres(found.offset)),
+        bold(metres(found.most_offset)),
+    )
+
+
+def notes_of(snapshot: Snapshot) -> dict[str, str]:
+    """Heading -> HTML of the folders below the controls."""
+    said = faint("Slack: the share of time, or since when, in which the last segment is not stretched.")
+    return {
+        "Tensions": join((offset_text(snapshot), tension_table(snapshot))),
+        "Bed and slack": join((bed_table(snapshot), said)),
+    }
+
+
+def scale_of(snapshot: Snapshot) -> Html:
+    """The key of the colours."""
+    frame = snapshot.frame
+    scale = colour_scale(
+        "slack", "tension", f"{kilonewtons(frame.full_scale)} kN",
+        clipped=float(frame.tension.max()) > frame.full_scale,
+    )  # fmt: skip
+    return join((scale, faint("Brown: lies on the bed. Red anchor: it is pulled upwards.")))
+
+
+def marks_of(snapshot: Snapshot) -> dict[str, str]:
+    """Parameter -> the line under its control."""
+    return {"time_step": step_mark(snapshot.readings.stability.critical_step)}

@@ -1,0 +1,89 @@
+"""The static restoring curve: the force of all lines over the offset along the waves, and the force now."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.scenes.charts import Chart, lines_of
+from sim.interruption import raise_if_stopped
+from sim.mooring import Line, Point, System, at_rest
+
+if TYPE_CHECKING:
+    from app.scenes.mooring.scene import MooringScene
+
+SPANS = 24  # places at which a line's statics are solved
+POINTS = 41  # of the drawn curve
+SHARE = 0.35  # of the distance of the anchors, to either side
+
+
+class RestoringCurve:
+    """The curve of the arrangement as it was last asked for."""
+
+    def __init__(self) -> None:
+        self.made_of: object = None
+        self.curve: tuple[NDArray[np.float64], NDArray[np.float64]] = (np.zeros(0), np.zeros(0))  # [m], [N]
+
+    def chart(self, scene: "MooringScene") -> Chart:
+        """The chart; the curve is found again where anchors, fairleads or lines are others."""
+        key = scene.places, scene.params.direction, scene.system.lines
+        if key != self.made_of:
+            self.curve = static_curve(scene)
+            self.made_of = key
+        offset, force = self.curve
+        wave = direction_of(scene)
+        now = float((scene.body_place()[:2] - scene.rest_place) @ wave)
+        pull = -float(force_of_lines(scene) @ wave)
+        # A mark: a line from the axis to the force, at the offset now.
+        x = np.concatenate((offset, [now, now]))
+        static = np.concatenate((force, np.interp([now, now], offset, force)))
+        mark = np.concatenate((np.full(len(offset), math.nan), [0.0, pull]))
+        order = np.argsort(x, kind="stable")
+        columns = x[order], 1e-3 * static[order], 1e-3 * mark[order]
+        return Chart("Offset along the waves [m]", lines_of(("static", "now")), columns)
+
+
+def direction_of(scene: "MooringScene") -> NDArray[np.float64]:
+    """Unit vector (2,) along the waves."""
+    bearing = math.radians(scene.params.direction)
+    return np.array([math.cos(bearing), math.sin(bearing)])
+
+
+def force_of_lines(scene: "MooringScene") -> NDArray[np.float64]:
+    """Level force (2,) [N] of the lines on the body now."""
+    last = scene.points[:, -2] - scene.points[:, -1]
+    unit = last / np.maximum(np.linalg.norm(last, axis=1), 1e-12)[:, None]
+    return (scene.tension[:, -1:] * unit[:, :2]).sum(axis=0)
+
+
+def static_curve(scene: "MooringScene") -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Offsets [m] along the waves, and the force [N] against each: of each line alone, by its span."""
+    wave, system, p = direction_of(scene), scene.system, scene.params
+    offset = SHARE * p.reach * np.linspace(-1.0, 1.0, POINTS)
+    force = np.zeros(POINTS)
+    body = np.array([*scene.rest_place, scene.body.place[2]])
+    for i, (anchor, arm) in enumerate(zip(scene.places.anchors, scene.places.fairleads, strict=True)):
+        fairlead = body + arm
+        away = np.array(anchor)[:2] - fairlead[:2] - offset[:, None] * wave  # from the fairlead to the anchor
+        span = np.linalg.norm(away, axis=1)
+        at = np.linspace(span.min(), span.max() + 1e-6, SPANS)
+        lines = tuple(line for line in system.lines if line.id // 10 == i + 1)
+        level = np.array([level_tension(system, lines, one, float(fairlead[2] - anchor[2])) for one in at])
+        force -= np.interp(span, at, level) * (away @ wave) / np.maximum(span, 1e-9)
+    return offset, force
+
+
+def level_tension(system: System, lines: tuple[Line, ...], span: float, rise: float) -> float:
+    """Level part [N] of a line's tension at the fairlead, which is `rise` [m] over its anchor and `span` [m] away."""
+    raise_if_stopped()
+    first, last = lines[0].start, lines[-1].end
+    points = [
+        Point(first, "fixed", (0.0, 0.0, -system.depth)),
+        Point(last, "coupled", (span, 0.0, rise - system.depth)),
+    ]
+    points += [Point(line.end, "free", (0.5 * span, 0.0, 0.5 * rise - system.depth)) for line in lines[:-1]]
+    rest = at_rest(System(lines, tuple(points), system.depth, (), system.gravity, system.density))
+    end = rest.x[lines[-1].id]
+    way = end[-1] - end[-2]
+    return float(rest.tension[lines[-1].id][-1] * way[0] / np.linalg.norm(way))

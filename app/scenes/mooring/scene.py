@@ -1,0 +1,395 @@
+"""The mooring: a floating body on one to four lines in waves, between the bed and the water's surface."""
+
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, vector_of
+from app.scenes.charts import Chart, CurveAxes, PlotAxes
+from app.scenes.contract import Pieces, SceneKind
+from app.scenes.moments import copied, restore
+from app.scenes.mooring.arrangement import (
+    body_of,
+    build,
+    first_places,
+    heights,
+    hull_of,
+    line_types,
+    nodes_and_links,
+    sea_of,
+    sections,
+)
+from app.scenes.mooring.frame import MooringFrame, MooringReadings
+from app.scenes.mooring.live_values import live_values
+from app.scenes.mooring.measures import measures
+from app.scenes.mooring.parameters import ABOUT, EXPLICIT, MAX_LINES, PRESETS, Params, hidden
+from app.scenes.mooring.restoring import RestoringCurve
+from app.scenes.mooring.tensions import Tensions
+from app.scenes.plot_rows import PlotRows
+from app.scenes.springs.divergence import LastMoments, divergence_text, holding_step, leapfrog_alternative
+from app.scenes.springs.speed_advice import faster_steps
+from app.scenes.springs.tracking import CriticallyDampedTracker
+from sim.mooring import at_rest
+from sim.mooring.gauge import modes
+from sim.mooring.simulate import LineState
+from sim.mooring.statics import Rest
+from sim.springs import INTEGRATORS
+from sim.springs.lines.energy import set_tensions
+from sim.springs.stability import Gauge, Mode, gauge_of
+
+FRAME_INTERVAL = 1 / 30  # [s] between frames
+SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short
+FADE = 10.0  # [s] over which waves and current begin, as the mooring starts at rest
+MAX_SURFACE_POINTS = 49  # along a side of the drawn surface
+SURFACE_SIDE = 2.6  # of the drawn surface, in distances of the anchors
+MAX_PATH = 1200  # places of the body's path that are kept
+PATH_INTERVAL = 0.25  # [s]
+DRAG_RATE = 1.0  # [rad/s] natural frequency of the mouse's pull on the body
+MAX_TENSION_SCALE = 2.0  # end of the colour scale, in largest static tensions
+FARTHEST = 5.0  # in lengths of a line and distances of anchors, beyond which a run has diverged
+LINE_SERIES = tuple(f"line {i + 1}" for i in range(MAX_LINES))
+ANCHOR_SERIES = tuple(f"anchor {i + 1}" for i in range(MAX_LINES))
+SERIES = (*LINE_SERIES, "largest so far", *ANCHOR_SERIES, "offset")
+PLOTS = {
+    "plot_tension": PlotAxes("Tension", "kN", (*LINE_SERIES, "largest so far"), least=1.0),
+    "plot_anchor": PlotAxes("Tension at anchors", "kN", ANCHOR_SERIES, least=1.0),
+    "plot_offset": PlotAxes("Offset", "m", ("offset",), least=0.5),
+}
+CURVES = {"plot_restoring": CurveAxes("Restoring force", "kN", "Offset along the waves [m]", ("static", "now"))}
+CHANGING = (
+    "state", "system", "places", "tensions", "path", "most_offset", "rest_place", "anchors", "rest_scale", "body",
+    "sea", "nodes", "links", "step_modes",
+)  # fmt: skip
+
+
+class MooringScene:
+    """The mooring on the simulation thread; see `app.scenes.contract.Scene`."""
+
+    frame_interval = FRAME_INTERVAL
+    note = ""
+
+    def __init__(self, params: Params) -> None:
+        self.params = params
+        self.plot_rows = PlotRows(len(SERIES))
+        self.last_moments = LastMoments()
+        self.restoring = RestoringCurve()
+        self.reset()
+
+    @property
+    def step(self) -> float:
+        """Time step [s]."""
+        return self.params.time_step
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self.state.t
+
+    @property
+    def faster(self) -> str:
+        """Advice on a faster step."""
+        return faster_steps(INTEGRATORS[self.params.integrator], self.stability, "segments")
+
+    def reset(self) -> None:
+        """At rest in level water, with anchors and fairleads in their first places."""
+        p = self.params
+        self.places = first_places(p)
+        self.anchors = tuple(CriticallyDampedTracker(place) for place in self.places.anchors)
+        self.sea = sea_of(p)
+        self.body = body_of(p, self.sea)
+        self.system = build(p, self.places, self.body, self.sea)
+        # Still water: a current would carry away what lies, which only friction holds.
+        rest = at_rest(dataclasses.replace(self.system, current=(0.0, 0.0, 0.0)))
+        self.state = LineState(self.system, rest)
+        self.nodes, self.links = nodes_and_links(self.system, p)
+        self.rest_place = self.body_place()[:2].copy()
+        self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
+        self.hold: tuple[int, Vector] | None = None
+        self.path: list[tuple[float, float]] = []
+        self.most_offset = 0.0
+        self.assess_stability()
+        self.tensions = Tensions(p.lines)
+        self.measure()
+        self.plot_rows.restart()
+        self.last_moments.clear()
+
+    def change_forces(self, params: Params) -> None:
+        """Take parameters; the motion goes on."""
+        old, self.params = self.params, params
+        self.sea = sea_of(params)
+        self.body = body_of(params, self.sea)
+        self.take_system()
+        materials = (line_types(params), params.friction, params.wave_period)
+        if materials != (line_types(old), old.friction, old.wave_period):
+            self.assess_stability()
+        else:
+            self.stability = gauge_of(self.step_modes, INTEGRATORS[params.integrator], self.step)
+
+    def take_system(self) -> None:
+        """Go on with the mooring as it is arranged now."""
+        self.system = build(self.params, self.places, self.body, self.sea)
+        self.state.system = self.system
+
+    def assess_stability(self) -> None:
+        """Find the modes about the state, and with them the longest stable step."""
+        rest = Rest({}, {}, {}, self.state.x)
+        self.step_modes: list[Mode] = modes(self.system, rest)
+        self.stability: Gauge = gauge_of(self.step_modes, INTEGRATORS[self.params.integrator], self.step)
+
+    def handle(self, command: SceneCommand) -> None:
+        """Move an anchor or a fairlead, pull the body, or let go of it."""
+        match command:
+            case Place(thing, (x, y, z)):
+                kind, _, number = thing.partition(" ")
+                if not number.isdecimal() or not 1 <= int(number) <= self.params.lines:
+                    return
+                if kind == "anchor":
+                    self.move_anchor(int(number) - 1, (x, y))
+                elif kind == "fairlead":
+                    self.move_fairlead(int(number) - 1, (x, y, z))
+            case Grab(0, target, client) if self.hold is None or self.hold[0] == client:
+                self.hold = client, target
+            case Release(client) if self.hold is not None and self.hold[0] == client:
+                self.hold = None
+            case _:
+                pass
+
+    def move_anchor(self, line: int, place: tuple[float, float]) -> None:
+        """Move an anchor along the bed, no farther than its line reaches from the body's place of rest."""
+        longest = math.hypot(self.params.length, self.params.depth)
+        away = np.array(place) - self.rest_place
+        away *= min(1.0, longest / max(float(np.linalg.norm(away)), 1e-9))
+        x, y = (self.rest_place + away).tolist()
+        anchors = list(self.places.anchors)
+        anchors[line] = self.anchors[line].target = (x, y, -self.params.depth)
+        self.places = self.places._replace(anchors=tuple(anchors))
+
+    def move_fairlead(self, line: int, place: Vector) -> None:
+        """Move a fairlead on the body, within the box about its hull."""
+        arm = np.clip(np.subtract(place, self.body_place()), *hull_of(self.params).extents.T)
+        fairleads = list(self.places.fairleads)
+        fairleads[line] = vector_of(arm)
+        self.places = self.places._replace(fairleads=tuple(fairleads))
+        self.take_system()
+
+    def body_place(self) -> NDArray[np.float64]:
+        """(3,) [m] of the body's centre."""
+        return np.add(self.body.place, self.state.x[:, self.system.node_count])
+
+    def paths(self, duration: float) -> NDArray[np.float64]:
+        """(lines, 5, 3) of the anchors for `duration` [s], as `LineArrays` has them."""
+        t = self.state.t
+        paths = np.zeros((len(self.anchors), 5, 3))
+        for q, anchor in enumerate(self.anchors):
+            path = anchor.advance(t, duration)
+            paths[q, 0], paths[q, 4] = anchor.position, t
+            if path is not None:
+                paths[q, :4] = path[1]
+        return paths
+
+    def driven(self) -> dict[str, NDArray[np.float64]]:
+        """Fields of the kernels' view that change with time: waves and current that begin, the mouse's pull."""
+        p, found = self.system.kernel_view(self.step), {}
+        if self.time < FADE:
+            waves = p.waves.copy()
+            waves[[6, 8]] *= self.fade
+            found |= {"waves": waves, "current": self.fade * p.current}
+        if self.hold is not None:
+            found["steady"] = p.steady + self.mouse_pull()
+        return found
+
+    @property
+    def fade(self) -> float:
+        """Factor on waves and current, which begin smoothly."""
+        share = min(self.state.t / FADE, 1.0)
+        return share * share * (3.0 - 2.0 * share)
+
+    def mouse_pull(self) -> NDArray[np.float64]:
+        """(1, 6) [N, N m] critically damped, on the body."""
+        assert self.hold is not None
+        mass = float(self.body.mass[0, 0])
+        v = self.state.v[:, self.system.node_count]
+        force = mass * (DRAG_RATE**2 * (np.array(self.hold[1]) - self.body_place()) - 2.0 * DRAG_RATE * v)
+        limit = self.params.pull * self.params.density * hull_of(self.params).volume * self.system.gravity
+        force *= min(1.0, limit / max(float(np.linalg.norm(force)), 1e-9))
+        return np.concatenate((force, np.zeros(3)))[None]
+
+    def advance(self, steps: int) -> None:
+        """Take steps. Raises DivergenceError where the state leaves its bounds, and keeps the last good one."""
+        method, h = INTEGRATORS[self.params.integrator], self.step
+        piece = max(1, round(SAMPLE / h))
+        for first in range(0, steps, piece):
+            count = min(piece, steps - first)
+            good = copied({"state": self.state}, self.system)["state"]
+            self.state.advance(method, h, count, self.paths(h * count), driven=self.driven())
+            if not self.is_bounded():
+                self.state = good
+                raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
+            self.measure()
+        if self.plot_rows.is_due(self.time):
+            self.add_plot_row()
+
+    def is_bounded(self) -> bool:
+        """False once anything is not finite or is farther away than lines reach."""
+        p = self.params
+        far = FARTHEST * (p.length + p.reach + p.depth)
+        return bool(np.abs(self.state.x).max() < far)  # false of a NaN as well
+
+    def diagnosis(self) -> str:
+        """Cause of the divergence, and settings that would hold."""
+        method = INTEGRATORS[self.params.integrator]
+        return divergence_text(
+            self.time, method, self.step, self.stability, leapfrog_alternative(method, self.stability)
+        )
+
+    def measure(self) -> None:
+        """Take tensions, offset and path of the state."""
+        p, state = self.system.kernel_view(self.step), self.state
+        tension = np.empty(len(p.ends))
+        v = state.velocities(p, 0.0)
+        set_tensions(state.x.reshape(-1), v, p, tension)
+        self.tension, self.points = tension[self.links], np.moveaxis(state.x[:, self.nodes], 0, -1)
+        self.tensions.measure(state.t, self.tension, self.points)
+        place = self.body_place()
+        self.offset = float(np.linalg.norm(place[:2] - self.rest_place))
+        self.most_offset = max(self.most_offset, self.offset)
+        if state.t >= PATH_INTERVAL * len(self.path):
+            self.path.append((float(place[0]), float(place[1])))
+
+    def add_plot_row(self) -> None:
+        """Add tensions and offset at the scene's time."""
+        missing = (math.nan,) * (MAX_LINES - self.params.lines)
+        now = self.tensions
+        self.plot_rows.add(
+            self.time, *(1e-3 * now.fairlead).tolist(), *missing, 1e-3 * float(now.most_fairlead.max()),
+            *(1e-3 * now.anchor).tolist(), *missing, self.offset,
+        )  # fmt: skip
+
+    def lying(self) -> NDArray[np.float64]:
+        """(lines,) [m] of unstretched length on the bed."""
+        spacing = np.array([length / count for _, length, count in sections(self.params) for _ in range(count)])
+        down = self.points[:, :, 2] <= -self.params.depth
+        return np.where(down[:, :-1] & down[:, 1:], spacing, 0.0).sum(axis=1)
+
+    def readings(self) -> MooringReadings:
+        """Numbers for the panel."""
+        now = self.tensions
+        return MooringReadings(now.readings(self.lying()), self.offset, self.most_offset, now.most_at, self.stability)
+
+    def frame(self) -> MooringFrame:
+        """Frame to draw; kept for a while, to be shown again if the run diverges."""
+        p = self.params
+        x, y, z = (float(value) for value in self.state.x[:, self.system.node_count + 1])
+        half = 0.5 * math.hypot(x, y, z)
+        share = math.sin(half) / (2.0 * half) if half > 0.0 else 0.5
+        frame = MooringFrame(
+            params=p,
+            time=self.time,
+            body=self.body_place().astype(np.float32),
+            rotation=np.array([math.cos(half), share * x, share * y, share * z], np.float32),
+            points=self.points.astype(np.float32),
+            tension=self.tension.astype(np.float32),
+            full_scale=MAX_TENSION_SCALE * self.rest_scale,
+            surface=self.surface(),
+            side=SURFACE_SIDE * p.reach,
+            path=np.array(self.path[-MAX_PATH:], np.float32),
+            rest=(float(self.rest_place[0]), float(self.rest_place[1])),
+            offset=self.most_offset,
+            uplift=self.tensions.uplift > 0.0,
+            pull=None if self.hold is None else self.hold[1],
+        )
+        self.last_moments.add(self.time, frame, frame.points)
+        return frame
+
+    def surface(self) -> NDArray[np.float32]:
+        """Heights (m, m) [m] of the water about the origin."""
+        side = SURFACE_SIDE * self.params.reach
+        axis = np.linspace(-0.5 * side, 0.5 * side, MAX_SURFACE_POINTS)
+        along = np.linspace(-0.75 * side, 0.75 * side, 512)
+        bearing = math.radians(self.params.direction)
+        place = axis[:, None] * math.cos(bearing) + axis[None] * math.sin(bearing)
+        return np.interp(place, along, heights(self.sea, along, self.time, self.fade)).astype(np.float32)
+
+    def take_plot_rows(self) -> tuple[PlotRow, ...]:
+        """The plot rows since the last call."""
+        return self.plot_rows.take()
+
+    def curves(self) -> dict[str, Chart] | None:
+        """The static restoring curve, with the force of the lines now."""
+        if not self.params.plot_restoring:
+            return None
+        return {"plot_restoring": self.restoring.chart(self)}
+
+    def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
+        """The state for a file: name -> (array, unit)."""
+        place = self.state.x[:, self.system.node_count :]
+        return {
+            "x": (self.points.copy(), "m"),
+            "tension": (self.tension.copy(), "N"),
+            "body": (self.body_place(), "m"),
+            "rotation": (place[:, 1].copy(), "rad"),
+        }
+
+    def keep(self) -> dict[str, object]:
+        """Checkpoint: everything that changes."""
+        return copied({name: getattr(self, name) for name in CHANGING}, self.system, self.body, self.sea)
+
+    def resume(self, kept: object) -> None:
+        """Go on from a checkpoint of `keep`."""
+        restore(self, kept)
+        self.hold = None
+        self.state.system = self.system
+        self.stability = gauge_of(self.step_modes, INTEGRATORS[self.params.integrator], self.step)
+        self.measure()
+        self.plot_rows.resume()
+        self.last_moments.clear()
+
+
+def compile_with(method: str) -> None:
+    """Run the kernels of a method, and all that a scene calls."""
+    scene = MooringScene(Params(integrator=method, lines=1, segments=4, time_step=1e-4))
+    scene.advance(2)
+    scene.frame()
+    scene.readings()
+
+
+def warm_up() -> Pieces:
+    """What is compiled ahead: the first method."""
+    return {"leapfrog": lambda: compile_with("leapfrog")}
+
+
+def on_use() -> Pieces:
+    """The other methods."""
+    return {name: (lambda name=name: compile_with(name)) for name in EXPLICIT if name != "leapfrog"}
+
+
+def needs(params: Params) -> tuple[str, ...]:
+    """Compiled pieces that a scene with these parameters runs."""
+    return ("leapfrog",) if params.integrator == "leapfrog" else ("leapfrog", params.integrator)
+
+
+SCENE = SceneKind(
+    name="mooring",
+    title="Mooring",
+    help="<b>Drag the body</b>, or the arrows of anchors and fairleads.",
+    params=Params,
+    presets=PRESETS,
+    about=ABOUT,
+    make=MooringScene,
+    hidden=hidden,
+    warm_up=warm_up,
+    needs=needs,
+    warm_up_on_use=on_use,
+    series=SERIES,
+    plots=PLOTS,
+    curves=CURVES,
+    frame_units={
+        "points": "m", "body": "m", "rotation": "1", "tension": "N", "surface": "m", "path": "m", "uplift": "1",
+    },
+    measures=measures,
+    remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
+    live_values=live_values,
+)  # fmt: skip

@@ -1,0 +1,294 @@
+"""The mooring seen above and below the water: surface, bed, lines coloured by tension, body, anchors, watch circle."""
+
+from typing import Any, TypeAlias
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from app.formats.packing import compile_packing
+from app.messages import Snapshot, Vector
+from app.render.cameras import set_clipping
+from app.render.colormap import SCALE, set_tube_colours
+from app.render.coloured_mesh import ColouredMesh
+from app.render.dragging import PullLine, drag
+from app.render.gizmo import Gizmo
+from app.render.material import as_linear_bytes
+from app.render.meshes import ball, smooth_line, sweep, tube_faces
+from app.render.viser_inside import set_arrays
+from app.scenes.contract import Pieces, PostCommand
+from app.scenes.mooring.arrangement import hull_of
+from app.scenes.mooring.frame import MooringFrame, MooringReadings
+from app.scenes.mooring.parameters import MAX_LINES, Params
+from app.scenes.mooring.report import figures_of, marks_of, notes_of, scale_of
+
+SIDES = 6  # of a tube
+RING_COUNT = 90  # rings of a line, about
+TUBE_STEP = 2.0**-9  # [m] to which points of a tube are rounded for the page
+LINE_SIZE = 0.0035  # radius of a drawn line, in distances of the anchors: true ones could not be seen
+ANCHOR_SIZE, FAIRLEAD_SIZE = 0.02, 0.009  # radius, in the same
+ARROW_SIZE, SMALL_ARROW_SIZE = 0.12, 0.07
+CIRCLE_POINTS = 96
+MAX_DRAWN_PATH = 400  # places of the body's path
+WATER_COLOURS, WATER_OPACITY = ((8, 52, 96), (150, 205, 225)), 0.5  # of slopes away from the light, and towards it
+FULL_SLOPE = 0.3  # of the water, that has the second colour
+WATER_STEP = 2.0**-7  # [m] to which points of the water are rounded for the page
+BED_COLOUR, CELL_COLOUR, SECTION_COLOUR = (190, 172, 136), (164, 146, 112), (126, 108, 78)
+BODY_COLOUR, LYING_COLOUR = (236, 112, 40), (92, 66, 40)
+ANCHOR_COLOUR, LIFTED_COLOUR, FAIRLEAD_COLOUR = (50, 54, 62), (214, 40, 40), (30, 32, 38)
+WATCH_COLOUR, PATH_COLOUR, SHADOW_COLOUR = (200, 30, 60), (250, 250, 250), (120, 104, 78)
+BED_FADE = 4.0  # distance at which the bed ends, in distances of the anchors
+CELLS = (1.0, 2.0, 5.0)  # of the bed's lines, times a power of ten
+FAR_VIEW = 40.0  # where the picture ends, in distances of the anchors
+MooringSnapshot: TypeAlias = Snapshot[Params, MooringFrame, MooringReadings]
+Shape: TypeAlias = tuple[Any, ...]
+
+
+def linear(colour: tuple[int, int, int]) -> tuple[int, int, int]:
+    """A colour, sRGB, as batches take it."""
+    red, green, blue = (part / 255.0 for part in colour)
+    return as_linear_bytes((red, green, blue))
+
+
+def cell_of(reach: float) -> float:
+    """Distance [m] of the bed's lines: about ten to the anchors, and round."""
+    least = 0.1 * reach
+    power = 10.0 ** np.floor(np.log10(least))
+    return float(next((power * cell for cell in CELLS if power * cell >= least), 10.0 * power))
+
+
+class View:
+    """Draws `MooringFrame`s."""
+
+    FIELD_OF_VIEW = 0.8  # [rad]
+
+    def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
+        self.server, self.post = server, post
+        self.built: Shape = ()
+        self.nodes: list[Any] = []
+        scene = server.scene
+        scene.configure_environment_map("studio", background=False, environment_intensity=0.4)
+        scene.configure_default_lights(enabled=True, cast_shadow=False)
+        self.pull = PullLine(server)
+        self.gizmos = {
+            name: Gizmo(server, post, name, 1.0, position=(0.0, 0.0, 0.0), visible=False)
+            for i in range(1, MAX_LINES + 1)
+            for name in (f"anchor {i}", f"fairlead {i}")
+        }
+
+    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+        """Position and target [m] of a camera that has not been moved: beside the surface, which it sees edge on."""
+        far = max(params.reach, 1.2 * params.depth)
+        return (0.35 * far, -2.2 * far, 0.42 * far), (0.0, 0.0, -0.5 * params.depth)
+
+    def build(self, frame: MooringFrame) -> None:
+        """Make everything for another arrangement."""
+        for node in self.nodes:
+            node.remove()
+        p, scene = frame.params, self.server.scene
+        reach, (lines, n, _) = p.reach, frame.points.shape
+        set_clipping(self.server, 0.002 * reach, FAR_VIEW * reach)
+        cell = cell_of(reach)
+        self.bed = scene.add_grid(
+            "/bed", width=2 * reach, height=2 * reach, infinite_grid=True, cell_size=cell, section_size=5 * cell,
+            position=(0.0, 0.0, -p.depth), plane_opacity=1.0, fade_distance=BED_FADE * reach, shadow_opacity=0.0,
+            plane_color=BED_COLOUR, cell_color=CELL_COLOUR, section_color=SECTION_COLOUR,
+        )  # fmt: skip
+        self.samples = max(1, RING_COUNT // (n - 1))
+        rings = (n - 1) * self.samples + 1
+        self.radius = LINE_SIZE * reach
+        self.line = np.zeros((rings, 3))
+        self.vertices, self.rgb = np.zeros((2, rings * SIDES + 2, 3), np.float32)
+        faces = tube_faces(rings, SIDES)
+        self.tubes = []
+        for i in range(lines):
+            self.shape_tube(frame, i)
+            self.tubes.append(
+                ColouredMesh(
+                    self.server, f"/line_{i + 1}", self.vertices, faces, self.rgb, columns=SIDES, step=TUBE_STEP,
+                    side="double",
+                )
+            )  # fmt: skip
+        hull = hull_of(p)
+        self.body = scene.add_batched_meshes_simple(
+            "/body", hull.vertices.astype(np.float32), hull.faces.astype(np.uint32), flat_shading=True, lod="off",
+            batched_wxyzs=frame.rotation[None], batched_positions=frame.body[None],
+            batched_colors=linear(BODY_COLOUR),
+        )  # fmt: skip
+        self.body.on_drag("left")(self.on_body)
+        self.anchors = self.balls("/anchors", frame.points[:, 0], ANCHOR_SIZE * reach, ANCHOR_COLOUR)
+        self.fairleads = self.balls("/fairleads", frame.points[:, -1], FAIRLEAD_SIZE * reach, FAIRLEAD_COLOUR)
+        self.shadows = self.strokes("/shadows", lines * (n - 1), SHADOW_COLOUR, 2.0)
+        # On the water, and once more on the bed, where the body hides nothing.
+        self.watch = [
+            (part, self.strokes(f"/watch/{part}_{i}", 1, colour, width), height)
+            for i, height in enumerate((0.0, -p.depth + self.radius))
+            for part, colour, width in (("circle", WATCH_COLOUR, 3.5), ("path", PATH_COLOUR, 2.0))
+        ]
+        self.labels = [
+            scene.add_label(f"/number_{i + 1}", str(i + 1), position=tuple(place), anchor="bottom-center")
+            for i, place in enumerate((frame.points[:, 0] + (0.0, 0.0, 2 * ANCHOR_SIZE * reach)).tolist())
+        ]
+        rows = len(frame.surface)
+        axis = np.linspace(-0.5 * frame.side, 0.5 * frame.side, rows)
+        self.places = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
+        i, j = np.meshgrid(np.arange(rows - 1), np.arange(rows - 1), indexing="ij")
+        a = (i * rows + j).ravel()
+        corners = np.concatenate([np.stack([a, a + rows, a + 1], 1), np.stack([a + 1, a + rows, a + rows + 1], 1)])
+        vertices, colours = self.surface_of(frame)
+        self.water = ColouredMesh(
+            self.server, "/water", vertices, corners, colours, columns=rows, step=WATER_STEP,
+            color=WATER_COLOURS[0], opacity=WATER_OPACITY, side="double", cast_shadow=False, receive_shadow=False,
+        )  # fmt: skip
+        self.nodes = [
+            self.bed, *self.tubes, self.body, self.anchors, self.fairleads, self.shadows,
+            *(handle for _, handle, _ in self.watch), *self.labels, self.water,
+        ]  # fmt: skip
+        self.built = self.shape_of(frame)
+        self.lifted = np.zeros(lines, bool)
+
+    @staticmethod
+    def shape_of(frame: MooringFrame) -> Shape:
+        """What a drawing is made for."""
+        p = frame.params
+        return frame.points.shape, p.reach, p.depth, p.body, p.size, frame.surface.shape
+
+    def balls(self, name: str, places: NDArray[np.float32], radius: float, colour: tuple[int, int, int]) -> Any:
+        """A ball at each place (n, 3) [m]."""
+        vertices, faces = ball(6)
+        n = len(places)
+        return self.server.scene.add_batched_meshes_simple(
+            name, (radius * vertices).astype(np.float32), faces, lod="off",
+            batched_wxyzs=np.tile(np.array([1.0, 0.0, 0.0, 0.0], np.float32), (n, 1)), batched_positions=places,
+            batched_colors=np.tile(np.array(linear(colour), np.uint8), (n, 1)),
+        )  # fmt: skip
+
+    def strokes(self, name: str, count: int, colour: tuple[int, int, int], thickness: float) -> Any:
+        """So many pieces of a line."""
+        return self.server.scene.add_line_segments(
+            name, np.zeros((count, 2, 3), np.float32), colors=colour, thickness=thickness, thickness_units="screen"
+        )
+
+    async def on_body(self, event: Any) -> None:
+        """Pull the body."""
+        drag(self.post, event, 0)
+
+    def surface_of(self, frame: MooringFrame) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Vertices (m m, 3) [m] of the water and their colours, brighter where it slopes towards the light."""
+        z = frame.surface
+        across, along = np.gradient(z, frame.side / (len(z) - 1))
+        share = np.clip(0.5 - (across + along) / (2.0 * FULL_SLOPE), 0.0, 1.0).reshape(-1, 1)
+        dark, bright = np.array(WATER_COLOURS) / 255.0
+        vertices = np.column_stack([self.places, z.ravel()]).astype(np.float32)
+        return vertices, (dark + share * (bright - dark)).astype(np.float32)
+
+    def shape_tube(self, frame: MooringFrame, i: int) -> None:
+        """Compute the tube of line i: vertices, and colours by the tension, or brown where it lies on the bed."""
+        bed = -frame.params.depth
+        smooth_line(frame.points[i], self.samples, self.line)
+        lies = self.line[:, 2] <= bed + frame.params.diameter
+        # A line is drawn thicker than it is: what lies is drawn on the bed, not half in it.
+        self.line[:, 2] = np.maximum(self.line[:, 2], bed + self.radius)
+        sweep(self.line, self.radius, SIDES, self.vertices)
+        set_tube_colours(frame.tension[i], self.samples, frame.full_scale, SCALE, SIDES, self.rgb)
+        brown = np.array(LYING_COLOUR, np.float32) / 255
+        self.rgb[:-2].reshape(-1, SIDES, 3)[lies] = brown
+        self.rgb[-2:][lies[[0, -1]]] = brown
+
+    def show(self, frame: MooringFrame) -> None:
+        """Assign a new frame to the handles; call it where a picture is handed over as one."""
+        if self.shape_of(frame) != self.built:
+            self.build(frame)
+        p = frame.params
+        for i, tube in enumerate(self.tubes):
+            self.shape_tube(frame, i)
+            tube.set(self.vertices, self.rgb)
+        set_arrays(self.body, batched_positions=frame.body[None], batched_wxyzs=frame.rotation[None])
+        set_arrays(self.anchors, batched_positions=frame.points[:, 0])
+        set_arrays(self.fairleads, batched_positions=frame.points[:, -1])
+        if (frame.uplift != self.lifted).any():
+            self.lifted = frame.uplift
+            self.anchors.batched_colors = np.array(
+                [linear(LIFTED_COLOUR if one else ANCHOR_COLOUR) for one in self.lifted], np.uint8
+            )
+        shadows = frame.points.copy()
+        shadows[:, :, 2] = -p.depth + 0.3 * self.radius
+        set_arrays(self.shadows, points=np.stack([shadows[:, :-1], shadows[:, 1:]], axis=2).reshape(-1, 2, 3))
+        if self.water.mesh.visible != p.surface:
+            self.water.mesh.visible = p.surface
+        if p.surface:
+            self.water.set(*self.surface_of(frame))
+        thickness = 1.0 if p.grid else 0.0
+        if self.bed.cell_thickness != thickness:
+            self.bed.cell_thickness = self.bed.section_thickness = thickness
+        self.show_watch(frame)
+        self.show_handles(frame)
+        self.pull.show(None if frame.pull is None else (tuple(frame.body.tolist()), frame.pull))
+
+    def show_watch(self, frame: MooringFrame) -> None:
+        """The watch circle, and the path of the body."""
+        for _, handle, _ in self.watch:
+            if handle.visible != frame.params.watch:
+                handle.visible = frame.params.watch
+        if not frame.params.watch:
+            return
+        turn = 2 * np.pi * np.arange(CIRCLE_POINTS + 1) / CIRCLE_POINTS
+        ring = np.array(frame.rest) + frame.offset * np.column_stack([np.cos(turn), np.sin(turn)])
+        lines = {"circle": ring, "path": frame.path[-MAX_DRAWN_PATH:]}
+        for part, handle, height in self.watch:
+            line = lines[part]
+            if len(line) > 1:
+                level = np.column_stack([line, np.full(len(line), height)]).astype(np.float32)
+                set_arrays(handle, points=np.stack([level[:-1], level[1:]], axis=1))
+
+    def show_handles(self, frame: MooringFrame) -> None:
+        """The arrows of anchors and fairleads."""
+        p = frame.params
+        for i in range(MAX_LINES):
+            is_shown = p.handles and i < len(frame.points)
+            for kind, node, scale in (("anchor", 0, ARROW_SIZE), ("fairlead", -1, SMALL_ARROW_SIZE)):
+                gizmo = self.gizmos[f"{kind} {i + 1}"]
+                if is_shown and gizmo.handle.scale != scale * p.reach:
+                    gizmo.handle.scale = scale * p.reach
+                x, y, z = frame.points[i, node].tolist() if is_shown else (0.0, 0.0, 0.0)
+                gizmo.show((x, y, z) if is_shown else None)
+            if i < len(self.labels):
+                x, y, z = frame.points[i, 0].tolist()
+                place = x, y, z + 2 * ANCHOR_SIZE * p.reach
+                if tuple(self.labels[i].position) != place:
+                    self.labels[i].position = place
+
+    def figures(self, snapshot: MooringSnapshot) -> str:
+        """The largest tension, and the stability bar."""
+        return figures_of(snapshot)
+
+    def readout(self, snapshot: MooringSnapshot) -> str:
+        """The key of the colours."""
+        return scale_of(snapshot)
+
+    def marks(self, snapshot: MooringSnapshot) -> dict[str, str]:
+        """Parameter -> the line under its control."""
+        return marks_of(snapshot)
+
+    def notes(self, snapshot: MooringSnapshot) -> dict[str, str]:
+        """Heading -> HTML of the folders below the controls."""
+        return notes_of(snapshot)
+
+    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
+        """Nothing to do: bed and water look the same."""
+
+    def close(self) -> None:
+        """Nothing to give back: removing the nodes removes everything."""
+
+
+def warm_up() -> Pieces:
+    """Call the kernels of the drawing."""
+    return {"drawing": compile_drawing, "packing": compile_packing}
+
+
+def compile_drawing() -> None:
+    """Draw a line of two points."""
+    line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
+    smooth_line(np.zeros((2, 3), np.float32), 2, line)
+    sweep(line, 1.0, SIDES, vertices)
+    set_tube_colours(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)

@@ -1,0 +1,45 @@
+"""A hull as a `Body` of a mooring, by linear theory: added mass and damping of one frequency, waves by the table."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sim import floating
+from sim.floating.hydrodynamics import not_negative
+from sim.floating.response import linear_forces
+from sim.mooring.system import Body
+
+if TYPE_CHECKING:
+    from sim.ocean.kinematics import Components
+
+HELD = 1e-6  # of the stiffness of heave, for surge and sway, and of roll, for yaw: statics need a place without lines
+
+
+def moored(
+    id: int, body: floating.Body, frequency: float, waves: "Components | None" = None, gravity: float = 9.81
+) -> Body:
+    """The body at its place of rest without lines, upright in sea water, its axes along x and y.
+
+    frequency: [rad/s] of the added mass and the radiation damping, which are taken as constant; that of the highest
+    waves is a good one. waves: those of the system, which push it by `sim.floating.response.linear_forces` [N, N m].
+    Coefficients are those of deep water.
+
+    Raises ValueError as `response_amplitude` does.
+    """
+    own = linear_forces(body, [frequency], gravity=gravity)
+    C = own.stiffness.copy()
+    for e, of in ((0, 2), (1, 2), (5, 3)):
+        C[e, e] += HELD * C[of, of]
+    X = None if waves is None else excitation(body, waves, gravity)
+    A, B = 0.5 * (own.added[0] + own.added[0].T), not_negative(own.damping)[0]
+    return Body(id, own.centre, own.mass + A, 0.5 * (C + C.T), B, X)
+
+
+def excitation(body: floating.Body, waves: "Components", gravity: float) -> np.ndarray:
+    """Force and moment (waves, 6) by each wave of amplitude 1 m, a Re(X exp(i theta)) at the body."""
+    found = np.zeros((len(waves.omega), 6), complex)
+    headings = np.arctan2(waves.ky, waves.kx)
+    for heading in np.unique(headings):
+        some = headings == heading
+        found[some] = linear_forces(body, waves.omega[some], float(heading), gravity=gravity).excitation
+    return found

@@ -17,6 +17,7 @@ from app.render.material import as_linear_bytes
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
+from app.scenes.contract import View as SceneView
 from app.scenes.mooring.arrangement import hull_of
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, Params
@@ -57,7 +58,7 @@ def cell_of(reach: float) -> float:
     return float(next((power * cell for cell in CELLS if power * cell >= least), 10.0 * power))
 
 
-class View:
+class View(SceneView[Params, MooringFrame, MooringReadings]):
     """Draws `MooringFrame`s."""
 
     FIELD_OF_VIEW = 0.8  # [rad]
@@ -273,12 +274,6 @@ class View:
     def notes(self, snapshot: MooringSnapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
         return notes_of(snapshot)
-
-    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
-        """Nothing to do: bed and water look the same."""
-
-    def close(self) -> None:
-        """Nothing to give back: removing the nodes removes everything."""
 
 
 def warm_up() -> Pieces:

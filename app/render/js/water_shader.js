@@ -396,11 +396,12 @@ const WATER_GLSL = {
     // How far inside the slick a point is, 0 to 1 at the end of its rim.
     float slickCover(vec2 x) {
       if (slick.z <= 0.0) return 0.0;
-      vec2 d = x - slick.xy;
+      vec2 d = x - slick.xy, w = vec2(cos(wind.x), sin(wind.x));
       float off = slick.z - length(d), size = 0.22 * slick.z + 1.0;
       if (abs(off) > 1.5 * size) return off > 0.0 ? 1.0 : 0.0;
-      float torn = gradientNoise(d / size).x + 0.5 * gradientNoise(d / size * 2.7 + 5.0).x;
-      torn += 0.25 * gradientNoise(d / size * 7.1 - 3.0).x;
+      // Wind tears the edge into streaks along itself.
+      vec2 p = vec2(0.3 * dot(d, w), dot(d, vec2(-w.y, w.x))) / size;
+      float torn = gradientNoise(p).x + 0.7 * gradientNoise(p * 2.7 + 5.0).x + 0.5 * gradientNoise(p * 7.1 - 3.0).x;
       return smoothstep(-0.1, 0.5, off / size + 0.8 * torn);
     }
 
@@ -482,7 +483,16 @@ const WATER_GLSL = {
       return found;
     }
 
-    const float GLITTER_LIMIT = 5.0; // radiance of glitter that is reduced to its half
+    const float LIGHT_LIMIT = 6.0; // radiance that is reduced to its half
+    const float GLINT_SHARE = 0.7; // of the variance of slopes too fine to be drawn: that between facets that glint
+
+    // Random slope of the facet at x, which turns with time, Gaussian with this variance along each axis: glints are
+    // single sparkles about as wide as a pixel, with the mean light of a smooth path.
+    vec2 facetSlope(vec2 x, float footprint, float variance) {
+      vec2 u = hash2(floor(x / exp2(ceil(log2(max(0.8 * footprint, 0.01))))));
+      float turn = 6.2832 * (u.y + seaState.x * (0.2 + u.x));
+      return sqrt(-2.0 * variance * log(max(u.x, 1e-4))) * vec2(cos(turn), sin(turn));
+    }
 
     // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; slopeAndFoam: of a
     // mesh that is no grid; flatness: 1 where such a sea has no mesh.
@@ -576,7 +586,8 @@ const WATER_GLSL = {
       }
 
       float glitter = 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z
-                    * mirroredFrom(sunDirection, V, slope, variance + 0.0004, facing, optics.x);
+                    * mirroredFrom(sunDirection, V, slope + facetSlope(rest, footprint, GLINT_SHARE * variance),
+                                   (1.0 - GLINT_SHARE) * variance + 0.0004, facing, optics.x);
       vec3 toFire = firePlace - at;
       float near = dot(toFire, toFire) + 1.0;
       toFire /= sqrt(near);
@@ -595,10 +606,9 @@ const WATER_GLSL = {
       // Water full of air under and around foam is bright.
       body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, slopeAndFoam.z);
 
+      vec3 color = mix(body, mirrored, mirror) + sunLight * glitter + fire * image;
       // As in the photograph of the sky, radiances far above the rest are compressed.
-      vec3 sparkle = sunLight * glitter + fire * image;
-      sparkle /= 1.0 + dot(sparkle, vec3(0.3, 0.5, 0.2)) / GLITTER_LIMIT;
-      vec3 color = mix(body, mirrored, mirror) + sparkle;
+      color /= 1.0 + dot(color, vec3(0.3, 0.5, 0.2)) / LIGHT_LIMIT;
       // Foam scatters the light of sun and sky many times. The sky is that overhead and that around; below clouds and
       // rain, what comes from overhead has the colour of the haze. Bubbles stand up to a sun that is low.
       vec3 skylight = mix(0.65 * behindRain(ambient, vec3(0.0, 0.0, 1.0)) + 0.35 * around, around, clouds.x);

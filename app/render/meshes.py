@@ -52,6 +52,16 @@ def tube_faces(rings: int, sides: int = SIDES) -> NDArray[np.uint32]:
     return np.array(quads, dtype=np.uint32)
 
 
+def rod(ends: NDArray[np.float64], radius: float) -> NDArray[np.float32]:
+    """Vertices (2 SIDES + 2, 3) of a rod between two ends (2, 3) [m] apart, for `tube_faces(2)`."""
+    along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    across = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+    across /= np.linalg.norm(across)
+    angle = 2 * np.pi * np.arange(SIDES)[:, None] / SIDES
+    ring = radius * (np.cos(angle) * across + np.sin(angle) * np.cross(along, across))
+    return np.concatenate([ends[0] + ring, ends[1] + ring, ends]).astype(np.float32)
+
+
 @kernel
 def smooth_line(points, samples, line):
     """Set line ((n - 1) samples + 1, 3) to the Catmull-Rom curve through points (n, 3), `samples` to a link."""

@@ -123,8 +123,8 @@ class Params:
     )  # fmt: skip
 
     colour: str = parameter(
-        "strain",
-        choices={"strain": "Strain", "plain": "One colour"},
+        "fabric",
+        choices={"fabric": "Fabric", "strain": "Strain"},
         doc="What the colour of the cloth shows",
         group="Look",
         affects="look",

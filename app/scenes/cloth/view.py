@@ -1,4 +1,4 @@
-"""The cloth as a mesh coloured by strain, which can be dragged anywhere; pins and sphere with arrows."""
+"""The cloth as a checked fabric or coloured by strain, which can be dragged anywhere; pins and sphere with arrows."""
 
 from typing import Any, TypeAlias
 
@@ -13,7 +13,7 @@ from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import PullLine, SurfaceDrag
 from app.render.gizmo import Gizmo
 from app.render.html import Html, fill, info, join
-from app.render.meshes import ball
+from app.render.meshes import ball, rod, tube_faces
 from app.render.surroundings import Surroundings, set_dark
 from app.render.viser_inside import set_arrays
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
@@ -23,6 +23,8 @@ from app.scenes.contract import View as SceneView
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 
 CLOTH_COLOUR = (176, 58, 72)
+CHECK_COLOUR, CHECK_SHARES = (240, 226, 208), (0.0, 0.35, 0.75)  # where no, one or both threads have it
+CHECKS = 8  # along the longer side
 STUDENT_COLOUR, STUDENT_OPACITY = (20, 150, 90), 0.7  # a colour that no strain has
 POINT_STEP = 2.0**-15  # [m] to which points are rounded for the page: no grain shows in the light on a fine cloth
 SPHERE_ROWS = 24  # of the drawn sphere, from pole to pole
@@ -51,6 +53,14 @@ def faces(rows: int, cols: int) -> np.ndarray:
     return np.concatenate([first, second]).astype(np.uint32)
 
 
+def checks(rows: int, cols: int) -> np.ndarray:
+    """(rows cols, 3) sRGB in 0..1 of a checked fabric, whose folds light and shadow show."""
+    side = max(max(rows, cols) // (2 * CHECKS), 1)
+    light = (np.arange(rows)[:, None] // side % 2) + (np.arange(cols) // side % 2)
+    share = np.array(CHECK_SHARES)[light].reshape(-1, 1)
+    return ((1.0 - share) * CLOTH_COLOUR + share * CHECK_COLOUR).astype(np.float32) / 255
+
+
 STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 100 mm."
 
 
@@ -65,6 +75,7 @@ class View(SceneView[Params, ClothFrame, ClothReadings]):
         self.post = post
         self.mesh: ColouredMesh | None = None
         self.shape = (0, 0)
+        self.fabric = checks(0, 0)
         self.drag = SurfaceDrag(post)
         scene = server.scene
         self.surroundings = Surroundings(server)
@@ -77,9 +88,10 @@ class View(SceneView[Params, ClothFrame, ClothReadings]):
         self.pin_balls = [
             scene.add_mesh_simple(f"/pin_{name}", *ball(12), scale=PIN_RADIUS, color=PIN_COLOUR) for name in ("a", "b")
         ]
-        self.pole = scene.add_line_segments(
-            "/pole", np.zeros((1, 2, 3), np.float32), colors=POLE_COLOUR, thickness=POLE_WIDTH, visible=False
+        self.pole = scene.add_mesh_simple(
+            "/pole", rod(np.eye(3)[:2], POLE_WIDTH / 2), tube_faces(2), color=POLE_COLOUR, visible=False
         )
+        self.pole_ends = np.zeros((2, 3))
         self.pull = PullLine(server)
         self.student: viser.MeshHandle | None = None  # the student's cloth, once there was one
         self.student_shape = (0, 0)
@@ -88,6 +100,7 @@ class View(SceneView[Params, ClothFrame, ClothReadings]):
     def build(self, frame: ClothFrame) -> None:
         """Make the mesh for another grid."""
         rows, cols = self.shape = frame.points.shape[0], frame.points.shape[1]
+        self.fabric = checks(rows, cols)
         if self.mesh is not None:
             self.mesh.remove()
         self.mesh = ColouredMesh(
@@ -108,9 +121,9 @@ class View(SceneView[Params, ClothFrame, ClothReadings]):
         self.drag.handle(event, self.points)
 
     def colours(self, frame: ClothFrame) -> np.ndarray:
-        """(particles, 3) sRGB in 0..1: strain, or plain."""
-        if frame.colour == "plain":
-            return np.tile(np.array(CLOTH_COLOUR, np.float32) / 255, (frame.strain.size, 1))
+        """(particles, 3) sRGB in 0..1: fabric, or strain."""
+        if frame.colour == "fabric":
+            return self.fabric
         return scale_colours(frame.strain.ravel().astype(np.float64), 0.0, frame.full_strain)
 
     def show(self, frame: ClothFrame) -> None:
@@ -135,7 +148,10 @@ class View(SceneView[Params, ClothFrame, ClothReadings]):
         if frame.pole:
             top, low = frame.points[0, 0], frame.points[0, -1]
             foot = low + (low - top) * (low[2] / max(float(top[2] - low[2]), MIN_POLE_DROP))
-            self.pole.points = np.array([[top + POLE_OVERHANG * (top - low), foot]], np.float32)
+            ends = np.array([top + POLE_OVERHANG * (top - low), foot])
+            if not np.array_equal(ends, self.pole_ends):
+                self.pole_ends = ends
+                set_arrays(self.pole, vertices=rod(ends, POLE_WIDTH / 2))
         self.ball.visible = frame.sphere is not None
         if frame.sphere is None or not frame.handles:
             self.sphere.show(None)

@@ -198,7 +198,7 @@ def test_plot_rows_and_arrays_have_the_columns_of_plots_and_files():
     assert scene.arrays()["x"][0].shape == (10, 10, 3)
 
 
-LOOKS = ({"grid": False}, {"colour": "plain"}, {"speed": 0.5}, {"full_strain": 2.0}, {"plot_energy": True},
+LOOKS = ({"grid": False}, {"colour": "strain"}, {"speed": 0.5}, {"full_strain": 2.0}, {"plot_energy": True},
          {"plot_strain": True}, {"plot_energy": False}, {"speed": 1.0})  # fmt: skip
 
 
@@ -218,7 +218,7 @@ def test_a_change_of_look_leaves_the_energy_account_alone_bit_for_bit_and_costs_
             scene, state = loop.scene, loop.scene.state
             account[state.steps] = (state.dissipated, state.work, scene.account.error(scene.net, state))
     common = accounts[0].keys() & accounts[1].keys()
-    assert changed.params.colour == "plain"
+    assert changed.params.colour == "strain"
     assert len(common) > 30
     assert all(accounts[0][steps] == accounts[1][steps] for steps in common)
     assert alone.state.dissipated > 0.1

@@ -55,7 +55,12 @@ def all_pieces(name: str) -> tuple[tuple[str, bool], ...]:
 
 
 def missing(name: str, params: BaseParams | None = None) -> tuple[tuple[str, bool], ...]:
-    """Pieces of `all_pieces` still to be compiled. params: only those that run with these parameters; None: all."""
+    """Pieces of `all_pieces` still to be compiled. params: only those that run with these parameters; None: all.
+
+    A scene that is compiled as a whole is not imported for that.
+    """
+    if params is None and is_marked(name, EVERYTHING, drawn=True):
+        return ()
     needs = scene_named(name).needs
     needed = None if params is None or needs is None else needs(params)
     ahead = () if is_marked(name, EVERYTHING, drawn=True) else all_pieces(name)

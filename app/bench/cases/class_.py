@@ -1,7 +1,7 @@
 """A class on one machine: a lab for each student, with a client that plays a lesson on the rope.
 
-The clients run in one process of their own, and its processor time is not counted. The first student comes to a
-machine where kernels are compiled; the others follow one after the other.
+The clients run in one process of their own, and its processor time is not counted. Kernels are compiled before the
+first student comes; the others follow one after the other.
 """
 
 import asyncio
@@ -59,6 +59,7 @@ def rows(quick: bool = False, students: int | None = None) -> list[dict[str, Any
     count = (QUICK_STUDENTS if quick else STUDENTS) if students is None else students
     if not 1 <= count <= MAX_STUDENTS:
         raise argument_error("--students", count, f"1 to {MAX_STUDENTS}")
+    subprocess.run([sys.executable, "-m", "app", "warmup"], stdout=subprocess.DEVNULL, check=True)
     lesson = QUICK_LESSON if quick else LESSON
     with tempfile.TemporaryDirectory(prefix="springtide-") as place, ExitStack() as stack:
         folders = [Path(place, f"student-{number}") for number in range(count)]

@@ -57,7 +57,7 @@ def test_usage_counts_the_processes_of_a_lab() -> None:
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="refused before anything else")
 @pytest.mark.parametrize("students", [0, -1, 101])
 def test_a_class_of_no_size_is_refused(students: int) -> None:
-    with pytest.raises(ValueError, match="--students: .* is not allowed; allowed: 1 to 100"):
+    with pytest.raises(ValueError, match=r"--students: .* is not allowed; allowed: 1 to 100"):
         CLASS.rows(students=students)
 
 

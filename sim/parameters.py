@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Literal, NamedTuple, TypeVar
 
 from sim.quantities import plain, read_number
-from sim.validation import argument_error, as_float
+from sim.validation import argument_error, as_float, check_kind
 
 P = TypeVar("P")
 T = TypeVar("T")
@@ -192,15 +192,12 @@ def clamp(record: P) -> P:
 
 def check_value(name: str, parameter: Parameter, value: object) -> Any:
     """`value` as the parameter's kind. Raises ValueError where `clamp_value` would have changed it."""
-    if parameter.choices or parameter.kind is bool:
-        good = clamp_value(parameter, value)
-        if good is not value and (parameter.kind is bool or good != value):
-            raise (
-                choice_error(name, value, parameter.choices)
-                if parameter.choices
-                else argument_error(name, value, parameter.allowed)
-            )
-        return good
+    if parameter.choices:
+        if not isinstance(value, str) or value not in parameter.choices:
+            raise choice_error(name, value, parameter.choices)
+        return value
+    if parameter.kind is bool:
+        return check_kind(name, value, bool, parameter.allowed)
     number = as_float(value)  # inf for a whole number that is too long for a float
     if not isinstance(value, int | float) or not parameter.low <= number <= parameter.high:
         raise argument_error(name, value, parameter.allowed)

@@ -2,17 +2,26 @@
 
 import math
 from collections.abc import Iterable
-from typing import Any
+from types import UnionType
+from typing import Any, TypeVar
 
 import numpy as np
 
 MAX_DISTANCE = 1e12  # [m] of a position: farther away, the cells of a grid can no longer be counted
 MAX_WAVENUMBER = 1e20  # [rad/m]: its powers are still finite
+MAX_SHOWN = 500  # characters of a value in an error
+
+Kind = TypeVar("Kind")
 
 
 def argument_error(name: str, value: object, allowed: str) -> ValueError:
-    """The one form of an argument error: the name, the value given, and the allowed values."""
-    return ValueError(f"{name}: {value!r} is not allowed; allowed: {allowed}")
+    """The one form of an argument error, in one line: the name, the value given, and the allowed values."""
+    shown = repr(value)
+    if "\n" in shown:  # arrays
+        shown = " ".join(shown.split())
+    if len(shown) > MAX_SHOWN:
+        shown = f"{shown[:MAX_SHOWN]}..."
+    return ValueError(f"{name}: {shown} is not allowed; allowed: {allowed}")
 
 
 def unreadable(name: str, path: object, error: OSError) -> ValueError:
@@ -79,6 +88,13 @@ def check_finite(name: str, value: object, unit: str = "") -> float:
     if not math.isfinite(number):
         raise argument_error(name, value, f"a finite number {unit}".rstrip())
     return number
+
+
+def check_kind(name: str, value: Kind, kind: type | UnionType, allowed: str) -> Kind:
+    """`value` itself. Raises ValueError unless it is a `kind`."""
+    if not isinstance(value, kind):
+        raise argument_error(name, value, allowed)
+    return value
 
 
 def check_choice(name: str, value: object, choices: Iterable[str]) -> str:

@@ -1,7 +1,6 @@
 """Tables of bad arguments: rows of the name in the error, the call that is refused, and words of the error."""
 
 import functools
-import math
 import re
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -9,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-NOT_NUMBERS = (math.nan, math.inf, -math.inf, True, "1", None, [1.0], 10**400)
 ARRAYS = (list, tuple, np.ndarray)
 Row = tuple[str, Callable[[], object], str]
 

@@ -26,6 +26,7 @@ from sim.floating.stability import rest_of, with_heading
 from sim.validation import (
     argument_error,
     as_array,
+    check_kind,
     check_not_negative,
     check_positive,
     check_vector,
@@ -73,6 +74,7 @@ class Body(NamedTuple):
 
         Its x, y and heading stay. Raises ValueError for a body that sinks, or finds no stable rest within 60 degrees.
         """
+        check_pose(self)
         hull, density = self.loaded()
         draft = equilibrium_draft(hull, density, layers)
         if math.isinf(draft):
@@ -85,6 +87,26 @@ class Body(NamedTuple):
             velocity=(0.0, 0.0, 0.0),
             spin=(0.0, 0.0, 0.0),
         )
+
+
+def check_body(name: str, body: object) -> None:
+    """Raises ValueError if it is not a body."""
+    check_kind(name, body, Body, "a Body")
+
+
+def check_fleet(fleet: object) -> None:
+    """Raises ValueError if it is not a fleet."""
+    check_kind("fleet", fleet, Fleet, "a Fleet, as `make_fleet` makes it")
+
+
+def check_pose(body: Body) -> None:
+    """Raises ValueError for a start that is not finite, or a rotation of 0."""
+    for name, length in (("position", 3), ("rotation", 4), ("velocity", 3), ("spin", 3)):
+        value = as_array(name, getattr(body, name), f"{length} finite numbers")
+        if value.shape != (length,) or not np.isfinite(value).all():
+            raise argument_error(name, getattr(body, name), f"{length} finite numbers")
+    if not np.linalg.norm(body.rotation) > 0:
+        raise argument_error("rotation", body.rotation, "a quaternion that is not zero")
 
 
 def checked_inertia(inertia: object) -> np.ndarray:
@@ -189,17 +211,13 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
     drafts that they have in these fluids. Raises ValueError, naming the body, unless all is finite and it has a mass.
     """
     loaded = []
-    for i, body in enumerate(bodies):
+    for i, body in enumerate(check_kind("bodies", bodies, list | tuple, "a list of bodies")):
+        check_body(f"bodies[{i}]", body)
         try:
             loaded.append(body.loaded())
+            check_pose(body)
         except ValueError as error:
             raise ValueError(f"bodies[{i}].{error}") from None
-        for name, length in (("position", 3), ("rotation", 4), ("velocity", 3), ("spin", 3)):
-            value = as_array(f"bodies[{i}].{name}", getattr(body, name), f"{length} finite numbers")
-            if value.shape != (length,) or not np.isfinite(value).all():
-                raise argument_error(f"bodies[{i}].{name}", getattr(body, name), f"{length} finite numbers")
-        if not np.linalg.norm(body.rotation) > 0:
-            raise argument_error(f"bodies[{i}].rotation", body.rotation, "a quaternion that is not zero")
     n = len(bodies)
     own, densities = [hull for hull, _ in loaded], [density for _, density in loaded]
     hulls = list({id(hull): hull for hull in own}.values())
@@ -321,6 +339,7 @@ def surface_moments(hull: Hull, area: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 def vertices(fleet: Fleet) -> np.ndarray:
     """Vertices of all bodies where they are now, one body after another, (vertices, 3) [m]."""
+    check_fleet(fleet)
     places = []
     for i, q in enumerate(fleet.hull):
         x = fleet.hulls.x[:, fleet.hulls.vertex_start[q] : fleet.hulls.vertex_start[q + 1]]
@@ -330,6 +349,7 @@ def vertices(fleet: Fleet) -> np.ndarray:
 
 def lowest(fleet: Fleet) -> np.ndarray:
     """Height of the lowest point of each body, (n,) [m]; of the true shape for spheres, else of the mesh."""
+    check_fleet(fleet)
     result = np.empty(len(fleet.mass))
     for i, q in enumerate(fleet.hull):
         if fleet.hulls.is_round[q]:
@@ -345,6 +365,7 @@ def pull(fleet: Fleet, body: int, point: Sequence[float], target: Sequence[float
 
     Raises ValueError for a body that does not exist and for numbers that are not finite.
     """
+    check_fleet(fleet)
     if not is_whole_number(body) or not 0 <= body < len(fleet.mass):
         raise argument_error("body", body, f"0 to {len(fleet.mass) - 1}")
     for name, value in (("point", point), ("target", target)):

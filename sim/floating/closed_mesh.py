@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.validation import argument_error, as_array, check_within
+from sim.validation import argument_error, as_array, check_kind, check_within
 
 MAX_SAMPLES = 400  # places on a mesh of several parts where it is checked that they do not overlap
 MIN_LENGTH, MAX_LENGTH = 1e-3, 1e4  # [m] of an edge, a radius or an extent
@@ -89,8 +89,7 @@ def checked_mesh(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -
 
 def check_hull(name: str, hull: object) -> None:
     """Raises ValueError if `hull` is no hull."""
-    if not isinstance(hull, ClosedMesh):
-        raise argument_error(name, hull, "a Hull")
+    check_kind(name, hull, ClosedMesh, "a Hull")
 
 
 def check_parts(vertices: np.ndarray, faces: np.ndarray, name: str) -> None:

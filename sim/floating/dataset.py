@@ -8,16 +8,17 @@ Froude-Krylov and diffraction forces. Its x, y are those that the hull was given
 
 import dataclasses
 import math
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim.floating.closed_mesh import ClosedMesh
+from sim.floating.closed_mesh import ClosedMesh, check_hull
 from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import DIRECTIONS, MIRROR_X, MIRROR_Y, lagrange, table_length, velocity_at
 from sim.floating.linear_table import LinearTable
-from sim.validation import argument_error, check_positive
+from sim.validation import argument_error, check_kind, check_positive
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -34,6 +35,9 @@ def with_dataset(hull: Hull, path: str | Path, draft: float | None = None) -> Hu
     draft [m]: that of the dataset, where it does not say. Raises ValueError for a file that is no dataset of one body,
     or does not fit; ModuleNotFoundError without xarray (`pip install xarray netCDF4`).
     """
+    check_hull("hull", hull)
+    if draft is not None:
+        check_positive("draft", draft, "m")
     shape = dataclasses.replace(hull.shape, table=table_of_dataset(path, hull, draft))
     return dataclasses.replace(hull, shape=shape)
 
@@ -43,13 +47,15 @@ def table_of_dataset(path: str | Path, mesh: ClosedMesh, draft: float | None = N
 
     Raises ValueError for a file that is no such dataset, ModuleNotFoundError without xarray.
     """
+    check_kind("path", path, str | os.PathLike, "the name of a file")
     import xarray  # half a second, and not needed by most
 
     try:
         with xarray.open_dataset(path) as file:
             dataset = file.load()
     except (OSError, ValueError) as error:
-        raise argument_error("path", str(path), f"a dataset written by capytaine.export_dataset ({error})") from error
+        reason = str(error).partition("\n")[0]
+        raise argument_error("path", str(path), f"a dataset written by capytaine.export_dataset ({reason})") from error
     return converted(dataset, str(path), mesh, draft)
 
 
@@ -65,7 +71,7 @@ def converted(dataset: "Dataset", path: str, mesh: ClosedMesh, draft: float | No
         raise argument_error("path", path, "a dataset in deep water, without forward speed")
     if draft is None and "draught" not in dataset.variables:
         raise argument_error("draft", draft, "a number above 0 m, as the dataset has no draught")
-    depth = check_positive("draft", float(dataset["draught"]) if draft is None else draft, "m")
+    depth = check_positive("draft", float(dataset["draught"]), "m") if draft is None else draft
     order = [motions.index(name) for name in MOTIONS]
     omega = dataset["omega"].values
     waves = np.flatnonzero(np.isfinite(omega) & (omega > 0.0))

@@ -23,7 +23,7 @@ from sim.interruption import raise_if_stopped
 from sim.ocean import Sea
 from sim.ocean.radial import RadialSea
 from sim.ocean.tile_sea import TileSea
-from sim.validation import argument_error, check_positive, is_whole_number
+from sim.validation import argument_error, check_kind, check_positive, is_whole_number
 
 LONGEST_STEP = 1 / 60  # [s]
 
@@ -54,8 +54,8 @@ def float_in(
     gravity is the sea's. A step is 1/60 s, or shorter to divide the frames. Raises ValueError for a value that is not
     allowed, and as `make_fleet`, `RadialSea.at` and `step`.
     """
-    if not isinstance(sea, Sea | RadialSea):
-        raise argument_error("sea", sea, "a Sea or a RadialSea")
+    check_kind("sea", sea, Sea | RadialSea, "a Sea or a RadialSea")
+    check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
     duration = check_positive("duration", duration, "s")
     if not is_whole_number(frames) or frames < 2:
         raise argument_error("frames", frames, "a whole number from 2")

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating.body import Fleet
+from sim.floating.body import Fleet, check_fleet
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.validation import argument_error, as_array, check_finite
 
@@ -60,6 +60,7 @@ def make_water(
     lead [s]: how long after the beginning of the step the values hold; half of the step is best. Raises ValueError for
     bad layers or shapes; values are checked by `step`.
     """
+    check_fleet(fleet)
     n = len(fleet.mass)
     layers = check_layers(layers)
     steps = density_steps(layers)
@@ -102,4 +103,5 @@ def make_water(
 
 def still_water(fleet: Fleet, layers: Layers = SEA_WATER, level: float = 0.0) -> Water:
     """Level water at rest, its surface at `level` [m]. Raises ValueError for bad layers."""
+    check_fleet(fleet)
     return make_water(fleet, layers, np.full(len(fleet.mass), check_finite("level", level, "m")))

@@ -7,6 +7,7 @@ asked of the shape itself (`equilibrium_draft`) uses its closed form and `extent
 """
 
 import dataclasses
+import os
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from sim.floating.shapes.record import Appearance, Shape
 from sim.floating.shapes.sphere import SHAPE as SPHERE
 from sim.floating.shapes.sphere import sphere
 from sim.interruption import raise_if_stopped
-from sim.validation import argument_error, check_positive, unreadable
+from sim.validation import argument_error, as_array, check_kind, check_positive, unreadable
 
 FILE_SHAPE = "hull"  # name of the shape that is made of a mesh file, and of its one appearance
 FILE_TITLE = "From file"
@@ -83,7 +84,10 @@ class Hull(ClosedMesh):
 
         Raises ValueError, which begins with `name`, where the mesh is not closed, oriented and finite.
         """
-        mesh = checked_mesh(vertices, faces, name)
+        points = as_array("vertices", vertices, "numbers of shape (n, 3) [m]")
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise argument_error("vertices", points.shape, "numbers of shape (n, 3) [m]")
+        mesh = checked_mesh(points, faces, name)
         return Hull.of(Shape("mesh", lambda: mesh, ()), mesh)
 
 
@@ -94,7 +98,7 @@ def shape_from_file(path: str | Path, own_table: bool = True) -> Shape:
 
     Raises ValueError as `Hull.load`.
     """
-    if not Path(path).exists():
+    if not Path(check_kind("path", path, str | os.PathLike, "the name of a file")).exists():
         raise unreadable("path", path, FileNotFoundError())
     import trimesh  # reading meshes is rare and the import is slow
 

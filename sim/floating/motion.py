@@ -42,7 +42,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating.body import Fleet
+from sim.floating.body import Fleet, check_fleet
 from sim.floating.body_collisions import collide
 from sim.floating.fluid_state import Water
 from sim.floating.hydrostatics import add_pressure
@@ -57,7 +57,7 @@ from sim.floating.rigid import (
     solve_factorised,
 )
 from sim.jit import kernel
-from sim.validation import argument_error, check_positive, check_within, is_whole_number
+from sim.validation import argument_error, check_kind, check_positive, check_within, is_whole_number
 
 # The kernels of one substep are inlined: a real call copies about a hundred fields of the records, which took more than
 # half of the time.
@@ -118,9 +118,12 @@ def step(
     substeps: the same number for each body, or None for as many as each needs. Raises ValueError for bad arguments
     and FloatingPointError, naming the body, where a state is no longer finite; the fleet is then as it was.
     """
+    check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
     for name, (low, high, unit) in LIMITS.items():
         check_within(name, getattr(coefficients, name), low, high, unit)
     duration = check_positive("duration", duration, "s")
+    check_fleet(fleet)
+    check_kind("water", water, Water, "a Water, as `make_water` makes it")
     if len(water.height) != len(fleet.mass):
         raise argument_error("water", f"{len(water.height)} samples", f"one for each of {len(fleet.mass)} bodies")
     if not 0 < water.upper <= water.lower < math.inf:

@@ -7,6 +7,7 @@ from sim.floating.equilibrium import Layers, equilibrium_draft
 from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import outside_table
 from sim.floating.periods import heave_period_at
+from sim.validation import check_positive
 
 
 class HydrostaticPrediction(NamedTuple):
@@ -24,6 +25,7 @@ def predict(hull: Hull, density: float, layers: Layers, water_density: float) ->
 
     water_density [kg/m3]: of clean water, for comparison. Raises ValueError as `equilibrium_draft`.
     """
+    check_positive("water_density", water_density, "kg/m3")
     draft = equilibrium_draft(hull, density, layers)
     return HydrostaticPrediction(
         draft=draft,

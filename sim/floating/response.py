@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.floating.body import Body
+from sim.floating.body import Body, check_body
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps, equilibrium_draft
 from sim.floating.excitation import HullExcitation, plane_force
 from sim.floating.hydrodynamics import DIRECTIONS, lagrange, linear_hull
@@ -54,6 +54,7 @@ def linear_forces(
     body: Body, frequency: ArrayLike, heading: float = 0.0, layers: Layers = SEA_WATER, gravity: float = 9.81
 ) -> LinearForces:
     """The terms of the equation that `response_amplitude` solves, with the same arguments and errors."""
+    check_body("body", body)
     w = as_array("frequency", frequency, "finite numbers above 0 rad/s, shape (n,)")
     if w.ndim != 1 or not ((w > 0.0) & (w < math.inf)).all():
         raise argument_error("frequency", w.tolist(), "finite numbers above 0 rad/s, shape (n,)")

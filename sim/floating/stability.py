@@ -20,7 +20,7 @@ from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_st
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import submerged
 from sim.floating.rotation import rotation_matrix
-from sim.validation import argument_error, as_array
+from sim.validation import argument_error, as_array, is_whole_number
 
 if TYPE_CHECKING:
     from sim.floating.body import Body
@@ -38,7 +38,7 @@ def metacentric_height(body: "Body", layers: Layers = SEA_WATER, axis: int = 0) 
     The rise of the righting arm per radian. Of one fluid it is KB + I/V - KG (Newman 1977, section 6.16), negative
     where the body capsizes. Raises ValueError as `Body.afloat`, or for another axis.
     """
-    if axis not in (0, 1) or isinstance(axis, bool):
+    if not is_whole_number(axis) or axis not in (0, 1):
         raise argument_error("axis", axis, "0 (heel) or 1 (trim)")
     arms = arms_of(body, np.array([-TILT, TILT]), layers, axis)
     return float(arms[1] - arms[0]) / (2.0 * TILT)
@@ -60,6 +60,8 @@ def righting_arm(body: "Body", heel: ArrayLike, layers: Layers = SEA_WATER) -> n
 
 def arms_of(body: "Body", angles: np.ndarray, layers: Layers, axis: int) -> np.ndarray:
     """Righting arms (n,) [m] at angles (n,) [rad] about the world's x, or y, from rest without its heading."""
+    if not hasattr(body, "loaded"):  # sim/floating/body.py imports this module
+        raise argument_error("body", body, "a Body")
     layers = check_layers(layers)
     hull, density = body.loaded()
     rest = body._replace(rotation=(1.0, 0.0, 0.0, 0.0)).afloat(layers).rotation

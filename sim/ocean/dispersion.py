@@ -13,7 +13,7 @@ import numpy as np
 
 from sim.interruption import raise_if_stopped
 from sim.ocean.viscous_layers import Layers, surface_roots
-from sim.validation import argument_error, check_not_negative, check_positive, check_wavenumbers
+from sim.validation import argument_error, check_kind, check_not_negative, check_positive, check_wavenumbers
 
 INF = math.inf
 CRITICAL = 1.3114687221932  # nu k^2/omega0 above which a wave no longer oscillates: the quartic's double root
@@ -125,6 +125,7 @@ def viscous_root(k: Any, viscosity: float, gravity: float = 9.81, film: bool = F
     """
     k = check_wavenumbers("k", k)
     check_not_negative("viscosity", viscosity, "m2/s")
+    check_kind("film", film, bool, "True or False")
     w, rate = damped_root(omega(k, gravity), viscosity * k**2, film)
     return w[()], rate[()]
 
@@ -154,6 +155,7 @@ def viscous_two_layer(
     check_positive("thickness", thickness, "m")
     check_positive("upper_viscosity", upper_viscosity, "Pa s")
     check_positive("lower_viscosity", lower_viscosity, "Pa s")
+    check_kind("film", film, bool, "True or False")
     w, rate = np.zeros_like(k), np.zeros_like(k)
     moving = k > 0.0
     if moving.any():

@@ -11,7 +11,7 @@ import numpy as np
 
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.ocean.spectra.record import wavenumber_of
-from sim.validation import argument_error, check_within, is_whole_number
+from sim.validation import argument_error, check_kind, check_within, is_whole_number
 
 MAX_WAVES = 4096
 DECADES = (-1.7, 4.0)  # of wavenumber about the peak that are looked at: beyond lie 1e-8 of the energy
@@ -46,6 +46,8 @@ def draw_waves(spectrum: Spectrum, conditions: Conditions, count: int = 64, seed
     Without wind all amplitudes are 0. A regular wave is one wave, and those of the second system, if there is one, are
     the other `count`. Raises ValueError for a count that is not 1 to 4096 or a seed that is not whole.
     """
+    check_kind("spectrum", spectrum, Spectrum, "a Spectrum, as those of SPECTRA")
+    check_kind("conditions", conditions, Conditions, "Conditions, as those of `Spectrum.conditions`")
     if not is_whole_number(count) or not 1 <= count <= MAX_WAVES:
         raise argument_error("count", count, f"a whole number from 1 to {MAX_WAVES}")
     if not is_whole_number(seed):

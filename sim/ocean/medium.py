@@ -8,7 +8,7 @@ import numpy as np
 
 from sim.ocean.dispersion import damped_root
 from sim.ocean.spectra import Conditions
-from sim.validation import argument_error, check_number
+from sim.validation import argument_error, check_kind, check_number
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -26,8 +26,7 @@ class Medium:
     def __post_init__(self) -> None:
         check_number("viscosity", self.viscosity, 0.0, 1e6, "m2/s")
         check_number("dispersion_scale", self.dispersion_scale, 0.0, 1e6, "")
-        if not isinstance(self.film, bool):
-            raise argument_error("film", self.film, "True or False")
+        check_kind("film", self.film, bool, "True or False")
         for name in ("frequency", "decay"):
             given = getattr(self, name)
             if given is not None and not callable(given):

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sim.validation import argument_error, check_number, check_positive
+from sim.validation import check_choice, check_number, check_positive
 
 G = 6.67430e-11  # [m3/(kg s2)] CODATA 2018
 MAX_MASS = 1e9  # [Earth masses] hundreds of suns: no planet
@@ -48,14 +48,12 @@ def gravity_of(mass: float, rule: str = "same_radius") -> float:
     rule: one of RADIUS_RULES. Raises ValueError for another rule or a mass not above 0, or above MAX_MASS.
     """
     check_number("mass", mass, 0.0, MAX_MASS, "Earth masses", above=True)
-    if rule not in RADIUS_RULES:
-        raise argument_error("rule", rule, "one of " + ", ".join(RADIUS_RULES))
+    check_choice("rule", rule, RADIUS_RULES)
     return EARTH_GRAVITY * mass ** (1.0 - 2.0 * RADIUS_RULES[rule])
 
 
 def mass_for(gravity: float, rule: str = "same_density") -> float:
     """Mass [Earth masses] that has this surface gravity [m/s2] under the rule. Errors as for `gravity_of`."""
     check_positive("gravity", gravity, "m/s2")
-    if rule not in RADIUS_RULES:
-        raise argument_error("rule", rule, "one of " + ", ".join(RADIUS_RULES))
+    check_choice("rule", rule, RADIUS_RULES)
     return (gravity / EARTH_GRAVITY) ** (1.0 / (1.0 - 2.0 * RADIUS_RULES[rule]))

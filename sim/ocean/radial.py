@@ -26,7 +26,7 @@ from sim.ocean.kinematics import Components, Kinematics
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.slick import SlickCover
 from sim.ocean.wave_sum import add_waves, calm_waves, find_labels, set_mesh, set_motion
-from sim.validation import argument_error, check_finite, check_not_negative, check_positions
+from sim.validation import argument_error, as_array, check_finite, check_not_negative, check_positions
 
 CLEAN = FluidColumn()
 
@@ -238,8 +238,11 @@ class RadialSea:
         """
         where = check_positions("points", points)
         n = len(where)
+        widths = as_array("size", size, f"one number [m], or {n} of them")
+        if widths.shape not in ((), (n,)) or not (widths >= 0.0).all():
+            raise argument_error("size", size, f"one number [m], or {n} of them")
         kx, ky, amplitude, rate, phase, ratio = self.current(check_finite("t", t, "s"))
-        weight = self._footprint(np.broadcast_to(np.asarray(size, np.float64), (n,)), kx, ky)
+        weight = self._footprint(np.broadcast_to(widths, (n,)), kx, ky)
         if self.slick is not None:
             k = np.hypot(kx, ky)
             weight = weight * np.exp(-self.losses(k) * self.slick.paths(where, kx, ky))

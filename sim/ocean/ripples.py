@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from sim.jit import kernel
 from sim.ocean.evolve import add_heights, shift_time
-from sim.validation import argument_error, check_finite, check_not_negative, check_positions, check_positive
+from sim.validation import argument_error, as_array, check_finite, check_not_negative, check_positions, check_positive
 
 QUIET = 1e-6  # [m] root mean square height below which rings are dropped
 EVALUATIONS_BETWEEN_CHECKS = 64
@@ -156,7 +156,7 @@ def gaussian_volume(depth: float, width: float) -> float:
 
 
 def _one_a_point(name: str, value: ArrayLike, n: int) -> np.ndarray:
-    array = np.asarray(value, np.float64)
+    array = as_array(name, value, f"one finite number, or {n} of them")
     if array.shape not in ((), (n,)) or not np.isfinite(array).all():
         raise argument_error(name, value, f"one finite number, or {n} of them")
     return np.ascontiguousarray(np.broadcast_to(array, (n,)))

@@ -25,7 +25,9 @@ from sim.ocean.surface import Surface
 from sim.ocean.transforms import PRECISIONS, Transforms
 from sim.validation import (
     argument_error,
+    check_choice,
     check_finite,
+    check_kind,
     check_not_negative,
     check_number,
     check_positions,
@@ -72,12 +74,10 @@ class Sea:
         """
         if not is_whole_number(size) or size % 2 or not SIZES[0] <= size <= SIZES[1]:
             raise argument_error("size", size, f"an even whole number from {SIZES[0]} to {SIZES[1]}")
-        if amplitudes not in KINDS:
-            raise argument_error("amplitudes", amplitudes, "one of " + ", ".join(KINDS))
+        check_choice("amplitudes", amplitudes, KINDS)
         if not is_whole_number(seed):
             raise argument_error("seed", seed, "a whole number")
-        if precision not in PRECISIONS:
-            raise argument_error("precision", precision, "one of " + ", ".join(PRECISIONS))
+        check_choice("precision", precision, PRECISIONS)
         self.size, self.length, self.seed = int(size), check_number("length", length, *LENGTHS, "m"), int(seed)
         self.precision, self.amplitudes = precision, amplitudes
         self.choppiness = choppiness
@@ -162,6 +162,7 @@ class Sea:
         surface does not fold, and where it stays large the surface above the point is folded. Between grid points
         fields are bicubic; exact: the sum over all waves instead, slow. Raises ValueError for another shape.
         """
+        check_kind("exact", exact, bool, "True or False")
         return query(self.surface(t), check_positions("points", points), exact)
 
     def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
@@ -205,7 +206,7 @@ class Sea:
         before, rate = self._undecayed(t), self._rate
         medium, conditions, decay = self.medium, self.conditions, self._decay
         raise_if_stopped()
-        self._set_conditions(spectrum or self.spectrum, changes, self.medium)
+        self._set_conditions(self.spectrum if spectrum is None else spectrum, changes, self.medium)
         self._add_to_past(medium, conditions, decay, t - self._base)
         turns = rate * (t - self._base)
         # h0(k) e^(-i omega t): the phase so far goes into the unit amplitudes, in double.
@@ -225,9 +226,9 @@ class Sea:
         negative or not finite.
         """
         duration = check_not_negative("duration", duration, "s")
+        chosen = self.medium if medium is None else check_kind("medium", medium, Medium, "a Medium, or None")
         if duration == 0.0:
             return
-        chosen = self.medium if medium is None else medium
         decay = self._decay if medium is None else self._decay_in(medium)
         self._add_to_past(chosen, self.conditions, decay, duration)
         self.version += 1
@@ -376,9 +377,7 @@ class Sea:
     def _set_conditions(self, spectrum: str | Spectrum[Any], values: dict[str, Any], medium: Medium) -> None:
         """Check everything, then set spectrum, conditions, medium, and all arrays that depend on them."""
         if not isinstance(spectrum, Spectrum):
-            if spectrum not in SPECTRA:
-                raise argument_error("spectrum", spectrum, "one of " + ", ".join(SPECTRA))
-            spectrum = SPECTRA[spectrum]
+            spectrum = SPECTRA[check_choice("spectrum", spectrum, SPECTRA)]
         for name in values:
             if name not in _CONDITIONS | _MEDIUM:
                 raise TypeError(f"{name}: no such condition; there are {', '.join(sorted(_CONDITIONS | _MEDIUM))}")

@@ -18,7 +18,7 @@ from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import PAIRS, Net
 from sim.springs.stability import critical_step, gershgorin
 from sim.springs.state import State, advance, check_damping, check_net, energy, steps_for, velocities
-from sim.validation import argument_error, as_array, check_number, is_whole_number
+from sim.validation import argument_error, as_array, check_kind, check_number, is_whole_number
 
 CALM = 1e-3 * DIVERGENCE_BOUND  # [m]: a net within this has not yet been out of the sane bound
 STEP = 1 / 1200  # [s], or SAFETY of the critical step where that is shorter
@@ -80,7 +80,7 @@ def simulate(
     """
     check_net(net)
     net, velocity = begun(net, x, v)
-    record = None if integrator == AUTO else integrator_named(integrator)
+    record = None if isinstance(integrator, str) and integrator == AUTO else integrator_named(integrator)
     if step is not None:
         check_number("step", step, 0, math.inf, "s", above=True)
     for name, value, least in (("rtol", rtol, LEAST_RTOL), ("atol", atol, LEAST_ATOL)):
@@ -92,8 +92,9 @@ def simulate(
     check_number("duration", duration, 0, math.inf, "s", above=True)
     if not is_whole_number(frames) or not 2 <= frames <= MOST_FRAMES:
         raise argument_error("frames", frames, f"a whole number from 2 to {MOST_FRAMES}")
-    if not isinstance(with_account, bool | np.bool_):
-        raise argument_error("with_account", with_account, "True or False")
+    check_kind("with_account", with_account, bool, "True or False")
+    if progress is not None and not callable(progress):
+        raise argument_error("progress", progress, "a function of frames done and frames, or None")
     if record is None:
         interval = duration / (int(frames) - 1)
         choice = choose_for_step(net, step) if step else choose_for_tolerance(net, rtol or RTOL, interval)

@@ -13,7 +13,7 @@ from sim.springs.analysis.extremes import DIVERGENCE_BOUND, extremes
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
-from sim.validation import argument_error, check_number, is_whole_number
+from sim.validation import argument_error, check_kind, check_number, is_whole_number
 
 # In one call of a kernel, which a Ctrl-C waits for: hundredths of a second.
 POINT_EVALS = 2e6  # force evaluations times points, of a rope
@@ -37,6 +37,8 @@ class State:
 
     @classmethod
     def at_rest(cls, net: Net) -> "State":
+        """The net as it was built, without motion. Raises ValueError if it is not a net."""
+        check_net(net)
         return cls(net.x0.copy(), np.zeros_like(net.x0))
 
     def copy(self) -> "State":
@@ -50,8 +52,7 @@ class State:
 
 def check_net(net: object) -> None:
     """Raises ValueError if it is not a net."""
-    if not isinstance(net, Net):
-        raise argument_error("net", net, "a Net, as `rope` and `cloth` make them")
+    check_kind("net", net, Net, "a Net, as `rope` and `cloth` make them")
 
 
 def check_state(net: Net, state: State) -> None:
@@ -117,6 +118,7 @@ def advance(
     check_number("h", h, 0, math.inf, "s", above=True)
     if not is_whole_number(steps) or steps < 0:
         raise argument_error("steps", steps, "a whole number from 0")
+    check_kind("with_account", with_account, bool, "True or False")
     set_lag(net, state, integrator.lag * h)
     # The sums go on from where they are, so that they do not depend on how the steps are shared out among the calls.
     ledger, p = np.array([state.dissipated, state.work]), net.kernel_view(h)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.springs.laws import TAUT, check_law, law_of, of_arrays
 from sim.springs.net import Net
-from sim.validation import argument_error, check_number
+from sim.validation import argument_error, as_array, check_number
 
 ITERATIONS = 200  # of Newton: a dozen is usual
 
@@ -66,14 +66,16 @@ def catenary(
     check_number("span", span, -math.inf, math.inf, "m")
     check_number("rise", rise, -math.inf, math.inf, "m")
     check_number("stiffness", stiffness, 0, math.inf, "N/m", above=True)
-    check_number("mass", float(np.min(mass)), 0, math.inf, "kg")
+    masses = as_array("mass", mass, f"a number from 0 kg, or {points} of them")
+    if masses.shape not in ((), (points,)) or not ((masses >= 0.0) & (masses < math.inf)).all():
+        raise argument_error("mass", mass, f"a number from 0 kg, or {points} of them")
     check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
     links = int(points) - 1
     rest = length / links
     numbers = check_law(law)
     found = law_of(numbers)
     length_at, energy_at, slope_at = found.length, of_arrays(found.energy), of_arrays(found.stiffness)
-    load = gravity * np.concatenate([[0.0], np.broadcast_to(mass, (links + 1,))[1:-1].cumsum()])
+    load = gravity * np.concatenate([[0.0], np.broadcast_to(masses, (links + 1,))[1:-1].cumsum()])
     end = np.array([span, rise])
 
     def value(force):

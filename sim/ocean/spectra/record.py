@@ -14,7 +14,7 @@ from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.moments import Moments, moments_of
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
-from sim.validation import argument_error, as_array, as_float, check_finite, check_number, check_positive
+from sim.validation import argument_error, as_array, as_float, check_finite, check_kind, check_number, check_positive
 
 WIND_HEIGHTS = {10.0: 1.0, 19.5: 1.026}  # [m] -> wind there over U10, drag coefficient 1.3e-3 (Stewart 2008, eq. 16.33)
 MIN_WIND_SPEED = 1e-3  # [m/s] below which a wind makes no waves: spectra take powers of it, which would underflow
@@ -150,6 +150,17 @@ class Spectrum(NamedTuple, Generic[C]):
                 known = ", ".join(field.name for field in dataclasses.fields(self.conditions))
                 raise argument_error(name, values[name], f"a condition that {self.name} uses: {known}")
 
+    def conditions_of(self, conditions: C | None, values: dict[str, Any]) -> C:
+        """The conditions of a record, of values by name, or of a record with some changed.
+
+        Raises ValueError for a condition that this spectrum does not use.
+        """
+        self.check_used(values)
+        if conditions is None:
+            return self.conditions(**values)
+        check_kind("conditions", conditions, self.conditions, f"{self.conditions.__name__}, or None")
+        return dataclasses.replace(conditions, **values)
+
     def frequency_density(self, omega: ArrayLike, conditions: C | None = None, **values: Any) -> np.ndarray:
         """S(omega) [m2 s] over all directions, of the shape of omega [rad/s]; its integral over omega is m0.
 
@@ -157,8 +168,7 @@ class Spectrum(NamedTuple, Generic[C]):
         record or by name. S(f) [m2/Hz] is 2 pi S(2 pi f). Raises ValueError for a frequency that is not above 0, or a
         condition that this spectrum does not use.
         """
-        self.check_used(values)
-        c = self.conditions(**values) if conditions is None else dataclasses.replace(conditions, **values)
+        c = self.conditions_of(conditions, values)
         allowed = "finite numbers above 0 rad/s"
         w = as_array("omega", omega, allowed)
         if not ((w > 0.0) & (w < math.inf)).all():
@@ -212,8 +222,7 @@ class Spectrum(NamedTuple, Generic[C]):
         Raises ValueError as `frequency_density`, and for a cut-off that is not above 0.
         """
         check_positive("cut_off", cut_off, "rad/s", allow_infinite=True)
-        self.check_used(values)
-        c = self.conditions(**values) if conditions is None else dataclasses.replace(conditions, **values)
+        c = self.conditions_of(conditions, values)
         typical = self.peak(c) if self.peak is not None and not self.is_level(c) else c.gravity / 10.0
         own = [typical, *([2.0 * math.pi / c.second_period] if c.second_height > 0.0 else [])]
         last = min(cut_off, max(own) * OMEGA_RANGE[1])

@@ -20,7 +20,7 @@ from sim.ocean.weathering.components import (
     pseudo_components,
     viscosity_at,
 )
-from sim.validation import argument_error, check_choice, check_number
+from sim.validation import argument_error, check_choice, check_kind, check_number
 
 WATERS = ("sea water", "fresh water")
 HOUR = 3600.0  # [s]
@@ -157,9 +157,17 @@ class State(NamedTuple):
     onset: float  # [s] when it began to take up water; inf before
 
 
-@lru_cache(maxsize=64)
 def weather(spill: Spill) -> Weathering:
-    """The spill from 0 to 120 h, by exponential midpoint steps: shares within 0.1 % of the laws' solution."""
+    """The spill from 0 to 120 h, by exponential midpoint steps: shares within 0.1 % of the laws' solution.
+
+    Raises ValueError if it is not a spill.
+    """
+    return weathered(check_kind("spill", spill, Spill, "a Spill"))
+
+
+@lru_cache(maxsize=64)
+def weathered(spill: Spill) -> Weathering:
+    """The same of a checked spill."""
     parts = pseudo_components(spill.oil)
     record, water_density = oil_records()[spill.oil], fluids()[spill.water].density
     fresh_density, viscosity = density_at(spill.oil, spill.temperature), viscosity_at(spill.oil, spill.temperature)

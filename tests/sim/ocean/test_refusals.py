@@ -108,7 +108,6 @@ REFUSED: list[Row] = [
     ("wind_speed", lambda: beaufort(-1.0), "-1"),
     *each(omega, k=["a", [[1.0, 2.0], [3.0]], True, 1e200, [1.0, -2.0], NAN]),
     *each(partial(omega, 1.0), gravity=[0.0], depth=[-1.0, NAN], tension=[-1.0], density=[INF]),
-    ("k", lambda: two_layer(None, 850.0, 1.0, 1025.0), ""),
     ("lower_density", lambda: two_layer(1.0, 1025.0, 1.0, 850.0), ""),
     ("thickness", lambda: two_layer(1.0, 850.0, 0.0, 1025.0), ""),
     *each(partial(viscous_root, 1.0), viscosity=[-1e-6, "thick"]),
@@ -134,7 +133,7 @@ REFUSED: list[Row] = [
     ("points", lambda: radial().at([[NAN, 0.0]], 0.0), ""),
     ("t", lambda: radial().on(RadialGrid(), INF), ""),
     *each(Spill, oil=["Bunker C Zalinski", "sea water"], water=["Brent"], volume=[0.0, NAN]),
-    *each(Spill, wind_speed=[-1.0], temperature=[60.0]),
+    *each(Spill, wind_speed=[-1.0], temperature=[60.0, 288.15]),
     ("hours", lambda: weather(Spill()).at(121.0), ""),
 ]
 

@@ -1,0 +1,132 @@
+"""Arguments of a wrong type, of every public function: one ValueError each with the name, the value, the allowed."""
+
+import inspect
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from sim import floating, springs
+from sim.ocean import SPECTRA, Sea, dispersion
+from sim.ocean.gerstner import draw_waves
+from sim.ocean.planets import gravity_of
+from sim.ocean.radial import RadialSea
+from sim.ocean.statistics import beaufort
+from sim.ocean.weathering import Spill, weather
+from sim.ocean.zero_crossings import zero_crossings
+from sim.particles.plume import flame_height
+from sim.particles.rain import rainfall, terminal_speed
+from sim.springs.statics import catenary
+
+
+class Odd:
+    """Nothing that any function takes."""
+
+    def __repr__(self) -> str:
+        return "Odd()"
+
+
+WRONG = ("1", b"1", 1j, math.nan, True, None, Odd(), [Odd()])
+PATTERN = r"^(bodies\[0\]\.)?{}(\[0\])?: .* is not allowed; allowed: \S"
+NET = springs.rope(4)
+BOX = floating.Hull.box(1.0, 1.0, 1.0)
+BODY = floating.Body(BOX)
+FLEET = floating.make_fleet([BODY])
+SEA = Sea(16, 50.0)
+POND = Sea(16, 50.0, wind_speed=0.0)
+JONSWAP = SPECTRA["jonswap"]
+WAVES = RadialSea(draw_waves(JONSWAP, JONSWAP.conditions(), 4))
+ORIGIN, UPRIGHT, STILL = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), ((1025.0, math.inf),)
+
+
+def afloat(**of_body: Any) -> None:
+    floating.Body(**of_body).afloat()
+
+
+def fleet(**of_body: Any) -> None:
+    floating.make_fleet([floating.Body(**of_body)])
+
+
+class Call(NamedTuple):
+    """A function, arguments that it takes, and some that this table leaves out."""
+
+    function: Callable[..., object]
+    right: dict[str, Any]
+    left_out: tuple[str, ...] = ()
+
+
+def call(function: Callable[..., object], left_out: tuple[str, ...] = (), **right: Any) -> Call:
+    """All arguments by their defaults, but for `right`."""
+    given = inspect.signature(function).parameters.values()
+    defaults = {p.name: p.default for p in given if p.default is not p.empty}
+    return Call(function, defaults | right, left_out)
+
+
+LOAD = {"hull": BOX, "density": None, "mass": None, "center_of_gravity": None, "inertia": None}
+POSE = {"position": ORIGIN, "rotation": UPRIGHT, "velocity": ORIGIN, "spin": ORIGIN}
+CALLS = (
+    call(springs.rope), call(springs.cloth, rows=4, cols=4), call(springs.simulate, net=NET, duration=0.1, frames=3),
+    call(springs.critical_step, net=NET, integrator="rk4"), call(springs.State.at_rest, net=NET),
+    call(springs.advance, net=NET, state=springs.State.at_rest(NET), integrator="rk4", h=0.01, steps=1),
+    call(springs.lab_units, points=4, length=1.0, axial_stiffness=1.0, mass_per_length=1.0, axial_viscosity=1.0,
+         drag_per_length=1.0),
+    call(catenary, points=5, length=2.0, span=1.0, rise=0.0, stiffness=8.0, mass=1.0, gravity=10.0),
+    call(Sea, size=16, length=50.0, spectrum="jonswap", fetch=1e5, density=1025.0, film=False, spreading="cos2"),
+    call(SEA.surface, t=0.0), call(SEA.height_at, points=[[0.0, 0.0]], t=0.0), call(SEA.components),
+    call(SEA.kinematics, points=[[0.0, 0.0, -1.0]], t=0.0), call(SEA.expose, duration=0.0), call(SEA.resized, size=16),
+    call(SEA.significant_height_at, t=0.0), call(POND.change, t=0.0),
+    call(POND.ripples.add, t=0.0, points=[[1.0, 1.0]], width=1.0),
+    call(JONSWAP.frequency_density, omega=1.0), call(JONSWAP.moments), call(JONSWAP.conditions),
+    call(zero_crossings, t=[0.0, 1.0], height=[0.0, 1.0]),
+    call(draw_waves, spectrum=JONSWAP, conditions=JONSWAP.conditions(), count=4),
+    call(WAVES.at, points=[[0.0, 0.0]], t=0.0), call(WAVES.kinematics, points=[[0.0, 0.0, 0.0]], t=0.0),
+    call(dispersion.omega, k=1.0), call(dispersion.phase_speed, k=1.0), call(dispersion.group_speed, k=1.0),
+    call(dispersion.two_layer, k=1.0, upper_density=850.0, thickness=1.0, lower_density=1025.0),
+    call(dispersion.viscous_root, k=1.0, viscosity=1e-6),
+    call(dispersion.viscous_two_layer, k=1.0, upper_density=850.0, upper_viscosity=1e-2, thickness=1.0,
+         lower_density=1025.0, lower_viscosity=1e-3),
+    call(gravity_of, mass=1.0), call(beaufort, wind_speed=1.0), call(Spill), call(weather, spill=Spill()),
+    call(weather(Spill()).at, hours=1.0),
+    call(floating.Hull.box, x=1.0, y=1.0, z=1.0), call(floating.Hull.sphere, radius=1.0),
+    call(floating.Hull.cylinder, radius=1.0, height=1.0),
+    call(floating.Hull.from_arrays, ("name",), vertices=BOX.vertices, faces=BOX.faces),
+    Call(afloat, LOAD | POSE), Call(fleet, LOAD | POSE), call(BODY.afloat), call(floating.make_fleet, bodies=[BODY]),
+    call(floating.metacentric_height, body=BODY), call(floating.righting_arm, body=BODY, heel=0.1),
+    call(floating.response_amplitude, body=BODY, frequency=[1.0]),
+    call(floating.float_in, sea=SEA, bodies=[BODY], duration=0.1, frames=2),
+    call(floating.equilibrium_draft, hull=BOX, density=500.0), call(floating.heave_period, hull=BOX, density=500.0),
+    call(floating.roll_period, hull=BOX, density=500.0),
+    call(floating.predict, hull=BOX, density=500.0, layers=STILL, water_density=1025.0),
+    call(floating.submerged, hull=BOX), call(floating.pressure_force, hull=BOX, density=1025.0),
+    call(floating.step, fleet=FLEET, water=floating.still_water(FLEET), duration=0.01),
+    call(floating.still_water, fleet=FLEET), call(floating.lowest, fleet=FLEET), call(floating.vertices, fleet=FLEET),
+    # values of waves are checked by the step that takes them, once for all
+    call(floating.make_water, ("height", "acceleration", "interface", "interface_rise"), fleet=FLEET, layers=STILL,
+         height=np.zeros(1)),
+    call(floating.pull, fleet=FLEET, body=0, point=ORIGIN, target=ORIGIN, limit=1.0),
+    call(floating.with_dataset, hull=BOX, path="none.nc"),
+    call(rainfall, rate=1.0), call(terminal_speed, diameter=1e-3), call(flame_height, power=1e6, diameter=1.0),
+)  # fmt: skip
+ROWS = [
+    pytest.param(one, name, id=f"{one.function.__qualname__}-{name}")
+    for one in CALLS
+    for name in one.right
+    if name not in one.left_out
+]
+
+
+@pytest.mark.parametrize(("one", "name"), ROWS)
+def test_a_wrong_type_is_refused_by_name(one: Call, name: str) -> None:
+    right = one.right[name]
+    for wrong in WRONG:
+        if right is wrong or type(right) is type(wrong) is str or (isinstance(right, bool) and wrong is True):
+            continue
+        with pytest.raises(ValueError, match=PATTERN.format(name)) as error:
+            one.function(**{**one.right, name: wrong})
+        assert "\n" not in str(error.value)
+
+
+def test_the_table_is_of_300_arguments() -> None:
+    assert len(ROWS) >= 290

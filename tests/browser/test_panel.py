@@ -29,16 +29,10 @@ def type_into(lab: Viewer, tab: Tab, name: str, text: str, end: str = "Enter", d
     tab.page.keyboard.press(end)
 
 
-TAKEN = (
-    ("time_step", "0.02", 0.02),
+TAKEN = (  # all forms of a number: tests/sim/test_quantities.py
     ("time_step", "0,005", 0.005),
     ("time_step", "1/60", 1 / 60),
-    ("time_step", "5 ms", 0.005),
-    ("stiffness", "1e4", 1e4),
-    ("stiffness", "3.7e+03", 3.7e3),
     ("stiffness", "20k", 20e3),
-    ("mass", "0.25", 0.25),
-    ("length", "2.345", 2.345),
     ("points", "27", 27),
 )
 
@@ -70,7 +64,7 @@ def test_the_simulation_never_sees_a_number_that_is_half_typed(shown: tuple[View
 
 def test_what_is_not_allowed_is_refused_with_name_value_and_range(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
-    for text in ("0.5", "abc", "", "1e10", "nan", "2,000", "5 m/s"):
+    for text in ("0.5", "", "5 m/s"):
         type_into(lab, tab, "stiffness", text)
         refusal = tab.wait(lambda: tab.page.locator(".springtide-refusal").all_inner_texts(), 10)
         assert len(refusal) == 1
@@ -128,7 +122,7 @@ def test_the_panel_says_at_once_whether_the_lab_plays(shown: tuple[Viewer, Tab])
         tab.wait(lambda: tab.page.get_by_role("button", name=button, exact=True).count() == 1, 5)
 
     says("Running", "Pause")
-    for _ in range(5):
+    for _ in range(2):
         tab.page.keyboard.press("Space")
         says("Paused", "Play")
         tab.page.get_by_role("button", name="Play", exact=True).click()

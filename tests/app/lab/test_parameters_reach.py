@@ -22,16 +22,16 @@ from tests.app.lab.test_session import save
 from tests.waiting import wait_for
 
 TASKS = load_tasks()
-FRAME = 1 / 30  # [s] of a scene's motion
+FRAME = 1 / 15  # [s] of a scene's motion
 BEFORE, AFTER = 0.1, 1.0  # [s] of motion before and after the parameter is changed
 # A parameter is tested in the first of these in which it acts on the motion. The rope falls over the sphere onto the
 # floor, its root swings, and a hand pulls it. The cloth falls over a sphere that moves up and down, onto the floor, in
 # the wind, and a hand pulls it; or it hangs in pleats that touch each other.
 ROPE = RopeParams(
-    integrator="rk4", time_step=1 / 240, points=8, length=6.0, sphere=True, root_swing=0.1, swing_period=2.0, pull=20.0
+    integrator="rk4", time_step=1 / 120, points=8, length=6.0, sphere=True, root_swing=0.1, swing_period=2.0, pull=20.0
 )
 CLOTH = ClothParams(
-    integrator="rk4", time_step=1 / 240, rows=5, cols=6, stiffness=100.0, shear=60.0, bend=3.0, damping=0.2,
+    integrator="rk4", time_step=1 / 120, rows=5, cols=6, stiffness=100.0, shear=60.0, bend=3.0, damping=0.2,
     density=1.0, start="level", sphere=True, sphere_radius=0.4, bob=0.2, width=1.0, length=3.6, contact_damping=2.0,
     pull=1.0,
 )  # fmt: skip

@@ -69,7 +69,9 @@ def test_a_press_where_the_tip_was_a_moment_before_takes_it(lab: Viewer, open_ta
     assert tab.errors == []
 
 
-@pytest.mark.parametrize("scene", ["rope", "race", "cloth"])
+@pytest.mark.parametrize(
+    "scene", ["rope", *(pytest.param(name, marks=pytest.mark.stress) for name in ("race", "cloth"))]
+)
 def test_the_reach_is_marked_and_ends(shown: tuple[Viewer, Tab], scene: str) -> None:
     lab, tab = shown
     tab.follow(lab, scene)

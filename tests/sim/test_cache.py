@@ -8,7 +8,7 @@ import pytest
 
 from sim import cache
 from sim.cache import LEVELS, host_levels, level_environment
-from tests.sim.test_jit import python
+from tests.sim.test_jit import noted, python
 
 # Prints how many of two kernels, of which one calls the other, were loaded and how many compiled, and what they give.
 TWICE = """
@@ -45,8 +45,7 @@ class Place:
         """What two kernels do with these folders."""
         environment = {
             "SPRINGTIDE_CACHE": str(own or self.own),
-            # In the user's own is noted that numba works, which takes seconds to try.
-            "SPRINGTIDE_KERNELS": os.pathsep.join([*([str(shared)] if shared else []), str(cache.own_folder())]),
+            "SPRINGTIDE_KERNELS": os.pathsep.join([*([str(shared)] if shared else []), noted()]),
             "PYTHONPATH": str(self.module.parent),
         }
         return python(TWICE, **environment, **(level_environment(level) if level else {}))

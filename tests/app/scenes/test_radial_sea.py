@@ -92,7 +92,7 @@ def test_a_body_pushed_under_bobs_at_the_predicted_period() -> None:
 
 
 def test_what_is_denser_than_the_fluid_sinks_and_comes_to_rest_deep() -> None:
-    scene = RadialSeaScene(with_parameters(**CALM, density=1010.0, spill="mixed", fraction=0.6))
+    scene = RadialSeaScene(with_parameters(**CALM, density=1010.0, spill="mixed", fraction=0.6, bodies=1))
     assert math.isinf(scene.readings().bodies[0].prediction.draft)
     run(scene, 90.0)
     assert (scene.bodies.fleet.position[:, 2] >= -61.0).all()

@@ -5,6 +5,7 @@ xi2 come from a hash of (seed, nx, ny): no generator state, no loop order. Full 
 n = 0 ... N/2 - 1, -N/2 ... -1. The mean and the two Nyquist lines, which cannot travel on the grid, are 0.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -61,6 +62,22 @@ def fold(h0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         onward, backward = h0[rows, :half], np.conj(h0[np.ix_(opposite[rows], opposite[:half])])
         even[rows], odd[rows] = onward + backward, -1j * (onward - backward)
     return even, odd
+
+
+def with_line(S: np.ndarray, unit: np.ndarray, line: tuple[float, float, float], dk: float) -> np.ndarray:
+    """Give the energy of one regular wave to the tile's wave that is nearest to it, which is drawn as high as that.
+
+    S [m4] and unit amplitudes, (size, size); S is changed, and returned are the other amplitudes. line: kx, ky [rad/m]
+    and m0 [m2]. A wave that is longer than the tile, or too short for its grid, is left out.
+    """
+    kx, ky, m0 = line
+    i, j = round(kx / dk), round(ky / dk)
+    if max(abs(i), abs(j)) >= len(S) // 2 or i == j == 0:
+        return unit
+    S[i, j] += m0 / dk**2
+    unit = unit.copy()
+    unit[i, j] *= math.sqrt(0.5) / abs(unit[i, j])
+    return unit
 
 
 def _mixed(z: Any) -> Any:

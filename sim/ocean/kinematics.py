@@ -108,6 +108,21 @@ def components_of(waves: Waves, conditions: Conditions) -> Components:
     return Components(waves.kx, waves.ky, waves.amplitude, omega, waves.phase, conditions.depth, conditions.density)
 
 
+def components_of_tile(
+    k: np.ndarray, h0: np.ndarray, omega: np.ndarray, base: float, conditions: Conditions
+) -> Components:
+    """The waves of a tile that have an amplitude.
+
+    k: (n,) [rad/m] in FFT order. h0, omega: (n, n) [m], [rad/s], with the phases of time `base` [s].
+    """
+    there = h0 != 0.0
+    h0, omega = h0[there], omega[there]
+    kx, ky = (np.broadcast_to(along, there.shape)[there] for along in (k[:, None], k[None, :]))
+    phase = (np.angle(h0) + omega * base) / (2.0 * math.pi)
+    phase -= np.rint(phase)
+    return Components(kx, ky, 2.0 * np.abs(h0), omega, phase, conditions.depth, conditions.density)
+
+
 @kernel(noalias=True, allocates=False)
 def set_flow(points, t, waves, depth, density, wheeler, velocity, acceleration, pressure):
     """Set velocity (n, 3), acceleration (n, 3) and pressure (n,) at points (n, 3) at time t; waves as `table` has them.

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from sim.jit import kernel
 from sim.ocean.evolve import add_heights, shift_time
+from sim.ocean.spectra import Conditions
 from sim.validation import argument_error, as_array, check_finite, check_not_negative, check_positions, check_positive
 
 QUIET = 1e-6  # [m] root mean square height below which rings are dropped
@@ -43,12 +44,17 @@ class Ripples:
         other._even, other._odd = self._even.copy(), self._odd.copy()
         return other
 
-    def set_medium(self, t: float, rate: np.ndarray, decay: np.ndarray, push: np.ndarray) -> None:
-        """From time t [s] propagate with quarter planes rate [turns/s], decay [1/s], push = k tanh(kh)/(rho omega)."""
+    def set_medium(self, t: float, k: np.ndarray, rate: np.ndarray, decay: np.ndarray, conditions: Conditions) -> None:
+        """From time t [s] propagate with quarter planes k [rad/m], rate [turns/s] and decay [1/s]."""
         if self.alive:
             self.advance(t)
         self.time = t
-        self._rate, self._fall, self._push = rate, (-decay).astype(self.real), push.astype(self.real)
+        self._rate, self._fall = rate, (-decay).astype(self.real)
+        # The response to an impulse, k tanh(kh)/(rho omega).
+        omega = 2.0 * np.pi * rate
+        tanh = np.tanh(k * conditions.depth) if math.isfinite(conditions.depth) else 1.0
+        push = np.divide(k * tanh, conditions.density * omega, out=np.zeros_like(omega), where=omega > 0.0)
+        self._push = push.astype(self.real)
 
     def add(
         self, t: float, points: ArrayLike, width: ArrayLike, volume: ArrayLike = 0.0, impulse: ArrayLike = 0.0

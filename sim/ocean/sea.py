@@ -14,19 +14,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.interruption import raise_if_stopped
-from sim.ocean.amplitudes import KINDS, fold, integers, resolved, unit_amplitudes
-from sim.ocean.evolve import set_heights, weighted_energy
-from sim.ocean.kinematics import Components, Kinematics
+from sim.ocean.amplitudes import KINDS, integers, resolved, unit_amplitudes, with_line
+from sim.ocean.kinematics import Components, Kinematics, components_of_tile
 from sim.ocean.medium import Medium
 from sim.ocean.query import query
 from sim.ocean.ripples import Ripples
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, Spectrum
 from sim.ocean.surface import Surface
+from sim.ocean.tile_heights import TileHeights, key_of
 from sim.ocean.transforms import PRECISIONS, Transforms
+from sim.ocean.wave_sizes import WaveSizes
 from sim.validation import (
     argument_error,
     check_choice,
-    check_finite,
     check_kind,
     check_not_negative,
     check_number,
@@ -34,7 +34,6 @@ from sim.validation import (
     is_whole_number,
 )
 
-SETTLED_SHARE = 1e-7  # share of a change still to come below which it counts as done
 SIZES = (8, 4096)
 LENGTHS = (1e-3, 1e8)  # [m]
 
@@ -82,19 +81,14 @@ class Sea:
         self.precision, self.amplitudes = precision, amplitudes
         self.choppiness = choppiness
         self._real = PRECISIONS[precision][0]
-        self._unit = unit_amplitudes(self.size, self.seed, amplitudes)
-        self._base, self._last, self._relax = 0.0, 0.0, 0.0
-        self._past: dict[tuple[Medium, Conditions], float] = {}  # [s] spent in each medium before the last change
+        self._waves = WaveSizes(unit_amplitudes(self.size, self.seed, amplitudes), *PRECISIONS[precision])
+        self._last = 0.0  # [s] of the last surface computed, or of the last change if that is later
         self.version = 0  # counts changes of the conditions
-        self._evolved: tuple | None = None
-        self._mean_height: tuple[tuple | None, float] = None, 0.0  # key of time and state, and the mean [m]
         self._latest: tuple[tuple, dict[str, np.ndarray]] | None = None
         self._components: tuple[tuple | None, Components | None] = None, None  # key of the amplitudes, and the waves
         self._ripples: Ripples | None = None
 
-        n = integers(self.size)
-        self.k = n * (2.0 * math.pi / self.length)  # [rad/m], FFT order
-        self._folded = np.abs(n) % (self.size // 2)  # |n|, with the Nyquist index, where the amplitude is 0, sent to 0
+        self.k = integers(self.size) * (2.0 * math.pi / self.length)  # [rad/m], FFT order
         quarter = self.k[: self.size // 2]
         self._k = np.hypot(quarter[:, None], quarter[None, :])
         inverse = np.divide(1.0, self._k, out=np.zeros_like(self._k), where=self._k > 0.0)
@@ -104,8 +98,7 @@ class Sea:
         self.rows["k2"] = (self.k**2).astype(self._real)
 
         self.transforms = Transforms(self.size, precision)
-        self._heights: np.ndarray | None = None  # made on first use
-        self._scratch = (np.empty(self.size, self._real), np.empty(self.size, self._real))
+        self._heights = TileHeights(self.transforms, self.radial, self._real)
         given = {
             "wind_speed": wind_speed,
             "wind_direction": wind_direction,
@@ -115,14 +108,12 @@ class Sea:
             "viscosity": viscosity,
         }
         self._given: dict[str, Any] = {}  # conditions as given, those that the spectrum uses
-        self._lost = np.zeros_like(self._k)  # -ln of the share of each wave that is left of that time, a quarter plane
         # ((medium, conditions), decay rates) of the last call of `expose`
         self._other_decay: tuple[tuple[Medium, Conditions], np.ndarray] | None = None
         # for `slope_left`: under which spectrum and conditions, and the slope
-        self._sloped_under: tuple[tuple[Spectrum[Any], Conditions] | None, np.ndarray] = None, self._lost
+        self._sloped_under: tuple[tuple[Spectrum[Any], Conditions] | None, np.ndarray] = None, self._k
         self._set_conditions(spectrum, given | more, Medium())
-        self._start = self._target
-        self._set_planes()
+        self._waves.begin(0.0, 0.0, self._waves.target)
 
     def __deepcopy__(self, memo: dict) -> "Sea":
         """An independent copy of the sea.
@@ -130,8 +121,8 @@ class Sea:
         It shares arrays that are never changed in place, and the transforms: both seas are for the same thread.
         """
         other = copy.copy(self)
-        other._past, other._ripples = dict(self._past), copy.deepcopy(self._ripples, memo)
-        other._heights = other._evolved = other._latest = None
+        other._waves, other._ripples = self._waves.copied(), copy.deepcopy(self._ripples, memo)
+        other._heights, other._latest = TileHeights(self.transforms, self.radial, self._real), None
         return other
 
     @property
@@ -146,8 +137,8 @@ class Sea:
     def surface(self, t: float) -> Surface:
         """The surface at time t [s]; each field is computed when first read. Raises ValueError for a time not allowed:
         not finite, or before the last change where waves decay or relax."""
-        t = self._checked_time(t)
-        key = self._key(t)
+        t = self._waves.checked_time(t)
+        key = self._choppiness, key_of(t, self.version, self._ripples)
         if self._latest is None or self._latest[0] != key:
             self._latest = key, {}
         self._last = t
@@ -178,17 +169,12 @@ class Sea:
 
         They hold at all times unless waves decay, relax or are changed. Raises ValueError as `surface`.
         """
-        t = self._last if t is None else self._checked_time(t)
+        t = self._last if t is None else self._waves.checked_time(t)
         key = self.version, None if self.is_steady(t) else t
         known, waves = self._components
         if waves is None or known != key:
             h0, omega = self.amplitudes_at(t), self.frequencies
-            there = h0 != 0.0
-            h0, omega = h0[there], omega[there]
-            kx, ky = (np.broadcast_to(k, there.shape)[there] for k in (self.k[:, None], self.k[None, :]))
-            phase = (np.angle(h0) + omega * self._base) / (2.0 * math.pi)
-            c = self.conditions
-            waves = Components(kx, ky, 2.0 * np.abs(h0), omega, phase - np.rint(phase), c.depth, c.density)
+            waves = components_of_tile(self.k, h0, omega, self._waves.base, self.conditions)
             self._components = key, waves
         return waves
 
@@ -200,24 +186,22 @@ class Sea:
         Another spectrum takes what both use. Raises ValueError for a value that is not allowed or a condition that the
         spectrum does not use, TypeError for an unknown name.
         """
-        t, relax = self._checked_time(t), check_not_negative("relax", relax, "s")
+        t, relax = self._waves.checked_time(t), check_not_negative("relax", relax, "s")
         if self._ripples is not None:
             self._ripples.check_time(t)
-        before, rate = self._undecayed(t), self._rate
-        medium, conditions, decay = self.medium, self.conditions, self._decay
+        waves, duration = self._waves, t - self._waves.base
+        before, rate = waves.undecayed(t), waves.rate
+        medium, conditions, decay = self.medium, self.conditions, waves.decay
         raise_if_stopped()
         self._set_conditions(self.spectrum if spectrum is None else spectrum, changes, self.medium)
-        self._add_to_past(medium, conditions, decay, t - self._base)
-        turns = rate * (t - self._base)
-        # h0(k) e^(-i omega t): the phase so far goes into the unit amplitudes, in double.
-        self._unit = self._unit * self._full(np.exp(-2j * np.pi * (turns - np.rint(turns))))
+        waves.spend(medium, conditions, decay, duration)
+        waves.turn(rate * duration)
         raise_if_stopped()
-        self._start = before if relax > 0.0 else self._target
-        self._base, self._relax, self._last = t, relax, max(self._last, t)
+        self._last = max(self._last, t)
         self.version += 1
-        self._set_planes()
+        waves.begin(t, relax, before)
         if self._ripples is not None:
-            self._ripples.set_medium(t, self._rate, self._decay, self._push())
+            self._ripples.set_medium(t, self._k, waves.rate, waves.decay, self.conditions)
 
     def expose(self, duration: float, medium: Medium | None = None) -> None:
         """Let the waves decay at once as they would in `duration` [s] in a medium, by default in the sea's own.
@@ -229,10 +213,10 @@ class Sea:
         chosen = self.medium if medium is None else check_kind("medium", medium, Medium, "a Medium, or None")
         if duration == 0.0:
             return
-        decay = self._decay if medium is None else self._decay_in(medium)
-        self._add_to_past(chosen, self.conditions, decay, duration)
+        decay = self._waves.decay if medium is None else self._decay_in(medium)
+        self._waves.spend(chosen, self.conditions, decay, duration)
         self.version += 1
-        self._set_planes()
+        self._waves.set_planes()
 
     def _decay_in(self, medium: Medium) -> np.ndarray:
         """Decay rates [1/s] in another medium, solved once for the same medium and conditions."""
@@ -257,15 +241,11 @@ class Sea:
             **self._given,
             **{f.name: getattr(self.medium, f.name) for f in dataclasses.fields(self.medium)},
         )
-        half = min(self.size, other.size) // 2
-        n = np.arange(1 - half, half)
-        shared = np.ix_(n, n)  # negative indices count from the end, as FFT order does
-        other._start = other._target.copy()
-        other._unit[shared], other._start[shared] = self._unit[shared], self._start[shared]
-        other._base, other._relax, other._last = self._base, self._relax, self._last
-        for (medium, water), duration in self._past.items():
-            other._add_to_past(medium, water, medium.roots(other._k, water)[1], duration)
-        other._set_planes()
+        other._waves.take_over(self._waves)
+        other._last = self._last
+        for (medium, water), duration in self._waves.past.items():
+            other._waves.spend(medium, water, medium.roots(other._k, water)[1], duration)
+        other._waves.set_planes()
         if self._ripples is not None:
             other.ripples.take_over(self._ripples)
         return other
@@ -290,24 +270,22 @@ class Sea:
         The sea is Re sum 2 h0 exp(i(k.x - omega (t - change))); without a change these are the amplitudes as drawn.
         Raises ValueError for a time that `surface` does not take either.
         """
-        return self._unit * self._magnitude(t)
+        return self._waves.unit * self._waves.magnitude(t)
 
     def energy_at(self, t: float) -> np.ndarray:
         """S(k) dk^2 of each wave at time t, relaxed and decayed, (size, size) [m2], 0 where the tile has no wave."""
-        return self._magnitude(t) ** 2 * resolved(self.size)
+        return self._waves.magnitude(t) ** 2 * resolved(self.size)
 
     def slope_left(self, t: float) -> float:
         """Share of the mean square slope that low-pass and viscosity have left at time t [s]; 1 on a level sea.
 
         It is that of the tile's waves under the present wind, whether or not they have grown yet.
         """
-        lost = self._checked_lost(t)
+        lost = self._waves.lost_at(t)
         c = dataclasses.replace(self.conditions, low_pass=0.0)
         if (self.spectrum, c) != self._sloped_under[0]:
             S = self.spectrum(self.k[:, None], self.k[None, :], c)
-            folded = np.zeros_like(self._k)
-            raise_if_stopped()
-            np.add.at(folded, np.ix_(self._folded, self._folded), S * resolved(self.size))
+            folded = self._waves.folded_sum(S * resolved(self.size))
             self._sloped_under = (self.spectrum, c), folded * self._k**2
         slope = self._sloped_under[1]
         whole = float(slope.sum())
@@ -315,163 +293,69 @@ class Sea:
 
     def is_steady(self, t: float) -> bool:
         """True if no wave grows or decays any more after time t [s], unless the conditions change."""
-        return not self._decays and self._share(t) == 0.0
+        return not self._waves.decays and self._waves.left_to_come(t) == 0.0
 
     @property
     def frequencies(self) -> np.ndarray:
         """omega(k) [rad/s] as propagated, (size, size), FFT order; 0 on the mean and the Nyquist lines."""
-        return self._full(2.0 * np.pi * self._rate) * resolved(self.size)
+        return self._waves.full(2.0 * np.pi * self._waves.rate) * resolved(self.size)
 
     @property
     def decay_rates(self) -> np.ndarray:
         """Decay rate [1/s] of each wave, (size, size), FFT order."""
-        return self._full(self._decay) * resolved(self.size)
+        return self._waves.full(self._waves.decay) * resolved(self.size)
 
     @property
     def ripples(self) -> Ripples:
         """The rings on this sea, made on first use."""
         if self._ripples is None:
             self._ripples = Ripples(self.size, self.length, self._real)
-            self._ripples.set_medium(-math.inf, self._rate, self._decay, self._push())
+            self._ripples.set_medium(-math.inf, self._k, self._waves.rate, self._waves.decay, self.conditions)
         return self._ripples
 
     def heights_spectrum(self, t: float) -> np.ndarray:
         """h(k, t) with rings on the half plane ky >= 0, as its real view (N, N + 2). Cached for the last t."""
-        key = self._key(t)
-        if self._heights is None:
-            self._heights = np.zeros((self.size, self.size + 2), self._real)
-        if self._evolved != key:
-            even, odd = self._planes_at(t)
-            fade = self.radial["1"]
-            if self._decays:
-                fade = np.exp(self._fall * self._real(t - self._base))
-            copy = self.transforms.spectrum.view(self._real)
-            set_heights(even, odd, self._rate, fade, t - self._base, *self._scratch, self._heights, copy)
-            if self._ripples is not None:
-                self._ripples.add_to(self._heights, t)
-            self._evolved = self._key(t)
-        return self._heights
+        return self._heights.spectrum(t, self.version, self._waves, self._ripples)
 
     def mean_height(self, t: float) -> float:
         """Mean height [m] of the displaced points at time t [s], see `Surface.mean_height`. Kept until another t."""
         if self._choppiness == 0.0:
             return 0.0
-        key = self._key(t)
-        if self._mean_height[0] != key:
-            found = self._choppiness * float(weighted_energy(self.heights_spectrum(t), self.radial["k"]))
-            self._mean_height = key, found
-        return self._mean_height[1]
+        return self._choppiness * self._heights.mean_height(t, self.version, self._waves, self._ripples)
 
     def set_input(self, t: float) -> None:
-        """The transform's input: `heights_spectrum` and the mean height. Evolving has left a copy there where there are
-        no rings."""
-        before = self._evolved
-        heights, there = self.heights_spectrum(t), self.transforms.spectrum.view(self._real)
-        if self._evolved is before or self._ripples is not None:
-            there[...] = heights
-        there[0, 0] = heights[0, 0] + self.mean_height(t)  # that of rings is the water they brought
-
-    def _key(self, t: float) -> tuple:
-        return t, self.version, self._choppiness, self._ripples.version if self._ripples is not None else -1
+        """The transform's input: `heights_spectrum` and the mean height."""
+        self._heights.set_input(t, self.version, self._waves, self._ripples, self._choppiness)
 
     def _set_conditions(self, spectrum: str | Spectrum[Any], values: dict[str, Any], medium: Medium) -> None:
         """Check everything, then set spectrum, conditions, medium, and all arrays that depend on them."""
-        if not isinstance(spectrum, Spectrum):
-            spectrum = SPECTRA[check_choice("spectrum", spectrum, SPECTRA)]
-        for name in values:
-            if name not in _CONDITIONS | _MEDIUM:
-                raise TypeError(f"{name}: no such condition; there are {', '.join(sorted(_CONDITIONS | _MEDIUM))}")
-        new = {n: v for n, v in values.items() if n in _CONDITIONS}
-        spectrum.check_used(new)
-        given = {n: v for n, v in (self._given | new).items() if spectrum.uses(n)}
-        conditions = spectrum.conditions(**given)
+        chosen, given = checked_conditions(spectrum, values, self._given)
+        conditions = chosen.conditions(**given)
         medium = dataclasses.replace(medium, **{n: v for n, v in values.items() if n in _MEDIUM})
         omega, decay = medium.roots(self._k, conditions)
-        self.spectrum, self.conditions, self.medium, self._given = spectrum, conditions, medium, given
-        self._rate, self._decay, self._decays = omega / (2.0 * np.pi), decay, bool(decay.any())
-        self._fall = (-decay).astype(self._real)
+        self.spectrum, self.conditions, self.medium, self._given = chosen, conditions, medium, given
         raise_if_stopped()
-        S = self.spectrum(self.k[:, None], self.k[None, :], conditions)
+        S = chosen(self.k[:, None], self.k[None, :], conditions)
         dk = 2.0 * math.pi / self.length
         self._passed = np.exp(-((self._k * conditions.low_pass) ** 2))
-        if self.spectrum.line is not None:
-            self._add_line(S, self.spectrum.line(conditions), dk)
-        self._target = np.sqrt(S) * dk
+        if chosen.line is not None:
+            self._waves.unit = with_line(S, self._waves.unit, chosen.line(conditions), dk)
+        self._waves.set_conditions(np.sqrt(S) * dk, omega, decay)
         raise_if_stopped()
 
-    def _add_line(self, S: np.ndarray, line: tuple[float, float, float], dk: float) -> None:
-        """Give the energy of one regular wave to the tile's wave that is nearest to it, which is drawn as high as that.
 
-        A wave that is longer than the tile, or too short for its grid, is left out.
-        """
-        kx, ky, m0 = line
-        i, j = round(kx / dk), round(ky / dk)
-        if max(abs(i), abs(j)) >= self.size // 2 or i == j == 0:
-            return
-        S[i, j] += m0 / dk**2
-        self._unit = self._unit.copy()  # as copies of this sea share it
-        self._unit[i, j] *= math.sqrt(0.5) / abs(self._unit[i, j])
+def checked_conditions(
+    spectrum: str | Spectrum[Any], values: dict[str, Any], given: dict[str, Any]
+) -> tuple[Spectrum[Any], dict[str, Any]]:
+    """A spectrum, and those of the conditions `given` before and now in `values` that it uses.
 
-    def _checked_time(self, t: float) -> float:
-        """Raises ValueError for a time that is not finite, or before the last change where waves decay or relax."""
-        t = check_finite("t", t, "s")
-        if t < self._base and (self._relax > 0.0 or self._decays):
-            raise argument_error("t", t, f"{self._base:g} s or later: decaying and relaxing waves do not run back")
-        return t
-
-    def _checked_lost(self, t: float) -> np.ndarray:
-        """-ln of the share of each wave that is left at time t [s], a quarter plane. Errors as for `_checked_time`."""
-        t = self._checked_time(t)
-        return self._lost + self._decay * (t - self._base) if self._decays else self._lost
-
-    def _add_to_past(self, medium: Medium, conditions: Conditions, decay: np.ndarray, duration: float) -> None:
-        """Book a time [s] in a medium, where waves have decayed at these rates (a quarter plane, [1/s])."""
-        if duration == 0.0 or not decay.any():
-            return
-        c = conditions
-        water = Conditions(gravity=c.gravity, depth=c.depth, tension=c.tension, density=c.density)
-        self._past[medium, water] = self._past.get((medium, water), 0.0) + duration
-        self._lost = self._lost + decay * duration
-
-    def _undecayed(self, t: float) -> np.ndarray:
-        """sqrt(S dk^2) of each wave at time t, relaxed, as if nothing had decayed, (size, size) [m]."""
-        return self._target + self._share(t) * (self._start - self._target)
-
-    def _magnitude(self, t: float) -> np.ndarray:
-        """sqrt(S dk^2) of each wave at time t, relaxed and decayed, (size, size) [m]."""
-        lost = self._checked_lost(t)
-        return self._undecayed(t) * self._full(np.exp(-lost)) if lost.any() else self._undecayed(t)
-
-    def _share(self, t: float) -> float:
-        """Share of the last change that is still to come at time t."""
-        share = math.exp(-(t - self._base) / self._relax) if self._relax > 0.0 else 0.0
-        return share if share > SETTLED_SHARE else 0.0
-
-    def _set_planes(self) -> None:
-        """Fold the amplitudes into even and odd half planes: of the target, and of the difference start - target."""
-        unit = self._unit * self._full(np.exp(-self._lost)) if self._lost.any() else self._unit
-        raise_if_stopped()
-        self._settled = self._planes(unit * self._target)
-        raise_if_stopped()
-        self._to_come = self._planes(unit * (self._start - self._target)) if self._relax > 0.0 else None
-
-    def _planes(self, h0: np.ndarray) -> list[np.ndarray]:
-        wide = PRECISIONS[self.precision][1]
-        return [np.ascontiguousarray(plane, wide).view(self._real) for plane in fold(h0)]
-
-    def _planes_at(self, t: float) -> list[np.ndarray]:
-        share = self._share(t)
-        if self._to_come is None or share == 0.0:
-            return self._settled
-        weight = self._real(share)
-        return [plane + weight * rest for plane, rest in zip(self._settled, self._to_come, strict=True)]
-
-    def _push(self) -> np.ndarray:
-        """k tanh(kh)/(rho omega) of the quarter plane: the response to an impulse, see ripples.py."""
-        c, omega = self.conditions, 2.0 * np.pi * self._rate
-        tanh = np.tanh(self._k * c.depth) if math.isfinite(c.depth) else 1.0
-        return np.divide(self._k * tanh, c.density * omega, out=np.zeros_like(omega), where=omega > 0.0)
-
-    def _full(self, quarter: np.ndarray) -> np.ndarray:
-        """A quarter plane of |kx|, |ky| laid out over the full plane."""
-        return quarter[self._folded[:, None], self._folded[None, :]]
+    Raises ValueError for an unknown spectrum or a condition that it does not use, TypeError for an unknown name.
+    """
+    if not isinstance(spectrum, Spectrum):
+        spectrum = SPECTRA[check_choice("spectrum", spectrum, SPECTRA)]
+    for name in values:
+        if name not in _CONDITIONS | _MEDIUM:
+            raise TypeError(f"{name}: no such condition; there are {', '.join(sorted(_CONDITIONS | _MEDIUM))}")
+    new = {n: v for n, v in values.items() if n in _CONDITIONS}
+    spectrum.check_used(new)
+    return spectrum, {n: v for n, v in (given | new).items() if spectrum.uses(n)}

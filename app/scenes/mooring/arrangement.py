@@ -31,6 +31,11 @@ class Places(NamedTuple):
     fairleads: tuple[Vector, ...]  # [m] from the body's centre
 
 
+def extent(params: Params) -> float:
+    """A length [m] that the picture is made for."""
+    return max(params.reach, 1.2 * params.depth)
+
+
 def hull_of(params: Params) -> floating.Hull:
     """The body's hull."""
     width, height = params.size, HEIGHT_OVER_WIDTH * params.size

@@ -13,9 +13,10 @@ from sim.mooring import Line, Point, System, at_rest
 if TYPE_CHECKING:
     from app.scenes.mooring.scene import MooringScene
 
-SPANS = 24  # places at which a line's statics are solved
+SPANS = 32  # places at which a line's statics are solved
 POINTS = 41  # of the drawn curve
-SHARE = 0.35  # of the distance of the anchors, to either side
+SHARE = 0.9  # of the way to where the first line is straight, which the curve goes to either side
+LEAST_SHARE = 0.03  # of the distance of the anchors, of lines that are straight at rest
 
 
 class RestoringCurve:
@@ -33,7 +34,7 @@ class RestoringCurve:
             self.made_of = key
         offset, force = self.curve
         wave = direction_of(scene)
-        now = float((scene.body_place()[:2] - scene.rest_place) @ wave)
+        now = float((scene.body_place() - scene.rest_place)[:2] @ wave)
         pull = -float(force_of_lines(scene) @ wave)
         # A mark: a line from the axis to the force, at the offset now.
         x = np.concatenate((offset, [now, now]))
@@ -60,11 +61,13 @@ def force_of_lines(scene: "MooringScene") -> NDArray[np.float64]:
 def static_curve(scene: "MooringScene") -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Offsets [m] along the waves, and the force [N] against each: of each line alone, by its span."""
     wave, system, p = direction_of(scene), scene.system, scene.params
-    offset = SHARE * p.reach * np.linspace(-1.0, 1.0, POINTS)
+    ways = scene.rest_place + np.array(scene.places.fairleads) - np.array(scene.places.anchors)
+    straight = np.sqrt(np.maximum(p.length**2 - ways[:, 2] ** 2, 0.0))
+    slack = float((straight - np.hypot(ways[:, 0], ways[:, 1])).min())
+    offset = max(SHARE * slack, LEAST_SHARE * p.reach) * np.linspace(-1.0, 1.0, POINTS)
     force = np.zeros(POINTS)
-    body = np.array([*scene.rest_place, scene.body.place[2]])
     for i, (anchor, arm) in enumerate(zip(scene.places.anchors, scene.places.fairleads, strict=True)):
-        fairlead = body + arm
+        fairlead = scene.rest_place + arm
         away = np.array(anchor)[:2] - fairlead[:2] - offset[:, None] * wave  # from the fairlead to the anchor
         span = np.linalg.norm(away, axis=1)
         at = np.linspace(span.min(), span.max() + 1e-6, SPANS)

@@ -12,8 +12,10 @@ from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
 from app.scenes.moments import copied, restore
 from app.scenes.mooring.arrangement import (
+    Places,
     body_of,
     build,
+    extent,
     first_places,
     heights,
     hull_of,
@@ -44,9 +46,11 @@ FRAME_INTERVAL = 1 / 30  # [s] between frames
 SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short
 FADE = 10.0  # [s] over which waves and current begin, as the mooring starts at rest
 MAX_SURFACE_POINTS = 49  # along a side of the drawn surface
-SURFACE_SIDE = 2.6  # of the drawn surface, in distances of the anchors
+SURFACE_SIDE = 2.6  # of the drawn surface, in `extent`s
 MAX_PATH = 1200  # places of the body's path that are kept
 PATH_INTERVAL = 0.25  # [s]
+# Largest speeds of what is dragged, so that no line snaps by it: in distances of anchors and sizes of the body [1/s].
+ANCHOR_SPEED, FAIRLEAD_SPEED = 0.02, 0.1
 DRAG_RATE = 1.0  # [rad/s] natural frequency of the mouse's pull on the body
 MAX_TENSION_SCALE = 2.0  # end of the colour scale, in largest static tensions
 FARTHEST = 5.0  # in lengths of a line and distances of anchors, beyond which a run has diverged
@@ -60,8 +64,8 @@ PLOTS = {
 }
 CURVES = {"plot_restoring": CurveAxes("Restoring force", "kN", "Offset along the waves [m]", ("static", "now"))}
 CHANGING = (
-    "state", "system", "places", "tensions", "path", "most_offset", "rest_place", "anchors", "rest_scale", "body",
-    "sea", "nodes", "links", "step_modes",
+    "state", "system", "places", "tensions", "path", "most_offset", "rest_place", "anchors", "fairleads", "rest_scale",
+    "body", "sea", "nodes", "links", "step_modes",
 )  # fmt: skip
 
 
@@ -97,7 +101,9 @@ class MooringScene:
         """At rest in level water, with anchors and fairleads in their first places."""
         p = self.params
         self.places = first_places(p)
-        self.anchors = tuple(CriticallyDampedTracker(place) for place in self.places.anchors)
+        anchors, fairleads = self.places
+        self.anchors = tuple(CriticallyDampedTracker(place, ANCHOR_SPEED * p.reach) for place in anchors)
+        self.fairleads = tuple(CriticallyDampedTracker(place, FAIRLEAD_SPEED * p.size) for place in fairleads)
         self.sea = sea_of(p)
         self.body = body_of(p, self.sea)
         self.system = build(p, self.places, self.body, self.sea)
@@ -105,7 +111,7 @@ class MooringScene:
         rest = at_rest(dataclasses.replace(self.system, current=(0.0, 0.0, 0.0)))
         self.state = LineState(self.system, rest)
         self.nodes, self.links = nodes_and_links(self.system, p)
-        self.rest_place = self.body_place()[:2].copy()
+        self.rest_place = self.body_place()
         self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
         self.hold: tuple[int, Vector] | None = None
         self.path: list[tuple[float, float]] = []
@@ -160,34 +166,37 @@ class MooringScene:
     def move_anchor(self, line: int, place: tuple[float, float]) -> None:
         """Move an anchor along the bed, no farther than its line reaches from the body's place of rest."""
         longest = math.hypot(self.params.length, self.params.depth)
-        away = np.array(place) - self.rest_place
+        away = np.array(place) - self.rest_place[:2]
         away *= min(1.0, longest / max(float(np.linalg.norm(away)), 1e-9))
-        x, y = (self.rest_place + away).tolist()
-        anchors = list(self.places.anchors)
-        anchors[line] = self.anchors[line].target = (x, y, -self.params.depth)
-        self.places = self.places._replace(anchors=tuple(anchors))
+        x, y = (self.rest_place[:2] + away).tolist()
+        self.anchors[line].target = (x, y, -self.params.depth)
 
     def move_fairlead(self, line: int, place: Vector) -> None:
         """Move a fairlead on the body, within the box about its hull."""
         arm = np.clip(np.subtract(place, self.body_place()), *hull_of(self.params).extents.T)
-        fairleads = list(self.places.fairleads)
-        fairleads[line] = vector_of(arm)
-        self.places = self.places._replace(fairleads=tuple(fairleads))
-        self.take_system()
+        self.fairleads[line].target = vector_of(arm)
 
     def body_place(self) -> NDArray[np.float64]:
         """(3,) [m] of the body's centre."""
         return np.add(self.body.place, self.state.x[:, self.system.node_count])
 
     def paths(self, duration: float) -> NDArray[np.float64]:
-        """(lines, 5, 3) of the anchors for `duration` [s], as `LineArrays` has them."""
+        """(lines, 5, 3) of the anchors for `duration` [s], as `LineArrays` has them; fairleads are moved at once."""
         t = self.state.t
+        moving = not all(one.at_rest for one in (*self.anchors, *self.fairleads))
+        for fairlead in self.fairleads:
+            fairlead.advance(t, duration)
         paths = np.zeros((len(self.anchors), 5, 3))
         for q, anchor in enumerate(self.anchors):
             path = anchor.advance(t, duration)
             paths[q, 0], paths[q, 4] = anchor.position, t
             if path is not None:
                 paths[q, :4] = path[1]
+        if moving:
+            self.places = Places(
+                tuple(one.position for one in self.anchors), tuple(one.position for one in self.fairleads)
+            )
+            self.take_system()
         return paths
 
     def driven(self) -> dict[str, NDArray[np.float64]]:
@@ -254,7 +263,7 @@ class MooringScene:
         self.tension, self.points = tension[self.links], np.moveaxis(state.x[:, self.nodes], 0, -1)
         self.tensions.measure(state.t, self.tension, self.points)
         place = self.body_place()
-        self.offset = float(np.linalg.norm(place[:2] - self.rest_place))
+        self.offset = float(np.linalg.norm((place - self.rest_place)[:2]))
         self.most_offset = max(self.most_offset, self.offset)
         if state.t >= PATH_INTERVAL * len(self.path):
             self.path.append((float(place[0]), float(place[1])))
@@ -294,7 +303,7 @@ class MooringScene:
             tension=self.tension.astype(np.float32),
             full_scale=MAX_TENSION_SCALE * self.rest_scale,
             surface=self.surface(),
-            side=SURFACE_SIDE * p.reach,
+            side=SURFACE_SIDE * extent(p),
             path=np.array(self.path[-MAX_PATH:], np.float32),
             rest=(float(self.rest_place[0]), float(self.rest_place[1])),
             offset=self.most_offset,
@@ -306,7 +315,7 @@ class MooringScene:
 
     def surface(self) -> NDArray[np.float32]:
         """Heights (m, m) [m] of the water about the origin."""
-        side = SURFACE_SIDE * self.params.reach
+        side = SURFACE_SIDE * extent(self.params)
         axis = np.linspace(-0.5 * side, 0.5 * side, MAX_SURFACE_POINTS)
         along = np.linspace(-0.75 * side, 0.75 * side, 512)
         bearing = math.radians(self.params.direction)

@@ -18,7 +18,7 @@ from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.contract import View as SceneView
-from app.scenes.mooring.arrangement import hull_of
+from app.scenes.mooring.arrangement import extent, hull_of
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, Params
 from app.scenes.mooring.report import figures_of, marks_of, notes_of, scale_of
@@ -26,7 +26,7 @@ from app.scenes.mooring.report import figures_of, marks_of, notes_of, scale_of
 SIDES = 6  # of a tube
 RING_COUNT = 90  # rings of a line, about
 TUBE_STEP = 2.0**-9  # [m] to which points of a tube are rounded for the page
-LINE_SIZE = 0.0035  # radius of a drawn line, in distances of the anchors: true ones could not be seen
+LINE_SIZE = 0.0035  # radius of a drawn line, in `extent`s: true ones could not be seen
 ANCHOR_SIZE, FAIRLEAD_SIZE = 0.02, 0.009  # radius, in the same
 ARROW_SIZE, SMALL_ARROW_SIZE = 0.12, 0.07
 CIRCLE_POINTS = 96
@@ -35,12 +35,13 @@ WATER_COLOURS, WATER_OPACITY = ((8, 52, 96), (150, 205, 225)), 0.5  # of slopes 
 FULL_SLOPE = 0.3  # of the water, that has the second colour
 WATER_STEP = 2.0**-7  # [m] to which points of the water are rounded for the page
 BED_COLOUR, CELL_COLOUR, SECTION_COLOUR = (190, 172, 136), (164, 146, 112), (126, 108, 78)
-BODY_COLOUR, LYING_COLOUR = (236, 112, 40), (92, 66, 40)
+BODY_COLOUR, LYING_COLOUR = (236, 112, 40), (44, 28, 16)
+WALL_COLOUR, WALL_OPACITY = (96, 150, 186), 0.55  # of the water behind everything, which has an end in the picture
 ANCHOR_COLOUR, LIFTED_COLOUR, FAIRLEAD_COLOUR = (50, 54, 62), (214, 40, 40), (30, 32, 38)
 WATCH_COLOUR, PATH_COLOUR, SHADOW_COLOUR = (200, 30, 60), (250, 250, 250), (120, 104, 78)
-BED_FADE = 4.0  # distance at which the bed ends, in distances of the anchors
+BED_FADE = 6.0  # distance at which the bed ends, in `extent`s
 CELLS = (1.0, 2.0, 5.0)  # of the bed's lines, times a power of ten
-FAR_VIEW = 40.0  # where the picture ends, in distances of the anchors
+FAR_VIEW = 40.0  # where the picture ends, in `extent`s
 MooringSnapshot: TypeAlias = Snapshot[Params, MooringFrame, MooringReadings]
 Shape: TypeAlias = tuple[Any, ...]
 
@@ -51,9 +52,9 @@ def linear(colour: tuple[int, int, int]) -> tuple[int, int, int]:
     return as_linear_bytes((red, green, blue))
 
 
-def cell_of(reach: float) -> float:
+def cell_of(far: float) -> float:
     """Distance [m] of the bed's lines: about ten to the anchors, and round."""
-    least = 0.1 * reach
+    least = 0.1 * far
     power = 10.0 ** np.floor(np.log10(least))
     return float(next((power * cell for cell in CELLS if power * cell >= least), 10.0 * power))
 
@@ -79,25 +80,25 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: beside the surface, which it sees edge on."""
-        far = max(params.reach, 1.2 * params.depth)
-        return (0.35 * far, -2.2 * far, 0.42 * far), (0.0, 0.0, -0.5 * params.depth)
+        far = extent(params)
+        return (0.35 * far, -2.2 * far, 0.42 * far), (0.0, 0.0, -0.4 * params.depth)
 
     def build(self, frame: MooringFrame) -> None:
         """Make everything for another arrangement."""
         for node in self.nodes:
             node.remove()
         p, scene = frame.params, self.server.scene
-        reach, (lines, n, _) = p.reach, frame.points.shape
-        set_clipping(self.server, 0.002 * reach, FAR_VIEW * reach)
-        cell = cell_of(reach)
+        far, (lines, n, _) = extent(p), frame.points.shape
+        set_clipping(self.server, 0.002 * far, FAR_VIEW * far)
+        cell = cell_of(far)
         self.bed = scene.add_grid(
-            "/bed", width=2 * reach, height=2 * reach, infinite_grid=True, cell_size=cell, section_size=5 * cell,
-            position=(0.0, 0.0, -p.depth), plane_opacity=1.0, fade_distance=BED_FADE * reach, shadow_opacity=0.0,
+            "/bed", width=2 * far, height=2 * far, infinite_grid=True, cell_size=cell, section_size=5 * cell,
+            position=(0.0, 0.0, -p.depth), plane_opacity=1.0, fade_distance=BED_FADE * far, shadow_opacity=0.0,
             plane_color=BED_COLOUR, cell_color=CELL_COLOUR, section_color=SECTION_COLOUR,
         )  # fmt: skip
         self.samples = max(1, RING_COUNT // (n - 1))
         rings = (n - 1) * self.samples + 1
-        self.radius = LINE_SIZE * reach
+        self.radius = LINE_SIZE * far
         self.line = np.zeros((rings, 3))
         self.vertices, self.rgb = np.zeros((2, rings * SIDES + 2, 3), np.float32)
         faces = tube_faces(rings, SIDES)
@@ -117,8 +118,8 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             batched_colors=linear(BODY_COLOUR),
         )  # fmt: skip
         self.body.on_drag("left")(self.on_body)
-        self.anchors = self.balls("/anchors", frame.points[:, 0], ANCHOR_SIZE * reach, ANCHOR_COLOUR)
-        self.fairleads = self.balls("/fairleads", frame.points[:, -1], FAIRLEAD_SIZE * reach, FAIRLEAD_COLOUR)
+        self.anchors = self.balls("/anchors", frame.points[:, 0], ANCHOR_SIZE * far, ANCHOR_COLOUR)
+        self.fairleads = self.balls("/fairleads", frame.points[:, -1], FAIRLEAD_SIZE * far, FAIRLEAD_COLOUR)
         self.shadows = self.strokes("/shadows", lines * (n - 1), SHADOW_COLOUR, 2.0)
         # On the water, and once more on the bed, where the body hides nothing.
         self.watch = [
@@ -128,7 +129,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         ]
         self.labels = [
             scene.add_label(f"/number_{i + 1}", str(i + 1), position=tuple(place), anchor="bottom-center")
-            for i, place in enumerate((frame.points[:, 0] + (0.0, 0.0, 2 * ANCHOR_SIZE * reach)).tolist())
+            for i, place in enumerate((frame.points[:, 0] + (0.0, 0.0, 2 * ANCHOR_SIZE * far)).tolist())
         ]
         rows = len(frame.surface)
         axis = np.linspace(-0.5 * frame.side, 0.5 * frame.side, rows)
@@ -141,12 +142,25 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             self.server, "/water", vertices, corners, colours, columns=rows, step=WATER_STEP,
             color=WATER_COLOURS[0], opacity=WATER_OPACITY, side="double", cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
+        self.walls = self.add_walls(frame)
         self.nodes = [
             self.bed, *self.tubes, self.body, self.anchors, self.fairleads, self.shadows,
-            *(handle for _, handle, _ in self.watch), *self.labels, self.water,
+            *(handle for _, handle, _ in self.watch), *self.labels, self.water, self.walls,
         ]  # fmt: skip
         self.built = self.shape_of(frame)
         self.lifted = np.zeros(lines, bool)
+
+    def add_walls(self, frame: MooringFrame) -> Any:
+        """The sides of the water from the surface to the bed, of which those behind are seen."""
+        half, depth = 0.5 * frame.side, frame.params.depth
+        ring = half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+        vertices = np.concatenate([np.column_stack([ring, np.full(4, z)]) for z in (0.0, -depth)])
+        i, j = np.arange(4), (np.arange(4) + 1) % 4
+        faces = np.concatenate([np.stack([i, i + 4, j], 1), np.stack([j, i + 4, j + 4], 1)])
+        return self.server.scene.add_mesh_simple(
+            "/walls", vertices.astype(np.float32), faces.astype(np.uint32), color=WALL_COLOUR, opacity=WALL_OPACITY,
+            side="back", flat_shading=True, cast_shadow=False, receive_shadow=False,
+        )  # fmt: skip
 
     @staticmethod
     def shape_of(frame: MooringFrame) -> Shape:
@@ -216,7 +230,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         shadows[:, :, 2] = -p.depth + 0.3 * self.radius
         set_arrays(self.shadows, points=np.stack([shadows[:, :-1], shadows[:, 1:]], axis=2).reshape(-1, 2, 3))
         if self.water.mesh.visible != p.surface:
-            self.water.mesh.visible = p.surface
+            self.water.mesh.visible = self.walls.visible = p.surface
         if p.surface:
             self.water.set(*self.surface_of(frame))
         thickness = 1.0 if p.grid else 0.0
@@ -244,18 +258,18 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
 
     def show_handles(self, frame: MooringFrame) -> None:
         """The arrows of anchors and fairleads."""
-        p = frame.params
+        p, far = frame.params, extent(frame.params)
         for i in range(MAX_LINES):
             is_shown = p.handles and i < len(frame.points)
             for kind, node, scale in (("anchor", 0, ARROW_SIZE), ("fairlead", -1, SMALL_ARROW_SIZE)):
                 gizmo = self.gizmos[f"{kind} {i + 1}"]
-                if is_shown and gizmo.handle.scale != scale * p.reach:
-                    gizmo.handle.scale = scale * p.reach
+                if is_shown and gizmo.handle.scale != scale * far:
+                    gizmo.handle.scale = scale * far
                 x, y, z = frame.points[i, node].tolist() if is_shown else (0.0, 0.0, 0.0)
                 gizmo.show((x, y, z) if is_shown else None)
             if i < len(self.labels):
                 x, y, z = frame.points[i, 0].tolist()
-                place = x, y, z + 2 * ANCHOR_SIZE * p.reach
+                place = x, y, z + 2 * ANCHOR_SIZE * far
                 if tuple(self.labels[i].position) != place:
                     self.labels[i].position = place
 

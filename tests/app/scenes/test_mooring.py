@@ -1,0 +1,158 @@
+"""The mooring scene: its statics, what the panel says of tension and slack, drags, and the restoring curve."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.messages import DivergenceError, Grab, Place, Release, vector_of
+from app.scenes import scene_named
+from app.scenes.mooring.arrangement import DENSITY, heights, hull_of, line_types, sea_of
+from app.scenes.mooring.parameters import PRESETS, Params
+from app.scenes.mooring.restoring import force_of_lines, static_curve
+from app.scenes.mooring.scene import FADE, MooringScene
+from app.scenes.mooring.tensions import Tensions
+from sim.mooring import critical_step
+from sim.mooring.catenary import catenary
+from sim.parameters import check_record
+
+SMALL: dict[str, Any] = {"segments": 12, "lines": 1, "steady_force": 10.0, "time_step": 1 / 120}
+
+
+def run(scene: MooringScene, seconds: float) -> None:
+    for _ in range(round(seconds / scene.step / 4)):
+        scene.advance(4)
+
+
+@pytest.mark.parametrize("preset", PRESETS)
+def test_every_preset_rests_runs_and_stays_within_its_stable_step(preset):
+    scene = MooringScene(check_record(Params, PRESETS[preset]))
+    assert scene.step < scene.stability.critical_step
+    run(scene, 1.0)
+    found = scene.readings()
+    assert all(line.most_at_fairlead > 0.0 for line in found.lines)
+    assert found.most_offset < 1.0
+
+
+def test_the_rest_is_that_of_the_catenary():
+    scene = MooringScene(Params(wave_height=0.0))
+    p, fairlead = scene.params, scene.points[0, -1]
+    weight = (p.line_mass - DENSITY * line_types(p)[0].volume) * 9.81
+    found = catenary(
+        p.length, p.axial_stiffness, weight, float(np.hypot(*(fairlead - scene.points[0, 0])[:2])),
+        float(fairlead[2] + p.depth),
+    )  # fmt: skip
+    reading = scene.readings().lines[0]
+    middle = np.array([p.length - 0.5 * p.length / p.segments])  # of the last segment
+    assert reading.fairlead == pytest.approx(found.tension(middle)[0], rel=5e-3)
+    assert reading.anchor == pytest.approx(found.horizontal, rel=0.01)
+    assert reading.lying == pytest.approx(found.lying, abs=2.0 * p.length / p.segments)
+    assert reading.uplift == 0.0
+
+
+def test_without_waves_it_stays_at_rest_and_with_them_the_touchdown_wanders():
+    scene = MooringScene(Params(**SMALL, wave_height=0.0))
+    run(scene, 5.0)
+    assert scene.most_offset < 1e-3
+    waves = MooringScene(Params(**SMALL, wave_height=6.0, regular=True))
+    lying = []
+    run(waves, FADE)
+    for _ in range(40):
+        run(waves, 0.25)
+        lying.append(waves.lying()[0])
+    assert np.ptp(lying) > 0.0
+
+
+def test_the_drawn_water_is_the_water_that_moves_the_lines():
+    params = Params(wave_height=4.0, direction=30.0)
+    sea = sea_of(params)
+    assert sea is not None
+    bearing, place, t = math.radians(30.0), np.array([[12.0, -7.0, 0.0]]), 3.3
+    flow = sea.kinematics(place, t)
+    along = place[0, :2] @ [math.cos(bearing), math.sin(bearing)]
+    # Linear waves: dz/dt is the upward velocity at the surface.
+    h = 1e-4
+    rise = (heights(sea, np.array([along]), t + h, 1.0) - heights(sea, np.array([along]), t - h, 1.0)) / (2.0 * h)
+    assert flow.velocity[0, 2] == pytest.approx(rise[0], rel=1e-5)
+    assert 4.0 * math.sqrt(0.5 * float(np.square(sea.amplitude).sum())) == pytest.approx(4.0, rel=0.02)
+
+
+def test_slack_is_counted_and_dated():
+    tensions, points = Tensions(2), np.zeros((2, 3, 3))
+    points[:, 1, 2] = 1.0
+    for t, one in ((0.5, 5.0), (1.0, 0.0), (1.5, 0.0), (2.0, 8.0)):
+        tensions.measure(t, np.array([[1.0, one], [2.0, 3.0]]), points)
+        if t == 1.5:
+            assert tensions.slack_since[0] == 1.0
+    assert math.isnan(tensions.slack_since[0])
+    first, second = tensions.readings(np.zeros(2))
+    assert (first.most_at_fairlead, tensions.most_at) == (8.0, (0, 2.0))
+    assert (first.slack_share, second.slack_share) == (0.5, 0.0)
+    assert (second.uplift, second.anchor) == (2.0, 2.0)  # its first segment stands upright
+
+
+def test_a_snap_is_the_largest_tension_after_slack():
+    scene = MooringScene(check_record(Params, PRESETS["Snap in a storm"]))
+    static, slack = scene.readings().lines[0].fairlead, False
+    while scene.time < 40.0 and scene.tensions.most_fairlead[0] < 4.0 * static:
+        scene.advance(8)
+        slack |= not math.isnan(scene.tensions.slack_since[0])
+    assert slack
+    rows = np.array(scene.take_plot_rows()[1:])
+    assert np.nanmax(rows[:, 1]) <= rows[-1, 5] * (1.0 + 1e-9)  # the plot's largest so far
+
+
+def test_dragging_an_anchor_a_fairlead_and_the_body():
+    scene = MooringScene(Params(**SMALL, wave_height=0.0))
+    before = scene.readings().lines[0].fairlead
+    scene.handle(Place("anchor 1", (-95.0, 5.0, 30.0)))
+    run(scene, 14.0)
+    assert scene.points[0, 0] == pytest.approx((-95.0, 5.0, -40.0), abs=1e-6)
+    assert before < scene.readings().lines[0].most_at_fairlead < 10.0 * before  # no jerk
+    scene.handle(Place("anchor 1", (-1e6, 0.0, 0.0)))  # no farther than the line reaches
+    assert np.linalg.norm(scene.anchors[0].target) < 130.0
+    scene.handle(Place("anchor 1", (-95.0, 5.0, 0.0)))
+    scene.handle(Place("fairlead 1", vector_of(scene.body_place() + (0.0, 50.0, 0.0))))
+    run(scene, 10.0)
+    assert scene.places.fairleads[0] == pytest.approx((0.0, hull_of(scene.params).extents[1, 1], 0.0))
+    scene.handle(Grab(0, (0.0, 20.0, 0.0), client=1))
+    scene.handle(Grab(0, (0.0, -20.0, 0.0), client=2))  # the other browser waits
+    run(scene, 2.0)
+    assert scene.body_place()[1] > 1.0
+    scene.handle(Release(client=2))
+    assert scene.frame().pull == (0.0, 20.0, 0.0)
+    scene.handle(Release(client=1))
+    assert scene.frame().pull is None
+
+
+def test_the_restoring_curve_goes_through_the_state_of_rest_and_through_a_pushed_one():
+    pushed, free = (MooringScene(Params(segments=20, wave_height=0.0, steady_force=f)) for f in (15.0, 0.0))
+    offset, force = static_curve(free)
+    assert np.interp(0.0, offset, force) == pytest.approx(0.0, abs=400.0)
+    assert (np.diff(force) > 0.0).all()
+    moved = float(pushed.body_place()[0] - free.body_place()[0])
+    assert np.interp(moved, offset, force) == pytest.approx(15e3, rel=0.1)
+    assert -force_of_lines(pushed)[0] == pytest.approx(15e3, rel=0.02)
+
+
+def test_the_gauge_is_that_of_the_library_and_a_longer_step_diverges():
+    scene = MooringScene(Params(**SMALL))
+    assert scene.stability.critical_step == pytest.approx(critical_step(scene.system, "leapfrog"), rel=1e-9)
+    long = MooringScene(Params(**{**SMALL, "time_step": 1.5 * scene.stability.critical_step}))
+    with pytest.raises(DivergenceError, match="became unstable"):
+        run(long, 60.0)
+    kind = scene_named("mooring")
+    assert kind.remedy is not None
+
+
+def test_a_checkpoint_goes_on_as_the_run_did():
+    scene = MooringScene(Params(**SMALL))
+    run(scene, 1.0)
+    kept = scene.keep()
+    run(scene, 1.0)
+    expected = scene.frame()
+    scene.resume(kept)
+    run(scene, 1.0)
+    np.testing.assert_array_equal(scene.frame().points, expected.points)
+    assert scene.frame().offset == expected.offset

@@ -178,6 +178,13 @@ class Control:
                 if widget is not None:
                     widget.visible = visible
 
+    def remove(self) -> None:
+        """Take it from the page."""
+        with self.line_lock:
+            for widget in (self.field, self.slider, self.line):
+                if widget is not None:
+                    widget.remove()
+
     def write(self, text: str) -> None:
         """Write a line, as HTML, under the control."""
         if text != self.text:

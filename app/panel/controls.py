@@ -1,6 +1,7 @@
 """The controls of a scene's parameters, which show and set one record."""
 
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Sequence
 
 import viser
 
@@ -19,6 +20,9 @@ class Controls:
         self.gui, self.read, self.changed = gui, read, changed
         self.parameters = parameters_of(read())
         self.own: dict[str, Control] = {}
+        self.again: list[Control] = []  # controls of parameters that are shown a second time, as in a task
+        self.hidden: set[str] = set()  # names of parameters that mean nothing just now
+        self.lock = threading.Lock()  # the viewer thread shows others again, the event loop sets them
         self.folders: dict[str, viser.GuiFolderHandle] = {}
 
     def add_group(self, group: str, *, is_open: bool) -> None:
@@ -31,6 +35,16 @@ class Controls:
             for name in names:
                 self.own[name] = self.make(folder, name)
 
+    def show_again(self, names: Sequence[str], folder: viser.GuiFolderHandle) -> None:
+        """Show these parameters a second time, in a folder, in place of those shown there before."""
+        with folder:
+            made = [self.make(folder, name) for name in names]
+        with self.lock:
+            before, self.again = self.again, made
+            for control in before:
+                control.remove()
+        self.show(self.hidden)
+
     def make(self, folder: viser.GuiFolderHandle | viser.GuiTabHandle, name: str) -> Control:
         """A control of a parameter, in the container that is open."""
         return Control(
@@ -40,14 +54,19 @@ class Controls:
     def on_change(self, name: str, value: Value) -> None:
         """A control was set."""
         self.changed(name, value)
-        self.own[name].show_value(value)
+        with self.lock:
+            for control in (self.own[name], *self.again):
+                if control.name == name:
+                    control.show_value(value)
 
     def show(self, hidden: set[str]) -> None:
         """Show the record; hide the controls that mean nothing just now, and the folders in which nothing is left."""
+        self.hidden = hidden
         params = self.read()
-        for control in self.own.values():
-            control.show_value(getattr(params, control.name))
-            control.show(control.name not in hidden)
+        with self.lock:
+            for control in (*self.own.values(), *self.again):
+                control.show_value(getattr(params, control.name))
+                control.show(control.name not in hidden)
         shown = {self.parameters[name].group for name in self.own if name not in hidden}
         for group, folder in self.folders.items():
             if folder.visible != (group in shown):

@@ -53,5 +53,6 @@ def add_switches(gui: viser.GuiApi) -> None:
         '<div class="springtide-switches"><label>Quality <select data-springtide-quality>'
         '<option value="automatic">automatic</option><option value="high">high</option>'
         '<option value="medium">medium</option><option value="low">low</option></select> '
-        "<span data-springtide-quality-now></span></label></div>"
+        "<span data-springtide-quality-now></span></label>"
+        '<button type="button" data-springtide-display>Display …</button></div>'
     )

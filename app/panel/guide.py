@@ -14,6 +14,7 @@ import viser
 from app.lab.live_values import LiveNumber, LiveValues, fill_in
 from app.lab.task import PREDICTION, Question, Setup, Task
 from app.lab.workbook import Workbook, read_off
+from app.panel.controls import Controls
 from app.panel.picture import take_picture
 from app.render.formula import formula
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, join, note
@@ -24,6 +25,7 @@ from sim.parameters import Value, in_words, parameters_of
 TYPING_PAUSE = 1.0  # [s] after the last keystroke, after which a text is kept
 UNANSWERED = "Choose …"  # in the list of choices
 SET_UP, SHOW, HIDE = "Set this up", "Show the answer", "Hide the answer"
+BACK, ON = "◀", "▶"  # to the task before, and to the next; `fields.js` names them
 PICTURE = "Take a picture"
 PICTURE_WIDTH = 1280  # [pixels] of a picture for the report
 STATE_COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "given": GOOD_COLOUR}
@@ -56,20 +58,18 @@ class QuestionWidgets:
         self.refusal = ""
         self.typed = self.flushed = "", 0.0  # the text as typed, and when [s] it last changed; the one that was kept
         gui = guide.gui
-        heading = in_words(question.key)
         self.widgets: list[GuiHandle] = []
-        unit = f" [{question.unit}]" if question.unit else ""
-        self.widgets.append(gui.add_html(note(fill("<b>{}</b>", question.ask))))
+        label = label_of(question)
         shown = self.kept_text()
         if question.kind == "choice":
-            self.field: GuiHandle = gui.add_dropdown(heading, (UNANSWERED, *question.choices), initial_value=shown)
+            self.field: GuiHandle = gui.add_dropdown(label, (UNANSWERED, *question.choices), initial_value=shown)
         else:
-            self.field = gui.add_text(f"{heading}{unit}", shown, multiline=question.kind == "text")
+            self.field = gui.add_text(label, shown, multiline=question.kind == "text")
         self.field.on_update(self.on_field)
         self.widgets.append(self.field)
         self.reader: GuiHandle | None = None
         if question.read_off:
-            self.reader = gui.add_button("Read off", visible=False)
+            self.reader = gui.add_button_group("", ("Read off",), visible=False)
             self.reader.on_click(self.on_read_off)
             self.widgets.append(self.reader)
         self.line = gui.add_html("")
@@ -157,8 +157,12 @@ class Guide:
         workbook: Workbook,
         set_up: Callable[[Setup], None],
         tab: viser.GuiTabHandle,
+        controls: Controls,
     ) -> None:
-        """set_up: shows a set-up of a task; raises ValueError where it does not exist. tab: that it stands in."""
+        """set_up: shows a set-up of a task; raises ValueError where it does not exist. tab: that it stands in.
+
+        controls: of the panel, of which a task shows its own again.
+        """
         self.gui, self.kind, self.workbook, self.set_up = gui, kind, workbook, set_up
         self.values: LiveValues = {}
         self.stale = True  # whether something other than live values is to be shown anew
@@ -171,22 +175,24 @@ class Guide:
         self.questions: list[QuestionWidgets] = []
         workbook.go_to_scene(kind.name)
         self.titles = self.titles_now()
-        self.tab = tab
-        with self.tab:
-            if workbook.folder is not None:
-                self.name = gui.add_text("Your name", workbook.answers.name)
-                self.name.on_update(self.on_name)
+        self.controls = controls
+        self.names: tuple[str, ...] = ()  # of the parameters that the task shows again
+        with tab:
             self.chooser = gui.add_dropdown("Task", self.titles, initial_value=self.titles[workbook.index])
             self.chooser.on_update(self.on_chooser)
-            self.turn = gui.add_button_group("", ("Previous", "Next"))
+            self.turn = gui.add_button_group("", (BACK, ON))
             self.turn.on_click(self.on_turn)
             self.text = gui.add_html("")
             self.tools = gui.add_button_group("", (SET_UP, SHOW))
             self.tools.on_click(self.on_tool)
-            if workbook.folder is not None:
-                self.camera = gui.add_button_group("", (PICTURE,))
-                self.camera.on_click(self.on_picture)
+            # Folders without a name, so that what a task brings has its place.
+            self.control_place = gui.add_folder(None)
+            self.readings = gui.add_html("")
+            self.question_place = gui.add_folder(None)
             self.answer = gui.add_html("")
+            if workbook.folder is not None:
+                self.name = gui.add_text("Your name", workbook.answers.name)
+                self.name.on_update(self.on_name)
         self.show_task(workbook.task)
 
     # ----- what browsers do
@@ -204,25 +210,27 @@ class Guide:
 
     async def on_turn(self, event: ViserEvent) -> None:
         """On to the next task, or back."""
-        self.workbook.go(self.workbook.index + (1 if event.target.value == "Next" else -1))
+        self.workbook.go(self.workbook.index + (1 if event.target.value == ON else -1))
 
     async def on_tool(self, event: ViserEvent) -> None:
-        """Set the task up, or show its answer."""
+        """Set the task up, show its answer, or take a picture."""
         task = self.workbook.task
-        if event.target.value == SET_UP:
+        if event.target.value == PICTURE:
+            self.start_picture(event.client, task)
+        elif event.target.value == SET_UP:
             self.refusal = self.attempt(lambda: self.set_up(self.workbook.set_up_of(task)))
         else:
             self.refusal = self.attempt(lambda: self.workbook.show_answer(task))
         self.stale = True
 
-    async def on_picture(self, event: ViserEvent) -> None:
-        """Take a picture of this browser's view for the report."""
-        if event.client is None or not self.busy.acquire(blocking=False):
+    def start_picture(self, client: viser.ClientHandle | None, task: Task) -> None:
+        """Take a picture of a browser's view for the report."""
+        if client is None or not self.busy.acquire(blocking=False):
             return
         self.picture_said = "The picture is being taken …"
-        self.stale = True
-        arguments = event.client, self.workbook.task
-        threading.Thread(target=self.take_picture, args=arguments, name="picture for the report", daemon=True).start()
+        threading.Thread(
+            target=self.take_picture, args=(client, task), name="picture for the report", daemon=True
+        ).start()
 
     def take_picture(self, client: viser.ClientHandle, task: Task) -> None:
         """Keep a picture in the student's folder; whatever goes wrong is said. In a thread of its own."""
@@ -289,21 +297,36 @@ class Guide:
             widgets.remove()
         self.questions = []
         if self.workbook.folder is not None:
-            with self.tab:
+            with self.question_place:
                 self.questions = [QuestionWidgets(self, task, question) for question in task.questions]
+        self.names = self.controls_of(task)
+        self.controls.show_again(self.names, self.control_place)
         self.show_values(task)
         self.shown = task
+
+    def controls_of(self, task: Task) -> tuple[str, ...]:
+        """Names of the parameters that a task is about: those of its steps, and of the values that it shows."""
+        if not self.is_set_up_here(task):
+            return ()
+        in_steps = (condition.name for step in task.steps for condition in step.when)
+        names = dict.fromkeys((*in_steps, *self.workbook.set_up_of(task).show))
+        return tuple(name for name in names if name in self.controls.parameters)
 
     def show_values(self, task: Task) -> None:
         """Show the texts of the task with the values of now."""
         shown = self.workbook.is_shown(task)
         self.show_titles(task)
-        tools = (SET_UP, HIDE if shown and self.workbook.folder is None else SHOW)
+        tools = (SET_UP, SHOW, PICTURE)
+        if self.workbook.folder is None:
+            tools = (SET_UP, HIDE if shown else SHOW)
         if self.tools.options != tools:
             self.tools.options = tools
-        text = note(join((self.statement(task), self.now(task), self.steps(task))))
+        text = note(join((self.statement(task), self.steps(task))))
         if self.text.content != text:
             self.text.content = text
+        now = str(fill('<div class="springtide-note springtide-readings">{}</div>', self.now(task)))
+        if self.readings.content != now:
+            self.readings.content = now
         answer = note(join((self.said(), self.answer_text(task) if shown else "")))
         if self.answer.content != answer:
             self.answer.content = answer
@@ -338,16 +361,15 @@ class Guide:
         if not self.is_set_up_here(task) and setup.scene:
             scene = in_words(setup.scene).lower()
             elsewhere = coloured(f"This task is about the {scene}: press “{SET_UP}”.", WARNING_COLOUR)
-        return fill(
-            '<div class="springtide-guide">{}<div>{}</div><div class="springtide-faint">{}</div></div>',
-            elsewhere, asked, setup.look,
-        )  # fmt: skip
+        # In a workbook the steps of a task say what to do.
+        look = Html() if self.workbook.folder is not None and task.steps else faint(setup.look)
+        return fill('<div class="springtide-guide">{}<div>{}</div>{}</div>', elsewhere, asked, look)
 
     def now(self, task: Task) -> Html:
         """The live values that the task keeps in sight."""
-        found = [self.values.get(name) for name in self.workbook.set_up_of(task).show]
+        found = [self.values.get(name) for name in self.workbook.set_up_of(task).show if name not in self.names]
         rows = [fill("{}: <b>{}</b>", v.meaning, format(v, "")) for v in found if isinstance(v, LiveNumber)]
-        return fill('<div class="springtide-now">Now: {}</div>', join(rows, " · ")) if rows else Html()
+        return fill("Now: {}", join(rows, " · ")) if rows else Html()
 
     def steps(self, task: Task) -> Html:
         """The steps of the task, ticked off once seen."""
@@ -385,6 +407,12 @@ class Guide:
         """Keep the texts that are being typed."""
         for widgets in self.questions:
             widgets.flush(float("inf"))
+
+
+def label_of(question: Question) -> str:
+    """Name of the field of an answer: the question, with its unit."""
+    unit = f" [{question.unit}]" if question.unit else ""
+    return f"{'Predict: ' if question.key == PREDICTION else ''}{question.ask}{unit}"
 
 
 def title_of(task: Task) -> str:

@@ -126,7 +126,7 @@ class Panel:
         with tabs[CONTROLS]:
             self.add_controls(tabs[CONTROLS])
         if workbook is not None:
-            self.guide = Guide(self.gui, self.kind, workbook, self.set_up, tabs[LAB])
+            self.guide = Guide(self.gui, self.kind, workbook, self.set_up, tabs[LAB], self.shown)
             if session is not None:
                 from app.panel import code_panel  # only `springtide lab DIR` pays for it
 

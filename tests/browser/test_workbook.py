@@ -41,7 +41,7 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
 
     page.get_by_label("Task", exact=True).click()
     page.get_by_role("option", name="3.2-1 The force of a damped spring").click()
-    text = page.get_by_role("textbox", name="Predict")
+    text = page.get_by_role("textbox", name="Predict: What will the rope do")
     tab.wait(text.count)
     page.get_by_role("button", name="Show the answer").click()
     tab.wait(lambda: "prediction first" in page.locator(".springtide-refusal").inner_text())
@@ -57,7 +57,7 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
     lab.panel.set("stiffness", 8000.0)
     lab.panel.set("time_step", 1 / 500)
 
-    number = page.get_by_role("textbox", name="Stretch [m]")
+    number = page.get_by_role("textbox", name="A rope of 9 springs")
     number.fill("much")
     number.press("Enter")
     tab.wait(lambda: "is not kept" in page.locator(".springtide-refusal").inner_text())
@@ -77,9 +77,12 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
     page.goto(f"{address}&scene=rope&stiffness=900&task=3.2-1")
     tab.wait(lambda: page.locator(".springtide-guide").count())
     tab.wait(lambda: vars(lab.panel.params)["stiffness"] == 900.0)
-    tab.wait(lambda: page.get_by_role("textbox", name="Stretch [m]").input_value() == "0.1125")
-    assert page.get_by_role("textbox", name="Predict").input_value() == "It swings for ever, r n space and all."
-    assert page.get_by_role("textbox", name="Predict").is_disabled()
+    tab.wait(lambda: page.get_by_role("textbox", name="A rope of 9 springs").input_value() == "0.1125")
+    assert (
+        page.get_by_role("textbox", name="Predict: What will the rope do").input_value()
+        == "It swings for ever, r n space and all."
+    )
+    assert page.get_by_role("textbox", name="Predict: What will the rope do").is_disabled()
     assert page.locator(".springtide-answer math").count() == 2
     assert "The top spring carries all nine points" in page.locator(".springtide-verdict").last.inner_text()
     assert tab.errors == []

@@ -3,7 +3,7 @@
 (() => {
   "use strict";
   const FOLDER = ".mantine-Paper-root > .mantine-Paper-root:first-child"; // the title of a folder
-  const ICON_NAMES = { "list-search": "Commands", "adjustments": "Viewer settings", "x": "Close" };
+  const ICON_NAMES = { "list-search": "Commands", "arrow-back": "Back to the panel", "x": "Close" };
 
   function set(element, name, value) {
     if (element.getAttribute(name) !== value) element.setAttribute(name, value);

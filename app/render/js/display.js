@@ -23,6 +23,10 @@
       const pressed = String(chosen(button.dataset.springtideSwitch));
       if (button.getAttribute("aria-pressed") !== pressed) button.setAttribute("aria-pressed", pressed);
     }
+    for (const label of document.querySelectorAll(".mantine-Switch-label")) {
+      // viser's own, which would do nothing here.
+      if (label.textContent === "Dark Mode") label.closest(".mantine-Switch-root").style.display = "none";
+    }
     tellServer();
   }
 
@@ -40,6 +44,10 @@
   }
 
   document.addEventListener("click", (event) => {
+    if (event.target instanceof Element && event.target.closest("[data-springtide-display]")) {
+      document.querySelector("button:has(.tabler-icon-adjustments)")?.click(); // viser's own settings
+      return;
+    }
     const button = event.target instanceof Element && event.target.closest("[data-springtide-switch]");
     if (!button) return;
     const name = button.dataset.springtideSwitch;

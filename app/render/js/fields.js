@@ -109,6 +109,15 @@
     Play: "Play (space)", Pause: "Pause (space)", Step: "One step (N)", Reset: "Back to the start (R)",
     View: "Reset the view (V)", Plots: "Open or close the plots (P)", Undo: "Undo the last change (U)",
   };
+  const ARROWS = { "◀": "Previous task", "▶": "Next task" };
+  function nameArrows() {
+    for (const button of document.querySelectorAll(".mantine-Button-root")) {
+      const name = ARROWS[button.textContent];
+      if (!name || button.title === name) continue;
+      button.title = name;
+      button.setAttribute("aria-label", name);
+    }
+  }
   const sizes = new ResizeObserver(([{ target }]) => {
     document.documentElement.style.setProperty("--springtide-head", `${target.offsetHeight}px`);
   });
@@ -130,8 +139,9 @@
     }
   }
 
-  // One stop of Tab for the buttons of the block, and one for the tabs: the arrows go on from there.
+  // One stop of Tab for the buttons of the block, and one for the tabs: the arrows go on from there. A tab alone is none.
   function roveStops() {
+    for (const alone of document.querySelectorAll('[role="tab"]:only-child')) if (!alone.tabIndex) alone.tabIndex = -1;
     const groups = [
       [...document.querySelectorAll("[data-springtide-icon]")],
       [...document.querySelectorAll('[data-dock-area^="gui-tabs-"] [role="tab"]')],
@@ -163,6 +173,7 @@
   function adorn() {
     nameFields();
     markLab();
+    nameArrows();
     roveStops();
   }
   new MutationObserver(adorn).observe(document.body, { childList: true, subtree: true, characterData: true });

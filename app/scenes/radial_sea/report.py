@@ -239,7 +239,7 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
     column, grid = readings.column, snapshot.frame.grid
     oil = column.oil
     marks = {
-        "wind_speed": f"waves of {number(readings.clean_height)} m, half of the energy above "
+        "wind_speed": f"waves of {number(readings.clean_height)} m, middle period "
         f"{seconds(readings.middle_period, 2)}"
         if readings.clean_height > 0.0
         else "no waves",

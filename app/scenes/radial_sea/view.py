@@ -262,7 +262,7 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
         if not snapshot.readings.bodies:
             return waves
         body = snapshot.readings.bodies[0]
-        return fill("{}: {} m deep in the water · {}", body.title, bold(fixed(body.draft, 2)), waves)
+        return fill("{}: {} m deep · {}", body.title, bold(fixed(body.draft, 2)), waves)
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
         """Parameter -> the line under its control."""

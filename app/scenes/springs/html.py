@@ -21,7 +21,7 @@ def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
     colour = GOOD_COLOUR if share < WARNING_SHARE else WARNING_COLOUR if share <= 1.0 else ERROR_COLOUR
     return fill(
         '<div><span class="springtide-step-share">{}</span> {}</div>'
-        '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 8px">'
+        '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 4px">'
         '<div style="height:8px;border-radius:4px;width:{:.0f}%;background:{}"></div></div>',
         share_text(gauge, share, colour, exact=exact),
         info(STEP_INFO.format(number(gauge.zeta, 2))),
@@ -37,7 +37,7 @@ def share_text(gauge: Gauge, share: float, colour: str, *, exact: bool) -> Html:
     if gauge.limit <= 0.0:
         return fill("Step: {}", coloured("none is stable with this method", colour))
     return fill(
-        "Step: {} of the largest stable one (hω {} of {})",
+        "Step: {} of the largest stable (hω {} of {})",
         coloured(f"{'' if exact else 'at most '}{percent(share)}", colour),
         stability_number(gauge.h_omega),
         stability_number(gauge.limit),

@@ -173,7 +173,7 @@ def wind_line(params: Params) -> str:
     if spectrum.wind_height == 10.0:
         return f"Beaufort {force}, {name}"
     there = number(spectrum.wind_speed(params.wind_speed))
-    return f"Beaufort {force}, {name}; {there} m/s at {spectrum.wind_height:g} m, where this spectrum needs it"
+    return f"Beaufort {force}, {name}; {there} m/s at {spectrum.wind_height:g} m height"
 
 
 def radius_line(params: Params) -> str:

@@ -14,7 +14,7 @@ from app.lab.folder import PICTURES, make_folder
 from app.lab.live_values import LiveNumber
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.panel.guide import HIDE, PICTURE, SET_UP, SHOW, UNANSWERED, Guide, QuestionWidgets
+from app.panel.guide import BACK, HIDE, ON, PICTURE, SET_UP, SHOW, UNANSWERED, Guide, QuestionWidgets
 from app.panel.panel import Panel
 from app.render.html import escape
 from app.scenes.race.html import error_text
@@ -78,10 +78,10 @@ def test_the_guide_of_a_scene_begins_with_its_first_question_and_turns(plain: Vi
     assert guide.shown is not None
     assert guide.shown.item == "3.2-1"
     assert "Complete the rope" in guide.text.content
-    does(guide.on_turn, "Next")
+    does(guide.on_turn, ON)
     wait_for(lambda: "Euler" in guide.text.content)
     assert guide.chooser.value.startswith("3.2-2")
-    does(guide.on_turn, "Previous")
+    does(guide.on_turn, BACK)
     wait_for(lambda: "Complete the rope" in guide.text.content)
     does(guide.on_chooser, guide.titles[0])
     wait_for(lambda: "Which fluid is on top" in guide.text.content)
@@ -103,6 +103,35 @@ def test_a_task_is_set_up_in_its_scene_and_its_answer_follows_the_parameters(pla
     wait_for(lambda: "with 300\u00a0N/m it has" in guide.answer.content)
     does(guide.on_tool, SHOW)
     wait_for(lambda: "math" not in guide.answer.content)
+
+
+def test_a_task_shows_its_parameters_again_in_step_with_the_controls(plain: Viewer) -> None:
+    show(plain, "step_euler")
+    controls = plain.panel.shown
+    wait_for(lambda: [control.name for control in controls.again] == ["integrator", "stiffness"])
+    again = controls.again[1]
+    does(again.on_field, "1.5k")
+    assert vars(plain.panel.params)["stiffness"] == 1500.0
+    assert controls.own["stiffness"].field.value == again.field.value == "1500"
+    does(controls.own["stiffness"].on_field, "300")
+    assert again.field.value == "300"
+    does(again.on_field, "a lot")
+    assert "a lot" in again.line.content
+    assert again.field.value == "300"
+    plain.panel.undo()
+    assert again.field.value == "800"
+    show(plain, "spring_force")
+    wait_for(lambda: [control.name for control in controls.again] == ["damping", "drag"])
+    show(plain, "cloth_links")  # of another scene
+    wait_for(lambda: not controls.again)
+
+
+def test_a_control_that_means_nothing_is_hidden_in_a_task_too(plain: Viewer) -> None:
+    controls = plain.panel.shown
+    controls.show_again(("sphere_radius",), guide_of(plain).control_place)
+    assert not controls.again[0].visible
+    plain.panel.set("sphere", True)
+    assert controls.again[0].visible
 
 
 def test_a_task_of_another_scene_opens_it_and_stays_the_shown_one(plain: Viewer) -> None:
@@ -175,7 +204,7 @@ def test_a_text_is_kept_when_the_typing_pauses_and_when_the_task_is_left(student
     assert ("reflectance", "explain") not in read_answers(folder).values or not read_answers(folder).values[
         "reflectance", "explain"
     ]
-    does(guide.on_turn, "Next")
+    does(guide.on_turn, ON)
     wait_for(lambda: guide.shown is not None and guide.shown.name != "reflectance")
     assert read_answers(folder).values["reflectance", "explain"] == "Hardly any light comes"
     again = widgets_of(show(student, "reflectance"), "explain")
@@ -214,14 +243,14 @@ def test_a_picture_is_kept_for_the_task_that_is_shown(student: Viewer, folder: P
     wait_for(lambda: "time" in guide.values)
     event = SimpleNamespace(target=SimpleNamespace(value=PICTURE), client_id=1, client=object())
     monkeypatch.setattr("app.panel.guide.take_picture", lambda client, size, *, jpeg: b"\xff\xd8\xff")
-    coroutines.run(guide.on_picture(event))
+    coroutines.run(guide.on_tool(event))
     wait_for(lambda: "The report has the picture" in guide.answer.content)
     name = next((folder / PICTURES).iterdir()).name
     assert name.startswith("spring_force-rope-")
     assert name in guide.answer.content
     monkeypatch.setattr("app.panel.guide.take_picture", refuse)
     wait_for(lambda: not guide.busy.locked())
-    coroutines.run(guide.on_picture(event))
+    coroutines.run(guide.on_tool(event))
     wait_for(lambda: "No picture was taken: the browser has gone" in guide.answer.content)
     assert len(list((folder / PICTURES).iterdir())) == 1
 
@@ -244,7 +273,7 @@ def test_the_guide_says_the_errors_of_a_race_as_its_table_does(monkeypatch: pyte
         update(panel, *arguments)
         if panel.guide is not None and "Results" in panel.readings.notes:
             table = re.findall(r"<tr><td>(?:<b>)?(.*?)(?:</b>)?</td>", panel.readings.notes["Results"].content)
-            now = re.findall(r"Error of rope \d: <b>(.*?)</b>", panel.guide.text.content)
+            now = re.findall(r"Error of rope \d: <b>(.*?)</b>", panel.guide.readings.content)
             if now and table:
                 seen.append((now, table[: len(now)]))
 

@@ -47,7 +47,7 @@ def unexplained(text: str) -> list[str]:
 
 def test_a_symbol_without_a_word_is_found() -> None:
     assert unexplained("hω = 0.68 limit 2.00 at ζ = 0.021") == [r"h ?ω", "ζ"]
-    assert unexplained("Step: 34 % of the largest stable one (hω 0.68 of 2.00)") == []
+    assert unexplained("Step: 34 % of the largest stable (hω 0.68 of 2.00)") == []
 
 
 def texts_of(name: str, changes: dict[str, Any]) -> Iterator[str]:

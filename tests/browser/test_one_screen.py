@@ -1,0 +1,135 @@
+"""One screen of 1280 x 800 pixels: what one reads and what one changes stand together, for each scene and each task."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.lab.folder import make_folder
+from app.lab.task import Task, load_tasks
+from app.lab.workbook import Workbook
+from app.messages import Pause
+from app.panel.guide import SET_UP, label_of
+from app.render.html import Html
+from app.scenes import NAMES
+from app.server.viewer import Viewer
+from tests.browser.conftest import Tab
+
+TASKS = load_tasks()
+MIN_SLIDERS = 5
+MAX_HEAD = 150  # [pixels] of the block that always stays
+MAX_WORDS = 80
+MAX_STOPS = 8  # of Tab before the first control
+# The names of the sliders that are whole in the window, the height of the block above the tabs [pixels], and the words.
+FIRST_VIEW = """() => {
+    const panel = document.querySelector(".mantine-ScrollArea-viewport:has(.springtide-panel)");
+    const foot = panel.getBoundingClientRect().bottom;
+    const seen = (element) => element.checkVisibility({ visibilityProperty: true }) && !element.closest("[inert]") &&
+        element.getBoundingClientRect().height > 0 && element.getBoundingClientRect().bottom <= foot + 1;
+    let said = "";
+    const walker = document.createTreeWalker(panel, NodeFilter.SHOW_TEXT);
+    while (walker.nextNode()) {
+        const element = walker.currentNode.parentElement;
+        if (["STYLE", "SCRIPT", "OPTION"].includes(element.tagName) || !seen(element)) continue;
+        if (element.closest("div[class*=Flex-root] > div")?.offsetHeight === 1) continue; // a name for assistive software
+        said += (walker.currentNode.previousSibling?.tagName === "WBR" ? "" : " ") + walker.currentNode.textContent;
+    }
+    for (const field of panel.querySelectorAll("input[type=text], input:not([type])")) if (seen(field)) said += ` ${field.value}`;
+    const sliders = [...panel.querySelectorAll(".multi-slider-thumb")].filter(seen);
+    const words = said.split(/\\s+/).filter((word) => /[\\p{L}\\p{N}]/u.test(word));
+    return { sliders: sliders.length, words, head: document.querySelector(".springtide-lab").offsetHeight }; }"""
+# Whether the focus is on a control in the tab that is shown; and names of the stops of Tab before such a control.
+IN_TAB = """:is([data-dock-area^="gui-tabs-"] :is(input, textarea, [role=slider]))"""
+HAS_FOCUS = f"document.activeElement.matches(`{IN_TAB}`)"
+STOPS = f"""() => {{
+    const all = [...document.querySelectorAll("a[href], button, input, select, textarea, [tabindex]")];
+    const stops = all.filter((one) => one.tabIndex >= 0 && !one.disabled && one.checkVisibility({{ visibilityProperty: true }})
+        && !one.closest("[inert]"));
+    const before = stops.slice(0, stops.findIndex((one) => one.matches(`{IN_TAB}`)));
+    return before.map((one) => one.getAttribute("aria-label") || one.title || one.labels?.[0]?.textContent || one.textContent.slice(0, 40)); }}"""
+# The rows of the task from its list to its last question: names of their fields and buttons, and by how much [pixels] the
+# last row is cut off; null while the panel is scrolled.
+ROWS = """() => {
+    const panel = document.querySelector(".mantine-ScrollArea-viewport:has(.springtide-panel)");
+    const readings = document.querySelector(".springtide-readings");
+    if (!readings || panel.scrollTop) return null;
+    const foot = panel.getBoundingClientRect().bottom, names = [];
+    let over = -Infinity;
+    for (const row of readings.parentElement.parentElement.children) {
+        const labels = [...row.querySelectorAll(":scope > .mantine-Flex-root label")].map((label) => label.textContent);
+        const buttons = [...row.querySelectorAll(":scope > .mantine-Flex-root button")].map((one) => one.textContent);
+        if (labels.includes("Your name")) break; // the next row after the questions
+        names.push(...labels, ...buttons);
+        over = Math.max(over, row.getBoundingClientRect().bottom - foot);
+    }
+    return { names, over }; }"""
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def opened(
+    request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab], tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[tuple[Viewer, Tab]]:
+    """Each scene with a student's workbook, in a window of this size."""
+    lab, tab = one_page
+    size = tab.page.viewport_size
+    tab.page.set_viewport_size({"width": 1280, "height": 800})
+    folder: Path = tmp_path_factory.mktemp("one_screen") / "mylab"
+    make_folder(folder, TASKS)
+    lab.workbook = Workbook(TASKS, folder)
+    lab.first_params.pop(request.param, None)
+    tab.follow(lab, request.param)
+    tab.wait(lambda: tab.page.locator(".springtide-guide").count())
+    yield lab, tab
+    lab.workbook = None
+    lab.loop.commands.put(Pause())
+    tab.page.set_viewport_size(size)
+
+
+def test_the_first_view_of_a_scene_has_what_one_changes(opened: tuple[Viewer, Tab]) -> None:
+    _, tab = opened
+    tab.show("Controls")
+    tab.wait(lambda: tab.page.evaluate(FIRST_VIEW)["sliders"] >= MIN_SLIDERS, 20)
+    found = tab.page.evaluate(FIRST_VIEW)
+    assert found["head"] <= MAX_HEAD, found
+    assert len(found["words"]) <= MAX_WORDS, " ".join(found["words"])
+    tab.page.keyboard.press("c")
+    assert tab.page.evaluate(HAS_FOCUS)
+    tab.page.evaluate("document.activeElement.blur()")
+    assert 1 < len(stops := tab.page.evaluate(STOPS)) <= MAX_STOPS, stops
+
+
+def names_of(lab: Viewer, task: Task) -> set[str]:
+    """Names of what a task needs beside its text: buttons, controls, and fields of its questions."""
+    guide = lab.panel.guide
+    assert guide is not None
+    hidden = lab.panel.kind.hidden(lab.panel.params)
+    controls = {lab.panel.controls[name].field.label for name in guide.controls_of(task) if name not in hidden}
+    return {SET_UP, *controls, *map(label_of, task.questions)}
+
+
+def test_each_task_of_a_scene_fits_the_screen_with_its_controls_and_questions(opened: tuple[Viewer, Tab]) -> None:
+    lab, tab = opened
+    guide = lab.panel.guide
+    assert guide is not None
+    tab.show("Lab")
+    lab.panel.head.show_code(Html("Your code: this scene uses none of your functions yet"))
+    tab.wait(lambda: tab.page.get_by_text("Your code:").count())
+    assert tab.page.evaluate(FIRST_VIEW)["head"] <= MAX_HEAD
+    book, cut = guide.workbook, {}
+    tasks = [task for task in TASKS if book.set_up_of(task).scene == lab.panel.kind.name]
+    assert tasks
+    for task in tasks:
+        lab.panel.set_up(book.set_up_of(task))
+        book.go(book.tasks.index(task))
+        found: dict[str, Any] = {}
+
+        def is_there(task: Task = task) -> bool:
+            rows = tab.page.evaluate(ROWS)
+            found.update(rows or {})
+            return guide.shown is task and rows is not None and names_of(lab, task) <= set(rows["names"])
+
+        tab.wait(is_there, 20)
+        if found["over"] > 0:
+            cut[task.name] = found["over"]
+    assert cut == {}

@@ -4,9 +4,11 @@ import math
 
 from app.formats.formatting import metres, number, percent, seconds
 from app.messages import Snapshot
-from app.render.html import ERROR_COLOUR, Html, bold, coloured, faint, fill, join, table
+from app.render.html import ERROR_COLOUR, Html, bold, coloured, faint, fill, info, join, table
 from app.scenes.mooring.frame import LineReading, MooringReadings
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
+
+COLOURS = "Brown parts of a line lie on the bed. A red anchor is pulled upwards."
 
 
 def kilonewtons(force: float) -> str:
@@ -20,10 +22,10 @@ def figures_of(snapshot: Snapshot) -> str:
     line, t = found.most_at
     largest = max(one.most_at_fairlead for one in found.lines)
     tension = fill(
-        '<div class="springtide-largest">Largest tension: {} kN, line {} at {}</div>',
+        '<div class="springtide-largest" title="at {}">Largest tension: {} kN, line {}</div>',
+        seconds(t),
         bold(kilonewtons(largest)),
         line + 1,
-        seconds(t),
     )
     return join((tension, stability_bar(found.stability)))
 
@@ -81,11 +83,10 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
 def scale_of(snapshot: Snapshot) -> Html:
     """The key of the colours."""
     frame = snapshot.frame
-    scale = colour_scale(
-        "slack", "tension", f"{kilonewtons(frame.full_scale)} kN",
+    return colour_scale(
+        "slack", fill("tension {}", info(COLOURS)), f"{kilonewtons(frame.full_scale)} kN",
         clipped=float(frame.tension.max()) > frame.full_scale,
     )  # fmt: skip
-    return join((scale, faint("Brown: lies on the bed. Red anchor: it is pulled upwards.")))
 
 
 def marks_of(snapshot: Snapshot) -> dict[str, str]:

@@ -239,8 +239,7 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
     column, grid = readings.column, snapshot.frame.grid
     oil = column.oil
     marks = {
-        "wind_speed": f"waves of {number(readings.clean_height)} m, middle period "
-        f"{seconds(readings.middle_period, 2)}"
+        "wind_speed": f"waves of {number(readings.clean_height)} m, middle period {seconds(readings.middle_period, 2)}"
         if readings.clean_height > 0.0
         else "no waves",
         "oil": f"{number(oil.density, 4)} kg/m³, {number(oil.viscosity * 1e3)} mPa·s, "

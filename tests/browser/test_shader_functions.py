@@ -75,6 +75,22 @@ def test_oil_has_the_colours_of_its_thickness(page: Any) -> None:
     np.testing.assert_allclose(through, light_through(thickness), atol=1e-5)
 
 
+@pytest.mark.parametrize("footprint", [0.02, 0.7])
+def test_facets_that_glint_have_their_variance_and_the_light_of_a_smooth_path(page: Any, footprint: float) -> None:
+    """At two times, at 20,000 places that are far apart."""
+    points = 37.0 * np.stack(np.meshgrid(np.arange(140.0), np.arange(140.0)), -1).reshape(-1, 2)
+    light = "mirroredFrom(normalize(vec3(1.0, 0.0, 0.5)), normalize(vec3(-1.0, 0.1, 0.4)), {}, {}, 0.37, 1.34)"
+    variance, share = 0.004, constant("GLINT_SHARE")
+    smooth = evaluate(page, f"vec4({light.format('vec2(0.02)', variance)})", points[:1])[0, 0]
+    for time in (0.0, 7.3):
+        facet = f"facetSlope(p.xy, {footprint}, {share * variance})"
+        mirrored = light.format(f"vec2(0.02) + {facet}", (1.0 - share) * variance)
+        found = evaluate(page, f"vec4({facet}, {mirrored}, 0.0)", points, {"seaState": (time, 1.0, 0.0)})
+        assert found[:, :2].var(axis=0) == pytest.approx(share * variance, rel=0.03)
+        assert found[:, 2].mean() == pytest.approx(smooth, rel=0.05)
+        assert found[:, 2].max() > 2.0 * smooth
+
+
 @pytest.mark.parametrize("distance", [5.0, 50.0, 500.0])
 def test_normals_drawn_and_filtered_have_the_spectrum_s_slope_variance(page: Any, distance: float) -> None:
     """Ripples of the shader, and the simulated waves of a tile, at the pixel that is seen at this distance."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -32,10 +31,11 @@ FIRST_VIEW = """() => {
     while (walker.nextNode()) {
         const element = walker.currentNode.parentElement;
         if (["STYLE", "SCRIPT", "OPTION"].includes(element.tagName) || !seen(element)) continue;
-        if (element.closest("div[class*=Flex-root] > div")?.offsetHeight === 1) continue; // a name for assistive software
+        if (element.closest("div[class*=Flex-root] > div")?.offsetHeight === 1) continue; // it is only listened to
         said += (walker.currentNode.previousSibling?.tagName === "WBR" ? "" : " ") + walker.currentNode.textContent;
     }
-    for (const field of panel.querySelectorAll("input[type=text], input:not([type])")) if (seen(field)) said += ` ${field.value}`;
+    const fields = [...panel.querySelectorAll("input[type=text], input:not([type])")].filter(seen);
+    said = [said, ...fields.map((field) => field.value)].join(" ");
     const sliders = [...panel.querySelectorAll(".multi-slider-thumb")].filter(seen);
     const words = said.split(/\\s+/).filter((word) => /[\\p{L}\\p{N}]/u.test(word));
     return { sliders: sliders.length, words, head: document.querySelector(".springtide-lab").offsetHeight }; }"""
@@ -44,12 +44,13 @@ IN_TAB = """:is([data-dock-area^="gui-tabs-"] :is(input, textarea, [role=slider]
 HAS_FOCUS = f"document.activeElement.matches(`{IN_TAB}`)"
 STOPS = f"""() => {{
     const all = [...document.querySelectorAll("a[href], button, input, select, textarea, [tabindex]")];
-    const stops = all.filter((one) => one.tabIndex >= 0 && !one.disabled && one.checkVisibility({{ visibilityProperty: true }})
-        && !one.closest("[inert]"));
+    const shown = all.filter((one) => one.checkVisibility({{ visibilityProperty: true }}) && !one.closest("[inert]"));
+    const stops = shown.filter((one) => one.tabIndex >= 0 && !one.disabled);
     const before = stops.slice(0, stops.findIndex((one) => one.matches(`{IN_TAB}`)));
-    return before.map((one) => one.getAttribute("aria-label") || one.title || one.labels?.[0]?.textContent || one.textContent.slice(0, 40)); }}"""
-# The rows of the task from its list to its last question: names of their fields and buttons, and by how much [pixels] the
-# last row is cut off; null while the panel is scrolled.
+    const label = (one) => one.labels?.[0]?.textContent || one.textContent.slice(0, 40);
+    return before.map((one) => one.getAttribute("aria-label") || one.title || label(one)); }}"""
+# The rows of the task from its list to its last question: names of their fields and buttons, and by how much [pixels]
+# the last row is cut off; null while the panel is scrolled.
 ROWS = """() => {
     const panel = document.querySelector(".mantine-ScrollArea-viewport:has(.springtide-panel)");
     const readings = document.querySelector(".springtide-readings");
@@ -108,6 +109,13 @@ def names_of(lab: Viewer, task: Task) -> set[str]:
     return {SET_UP, *controls, *map(label_of, task.questions)}
 
 
+def over_of(lab: Viewer, tab: Tab, task: Task) -> tuple[float, ...]:
+    """By how much [pixels] a task is cut off; empty while the page does not show it."""
+    assert lab.panel.guide is not None
+    rows = tab.page.evaluate(ROWS) if lab.panel.guide.shown is task else None
+    return (rows["over"],) if rows and names_of(lab, task) <= set(rows["names"]) else ()
+
+
 def test_each_task_of_a_scene_fits_the_screen_with_its_controls_and_questions(opened: tuple[Viewer, Tab]) -> None:
     lab, tab = opened
     guide = lab.panel.guide
@@ -120,18 +128,10 @@ def test_each_task_of_a_scene_fits_the_screen_with_its_controls_and_questions(op
     lab.panel.head.show_code(Html("Your code: this scene uses none of your functions yet"))
     tab.wait(lambda: tab.page.get_by_text("Your code:").count())
     assert tab.page.evaluate(FIRST_VIEW)["head"] <= MAX_HEAD
-
     for task in tasks:
         lab.panel.set_up(book.set_up_of(task))
         book.go(book.tasks.index(task))
-        found: dict[str, Any] = {}
-
-        def is_there(task: Task = task) -> bool:
-            rows = tab.page.evaluate(ROWS)
-            found.update(rows or {})
-            return guide.shown is task and rows is not None and names_of(lab, task) <= set(rows["names"])
-
-        tab.wait(is_there, 20)
-        if found["over"] > 0:
-            cut[task.name] = found["over"]
+        over = tab.wait(lambda task=task: over_of(lab, tab, task), 20)
+        if over[0] > 0:
+            cut[task.name] = over[0]
     assert cut == {}

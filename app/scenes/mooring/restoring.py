@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.scenes.charts import Chart, lines_of
+from app.messages import Line as ChartLine
+from app.scenes.charts import PALETTE, Chart
 from sim.interruption import raise_if_stopped
 from sim.mooring import Line, Point, System, at_rest
 
@@ -18,6 +19,8 @@ POINTS = 41  # of the drawn curve
 SHARE = 0.9  # of the way to where the first line is straight, which the curve goes to either side
 LEAST_SHARE = 0.03  # of the distance of the anchors, of lines that are straight at rest
 
+STATIC_LINE, NOW_LINE = ChartLine("static", PALETTE[0], 2.0), ChartLine("now", PALETTE[1], 5.0)
+
 
 class RestoringCurve:
     """The curve of the arrangement as it was last asked for."""
@@ -28,21 +31,23 @@ class RestoringCurve:
 
     def chart(self, scene: "MooringScene") -> Chart:
         """The chart; the curve is found again where anchors, fairleads or lines are others."""
-        key = scene.places, scene.params.direction, scene.system.lines
+        # Of the offsets so far it takes the next power of two, so that it is seldom found again.
+        far = 2.0 ** math.ceil(math.log2(max(scene.most_offset, 1e-3)))
+        key = scene.places, scene.params.direction, scene.system.lines, far
         if key != self.made_of:
-            self.curve = static_curve(scene)
+            self.curve = static_curve(scene, far)
             self.made_of = key
         offset, force = self.curve
         wave = direction_of(scene)
         now = float((scene.body_place() - scene.rest_place)[:2] @ wave)
         pull = -float(force_of_lines(scene) @ wave)
-        # A mark: a line from the axis to the force, at the offset now.
+        # A bar from the lowest force of the curve to the force now, at the offset now.
         x = np.concatenate((offset, [now, now]))
         static = np.concatenate((force, np.interp([now, now], offset, force)))
-        mark = np.concatenate((np.full(len(offset), math.nan), [0.0, pull]))
+        mark = np.concatenate((np.full(len(offset), math.nan), [min(force[0], pull), pull]))
         order = np.argsort(x, kind="stable")
         columns = x[order], 1e-3 * static[order], 1e-3 * mark[order]
-        return Chart("Offset along the waves [m]", lines_of(("static", "now")), columns)
+        return Chart("Offset along the waves [m]", (STATIC_LINE, NOW_LINE), columns)
 
 
 def direction_of(scene: "MooringScene") -> NDArray[np.float64]:
@@ -58,13 +63,13 @@ def force_of_lines(scene: "MooringScene") -> NDArray[np.float64]:
     return (scene.tension[:, -1:] * unit[:, :2]).sum(axis=0)
 
 
-def static_curve(scene: "MooringScene") -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Offsets [m] along the waves, and the force [N] against each: of each line alone, by its span."""
+def static_curve(scene: "MooringScene", far: float = 0.0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Offsets [m] along the waves, at least to `far` [m], and the force [N] against each: of each line by its span."""
     wave, system, p = direction_of(scene), scene.system, scene.params
     ways = scene.rest_place + np.array(scene.places.fairleads) - np.array(scene.places.anchors)
     straight = np.sqrt(np.maximum(p.length**2 - ways[:, 2] ** 2, 0.0))
     slack = float((straight - np.hypot(ways[:, 0], ways[:, 1])).min())
-    offset = max(SHARE * slack, LEAST_SHARE * p.reach) * np.linspace(-1.0, 1.0, POINTS)
+    offset = max(SHARE * slack, LEAST_SHARE * p.reach, far) * np.linspace(-1.0, 1.0, POINTS)
     force = np.zeros(POINTS)
     for i, (anchor, arm) in enumerate(zip(scene.places.anchors, scene.places.fairleads, strict=True)):
         fairlead = scene.rest_place + arm

@@ -26,7 +26,7 @@ from app.scenes.mooring.report import figures_of, marks_of, notes_of, scale_of
 SIDES = 6  # of a tube
 RING_COUNT = 90  # rings of a line, about
 TUBE_STEP = 2.0**-9  # [m] to which points of a tube are rounded for the page
-LINE_SIZE = 0.0035  # radius of a drawn line, in `extent`s: true ones could not be seen
+LINE_SIZE = 0.0045  # radius of a drawn line, in `extent`s: true ones could not be seen
 ANCHOR_SIZE, FAIRLEAD_SIZE = 0.02, 0.009  # radius, in the same
 ARROW_SIZE, SMALL_ARROW_SIZE = 0.12, 0.07
 CIRCLE_POINTS = 96

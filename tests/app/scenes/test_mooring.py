@@ -136,6 +136,18 @@ def test_the_restoring_curve_goes_through_the_state_of_rest_and_through_a_pushed
     assert -force_of_lines(pushed)[0] == pytest.approx(15e3, rel=0.02)
 
 
+def test_the_chart_of_the_restoring_force_marks_the_state():
+    scene = MooringScene(Params(**SMALL, plot_restoring=True))
+    run(scene, 1.0)
+    charts = scene.curves()
+    assert charts is not None
+    offset, static, now = charts["plot_restoring"].columns
+    assert (np.diff(offset) >= 0.0).all()
+    assert np.isfinite(static).all()
+    assert np.isfinite(now).sum() == 2
+    assert np.nanmax(now) == pytest.approx(-1e-3 * force_of_lines(scene)[0])
+
+
 def test_the_gauge_is_that_of_the_library_and_a_longer_step_diverges():
     scene = MooringScene(Params(**SMALL))
     assert scene.stability.critical_step == pytest.approx(critical_step(scene.system, "leapfrog"), rel=1e-9)

@@ -21,7 +21,7 @@ from sim.floating.fluid_state import make_water
 from sim.floating.motion import STANDARD, MotionCoefficients, step
 from sim.interruption import raise_if_stopped
 from sim.ocean import Sea
-from sim.ocean.radial import RadialSea
+from sim.ocean.radial import RadialSea, SurfaceAt
 from sim.ocean.tile_sea import TileSea
 from sim.validation import argument_error, check_kind, check_positive, is_whole_number
 
@@ -105,7 +105,7 @@ def layers_of(sea: Sea | RadialSea) -> Layers:
     return ((sea.conditions.density, math.inf),) if isinstance(sea, Sea) else sea.column.layers
 
 
-def interface_of(at, thickness: float) -> dict[str, np.ndarray]:
+def interface_of(at: SurfaceAt, thickness: float) -> dict[str, np.ndarray]:
     """The interface under a layer [m], as `make_water` takes it, of a `SurfaceAt`."""
     return {
         "interface": at.interface - thickness,

@@ -16,6 +16,7 @@ Hydrodynamics, 1977, section 6.15 and 6.16).
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sim.floating.closed_mesh import ClosedMesh, area_vectors, check_hull
 from sim.floating.rotation import rotation_matrix
@@ -151,51 +152,63 @@ class Submerged(NamedTuple):
     second: np.ndarray  # (3,) [m4] int x^2, int y^2, int x y over the waterplane, about the hull's centre of mass
 
 
-def check_pose(hull: ClosedMesh, position, rotation, surface) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def check_pose(
+    hull: ClosedMesh, position: ArrayLike, rotation: ArrayLike, surface: ArrayLike
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Position (3,), rotation matrix and surface height per vertex as arrays. Raises ValueError for bad ones."""
     check_hull("hull", hull)
-    position = as_array("position", position, "three finite numbers [m]")
-    rotation = as_array("rotation", rotation, "a quaternion (w, x, y, z) that is not zero")
-    if position.shape != (3,) or not np.isfinite(position).all():
-        raise argument_error("position", position.tolist(), "three finite numbers [m]")
-    if rotation.shape != (4,) or not np.isfinite(rotation).all() or not np.linalg.norm(rotation) > 0:
-        raise argument_error("rotation", rotation.tolist(), "a quaternion (w, x, y, z) that is not zero")
+    place = as_array("position", position, "three finite numbers [m]")
+    turn = as_array("rotation", rotation, "a quaternion (w, x, y, z) that is not zero")
+    if place.shape != (3,) or not np.isfinite(place).all():
+        raise argument_error("position", place.tolist(), "three finite numbers [m]")
+    if turn.shape != (4,) or not np.isfinite(turn).all() or not np.linalg.norm(turn) > 0:
+        raise argument_error("rotation", turn.tolist(), "a quaternion (w, x, y, z) that is not zero")
     allowed = f"a finite height [m], or one for each of {len(hull.vertices)} vertices"
     heights = as_array("surface", surface, allowed)
     if heights.shape not in ((), (len(hull.vertices),)) or not np.isfinite(heights).all():
         raise argument_error("surface", surface, allowed)
-    return position, rotation_matrix(rotation), np.broadcast_to(heights, len(hull.vertices))
+    return place, rotation_matrix(turn), np.broadcast_to(heights, len(hull.vertices))
 
 
-def submerged(hull: ClosedMesh, position=(0.0, 0.0, 0.0), rotation=(1.0, 0.0, 0.0, 0.0), surface=0.0) -> Submerged:
+def submerged(
+    hull: ClosedMesh,
+    position: ArrayLike = (0.0, 0.0, 0.0),
+    rotation: ArrayLike = (1.0, 0.0, 0.0, 0.0),
+    surface: ArrayLike = 0.0,
+) -> Submerged:
     """The part of the hull below `surface`, a height or heights above each vertex (n,) [m].
 
     position (3,) [m] of the centre of mass, rotation a quaternion (w, x, y, z). Raises ValueError for bad arguments.
     """
-    position, turn, heights = check_pose(hull, position, rotation, surface)
+    place, turn, heights = check_pose(hull, position, rotation, surface)
     x = np.ascontiguousarray(turn @ hull.vertices.T)
     nz = np.ascontiguousarray(area_vectors(x.T, hull.faces)[:, 2])
     out = np.zeros(10)
-    add_displaced(x, np.ascontiguousarray(hull.faces.T), nz, heights - position[2] - x[2], out)
+    add_displaced(x, np.ascontiguousarray(hull.faces.T), nz, heights - place[2] - x[2], out)
     volume = max(float(out[0]), 0.0)
-    centre = position + out[1:4] / volume if volume > 0 else np.full(3, np.nan)
+    centre = place + out[1:4] / volume if volume > 0 else np.full(3, np.nan)
     return Submerged(volume, centre, float(out[4]), out[7:10].copy())
 
 
 def pressure_force(
-    hull: ClosedMesh, position=(0.0, 0.0, 0.0), rotation=(1.0, 0.0, 0.0, 0.0), surface=0.0, density=1025.0, gravity=9.81
+    hull: ClosedMesh,
+    position: ArrayLike = (0.0, 0.0, 0.0),
+    rotation: ArrayLike = (1.0, 0.0, 0.0, 0.0),
+    surface: ArrayLike = 0.0,
+    density: float = 1025.0,
+    gravity: float = 9.81,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force (3,) [N] and moment (3,) [N m] about the centre of mass of a fluid of `density` [kg/m3] below `surface`.
 
     For two fluids add the force of the upper below its surface and that of the difference of the densities below
     the interface. Arguments as in `submerged`. Raises ValueError for bad arguments.
     """
-    position, turn, heights = check_pose(hull, position, rotation, surface)
+    place, turn, heights = check_pose(hull, position, rotation, surface)
     density, gravity = check_not_negative("density", density, "kg/m3"), check_not_negative("gravity", gravity, "m/s2")
     x = np.ascontiguousarray(turn @ hull.vertices.T)
     area = np.ascontiguousarray(area_vectors(x.T, hull.faces).T)
     out = np.zeros(9)
     faces = np.ascontiguousarray(hull.faces.T)
     # force = -int p n
-    add_pressure(x, faces, area, 0, len(hull.faces), heights - position[2] - x[2], -density * gravity, out)
+    add_pressure(x, faces, area, 0, len(hull.faces), heights - place[2] - x[2], -density * gravity, out)
     return out[0:3].copy(), out[3:6].copy()

@@ -10,6 +10,7 @@ from importlib.resources import files
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.validation import argument_error, as_array, check_positive, check_within
@@ -104,7 +105,7 @@ class Reflectance(NamedTuple):
         return 0.5 * (self.s + self.p)
 
 
-def fresnel(angle, index: float) -> Reflectance:
+def fresnel(angle: ArrayLike, index: float) -> Reflectance:
     """Exact reflectance of a surface of refractive index (1 or above) at an angle from its normal, 0 to pi/2 [rad].
 
     Raises ValueError for an index under 1, or an angle that is not allowed.

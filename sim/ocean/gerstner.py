@@ -5,7 +5,7 @@ waves; shorter ones belong to the material (roughness, ripples). For the whole s
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -38,7 +38,7 @@ class Waves(NamedTuple):
         return 4.0 * math.sqrt(0.5 * float(np.square(self.amplitude).sum()))
 
 
-def draw_waves(spectrum: Spectrum, conditions: Conditions, count: int = 64, seed: int = 0) -> Waves:
+def draw_waves(spectrum: Spectrum[Any], conditions: Conditions, count: int = 64, seed: int = 0) -> Waves:
     """`count` waves of equal energy m0/count from a spectrum: a = sqrt(2 m0/count).
 
     The energy, as a function of wavenumber, is cut into `count` equal parts; each gives the wavenumber of its middle
@@ -85,7 +85,7 @@ def draw_waves(spectrum: Spectrum, conditions: Conditions, count: int = 64, seed
     return Waves(wavenumber * np.cos(bearing), wavenumber * np.sin(bearing), amplitude, phase)
 
 
-def energy_range(spectrum: Spectrum, conditions: Conditions) -> tuple[float, float]:
+def energy_range(spectrum: Spectrum[Any], conditions: Conditions) -> tuple[float, float]:
     """Smallest and largest wavenumber [rad/m] considered: less than 1e-8 of the energy lies outside."""
     low = high = peak_wavenumber(spectrum, conditions)
     if conditions.second_height > 0.0:
@@ -94,7 +94,7 @@ def energy_range(spectrum: Spectrum, conditions: Conditions) -> tuple[float, flo
     return low * 10.0 ** DECADES[0], high * 10.0 ** DECADES[1]
 
 
-def peak_wavenumber(spectrum: Spectrum, conditions: Conditions) -> float:
+def peak_wavenumber(spectrum: Spectrum[Any], conditions: Conditions) -> float:
     """Wavenumber [rad/m] about which the spectrum's energy lies; that of 10 m/s if there is no wind."""
     if spectrum.peak is None or spectrum.is_level(conditions):
         return conditions.gravity / 10.0**2

@@ -92,9 +92,9 @@ class Sea:
         quarter = self.k[: self.size // 2]
         self._k = np.hypot(quarter[:, None], quarter[None, :])
         inverse = np.divide(1.0, self._k, out=np.zeros_like(self._k), where=self._k > 0.0)
-        self.radial = {"1": np.ones_like(self._k, self._real), "1/k": inverse.astype(self._real)}
+        self.radial: dict[str, np.ndarray] = {"1": np.ones_like(self._k, self._real), "1/k": inverse.astype(self._real)}
         self.radial["k"] = self._k.astype(self._real)
-        self.rows = {"1": np.ones(self.size, self._real), "k": self.k.astype(self._real)}
+        self.rows: dict[str, np.ndarray] = {"1": np.ones(self.size, self._real), "k": self.k.astype(self._real)}
         self.rows["k2"] = (self.k**2).astype(self._real)
 
         self.transforms = Transforms(self.size, precision)
@@ -115,7 +115,7 @@ class Sea:
         self._set_conditions(spectrum, given | more, Medium())
         self._waves.begin(0.0, 0.0, self._waves.target)
 
-    def __deepcopy__(self, memo: dict) -> "Sea":
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Sea":
         """An independent copy of the sea.
 
         It shares arrays that are never changed in place, and the transforms: both seas are for the same thread.

@@ -5,7 +5,7 @@ One tile is a sample: even a perfect one differs from its spectrum. `height_scat
 
 import functools
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -40,7 +40,7 @@ def beaufort(wind_speed: float) -> tuple[int, str]:
     return force, BEAUFORT_NAMES[force]
 
 
-def theory(spectrum: Spectrum, conditions: Conditions, k_max: float = 1e4, k_min: float = 1e-6) -> Statistics:
+def theory(spectrum: Spectrum[Any], conditions: Conditions, k_max: float = 1e4, k_min: float = 1e-6) -> Statistics:
     """Statistics of the spectrum itself between two wavenumbers [rad/m], by a sum over log k and direction."""
     k, cells, theta = _polar_cells(spectrum, conditions, k_max, k_min)
     along = cells.sum(axis=1)
@@ -56,7 +56,7 @@ def theory(spectrum: Spectrum, conditions: Conditions, k_max: float = 1e4, k_min
 
 
 @functools.lru_cache(maxsize=64)
-def open_sea_height(spectrum: Spectrum, conditions: Conditions) -> float:
+def open_sea_height(spectrum: Spectrum[Any], conditions: Conditions) -> float:
     """Hs [m] of an endless sea under these conditions: the closed form if one exists, or the integral."""
     if spectrum.is_level(conditions):
         closed = 0.0
@@ -69,7 +69,7 @@ def open_sea_height(spectrum: Spectrum, conditions: Conditions) -> float:
 
 
 def energy_by_wavenumber(
-    spectrum: Spectrum, conditions: Conditions, k_max: float = 1e4, k_min: float = 1e-6
+    spectrum: Spectrum[Any], conditions: Conditions, k_max: float = 1e4, k_min: float = 1e-6
 ) -> tuple[np.ndarray, np.ndarray]:
     """(k [rad/m], energy [m2]), (n,) each: the spectrum's energy in n cells of log k; their sum is m0."""
     k, cells, _ = _polar_cells(spectrum, conditions, k_max, k_min)
@@ -77,7 +77,7 @@ def energy_by_wavenumber(
 
 
 def _polar_cells(
-    spectrum: Spectrum, conditions: Conditions, k_max: float, k_min: float
+    spectrum: Spectrum[Any], conditions: Conditions, k_max: float, k_min: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """k (n,) [rad/m], energy (n, m) [m2] of cells of log k and direction, and theta (m,) [rad]."""
     log_k, step = np.linspace(math.log(k_min), math.log(k_max), 3000, retstep=True)

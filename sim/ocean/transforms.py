@@ -15,7 +15,10 @@ from sim.cache import own_folder, shared_folders
 from sim.files import replacing
 from sim.ocean.buffer_pool import BufferPool
 
-PRECISIONS = {"single": (np.float32, np.complex64), "double": (np.float64, np.complex128)}
+PRECISIONS: dict[str, tuple[type[np.floating[Any]], type[np.complexfloating[Any, Any]]]] = {
+    "single": (np.float32, np.complex64),
+    "double": (np.float64, np.complex128),
+}
 
 _loaded: set[Path] = set()
 

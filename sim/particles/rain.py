@@ -6,9 +6,10 @@ against Gunn and Kinzer (1949, J. Meteor. 6:243). Diameters are in metres here; 
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sim.jit import kernel
 from sim.validation import argument_error, as_array, check_positive
@@ -23,7 +24,7 @@ def slope_parameter(rate: float) -> float:
     return 4.1e3 * rate**-0.21
 
 
-def terminal_speed(diameter, gravity: float = EARTH):
+def terminal_speed(diameter: ArrayLike, gravity: float = EARTH) -> Any:
     """Fall speed [m/s] of drops of diameter [m], array or number: v = 9.65 - 10.3 exp(-0.6 D/mm), ~ sqrt(gravity).
 
     Raises ValueError for a negative or non-finite diameter, or gravity not above 0.

@@ -168,7 +168,9 @@ def along_surfaces(x: NDArray[np.float64], u: NDArray[np.float64], t: float, p: 
     return (along * normal.any(axis=0)).reshape(u.shape)
 
 
-def ritz(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int):
+def ritz(
+    x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Lanczos from `start`: rising eigenvalues (m,) of `part` of the tangent about x; their vectors are the columns of
     the second (m, m), in terms of the rows of the third (m, 3 rows cols)."""
     raise_if_stopped()
@@ -181,7 +183,7 @@ def ritz(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, p
     return values, vectors, basis[:filled]
 
 
-def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int):
+def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int) -> NDArray[np.float64]:
     """The unit vector (3 rows cols,) of the largest eigenvalue of `part` of the tangent about x."""
     _, vectors, basis = ritz(x, start, t, p, part)
     return vectors[:, -1] @ basis

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sim.springs.laws import TAUT, check_law, law_of, of_arrays
-from sim.springs.net import Net
+from sim.springs.net import Family, Net
 from sim.validation import argument_error, as_array, check_number
 
 ITERATIONS = 200  # of Newton: a dozen is usual
@@ -156,7 +156,7 @@ def equilibrium(net: Net) -> Equilibrium:
     return Equilibrium(start + flat.x[:, :1] * away + flat.x[:, 2:] * (0.0, 0.0, 1.0), flat.tension)
 
 
-def single_family(net: Net):
+def single_family(net: Net) -> Family:
     """The links of a rope; raises ValueError for any other net, or where they have no stiffness."""
     if not net.is_rope:
         raise argument_error("net", net.shape, "a rope")

@@ -4,6 +4,8 @@ Six force evaluations a step of fifth order. Undamped modes hold to h omega = 1 
 nets. Choose it for soft nets and tolerances of 1e-5 to 1e-8.
 """
 
+from typing import Any
+
 from sim.springs.analysis.amplification import limit_of_polynomial, polynomial_of
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.embedded.dopri5 import METHOD, A, B
@@ -18,11 +20,11 @@ def limit(zeta: float) -> float:
     return limit_of_polynomial(POLYNOMIAL, zeta)
 
 
-def advance(*arguments):
+def advance(*arguments: Any) -> int:
     return take_steps(METHOD, *arguments)
 
 
-def march(*arguments):
+def march(*arguments: Any) -> tuple[int, int, int, float]:
     return march_to_frames(METHOD, *arguments)
 
 

@@ -4,6 +4,7 @@ Unstable without damping at every step size: a mode's energy grows by 1 + (h ome
 """
 
 import math
+from typing import Any
 
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.symplectic_euler import take_euler_steps
@@ -14,7 +15,7 @@ def limit(zeta: float) -> float:
     return 2.0 * zeta if zeta <= 1.0 else 2.0 * (zeta - math.sqrt(zeta * zeta - 1.0))
 
 
-def advance(*arguments):
+def advance(*arguments: Any) -> int:
     return take_euler_steps(*arguments, False)
 
 

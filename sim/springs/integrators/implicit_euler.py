@@ -5,6 +5,7 @@ A step that Newton's method cannot take whole is taken in halves, quarters, ...,
 """
 
 import math
+from typing import Any
 
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import EULER, advance_implicit
@@ -15,7 +16,7 @@ def limit(zeta: float) -> float:
     return math.inf
 
 
-def advance(*arguments):
+def advance(*arguments: Any) -> int:
     return advance_implicit(EULER, *arguments)
 
 

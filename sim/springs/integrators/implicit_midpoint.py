@@ -9,6 +9,7 @@ cannot take whole is taken in halves, quarters, ..., in longer parts again after
 """
 
 import math
+from typing import Any
 
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import MIDPOINT, advance_implicit
@@ -19,7 +20,7 @@ def limit(zeta: float) -> float:
     return math.inf
 
 
-def advance(*arguments):
+def advance(*arguments: Any) -> int:
     return advance_implicit(MIDPOINT, *arguments)
 
 

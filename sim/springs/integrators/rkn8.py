@@ -7,6 +7,7 @@ evaluations at equal error. A soft net with strong damping, as the lab's default
 """
 
 import functools
+from typing import Any
 
 from sim.springs.analysis.amplification import limit_of_many, nystroem_growth
 from sim.springs.integrators import Integrator
@@ -23,11 +24,11 @@ def limit(zeta: float) -> float:
     return limit_of_many(nystroem_growth(*STEP, zeta))
 
 
-def advance(*arguments):
+def advance(*arguments: Any) -> int:
     return take_steps(METHOD, *arguments)
 
 
-def march(*arguments):
+def march(*arguments: Any) -> tuple[int, int, int, float]:
     return march_to_frames(METHOD, *arguments)
 
 

@@ -1,6 +1,7 @@
 """Symplectic (semi-implicit) Euler, the lab code's "Euler": v += h a(x, v), then x += h v with the new v."""
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -47,7 +48,7 @@ def take_euler_steps(x, v, ledger, t, h, steps, p, with_account, by_new_velocity
     return steps
 
 
-def advance(*arguments):
+def advance(*arguments: Any) -> int:
     return take_euler_steps(*arguments, True)
 
 

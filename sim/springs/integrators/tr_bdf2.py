@@ -6,6 +6,7 @@ halves, quarters, ..., in longer parts again after an easy one.
 """
 
 import math
+from typing import Any
 
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import TR_BDF2, advance_implicit
@@ -16,7 +17,7 @@ def limit(zeta: float) -> float:
     return math.inf
 
 
-def advance(*arguments):
+def advance(*arguments: Any) -> int:
     return advance_implicit(TR_BDF2, *arguments)
 
 

@@ -4,7 +4,7 @@ That holds for its damping too. A taut line is damped as a spring is, so that on
 as it is taut. Its damping begins and ends with the tension: the force jumps there, as that of contact does at a touch.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sim.jit import kernel
 from sim.springs.laws.record import Law
@@ -34,7 +34,7 @@ def damps(law, rest, length):
     return length > rest
 
 
-def length(law, k, rest, tension):
+def length(law: Slack, k: float, rest: float, tension: Any) -> Any:
     return rest + tension / k
 
 

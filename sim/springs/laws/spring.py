@@ -1,6 +1,6 @@
 """The linear spring, which pulls and pushes: tension k (l - d), the lab's eq. 4."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sim.jit import kernel
 from sim.springs.laws.record import Law
@@ -32,7 +32,7 @@ def over_step(law, k, rest, before, after):
     return k - k * rest / mean, k * rest / (mean * mean)
 
 
-def length(law, k, rest, tension):
+def length(law: Spring, k: float, rest: float, tension: Any) -> Any:
     return rest + tension / k
 
 

@@ -3,7 +3,7 @@
 DLMF 22.19(ii) has the free motion of a mass on it in closed form.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,7 +35,7 @@ def energy(law, k, rest, length):
     return 0.5 * k * (length - rest) ** 2 * (1.0 + 0.5 * law.cubic * strain * strain)
 
 
-def length(law, k, rest, tension):
+def length(law: Stiffening, k: float, rest: float, tension: Any) -> Any:
     """The real root of c e^3 + e = T/(k d), by the hyperbolic sine (DLMF 1.11(iii))."""
     load = tension / (k * rest)
     if law.cubic == 0.0:

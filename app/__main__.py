@@ -191,9 +191,13 @@ def quantity(unit: str) -> Callable[[str], float]:
 def add_lab(lab: argparse.ArgumentParser) -> None:
     """The commands of `springtide lab`."""
     commands = lab.add_subparsers(metavar="DIR, new or check", required=True)
-    lab.epilog = "`springtide lab DIR` opens the scenes with the functions in that folder, live."
+    lab.epilog = (
+        "`springtide lab DIR` opens the scenes with the functions in that folder, live; "
+        "`springtide lab class/*` shows the teacher of a class who is at which task."
+    )
     live = commands.add_parser(LIVE)
-    live.add_argument("folder", type=Path, metavar="DIR", help="a folder that `springtide lab new` has made")
+    made = "a folder that `springtide lab new` has made; several: those of a class"
+    live.add_argument("folders", type=Path, nargs="+", metavar="DIR", help=made)
     add_serving(live)
     live.set_defaults(command=serve_folder)
     new = commands.add_parser("new", help="write a folder with the exercises")
@@ -389,17 +393,31 @@ def run_sweep(arguments: argparse.Namespace) -> int:
 
 def serve_folder(arguments: argparse.Namespace) -> int:
     """`springtide lab DIR`."""
+    if len(arguments.folders) > 1:
+        return serve_class(arguments)
     from app.lab.session import Session
     from app.lab.task import load_tasks
 
     if arguments.scene == "rope" and arguments.preset is None and not arguments.set:
         # Of this method the program's rope and a student's right one are the same to rounding.
         arguments.set = ["integrator=rk4"]
-    session = Session(arguments.folder, load_tasks(*arguments.tasks), arguments.tasks)
+    session = Session(arguments.folders[0], load_tasks(*arguments.tasks), arguments.tasks)
     try:
         return serve(arguments, session)
     finally:
         session.close()
+
+
+def serve_class(arguments: argparse.Namespace) -> int:
+    """`springtide lab class/*`."""
+    from app.commands.lab_class import serve_class as serve_page
+
+    plain = make_parser().parse_args(["lab", LIVE, "."])
+    for name, value in vars(arguments).items():
+        if name not in ("folders", "port", "no_open", "tasks") and value != getattr(plain, name):
+            option = f"--{name.replace('_', '-')}"
+            raise ValueError(f"{option}: the page of a class takes --port, --no-open and --tasks only")
+    return serve_page(arguments.folders, arguments.tasks, arguments.port, browser=not arguments.no_open)
 
 
 def make_lab(arguments: argparse.Namespace) -> int:

@@ -1,0 +1,96 @@
+"""`springtide lab DIR DIR ...`: the teacher's page of a class, on this machine only."""
+
+import hmac
+import secrets
+import sys
+import threading
+import webbrowser
+from collections.abc import Sequence
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from urllib.parse import parse_qs, urlsplit
+
+from app.commands.serve import say, wait_until
+from app.lab.class_page import page, policy, rows
+from app.lab.classroom import Classroom
+from app.lab.task import load_tasks
+from app.server.access import make_key
+
+HOST = "127.0.0.1"
+PATIENCE = 20.0  # [s] for which a request for what is new waits
+
+
+def serve_class(folders: Sequence[Path], tasks: Sequence[Path], port: int, *, browser: bool) -> int:
+    """Show the page until it is interrupted; returns the exit status.
+
+    Only who has the address can read it: its path is a secret. Raises ValueError for what is no folder or task.
+    """
+    with Classroom(folders, load_tasks(*tasks)) as classroom:
+        key = make_key()
+        try:
+            server = make_server(classroom, key, port)
+        except OSError as error:
+            print(f"springtide: cannot serve on {HOST}:{port}: {error.strerror or error}", file=sys.stderr)
+            return 1
+        address = f"http://localhost:{server.server_address[1]}/{key}/"
+        threading.Thread(target=server.serve_forever, name="class page", daemon=True).start()
+        say(f"The class is on {address}  (Ctrl-C ends it)")
+        if browser:
+            webbrowser.open(address)
+        try:
+            wait_until(threading.Event())
+        except KeyboardInterrupt:
+            pass
+        finally:
+            server.shutdown()
+            server.server_close()
+    return 0
+
+
+def make_server(classroom: Classroom, key: str, port: int) -> ThreadingHTTPServer:
+    """A server of the page at /KEY/ and of its rows at /KEY/rows. Raises OSError where the port cannot be bound."""
+
+    class Handler(BaseHTTPRequestHandler):
+        """Answers GET only."""
+
+        def do_GET(self) -> None:
+            """The page, or the rows once they are newer than the revision in `after`."""
+            asked = urlsplit(self.path)
+            own, _, name = asked.path.removeprefix("/").partition("/")
+            hosts = {f"{host}:{self.server.server_port}" for host in ("localhost", HOST)}  # type: ignore[attr-defined]
+            # Another name is that of a page elsewhere whose name was made to lead here.
+            if self.headers.get("Host") not in hosts or not hmac.compare_digest(own.encode(), key.encode()):
+                self.send_error(404)
+            elif name == "":
+                nonce, revision = secrets.token_urlsafe(16), classroom.revision
+                students = tuple(classroom.students.values())
+                self.answer(page(students, revision, nonce), {"Content-Security-Policy": policy(nonce)})
+            elif name == "rows":
+                after = parse_qs(asked.query).get("after", [""])[0]
+                before = int(after) if after.isdecimal() and len(after) < 10 else -1
+                revision = classroom.wait(before, PATIENCE)
+                text = "" if revision == before else rows(tuple(classroom.students.values()))
+                self.answer(text, {"X-Revision": str(revision)})
+            else:
+                self.send_error(404)
+
+        def answer(self, text: str, headers: dict[str, str]) -> None:
+            """Send a page of HTML."""
+            body = text.encode()
+            common = {
+                "Content-Type": "text/html; charset=utf-8", "Content-Length": str(len(body)),
+                "Cache-Control": "no-store", "Referrer-Policy": "no-referrer", "X-Content-Type-Options": "nosniff",
+                "Cross-Origin-Resource-Policy": "same-origin",
+            }  # fmt: skip
+            self.send_response(200)
+            for name, value in {**common, **headers}.items():
+                self.send_header(name, value)
+            self.end_headers()
+            self.wfile.write(body)
+
+        def log_message(self, format: str, *args: object) -> None:
+            """Print nothing: the path is a secret."""
+
+    server = ThreadingHTTPServer((HOST, port), Handler)
+    server.daemon_threads = True
+    return server

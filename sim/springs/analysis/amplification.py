@@ -11,6 +11,7 @@ from sim.interruption import raise_if_stopped
 
 SCAN = 0.002  # step in z while looking for the first crossing: far below any method's limit
 FURTHEST = 64.0
+PARTS, REFINEMENTS = 64, 4  # of a step in which the crossing lies: one evaluation of 64 costs hardly more than of one
 SLACK = 1e-9  # growth above 1 that is taken for round-off
 
 
@@ -20,18 +21,24 @@ def eigenvalues(zeta: float) -> tuple[complex, complex]:
     return -zeta + root, -zeta - root
 
 
-def limit_of(growth: Callable[[float], float], slack: float = SLACK, known: float = 0.0) -> float:
-    """The first z at which growth(z) leaves 1, to 1e-9; inf where it never does below 64. known: stable to here."""
-    low = known + SCAN
-    while growth(low) <= 1.0 + slack:
-        low += SCAN
-        if low > FURTHEST:
+def limit_of(growth: Callable[[Any], Any]) -> float:
+    """The first z at which growth(z), of many z at a time, leaves 1, to 1e-9; inf where it never does below 64."""
+    # A live display asks often: scan four units of z in one go, where most methods have their limit.
+    known, many = 0.0, round(4.0 / SCAN)
+    while True:
+        raise_if_stopped()
+        left = growth(known + SCAN * np.arange(1, many + 1)) > 1.0 + SLACK
+        if left.any():
+            break
+        known += SCAN * many
+        if known >= FURTHEST:
             return float("inf")
-    high, low = low, low - SCAN
-    for _ in range(24):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if growth(middle) <= 1.0 + slack else (low, middle)
-    return low
+    known, part = known + SCAN * int(left.argmax()), SCAN
+    for _ in range(REFINEMENTS):
+        part /= PARTS
+        left = growth(known + part * np.arange(1, PARTS)) > 1.0 + SLACK
+        known += part * (int(left.argmax()) if left.any() else PARTS - 1)
+    return known
 
 
 @functools.lru_cache(maxsize=1000)
@@ -43,20 +50,7 @@ def limit_of_polynomial(coefficients: tuple[float, ...], zeta: float) -> float:
         r = np.polynomial.polynomial.polyval(np.multiply.outer(both, z), coefficients)
         return np.abs(r).max(axis=0)
 
-    return limit_of_many(growth)
-
-
-def limit_of_many(growth: Callable[[Any], Any]) -> float:
-    """`limit_of`, of a growth that takes many z at a time."""
-    # A live display asks often: scan four units of z in one go, where most such methods have their limit.
-    known, many = 0.0, round(4.0 / SCAN)
-    while known < FURTHEST:
-        raise_if_stopped()
-        left = growth(known + SCAN * np.arange(1, many + 1)) > 1.0 + SLACK
-        if left.any():
-            return limit_of(growth, known=known + SCAN * int(left.argmax()))
-        known += SCAN * many
-    return float("inf")
+    return limit_of(growth)
 
 
 def nystroem_growth(c: Any, velocity: Any, position: Any, zeta: float) -> Callable[[Any], Any]:

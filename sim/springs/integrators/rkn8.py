@@ -9,7 +9,7 @@ evaluations at equal error. A soft net with strong damping, as the lab's default
 import functools
 from typing import Any
 
-from sim.springs.analysis.amplification import limit_of_many, nystroem_growth
+from sim.springs.analysis.amplification import limit_of, nystroem_growth
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.embedded.march import march as march_to_frames
 from sim.springs.integrators.embedded.rkn8 import METHOD, POSITION, VELOCITY, C
@@ -21,7 +21,7 @@ STEP = C, VELOCITY[: len(C) + 1, :-1], POSITION[: len(C) + 1, :-1]
 @functools.lru_cache(maxsize=1000)
 def limit(zeta: float) -> float:
     """Limit at which the step matrix of its eight stages has an eigenvalue above 1."""
-    return limit_of_many(nystroem_growth(*STEP, zeta))
+    return limit_of(nystroem_growth(*STEP, zeta))
 
 
 def advance(*arguments: Any) -> int:

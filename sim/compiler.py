@@ -385,8 +385,13 @@ class VariantEntry(Entry):
         return self.variant(sig).get_overload(sig)
 
     def compile(self, sig: Any) -> Any:
-        """Called from Python."""
-        return self.variant(sigutils.normalize_signature(sig)[0]).compile(sig)
+        """Called from Python with arguments of new types; the next call finds the kernel without it."""
+        args = tuple(sigutils.normalize_signature(sig)[0])
+        kernel = self.variant(args)
+        entry_point = kernel.compile(sig)
+        if args not in self.overloads:
+            self.add_overload(kernel.overloads[args])
+        return entry_point
 
 
 def make_kernel(

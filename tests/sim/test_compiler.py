@@ -105,6 +105,13 @@ def test_the_type_of_a_record_chooses_the_kernel_and_the_others_are_not_compiled
         double_area((1.0, 2.0))
 
 
+def test_a_kernel_that_was_chosen_once_is_found_at_once(monkeypatch):
+    """From Python too: to choose among types takes as long as thirty calls of a short kernel."""
+    assert area(Square(3.0), 1.0) == 9.0
+    monkeypatch.setattr(type(area), "variant", None)
+    assert area(Square(2.0), 1.0) == 4.0
+
+
 RAISES = """
 import numpy as np, tests.sim.test_compiler as t
 try:

@@ -68,6 +68,7 @@ NAMES = (
     "get_call_template",
     "get_overload",
     "overloads",
+    "add_overload",
     "instance_class",
     "_nrt",
     "no_cfunc_wrapper",

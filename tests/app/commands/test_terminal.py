@@ -1,6 +1,7 @@
 """Output of the commands in a terminal of 80 columns: whole, and folded between words."""
 
 import argparse
+import csv
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,10 +10,12 @@ import pytest
 
 from app.__main__ import main, make_parser
 from app.commands import hydrodynamics
+from app.formats import text_tables
 from app.scenes import NAMES, scene_named
 from sim.parameters import parameters_of
 
 WIDTH = 80  # [characters]
+ASSETS = Path(__file__).parents[3] / "assets"
 
 
 @pytest.fixture(autouse=True)
@@ -92,6 +95,29 @@ def test_the_comparison_of_hulls_is_whole(monkeypatch: pytest.MonkeyPatch, capsy
     check_whole(capsys.readouterr().out, row.quantity, "1.2345", "1.2344", "+0.01%")
 
 
+RESULTS = sorted(
+    path for folder in ("bench", "stability") for path in (ASSETS / folder).glob("*.csv") if path.stem != "faults"
+)
+
+
+@pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.stem)
+def test_no_digit_of_a_result_is_cut(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Rows as `bench`, `stability` and `sweep` print them; of the results that are kept, the widest cells."""
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = [{name: number_or_text(cell) for name, cell in row.items()} for row in csv.DictReader(file)]
+    rows = sorted(rows, key=lambda row: -sum(len(text_tables.written(value)) for value in row.values()))[:20]
+    text_tables.show(path.stem, rows)
+    check_whole(capsys.readouterr().out, *(text_tables.written(value) for row in rows for value in row.values()))
+
+
+def number_or_text(cell: str) -> float | str:
+    """A cell of a table of results."""
+    try:
+        return float(cell)
+    except ValueError:
+        return cell
+
+
 REFUSALS = {
     ("run", "ropes", "--seconds", "1", "--out", "a.npz"): "did you mean rope?",
     ("run", "rope", "--preset", "Pendulm", "--seconds", "1", "--out", "a.npz"): "did you mean Pendulum?",
@@ -120,6 +146,9 @@ def test_what_is_missing_or_mistyped_is_named(
 def test_a_time_may_have_its_unit(seconds: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "rope", "--set", "points=2", "--seconds", seconds, "--out", "a.npz"]) == 0
     assert "to t = 0.0" in capsys.readouterr().out
+    with pytest.raises(SystemExit):
+        main(["run", "rope", "--seconds", "1 m", "--out", "b.npz"])
+    assert "m may mean milliseconds, minutes or metres" in " ".join(capsys.readouterr().err.split())
     with pytest.raises(SystemExit):
         main(["run", "rope", "--seconds", "1 kg", "--out", "b.npz"])
     assert textwrap.shorten(capsys.readouterr().err, 200).endswith("write a number, with or without s")

@@ -7,7 +7,7 @@ import viser
 
 from app.formats.formatting import number
 from app.formats.packing import compile_packing
-from app.messages import Snapshot
+from app.messages import Snapshot, Vector
 from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import PullLine, SurfaceDrag
@@ -67,7 +67,8 @@ STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 10
 class View(SceneView[Params, ClothFrame, ClothReadings]):
     """Draws `ClothFrame`s."""
 
-    CAMERA = ((1.15, -2.15, 2.05), (0.42, 0.0, 1.3))  # position, target [m]
+    CAMERA = ((0.85, -1.75, 2.15), (0.2, 0.0, 1.15))  # position, target [m]; of a level cloth
+    HANGING = ((0.62, -1.55, 1.75), (0.15, 0.0, 1.25))  # the same of one that hangs
     FIELD_OF_VIEW = 1.3  # [rad]
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
@@ -96,6 +97,10 @@ class View(SceneView[Params, ClothFrame, ClothReadings]):
         self.student: viser.MeshHandle | None = None  # the student's cloth, once there was one
         self.student_shape = (0, 0)
         self.labels: tuple[viser.LabelHandle, ...] = ()  # of the student's cloth and the program's
+
+    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+        """Position and target [m] of a camera that has not been moved."""
+        return self.CAMERA if params.start == "level" else self.HANGING
 
     def build(self, frame: ClothFrame) -> None:
         """Make the mesh for another grid."""

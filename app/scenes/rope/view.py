@@ -1,5 +1,6 @@
 """The rope as a tube coloured by tension, its points as beads to be dragged, root and sphere with arrows."""
 
+import math
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -7,7 +8,7 @@ import viser
 
 from app.formats.formatting import number
 from app.formats.packing import compile_packing
-from app.messages import Snapshot
+from app.messages import Snapshot, Vector
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
@@ -21,7 +22,7 @@ from app.scenes.contract import View as SceneView
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import Params
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
-from app.scenes.springs.rope_parameters import ROPE_RADIUS, SPHERE
+from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE, link_and_point
 from app.scenes.springs.view import RopeSurroundings
 
 ROPE_COLOUR = (196, 154, 92)
@@ -37,6 +38,10 @@ SPHERE_ARROW_GAP = 0.08  # [m] between the top of the sphere and its arrows
 RING_COUNT = 120  # rings of the drawn tube, about
 MAX_BEAD_RADIUS = 1.9 * ROPE_RADIUS  # [m]
 MIN_BEAD_RADIUS = 0.5 * ROPE_RADIUS  # [m]
+SHOWN_SHARE = 0.6  # of the picture's height that the rope takes at most as it hangs
+SHOWN_SWING = 1.75  # lengths of the rope in the picture's height, so that it stays in the picture as it swings
+ELEVATION = 0.25  # [rad] of the camera over its target, so that the shadow on the floor is in the picture
+LOWER = 0.05  # heights of the picture from the middle of the rope down to the target
 POSITION_TOLERANCE = 2e-4  # [m] that a point may be from where it is drawn: far below a pixel
 COLOUR_TOLERANCE = 2e-3  # of the colour scale that a link may be from its drawn colour: less than 1/256 of it
 
@@ -46,7 +51,6 @@ RopeSnapshot: TypeAlias = Snapshot[Params, RopeFrame, RopeReadings]
 class View(SceneView[Params, RopeFrame, RopeReadings]):
     """Draws `RopeFrame`s."""
 
-    CAMERA = ((-0.4, -4.3, 2.35), (-0.3, 0.0, 1.75))  # position, target [m]
     FIELD_OF_VIEW = 1.3  # [rad]
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
@@ -64,6 +68,18 @@ class View(SceneView[Params, RopeFrame, RopeReadings]):
         self.ball = scene.add_mesh_simple("/sphere/ball", *ball(32), color=SPHERE_COLOUR, visible=False)
         self.sphere = Gizmo(server, post, "sphere", SPHERE_ARROW_LENGTH, position=SPHERE, visible=False)
         self.hook = scene.add_mesh_simple("/hook", *ball(8), scale=MAX_BEAD_RADIUS, color=HOOK_COLOUR)
+
+    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+        """Position and target [m] of a camera that has not been moved: in front of the rope as it hangs."""
+        link, n = link_and_point(params), params.points - 1
+        stretch = 0.5 * n * (n + 1) * link["mass"] * params.gravity / link["stiffness"]
+        fall = params.length + min(stretch, params.length)
+        if params.floor:
+            fall = min(fall, ROOT[2])
+        height = max(fall / SHOWN_SHARE, SHOWN_SWING * params.length)
+        distance, target = 0.5 * height / math.tan(0.5 * self.FIELD_OF_VIEW), ROOT[2] - 0.5 * fall - LOWER * height
+        position = 0.0, -distance * math.cos(ELEVATION), target + distance * math.sin(ELEVATION)
+        return position, (0.0, 0.0, target)
 
     def build(self, frame: RopeFrame) -> None:
         """Make tube and beads for a new number of points."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.panel.recording_files import arrays_of
-from app.scenes import NAMES, scene_named
+from app.scenes import NAMES, scene_named, view_module
 from app.scenes.contract import AnyKind
 
 DURATION, LATER = 30.0, 0.5  # [s] of simulated time
@@ -37,6 +37,24 @@ def test_the_first_look_still_moves_after_half_a_minute(name: str, duration: flo
         scene.advance(round(LATER / LOOKS / scene.step))
         moved.append(np.abs(drawn(kind, scene.frame()) - before).max())
     assert max(moved) > MIN_MOVE
+
+
+@pytest.mark.parametrize("name", ["rope", "race", "cloth"])
+def test_what_hangs_takes_about_half_of_the_picture_s_height(name: str) -> None:
+    kind, view = scene_named(name), view_module(name).View
+    params = kind.opening_params()
+    scene = kind.make(params)
+    position, target = np.array(view.first_view(object.__new__(view), params))
+    ahead = (target - position) / np.linalg.norm(target - position)
+    right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
+    shares = []
+    for _ in range(10):
+        scene.advance(round(0.5 / scene.step))
+        seen = drawn(kind, scene.frame()) - position
+        picture = 2.0 * np.tan(0.5 * view.FIELD_OF_VIEW) * (seen @ ahead)
+        shares.append(np.ptp(seen @ np.cross(right, ahead) / picture))
+        assert (abs(seen @ right) < 0.59 * picture).all()  # at 1280 x 800 the panel covers the rest
+    assert 0.4 < max(shares) < 0.75, shares
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -30,6 +30,10 @@ def equilibrium_draft(hull: Hull, density: float, layers: Layers = SEA_WATER, gr
     is inf for a hull denser than the last layer, which sinks without end, and the smallest depth where several are in
     equilibrium. Gravity does not change the result and is only checked. Raises ValueError for a bad density, layers or
     gravity.
+
+    >>> from sim.floating import Hull
+    >>> equilibrium_draft(Hull.box(1.0, 1.0, 1.0), 512.5)  # [m] in sea water
+    0.5
     """
     check_hull("hull", hull)
     check_positive("density", density, "kg/m3")

@@ -53,7 +53,11 @@ class Hull(ClosedMesh):
 
     @staticmethod
     def box(x: float, y: float, z: float) -> "Hull":
-        """A box of edges x, y, z [m]. Raises ValueError for an edge that is not 0.001 to 10000 m."""
+        """A box of edges x, y, z [m]. Raises ValueError for an edge that is not 0.001 to 10000 m.
+
+        >>> Hull.box(2.0, 1.0, 0.5).volume  # [m3]
+        1.0
+        """
         return Hull.of(BOX, box(x, y, z))
 
     @staticmethod

@@ -179,6 +179,10 @@ def submerged(
     """The part of the hull below `surface`, a height or heights above each vertex (n,) [m].
 
     position (3,) [m] of the centre of mass, rotation a quaternion (w, x, y, z). Raises ValueError for bad arguments.
+
+    >>> from sim.floating import Hull
+    >>> round(submerged(Hull.box(1.0, 1.0, 1.0), position=(0.0, 0.0, 0.2)).volume, 6)  # [m3]
+    0.3
     """
     place, turn, heights = check_pose(hull, position, rotation, surface)
     x = np.ascontiguousarray(turn @ hull.vertices.T)

@@ -117,6 +117,13 @@ def step(
 
     substeps: the same number for each body, or None for as many as each needs. Raises ValueError for bad arguments
     and FloatingPointError, naming the body, where a state is no longer finite; the fleet is then as it was.
+
+    >>> from sim.floating import Body, Hull, make_fleet, still_water
+    >>> fleet = make_fleet([Body(Hull.box(1.0, 1.0, 1.0), density=500.0)])
+    >>> for _ in range(60):
+    ...     touching = step(fleet, still_water(fleet), 1 / 60)
+    >>> fleet.position.shape, touching
+    ((1, 3), 0)
     """
     check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
     for name, (low, high, unit) in LIMITS.items():

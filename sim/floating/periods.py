@@ -16,6 +16,10 @@ def heave_period(
     A33 is that of linear theory at this period. C33 = g sum (rho_i - rho_{i-1}) A_i over the waterplanes at surface and
     interfaces, which are taken to stay level (Newman 1977, section 6.16). added scales the added mass. inf where no
     force restores: the hull sinks, or is wholly submerged in one fluid. Raises ValueError as `equilibrium_draft`.
+
+    >>> from sim.floating import Hull
+    >>> round(heave_period(Hull.box(4.0, 2.0, 1.0), 512.5), 2)  # [s]
+    2.17
     """
     check_not_negative("added", added, "")
     layers = check_layers(layers)
@@ -43,6 +47,10 @@ def roll_period(
     interfaces (Newman 1977, section 6.16), and A44 that of linear theory at this period, with the sway that comes with
     it. inf where the upright pose is not stable, or the hull sinks. added scales the added inertia. Raises ValueError
     as `equilibrium_draft`, and for another axis.
+
+    >>> from sim.floating import Hull
+    >>> round(roll_period(Hull.box(4.0, 2.0, 1.0), 512.5), 2)  # [s]
+    2.49
     """
     if not is_whole_number(axis) or axis not in (0, 1):
         raise argument_error("axis", axis, "0 (roll) or 1 (pitch)")

@@ -27,6 +27,9 @@ def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.
 
     gravity [m/s2] and density [kg/m3] above 0; depth [m] above 0 or inf; tension [N/m] 0 or above.
     Raises ValueError otherwise. Lamb, Art. 228-229 and 266-267.
+
+    >>> round(float(omega(0.1)), 4)  # [rad/s], deep water
+    0.9905
     """
     k, s = _checked(k, gravity, depth, tension, density)
     # omega^2 = (g k + (sigma/rho) k^3) tanh(k h)
@@ -36,7 +39,11 @@ def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.
 def phase_speed(
     k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0
 ) -> Any:
-    """Phase speed omega/k [m/s]; at k = 0 sqrt(g depth), inf where depth is. Arguments and errors as for `omega`."""
+    """Phase speed omega/k [m/s]; at k = 0 sqrt(g depth), inf where depth is. Arguments and errors as for `omega`.
+
+    >>> round(float(phase_speed(0.1)), 3)  # [m/s]
+    9.905
+    """
     k, s = _checked(k, gravity, depth, tension, density)
     endless, k = k == 0.0, np.maximum(k, _smallest(depth))
     speed = np.sqrt((gravity / k + s * k) * _tanh(k, depth))
@@ -46,7 +53,11 @@ def phase_speed(
 def group_speed(
     k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0
 ) -> Any:
-    """Group speed d omega/dk [m/s]; at k = 0 sqrt(g depth), inf where depth is. Arguments and errors as for `omega`."""
+    """Group speed d omega/dk [m/s]; at k = 0 sqrt(g depth), inf where depth is. Arguments and errors as for `omega`.
+
+    >>> round(float(group_speed(0.1)), 3)  # [m/s], half of the phase speed on deep water
+    4.952
+    """
     k, s = _checked(k, gravity, depth, tension, density)
     endless, k = k == 0.0, np.maximum(k, _smallest(depth))
     th = _tanh(k, depth)

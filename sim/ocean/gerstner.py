@@ -45,6 +45,11 @@ def draw_waves(spectrum: Spectrum[Any], conditions: Conditions, count: int = 64,
     and a bearing drawn from the spreading there (by a golden-ratio sequence, so that few waves already spread evenly).
     Without wind all amplitudes are 0. A regular wave is one wave, and those of the second system, if there is one, are
     the other `count`. Raises ValueError for a count that is not 1 to 4096 or a seed that is not whole.
+
+    >>> from sim.ocean import SPECTRA
+    >>> waves = draw_waves(SPECTRA["jonswap"], SPECTRA["jonswap"].conditions(wind_speed=12.0), count=32)
+    >>> waves.amplitude.shape
+    (32,)
     """
     check_kind("spectrum", spectrum, Spectrum, "a Spectrum, as those of SPECTRA")
     check_kind("conditions", conditions, Conditions, "Conditions, as those of `Spectrum.conditions`")

@@ -46,6 +46,9 @@ def gravity_of(mass: float, rule: str = "same_radius") -> float:
     """Surface gravity [m/s2] of a planet of `mass` Earth masses, above 0: g = G M/R^2, so g ~ M^(1 - 2 exponent).
 
     rule: one of RADIUS_RULES. Raises ValueError for another rule or a mass not above 0, or above MAX_MASS.
+
+    >>> round(gravity_of(0.1), 2)  # [m/s2], a tenth of the Earth on its radius
+    0.98
     """
     check_number("mass", mass, 0.0, MAX_MASS, "Earth masses", above=True)
     check_choice("rule", rule, RADIUS_RULES)

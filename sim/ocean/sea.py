@@ -3,6 +3,17 @@
 Choose it for a surface that fills a tile; the radial sum of `radial.py` for one that reaches the horizon. Time is
 analytic: nothing accumulates, and a frame costs the transforms it reads plus one pass over half the spectrum.
 Limits: linear waves, made sharper by the choppy displacement; a tile shorter than the dominant wave loses its energy.
+
+>>> sea = Sea(128, 800.0, "sea_state", hs=3.0, tp=10.0)
+>>> sea.surface(t=5.0).height.shape  # [m]
+(128, 128)
+>>> height, residual = sea.height_at([[100.0, 50.0], [0.0, 0.0]], t=5.0)
+>>> flow = sea.kinematics([[0.0, 0.0, -5.0]], t=5.0)
+>>> height.shape, flow.velocity.shape, flow.pressure.shape
+((2,), (1, 3), (1,))
+>>> sea.change(t=10.0, relax=60.0, hs=1.0)  # it calms down
+>>> sea.significant_height_at(10.0) > sea.significant_height_at(500.0)
+True
 """
 
 import copy

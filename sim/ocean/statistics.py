@@ -35,7 +35,11 @@ class Statistics(NamedTuple):
 
 
 def beaufort(wind_speed: float) -> tuple[int, str]:
-    """Beaufort force 0 to 12 and its name, of U10 [m/s]. Raises ValueError for a negative or non-finite speed."""
+    """Beaufort force 0 to 12 and its name, of U10 [m/s]. Raises ValueError for a negative or non-finite speed.
+
+    >>> beaufort(15.0)
+    (7, 'near gale')
+    """
     force = int(np.searchsorted(BEAUFORT_FROM, check_not_negative("wind_speed", wind_speed, "m/s"), side="right"))
     return force, BEAUFORT_NAMES[force]
 

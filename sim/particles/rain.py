@@ -28,6 +28,9 @@ def terminal_speed(diameter: ArrayLike, gravity: float = EARTH) -> Any:
     """Fall speed [m/s] of drops of diameter [m], array or number: v = 9.65 - 10.3 exp(-0.6 D/mm), ~ sqrt(gravity).
 
     Raises ValueError for a negative or non-finite diameter, or gravity not above 0.
+
+    >>> round(float(terminal_speed(2e-3)), 2)  # [m/s] of a drop of 2 mm
+    6.55
     """
     check_positive("gravity", gravity, "m/s2")
     allowed = "0 or above, finite m"

@@ -41,6 +41,11 @@ def rope(
     radius: of the points, for contact [m].
 
     Raises ValueError, naming the argument, its value and what is allowed.
+
+    >>> from sim.springs import rope
+    >>> net = rope(points=10, stiffness=800.0)
+    >>> net.x0[:, 0, -1].tolist()  # the free end [m]
+    [-2.0, 0.0, 0.0]
     """
     check_points(points)
     check_number("length", length, 0, FARTHEST, "m", above=True)
@@ -113,6 +118,10 @@ def lab_units(
     point is free: it has the mass of a whole link, and stands for half of one.
 
     Raises ValueError, naming the argument, its value and what is allowed.
+
+    >>> material = {"axial_stiffness": 500.0, "mass_per_length": 1.0, "axial_viscosity": 0.1, "drag_per_length": 0.0}
+    >>> rope(11, 2.0, **lab_units(11, 2.0, **material)).families[0].stiffness  # [N/m] of each of ten links
+    2500.0
     """
     check_points(points)
     check_number("length", length, 0, FARTHEST, "m", above=True)

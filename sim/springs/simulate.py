@@ -77,6 +77,11 @@ def simulate(
     adaptive method's that found none short enough, later frames are NaN, and a RuntimeWarning says so.
 
     Raises ValueError, naming the argument, its value and what is allowed.
+
+    >>> from sim.springs import rope, simulate
+    >>> run = simulate(rope(points=10), "leapfrog", step=1 / 240, duration=1.0, frames=31)
+    >>> run.x.shape, run.energy.kinetic.shape
+    ((31, 10, 3), (31,))
     """
     check_net(net)
     net, velocity = begun(net, x, v)

@@ -277,6 +277,10 @@ def critical_step(net: Net, integrator: str | Integrator, state: State | None = 
 
     0 where every step is unstable (undamped explicit Euler), inf where none is. Raises ValueError for an unknown
     integrator.
+
+    >>> from sim.springs import critical_step, rope
+    >>> round(critical_step(rope(points=10, stiffness=800.0), "leapfrog"), 4)  # [s]
+    0.0358
     """
     record = integrator_named(integrator)
     return min((step_limit(mode, record) for mode in modes_at(net, state)), default=math.inf)

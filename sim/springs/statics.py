@@ -25,6 +25,10 @@ def hanging_chain(net: Net) -> Equilibrium:
     below it, and is as long as its law says at their weight.
 
     Raises ValueError where the net is no rope, is pinned elsewhere too, or has links without stiffness.
+
+    >>> from sim.springs import rope
+    >>> hanging_chain(rope(points=10, mass=1.0, gravity=10.0)).tension[[0, -1]].tolist()  # [N] first and last link
+    [90.0, 10.0]
     """
     family = single_family(net)
     if net.pinned != {(0, 0)}:
@@ -59,6 +63,10 @@ def catenary(
     start.
 
     Raises ValueError, naming the argument, its value and what is allowed.
+
+    >>> rest = catenary(points=9, length=2.0, span=1.0, rise=0.0, stiffness=1e4, mass=0.1, gravity=9.81)
+    >>> round(float(rest.x[4, 2]), 3)  # [m] of its middle
+    -0.81
     """
     if not isinstance(points, int | np.integer) or isinstance(points, bool) or points < 2:
         raise argument_error("points", points, "a whole number from 2")

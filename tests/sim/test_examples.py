@@ -1,19 +1,44 @@
-"""Worked examples in docstrings: each gives what it says."""
+"""Worked examples in docstrings: each gives what it says, and the functions that a user meets first have one."""
 
 import doctest
 import importlib
+from pathlib import Path
 
 import pytest
 
-MODULES = (
-    "sim.floating.body",
-    "sim.floating.float_in",
-    "sim.floating.response",
-    "sim.floating.stability",
-    "sim.ocean.kinematics",
-    "sim.ocean.spectra.record",
-    "sim.ocean.zero_crossings",
-)
+ROOT = Path(__file__).parents[2]
+MODULES = [
+    ".".join(path.relative_to(ROOT).with_suffix("").parts)
+    for path in sorted((ROOT / "sim").rglob("*.py"))
+    if ">>> " in path.read_text("utf-8")
+]
+FIRST = {
+    "sim.floating.body": ("",),  # of the module
+    "sim.floating.equilibrium": ("equilibrium_draft",),
+    "sim.floating.float_in": ("",),
+    "sim.floating.hull": ("Hull.box",),
+    "sim.floating.hydrostatics": ("submerged",),
+    "sim.floating.motion": ("step",),
+    "sim.floating.periods": ("heave_period", "roll_period"),
+    "sim.floating.response": ("",),
+    "sim.floating.stability": ("",),
+    "sim.ocean.dispersion": ("omega", "phase_speed", "group_speed"),
+    "sim.ocean.gerstner": ("draw_waves",),
+    "sim.ocean.kinematics": ("",),
+    "sim.ocean.planets": ("gravity_of",),
+    "sim.ocean.sea": ("",),
+    "sim.ocean.spectra.record": ("Spectrum.frequency_density", "Spectrum.moments"),
+    "sim.ocean.statistics": ("beaufort",),
+    "sim.ocean.weathering.spill": ("weather",),
+    "sim.ocean.zero_crossings": ("",),
+    "sim.particles.rain": ("terminal_speed",),
+    "sim.springs.cloth": ("cloth",),
+    "sim.springs.rope": ("rope", "lab_units"),
+    "sim.springs.simulate": ("simulate",),
+    "sim.springs.stability": ("critical_step",),
+    "sim.springs.state": ("advance",),
+    "sim.springs.statics": ("hanging_chain", "catenary"),
+}
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -21,3 +46,10 @@ def test_the_examples_of_a_module_give_what_they_say(name: str) -> None:
     found = doctest.testmod(importlib.import_module(name))
     assert found.attempted > 0
     assert found.failed == 0
+
+
+@pytest.mark.parametrize("name", FIRST)
+def test_what_a_user_meets_first_has_an_example(name: str) -> None:
+    found = {test.name: test for test in doctest.DocTestFinder().find(importlib.import_module(name))}
+    for function in FIRST[name]:
+        assert found[f"{name}.{function}".rstrip(".")].examples, function

@@ -167,6 +167,11 @@ class Spectrum(NamedTuple, Generic[C]):
         With the second system and the low-pass; the one wave of a `line` has no density. The conditions come as a
         record or by name. S(f) [m2/Hz] is 2 pi S(2 pi f). Raises ValueError for a frequency that is not above 0, or a
         condition that this spectrum does not use.
+
+        >>> from sim.ocean import SPECTRA
+        >>> S = SPECTRA["jonswap"].frequency_density([0.5, 1.0], wind_speed=15.0, fetch=2e5)
+        >>> S.round(2).tolist()  # [m2 s]
+        [0.27, 0.74]
         """
         c = self.conditions_of(conditions, values)
         allowed = "finite numbers above 0 rad/s"

@@ -161,6 +161,10 @@ def weather(spill: Spill) -> Weathering:
     """The spill from 0 to 120 h, by exponential midpoint steps: shares within 0.1 % of the laws' solution.
 
     Raises ValueError if it is not a spill.
+
+    >>> day = weather(Spill(oil="Alaska North Slope 2002", volume=100.0, wind_speed=7.0)).at(24.0)
+    >>> round(day.evaporated, 2), round(day.dispersed, 2)
+    (0.33, 0.46)
     """
     return weathered(check_kind("spill", spill, Spill, "a Spill"))
 

@@ -113,7 +113,7 @@ def readme_text(name: str, tasks: Sequence[Task]) -> str:
     for task in tasks:
         if task.item.partition("-")[0] != section:
             section = task.item.partition("-")[0]
-            lines += ["", f"## Section {section} of the course lab"]
+            lines += ["", f"## {heading_of(section)}"]
         lines += ["", f"### {task.item} {task.title}{' (optional)' if task.optional else ''}", "", task.statement]
         if task.file:
             lines += ["", f"Write `{task.name}` in `{task.file}`."]
@@ -123,3 +123,8 @@ def readme_text(name: str, tasks: Sequence[Task]) -> str:
         if task.questions:
             lines += ["", "Questions:", *(f"- `{question.key}`: {question.ask}" for question in task.questions)]
     return "\n".join(lines) + "\n"
+
+
+def heading_of(section: str) -> str:
+    """Heading of the tasks of a section: 4 is the program's own, the course lab ends with 3."""
+    return "Beyond the course lab" if section.startswith("4") else f"Section {section} of the course lab"

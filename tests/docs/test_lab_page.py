@@ -29,7 +29,7 @@ def test_the_table_names_scene_preset_and_functions_of_each_item() -> None:
         functions = ", ".join(f"`{task.name}`" for task in own if task.file)
         expected.append((item, setup.scene, setup.preset, functions))
     assert [(item, scene, preset, functions.strip()) for item, scene, preset, functions in rows] == expected
-    assert len(rows) == 22
+    assert len(rows) == 23
 
 
 @pytest.fixture

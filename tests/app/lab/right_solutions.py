@@ -1,6 +1,13 @@
 """Right solutions in another hand: for each task one with loops and plain numbers, and one with another formula."""
 
 RIGHT: dict[str, tuple[str, str]] = {
+    "line_tension": (
+        "return weight * ((hanging - height) ** 2 / 2 / height + hanging)",
+        """
+        import math
+        level = weight * (hanging * hanging - height * height) / 2 / height
+        return math.hypot(level, weight * hanging)""",
+    ),
     "spring_force": (
         """
         r = [x2[i] - x1[i] for i in range(3)]

@@ -40,6 +40,11 @@ def changed(body: str, *texts: str) -> str:
 
 
 WRONG: dict[str, tuple[tuple[str, str], ...]] = {
+    "line_tension": (
+        ("level part only", "return weight * (hanging ** 2 - height ** 2) / (2 * height)"),
+        ("weight only", "return weight * hanging"),
+        ("", "return weight * height"),
+    ),
     "spring_force": (
         ("sign reversed", """
             r = x1 - x2

@@ -43,7 +43,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
     "line_tension": (
         ("level part only", "return weight * (hanging ** 2 - height ** 2) / (2 * height)"),
         ("weight only", "return weight * hanging"),
-        ("", "return weight * height"),
+        ("hanging not used", "return weight * height"),
     ),
     "spring_force": (
         ("sign reversed", """

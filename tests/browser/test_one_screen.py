@@ -66,6 +66,14 @@ ROWS = """() => {
     }
     return { names, over }; }"""
 
+# In a large window [pixels]: the panel, its text, and what the charts leave of the height of their pane.
+LARGE = """() => {
+    const panel = document.querySelector("[data-floating-window]").getBoundingClientRect();
+    const pane = document.querySelector(".mantine-ScrollArea-viewport:has(.uplot)");
+    const text = Number.parseFloat(getComputedStyle(document.querySelector(".springtide-panel")).fontSize);
+    return { width: panel.width, right: panel.right, text, left_over: pane ? pane.clientHeight -
+        pane.firstElementChild.offsetHeight : -1 }; }"""
+
 
 @pytest.fixture(scope="module", params=NAMES)
 def opened(
@@ -135,3 +143,23 @@ def test_each_task_of_a_scene_fits_the_screen_with_its_controls_and_questions(op
         if over[0] > 0:
             cut[task.name] = over[0]
     assert cut == {}
+
+
+def test_a_large_window_has_a_wide_panel_with_larger_text_and_charts_that_fill_their_pane(
+    one_page: tuple[Viewer, Tab],
+) -> None:
+    lab, tab = one_page
+    size = tab.page.viewport_size
+    tab.page.set_viewport_size({"width": 1920, "height": 1080})
+    tab.follow(lab, "rope")
+    if not lab.panel.plots.open:
+        lab.panel.toggle_plots()
+    try:
+        tab.wait(lambda: 0 <= tab.page.evaluate(LARGE)["left_over"] < 40, 20)
+        found = tab.page.evaluate(LARGE)
+        assert found["width"] == 420
+        assert found["right"] <= 1920
+        assert found["text"] >= 14
+    finally:
+        lab.loop.commands.put(Pause())
+        tab.page.set_viewport_size(size)

@@ -1,6 +1,7 @@
 // Gaps in the charts: uPlot leaves a gap at null only, and viser sends arrays of numbers, in which NaN means no value.
 // The time axis: viser keeps the part of it that is shown, and on a slow page loses it when a chart is made anew. Here all
 // of it is shown again, unless it was zoomed by hand.
+// The height of the charts: those of a pane fill it.
 // A line in the charts over time, where the recording is shown: the panel says the time in `data-springtide-moment`.
 //
 // Of viser this file uses window.__viserTestpoints.uplots, the charts of the page.
@@ -8,6 +9,7 @@
 (() => {
   "use strict";
   const SEARCH_INTERVAL = 200; // [ms] between two looks for new charts
+  const BELOW = 16; // [pixels] of a pane below its charts
   const MIN_ZOOM = 3; // [pixels] of a drag that zooms; uPlot's own is less
   const LINE_STYLE = "position:absolute;top:0;bottom:0;width:0;border-left:2px solid #e03131;pointer-events:none";
 
@@ -63,6 +65,20 @@
     if (line.style.left !== left) line.style.left = left;
   }
 
+  // The charts of a pane share the height that it has left.
+  const least = new WeakMap(); // chart -> its height [pixels] as viser made it
+  function fillPanes(charts) {
+    for (const pane of document.querySelectorAll(".mantine-ScrollArea-viewport:has(.uplot):not(:has(.springtide-panel))")) {
+      const own = charts.filter(({ root }) => pane.contains(root));
+      const spare = (pane.clientHeight - BELOW - pane.firstElementChild.offsetHeight) / own.length;
+      for (const chart of own) {
+        if (!least.has(chart)) least.set(chart, chart.height);
+        const height = Math.floor(Math.min(Math.max(chart.height + spare, least.get(chart)), 2 * least.get(chart)));
+        if (Math.abs(height - chart.height) > 4) chart.setSize({ width: chart.width, height });
+      }
+    }
+  }
+
   let lastMoment = "", lookedAt = 0;
   function update(now) {
     const moment = document.querySelector("[data-springtide-moment]")?.dataset.springtideMoment || "";
@@ -76,8 +92,9 @@
   requestAnimationFrame(update);
 
   function look(moment) {
-    const charts = (window.__viserTestpoints && window.__viserTestpoints.uplots) || {};
-    for (const { chart } of Object.values(charts)) {
+    const charts = Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ chart }) => chart);
+    fillPanes(charts);
+    for (const chart of charts) {
       showWholeAxis(chart);
       placeMoment(chart, moment === "" ? NaN : Number(moment));
       const without = chart.series.filter((series, k) => k > 0 && series.gaps !== gapsAtNaN);

@@ -6,7 +6,7 @@ from app.formats.formatting import metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.html import ERROR_COLOUR, Html, bold, coloured, faint, fill, info, join, table
 from app.scenes.mooring.frame import LineReading, MooringReadings
-from app.scenes.springs.html import colour_scale, stability_bar, step_mark
+from app.scenes.springs.html import colour_scale, step_mark
 
 COLOURS = "Brown parts of a line lie on the bed. A red anchor is pulled upwards."
 
@@ -17,17 +17,11 @@ def kilonewtons(force: float) -> str:
 
 
 def figures_of(snapshot: Snapshot) -> str:
-    """The largest tension so far, and the stability bar."""
+    """The largest tension so far."""
     found: MooringReadings = snapshot.readings
     line, t = found.most_at
     largest = max(one.most_at_fairlead for one in found.lines)
-    tension = fill(
-        '<div class="springtide-largest" title="at {}">Largest tension: {} kN, line {}</div>',
-        seconds(t),
-        bold(kilonewtons(largest)),
-        line + 1,
-    )
-    return join((tension, stability_bar(found.stability)))
+    return fill("Largest tension: {} kN, line {} at {}", bold(kilonewtons(largest)), line + 1, seconds(t))
 
 
 def slack_text(found: LineReading, now: float) -> Html:
@@ -80,8 +74,8 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
     }
 
 
-def scale_of(snapshot: Snapshot) -> Html:
-    """The key of the colours."""
+def readout_of(snapshot: Snapshot) -> Html:
+    """The stability of the step, and the key of the colours."""
     frame = snapshot.frame
     return colour_scale(
         "slack", fill("tension {}", info(COLOURS)), f"{kilonewtons(frame.full_scale)} kN",

@@ -21,7 +21,7 @@ from app.scenes.contract import View as SceneView
 from app.scenes.mooring.arrangement import extent, hull_of
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, Params
-from app.scenes.mooring.report import figures_of, marks_of, notes_of, scale_of
+from app.scenes.mooring.report import figures_of, marks_of, notes_of, readout_of
 
 SIDES = 6  # of a tube
 RING_COUNT = 90  # rings of a line, about
@@ -274,12 +274,12 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
                     self.labels[i].position = place
 
     def figures(self, snapshot: MooringSnapshot) -> str:
-        """The largest tension, and the stability bar."""
+        """The largest tension."""
         return figures_of(snapshot)
 
     def readout(self, snapshot: MooringSnapshot) -> str:
-        """The key of the colours."""
-        return scale_of(snapshot)
+        """The stability of the step, and the key of the colours."""
+        return readout_of(snapshot)
 
     def marks(self, snapshot: MooringSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control."""

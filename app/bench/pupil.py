@@ -6,7 +6,7 @@ import random
 import re
 import struct
 import time
-from collections.abc import Callable
+from collections.abc import AsyncGenerator, Callable
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -59,19 +59,27 @@ class Pupil:
 
     async def attend(self, seconds: float) -> None:
         """Join the lab, and act for so long."""
-        protocol = websockets.Subprotocol(f"viser-v{version('viser')}")
-        async with connect(f"ws://127.0.0.1:{self.port}", subprotocols=[protocol], max_size=None) as socket:
-            reading = asyncio.ensure_future(self.read(socket))
-            await socket.send(msgspec.msgpack.encode(CAMERA))
-            async with asyncio.timeout(ANSWER_LIMIT):
-                while not {"Play or pause", STIFFNESS, "From the page", "Task"} <= self.controls.keys():
-                    await self.hear()
+        async with self.joined() as socket:
             end = time.monotonic() + seconds
             actions = (self.press, self.press, self.set_value, self.set_value, self.open_task, self.save)
             while time.monotonic() < end:
                 await asyncio.sleep(self.random.uniform(*PAUSE))
                 await self.random.choice(actions)(socket)
-            reading.cancel()
+
+    @contextlib.asynccontextmanager
+    async def joined(self) -> AsyncGenerator[ClientConnection]:
+        """A connection to the lab, once the panel is there."""
+        protocol = websockets.Subprotocol(f"viser-v{version('viser')}")
+        async with connect(f"ws://127.0.0.1:{self.port}", subprotocols=[protocol], max_size=None) as socket:
+            reading = asyncio.ensure_future(self.read(socket))
+            try:
+                await socket.send(msgspec.msgpack.encode(CAMERA))
+                async with asyncio.timeout(ANSWER_LIMIT):
+                    while not {"Play or pause", STIFFNESS, "From the page", "Task"} <= self.controls.keys():
+                        await self.hear()
+                yield socket
+            finally:
+                reading.cancel()
 
     async def hear(self) -> None:
         """Wait for the next message."""

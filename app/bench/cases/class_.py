@@ -59,7 +59,7 @@ def rows(quick: bool = False, students: int | None = None) -> list[dict[str, Any
     count = (QUICK_STUDENTS if quick else STUDENTS) if students is None else students
     if not 1 <= count <= MAX_STUDENTS:
         raise argument_error("--students", count, f"1 to {MAX_STUDENTS}")
-    subprocess.run([sys.executable, "-m", "app", "warmup"], stdout=subprocess.DEVNULL, check=True)
+    compile_kernels()
     lesson = QUICK_LESSON if quick else LESSON
     with tempfile.TemporaryDirectory(prefix="springtide-") as place, ExitStack() as stack:
         folders = [Path(place, f"student-{number}") for number in range(count)]
@@ -95,10 +95,15 @@ def rows(quick: bool = False, students: int | None = None) -> list[dict[str, Any
     ]  # fmt: skip
 
 
+def compile_kernels() -> None:
+    """Compile what is not compiled yet."""
+    subprocess.run([sys.executable, "-m", "app", "warmup"], stdout=subprocess.DEVNULL, check=True)
+
+
 @contextmanager
 def lab(folder: Path) -> Iterator[tuple[int, int]]:
     """A lab on a folder: its process, and its port."""
-    command = [sys.executable, "-m", "app", "lab", str(folder), "--no-open", "--port", "0"]
+    command = [sys.executable, "-m", "app", "lab", str(folder), "--no-open", "--resume", "--port", "0"]
     data = {"SPRINGTIDE_DATA": str(folder.with_name(f"{folder.name}-data"))}
     server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, **data})
     try:

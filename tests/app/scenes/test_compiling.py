@@ -13,6 +13,7 @@ import pytest
 
 from app.scenes import compiling
 from app.scenes.compiling import Compiling, Job
+from tests.sim.test_jit import noted
 
 ROOT = Path(__file__).parents[3]
 
@@ -84,7 +85,8 @@ def test_the_rest_is_compiled_by_another_worker(queue: Compiling, monkeypatch: p
 
 @pytest.mark.skipif(compiling.CACHE is None, reason="nothing can be kept here")
 def test_a_worker_compiles_a_piece_that_the_next_process_only_loads(tmp_path: Path) -> None:
-    environment = {**os.environ, "SPRINGTIDE_CACHE": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    folders = {"SPRINGTIDE_CACHE": str(tmp_path), "SPRINGTIDE_KERNELS": noted()}
+    environment = {**os.environ, **folders, "PYTHONPATH": str(ROOT)}
     worker = [sys.executable, "-m", "app.scenes.compile_worker", "--ahead"]
 
     def ask(line: str) -> "subprocess.CompletedProcess[str]":

@@ -316,7 +316,7 @@ class Guide:
         """Show the texts of the task with the values of now."""
         shown = self.workbook.is_shown(task)
         self.show_titles(task)
-        tools = (SET_UP, SHOW, PICTURE)
+        tools = (SET_UP, SHOW, PICTURE) if task.guide is not None else (SET_UP, PICTURE)
         if self.workbook.folder is None:
             tools = (SET_UP, HIDE if shown else SHOW)
         if self.tools.options != tools:

@@ -68,11 +68,12 @@ ROWS = """() => {
 
 # In a large window [pixels]: the panel, its text, and what the charts leave of the height of their pane.
 LARGE = """() => {
-    const panel = document.querySelector("[data-floating-window]").getBoundingClientRect();
+    const panel = document.querySelector("[data-floating-window]")?.getBoundingClientRect();
     const pane = document.querySelector(".mantine-ScrollArea-viewport:has(.uplot)");
+    if (!panel || !pane) return { left_over: -1 };
     const text = Number.parseFloat(getComputedStyle(document.querySelector(".springtide-panel")).fontSize);
-    return { width: panel.width, right: panel.right, text, left_over: pane ? pane.clientHeight -
-        pane.firstElementChild.offsetHeight : -1 }; }"""
+    return { width: panel.width, right: panel.right, text,
+        left_over: pane.clientHeight - pane.firstElementChild.offsetHeight }; }"""
 
 
 @pytest.fixture(scope="module", params=NAMES)

@@ -126,6 +126,13 @@ def test_a_task_shows_its_parameters_again_in_step_with_the_controls(plain: View
     wait_for(lambda: not controls.again)
 
 
+def test_a_task_without_an_answer_offers_none(student: Viewer) -> None:
+    guide = show(student, "net_buoyancy")
+    wait_for(lambda: guide.tools.options == (SET_UP, PICTURE))
+    show(student, "top_fluid")
+    wait_for(lambda: guide.tools.options == (SET_UP, SHOW, PICTURE))
+
+
 def test_a_control_that_means_nothing_is_hidden_in_a_task_too(plain: Viewer) -> None:
     controls = plain.panel.shown
     controls.show_again(("sphere_radius",), guide_of(plain).control_place)

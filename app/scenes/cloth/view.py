@@ -68,7 +68,7 @@ class View(SceneView[Params, ClothFrame, ClothReadings]):
     """Draws `ClothFrame`s."""
 
     CAMERA = ((0.85, -1.75, 2.15), (0.2, 0.0, 1.15))  # position, target [m]; of a level cloth
-    HANGING = ((0.62, -1.55, 1.75), (0.15, 0.0, 1.25))  # the same of one that hangs
+    HANGING = ((0.62, -1.55, 1.75), (0.15, 0.0, 1.32))  # the same of one that hangs
     FIELD_OF_VIEW = 1.3  # [rad]
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:

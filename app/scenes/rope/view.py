@@ -41,7 +41,7 @@ MIN_BEAD_RADIUS = 0.5 * ROPE_RADIUS  # [m]
 SHOWN_SHARE = 0.6  # of the picture's height that the rope takes at most as it hangs
 SHOWN_SWING = 1.75  # lengths of the rope in the picture's height, so that it stays in the picture as it swings
 ELEVATION = 0.25  # [rad] of the camera over its target, so that the shadow on the floor is in the picture
-LOWER = 0.05  # heights of the picture from the middle of the rope down to the target
+LOWER = 0.03  # heights of the picture from the middle of the rope down to the target
 POSITION_TOLERANCE = 2e-4  # [m] that a point may be from where it is drawn: far below a pixel
 COLOUR_TOLERANCE = 2e-3  # of the colour scale that a link may be from its drawn colour: less than 1/256 of it
 

@@ -9,7 +9,7 @@ import numpy as np
 
 MAX_DISTANCE = 1e12  # [m] of a position: farther away, the cells of a grid can no longer be counted
 MAX_WAVENUMBER = 1e20  # [rad/m]: its powers are still finite
-MAX_SHOWN = 500  # characters of a value in an error
+MAX_SHOWN = 200  # characters of a value in an error
 
 Kind = TypeVar("Kind")
 

@@ -78,7 +78,10 @@ class Body(NamedTuple):
         hull, density = self.loaded()
         draft = equilibrium_draft(hull, density, layers)
         if math.isinf(draft):
-            raise argument_error("density", density, f"at most {check_layers(layers)[-1][0]:g} kg/m3, or it sinks")
+            deepest = check_layers(layers)[-1][0]
+            if self.mass is not None:
+                raise argument_error("mass", self.mass, f"at most {deepest * hull.volume:g} kg, or it sinks")
+            raise argument_error("density", density, f"at most {deepest:g} kg/m3, or it sinks")
         x, y, _ = self.position
         z, turn = rest_of(hull, density, check_layers(layers), -draft - float(hull.extents[2, 0]))
         return self._replace(
@@ -211,6 +214,8 @@ def make_fleet(bodies: Sequence[Body], layers: Layers = SEA_WATER) -> Fleet:
     drafts that they have in these fluids. Raises ValueError, naming the body, unless all is finite and it has a mass.
     """
     loaded = []
+    if isinstance(bodies, Body):  # which is a tuple
+        raise argument_error("bodies", bodies, "a list of bodies")
     for i, body in enumerate(check_kind("bodies", bodies, list | tuple, "a list of bodies")):
         check_body(f"bodies[{i}]", body)
         try:

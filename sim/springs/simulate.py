@@ -130,8 +130,10 @@ def begun(net: Net, x: ArrayLike | None, v: ArrayLike | None) -> tuple[Net, NDAr
         if given is None:
             continue
         array = as_array(name, given, f"numbers of shape {shape}")
-        if array.shape != shape or not np.isfinite(array).all():
+        if array.shape != shape:
             raise argument_error(name, array.shape, f"finite numbers of shape {shape}")
+        if not np.isfinite(array).all():
+            raise argument_error(name, float(array[~np.isfinite(array)][0]), f"finite numbers of shape {shape}")
         found[name] = np.ascontiguousarray(np.moveaxis(array, -1, 0).reshape(3, *net.shape), dtype=np.float64)
     if v is not None:
         for i, j in net.pinned:

@@ -136,7 +136,7 @@ REFUSED: list[Row] = [
     *each(partial(simulate, rope(damping=0.0, drag=0.0), "auto"), duration=[1e10]),
     ("rtol", lambda: simulate(rope(), "rk4", rtol=1e-6), "adaptive methods only"),
     ("x", lambda: simulate(rope(4), x=np.zeros((3, 3))), "(4, 3)"),
-    ("x", lambda: simulate(rope(4), x=np.full((4, 3), math.nan)), "(4, 3)"),
+    ("x", lambda: simulate(rope(4), x=np.full((4, 3), math.nan)), "nan"),
     ("v", lambda: simulate(cloth(4, 5), v=np.zeros((20, 3))), "(4, 5, 3)"),
     ("v", lambda: simulate(rope(4), v="fast"), "(4, 3)"),
     ("mass", lambda: rope(4, mass=[1.0, 2.0, 3.0]), "4 of them"),

@@ -75,7 +75,7 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
 
 
 def readout_of(snapshot: Snapshot) -> Html:
-    """The stability of the step, and the key of the colours."""
+    """The key of the colours."""
     frame = snapshot.frame
     return colour_scale(
         "slack", fill("tension {}", info(COLOURS)), f"{kilonewtons(frame.full_scale)} kN",

@@ -278,7 +278,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         return figures_of(snapshot)
 
     def readout(self, snapshot: MooringSnapshot) -> str:
-        """The stability of the step, and the key of the colours."""
+        """The key of the colours."""
         return readout_of(snapshot)
 
     def marks(self, snapshot: MooringSnapshot) -> dict[str, str]:

@@ -46,7 +46,8 @@ def error_of(capsys: pytest.CaptureFixture, *arguments: str) -> str:
 
 def test_a_new_folder_has_every_task_and_no_solution(empty: Path) -> None:
     texts = {path.name: path.read_text("utf-8") for path in empty.iterdir() if path.is_file()}
-    assert set(texts) == {"rope.py", "cloth.py", "radial_sea.py", "square_sea.py", "answers.toml", "README.md"}
+    files = {"rope.py", "cloth.py", "radial_sea.py", "square_sea.py", "mooring.py"}
+    assert set(texts) == files | {"answers.toml", "README.md"}
     for task in TASKS:
         assert f"### {task.item} {task.title}" in texts["README.md"]
         if task.file:
@@ -55,7 +56,7 @@ def test_a_new_folder_has_every_task_and_no_solution(empty: Path) -> None:
     code = "".join(text for name, text in texts.items() if name.endswith(".py"))
     assert not re.search(r"^\s*(return|for|if)\b", code, re.MULTILINE)
     assert code.count("    ...\n") == sum(task.check is not None for task in TASKS)
-    for name in ("rope.py", "cloth.py", "radial_sea.py", "square_sea.py"):
+    for name in files:
         compile(texts[name], name, "exec")
 
 
@@ -216,6 +217,7 @@ def test_odd_folders_end_with_results_and_no_traceback(finished: Path, empty: Pa
     (finished / "cloth.py").write_text("def cloth_links(:")
     (finished / "radial_sea.py").write_text("import os\nos._exit(7)\n")
     (finished / "square_sea.py").unlink()
+    (finished / "mooring.py").unlink()
     capsys.readouterr()
     report = tmp_path / "report.html"
     assert main(["lab", "check", str(finished), "--json", "--report", str(report)]) == 1

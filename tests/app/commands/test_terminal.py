@@ -80,7 +80,7 @@ def test_the_lab_says_one_line_a_task_and_each_problem_with_its_place(capsys: py
     main(["lab", "check", "mine", "--all"])
     everything = capsys.readouterr().out
     check_whole(everything, "3.2-2 not begun")
-    assert everything.count("not begun") == 24
+    assert everything.count("not begun") == 25
     main(["lab", "check", "mine", "mine"])
     check_whole(capsys.readouterr().out, "0 of 19", "1.1-1, 1.1-2")
 

@@ -40,7 +40,7 @@ def answered(folder: Path, task: Task, question: Question) -> object:
 
 def test_without_a_folder_the_guides_are_shown_and_nothing_is_kept() -> None:
     book = Workbook(TASKS)
-    assert len(book.tasks) == 22
+    assert len(book.tasks) == 23
     assert not book.is_shown(book.task)
     book.show_answer(book.task)
     assert book.is_shown(book.task)

@@ -30,6 +30,7 @@ class Level(NamedTuple):
     machines: tuple[str, ...]  # as `platform.machine` names them, in small letters
     cpu: str  # LLVM's name
     features: tuple[str, ...]  # LLVM's names of what a processor needs
+    tuning: str = ""  # LLVM's words on how to use them
 
 
 _V3 = (
@@ -40,7 +41,11 @@ _V3 = (
 # From the richest to the poorest. Source: System V ABI, AMD64 supplement, table 3.1.
 LEVELS = {
     "x86-64-v4": Level(
-        ("x86_64", "amd64"), "x86-64-v4", (*_V3, "avx512bw", "avx512cd", "avx512dq", "avx512f", "avx512vl")
+        ("x86_64", "amd64"),
+        "x86-64-v4",
+        (*_V3, "avx512bw", "avx512cd", "avx512dq", "avx512f", "avx512vl"),
+        # LLVM's vectors of this level have half the width of the processor's, and are as slow as those of v3.
+        "-prefer-256-bit",
     ),
     "x86-64-v3": Level(("x86_64", "amd64"), "x86-64-v3", _V3),
     "arm64": Level(("arm64", "aarch64"), "generic", ()),
@@ -69,14 +74,14 @@ def level_environment(name: str) -> dict[str, str]:
     """Environment in which numba compiles for a level. Raises ValueError where this processor does not have it."""
     if name not in host_levels():
         raise argument_error("--processor", name, "what this processor has: " + (", ".join(host_levels()) or "none"))
-    return {"NUMBA_CPU_NAME": LEVELS[name].cpu, "NUMBA_CPU_FEATURES": ""}
+    return {"NUMBA_CPU_NAME": LEVELS[name].cpu, "NUMBA_CPU_FEATURES": LEVELS[name].tuning}
 
 
 def processor() -> str:
     """Name of the processor that numba compiles for: a level, or all that numba knows of this one."""
     cpu, features = numba.config.CPU_NAME, numba.config.CPU_FEATURES  # type: ignore[attr-defined]
     for name, level in LEVELS.items():
-        if (cpu, features) == (level.cpu, ""):
+        if (cpu, features) == (level.cpu, level.tuning):
             return f"{sys.platform}-{name}"
     known = (
         llvm.get_process_triple(),

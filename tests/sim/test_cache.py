@@ -98,9 +98,8 @@ def test_kernels_of_another_processor_are_left_alone(place: Place) -> None:
     assert place.run(shared=place.shared) == COMPILED
 
 
-@pytest.mark.skipif(not host_levels(), reason="this processor has no level with a name")
-def test_kernels_of_a_level_serve_a_processor_that_has_it(place: Place) -> None:
-    level = host_levels()[-1]
+@pytest.mark.parametrize("level", host_levels())
+def test_kernels_of_a_level_serve_a_processor_that_has_it(level: str, place: Place) -> None:
     assert place.run(own=place.shared, level=level) == COMPILED
     assert [folder.name.partition("-")[2] for folder in (place.shared / "kernels").iterdir()] == [level]
     assert place.run(shared=place.shared) == LOADED

@@ -15,6 +15,7 @@ from app.scenes import NAMES
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
+SCENE = "rope"
 TASKS = load_tasks()
 MIN_SLIDERS = 5
 MAX_HEAD = 150  # [pixels] of the block that always stays
@@ -164,3 +165,18 @@ def test_a_large_window_has_a_wide_panel_with_larger_text_and_charts_that_fill_t
     finally:
         lab.loop.commands.put(Pause())
         tab.page.set_viewport_size(size)
+
+
+def test_display_opens_the_settings_of_the_viewer_without_a_dark_mode_of_their_own(shown: tuple[Viewer, Tab]) -> None:
+    _, tab = shown
+    size = tab.page.viewport_size
+    tab.page.set_viewport_size({"width": 1280, "height": 800})
+    assert not tab.page.locator("button:has(.tabler-icon-adjustments)").is_visible()
+    tab.show("View")
+    tab.page.get_by_role("button", name="Display …").click()
+    tab.page.get_by_text("Dev Settings").click()
+    tab.wait(tab.page.get_by_text("WebGL Stats").is_visible, 20)
+    tab.wait(lambda: not tab.page.get_by_text("Dark Mode").is_visible(), 20)
+    tab.page.get_by_role("button", name="Back to the panel").click()
+    tab.wait(tab.page.get_by_role("tab", name="View").is_visible, 20)
+    tab.page.set_viewport_size(size)

@@ -3,7 +3,8 @@
 (() => {
   "use strict";
   const FOLDER = ".mantine-Paper-root > .mantine-Paper-root:first-child"; // the title of a folder
-  const ICON_NAMES = { "list-search": "Commands", "arrow-back": "Back to the panel", "x": "Close" };
+  // The button of viser's settings is hidden until they are shown; then it leads back.
+  const ICON_NAMES = { "list-search": "Commands", "adjustments": "Back to the panel", "x": "Close" };
 
   function set(element, name, value) {
     if (element.getAttribute(name) !== value) element.setAttribute(name, value);

@@ -108,7 +108,8 @@ def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
         if not is_installed("moordyn"):
             table.append({"task": task, "peer": "MoorDyn", "note": "not installed"})
             continue
-        table += [{"task": task, "peer": "MoorDyn", "damping": "axial"} | row for row in compared(chain(segments), quick)]
+        head = {"task": task, "peer": "MoorDyn", "damping": "axial"}
+        table += [head | row for row in compared(chain(segments), quick)]
     return table
 
 

@@ -8,10 +8,10 @@ from app.lab.checking import Curve, Mistake, require
 def line_tension(weight, hanging, height):
     """The tension [N] at the upper end of a line that hangs down to a level bed and lies on.
 
-    Where it touches down it is level: the forces on the hanging part give H = w (s^2 - h^2)/(2 h) and V = w s, so that
-    T = w (s^2 + h^2)/(2 h).
+    Where it touches down it is level: the forces on the hanging part give H = w (s^2 - z^2)/(2 z) and V = w s, so that
+    T = w (s^2 + z^2)/(2 z).
 
-    weight: w [N/m], in water. hanging: length s [m] that hangs. height: h [m] of the upper end over the bed.
+    weight: w [N/m], in water. hanging: length s [m] that hangs. height: z [m] of the upper end over the bed.
     """
     return weight * (hanging**2 + height**2) / (2 * height)
 
@@ -25,15 +25,15 @@ MISTAKES = (
     Mistake(
         "level part only",
         "This is the level part, H. The line also carries the weight of what hangs, V = w s.",
-        lambda w, s, h: w * (s**2 - h**2) / (2 * h),
+        lambda w, s, z: w * (s**2 - z**2) / (2 * z),
     ),
-    Mistake("weight only", "This is the weight of what hangs. The line also pulls sideways.", lambda w, s, h: w * s),
+    Mistake("weight only", "This is the weight of what hangs. The line also pulls sideways.", lambda w, s, z: w * s),
     Mistake(
         "parts added",
         "The level and the upward part are at right angles: the tension is the root of the sum of their squares.",
-        lambda w, s, h: w * (s**2 - h**2) / (2 * h) + w * s,
+        lambda w, s, z: w * (s**2 - z**2) / (2 * z) + w * s,
     ),
-    Mistake("factor 2 forgotten", "Divide by twice the height.", lambda w, s, h: w * (s**2 + h**2) / h),
+    Mistake("factor 2 forgotten", "Divide by twice the height.", lambda w, s, z: w * (s**2 + z**2) / z),
 )
 CURVE = Curve(
     "hanging length [m]", "tension [N]", np.linspace(40.0, 120.0, 30), lambda f, x: [f(750.0, s, 40.0) for s in x]
@@ -41,7 +41,7 @@ CURVE = Curve(
 
 
 def behaviour(student):
-    """Straight down it carries its own weight; the tension is H + w h."""
-    require(abs(student(100.0, 30.0, 30.0) - 3000.0) < 0.01, "a line straight down must carry its weight, w h")
+    """Straight down it carries its own weight; the tension is H + w z."""
+    require(abs(student(100.0, 30.0, 30.0) - 3000.0) < 0.01, "a line straight down must carry its weight, w z")
     level = 100.0 * (50.0**2 - 30.0**2) / 60.0
-    require(abs(student(100.0, 50.0, 30.0) - level - 3000.0) < 0.01, "the tension must be w h more than its level part")
+    require(abs(student(100.0, 50.0, 30.0) - level - 3000.0) < 0.01, "the tension must be w z more than its level part")

@@ -1,5 +1,6 @@
 """What tests of several folders share."""
 
+import signal
 from collections.abc import Iterator
 from typing import Any
 
@@ -7,6 +8,9 @@ import pytest
 
 import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread, as it does when the program runs
 from tests.reruns import pytest_configure  # noqa: F401  a hook
+
+# A shell's background job ignores Ctrl-C, and so do its child processes; tests of both send it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # See `pytest_collection_modifyitems`.
 EARLY = ("test_shader_functions.py", "test_water.py", "test_water_pixels.py", "test_extension.py")

@@ -77,6 +77,12 @@ LARGE = """() => {
         left_over: pane.clientHeight - pane.firstElementChild.offsetHeight }; }"""
 
 
+def pause(lab: Viewer, tab: Tab) -> None:
+    """Pause the scene, and wait until the page says so."""
+    lab.loop.commands.put(Pause())
+    tab.wait(lambda: tab.page.locator('.springtide-panel[data-state="paused"]').count(), 20)
+
+
 @pytest.fixture(scope="module", params=NAMES)
 def opened(
     request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab], tmp_path_factory: pytest.TempPathFactory
@@ -91,6 +97,9 @@ def opened(
     lab.first_params.pop(request.param, None)
     tab.follow(lab, request.param)
     tab.wait(lambda: tab.page.locator(".springtide-guide").count())
+    # A line of the head says what is compiled, and another one that a busy machine is slower than real time.
+    tab.wait(lambda: not any(lab.compiling.progress()), 200)
+    pause(lab, tab)
     yield lab, tab
     lab.workbook = None
     lab.loop.commands.put(Pause())
@@ -142,6 +151,7 @@ def test_each_task_of_a_scene_fits_the_screen_with_its_controls_and_questions(op
     for task in tasks:
         lab.panel.set_up(book.set_up_of(task))
         book.go(book.tasks.index(task))
+        pause(lab, tab)
         over = tab.wait(lambda task=task: over_of(lab, tab, task), 20)
         if over[0] > 0:
             cut[task.name] = over[0]

@@ -25,6 +25,25 @@ def run(scene: MooringScene, seconds: float) -> None:
         scene.advance(4)
 
 
+def test_a_frame_turns_the_body_as_its_state_and_draws_the_watch_circle_about_its_place_of_rest():
+    scene = MooringScene(Params(**SMALL))
+    turn = np.array([0.3, -0.2, 0.6])  # a rotation vector [rad] of length 0.7
+    scene.state.x[:, scene.system.node_count + 1] = turn
+    scene.rest_place = np.array([3.0, -1.0, 0.0])
+    frame = scene.frame()
+    np.testing.assert_allclose(frame.rotation, [math.cos(0.35), *(math.sin(0.35) * turn / 0.7)], atol=1e-6)
+    assert frame.rest == (3.0, -1.0)
+
+
+def test_the_mouse_pulls_with_its_largest_force_at_most():
+    scene = MooringScene(Params(**SMALL, pull=0.5))
+    weight = scene.params.density * hull_of(scene.params).volume * 9.81
+    scene.hold = 1, vector_of(scene.body_place() + (1e4, 0.0, 0.0))
+    np.testing.assert_allclose(scene.mouse_pull()[0, :3], [0.5 * weight, 0.0, 0.0], rtol=1e-6, atol=1e-3)
+    scene.hold = 1, vector_of(scene.body_place() + (0.01, 0.0, 0.0))
+    assert 0.0 < scene.mouse_pull()[0, 0] < 0.01 * weight
+
+
 @pytest.mark.parametrize("preset", PRESETS)
 def test_every_preset_rests_runs_and_stays_within_its_stable_step(preset):
     scene = MooringScene(check_record(Params, PRESETS[preset]))

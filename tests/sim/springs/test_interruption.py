@@ -39,14 +39,6 @@ def request_of_this_thread():
     use_request(before)
 
 
-@pytest.fixture(autouse=True)
-def python_s_own_handler():
-    """Python's handler of a Ctrl-C: a process that was started in the background ignores it."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
 def soon(action, seconds=0.3):
     thread = threading.Thread(target=lambda: (time.sleep(seconds), action()))
     thread.start()

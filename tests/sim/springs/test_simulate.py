@@ -145,6 +145,7 @@ def test_energies_have_names_and_what_is_not_known_is_nan():
     closed, damped = rope(6, damping=0.0, drag=0.0), rope(6)
     run = simulate(closed, "rk4", 1e-3, 0.5, 6)
     assert np.array_equal(run.energy.total, run.energy.kinetic + run.energy.elastic + run.energy.gravity)
+    assert run.energy.error[0] == 0.0
     assert 0.0 < np.abs(run.energy.error).max() < 1e-4
     unknown = simulate(damped, "rk4", 1e-3, 0.5, 6).energy
     assert np.isnan(unknown.dissipated).all()

@@ -1,5 +1,6 @@
 """One screen of 1280 x 800 pixels: what one reads and what one changes stand together, for each scene and each task."""
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -152,7 +153,10 @@ def test_each_task_of_a_scene_fits_the_screen_with_its_controls_and_questions(op
         lab.panel.set_up(book.set_up_of(task))
         book.go(book.tasks.index(task))
         pause(lab, tab)
-        over = tab.wait(lambda task=task: over_of(lab, tab, task), 20)
+        tab.wait(lambda: not any(lab.compiling.progress()), 200)
+        end = time.monotonic() + 5.0  # the head may show for a moment longer what was compiled
+        while (over := tab.wait(lambda task=task: over_of(lab, tab, task), 20))[0] > 0 and time.monotonic() < end:
+            tab.page.wait_for_timeout(100)
         if over[0] > 0:
             cut[task.name] = over[0]
     assert cut == {}

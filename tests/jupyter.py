@@ -13,6 +13,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import viser
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import connect
+
 BASE = "/user/ada/"
 START_TIMEOUT = 90.0  # [s]
 
@@ -77,3 +81,24 @@ def jupyter(folder: Path, base: str = BASE, *options: str) -> Iterator[Jupyter]:
         yield server
     finally:
         server.end()
+
+
+def join(port: int, path: str, origin: str, name: str = "127.0.0.1", **headers: str) -> int:
+    """Connect as viser's client does: 101 where it is let in, 0 where it is closed at once, else the status.
+
+    name: of the server, as the browser calls it.
+    """
+    try:
+        with connect(
+            f"ws://{name}:{port}{path}",
+            sock=socket.create_connection(("127.0.0.1", port)),
+            origin=origin,  # type: ignore[arg-type]
+            subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
+            additional_headers=headers,
+            max_size=None,
+        ) as browser:
+            return 101 if browser.recv(timeout=60) else 0
+    except InvalidStatus as refusal:
+        return refusal.response.status_code
+    except ConnectionClosed:
+        return 0

@@ -123,7 +123,7 @@ class Classroom:
 
 
 def checked(before: Student, tasks: Sequence[Task], copies: Path) -> Student:
-    """The state of a folder as it is now. copies: an empty folder, gone afterwards."""
+    """The state of a folder as it is now. copies: an empty folder, which is removed at the end."""
     try:
         texts, answers = read_files(before.folder), read_answers(before.folder)
         saved = keep(texts, copies, before.number + 1, tasks)

@@ -71,7 +71,7 @@ class Workbook:
         return next((i for i in is_open if i >= last), is_open[0] if is_open else 0)
 
     def named(self, name: str) -> Task:
-        """Task of a name, or the first of an item such as 3.2-1. Raises ValueError where there is none."""
+        """The task with this name, or the first with this item (3.2-1). Raises ValueError if there is none."""
         for task in self.tasks:
             if name in (task.name, task.item):
                 return task

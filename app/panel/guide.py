@@ -159,9 +159,9 @@ class Guide:
         tab: viser.GuiTabHandle,
         controls: Controls,
     ) -> None:
-        """set_up: shows a set-up of a task; raises ValueError where it does not exist. tab: that it stands in.
+        """set_up: shows the set-up of a task; raises ValueError if it does not exist. tab: holds the guide.
 
-        controls: of the panel, of which a task shows its own again.
+        controls: those of the panel; a task repeats the ones that it is about.
         """
         self.gui, self.kind, self.workbook, self.set_up = gui, kind, workbook, set_up
         self.values: LiveValues = {}

@@ -205,7 +205,7 @@ class Panel:
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the parameters as they are set, and pass them on."""
+        """Show the parameters in the controls, and send them to the simulation."""
         self.shown.show(self.kind.hidden(self.params))
         self.show_preset()
         self.changed(self.params)

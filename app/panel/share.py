@@ -55,9 +55,8 @@ class Share:
         gui = panel.gui
         self.wake, self.make_replay = wake, make_replay
         self.lines: dict[str, viser.GuiHtmlHandle] = {}  # of each group
-        self.confirmed: dict[
-            GuiHandle, tuple[tuple[str, ...], float]
-        ] = {}  # buttons -> their names, and until when [s]
+        # Buttons -> their names, and the time [s] until which they say that it is done.
+        self.confirmed: dict[GuiHandle, tuple[tuple[str, ...], float]] = {}
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
         self.ballot = Ballot(panel.server, panel.head.folder, questions, self.show, self.refuse)
         with panel.head.folder:

@@ -13,7 +13,7 @@ from sim.validation import argument_error
 def params_of_setup(setup: task.Setup) -> tuple[AnyKind, BaseParams, str]:
     """The scene of a task of the lab, its parameters, and the preset that they come from.
 
-    Raises ValueError where there is no such scene, preset or parameter.
+    Raises ValueError if the scene, the preset or a parameter does not exist.
     """
     kind = scene_named(setup.scene)
     preset = setup.preset or next(iter(kind.presets))

@@ -79,7 +79,11 @@ LARGE = """() => {
 
 
 def pause(lab: Viewer, tab: Tab) -> None:
-    """Pause the scene, and wait until the page says so."""
+    """Pause the scene, and wait until the page says so.
+
+    A line of the head says what is compiled, and another one that a busy machine is slower than real time.
+    """
+    tab.wait(lambda: not any(lab.compiling.progress()), 200)
     lab.loop.commands.put(Pause())
     tab.wait(lambda: tab.page.locator('.springtide-panel[data-state="paused"]').count(), 20)
 
@@ -98,8 +102,6 @@ def opened(
     lab.first_params.pop(request.param, None)
     tab.follow(lab, request.param)
     tab.wait(lambda: tab.page.locator(".springtide-guide").count())
-    # A line of the head says what is compiled, and another one that a busy machine is slower than real time.
-    tab.wait(lambda: not any(lab.compiling.progress()), 200)
     pause(lab, tab)
     yield lab, tab
     lab.workbook = None
@@ -153,7 +155,6 @@ def test_each_task_of_a_scene_fits_the_screen_with_its_controls_and_questions(op
         lab.panel.set_up(book.set_up_of(task))
         book.go(book.tasks.index(task))
         pause(lab, tab)
-        tab.wait(lambda: not any(lab.compiling.progress()), 200)
         end = time.monotonic() + 5.0  # the head may show for a moment longer what was compiled
         while (over := tab.wait(lambda task=task: over_of(lab, tab, task), 20))[0] > 0 and time.monotonic() < end:
             tab.page.wait_for_timeout(100)

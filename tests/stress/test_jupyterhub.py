@@ -15,9 +15,8 @@ from pathlib import Path
 
 import psutil
 import pytest
-import viser
-from websockets.exceptions import ConnectionClosed, InvalidStatus
-from websockets.sync.client import connect
+
+from tests.jupyter import join
 
 PROXY = shutil.which("configurable-http-proxy")
 if importlib.util.find_spec("jupyterhub") is None or PROXY is None:
@@ -130,19 +129,7 @@ class Browser:
 
     def join(self, path: str) -> int:
         """Connect as viser's client does: 101 where it is let in, 0 where it is closed at once, else the status."""
-        try:
-            with connect(
-                f"ws://127.0.0.1:{self.port}{path}",
-                origin=f"http://127.0.0.1:{self.port}",  # type: ignore[arg-type]
-                subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
-                additional_headers={"Cookie": self.header(path)},
-                max_size=None,
-            ) as browser:
-                return 101 if browser.recv(timeout=60) else 0
-        except InvalidStatus as refusal:
-            return refusal.response.status_code
-        except ConnectionClosed:
-            return 0
+        return join(self.port, path, f"http://127.0.0.1:{self.port}", Cookie=self.header(path))
 
 
 def free_port() -> int:

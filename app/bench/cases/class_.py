@@ -1,7 +1,7 @@
 """A class on one machine: a lab for each student, with a client that plays a lesson on the rope.
 
-The clients run in one process of their own, and its processor time is not counted. Kernels are compiled before the
-first student comes; the others follow one after the other.
+The clients share a separate process, and its processor time is not counted. Kernels are compiled before the first
+student arrives; the others follow one by one.
 """
 
 import asyncio
@@ -34,7 +34,7 @@ Quantiles = tuple[float, float, float]
 
 
 class Result(NamedTuple):
-    """What a student's client has seen."""
+    """Answers and rates that a student's client measured."""
 
     answers: list[tuple[str, float]]
     rate: float  # pictures a second
@@ -42,7 +42,7 @@ class Result(NamedTuple):
 
 
 class Usage(NamedTuple):
-    """Of one lab and its processes."""
+    """Memory and processor time of one lab and its child processes."""
 
     private: float  # memory that no other process has [MB]
     proportional: float  # that, and its fraction of what several have [MB]
@@ -116,7 +116,7 @@ def lab(folder: Path) -> Iterator[tuple[int, int]]:
 
 
 def play(ports: Sequence[int], folders: Sequence[Path], lesson: float) -> list[Result]:
-    """A lesson of one client for each lab; in a process of its own."""
+    """Play a lesson with one client for each lab; runs in a separate process."""
 
     async def all_of_them() -> list[Result]:
         pupils = [Pupil(port, folder, seed) for seed, (port, folder) in enumerate(zip(ports, folders, strict=True))]
@@ -173,7 +173,7 @@ def usage(pid: int) -> Usage:
         size = {line.partition(":")[0]: float(line.split()[1]) for line in lines}  # [kB]
         private += size["Private_Clean"] + size["Private_Dirty"]
         proportional += size["Pss"]
-        ticks += sum(map(int, fields[11:15]))  # of its own, and of its children that have ended
+        ticks += sum(map(int, fields[11:15]))  # its own and that of ended children
     return Usage(private / 1e3, proportional / 1e3, ticks / os.sysconf("SC_CLK_TCK"))
 
 

@@ -25,7 +25,7 @@ FLOATING_PART = 0.4, 0.65  # of the length from the anchor: where floats are
 
 
 class Places(NamedTuple):
-    """What a user may move."""
+    """Anchors and fairleads, which a user may drag."""
 
     anchors: tuple[Vector, ...]  # [m]
     fairleads: tuple[Vector, ...]  # [m] from the body's centre
@@ -45,7 +45,7 @@ def hull_of(params: Params) -> floating.Hull:
 
 
 def bearings(params: Params) -> NDArray[np.float64]:
-    """Where the lines lead to (lines,) [rad]; the first against the waves."""
+    """Directions (lines,) [rad] from body to anchors; the first is up-wave."""
     return math.radians(params.direction) + math.pi * (1.0 + 2.0 * np.arange(params.lines) / params.lines)
 
 

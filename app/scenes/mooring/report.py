@@ -25,7 +25,7 @@ def figures_of(snapshot: Snapshot) -> str:
 
 
 def slack_text(found: LineReading, now: float) -> Html:
-    """Whether a line is slack, and since when."""
+    """Time since a line went slack, or the share of time that it was slack."""
     if math.isnan(found.slack_since):
         return fill("{}", percent(found.slack_share) if found.slack_share > 0.0 else "never")
     return coloured(f"since {seconds(now - found.slack_since)}", ERROR_COLOUR)
@@ -44,7 +44,7 @@ def tension_table(snapshot: Snapshot) -> Html:
 
 
 def bed_table(snapshot: Snapshot) -> Html:
-    """What lies on the bed, the uplift at the anchors, and slack, by line."""
+    """Length on the bed, uplift at the anchors and slack, by line."""
     found: MooringReadings = snapshot.readings
     columns = (("Line", ""), ("Uplift", "kN"), ("largest", "kN"), ("On the bed", "m"), ("Slack", ""))
     rows = [

@@ -132,7 +132,7 @@ class MooringScene:
         if materials != (line_types(old), old.friction, old.wave_period):
             self.assess_stability()
         else:
-            self.stability = gauge_of(self.step_modes, INTEGRATORS[params.integrator], self.step)
+            self.take_step()
 
     def take_system(self) -> None:
         """Go on with the mooring as it is arranged now."""
@@ -143,6 +143,10 @@ class MooringScene:
         """Find the modes about the state, and with them the longest stable step."""
         rest = Rest({}, {}, {}, self.state.x)
         self.step_modes: list[Mode] = modes(self.system, rest)
+        self.take_step()
+
+    def take_step(self) -> None:
+        """Compare the time step with the modes that were found last."""
         self.stability: Gauge = gauge_of(self.step_modes, INTEGRATORS[self.params.integrator], self.step)
 
     def handle(self, command: SceneCommand) -> None:
@@ -351,7 +355,7 @@ class MooringScene:
         restore(self, kept)
         self.hold = None
         self.state.system = self.system
-        self.stability = gauge_of(self.step_modes, INTEGRATORS[self.params.integrator], self.step)
+        self.take_step()
         self.measure()
         self.plot_rows.resume()
         self.last_moments.clear()
@@ -366,7 +370,7 @@ def compile_with(method: str) -> None:
 
 
 def warm_up() -> Pieces:
-    """What is compiled ahead: the first method."""
+    """Pieces to compile ahead: the first method."""
     return {"leapfrog": lambda: compile_with("leapfrog")}
 
 

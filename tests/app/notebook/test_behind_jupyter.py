@@ -3,18 +3,14 @@
 import http.client
 import importlib.util
 import re
-import socket
 from collections.abc import Iterator
 
 import psutil
 import pytest
-import viser
-from websockets.exceptions import ConnectionClosed, InvalidStatus
-from websockets.sync.client import connect
 
 from app.server.access import Access
 from app.server.guard import open_server, quiet
-from tests.jupyter import Jupyter, jupyter
+from tests.jupyter import Jupyter, join, jupyter
 
 if importlib.util.find_spec("jupyter_server_proxy") is None:  # importing it takes seconds
     pytest.skip("the extra jupyter is not installed", allow_module_level=True)
@@ -35,27 +31,6 @@ def get(port: int, path: str, **headers: str) -> tuple[int, str, str]:
     answer = connection.getresponse()
     cookies = "; ".join(re.findall(r"(?:^|, )([^=;, ]+=[^;]+);", answer.getheader("Set-Cookie") or ""))
     return answer.status, answer.read().decode("utf-8", "replace"), cookies
-
-
-def join(port: int, path: str, origin: str, name: str = "127.0.0.1", **headers: str) -> int:
-    """Connect as viser's client does; the status of the answer: 101 where it is let in, 0 where a proxy is not.
-
-    name: of the server, as the browser calls it.
-    """
-    try:
-        with connect(
-            f"ws://{name}:{port}{path}",
-            sock=socket.create_connection(("127.0.0.1", port)),
-            origin=origin,  # type: ignore[arg-type]
-            subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
-            additional_headers=headers,
-            max_size=None,
-        ) as browser:
-            return 101 if browser.recv(timeout=60) else 0
-    except InvalidStatus as refusal:
-        return refusal.response.status_code
-    except ConnectionClosed:
-        return 0
 
 
 def test_the_lab_opens_with_the_token_and_for_nobody_else(server: Jupyter) -> None:

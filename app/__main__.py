@@ -370,12 +370,11 @@ def run_export(arguments: argparse.Namespace) -> int:
 
 def run_bench(arguments: argparse.Namespace) -> int:
     """`springtide bench`."""
+    from app.bench.command import of_checkout, run
+
     if arguments.compare:
-        from app.bench.compare import compare
-
+        compare = of_checkout("--compare", "compare").compare
         return compare(arguments.names, tuple(arguments.compare), arguments.quick, arguments.out)
-    from app.bench.command import run
-
     return run(arguments.names, arguments.quick, arguments.peers, arguments.out, arguments.students)
 
 

@@ -18,12 +18,19 @@ from sim.files import replacing
 from sim.parameters import choice_error
 from sim.validation import argument_error
 
-ELSEWHERE = "comparisons with C and other programs work in a checkout, where benchmarks/ lies"
+ELSEWHERE = "comparisons with C, other programs and commits work in a checkout, where benchmarks/ lies"
 
 
 def benchmarks() -> dict[str, ModuleType]:
     """Name -> module, in alphabetical order."""
     return {name: importlib.import_module(place) for name, place in places().items()}
+
+
+def of_checkout(option: str, module: str) -> ModuleType:
+    """A module of benchmarks/. Raises ValueError, naming the option, outside a checkout."""
+    if not in_checkout():
+        raise ValueError(f"{option}: {ELSEWHERE}")
+    return importlib.import_module(f"benchmarks.{module}")
 
 
 def run(
@@ -44,8 +51,7 @@ def run(
     for name in names:
         if name not in known:
             raise choice_error("bench", name, known, "" if in_checkout() else f"; {ELSEWHERE}")
-    if peers is not None and not in_checkout():
-        raise ValueError(f"--peers: {ELSEWHERE}")
+    measure_peers = None if peers is None else of_checkout("--peers", "command").run
     if students is not None and "class" not in names:
         raise argument_error("--students", students, "a number together with the benchmark class")
     tables.make_folder(out)
@@ -59,8 +65,8 @@ def run(
             text_tables.show(title, rows)
         if out is not None:
             keep(found, functools.partial(case.figures, found[name]) if hasattr(case, "figures") else dict, out)
-    if peers is not None:
-        importlib.import_module("benchmarks.command").run(names, quick, peers, out)
+    if measure_peers is not None:
+        measure_peers(names, quick, peers, out)
     if out is not None:
         with replacing(out / "machine.txt") as draft:
             draft.write_text(tables.machine() + "\n", encoding="utf-8")

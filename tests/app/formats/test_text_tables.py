@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from app.bench.compare import shown as shown_ratio
 from app.commands.lab import print_results
 from app.formats import text_tables
+from benchmarks.compare import shown as shown_ratio
 
 COMMITTED = sorted((Path(__file__).parents[3] / "assets" / "bench").glob("*.csv"))
 WIDTH = 80  # of the terminal

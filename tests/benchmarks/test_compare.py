@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from app.bench import compare
+from benchmarks import compare
 
 PROGRAM = """
 import csv, pathlib, sys

@@ -22,7 +22,7 @@ from app.formats import text_tables
 from sim.files import replacing
 from sim.validation import argument_error
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 REPEATS = 5  # runs of each commit
 TIME = re.compile(r"\[(s|ms|µs|ns|% of a core)\b[^\]]*\]$|^ns per ")  # in the name of a column
 

@@ -142,7 +142,7 @@ class SimLoop:
         self.solving = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
         self.may_end = False  # what runs may be ended early: steps, or a picture
         self.may_begin = False  # what runs may be ended early where the scene begins anew after it
-        self.is_late = False  # controls were answered in the middle of the last tick
+        self.is_late = False  # controls were answered in the middle of the last tick, as it took long
         self.turn_at = 0.0  # [s] of the clock, when controls were last answered
         self.is_shown = True  # the latest snapshot is of the scene as it is
         self.whole_at = 0.0  # [s] of the clock, when one was
@@ -367,7 +367,9 @@ class SimLoop:
         change of forces, and what is kept whole are ended only where the scene begins anew; else parameters are
         answered with the last frame, and the next tick takes them.
         """
-        self.turn_at, self.is_late = self.clock(), True
+        self.turn_at = self.clock()
+        # A turn that was due at the start of a short tick is no reason for one in the next.
+        self.is_late |= self.busy_since is not None and self.turn_at - self.busy_since >= PATIENCE
         try:
             params, loads = self.poll()
             if loads != self.loaded:  # they come with a `Load` that waits

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from app.messages import Grab, Pause, Place, Play, Reset
+from app.messages import Grab, Pause, Place, Play, Reset, StudentAnswer
 from app.scenes.cloth.parameters import Params as ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import Params
@@ -82,6 +82,31 @@ def test_a_turn_is_asked_for_after_a_while_and_not_of_an_idle_loop(busy):
         busy.busy_since, busy.turn_at = since, turn_at
         busy.ask_for_turn()
         assert busy.request[TURN] == asked
+
+
+def test_one_tick_that_takes_long_makes_only_the_next_show_a_picture_more():
+    now, seconds = [0.0], iter([2.0 * PATIENCE, 0.0, 0.0, 0.0])
+    scene = RopeScene(Params(points=4))
+    loop = SimLoop(scene, clock=lambda: now[0], effort=lambda: 0.0)
+    advance = scene.advance
+
+    def slow(steps):
+        now[0] += next(seconds)
+        advance(steps)
+        raise_if_stopped()
+
+    scene.advance, shown = slow, []
+    use_request(loop.request, loop.give_turn, loop.turn_is_due)
+    try:
+        for _ in range(4):
+            now[0] += 1 / 60
+            loop.commands.put(StudentAnswer())  # as a student's rope has one for each tick
+            before = loop.counts["snapshots"]
+            loop.tick(1 / 60)
+            shown.append(loop.counts["snapshots"] - before)
+    finally:
+        use_request(np.array([0, 1, 0, 0]))
+    assert shown == [1, 2, 1, 1]
 
 
 def test_a_reset_that_was_ended_early_is_done_again_and_a_step_is_not(busy):

@@ -2,11 +2,13 @@
 
 import asyncio
 import contextlib
+import math
 import random
 import re
 import struct
 import time
 from collections.abc import AsyncGenerator, Callable
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -48,12 +50,11 @@ class Pupil:
         self.answers: list[tuple[str, float]] = []
         self.frames: list[float] = []  # [s] when a picture came
         self.clock: list[tuple[float, float]] = []  # [s] when a status line came, and the simulated time in it
-        self.controls: dict[str, str] = {}  # label of a control or command -> uuid
+        self.made: list[tuple[str, str]] = []  # label and uuid of each control and command, in order
         self.state = ""  # "running" or "paused"
         self.headline = ""  # on the student's files
         self.task = ""  # as the list of tasks shows it
-        self.label = ""  # of the newest control
-        self.slider: Any = None  # of the stiffness
+        self.stiffness = math.nan  # [N/m] as the slider shows it
         self.saves = 0
         self.news = asyncio.Event()
 
@@ -81,6 +82,11 @@ class Pupil:
             finally:
                 reading.cancel()
 
+    @property
+    def controls(self) -> dict[str, str]:
+        """Label of a control or command -> uuid; of several the oldest, as a task's own go when it does."""
+        return dict(reversed(self.made))
+
     async def hear(self) -> None:
         """Wait for the next message."""
         self.news.clear()
@@ -103,15 +109,16 @@ class Pupil:
         uuid, props = message.get("uuid", ""), message.get("props") or {}
         updates = message.get("updates") or {}
         if message["type"] == "GuiMultiSliderMessage":
-            self.controls[f"slider of {self.label}"] = uuid
+            self.made.append((f"slider of {self.made[-1][0]}", uuid))
         elif props.get("label"):
-            self.label = props["label"]
-            self.controls[self.label] = uuid
+            self.made.append((props["label"], uuid))
+        elif message["type"] == "GuiRemoveMessage":
+            self.made = [(label, other) for label, other in self.made if other != uuid]
         value = updates.get("value", message.get("value"))
-        if uuid == self.controls.get("Task"):
-            self.task = value or self.task
-        elif uuid == self.controls.get(f"slider of {STIFFNESS}"):
-            self.slider = value or self.slider
+        if value and uuid == self.controls.get("Task"):
+            self.task = value
+        elif value and uuid == self.controls.get(f"slider of {STIFFNESS}"):
+            self.stiffness = 10.0 ** value[0]
         text = str(updates.get("content") or props.get("content") or "")
         if found := STATUS.search(text):
             self.state = found[1]
@@ -144,8 +151,9 @@ class Pupil:
 
     async def set_value(self, socket: ClientConnection) -> None:
         """Change the stiffness in its field; the slider beside it follows."""
-        was, stiffness = self.slider, f"{self.random.uniform(400.0, 1200.0):.1f}"
-        await self.act("value", lambda: self.send(socket, STIFFNESS, stiffness), lambda: self.slider != was)
+        stiffness = round(self.random.uniform(400.0, 1200.0), 1)
+        change = partial(self.send, socket, STIFFNESS, f"{stiffness}")
+        await self.act("value", change, lambda: math.isclose(self.stiffness, stiffness))
 
     async def open_task(self, socket: ClientConnection) -> None:
         """Follow a link to a task."""

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.bench import command
-from app.bench.pupil import Pupil
+from app.bench.pupil import STIFFNESS, Pupil
 
 CLASS = importlib.import_module("app.bench.cases.class_")
 
@@ -36,6 +36,19 @@ def test_pace_leaves_out_pauses_and_set_backs() -> None:
     result = CLASS.result_of(pupil)
     assert result.pace == pytest.approx(0.75)
     assert result.rate == pytest.approx(50.0)
+
+
+def test_a_value_is_sent_to_the_panel_s_own_control_though_a_task_shows_the_parameter_too() -> None:
+    pupil = Pupil(0, Path(), 0)
+    for uuid, value in (("own", 800.0), ("task's", 500.0)):
+        pupil.learn({"type": "GuiTextMessage", "uuid": uuid, "props": {"label": STIFFNESS}}, 0.0)
+        slider = {"type": "GuiMultiSliderMessage", "uuid": f"{uuid} slider", "value": [math.log10(value)], "props": {}}
+        pupil.learn(slider, 0.0)
+    assert (pupil.controls[STIFFNESS], pupil.stiffness) == ("own", pytest.approx(800.0))
+    for uuid in ("task's", "task's slider", "own", "own slider"):
+        assert pupil.controls
+        pupil.learn({"type": "GuiRemoveMessage", "uuid": uuid}, 0.0)
+    assert not pupil.controls
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is read from /proc")

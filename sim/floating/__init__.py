@@ -1,8 +1,4 @@
-"""Floating bodies: hulls, where they float, and how they move in one or two fluids under waves; sea water by default.
-
-fleet = make_fleet([Body(Hull.box(1.0, 1.0, 1.0), density=500.0)])
-step(fleet, still_water(fleet), 1 / 60)
-"""
+"""Floating bodies: hulls, where they float, and how they move in one or two fluids under waves."""
 
 from sim.floating.body import Body, Fleet, lowest, make_fleet, pull, vertices
 from sim.floating.dataset import with_dataset

@@ -49,7 +49,7 @@ def roll_period(
     as `equilibrium_draft`, and for another axis.
 
     >>> from sim.floating import Hull
-    >>> round(roll_period(Hull.box(4.0, 2.0, 1.0), 512.5), 2)  # [s]
+    >>> round(roll_period(Hull.box(4.0, 2.0, 1.0), 512.5), 2)  # [s]; of a loaded body: roll_period(*body.loaded())
     2.49
     """
     if not is_whole_number(axis) or axis not in (0, 1):

@@ -3,26 +3,32 @@
 Conventions: SI units, radians, z up. Directions are where waves and wind go to, from +x towards +y. A wave is
 Re[2 h0 exp(i(k.x - omega t))] with omega >= 0; Hs = 4 sqrt(m0), m0 the variance of the height.
 
-`Sea` and `SPECTRA` are imported on first use, so that the closed forms of `sim.ocean.dispersion` cost neither numba nor
-pyfftw.
+`SPECTRA`, `Sea`, `RadialSea`, `draw_waves` and `zero_crossings` are imported from here.
 """
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from sim.ocean.gerstner import draw_waves
+    from sim.ocean.radial import RadialSea
     from sim.ocean.sea import Sea
     from sim.ocean.spectra import SPECTRA
+    from sim.ocean.wave_record import zero_crossings
 
-__all__ = ["SPECTRA", "Sea"]
+__all__ = ["SPECTRA", "RadialSea", "Sea", "draw_waves", "zero_crossings"]
+
+# Imported on first use, so that the closed forms of `sim.ocean.dispersion` cost neither numba nor pyfftw.
+HOMES = {
+    "SPECTRA": "sim.ocean.spectra",
+    "RadialSea": "sim.ocean.radial",
+    "Sea": "sim.ocean.sea",
+    "draw_waves": "sim.ocean.gerstner",
+    "zero_crossings": "sim.ocean.wave_record",
+}
 
 
 def __getattr__(name: str) -> Any:
-    if name == "Sea":
-        from sim.ocean.sea import Sea
-
-        return Sea
-    if name == "SPECTRA":
-        from sim.ocean.spectra import SPECTRA
-
-        return SPECTRA
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name not in HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(HOMES[name]), name)

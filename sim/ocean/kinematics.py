@@ -97,8 +97,7 @@ class Components(NamedTuple):
 def components_of(waves: Waves, conditions: Conditions) -> Components:
     """The waves of `draw_waves` on water of these conditions: few that hold all of a spectrum's energy, at any depth.
 
-    >>> from sim.ocean.gerstner import draw_waves
-    >>> from sim.ocean.spectra import SPECTRA
+    >>> from sim.ocean import SPECTRA, draw_waves
     >>> conditions = SPECTRA["tma"].conditions(wind_speed=12.0, depth=30.0)
     >>> waves = components_of(draw_waves(SPECTRA["tma"], conditions, 100), conditions)
     >>> waves.kinematics([[0.0, 0.0, -5.0]], t=3.0).velocity.shape

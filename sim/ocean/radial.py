@@ -1,9 +1,10 @@
 """A sea that is a sum of Gerstner waves, drawn on a radial grid and asked at points.
 
-jonswap = SPECTRA["jonswap"]
-sea = RadialSea(draw_waves(jonswap, jonswap.conditions(wind_speed=8.0), 64), FluidColumn(thickness=0.2))
-surface = sea.on(RadialGrid(), t=12.0)
-water = sea.at([[0.0, 0.0]], t=12.0)
+    >>> from sim.ocean import SPECTRA, RadialSea, draw_waves
+    >>> jonswap = SPECTRA["jonswap"]
+    >>> sea = RadialSea(draw_waves(jonswap, jonswap.conditions(wind_speed=8.0), 64), FluidColumn(thickness=0.2))
+    >>> sea.at([[0.0, 0.0]], t=12.0).height.shape  # `float_in` takes this sea
+    (1,)
 
 A wave shorter than twice the local spacing of the grid is skipped, one up to four times it is faded, so that nothing
 pops as the grid moves; `evaluated` and `skipped` count (wave, vertex) pairs. At points all waves are there.
@@ -26,7 +27,7 @@ from sim.ocean.kinematics import Components, Kinematics
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.slick import SlickCover
 from sim.ocean.wave_sum import add_waves, calm_waves, find_labels, set_mesh, set_motion
-from sim.validation import argument_error, as_array, check_finite, check_not_negative, check_positions
+from sim.validation import argument_error, as_array, check_finite, check_kind, check_not_negative, check_positions
 
 CLEAN = FluidColumn()
 
@@ -60,7 +61,7 @@ class RadialSea:
         self, waves: Waves, column: FluidColumn = CLEAN, exposure: float = 0.0, choppiness: float = 1.0
     ) -> None:
         """exposure [s]: how long the waves have run on this medium, and decayed; choppiness: factor on Gerstner's
-        horizontal motion. Raises ValueError for a negative one.
+        horizontal motion. Raises ValueError for a negative one, and for other waves or another column.
 
         `past` [s] is the time spent on each medium. Waves never regain energy that they lost there.
         """
@@ -72,6 +73,8 @@ class RadialSea:
         self.slick: SlickCover | None = None  # what calms the waves under it
         self._loss: tuple[FluidColumn, np.ndarray, np.ndarray] | None = None  # of the fluids in the slick, k [1/m]
         self.past: dict[FluidColumn, float] = {}
+        check_kind("waves", waves, Waves, "Waves, as `draw_waves` draws them")
+        check_kind("column", column, FluidColumn, "a FluidColumn")
         self._set(waves, column, waves.phase, np.zeros(len(waves.kx)))
         self.expose(exposure)
 

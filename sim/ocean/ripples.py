@@ -3,6 +3,13 @@
 A ring is height(k, t) = e^(-gamma t) (even cos(omega t) + odd sin(omega t)) on the half plane of the sea's own
 wavenumbers, so it costs one pass over the spectrum and no further transform, is stable at any step, and obeys the
 sea's gravity, depth and tension (Cauchy and Poisson; Lamb, Hydrodynamics, Art. 238-241 and 255).
+
+    >>> from sim.ocean import Sea
+    >>> pond = Sea(64, 8.0, wind_speed=0.0, tension=0.073)
+    >>> pond.ripples.add(0.0, [[4.0, 4.0]], width=0.2, volume=1e-3)  # [m], [m3]
+    >>> round(float(pond.surface(0.0).height.max()), 4)  # [m]: volume/(2 pi width^2)
+    0.004
+
 Limits: the tile is periodic, so a ring that leaves comes back; `leak` is a uniform decay standing for what would have
 left. A disturbance narrower than two cells is cut off by the grid and shows the cut as fine ringing.
 """

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.ocean import Sea
-from sim.ocean.zero_crossings import ZeroCrossings, zero_crossings
+from sim.ocean.wave_record import ZeroCrossings, zero_crossings
 
 SAMPLE_RATE = 10.0  # [Hz] to which the trace is resampled before its spectrum is computed
 MAX_TRACE_DURATION = 600.0  # [s] older samples of the trace are dropped

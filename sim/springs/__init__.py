@@ -1,12 +1,13 @@
 """Spring-mass systems: ropes and nets, their integrators, energies, stability and statics.
 
-k is a stiffness here, h a time step.
+k is a stiffness here, h a time step. `INTEGRATORS` and `LAWS` (of the links) are dicts by name.
 """
 
-from sim.springs.cloth import cloth
+from sim.springs.analysis.energy_history import EnergyHistory
+from sim.springs.cloth import cloth, vertical_cloth
 from sim.springs.integrators import Integrator, discover
 from sim.springs.laws import LAWS
-from sim.springs.net import Air, Contact, Grab, Net, PinPath
+from sim.springs.net import Air, Contact, Family, Grab, Net, PinPath
 from sim.springs.rope import lab_units, rope
 from sim.springs.simulate import Run, simulate
 from sim.springs.stability import critical_step
@@ -15,6 +16,6 @@ from sim.springs.state import State, advance
 INTEGRATORS: dict[str, Integrator] = discover()
 
 __all__ = [
-    "INTEGRATORS", "LAWS", "Air", "Contact", "Grab", "Integrator", "Net", "PinPath", "Run", "State", "advance", "cloth",
-    "critical_step", "lab_units", "rope", "simulate",
+    "INTEGRATORS", "LAWS", "Air", "Contact", "EnergyHistory", "Family", "Grab", "Integrator", "Net", "PinPath", "Run",
+    "State", "advance", "cloth", "critical_step", "lab_units", "rope", "simulate", "vertical_cloth",
 ]  # fmt: skip

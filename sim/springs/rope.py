@@ -36,7 +36,7 @@ def rope(
     points: from 1. length: rest length of the whole [m]. mass: [kg] per point, one number or (points,). stiffness [N/m]
     and damping [N s/m] per link; drag [N s/m] per point; gravity [m/s^2] along -z. floor: height [m]; sphere: (x, y, z,
     radius) [m]. damping_model: "isotropic", the lab's eq. 4, b (v1 - v2); or "axial", its part along the link only.
-    law: of the links, a name in `LAWS` or its numbers, as Stiffening(30.0).
+    law: of the links, a name in `LAWS` or its numbers, as `sim.springs.laws.stiffening.Stiffening(30.0)`.
     end: where the last point is pinned too [m]; the points then start on the straight line from root to end.
     radius: of the points, for contact [m].
 

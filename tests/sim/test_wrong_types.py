@@ -9,13 +9,10 @@ import numpy as np
 import pytest
 
 from sim import floating, springs
-from sim.ocean import SPECTRA, Sea, dispersion
-from sim.ocean.gerstner import draw_waves
+from sim.ocean import SPECTRA, RadialSea, Sea, dispersion, draw_waves, zero_crossings
 from sim.ocean.planets import gravity_of
-from sim.ocean.radial import RadialSea
 from sim.ocean.statistics import beaufort
 from sim.ocean.weathering import Spill, weather
-from sim.ocean.zero_crossings import zero_crossings
 from sim.particles.plume import flame_height
 from sim.particles.rain import rainfall, terminal_speed
 from sim.springs.statics import catenary

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from sim.ocean import Sea
+from sim.ocean import SPECTRA, RadialSea, Sea, draw_waves, zero_crossings
 from sim.ocean.dispersion import (
     group_speed,
     mode_ratios,
@@ -19,16 +19,13 @@ from sim.ocean.dispersion import (
 from sim.ocean.emulsions import arrhenius, pal_rhodes
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import fluids, fresnel, mixed, oil_index
-from sim.ocean.gerstner import draw_waves
 from sim.ocean.oil_film import light_through
 from sim.ocean.planets import RADIUS_RULES, gravity_of
-from sim.ocean.radial import RadialSea
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.slick import slick_radius
-from sim.ocean.spectra import SPECTRA, Conditions
+from sim.ocean.spectra import Conditions
 from sim.ocean.statistics import beaufort, expected, measured, resolved_in_time
 from sim.ocean.weathering import Spill, weather
-from sim.ocean.zero_crossings import zero_crossings
 from tests.refusals import Row, assert_refused, each
 
 NAN, INF = math.nan, math.inf

@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from sim.ocean import SPECTRA, Sea
+from sim.ocean import SPECTRA, Sea, zero_crossings
 from sim.ocean.wave_gauge import WaveGauge
-from sim.ocean.zero_crossings import zero_crossings
 
 
 def gaussian_record(duration: float = 40000.0, **values) -> tuple[np.ndarray, np.ndarray]:

@@ -1,6 +1,7 @@
 """Waves of a record, counted from one upward crossing of its mean level to the next.
 
     >>> import numpy as np
+    >>> from sim.ocean import zero_crossings
     >>> t = np.arange(0.0, 100.0, 0.1)
     >>> waves = zero_crossings(t, 0.5 * np.sin(2.0 * np.pi * t / 8.0))
     >>> waves.number, round(waves.significant_height, 2), round(waves.mean_period, 2)
@@ -37,7 +38,7 @@ def zero_crossings(t: ArrayLike, height: ArrayLike) -> ZeroCrossings:
     """
     times, heights = as_array("t", t, "numbers [s]"), as_array("height", height, "numbers [m]")
     if times.ndim != 1 or not (np.isfinite(times).all() and (np.diff(times) > 0.0).all()):
-        raise argument_error("t", times.shape if times.ndim != 1 else "times", "finite, rising times of shape (n,)")
+        raise argument_error("t", times.shape if times.ndim != 1 else times, "finite, rising times of shape (n,)")
     if heights.shape != times.shape or not np.isfinite(heights).all():
         raise argument_error("height", heights.shape, f"finite heights, one for each of {times.size} times")
     eta = heights - heights.mean() if heights.size else heights

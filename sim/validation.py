@@ -1,5 +1,6 @@
 """Checks of arguments: every error names the argument, the value given and the allowed values, in one line."""
 
+import dataclasses
 import math
 from collections.abc import Iterable
 from types import UnionType
@@ -16,11 +17,10 @@ Kind = TypeVar("Kind")
 
 def argument_error(name: str, value: object, allowed: str) -> ValueError:
     """The one form of an argument error, in one line: the name, the value given, and the allowed values."""
-    shown = repr(value)
-    if "\n" in shown:  # arrays
-        shown = " ".join(shown.split())
+    shown = " ".join(repr(value).split())  # in one line, arrays too
     if len(shown) > MAX_SHOWN:
-        shown = f"{shown[:MAX_SHOWN]}..."
+        is_record = dataclasses.is_dataclass(value) or hasattr(value, "_fields")
+        shown = f"{type(value).__name__}(...)" if is_record else f"{shown[:MAX_SHOWN]}..."
     return ValueError(f"{name}: {shown} is not allowed; allowed: {allowed}")
 
 
@@ -53,9 +53,10 @@ def check_number(name: str, value: object, low: float, high: float, unit: str, *
     number = as_float(value)
     if math.isfinite(number) and low <= number <= high and not (above and number == low):
         return number
-    start = f"above {low:g}" if above else f"from {low:g}"
+    start = (f"above {low:g}" if above else f"from {low:g}") if low > -math.inf else "a finite number"
     allowed = f"{start}{f' to {high:g}' if high < math.inf else ''} {unit}".rstrip()
-    raise argument_error(name, value, allowed if allowed != "from -inf" else "a finite number")
+    is_other = math.isnan(number) and low > -math.inf  # no number, or NaN
+    raise argument_error(name, value, f"a number {allowed}" if is_other else allowed)
 
 
 def check_positive(name: str, value: object, unit: str, *, allow_infinite: bool = False) -> float:
@@ -87,6 +88,14 @@ def check_finite(name: str, value: object, unit: str = "") -> float:
     number = as_float(value)
     if not math.isfinite(number):
         raise argument_error(name, value, f"a finite number {unit}".rstrip())
+    return number
+
+
+def check_angle(name: str, value: object) -> float:
+    """`value` as a float [rad] within one turn, so that degrees are noticed. Raises ValueError otherwise."""
+    number = as_float(value)
+    if not abs(number) <= 2.0 * math.pi:
+        raise argument_error(name, value, "an angle from -2 pi to 2 pi rad")
     return number
 
 

@@ -114,12 +114,13 @@ def check_pose(body: Body) -> None:
 
 def checked_inertia(inertia: object) -> np.ndarray:
     """The inertia (3, 3) [kg m2] of a matrix, or of the moments about three axes. Raises ValueError for another."""
-    allowed = "(3,) moments or a symmetric (3, 3) matrix, positive definite [kg m2]"
+    allowed = "(3,) moments or a symmetric (3, 3) matrix [kg m2], all above 0, none above the sum of the other two"
     given = as_array("inertia", inertia, allowed)
     matrix = np.diag(given) if given.shape == (3,) else given
     if matrix.shape != (3, 3) or not np.isfinite(matrix).all() or not np.allclose(matrix, matrix.T):
         raise argument_error("inertia", inertia, allowed)
-    if not np.linalg.eigvalsh(matrix)[0] > 0.0:
+    moments = np.linalg.eigvalsh(matrix)
+    if not (moments[0] > 0.0 and 2.0 * moments[2] <= (1.0 + 1e-9) * moments.sum()):
         raise argument_error("inertia", inertia, allowed)
     return matrix
 

@@ -17,7 +17,7 @@ from sim.floating.body import Body, check_body
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps, equilibrium_draft
 from sim.floating.excitation import HullExcitation, plane_force
 from sim.floating.hydrodynamics import DIRECTIONS, lagrange, linear_hull
-from sim.validation import argument_error, as_array, check_finite, check_positive
+from sim.validation import argument_error, as_array, check_angle, check_positive
 
 
 class LinearForces(NamedTuple):
@@ -58,7 +58,7 @@ def linear_forces(
     w = as_array("frequency", frequency, "finite numbers above 0 rad/s, shape (n,)")
     if w.ndim != 1 or not ((w > 0.0) & (w < math.inf)).all():
         raise argument_error("frequency", w.tolist(), "finite numbers above 0 rad/s, shape (n,)")
-    heading, gravity = check_finite("heading", heading, "rad"), check_positive("gravity", gravity, "m/s2")
+    heading, gravity = check_angle("heading", heading), check_positive("gravity", gravity, "m/s2")
     layers = check_layers(layers)
     hull, density = body.loaded()
     rest = body._replace(rotation=(1.0, 0.0, 0.0, 0.0)).afloat(layers)

@@ -35,6 +35,7 @@ from sim.ocean.surface import Surface
 from sim.ocean.tile_heights import TileHeights, key_of
 from sim.ocean.transforms import PRECISIONS, Transforms
 from sim.ocean.wave_sizes import WaveSizes
+from sim.parameters import similar
 from sim.validation import (
     argument_error,
     check_choice,
@@ -366,7 +367,9 @@ def checked_conditions(
         spectrum = SPECTRA[check_choice("spectrum", spectrum, SPECTRA)]
     for name in values:
         if name not in _CONDITIONS | _MEDIUM:
-            raise TypeError(f"{name}: no such condition; there are {', '.join(sorted(_CONDITIONS | _MEDIUM))}")
+            close = " or ".join(similar(name, _CONDITIONS | _MEDIUM))
+            known = f"did you mean {close}?" if close else f"there are {', '.join(sorted(_CONDITIONS | _MEDIUM))}"
+            raise TypeError(f"{name}: no such condition; {known}")
     new = {n: v for n, v in values.items() if n in _CONDITIONS}
     spectrum.check_used(new)
     return spectrum, {n: v for n, v in (given | new).items() if spectrum.uses(n)}

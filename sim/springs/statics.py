@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.springs.laws import TAUT, check_law, law_of, of_arrays
 from sim.springs.net import Family, Net
-from sim.validation import argument_error, as_array, check_number
+from sim.validation import argument_error, as_array, check_kind, check_number
 
 ITERATIONS = 200  # of Newton: a dozen is usual
 
@@ -166,7 +166,7 @@ def equilibrium(net: Net) -> Equilibrium:
 
 def single_family(net: Net) -> Family:
     """The links of a rope; raises ValueError for any other net, or where they have no stiffness."""
-    if not net.is_rope:
+    if not check_kind("net", net, Net, "a rope").is_rope:
         raise argument_error("net", net.shape, "a rope")
     family = net.families[0]
     check_number("stiffness", family.stiffness, 0, math.inf, "N/m", above=True)

@@ -55,6 +55,9 @@ def test_a_number_lies_in_its_range_with_the_ends_or_without():
     assert refused(v.check_number, -0.1, 0.0, math.inf, "m") == "from 0 m"
     assert refused(v.check_number, 0.0, 0.0, math.inf, "m", above=True) == "above 0 m"
     assert refused(v.check_number, math.inf, -math.inf, math.inf, "") == "a finite number"
+    assert refused(v.check_number, "1", 0.0, math.inf, "m") == "a number from 0 m"
+    assert refused(v.check_angle, 90.0) == "an angle from -2 pi to 2 pi rad"
+    assert v.check_angle("a", -2.0 * math.pi) == -2.0 * math.pi
 
 
 def test_above_0_not_below_0_within_and_finite():

@@ -2,6 +2,7 @@
 
 import inspect
 import math
+import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -15,7 +16,7 @@ from sim.ocean.statistics import beaufort
 from sim.ocean.weathering import Spill, weather
 from sim.particles.plume import flame_height
 from sim.particles.rain import rainfall, terminal_speed
-from sim.springs.statics import catenary
+from sim.springs.statics import catenary, equilibrium
 
 
 class Odd:
@@ -106,6 +107,53 @@ CALLS = (
     call(floating.with_dataset, hull=BOX, path="none.nc"),
     call(rainfall, rate=1.0), call(terminal_speed, diameter=1e-3), call(flame_height, power=1e6, diameter=1.0),
 )  # fmt: skip
+# (error's name, call, words of what is allowed) of slips that are easily made
+SLIPS: tuple[tuple[str, Callable[[], object], str], ...] = (
+    ("gravity", lambda: springs.rope(gravity=(0.0, 0.0, -9.81)), "a finite number m/s"),
+    ("stiffness", lambda: springs.rope(stiffness=[800.0] * 9), "a number from 0 N/m"),
+    ("length", lambda: springs.rope(length="2 m"), "a number above 0"),
+    ("mass", lambda: springs.rope(10, mass=[1.0] * 9), "or 10 of them"),
+    ("end", lambda: springs.rope(end=1.0), "3 finite numbers"),
+    ("sphere", lambda: springs.rope(sphere=(0.0, 0.0, 0.0)), "4 finite numbers"),
+    ("contact", lambda: springs.rope(contact=800.0), "a Contact"),
+    ("law", lambda: springs.rope(law="Slack"), "slack"),
+    ("rows", lambda: springs.cloth((24, 36)), "a whole number"),
+    ("pinned", lambda: springs.cloth(4, 4, pinned="top"), "edge"),
+    ("air", lambda: springs.cloth(4, 4, air=(8.0, 0.0, 0.0)), "an Air"),
+    ("air.wind", lambda: springs.cloth(4, 4, air=springs.Air(wind=8.0)), "3 finite numbers"),
+    ("integrator", lambda: springs.simulate(NET, "RK4"), "rk4"),
+    ("integrator", lambda: springs.critical_step("rk4", NET), "rk4"),
+    ("x", lambda: springs.simulate(NET, x=NET.x0), "(4, 3)"),
+    ("rtol", lambda: springs.simulate(NET, "rk4", rtol=1e-6), "adaptive"),
+    ("net", lambda: springs.advance(springs.State.at_rest(NET), NET, "rk4", 0.01, 1), "a Net"),
+    ("net", lambda: equilibrium("rope"), "a rope"),
+    ("size", lambda: Sea(101), "even"),
+    ("size", lambda: Sea((64, 64)), "even"),
+    ("spectrum", lambda: Sea(16, spectrum="JONSWAP"), "jonswap"),
+    ("hs", lambda: Sea(16, hs=3.0), "it is one of sea_state"),
+    ("fetch", lambda: SPECTRA["phillips"].moments(fetch=2e5), "it is one of jonswap"),
+    ("wind_speed", lambda: Sea(16, wind_speed=(10.0, 0.0)), "0 to 1000 m/s"),
+    ("wind_direction", lambda: Sea(16, wind_direction=90.0), "rad"),
+    ("depth", lambda: Sea(16, depth=-20.0), "or inf"),
+    ("points", lambda: SEA.height_at((0.0, 0.0), 1.0), "(n, 2)"),
+    ("points", lambda: SEA.kinematics([0.0, 0.0, -5.0], 1.0), "(n, 3)"),
+    ("t", lambda: SEA.height_at([[0.0, 0.0]], [0.0, 1.0]), "a finite number"),
+    ("conditions", lambda: JONSWAP.moments({"wind_speed": 10.0}), "or None"),
+    ("waves", lambda: RadialSea(SEA), "draw_waves"),
+    ("column", lambda: RadialSea(WAVES.waves, 1025.0), "FluidColumn"),
+    ("t", lambda: zero_crossings([2.0, 1.0, 0.0], [0.0, 1.0, 2.0]), "rising"),
+    ("body", lambda: floating.metacentric_height(BOX), "a Body"),
+    ("heel", lambda: floating.righting_arm(BODY, 30.0), "rad"),
+    ("heading", lambda: floating.response_amplitude(BODY, [1.0], heading=90.0), "rad"),
+    ("bodies", lambda: floating.float_in(SEA, BODY, 1.0), "a list"),
+    ("bodies[0]", lambda: floating.float_in(SEA, [BOX], 1.0), "a Body"),
+    ("hull", lambda: floating.equilibrium_draft(BODY, 500.0), "a Hull"),
+    ("layers", lambda: BODY.afloat(1025.0), "pairs"),
+    ("density", lambda: afloat(hull=BOX, density=2000.0), "at most 1025"),
+    ("inertia", lambda: afloat(hull=BOX, mass=500.0, inertia=(1.0, 1.0, 10.0)), "the sum of the other two"),
+    ("temperature", lambda: Spill(temperature=288.15), "40 C"),
+    ("points", lambda: POND.ripples.add(0.0, (4.0, 4.0), width=0.5, volume=1.0), "(n, 2)"),
+)
 ROWS = [
     pytest.param(one, name, id=f"{one.function.__qualname__}-{name}")
     for one in CALLS
@@ -127,3 +175,17 @@ def test_a_wrong_type_is_refused_by_name(one: Call, name: str) -> None:
 
 def test_the_table_is_of_300_arguments() -> None:
     assert len(ROWS) >= 290
+
+
+@pytest.mark.parametrize(("name", "slip", "words"), SLIPS)
+def test_a_slip_is_refused_by_name_in_one_short_line(name: str, slip: Callable[[], object], words: str) -> None:
+    with pytest.raises(ValueError, match=rf"^{re.escape(name)}: .+ is not allowed; allowed: ") as error:
+        slip()
+    given, allowed = str(error.value).split(" is not allowed; allowed: ")
+    assert words in allowed
+    assert len(given) < 120
+
+
+def test_an_unknown_condition_names_one_that_is_written_alike() -> None:
+    with pytest.raises(TypeError, match=r"^Hs: no such condition; did you mean hs\?$"):
+        Sea(16, Hs=3.0)

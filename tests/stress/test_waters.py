@@ -57,7 +57,7 @@ def test_weather_that_jumps_about(tally: Tally) -> None:
                 float(rng.choice([0.0, 1e-6, 5.0, 1e6])),
                 str(rng.choice(list(SPECTRA))),
                 wind_speed=float(rng.choice(WINDS)),
-                wind_direction=float(rng.uniform(-10.0, 10.0)),
+                wind_direction=float(rng.uniform(-6.0, 6.0)),
                 depth=float(rng.choice(DEPTHS)),
                 gravity=float(10.0 ** rng.uniform(-2.0, 3.0)),
                 viscosity=float(rng.choice([0.0, 1e-6, 10.0])),

@@ -14,7 +14,7 @@ from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.moments import Moments, moments_of
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
-from sim.validation import argument_error, as_array, as_float, check_finite, check_kind, check_number, check_positive
+from sim.validation import argument_error, as_array, as_float, check_angle, check_kind, check_number, check_positive
 
 WIND_HEIGHTS = {10.0: 1.0, 19.5: 1.026}  # [m] -> wind there over U10, drag coefficient 1.3e-3 (Stewart 2008, eq. 16.33)
 MIN_WIND_SPEED = 1e-3  # [m/s] below which a wind makes no waves: spectra take powers of it, which would underflow
@@ -54,7 +54,7 @@ class Conditions:
     def __post_init__(self) -> None:
         # Wide, but such that no power that a spectrum takes overflows or is lost in rounding.
         check_number("wind_speed", self.wind_speed, 0.0, 1e3, "m/s")
-        check_finite("wind_direction", self.wind_direction, "rad")
+        check_angle("wind_direction", self.wind_direction)
         check_number("gravity", self.gravity, 1e-6, 1e6, "m/s2")
         if as_float(self.depth) != math.inf:
             check_number("depth", self.depth, 1e-6, 1e9, "m, or inf")
@@ -145,10 +145,14 @@ class Spectrum(NamedTuple, Generic[C]):
 
     def check_used(self, values: Mapping[str, Any]) -> None:
         """Raises ValueError for the first of the values, by name, that is no condition of this spectrum."""
+        from sim.ocean.spectra import SPECTRA  # which reads this module
+
         for name in values:
             if not self.uses(name):
                 known = ", ".join(field.name for field in dataclasses.fields(self.conditions))
-                raise argument_error(name, values[name], f"a condition that {self.name} uses: {known}")
+                others = ", ".join(one.name for one in SPECTRA.values() if one.uses(name))
+                hint = f"; it is one of {others}" if others else ""
+                raise argument_error(name, values[name], f"a condition that {self.name} uses: {known}{hint}")
 
     def conditions_of(self, conditions: C | None, values: dict[str, Any]) -> C:
         """The conditions of a record, of values by name, or of a record with some changed.
@@ -219,7 +223,7 @@ class Spectrum(NamedTuple, Generic[C]):
 
         cut_off [rad/s]: the highest frequency that counts. Without it m4 of a spectrum that falls as omega^-5 is inf.
 
-        >>> from sim.ocean.spectra import SPECTRA
+        >>> from sim.ocean import SPECTRA
         >>> sea = SPECTRA["sea_state"].moments(hs=2.0, tp=8.0)
         >>> f"{sea.significant_height:.2f} m, Tp {sea.peak_period:.2f} s, Tz {sea.zero_crossing_period:.2f} s"
         '2.00 m, Tp 8.00 s, Tz 6.22 s'

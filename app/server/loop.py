@@ -4,7 +4,6 @@ One accumulator and one wall deadline. Time that cannot be made up is dropped an
 plain function of elapsed wall time, so that tests, headless runs and benchmarks call it without a thread.
 """
 
-import collections
 import contextlib
 import queue
 import threading
@@ -12,9 +11,6 @@ import time
 import traceback
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future
-from typing import NamedTuple
-
-import numpy as np
 
 from app.messages import (
     Advance,
@@ -24,98 +20,32 @@ from app.messages import (
     DivergenceError,
     Grab,
     Halt,
-    KeptState,
     Load,
     Pause,
     Place,
     Play,
-    PlotRow,
     Release,
     Reset,
-    Snapshot,
-    Status,
     StepOnce,
     TogglePlay,
-    where_not_finite,
 )
-from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
-from app.scenes.moments import arrays_in
+from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.stepping import steps_to
 from app.server.merging import begins_anew, is_urgent, merged
-from app.server.replay import Replay
+from app.server.run import Goal, Run
 from app.server.shared_clock import Seat
-from sim.interruption import ABANDON, STOP, TURN, InterruptionError, is_kept_whole, use_request
+from app.server.snapshots import Clock
+from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
 from sim.parameters import effect_of_change
 
-SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
-PART_GROWTH = 8  # ratio of two successive parts of a frame's steps while the cost of a step is not known
-MAX_BLIND_TIME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
 PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody looks: a browser that comes, or a command, ends it
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
-MAX_CATCH_UP = 0.25  # [s] of wall time that one tick makes up for
-KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least
-KEEP_SHARE = 0.003  # of a core that keeping states may take
-HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
-RATE_WINDOW = 1.0  # [s] over which rates are measured
-MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond that the oldest are dropped
 
 
-class Goal(NamedTuple):
-    """Goal of an `Advance`."""
-
-    until: float  # [s] of simulated time
-    answer: Future[float]
-    was_running: bool
-
-
-class FixedStep:
-    """Turns elapsed wall time into whole steps, and drops the time that does not fit the budget."""
-
-    def __init__(self) -> None:
-        self.debt = 0.0  # [s] of simulated time not yet stepped
-        self.cost = 0.0  # [s] of processor time that a step takes, lately
-        self.dropped = 0  # steps that were due and never taken
-
-    def steps(self, wall: float, speed: float, h: float, frame: float = FRAME_INTERVAL) -> tuple[int, bool]:
-        """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s].
-
-        frame: [s] between pictures; where that is longer, there is more time to solve in.
-        """
-        self.debt += min(wall, MAX_CATCH_UP) * speed
-        due = int(self.debt / h * (1 + 1e-9))
-        most = self.most(due, frame)
-        if due > most:
-            self.debt = 0.0
-            self.dropped += due - most
-            return most, True
-        self.debt = max(0.0, self.debt - due * h)
-        return due, False
-
-    def most(self, due: int, frame: float) -> int:
-        """How many of the steps that are due fit the budget of a frame of `frame` [s]."""
-        if self.cost <= 0:
-            return due
-        return min(due, max(1, int(SOLVE_SHARE * max(frame, FRAME_INTERVAL) / self.cost)))
-
-    def next_part(self, last: int, spent: float) -> int:
-        """Steps to try next, after `spent` [s] of this frame and a last part of `last` steps; 0 when it is full."""
-        left = SOLVE_SHARE * FRAME_INTERVAL - spent
-        if left <= 0.0:
-            return 0
-        return min(PART_GROWTH * last, int(left / self.cost)) if self.cost > 0 else PART_GROWTH * last
-
-    def learn(self, steps: int, seconds: float) -> None:
-        """Record that `steps` steps took `seconds` of processor time."""
-        if steps:
-            each = seconds / steps
-            # Down at once, up slowly: the first step of a method loads its kernel.
-            self.cost = each if not 0 < self.cost < each else 0.8 * self.cost + 0.2 * each
-
-
-class SimLoop:
-    """Owns a scene and its clock."""
+class SimLoop(Run):
+    """Runs a scene on a thread, by commands and parameters that come from others."""
 
     def __init__(
         self,
@@ -126,8 +56,8 @@ class SimLoop:
         *,
         admit: Callable[[Iterable[Command]], list[Command]] = list,
         paused: bool = False,
-        clock: Callable[[], float] = time.perf_counter,
-        effort: Callable[[], float] = time.thread_time,
+        clock: Clock = time.perf_counter,
+        effort: Clock = time.thread_time,
     ) -> None:
         """read_params: the parameters as set now, and the number of the last `Load`; audience: how many browsers look.
 
@@ -135,46 +65,15 @@ class SimLoop:
         clock: wall time [s]. effort: what solving is charged by, this thread's processor time [s], so that a busy
         machine that takes the processor away does not make the scene look expensive.
         """
-        self.scene = scene
         self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
         self.admit = admit
-        self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
-        self.solving = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
-        self.may_end = False  # what runs may be ended early: steps, or a picture
-        self.may_begin = False  # what runs may be ended early where the scene begins anew after it
-        self.is_late = False  # controls were answered in the middle of the last tick, as it took long
+        self.is_late = False  # controls were answered in the middle of the last tick
         self.turn_at = 0.0  # [s] of the clock, when controls were last answered
-        self.is_shown = True  # the latest snapshot is of the scene as it is
-        self.whole_at = 0.0  # [s] of the clock, when one was
-        self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
         self.read_params = read_params or (lambda: (scene.params, self.loaded))
-        self.audience = audience
-        self.clock, self.effort = clock, effort
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
-        self.running = not paused
-        self.halted = ""
-        self.seat: Seat | None = None  # at a clock that other loops have too
-        self.replay: Replay | None = None  # of a run that has just diverged
-        self.cost_unknown = True  # the cost of a step with the parameters as they are is not known
         self.loaded = 0  # number of the last `Load` that was handled
-        self.pacer = FixedStep()
-        self.capped = False
-        self.counts: collections.Counter[str] = collections.Counter()
-        self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
-        self.wall = 0.0
-        self.keep_at = 0.0  # [s] of `wall` from which a state is kept again
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
-        self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
-        self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
-        self.published = 0.0  # [s] of simulated time, of the last snapshot
-        self.goal: Goal | None = None  # that a program waits for
-        self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
-        self.latest: AnySnapshot = self.snapshot()
-
-    @property
-    def frame_interval(self) -> float:
-        """Time [s] between pictures: a scene may ask for fewer."""
-        return self.scene.frame_interval
+        super().__init__(scene, audience, clock, effort, paused=paused)
 
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
@@ -239,63 +138,6 @@ class SimLoop:
             self.handle(seat.share(Reset()))
             seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
 
-    def follow(self, seat: Seat, wall: float) -> bool:
-        """Take the steps that lead to the time of the clock, as many as fit the frame; True where there were any.
-
-        The loop of the first seat lets the clock's time pass.
-        """
-        if seat.is_first and self.running:
-            seat.clock.advance(min(wall, MAX_CATCH_UP), self.scene.params.speed)
-        due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
-        n = self.pacer.most(due, self.frame_interval)
-        self.capped = n < due or (seat.is_first and seat.clock.late)
-        if n:
-            (self.advance_within_budget if self.cost_unknown and self.running else self.advance)(n)
-        return n > 0
-
-    def take(self, params: BaseParams) -> bool:
-        """Take parameters according to the effect of their change; False if they are those of the scene."""
-        effect = effect_of_change(self.scene.params, params)
-        if effect is None:
-            return False
-        if effect == "look":
-            self.scene.params = params
-            return True
-        self.cost_unknown = True
-        if self.replay is not None:
-            self.halt(self.replay.reason)
-            self.replay = None
-        if effect == "forces" and self.unfinished is None:
-            self.guarded(lambda: self.scene.change_forces(params), else_anew=True)
-            self.scene.params = params  # also where the scene failed: not to be tried again in every tick
-        else:
-            self.scene.params = params
-            if self.seat is not None:
-                self.seat.begin_others()
-            self.reset()
-        return True
-
-    def settle(self, goal: Goal) -> None:
-        """Answer the program that waits, where the run has come to the time or can come no further."""
-        reason = self.stopped_by
-        arrived = steps_to(self.scene, goal.until) == 0
-        if not (arrived or reason or goal.answer.cancelled()):
-            return
-        if not reason:
-            self.running = goal.was_running
-        self.goal = None
-        if not goal.answer.set_running_or_notify_cancel():
-            return
-        if reason:
-            goal.answer.set_exception(DivergenceError(reason))
-        else:
-            goal.answer.set_result(self.scene.time)
-
-    @property
-    def stopped_by(self) -> str:
-        """Why the run can go no further, or ""; known before its last moments have been shown again."""
-        return self.halted if self.replay is None else self.replay.reason
-
     def tell(self, read: Callable[[], object], answer: Future[object]) -> None:
         """Answer a program that asks."""
         if not answer.set_running_or_notify_cancel():
@@ -304,51 +146,6 @@ class SimLoop:
             answer.set_result(read())
         except Exception as error:
             answer.set_exception(error)
-
-    def hurry(self, until: float) -> None:
-        """Take steps up to a time [s] while the frame's budget lasts, as many at once as a frame of a viewer has.
-
-        Some scenes record what they draw, so there is a snapshot now and then.
-        """
-        most = max(1, int(FRAME_INTERVAL / self.scene.step * (1 + 1e-9)))
-        start = self.effort()
-        while self.running and self.replay is None and self.effort() - start < SOLVE_SHARE * FRAME_INTERVAL:
-            left = steps_to(self.scene, until)
-            if left == 0:
-                return
-            self.advance(min(most, left))
-            if self.scene.time - self.published >= HURRY_INTERVAL:
-                self.publish()
-
-    def advance_within_budget(self, n: int) -> None:
-        """Take up to n steps in growing parts while the frame's budget lasts.
-
-        Another method or more points may make a step a thousand times as expensive as the last one was.
-        """
-        part, spent = 1, 0.0
-        while n > 0 and part > 0 and self.running and self.replay is None and not self.request[STOP]:
-            part = min(part, n)
-            self.pacer.cost = 0.0
-            spent += self.advance(part)
-            n -= part
-            part = self.pacer.next_part(part, spent)
-        self.cost_unknown = False
-        if n > 0 and self.running:
-            self.capped, self.pacer.debt = True, 0.0
-            self.pacer.dropped += n if self.seat is None else 0
-
-    def advance(self, n: int) -> float:
-        """Take n steps; returns the processor time they took [s]."""
-        start = self.effort()
-        self.solving = True
-        try:
-            self.guarded(lambda: self.scene.advance(n))
-        finally:
-            self.solving = False
-        seconds = self.effort() - start
-        self.pacer.learn(n, seconds)
-        self.counts["steps"] += n
-        return seconds
 
     def turn_is_due(self) -> bool:
         """True if input has been pending for longer than PATIENCE."""
@@ -412,44 +209,6 @@ class SimLoop:
             self.latest = last
         self.fresh.set()
 
-    def guarded(self, action: Callable[[], None], *, again: bool = False, else_anew: bool = False) -> None:
-        """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
-
-        again: to be done once more where it is ended early. else_anew: where it is ended early the scene begins anew.
-        """
-        self.may_end, self.may_begin = self.solving, again or else_anew
-        try:
-            action()
-        except InterruptionError:
-            self.counts["solves ended early"] += 1
-            if again or else_anew or self.request[STOP] == ABANDON:
-                self.unfinished = action if again else self.scene.reset
-        except DivergenceError as error:
-            if error.moments and self.running:
-                self.replay = Replay(error.moments, str(error))
-            else:
-                self.halt(str(error))
-        except Exception as error:
-            traceback.print_exc()
-            self.halt(f"The scene stopped with {type(error).__name__}: {error}")
-        finally:
-            self.may_end = self.may_begin = False
-
-    def play_replay(self, replay: Replay, wall: float) -> bool:
-        """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""
-        self.capped = False
-        changed = replay.play(wall)
-        if replay.ended:
-            self.halt(replay.reason)
-        return changed or replay.ended
-
-    def halt(self, reason: str) -> None:
-        """Pause, with all on the same clock, and keep the reason for the panel."""
-        if self.seat is not None:
-            self.seat.tell_others(Pause())
-        self.running = False
-        self.halted = reason
-
     def handle_waiting(self) -> bool:
         """Handle the waiting commands once they are merged, after a reset that was cancelled, unless
         another one waits; True where there was one."""
@@ -502,148 +261,6 @@ class SimLoop:
                 self.running = not self.stopped_by
             case _:
                 self.guarded(lambda: self.scene.handle(command))
-
-    def step_by_hand(self, count: int) -> None:
-        """Take up to `count` single steps, at least one, while the frame's budget lasts; the rest is dropped."""
-        if self.replay is not None and not self.replay.ended:
-            self.replay.step()
-            if self.replay.ended:
-                self.halt(self.replay.reason)
-            return
-        self.replay = None
-        spent = 0.0
-        for done in range(count):
-            spent += self.advance(1)
-            if self.halted or spent > SOLVE_SHARE * FRAME_INTERVAL:
-                self.pacer.dropped += count - done - 1
-                return
-
-    def give_up(self, reason: str) -> None:
-        """Tell the program that waits, if any, why the time that it waits for does not come."""
-        goal, self.goal = self.goal, None
-        if goal is not None and goal.answer.set_running_or_notify_cancel():
-            goal.answer.set_exception(RuntimeError(reason))
-
-    def reset(self) -> None:
-        """The scene from its start; a run that had halted goes on."""
-        self.give_up("the lab was begun again")
-        self.running, self.halted = self.running or bool(self.halted), ""
-        self.pacer.debt = 0.0
-        self.replay = None
-        if self.seat is not None:
-            self.seat.begin()
-        self.begin(self.scene.reset)
-
-    def begin(self, reset: Callable[[], None]) -> None:
-        """Begin the scene again; if that is cancelled, the next tick does it."""
-        self.unfinished = None
-        self.guarded(reset, again=True)
-
-    def resume(self, state: KeptState) -> None:
-        """The scene from a state that was kept."""
-        self.halted, self.replay, self.unfinished, self.pacer.debt = "", None, None, 0.0
-        self.history.clear()
-        self.guarded(lambda: self.scene.resume(state.value))
-        if self.seat is not None:
-            self.seat.go_on_from(self.scene.time)
-
-    def keep_state(self) -> KeptState | None:
-        """The state of a running scene, a few times a second; seldom where copying it takes long."""
-        if not self.running or self.solving or self.replay is not None:
-            return None
-        if self.wall < self.keep_at or not self.audience():
-            return None
-        start = self.effort()
-        value = self.scene.keep()
-        state = KeptState(value, arrays_in(value))
-        self.keep_at = self.wall + max(KEEP_INTERVAL, (self.effort() - start) / KEEP_SHARE)
-        return state
-
-    def publish(self) -> None:
-        """Publish the present state for the viewer."""
-        self.latest = self.snapshot()
-        self.published = self.scene.time
-        self.fresh.set()
-
-    def snapshot(self) -> AnySnapshot:
-        """Frame to show now; the last good one if the scene has none or controls cancel it."""
-        self.counts["snapshots"] += 1
-        serial, params = self.counts["snapshots"], self.scene.params
-        last: AnySnapshot | None = getattr(self, "latest", None)
-        self.may_begin = last is not None
-        self.may_end = self.may_begin and self.clock() - self.whole_at < MAX_BLIND_TIME
-        try:
-            if last is not None and self.unfinished is not None:
-                return self.without_frame(last)  # of a scene that is not made
-            found = self.collect(serial)
-            self.is_shown, self.whole_at = self.scene.params is params, self.clock()
-            return found._replace(serial=self.counts["snapshots"])  # controls may have been answered with others
-        except InterruptionError:
-            assert last is not None
-            self.counts["pictures ended early"] += 1
-            self.is_shown = False
-            return self.without_frame(last)
-        except Exception as error:
-            if last is None:
-                raise  # nothing to show instead: the scene cannot be opened
-            if not isinstance(error, DivergenceError):
-                traceback.print_exc()
-                error = DivergenceError(f"The scene stopped with {type(error).__name__}: {error}")
-            self.halt(str(error))
-            return self.without_frame(last)
-        finally:
-            self.may_end = self.may_begin = False
-
-    def without_frame(self, last: AnySnapshot) -> AnySnapshot:
-        """The last snapshot with parameters and clock as they are now."""
-        serial = self.counts["snapshots"]
-        return last._replace(serial=serial, status=self.status(), params=self.scene.params, state=None)
-
-    def collect(self, serial: int) -> AnySnapshot:
-        """The scene's frame, readings, parameters and curves; hands its plot rows over.
-
-        While the last moments before a divergence are shown again, the frame is of one of them.
-        Raises DivergenceError where the frame holds a number that is not finite.
-        """
-        scene = self.scene
-        frame = scene.frame() if self.replay is None else self.replay.moment.frame
-        where = where_not_finite(frame)
-        if where:
-            raise DivergenceError(f"What is to be drawn is not finite ({where}). Reset, or take a smaller step.")
-        readings, curves = scene.readings(), scene.curves()
-        rows = scene.take_plot_rows()
-        self.plot_rows.extend(rows)
-        for row in rows:
-            if row[0] != row[0]:  # a NaN time: the run starts over
-                self.kept_rows.clear()
-                continue
-            while self.kept_rows and self.kept_rows[-1][0] >= row[0]:  # it has gone on from an earlier moment
-                self.kept_rows.pop()
-            self.kept_rows.append(row)
-        return Snapshot(serial, frame, self.status(), readings, scene.params, curves, self.keep_state())
-
-    def status(self) -> Status:
-        """The clock and the rates."""
-        moment = None if self.replay is None else self.replay.moment
-        simulated = self.scene.time if moment is None else moment.time
-        self.history.append((self.wall, simulated))
-        while len(self.history) > 2 and self.history[0][0] < self.wall - RATE_WINDOW:
-            self.history.popleft()
-        elapsed = self.wall - self.history[0][0]
-        capped = self.capped and self.running
-        return Status(
-            running=self.running,
-            time=simulated,
-            steps=self.counts["steps"],
-            speed=self.scene.params.speed,
-            actual_speed=max(0.0, (simulated - self.history[0][1]) / elapsed) if elapsed > 0 and self.running else 0.0,
-            capped=capped,
-            frame_rate=(len(self.history) - 1) / elapsed if elapsed > 0 else 0.0,
-            halted=self.halted,
-            faster=self.scene.faster if capped else "",
-            starts=self.counts["starts"],
-            replayed=None if moment is None else (moment.low, moment.high),
-        )
 
     def run(self, stop: threading.Event) -> None:
         """Tick until `stop` is set, at the frame rate while there is something to do."""

@@ -6,7 +6,8 @@ from typing import Any
 from app.panel.recorder import Recorder
 from app.scenes import NAMES, scene_named
 from app.scenes.moments import arrays_in
-from app.server.loop import KEEP_INTERVAL, KEEP_SHARE, SimLoop
+from app.server.loop import SimLoop
+from app.server.snapshots import KEEP_INTERVAL, KEEP_SHARE
 
 DURATION, QUICK_DURATION = 130.0, 1.0  # [s] of wall time that are recorded
 

@@ -11,7 +11,8 @@ from app.scenes.cloth.parameters import Params as ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import RopeScene
-from app.server.loop import MAX_BLIND_TIME, PATIENCE, SimLoop
+from app.server.loop import PATIENCE, SimLoop
+from app.server.snapshots import MAX_BLIND_TIME
 from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, raise_if_stopped, use_request
 from sim.ocean.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA

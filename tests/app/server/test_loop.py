@@ -23,7 +23,8 @@ from app.messages import (
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL
-from app.server.loop import IDLE_INTERVAL, SOLVE_SHARE, FixedStep, SimLoop
+from app.server.loop import IDLE_INTERVAL, SimLoop
+from app.server.pacer import SOLVE_SHARE, FixedStep
 from sim.parameters import parameter
 
 

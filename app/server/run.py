@@ -1,0 +1,211 @@
+"""The run of a scene: its steps, within a frame's budget, its divergence, and its beginning again."""
+
+import traceback
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import NamedTuple
+
+from app.messages import BaseParams, DivergenceError, KeptState
+from app.scenes.contract import FRAME_INTERVAL, AnyScene
+from app.scenes.stepping import steps_to
+from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
+from app.server.replay import Replay
+from app.server.shared_clock import Seat
+from app.server.snapshots import Clock, Snapshots
+from sim.interruption import ABANDON, STOP, InterruptionError
+from sim.parameters import effect_of_change
+
+HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
+
+
+class Goal(NamedTuple):
+    """Goal of an `Advance`."""
+
+    until: float  # [s] of simulated time
+    answer: Future[float]
+    was_running: bool
+
+
+class Run(Snapshots):
+    """Takes a scene's steps, and begins it again."""
+
+    def __init__(
+        self, scene: AnyScene, audience: Callable[[], int], clock: Clock, effort: Clock, *, paused: bool
+    ) -> None:
+        """The arguments are those of `SimLoop`."""
+        self.pacer = FixedStep()
+        self.cost_unknown = True  # the cost of a step with the parameters as they are is not known
+        self.goal: Goal | None = None  # that a program waits for
+        super().__init__(scene, audience, clock, effort, paused=paused)
+
+    def follow(self, seat: Seat, wall: float) -> bool:
+        """Take the steps that lead to the time of the clock, as many as fit the frame; True where there were any.
+
+        The loop of the first seat lets the clock's time pass.
+        """
+        if seat.is_first and self.running:
+            seat.clock.advance(min(wall, MAX_CATCH_UP), self.scene.params.speed)
+        due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
+        n = self.pacer.most(due, self.frame_interval)
+        self.capped = n < due or (seat.is_first and seat.clock.late)
+        if n:
+            (self.advance_within_budget if self.cost_unknown and self.running else self.advance)(n)
+        return n > 0
+
+    def take(self, params: BaseParams) -> bool:
+        """Take parameters according to the effect of their change; False if they are those of the scene."""
+        effect = effect_of_change(self.scene.params, params)
+        if effect is None:
+            return False
+        if effect == "look":
+            self.scene.params = params
+            return True
+        self.cost_unknown = True
+        if self.replay is not None:
+            self.halt(self.replay.reason)
+            self.replay = None
+        if effect == "forces" and self.unfinished is None:
+            self.guarded(lambda: self.scene.change_forces(params), else_anew=True)
+            self.scene.params = params  # also where the scene failed: not to be tried again in every tick
+        else:
+            self.scene.params = params
+            if self.seat is not None:
+                self.seat.begin_others()
+            self.reset()
+        return True
+
+    def settle(self, goal: Goal) -> None:
+        """Answer the program that waits, where the run has come to the time or can come no further."""
+        reason = self.stopped_by
+        arrived = steps_to(self.scene, goal.until) == 0
+        if not (arrived or reason or goal.answer.cancelled()):
+            return
+        if not reason:
+            self.running = goal.was_running
+        self.goal = None
+        if not goal.answer.set_running_or_notify_cancel():
+            return
+        if reason:
+            goal.answer.set_exception(DivergenceError(reason))
+        else:
+            goal.answer.set_result(self.scene.time)
+
+    def hurry(self, until: float) -> None:
+        """Take steps up to a time [s] while the frame's budget lasts, as many at once as a frame of a viewer has.
+
+        Some scenes record what they draw, so there is a snapshot now and then.
+        """
+        most = max(1, int(FRAME_INTERVAL / self.scene.step * (1 + 1e-9)))
+        start = self.effort()
+        while self.running and self.replay is None and self.effort() - start < SOLVE_SHARE * FRAME_INTERVAL:
+            left = steps_to(self.scene, until)
+            if left == 0:
+                return
+            self.advance(min(most, left))
+            if self.scene.time - self.published >= HURRY_INTERVAL:
+                self.publish()
+
+    def advance_within_budget(self, n: int) -> None:
+        """Take up to n steps in growing parts while the frame's budget lasts.
+
+        Another method or more points may make a step a thousand times as expensive as the last one was.
+        """
+        part, spent = 1, 0.0
+        while n > 0 and part > 0 and self.running and self.replay is None and not self.request[STOP]:
+            part = min(part, n)
+            self.pacer.cost = 0.0
+            spent += self.advance(part)
+            n -= part
+            part = self.pacer.next_part(part, spent)
+        self.cost_unknown = False
+        if n > 0 and self.running:
+            self.capped, self.pacer.debt = True, 0.0
+            self.pacer.dropped += n if self.seat is None else 0
+
+    def advance(self, n: int) -> float:
+        """Take n steps; returns the processor time they took [s]."""
+        start = self.effort()
+        self.solving = True
+        try:
+            self.guarded(lambda: self.scene.advance(n))
+        finally:
+            self.solving = False
+        seconds = self.effort() - start
+        self.pacer.learn(n, seconds)
+        self.counts["steps"] += n
+        return seconds
+
+    def guarded(self, action: Callable[[], None], *, again: bool = False, else_anew: bool = False) -> None:
+        """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
+
+        again: to be done once more where it is ended early. else_anew: where it is ended early the scene begins anew.
+        """
+        self.may_end, self.may_begin = self.solving, again or else_anew
+        try:
+            action()
+        except InterruptionError:
+            self.counts["solves ended early"] += 1
+            if again or else_anew or self.request[STOP] == ABANDON:
+                self.unfinished = action if again else self.scene.reset
+        except DivergenceError as error:
+            if error.moments and self.running:
+                self.replay = Replay(error.moments, str(error))
+            else:
+                self.halt(str(error))
+        except Exception as error:
+            traceback.print_exc()
+            self.halt(f"The scene stopped with {type(error).__name__}: {error}")
+        finally:
+            self.may_end = self.may_begin = False
+
+    def play_replay(self, replay: Replay, wall: float) -> bool:
+        """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""
+        self.capped = False
+        changed = replay.play(wall)
+        if replay.ended:
+            self.halt(replay.reason)
+        return changed or replay.ended
+
+    def step_by_hand(self, count: int) -> None:
+        """Take up to `count` single steps, at least one, while the frame's budget lasts; the rest is dropped."""
+        if self.replay is not None and not self.replay.ended:
+            self.replay.step()
+            if self.replay.ended:
+                self.halt(self.replay.reason)
+            return
+        self.replay = None
+        spent = 0.0
+        for done in range(count):
+            spent += self.advance(1)
+            if self.halted or spent > SOLVE_SHARE * FRAME_INTERVAL:
+                self.pacer.dropped += count - done - 1
+                return
+
+    def give_up(self, reason: str) -> None:
+        """Tell the program that waits, if any, why the time that it waits for does not come."""
+        goal, self.goal = self.goal, None
+        if goal is not None and goal.answer.set_running_or_notify_cancel():
+            goal.answer.set_exception(RuntimeError(reason))
+
+    def reset(self) -> None:
+        """The scene from its start; a run that had halted goes on."""
+        self.give_up("the lab was begun again")
+        self.running, self.halted = self.running or bool(self.halted), ""
+        self.pacer.debt = 0.0
+        self.replay = None
+        if self.seat is not None:
+            self.seat.begin()
+        self.begin(self.scene.reset)
+
+    def begin(self, reset: Callable[[], None]) -> None:
+        """Begin the scene again; if that is cancelled, the next tick does it."""
+        self.unfinished = None
+        self.guarded(reset, again=True)
+
+    def resume(self, state: KeptState) -> None:
+        """The scene from a state that was kept."""
+        self.halted, self.replay, self.unfinished, self.pacer.debt = "", None, None, 0.0
+        self.history.clear()
+        self.guarded(lambda: self.scene.resume(state.value))
+        if self.seat is not None:
+            self.seat.go_on_from(self.scene.time)

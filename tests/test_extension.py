@@ -1,32 +1,46 @@
-"""What adding one thing costs: each test adds it to a copy of the sources, in one file or one folder.
+"""What adding one thing costs: a copy of the sources has each of them, in one file or one folder.
 
 The examples are those of docs/contributing.md, in its order.
 """
 
 import json
+import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.examples import add, commands, copy_of_sources, run, run_command, section
+from app.__main__ import main
+from tests.examples import PAGE, add, commands, copy_of_sources, run, run_command, section
 
-OPENED = """
+SHOWN = """
 import time
 from app.scenes import NAMES
+from app.scenes.radial_sea.measures import measures
+from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.report import readout_of
 from app.server.viewer import Viewer
 
 assert "pendulum" in NAMES
 viewer = Viewer("127.0.0.1", 0)
 viewer.open("pendulum")
-end = time.monotonic() + 30.0
+end = time.monotonic() + 90.0
 while viewer.served.drawn == 0 and time.monotonic() < end:
     time.sleep(0.05)
 assert viewer.served.drawn
 assert viewer.loop.latest.frame.bob[2] < 0.0
 assert set(viewer.panel.controls) == {"length", "gravity", "angle", "speed", "grid", "plot_swing"}
+assert not viewer.loop.halted
+
+viewer.open("radial_sea", Params(bodies=5))
+while not viewer.view.bodies and time.monotonic() < end:
+    time.sleep(0.05)
+assert "cone" in viewer.view.bodies
+assert "Cone" in readout_of(viewer.loop.latest)
+assert measures(viewer.scene)["cone_draft_at_rest"].value > 0.0
 assert not viewer.loop.halted
 viewer.shut()
 """
@@ -49,24 +63,6 @@ for name in ("square_sea", "radial_sea"):
     scene = viewer.scene
     low = scene.sea.conditions.sea_height if name == "square_sea" else scene.readings().clean_height
     assert abs(low - 4.0) < 0.05, low
-viewer.shut()
-"""
-FLOATED = """
-import time
-from app.scenes.radial_sea.measures import measures
-from app.scenes.radial_sea.parameters import Params
-from app.scenes.radial_sea.report import readout_of
-from app.server.viewer import Viewer
-
-viewer = Viewer("127.0.0.1", 0)
-viewer.open("radial_sea", Params(bodies=5))
-end = time.monotonic() + 60.0
-while not viewer.view.bodies and time.monotonic() < end:
-    time.sleep(0.05)
-assert "cone" in viewer.view.bodies
-assert "Cone" in readout_of(viewer.loop.latest)
-assert measures(viewer.scene)["cone_draft_at_rest"].value > 0.0
-assert not viewer.loop.halted
 viewer.shut()
 """
 # What tests of all scenes ask of a new one, those that only read it.
@@ -93,34 +89,39 @@ def parameters_in(path) -> dict:
         return json.loads(str(file["about"]))["parameters"]
 
 
-@pytest.mark.parametrize(
-    ("heading", "written", "parameter", "value"),
-    [
-        ("Add an integrator", "rk2.npz", "integrator", "rk2"),
-        ("Add a law of a link", "rubber.npz", "law", "rubber"),
-    ],
-)
-def test_an_integrator_and_a_law_of_a_link_are_one_file_each(tmp_path, heading, written, parameter, value):
-    copy = copy_of_sources(tmp_path)
-    blocks = section(heading)
-    assert len(add(blocks, copy)) == 1
-    test, headless = commands(blocks)
-    said = run_command(copy, test)
+@pytest.fixture(scope="module")
+def extended(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, set[str]]]:
+    """A copy of the sources with every example added, and the files that each of them touches."""
+    copy = copy_of_sources(tmp_path_factory.mktemp("extended"))
+    headings = re.findall(r"^## (Add .+)$", PAGE.read_text("utf-8"), re.MULTILINE)
+    return copy, {heading: add(section(heading), copy) for heading in headings}
+
+
+def run_tests(copy: Path, line: str) -> None:
+    said = run_command(copy, line)
     assert " passed" in said
     assert " failed" not in said
+
+
+@pytest.mark.parametrize(
+    ("heading", "written", "parameter", "value"),
+    [("Add an integrator", "rk2.npz", "integrator", "rk2"), ("Add a law of a link", "rubber.npz", "law", "rubber")],
+)
+def test_an_integrator_and_a_law_of_a_link_are_one_file_each(extended, heading, written, parameter, value):
+    copy, touched = extended
+    assert len(touched[heading]) == 1
+    test, headless = commands(section(heading))
+    run_tests(copy, test)
     run_command(copy, headless)
     assert parameters_in(copy / written)[parameter] == value
 
 
 @pytest.mark.stress  # five processes; the other examples are tried in fewer
-def test_a_spectrum_with_new_parameters_is_one_file(tmp_path):
-    copy = copy_of_sources(tmp_path)
-    blocks = section("Add a spectrum")
-    assert len(add(blocks, copy)) == 1
-    test, *headless = commands(blocks)
-    said = run_command(copy, test)
-    assert " passed" in said
-    assert " failed" not in said
+def test_a_spectrum_with_new_parameters_is_one_file(extended):
+    copy, touched = extended
+    assert len(touched["Add a spectrum"]) == 1
+    test, *headless = commands(section("Add a spectrum"))
+    run_tests(copy, test)
     for line in headless:
         run_command(copy, line)
     for name in ("square", "radial"):
@@ -128,55 +129,46 @@ def test_a_spectrum_with_new_parameters_is_one_file(tmp_path):
     run(copy, "-c", MEASURED)
 
 
-def test_a_parameter_is_one_line_in_one_file(tmp_path):
-    copy = copy_of_sources(tmp_path)
-    blocks = section("Add a parameter")
-    assert len(add(blocks, copy)) == 1
-    (headless,) = commands(blocks)
+def test_a_parameter_is_one_line_in_one_file(extended):
+    copy, touched = extended
+    assert len(touched["Add a parameter"]) == 1
+    (headless,) = commands(section("Add a parameter"))
     run_command(copy, headless)
     assert parameters_in(copy / "buoyant.npz")["buoyancy"] == 0.9
     with np.load(copy / "buoyant.npz") as file:
         fall = file["x"][-1, -1, 2] - file["x"][0, -1, 2]
-    run(copy, "-m", "app", "run", "rope", "--seconds", "0.3", "--out", "heavy.npz")
+    assert main(["run", "rope", "--seconds", "0.3", "--out", str(copy / "heavy.npz")]) == 0
     with np.load(copy / "heavy.npz") as file:
         assert file["x"][-1, -1, 2] - file["x"][0, -1, 2] < fall < 0.0
 
 
-def test_a_body_shape_is_one_file(tmp_path):
-    copy = copy_of_sources(tmp_path)
-    blocks = section("Add a body shape")
-    assert len(add(blocks, copy)) == 1
-    (headless,) = commands(blocks)
+def test_a_body_shape_is_one_file(extended):
+    copy, touched = extended
+    assert len(touched["Add a body shape"]) == 1
+    (headless,) = commands(section("Add a body shape"))
     run_command(copy, headless)
     with np.load(copy / "cone.npz") as file:
         draft = file["draft"][-1]
     # What is above the water is a smaller cone: V (1 - d/H)^3, of the height 0.7 m of size 1 at size 1.5.
     archimedes = 1.5 * 0.7 * (1.0 - (1.0 - 450.0 / 1025.0) ** (1 / 3))
     assert draft[4] == pytest.approx(archimedes, abs=1e-4)
-    run(copy, "-c", FLOATED)
 
 
-def test_a_task_is_two_files_and_its_solutions(tmp_path):
-    copy = copy_of_sources(tmp_path)
-    blocks = section("Add a task")
-    assert len(add(blocks, copy)) == 5
-    new, check, test = commands(blocks)
+def test_a_task_is_two_files_and_its_solutions(extended):
+    copy, touched = extended
+    assert len(touched["Add a task"]) == 5
+    new, check, test = commands(section("Add a task"))
     run_command(copy, new)
     assert "def phase_speed(k, gravity):" in (copy / "solved" / "square_sea.py").read_text("utf-8")
-    said = run_command(copy, check)
-    assert "How fast a wave runs" in said
-    said = run_command(copy, test)
-    assert " passed" in said
-    assert " failed" not in said
+    assert "How fast a wave runs" in run_command(copy, check)
+    run_tests(copy, test)
 
 
-def test_a_scene_is_one_folder_and_passes_the_tests_of_all_scenes(tmp_path):
-    copy = copy_of_sources(tmp_path)
-    blocks = section("Add a scene")
-    scene = {path for path in add(blocks, copy) if path.endswith(".py")}
+def test_a_scene_is_one_folder_and_passes_the_tests_of_all_scenes(extended):
+    copy, touched = extended
+    scene = {path for path in touched["Add a scene"] if path.endswith(".py")}
     assert {path.rpartition("/")[0] for path in scene} == {"app/scenes/pendulum"}
-    run(copy, "-c", OPENED)
-    headless, sweep = commands(blocks)
+    headless, sweep = commands(section("Add a scene"))
     run_command(copy, headless)
     with np.load(copy / "pendulum.npz") as file:
         assert file["t"][-1] == pytest.approx(1.0)
@@ -184,25 +176,17 @@ def test_a_scene_is_one_folder_and_passes_the_tests_of_all_scenes(tmp_path):
     run_command(copy, sweep)
     with pytest.importorskip("xarray").open_dataset(copy / "moons.nc") as found:
         assert found.sizes["gravity"] == 2
-    said = run(copy, "-m", "pytest", *OF_A_NEW_SCENE, "-k", "pendulum", "-p", "no:cacheprovider")
-    assert " passed" in said
-    assert " failed" not in said
+    run_tests(copy, f"python -m pytest {' '.join(OF_A_NEW_SCENE)} -k pendulum -p no:cacheprovider")
+
+
+def test_an_added_scene_and_an_added_body_are_shown(extended):
+    run(extended[0], "-c", SHOWN)
 
 
 @pytest.mark.skipif(shutil.which("pyright") is None, reason="pyright is not installed")
-def test_the_examples_pass_the_type_checker(tmp_path):
-    copy = copy_of_sources(tmp_path)
-    headings = (
-        "Add an integrator",
-        "Add a law of a link",
-        "Add a spectrum",
-        "Add a parameter",
-        "Add a body shape",
-        "Add a task",
-        "Add a scene",
-    )
-    touched = {path for heading in headings for path in add(section(heading), copy)}
-    sources = sorted(path for path in touched if path.endswith(".py") and not path.startswith("tests/"))
+def test_the_examples_pass_the_type_checker(extended):
+    copy, touched = extended
+    sources = sorted(path for path in set().union(*touched.values()) if re.match(r"(?!tests/).*\.py$", path))
     done = subprocess.run(
         ["pyright", "--pythonpath", sys.executable, *sources], cwd=copy, capture_output=True, text=True, timeout=240
     )

@@ -9,38 +9,54 @@ import pytest
 from app.scenes import NAMES, warmup
 
 ROOT = Path(__file__).parents[1]
-# Where scipy is installed numba itself loads scipy.linalg for its BLAS; nothing of ours may need it.
-CODE = "import sys; sys.modules['scipy'] = None; {code}; print('loaded:', *sys.modules)"
-SPRINGS = "import sim.springs, sim.springs.stability, sim.springs.statics"
-RUN = "from app.__main__ import main; main(['run', 'rope', '--seconds', '0.1', '--out', {out!r}])"
+# Each part and packages that are not there once it has run, after those before it in the same process. Where scipy is
+# installed numba itself loads scipy.linalg for its BLAS; nothing of ours may need it.
+DRAWING = {"pyfftw", "matplotlib", "trimesh"}
+SEAS = {"sim.ocean", "sim.floating", "sim.particles"}
+RUN = "from app.__main__ import main; main(['run', 'rope', '--seconds', '0.1', '--out', sys.argv[1]])"
 SERVE = "from app.server.viewer import Viewer; v = Viewer('127.0.0.1', 0); v.open('rope'); v.shut()"
-
-
-@pytest.mark.parametrize(
-    ("code", "absent"),
-    [
-        (SPRINGS, {"pyfftw", "viser", "trimesh", "matplotlib", "rich", "app", "assets"}),
-        ("import sim.ocean.dispersion", {"pyfftw", "numba"}),
-        (RUN, {"viser", "trimesh", "pyfftw", "matplotlib"}),
-        (SERVE, {"pyfftw", "matplotlib", "trimesh"}),
-    ],
+PARTS = (
+    ("import sim.springs, sim.springs.stability, sim.springs.statics", {*DRAWING, "viser", "rich", "app", "assets"}),
+    ("from app.scenes import scene_named; scene_named('rope')", DRAWING | SEAS),
+    (RUN, {*DRAWING, "viser"}),
+    (SERVE, DRAWING),
 )
-def test_a_part_imports_nothing_that_it_does_not_need(code: str, absent: set[str], tmp_path: Path) -> None:
-    code = CODE.format(code=code.format(out=str(tmp_path / "a.npz")))
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    loaded = {name.split(".")[0] for name in done.stdout.rpartition("loaded:")[2].split()}
-    assert "sim" in loaded
-    assert not loaded & absent
+WAVES = (("import sim.ocean.dispersion", {"pyfftw", "numba"}),)
+
+
+def python(code: str, *arguments: str) -> list[str]:
+    """The lines that a fresh interpreter prints."""
+    command = [sys.executable, "-c", f"import sys\n{code}", *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+
+
+@pytest.mark.parametrize("parts", [PARTS, WAVES], ids=["springs", "waves"])
+def test_a_part_imports_nothing_that_it_does_not_need(parts: tuple[tuple[str, set[str]], ...], tmp_path: Path) -> None:
+    code = "".join(f"{part}\nprint('loaded:', *sys.modules)\n" for part, _ in parts)
+    said = python(f"sys.modules['scipy'] = None\n{code}", str(tmp_path / "a.npz"))
+    loaded = [set(line.split()) for line in said if line.startswith("loaded:")]
+    for (part, absent), names in zip(parts, loaded, strict=True):
+        assert "sim" in names
+        assert not names & absent, part
 
 
 def test_a_served_rope_has_no_linear_algebra_of_scipy_which_can_still_be_had() -> None:
     code = (
-        f"from app.commands.serve import load_numba; load_numba(); {SERVE}; import sys; "
+        f"from app.commands.serve import load_numba; load_numba(); {SERVE}; "
         "assert 'scipy.linalg' not in sys.modules; "
         "import scipy.linalg; print(scipy.linalg.det([[2.0, 0.0], [0.0, 3.0]]))"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert float(done.stdout) == 6.0
+    assert float(python(code)[-1]) == 6.0
+
+
+def test_a_headless_run_imports_no_viewer(tmp_path: Path) -> None:
+    """Every scene, one after the other: what one of them imported would still be there."""
+    code = (
+        f"from app.__main__ import main; status = [main(['run', name, '--seconds', '0.02', '--out', sys.argv[1]]) "
+        f"for name in {NAMES}]\nimport app.sweep.case; drawing = ('viser', 'app.render', 'app.panel', 'app.server');"
+        "print(status, sorted(n for n in sys.modules if n.startswith(drawing) or n.endswith('view')))"
+    )
+    assert python(code, str(tmp_path / "x.npz"))[-1] == f"{[0] * len(NAMES)} []"
 
 
 def test_scenes_that_are_compiled_are_not_imported_to_find_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,13 +3,9 @@
 import ast
 import functools
 import graphlib
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-
-from app.scenes import NAMES
 
 ROOT = Path(__file__).parent.parent
 SOURCES = sorted(path for top in ("sim", "app", "assets", "benchmarks", "tests") for path in (ROOT / top).rglob("*.py"))
@@ -138,20 +134,6 @@ def test_only_the_viewing_folders_and_the_drawings_import_viser():
     assert not offences(paths, "viser")
 
 
-def test_a_headless_run_imports_no_viewer(tmp_path: Path):
-    """Every scene, one after the other: what one of them imported would still be there."""
-    code = (
-        "import sys; from app.__main__ import main; from app.scenes import scene_named;"
-        f"out = {str(tmp_path / 'x.npz')!r};"
-        f"status = [main(['run', name, '--seconds', '0.02', '--out', out]) for name in {NAMES}];"
-        "import app.sweep.case;"
-        "drawing = ('viser', 'app.render', 'app.panel', 'app.server');"
-        "print(status, sorted(n for n in sys.modules if n.startswith(drawing) or n.endswith('view')))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == f"{[0] * len(NAMES)} []"
-
-
 def test_sim_knows_neither_viewer_nor_app_nor_threads():
     others = (
         "viser", "app", "assets", "threading", "multiprocessing", "concurrent", "asyncio", "tests", "scipy",
@@ -207,13 +189,3 @@ def test_nothing_is_left_to_do():
     words = ("TODO", "FIXME", "XXX", "NotImplementedError")
     left = [(named(path), word) for path in SOURCES for word in words if word in path.read_text()]
     assert [entry for entry in left if entry[0] != named(Path(__file__))] == []
-
-
-def test_the_rope_imports_neither_seas_nor_heavy_packages():
-    code = "import sys; from app.scenes import scene_named; scene_named('rope'); print(*sys.modules)"
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True, timeout=120
-    )
-    names = set(done.stdout.split())
-    assert "sim.springs" in names
-    assert not names & {"sim.ocean", "sim.floating", "sim.particles", "matplotlib", "pyfftw", "trimesh"}

@@ -20,8 +20,7 @@ def test_it(name):
 """
 
 
-@pytest.mark.parametrize("processes", ["0", "2"])
-@pytest.mark.parametrize("reruns", [MAX_RERUNS, MAX_RERUNS + 1])
+@pytest.mark.parametrize(("processes", "reruns"), [("0", MAX_RERUNS), ("2", MAX_RERUNS + 1)])
 def test_more_than_three_reruns_fail_the_suite(tmp_path, processes, reruns):
     (tmp_path / "test_second_try.py").write_text(SECOND_TRY.format(number=reruns))
     command = [sys.executable, "-m", "pytest", "-p", "tests.reruns", "-n", processes, "--rootdir", str(tmp_path), "."]

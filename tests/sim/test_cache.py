@@ -8,7 +8,7 @@ import pytest
 
 from sim import cache
 from sim.cache import LEVELS, host_levels, level_environment
-from tests.sim.test_jit import noted, python
+from tests.fresh import noted, python
 
 # Prints how many of two kernels, of which one calls the other, were loaded and how many compiled, and what they give.
 TWICE = """

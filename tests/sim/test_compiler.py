@@ -8,7 +8,7 @@ import pytest
 from sim import jit
 from sim.compiler import with_room
 from sim.jit import chosen, kernel
-from tests.sim.test_jit import python
+from tests.fresh import python
 
 with pytest.MonkeyPatch.context() as patch:
     patch.setattr(jit, "CACHE", None)

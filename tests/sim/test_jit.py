@@ -1,13 +1,7 @@
 import ast
-import atexit
 import contextlib
-import functools
 import io
 import os
-import shutil
-import subprocess
-import sys
-import tempfile
 import tokenize
 from collections import Counter
 from pathlib import Path
@@ -19,36 +13,10 @@ from app.__main__ import main
 from sim import jit
 from sim.cache import processor
 from sim.jit import kernel, reachable_hash, sources_hash
+from tests.fresh import python
 
 ROOT = Path(__file__).parents[2]
 WITH_DOCSTRINGS = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
-
-
-@functools.cache
-def noted() -> str:
-    """A folder with the note alone that numba works as expected, which takes seconds to try."""
-    folder = Path(tempfile.mkdtemp(prefix="springtide-noted-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    place = folder / "kernels" / processor()
-    place.mkdir(parents=True)
-    for note in jit.CACHE.glob("compiler-*") if jit.CACHE else ():
-        (place / note.name).touch()
-    return str(folder)
-
-
-def python(code: str, **environment: str) -> str:
-    """What a fresh interpreter prints."""
-    done = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=ROOT,
-        env={**os.environ, "SPRINGTIDE_KERNELS": noted(), **environment},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout.strip()
 
 
 @kernel

@@ -13,7 +13,7 @@ import pytest
 
 from app.scenes import compiling
 from app.scenes.compiling import Compiling, Job
-from tests.sim.test_jit import noted
+from tests.fresh import noted
 
 ROOT = Path(__file__).parents[3]
 

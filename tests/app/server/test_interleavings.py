@@ -1,6 +1,6 @@
 """Two threads that meet at the worst moment, forced: each is held inside a call until the other has done its part.
 
-The stress suite does the same 1,000 times.
+`pytest -m stress` does the same 1,000 times.
 """
 
 import itertools
@@ -21,7 +21,9 @@ from app.server.beside import Comparison
 from app.server.served_scene import ServedScene
 from app.server.viewer import Viewer
 
-TIMES = 20
+TIMES = pytest.mark.parametrize(
+    "times", [10, pytest.param(1000, marks=[pytest.mark.stress, pytest.mark.timeout(1260)])]
+)
 TIMEOUT = 30.0  # [s] for a thread to come to a point
 
 
@@ -70,10 +72,14 @@ def fail(_: int) -> None:
     raise ValueError("a solve that ends badly")
 
 
-def change_scene_during(what: str, lab: Viewer, times: int) -> None:
+@TIMES
+@pytest.mark.parametrize("what", ["picture", "solve"])
+def test_a_scene_that_is_opened_during_a_slow_one_has_nothing_of_the_old_scene(
+    what: str, watched: Viewer, times: int
+) -> None:
     """Open a scene while a thread of another is in a picture, or in a solve that fails in the end."""
     for number in range(times):
-        old = lab.served
+        old = watched.served
         solving, drawing = old.threads
         thread, held = (drawing, Held(old.view.show)) if what == "picture" else (solving, Held(fail))
         if what == "picture":
@@ -83,15 +89,15 @@ def change_scene_during(what: str, lab: Viewer, times: int) -> None:
         assert held.begun.wait(TIMEOUT)
         outlast(thread, held)
         params = Params(points=5 + number % 3)
-        lab.open("rope", params)
-        new = lab.served
+        watched.open("rope", params)
+        new = watched.served
         updates = noted_updates(new)
         held.free.set()
         threading.Thread.join(thread, TIMEOUT)
         assert not thread.is_alive()
         for _ in range(2):  # pictures
             assert updates.get(timeout=TIMEOUT) == (new.threads[1], params)
-        status = asked(lab, new.loop.status)
+        status = asked(watched, new.loop.status)
         assert not status.halted
         assert status.running
 
@@ -142,66 +148,73 @@ def compiler_of(lab: Viewer, patch: pytest.MonkeyPatch) -> Settled:
     return settled
 
 
-def undo_during_a_compile(lab: Viewer, patch: pytest.MonkeyPatch, times: int) -> None:
+@TIMES
+def test_a_preset_that_is_undone_while_it_is_compiled_never_begins(
+    watched: Viewer, monkeypatch: pytest.MonkeyPatch, times: int
+) -> None:
     """Undo a preset that waits for the compiler: it is never begun, and what follows is taken."""
-    compiler_of(lab, patch)
+    compiler_of(watched, monkeypatch)
     begun: list[Any] = []
-    scene, panel, (undone, ready, *_) = lab.scene, lab.panel, lab.panel.kind.presets
+    scene, panel, (undone, ready, *_) = watched.scene, watched.panel, watched.panel.kind.presets
     reset = scene.reset
-    patch.setattr(scene, "reset", lambda: (begun.append(scene.params), reset()))
+    monkeypatch.setattr(scene, "reset", lambda: (begun.append(scene.params), reset()))
     for number in range(times):
-        before, loaded = panel.params, lab.loop.loaded
+        before, loaded = panel.params, watched.loop.loaded
         panel.load_params(Params(integrator="rk4", gravity=9.0), undone)
-        assert asked(lab, lambda: scene.params) == before
+        assert asked(watched, lambda: scene.params) == before
         panel.undo()
-        assert asked(lab, lambda: scene.params) == before
+        assert asked(watched, lambda: scene.params) == before
         panel.set("gravity", 1.0 + number % 7)
-        assert asked(lab, lambda: scene.params.gravity) == 1.0 + number % 7  # type: ignore[attr-defined]
-        assert lab.loop.loaded == loaded
-        assert not lab.loop.halted
+        assert asked(watched, lambda: scene.params.gravity) == 1.0 + number % 7  # type: ignore[attr-defined]
+        assert watched.loop.loaded == loaded
+        assert not watched.loop.halted
         if number % 5 == 4:
             panel.load_params(Params(gravity=2.0), ready)
-            assert asked(lab, lambda: lab.loop.loaded) == panel.state[1]
+            assert asked(watched, lambda: watched.loop.loaded) == panel.state[1]
     assert all(params.integrator != "rk4" for params in begun)
     assert len(begun) == times // 5
 
 
-def settle_a_preset_late(lab: Viewer, patch: pytest.MonkeyPatch, times: int) -> None:
+@TIMES
+def test_a_preset_that_settles_late_is_not_lost(watched: Viewer, monkeypatch: pytest.MonkeyPatch, times: int) -> None:
     """Have the compiler end just after somebody has looked: the preset is begun all the same."""
-    settled = compiler_of(lab, patch)
-    settled.pause = lambda: asked(lab, lambda: None)
-    panel, preset = lab.panel, next(iter(lab.panel.kind.presets))
+    settled = compiler_of(watched, monkeypatch)
+    settled.pause = lambda: asked(watched, lambda: None)
+    panel, preset = watched.panel, next(iter(watched.panel.kind.presets))
     for number in range(times):
         settled.clear()
         settled.looks_left = 1 + number % 4
         panel.load_params(Params(integrator="rk4", gravity=1.0 + number), preset)
         for _ in range(8):  # ticks
-            asked(lab, lambda: None)
-        assert lab.loop.loaded == panel.state[1]
-        assert lab.scene.params is panel.params
-        assert not lab.loop.halted
+            asked(watched, lambda: None)
+        assert watched.loop.loaded == panel.state[1]
+        assert watched.scene.params is panel.params
+        assert not watched.loop.halted
 
 
-def end_a_comparison_in_a_tick(lab: Viewer, pane: Viewer, patch: pytest.MonkeyPatch, times: int) -> None:
+@TIMES
+def test_a_comparison_that_ends_in_a_tick_does_not_halt_the_lab(
+    watched: Viewer, pane: Viewer, monkeypatch: pytest.MonkeyPatch, times: int
+) -> None:
     """End a comparison while the first lab's tick is at the clock that both share."""
-    setup, loop = Setup("rope", Params(stiffness=2000.0), {}, ""), lab.loop
+    setup, loop = Setup("rope", Params(stiffness=2000.0), {}, ""), watched.loop
     for number in range(times):
-        comparison = Comparison(lab, lambda _: pane)
+        comparison = Comparison(watched, lambda _: pane)
         comparison.begin([setup], resume=False)
-        assert asked(lab, lambda: loop.seat) is comparison.seats[lab]
-        with patch.context() as point:
-            held = held_at_the_clock(lab, comparison, point, number % 3)
+        assert asked(watched, lambda: loop.seat) is comparison.seats[watched]
+        with monkeypatch.context() as point:
+            held = held_at_the_clock(watched, comparison, point, number % 3)
             assert held.begun.wait(TIMEOUT)
             comparison.end()
             held.free.set()
-            status = asked(lab, loop.status)
+            status = asked(watched, loop.status)
         assert not status.halted
         assert loop.seat is None
-        lab.commands.put(Pause())
-        time = asked(lab, lambda: loop.scene.time)
-        lab.commands.put(StepOnce())
-        assert asked(lab, lambda: loop.scene.time) == pytest.approx(time + loop.scene.step)
-        lab.commands.put(Play())
+        watched.commands.put(Pause())
+        time = asked(watched, lambda: loop.scene.time)
+        watched.commands.put(StepOnce())
+        assert asked(watched, lambda: loop.scene.time) == pytest.approx(time + loop.scene.step)
+        watched.commands.put(Play())
 
 
 def held_at_the_clock(lab: Viewer, comparison: Comparison, point: pytest.MonkeyPatch, place: int) -> Held:
@@ -229,24 +242,3 @@ def pane(monkeypatch: pytest.MonkeyPatch) -> Any:
     yield viewer
     monkeypatch.undo()
     viewer.shut()
-
-
-@pytest.mark.parametrize("what", ["picture", "solve"])
-def test_a_scene_that_is_opened_during_a_slow_one_has_nothing_of_the_old_scene(what: str, watched: Viewer) -> None:
-    change_scene_during(what, watched, TIMES)
-
-
-def test_a_preset_that_is_undone_while_it_is_compiled_never_begins(
-    watched: Viewer, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    undo_during_a_compile(watched, monkeypatch, TIMES)
-
-
-def test_a_preset_that_settles_late_is_not_lost(watched: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
-    settle_a_preset_late(watched, monkeypatch, TIMES)
-
-
-def test_a_comparison_that_ends_in_a_tick_does_not_halt_the_lab(
-    watched: Viewer, pane: Viewer, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    end_a_comparison_in_a_tick(watched, pane, monkeypatch, TIMES)

@@ -23,12 +23,13 @@ FLAGS = [
 PIXEL_RATIO = 0.2  # drawn pixels per pixel of the page, in each direction
 # A software renderer takes most of the processor. Where a test reads no pixel, shaders are trivial, as those of a sea
 # take seconds to compile, and nothing is drawn. The rest of the page works as ever. Where it reads the pixels of one
-# kind of thing, only fragment shaders with a word of this kind are what they are: all others give one colour.
+# kind of thing, only fragment shaders with a word of this kind are what they are: all others give one colour; or those
+# with a word that is of no interest give one colour.
 FLAT_SHADERS = """const put = WebGL2RenderingContext.prototype.shaderSource;
 WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
     const fragment = this.getShaderParameter(shader, this.SHADER_TYPE) === this.FRAGMENT_SHADER;
     const flat = "#version 300 es\\nout lowp vec4 color; void main() { color = vec4(0.3, 0.5, 0.6, 1.0); }";
-    put.call(this, shader, fragment && !source.includes("WORD") ? flat : source);
+    put.call(this, shader, fragment && IS_FLAT ? flat : source);
 };"""
 NO_PIXELS = """
 for (const call of ["clear", "drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"])
@@ -59,11 +60,13 @@ HARMLESS_ERRORS = ("preventDefault inside passive",)
 LATE_UPDATE = "Tried to update non-existent component"
 
 
-def new_page(chromium: Any, width: int, height: int, drawn: bool | str) -> Any:
-    """drawn: whether there are pixels, or a word in the fragment shaders that are not replaced."""
+def new_page(chromium: Any, width: int, height: int, drawn: bool | str, flat: str = "") -> Any:
+    """drawn: whether there are pixels, or a word in the fragment shaders that are not replaced. flat: with `drawn`
+    True, a word in those that are."""
     page = chromium.new_page(viewport={"width": width, "height": height})
-    if drawn is not True:
-        page.add_init_script(FLAT_SHADERS.replace("WORD", drawn or "no shader has this"))
+    if drawn is not True or flat:
+        word = flat or drawn or "no shader has this"
+        page.add_init_script(FLAT_SHADERS.replace("IS_FLAT", f'{"" if flat else "!"}source.includes("{word}")'))
     if drawn is False:
         page.add_init_script(NO_PIXELS)
     return page
@@ -100,13 +103,14 @@ class Tab:
         width: int = 900,
         height: int = 560,
         drawn: bool | str = False,
+        flat: str = "",
         query: str = "",
         address: str = "",
         ratio: float = PIXEL_RATIO,
     ) -> None:
-        """drawn: as of `new_page`. address: of the page where a proxy shows it, with a "?". ratio: drawn pixels per
-        pixel of the page, in each direction."""
-        self.page = new_page(chromium, width, height, drawn)
+        """drawn, flat: as of `new_page`. address: of the page where a proxy shows it, with a "?". ratio: drawn pixels
+        per pixel of the page, in each direction."""
+        self.page = new_page(chromium, width, height, drawn, flat)
         self.errors: list[str] = []
         self.followed = 0  # number of scenes that were opened for it
         self.page.on("console", self.note)
@@ -162,10 +166,7 @@ class Tab:
         self.page.wait_for_timeout(500)  # a slow page must notice what is under the mouse
         mouse.down()
         for step in range(1, 9):
-            mouse.move(
-                start[0] + (end[0] - start[0]) * step / 8,
-                start[1] + (end[1] - start[1]) * step / 8,
-            )
+            mouse.move(start[0] + (end[0] - start[0]) * step / 8, start[1] + (end[1] - start[1]) * step / 8)
             self.page.wait_for_timeout(pause)
 
     def release(self) -> None:

@@ -18,11 +18,7 @@ def each(call: Callable[..., object], prefix: str = "", **bad: Iterable[Any]) ->
     Some functions show what is like an array as the array that they made of it.
     """
     return [
-        (
-            prefix + name,
-            functools.partial(call, **{name: value}),
-            "" if isinstance(value, ARRAYS) else repr(value)[:99],
-        )
+        (prefix + name, functools.partial(call, **{name: value}), "" if isinstance(value, ARRAYS) else repr(value)[:99])
         for name, values in bad.items()
         for value in values
     ]

@@ -10,21 +10,14 @@ from tests.faults.running import key_of_fault
 from tests.faults.sites import Fault, faults_in
 
 CASES = {
-    "y = 2.0 * x": {("constant", "y = 2.2 * x"), ("operator", "y = 2.0 / x")},
-    "y = a + b": {("sign", "y = a - b")},
-    "y = -a": {("sign", "y = a")},
-    "y -= a": {("sign", "y += a")},
-    "y = x**2": {("exponent", "y = x**3")},
-    "y = x[1]": {("index", "y = x[0]")},
-    "y = x[0, i]": {("index", "y = x[1, i]"), ("constant", "y = x[1, i]")},
-    "y = a < b": {("comparison", "y = a > b")},
-    "y = math.sin(a)": {("function", "y = math.cos(a)")},
-    "y = max(a, b)": {("function", "y = min(a, b)")},
-    "y = f(a, b)": {("arguments", "y = f(b, a)")},
-    "y: tuple[float, ...] = f(1e-300)": set(),
-    'raise argument_error("y", 2, "3 to 4")': set(),
+    "y = 2.0 * x": {("constant", "y = 2.2 * x"), ("operator", "y = 2.0 / x")}, "y = a + b": {("sign", "y = a - b")},
+    "y = -a": {("sign", "y = a")}, "y -= a": {("sign", "y += a")}, "y = x**2": {("exponent", "y = x**3")},
+    "y = x[1]": {("index", "y = x[0]")}, "y = x[0, i]": {("index", "y = x[1, i]"), ("constant", "y = x[1, i]")},
+    "y = a < b": {("comparison", "y = a > b")}, "y = math.sin(a)": {("function", "y = math.cos(a)")},
+    "y = max(a, b)": {("function", "y = min(a, b)")}, "y = f(a, b)": {("arguments", "y = f(b, a)")},
+    "y: tuple[float, ...] = f(1e-300)": set(), 'raise argument_error("y", 2, "3 to 4")': set(),
     'y = f"{a:.3f}" + "2"': set(),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("line", CASES)

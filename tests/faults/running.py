@@ -29,7 +29,7 @@ OTHER_TESTS = {  # of modules with tests of other names
         "tests/sim/springs/test_net.py",
         "tests/sim/springs/test_refusals.py",
         "tests/sim/ocean/test_refusals.py",
-    ),
+    )
 }
 
 

@@ -14,17 +14,9 @@ import websockets
 from websockets.asyncio.client import ClientConnection, connect
 
 CAMERA = {  # viser counts a browser as there from its first camera on
-    "type": "ViewerCameraMessage",
-    "wxyz": (1.0, 0.0, 0.0, 0.0),
-    "position": (0.0, -4.0, 2.0),
-    "fov": 1.3,
-    "near": 0.1,
-    "far": 1000.0,
-    "image_height": 480,
-    "image_width": 640,
-    "look_at": (0.0, 0.0, 2.0),
-    "up_direction": (0.0, 0.0, 1.0),
-}
+    "type": "ViewerCameraMessage", "wxyz": (1.0, 0.0, 0.0, 0.0), "position": (0.0, -4.0, 2.0), "fov": 1.3, "near": 0.1,
+    "far": 1000.0, "image_height": 480, "image_width": 640, "look_at": (0.0, 0.0, 2.0), "up_direction": (0.0, 0.0, 1.0),
+}  # fmt: skip
 DRAG = {
     "type": "SceneNodeDragMessage", "start_screen_pos": (0.5, 0.5), "end_screen_pos": (0.4, 0.6), "button": "left",
     "modifier": None, "owner": "",

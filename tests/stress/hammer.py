@@ -167,15 +167,8 @@ def some_command(rng: random.Random) -> Any:
     aim = rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0)
     return rng.choice(
         [
-            Grab(rng.randrange(0, 12), place),
-            Grab(rng.randrange(-5, 2000), place),
-            Release(),
-            Place(rng.choice(["root", "sphere", "camera", "nothing"]), place),
-            Point(place, aim),
-            Point(place, (0.0, 0.0, 0.0)),
-            StepOnce(),
-            Pause(),
-            Play(),
-            Reset(),
+            Grab(rng.randrange(0, 12), place), Grab(rng.randrange(-5, 2000), place), Release(),
+            Place(rng.choice(["root", "sphere", "camera", "nothing"]), place), Point(place, aim),
+            Point(place, (0.0, 0.0, 0.0)), StepOnce(), Pause(), Play(), Reset(),
         ]
     )  # fmt: skip

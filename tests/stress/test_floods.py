@@ -78,20 +78,10 @@ MAKERS: dict[str, Maker] = {
 }
 # The scene in which each message costs the server most.
 COSTLY = {
-    "control": CLOTH,
-    "out of range": CLOTH,
-    "no number": CLOTH,
-    "slider": CLOTH,
-    "slider out of range": CLOTH,
-    "checkbox": SEA,
-    "preset": RACE,
-    "reset": CLOTH,
-    "step": CLOTH,
-    "play": CLOTH,
-    "scene": CLOTH,
-    "drag the cloth": CLOTH,
-    "camera": SEA,
-}
+    "control": CLOTH, "out of range": CLOTH, "no number": CLOTH, "slider": CLOTH, "slider out of range": CLOTH,
+    "checkbox": SEA, "preset": RACE, "reset": CLOTH, "step": CLOTH, "play": CLOTH, "scene": CLOTH,
+    "drag the cloth": CLOTH, "camera": SEA,
+}  # fmt: skip
 
 
 @pytest.fixture
@@ -154,19 +144,11 @@ def test_a_flood_slows_the_browser_that_sends_it_and_no_other(
 @pytest.mark.parametrize(
     ("arguments", "what"),
     [
-        (RACE, "reset"),
-        (RACE, "preset"),
-        (RACE, "step"),
-        (CLOTH, "reset"),
-        (CLOTH, "preset"),
-        (CLOTH, "step"),
-        (SEA, "reset"),
-        (SEA, "preset"),
-        (SEA, "step"),
-        (("--scene", "radial_sea"), "reset"),
+        (RACE, "reset"), (RACE, "preset"), (RACE, "step"), (CLOTH, "reset"), (CLOTH, "preset"), (CLOTH, "step"),
+        (SEA, "reset"), (SEA, "preset"), (SEA, "step"), (("--scene", "radial_sea"), "reset"),
         (("--scene", "rope", "--set", "points=1000", "integrator=implicit_midpoint"), "step"),
     ],
-)
+)  # fmt: skip
 def test_a_key_held_down_leaves_the_status_fresh(
     arguments: tuple[str, ...], what: str, reader: Any, tally: Tally
 ) -> None:

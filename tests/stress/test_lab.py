@@ -20,16 +20,10 @@ TASKS = load_tasks()
 FUNCTIONS = [task for task in TASKS if task.check is not None]
 # What happens in the function -> the name that the check gives.
 ACCIDENTS = {
-    "while True: pass": "endless",
-    "raise RuntimeError('mine')": "raised",
-    "exit()": "ended",
-    "import os; os._exit(1)": "ended",
-    "np.ones(1 << 27)": "memory",
-    "for i in range(1_000_000): print(i)": "printed",
-    "return np.full((7, 5), 1.0)": "wrong shape",
-    "return None": "returns nothing",
-    "return {}": "wrong type",
-}
+    "while True: pass": "endless", "raise RuntimeError('mine')": "raised", "exit()": "ended",
+    "import os; os._exit(1)": "ended", "np.ones(1 << 27)": "memory", "for i in range(1_000_000): print(i)": "printed",
+    "return np.full((7, 5), 1.0)": "wrong shape", "return None": "returns nothing", "return {}": "wrong type",
+}  # fmt: skip
 # What odd results are made of.
 VALUES = (
     "None", "1", "-1.5", "float('nan')", "float('inf')", "'text'", "b'x'", "{}", "set()", "1j", "True", "10**400",

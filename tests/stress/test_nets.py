@@ -98,16 +98,11 @@ def test_shapes_that_are_hardly_shapes(integrator: str, tally: Tally) -> None:
 @pytest.mark.parametrize(
     ("bad", "words"),
     [
-        ({"length": 0.0}, "length: 0.0"),
-        ({"length": -1.0}, "length"),
-        ({"mass": 0.0}, "mass"),
-        ({"stiffness": math.nan}, "stiffness"),
-        ({"gravity": math.inf}, "gravity"),
-        ({"points": 0}, "points"),
-        ({"root": (0.0, math.nan, 0.0)}, "root"),
-        ({"sphere": (0.0, 0.0, 0.0, -1.0)}, "sphere"),
+        ({"length": 0.0}, "length: 0.0"), ({"length": -1.0}, "length"), ({"mass": 0.0}, "mass"),
+        ({"stiffness": math.nan}, "stiffness"), ({"gravity": math.inf}, "gravity"), ({"points": 0}, "points"),
+        ({"root": (0.0, math.nan, 0.0)}, "root"), ({"sphere": (0.0, 0.0, 0.0, -1.0)}, "sphere"),
     ],
-)
+)  # fmt: skip
 def test_what_is_no_rope_is_refused_by_name(bad: dict, words: str, tally: Tally) -> None:
     with tally.fault("bad argument"), pytest.raises(ValueError, match=f"{words}.* is not allowed; allowed: "):
         rope(**bad)

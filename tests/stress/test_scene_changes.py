@@ -31,16 +31,10 @@ def callbacks(viewer: Viewer) -> int:
     """How many callbacks viser keeps for this server: of clients, of the scene and of the panel."""
     scene, gui, connection = viewer.server.scene, viewer.server.gui, viewer.server._websock_server
     tables = (
-        viewer.server._client_connect_cb,
-        viewer.server._client_disconnect_cb,
-        connection._client_connect_cb,
-        connection._client_disconnect_cb,
-        gui._gui_input_handle_from_uuid,
-        gui._command_handle_from_uuid,
-        scene._handle_from_node_name,
-        scene._scene_pointer_cb,
-        *connection._incoming_handlers.values(),
-    )
+        viewer.server._client_connect_cb, viewer.server._client_disconnect_cb, connection._client_connect_cb,
+        connection._client_disconnect_cb, gui._gui_input_handle_from_uuid, gui._command_handle_from_uuid,
+        scene._handle_from_node_name, scene._scene_pointer_cb, *connection._incoming_handlers.values(),
+    )  # fmt: skip
     return sum(len(table) for table in tables)
 
 

@@ -159,20 +159,12 @@ def test_the_sign_reversed_is_named_in_every_task(desk: Desk) -> None:
 
 
 ACCIDENTS = {
-    "1 / 0": ("failed", "raised"),
-    "np.full(3, np.nan)": ("wrong", "NaN"),
-    "np.zeros((2, 2))": ("wrong", "wrong shape"),
-    "None": ("wrong", "returns nothing"),
-    "'abc'": ("wrong", "wrong type"),
-    "{}": ("wrong", "wrong type"),
-    "[[1], [2, 3]]": ("wrong", "wrong type"),
-    "(x1, x2)": ("wrong", "wrong shape"),
-    "3.0": ("wrong", "wrong shape"),
-    "np.zeros(3)": ("wrong", ""),
-    "np.full(3, np.inf)": ("wrong", ""),
-    "1j * x1": ("wrong", "wrong type"),
+    "1 / 0": ("failed", "raised"), "np.full(3, np.nan)": ("wrong", "NaN"), "np.zeros((2, 2))": ("wrong", "wrong shape"),
+    "None": ("wrong", "returns nothing"), "'abc'": ("wrong", "wrong type"), "{}": ("wrong", "wrong type"),
+    "[[1], [2, 3]]": ("wrong", "wrong type"), "(x1, x2)": ("wrong", "wrong shape"), "3.0": ("wrong", "wrong shape"),
+    "np.zeros(3)": ("wrong", ""), "np.full(3, np.inf)": ("wrong", ""), "1j * x1": ("wrong", "wrong type"),
     "exit()": ("failed", "ended"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("expression", ACCIDENTS)

@@ -214,18 +214,13 @@ def test_a_busy_port_is_said_and_changes_nothing(rope: Lab) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({"scene": "rop"}, "scene: 'rop'"),
-        ({"scene": 3}, "scene, preset"),
-        ({"scene": "?scene=rope&a=b"}, "a: no such parameter"),
-        ({"preset": "nothing"}, "preset: 'nothing'"),
-        ({"preset": "nothing.json"}, "nothing.json"),
-        ({"height": 5}, "height: 5"),
-        ({"height": "100%"}, "height: '100%'"),
-        ({"port": 99999}, "port: 99999"),
-        ({"port": "8080"}, "port: '8080'"),
+        ({"scene": "rop"}, "scene: 'rop'"), ({"scene": 3}, "scene, preset"),
+        ({"scene": "?scene=rope&a=b"}, "a: no such parameter"), ({"preset": "nothing"}, "preset: 'nothing'"),
+        ({"preset": "nothing.json"}, "nothing.json"), ({"height": 5}, "height: 5"),
+        ({"height": "100%"}, "height: '100%'"), ({"port": 99999}, "port: 99999"), ({"port": "8080"}, "port: '8080'"),
         ({"stiffness": -1}, "stiffness: -1"),
     ],
-)
+)  # fmt: skip
 def test_a_wrong_argument_is_refused_before_anything_is_opened(arguments: dict, words: str, monkeypatch) -> None:
     monkeypatch.setattr("app.notebook.lab.Viewer", None)
     with pytest.raises(ValueError, match=r".") as error:

@@ -184,21 +184,8 @@ def test_what_a_file_may_not_say_is_refused_in_one_line(text: str, words: str) -
 def test_random_addresses_and_files_give_a_set_up_or_one_line() -> None:
     rng = random.Random(5)
     words = [
-        "scene",
-        "rope",
-        "race",
-        "preset",
-        "camera",
-        "stiffness",
-        "1e5",
-        "&",
-        "=",
-        "?",
-        "%",
-        "%00",
-        "<script>",
-        "{",
-    ]
+        "scene", "rope", "race", "preset", "camera", "stiffness", "1e5", "&", "=", "?", "%", "%00", "<script>", "{",
+    ]  # fmt: skip
     words += ['"', ":", ",", "}", "[", "]", "version", "parameters", "1", "\x00", "é", "\n", "null", *FILE_KEYS]
     taken = 0
     for _ in range(HOSTILE):

@@ -23,18 +23,12 @@ from sim.parameters import effect_of_change, parameters_of
 Scene: Any = SquareSeaScene  # its frames and readings have more than every scene has
 SMALL: dict[str, Any] = {"size": "64", "mesh": "32"}
 EVERY_OTHER = {  # a parameter that is hidden by default, and what shows it
-    "depth": {"deep": False},
-    "gravity": {"planet": "by gravity"},
-    "fetch": {"spectrum": "jonswap"},
-    "peak_enhancement": {"spectrum": "tma"},
-    "swell": {"spectrum": "jonswap"},
-    "spread_exponent": {"spreading": "cos2s"},
-    "inverse_wave_age": {"spectrum": "elfouhaily"},
-    "phillips_constant": {"spectrum": "phillips"},
-    "foam_threshold": {"foam_by_wind": False},
-    "drops": {"rain": 20.0, "length": 32.0},
-    "rings": {"rain": 20.0, "length": 32.0},
-}
+    "depth": {"deep": False}, "gravity": {"planet": "by gravity"}, "fetch": {"spectrum": "jonswap"},
+    "peak_enhancement": {"spectrum": "tma"}, "swell": {"spectrum": "jonswap"},
+    "spread_exponent": {"spreading": "cos2s"}, "inverse_wave_age": {"spectrum": "elfouhaily"},
+    "phillips_constant": {"spectrum": "phillips"}, "foam_threshold": {"foam_by_wind": False},
+    "drops": {"rain": 20.0, "length": 32.0}, "rings": {"rain": 20.0, "length": 32.0},
+}  # fmt: skip
 
 
 def change_parameters(scene: Any, **values: object) -> None:

@@ -15,20 +15,11 @@ from sim.parameters import check_record, parameters_of
 
 # A symbol, and the words of which one is to stand in the same text.
 SYMBOLS = {
-    r"h ?ω": "step",
-    r"ζ": "damping ratio|twice the damping",
-    r"(?<!h)(?<!h )ω": "frequency",
-    r"\bHs\b|H<sub>": "significant height",
-    r"\bTp\b|T<sub>": "peak period",
-    r"ρ": "density",
-    r"[μν]": "viscosity",
-    r"\bg( =|/| in\b)": "gravity",
-    r"\bn = ": "refractive index",
-    r"λ": "eigenvalue|wavelength|wave length",
-    r"σ": "deviation|tension",
-    r"\bh [<=]": "step",
-    r"\bU10\b": "wind",
-}
+    r"h ?ω": "step", r"ζ": "damping ratio|twice the damping", r"(?<!h)(?<!h )ω": "frequency",
+    r"\bHs\b|H<sub>": "significant height", r"\bTp\b|T<sub>": "peak period", r"ρ": "density", r"[μν]": "viscosity",
+    r"\bg( =|/| in\b)": "gravity", r"\bn = ": "refractive index", r"λ": "eigenvalue|wavelength|wave length",
+    r"σ": "deviation|tension", r"\bh [<=]": "step", r"\bU10\b": "wind",
+}  # fmt: skip
 SETTINGS: list[tuple[str, dict[str, Any]]] = [
     *((name, {}) for name in NAMES),
     ("rope", {"integrator": "explicit_euler", "stiffness": 2000.0}),

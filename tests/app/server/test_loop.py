@@ -438,9 +438,7 @@ def test_no_plot_row_is_lost_where_nobody_takes_the_snapshots() -> None:
     assert [row[0] for row in loop.plot_rows] == pytest.approx([FRAME_INTERVAL * k for k in range(1, 31)], abs=0.011)
 
 
-def test_a_scene_that_fails_outside_its_guard_halts_the_run_and_the_thread_lives(
-    capsys: pytest.CaptureFixture,
-) -> None:
+def test_a_scene_that_fails_outside_its_guard_halts_the_run_and_the_thread_lives(capsys: pytest.CaptureFixture) -> None:
     loop, _ = make()
     stop = threading.Event()
     read, faults = loop.read_params, [ZeroDivisionError("no such step")]

@@ -16,25 +16,11 @@ OWN = {"_replace", "_asdict", "_fields", "_exit"}  # of named tuples and of the 
 
 # Each name that `app/render/viser_inside.py` takes from viser's inside.
 NAMES = (
-    "_binary_buffers",
-    "_connected_clients",
-    "_gui_input_handle_from_uuid",
-    "_handle_incoming_message",
-    "_impl",
-    "_messages",
-    "_queue_scene_message",
-    "_websock_connection",
-    "_websock_server",
-    "RunJavascriptMessage",
-    "SceneNodeUpdateMessage",
-    "atomic_start",
-    "get_message_buffer",
-    "on_client_connect",
-    "queue_message",
-    "unregister_handler",
-    "window_duration_sec",
-    "window_generator",
-)
+    "_binary_buffers", "_connected_clients", "_gui_input_handle_from_uuid", "_handle_incoming_message", "_impl",
+    "_messages", "_queue_scene_message", "_websock_connection", "_websock_server", "RunJavascriptMessage",
+    "SceneNodeUpdateMessage", "atomic_start", "get_message_buffer", "on_client_connect", "queue_message",
+    "unregister_handler", "window_duration_sec", "window_generator",
+)  # fmt: skip
 QUIET = {"_connected_clients"}  # a browser that leaves while it arrives may count
 SAMPLE = ("_websock_server", "_gui_input_handle_from_uuid")
 UNUSED = "unused"  # no name of viser: the lab as it is

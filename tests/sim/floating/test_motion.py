@@ -84,8 +84,7 @@ def test_what_is_dropped_settles_at_its_draft(layers):
 
 
 @pytest.mark.parametrize(
-    ("hull", "density"),
-    [(Hull.sphere(0.5), 512.5), (Hull.cylinder(0.5, 4.0), 512.5), (Hull.box(2.0, 2.0, 1.0), 410.0)],
+    ("hull", "density"), [(Hull.sphere(0.5), 512.5), (Hull.cylinder(0.5, 4.0), 512.5), (Hull.box(2.0, 2.0, 1.0), 410.0)]
 )
 def test_heave_period_is_that_of_theory(hull, density):
     period = heave_period(hull, density, WATER)

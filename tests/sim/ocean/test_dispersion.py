@@ -30,12 +30,7 @@ def wavenumber(length: float) -> float:
 
 @pytest.mark.parametrize(
     ("length", "options", "expected"),
-    [
-        (100.0, {}, 0.785099),
-        (1.0, {}, 7.850990),
-        (100.0, {"depth": 10.0}, 0.585882),
-        (0.01, WATER, 155.738),
-    ],
+    [(100.0, {}, 0.785099), (1.0, {}, 7.850990), (100.0, {"depth": 10.0}, 0.585882), (0.01, WATER, 155.738)],
 )
 def test_omega_is_lambs(length, options, expected):
     assert omega(wavenumber(length), **options) == pytest.approx(

@@ -7,8 +7,7 @@ from sim.ocean.planets import EARTH_GRAVITY, SOLAR_SYSTEM, gravity_of, mass_for
 
 
 @pytest.mark.parametrize(
-    ("rule", "light", "heavy"),
-    [("same_radius", 0.0981, 981.0), ("same_density", 2.114, 45.5), ("rocky", 1.18, 81.6)],
+    ("rule", "light", "heavy"), [("same_radius", 0.0981, 981.0), ("same_density", 2.114, 45.5), ("rocky", 1.18, 81.6)]
 )
 def test_a_hundredth_and_a_hundred_earths(rule, light, heavy):
     assert gravity_of(0.01, rule) == pytest.approx(light, rel=1e-3)

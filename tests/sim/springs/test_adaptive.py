@@ -147,10 +147,7 @@ def test_the_estimated_error_is_the_weighted_root_mean_square_of_the_tableau_s_r
     for row in range(method.stages + 1, len(method.counts)):
         terms = method.terms[row]
         ex, ev = h**2 * method.g[row] @ k[terms, :size], h * method.a[row] @ k[terms, :size]
-        parts = (
-            ex / (atol + rtol * np.maximum(abs(x), abs(xn))),
-            ev / (atol + rtol * np.maximum(abs(v), abs(vn))),
-        )
+        parts = (ex / (atol + rtol * np.maximum(abs(x), abs(xn))), ev / (atol + rtol * np.maximum(abs(v), abs(vn))))
         sums.append(np.mean(np.square(parts)))
     wanted = math.sqrt(sums[0]) if len(sums) == 1 else sums[0] / math.sqrt(sums[0] + 0.01 * sums[1])
     assert error_of(method, x, v, h, room, xn, vn, rtol, atol) == pytest.approx(wanted, rel=1e-13)

@@ -110,11 +110,7 @@ def test_symplectic_euler_keeps_its_own_energy():
 
 @pytest.mark.parametrize("z", [0.05, 0.3, 0.93, 1.5])
 @pytest.mark.parametrize(
-    ("name", "factor"),
-    [
-        ("explicit_euler", lambda z: 1.0 + z**2),
-        ("rk4", lambda z: 1.0 - z**6 / 72.0 + z**8 / 576.0),
-    ],
+    ("name", "factor"), [("explicit_euler", lambda z: 1.0 + z**2), ("rk4", lambda z: 1.0 - z**6 / 72.0 + z**8 / 576.0)]
 )
 def test_a_step_multiplies_the_energy_by_the_closed_form(name, factor, z):
     state = stretched(3e-4, 7e-4)

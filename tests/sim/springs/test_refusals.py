@@ -159,10 +159,7 @@ REFUSED: list[Row] = [
     *each(partial(critical_stiffness, rope(), "rk4"), h=[0.0, -1.0, math.nan, math.inf, True]),
     ("points", lambda: catenary(1, 2.0, 1.0, 0.0, 800.0, 1.0, 10.0), "1"),
     *each(partial(catenary, 5, span=1.0, rise=0.0, stiffness=800.0, mass=1.0, gravity=10.0), length=ABOVE_0),
-    *each(
-        partial(catenary, length=2.0, span=1.0, rise=0.0, stiffness=8.0, mass=1.0, gravity=10.0),
-        points=[1, 2.5],
-    ),
+    *each(partial(catenary, length=2.0, span=1.0, rise=0.0, stiffness=8.0, mass=1.0, gravity=10.0), points=[1, 2.5]),
 ]
 
 

@@ -401,7 +401,7 @@ const WATER_GLSL = {
       if (abs(off) > 1.5 * size) return off > 0.0 ? 1.0 : 0.0;
       // Wind tears the edge into streaks along itself.
       vec2 p = vec2(0.3 * dot(d, w), dot(d, vec2(-w.y, w.x))) / size;
-      float torn = gradientNoise(p).x + 0.7 * gradientNoise(p * 2.7 + 5.0).x + 0.5 * gradientNoise(p * 7.1 - 3.0).x;
+      float torn = gradientNoise(p).x + 0.8 * gradientNoise(p * 4.1 + 5.0).x;
       return smoothstep(-0.1, 0.5, off / size + 0.8 * torn);
     }
 

@@ -32,7 +32,9 @@ PAINTS = {
     "lamp": ((255, 238, 170), 0.3, 0.0),
     "wood": ((168, 120, 70), 0.85, 0.0),
     "board": ((120, 80, 44), 0.9, 0.0),
+    "weed": ((38, 48, 30), 0.3, 0.0),
 }
+WET_SHADE, WET_ROUGHNESS = 0.55, 0.22  # of a paint under water: factor on its linear colour, and roughness
 
 
 class Model:
@@ -71,6 +73,28 @@ class Model:
                 start, end = (p[i], q[j]) if level % 2 else (p[j], q[i])
                 self.bar(paint, tuple(start), tuple(end), radius, 4)
 
+    def wet(self, level: float) -> None:
+        """Have everything below z = level look wet."""
+        for paint, meshes in list(self.parts.items()):
+            color, rough, metal = PAINTS[paint]
+            shade = tuple(round(c * WET_SHADE ** (1 / 2.2)) for c in color)
+            PAINTS[f"wet {paint}"] = shade, min(rough, WET_ROUGHNESS), metal  # type: ignore[assignment]
+            for part, up in ((paint, 1.0), (f"wet {paint}", -1.0)):
+                cut = [beyond(mesh, level, up) for mesh in meshes]
+                self.parts[part] = [mesh for mesh in cut if len(mesh.faces)]
+                if not self.parts[part]:
+                    del self.parts[part]
+
+    def weed(self, radius: float, low: float, high: float) -> None:
+        """A band of weed around z from low to high, with a ragged upper edge."""
+        sides = 48
+        angle, edge = 2.0 * math.pi * np.arange(sides) / sides, np.random.default_rng(3).uniform(0.35, 1.0, sides)
+        ring = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+        vertices = [np.column_stack([ring, z]) for z in (np.full(sides, low), low + (high - low) * edge)]
+        i, j = np.arange(sides), (np.arange(sides) + 1) % sides
+        faces = np.concatenate([np.stack([i, j, i + sides], 1), np.stack([j, j + sides, i + sides], 1)])
+        self.add("weed", trimesh.Trimesh(np.concatenate(vertices), faces, process=False))
+
     def save(self, path: Path) -> int:
         """Write the GLB; returns its number of triangles."""
         scene, count = trimesh.Scene(), 0
@@ -85,6 +109,20 @@ class Model:
             count += len(whole.faces)
         path.write_bytes(scene.export(file_type="glb"))  # type: ignore[arg-type]
         return count
+
+
+def beyond(mesh: trimesh.Trimesh, level: float, up: float) -> trimesh.Trimesh:
+    """The part of a mesh above z = level, or with up = -1 below it."""
+    triangles = []
+    for triangle in mesh.triangles:
+        over = up * (triangle[:, 2] - level)
+        corners = []
+        for k in range(3):
+            a, b, p, q = triangle[k], triangle[(k + 1) % 3], over[k], over[(k + 1) % 3]
+            corners += ([a] if p >= 0.0 else []) + ([a + (b - a) * p / (p - q)] if p * q < 0.0 else [])
+        triangles += [(corners[0], corners[k], corners[k + 1]) for k in range(1, len(corners) - 1)]
+    points = np.array(triangles, float).reshape(-1, 3)
+    return trimesh.Trimesh(points, np.arange(len(points)).reshape(-1, 3))
 
 
 def square(half: float, z: float, x: float = 0.0, y: float = 0.0) -> list[Point]:
@@ -224,6 +262,8 @@ def can_buoy(paint: str) -> Model:
     for angle in np.arange(4) * math.pi / 2 + 0.4:
         m.bar("dark", (0.48 * math.cos(angle), 0.48 * math.sin(angle), 0.3),
               (0.48 * math.cos(angle), 0.48 * math.sin(angle), 0.46), 0.025)  # fmt: skip
+    m.wet(0.02)
+    m.weed(0.604, -0.12, -0.02)
     return m
 
 
@@ -246,6 +286,7 @@ def crate() -> Model:
     for side in (-0.598, 0.598):
         m.bar("board", (-0.45, side, -0.24), (0.45, side, 0.24), 0.03, 4)
         m.bar("board", (side, -0.45, -0.24), (side, 0.45, 0.24), 0.03, 4)
+    m.wet(0.02)
     return m
 
 
@@ -258,6 +299,7 @@ def ball() -> Model:
     cap = np.abs(centres[:, 2]) > 0.46
     for paint, chosen in (("orange", (gore == 0) & ~cap), ("white", (gore == 1) & ~cap), ("blue", cap)):
         m.add(paint, sphere.submesh([np.flatnonzero(chosen)], append=True))  # type: ignore[arg-type]
+    m.wet(0.15)
     return m
 
 

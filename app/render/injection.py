@@ -29,7 +29,11 @@ from app.render.viser_types import GuiHandle, ViserEvent
 
 LAST = 1e9  # place in the panel
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
-SCRIPTS = ("quality.js", "injection.js", "packed.js", "water_shader.js", "water.js", "rain.js", "smoke.js", "dark.js")
+SCRIPTS = (
+    "quality.js", "injection.js", "packed.js", "underwater.js", "contact.js", "water_shader.js", "water.js", "rain.js",
+    "smoke.js", "dark.js",
+)  # fmt: skip
+CONTACT_SHADOW = "contact_shadow"
 
 _injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
 _disabled: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()
@@ -145,3 +149,9 @@ def add_data_mesh(server: viser.ViserServer, name: str, values: np.ndarray) -> v
     return server.scene.add_mesh_simple(
         name, np.asarray(values, np.float32), face, visible=False, cast_shadow=False, receive_shadow=False
     )
+
+
+def add_contact_shadow(server: viser.ViserServer, name: str) -> None:
+    """Darken the floor where the mesh `name` is near to it (`js/contact.js`), in browsers with shaders."""
+    if injector_of(server) is not None:
+        add_data_mesh(server, f"{name}/{CONTACT_SHADOW}", np.zeros((1, 3)))

@@ -12,10 +12,13 @@ import viser
 from numpy.typing import NDArray
 
 from app.render.cameras import NEAR, set_clipping
+from app.render.staff import Staff
 from app.render.viser_inside import update_node
 
 Colour = tuple[int, int, int]  # sRGB, 0 to 255
 FLOOR = "/floor"
+SUN, SUN_INTENSITY = (-0.55, -0.6, 1.0), 2.5  # direction towards the lamp: low enough that folds shade each other
+FILL, FILL_INTENSITY = (0.5, 0.2, -1.0), 0.4  # from below
 NO_FOG = 10.0, 50.0  # [m] where it would begin and be dense: viser's own numbers
 
 
@@ -57,12 +60,15 @@ class Surroundings:
         scene = server.scene
         # viser keeps the light and the fog of the scene before, here those of a sea.
         scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
-        scene.configure_default_lights(enabled=True, cast_shadow=True)
+        scene.configure_default_lights(enabled=False, cast_shadow=False)
+        self.sun = scene.add_light_directional("/sun", position=SUN, intensity=SUN_INTENSITY, cast_shadow=True)
+        scene.add_light_directional("/fill", position=FILL, intensity=FILL_INTENSITY)
         scene.configure_fog(*NO_FOG, enabled=False)
         set_clipping(server, near)
         for client in server.get_clients().values():
             _dark.discard(client)  # the floor begins light: js/display.js asks for a dark one
         self.shown: tuple[bool, bool] | None = None
+        self.staff = Staff(server)
         self.floor = scene.add_grid(
             FLOOR,
             width=24.0,
@@ -82,6 +88,7 @@ class Surroundings:
             return
         self.shown = floor, grid
         self.floor.visible = floor
+        self.staff.show(floor)
         self.floor.cell_thickness = self.floor.section_thickness = 1.0 if grid else 0.0
 
 

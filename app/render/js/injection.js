@@ -61,18 +61,25 @@ function insertAfter(shader, stage, chunk, text) {
 // and their sRGB colours in 0..1, packed (packed.js).
 shaders.push({
   suffix: "/vertex_colors",
-  update({ mesh, data }) {
+  update({ base, mesh, data }) {
     if (!applyPacked(mesh, data, "vertexColor", null)) return null;
-    const dark = isDark();
+    const dark = isDark(), underwater = underwaterOf(base, mesh);
     const edit = (shader) => {
       insertAfter(shader, "vertexShader", "common", "attribute vec3 vertexColor; varying vec3 vVertexColor;");
       insertAfter(shader, "vertexShader", "begin_vertex", `
         vVertexColor = ${dark ? glslLifted("vertexColor") : "vertexColor"};
         vVertexColor = pow(max(vVertexColor, 0.0), vec3(2.2));`);
       insertAfter(shader, "fragmentShader", "common", "varying vec3 vVertexColor;");
-      insertAfter(shader, "fragmentShader", "color_fragment", "diffuseColor.rgb = vVertexColor;");
+      insertAfter(shader, "fragmentShader", "color_fragment",
+                  `diffuseColor.rgb = ${underwater ? "seenUnderwater(vVertexColor)" : "vVertexColor"};`);
+      if (!underwater) return;
+      Object.assign(shader.uniforms, { underwater });
+      insertAfter(shader, "vertexShader", "common", "varying vec3 vPlace;");
+      insertAfter(shader, "vertexShader", "begin_vertex", UNDERWATER_VERTEX);
+      insertAfter(shader, "fragmentShader", "common", UNDERWATER_GLSL);
     };
-    return replaceShader(mesh.material, `springtide-vertex-colors-${dark ? "dark" : "light"}`, edit) ? mesh.material : null;
+    const key = `springtide-vertex-colors-${dark ? "dark" : "light"}${underwater ? base : ""}`;
+    return replaceShader(mesh.material, key, edit) ? mesh.material : null;
   },
 });
 

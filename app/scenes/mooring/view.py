@@ -34,11 +34,13 @@ MAX_DRAWN_PATH = 400  # places of the body's path
 WATER_COLOURS, WATER_OPACITY = ((8, 52, 96), (150, 205, 225)), 0.5  # of slopes away from the light, and towards it
 FULL_SLOPE = 0.3  # of the water, that has the second colour
 WATER_STEP = 2.0**-7  # [m] to which points of the water are rounded for the page
-BED_COLOUR, CELL_COLOUR, SECTION_COLOUR = (190, 172, 136), (164, 146, 112), (126, 108, 78)
+BED_COLOUR, CELL_COLOUR, SECTION_COLOUR = (104, 130, 132), (86, 112, 116), (62, 88, 94)  # sand in the light down there
 BODY_COLOUR, LYING_COLOUR = (236, 112, 40), (44, 28, 16)
-WALL_COLOUR, WALL_OPACITY = (96, 150, 186), 0.55  # of the water behind everything, which has an end in the picture
+# Of the water behind everything, which has an end in the picture: under the surface, and where no light comes down.
+WALL_COLOURS, WALL_OPACITY = ((150, 208, 226), (22, 70, 104)), 0.8
+WALL_ROWS, LIGHT_DEPTHS = 9, 2.0  # rows of vertices down a wall; e-foldings of the light from surface to bed
 ANCHOR_COLOUR, LIFTED_COLOUR, FAIRLEAD_COLOUR = (50, 54, 62), (214, 40, 40), (30, 32, 38)
-WATCH_COLOUR, PATH_COLOUR, SHADOW_COLOUR = (200, 30, 60), (250, 250, 250), (120, 104, 78)
+WATCH_COLOUR, PATH_COLOUR, SHADOW_COLOUR = (200, 30, 60), (250, 250, 250), (52, 72, 76)
 BED_FADE = 6.0  # distance at which the bed ends, in `extent`s
 CELLS = (1.0, 2.0, 5.0)  # of the bed's lines, times a power of ten
 FAR_VIEW = 40.0  # where the picture ends, in `extent`s
@@ -92,7 +94,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         set_clipping(self.server, 0.002 * far, FAR_VIEW * far)
         cell = cell_of(far)
         self.bed = scene.add_grid(
-            "/bed", width=2 * far, height=2 * far, infinite_grid=True, cell_size=cell, section_size=5 * cell,
+            "/bed", width=frame.side, height=frame.side, cell_size=cell, section_size=5 * cell,
             position=(0.0, 0.0, -p.depth), plane_opacity=1.0, fade_distance=BED_FADE * far, shadow_opacity=0.0,
             plane_color=BED_COLOUR, cell_color=CELL_COLOUR, section_color=SECTION_COLOUR,
         )  # fmt: skip
@@ -131,6 +133,10 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             scene.add_label(f"/number_{i + 1}", str(i + 1), position=tuple(place), anchor="bottom-center")
             for i, place in enumerate((frame.points[:, 0] + (0.0, 0.0, 2 * ANCHOR_SIZE * far)).tolist())
         ]
+        half = 0.5 * frame.side
+        self.labels.append(  # in the far corner, as first seen
+            scene.add_label("/depth", f"{p.depth:g} m deep", position=(-half, half, -p.depth), anchor="bottom-left")
+        )
         rows = len(frame.surface)
         axis = np.linspace(-0.5 * frame.side, 0.5 * frame.side, rows)
         self.places = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -150,16 +156,19 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         self.built = self.shape_of(frame)
         self.lifted = np.zeros(lines, bool)
 
-    def add_walls(self, frame: MooringFrame) -> Any:
-        """The sides of the water from the surface to the bed, of which those behind are seen."""
-        half, depth = 0.5 * frame.side, frame.params.depth
-        ring = half * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-        vertices = np.concatenate([np.column_stack([ring, np.full(4, z)]) for z in (0.0, -depth)])
-        i, j = np.arange(4), (np.arange(4) + 1) % 4
+    def add_walls(self, frame: MooringFrame) -> ColouredMesh:
+        """The sides of the water from the surface to the bed, of which those behind are seen: darker with depth."""
+        ring = 0.5 * frame.side * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+        down = np.repeat(np.linspace(0.0, 1.0, WALL_ROWS), 4)[:, None]
+        vertices = np.column_stack([np.tile(ring, (WALL_ROWS, 1)), -frame.params.depth * down])
+        high, low = np.array(WALL_COLOURS) / 255.0
+        i = np.arange(4 * (WALL_ROWS - 1))
+        j = i - i % 4 + (i + 1) % 4
         faces = np.concatenate([np.stack([i, i + 4, j], 1), np.stack([j, i + 4, j + 4], 1)])
-        return self.server.scene.add_mesh_simple(
-            "/walls", vertices.astype(np.float32), faces.astype(np.uint32), color=WALL_COLOUR, opacity=WALL_OPACITY,
-            side="back", flat_shading=True, cast_shadow=False, receive_shadow=False,
+        return ColouredMesh(
+            self.server, "/walls", vertices, faces, low + np.exp(-LIGHT_DEPTHS * down) * (high - low), columns=4,
+            step=WATER_STEP, color=WALL_COLOURS[1], opacity=WALL_OPACITY, side="back", flat_shading=True,
+            cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
 
     @staticmethod
@@ -230,7 +239,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         shadows[:, :, 2] = -p.depth + 0.3 * self.radius
         set_arrays(self.shadows, points=np.stack([shadows[:, :-1], shadows[:, 1:]], axis=2).reshape(-1, 2, 3))
         if self.water.mesh.visible != p.surface:
-            self.water.mesh.visible = self.walls.visible = p.surface
+            self.water.mesh.visible = self.walls.mesh.visible = p.surface
         if p.surface:
             self.water.set(*self.surface_of(frame))
         thickness = 1.0 if p.grid else 0.0
@@ -267,7 +276,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
                     gizmo.handle.scale = scale * far
                 x, y, z = frame.points[i, node].tolist() if is_shown else (0.0, 0.0, 0.0)
                 gizmo.show((x, y, z) if is_shown else None)
-            if i < len(self.labels):
+            if i < len(frame.points):
                 x, y, z = frame.points[i, 0].tolist()
                 place = x, y, z + 2 * ANCHOR_SIZE * far
                 if tuple(self.labels[i].position) != place:

@@ -11,7 +11,7 @@ import viser
 from app.messages import Snapshot, Vector
 from app.render.colormap import lifted, rgb
 from app.render.dragging import SurfaceDrag, drag
-from app.render.injection import injector_of
+from app.render.injection import add_contact_shadow, injector_of
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.render.surroundings import set_dark
 from app.render.viser_inside import set_arrays, update_node
@@ -102,6 +102,7 @@ class RopesDrawing:
         ]
         for tube in self.tubes:
             tube.on_drag("left")(on_tube)
+            add_contact_shadow(server, tube.name)
         each = len(tubes[0])
         self.references = scene.add_mesh_simple(
             "/race/references",

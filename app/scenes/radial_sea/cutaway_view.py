@@ -8,17 +8,20 @@ import viser
 
 from app.formats.formatting import number
 from app.render.coloured_mesh import ColouredMesh
+from app.render.injection import add_data_mesh, injector_of
 from app.render.material import RGB
 from app.render.viser_inside import set_arrays
 from app.scenes.radial_sea.cutaway import DIRECTION, FAR_WALL_POINTS, HALF_WIDTH, Cutaway
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.materials import blend, mixture_share, rgb_of
 from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.oil_film import light_through
 
 BRIGHT_WATER: RGB = (0.13, 0.50, 0.60)  # of the water under its surface, as if light came through
 DEEP_WATER: RGB = (0.03, 0.16, 0.27)  # of the water at the floor
 OIL_AGAINST_LIGHT: RGB = (0.42, 0.27, 0.10)  # what a few centimetres of oil let through
-OIL_LIGHT_SHARE = 0.55  # of that colour in the drawn one
+OIL_LIGHT_SHARES = 0.9, 0.15  # of that colour in the drawn one, at the oil's surface and where the water begins
+WEB_SIZE = 0.7  # [m] at size 1 of the meshes of light that waves focus (`js/underwater.js`)
 SURFACE_LINE, INTERFACE_LINE = (235, 246, 250), (255, 196, 64)
 LINE_OFFSET = 0.02  # [m] that lines stand before the wall
 
@@ -34,6 +37,8 @@ LINE_HEIGHT = 0.13  # [m] at size 1 that a label needs
 LABEL_STEP = 0.02  # [m] by which ruler and labels move at least: each move is a message of its own
 LABEL_INTERVAL = 0.2  # [s] between two texts of a label while the sea moves: faster ones cannot be read
 
+MIN_LIGHT = 0.01  # of the light through the oil, under which no webs are seen
+WEB_PERIOD = 80.0 * math.pi  # [s] after which the webs are as they were
 WALL_STEP = 1e-3  # [m] to which points of the walls are rounded for the page
 
 
@@ -57,6 +62,10 @@ class Walls:
             server, name, self.vertices(cutaway), np.concatenate([*quads, floor]).astype(np.uint32), self.colours,
             columns=n, step=WALL_STEP, color=(40, 110, 130), cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
+        self.underwater = np.zeros((1, 3), np.float32)  # as `js/underwater.js` reads it
+        self.underwater_mesh = None
+        if injector_of(server) is not None:
+            self.underwater_mesh = add_data_mesh(server, f"{name}/underwater", self.underwater)
         lines = np.zeros((FAR_WALL_POINTS - 1, 2, 3), np.float32)
         self.lines = [
             server.scene.add_line_segments(
@@ -193,6 +202,7 @@ class Walls:
         say = self.labels_are_due(frame.time, frame.params.time_step)
         self.show_ruler(cutaway, keel, say=say, column=column)
         colours = self.paint(column)
+        self.light_water(column, frame.time)
         self.mesh.set(self.vertices(cutaway), colours)
         for line, height in zip(self.lines, (cutaway.top, cutaway.interface), strict=True):
             at = np.column_stack(
@@ -200,16 +210,27 @@ class Walls:
             )
             set_arrays(line, points=np.stack([at[:-1], at[1:]], axis=1))
 
+    def light_water(self, column: FluidColumn, time: float) -> None:
+        """Show the webs of light under the waves, as far as the fluid above lets light through."""
+        through = 0.0 if column.kind == "mixed" else float(light_through(column.thickness).mean())
+        strength = through if through >= MIN_LIGHT else 0.0
+        now = np.array([[strength, WEB_SIZE * self.size, time % WEB_PERIOD if strength else 0.0]], np.float32)
+        if self.underwater_mesh is not None and not np.array_equal(now, self.underwater):
+            self.underwater = now
+            set_arrays(self.underwater_mesh, vertices=now)
+
     def paint(self, column: FluidColumn) -> np.ndarray | None:
         """Colours (4 n + 1, 3) where they changed, else None."""
         key = (column.kind, column.oil.name, column.fraction)
         if key == self.painted:
             return None
         self.painted = key
-        n, oil = self.n, blend(rgb_of(column.oil.colour), OIL_AGAINST_LIGHT, OIL_LIGHT_SHARE)
+        n, colour = self.n, rgb_of(column.oil.colour)
+        lit, oil = (blend(colour, OIL_AGAINST_LIGHT, part) for part in OIL_LIGHT_SHARES)
         share = mixture_share(column) if column.kind == "mixed" else 0.0
-        high, low = blend(BRIGHT_WATER, oil, share), blend(DEEP_WATER, rgb_of(column.oil.colour), share)
-        self.colours[: 2 * n] = oil
+        high, low = blend(BRIGHT_WATER, lit, share), blend(DEEP_WATER, rgb_of(column.oil.colour), share)
+        self.colours[:n] = lit
+        self.colours[n : 2 * n] = oil
         self.colours[2 * n : 3 * n] = high
         self.colours[3 * n :] = low
         return self.colours

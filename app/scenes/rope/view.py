@@ -14,6 +14,7 @@ from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
 from app.render.gizmo import Gizmo
 from app.render.html import Html, bold, fill
+from app.render.injection import add_contact_shadow
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
 from app.render.surroundings import set_dark
 from app.render.viser_inside import set_arrays
@@ -108,6 +109,7 @@ class View(SceneView[Params, RopeFrame, RopeReadings]):
             color=ROPE_COLOUR,
             side="double",
         )
+        add_contact_shadow(self.server, "/rope")
         self.beads = self.server.scene.add_batched_meshes_simple(
             "/points",
             *ball(8 if n <= 200 else 4),

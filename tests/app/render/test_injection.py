@@ -126,7 +126,7 @@ def test_the_shaders_declare_every_uniform_that_travels_and_no_other() -> None:
     declared = set()
     for name in SCRIPTS:
         declared |= set(re.findall(r"uniform vec3 (\w+);", source_of(name)))
-    assert declared == {*WATER_UNIFORMS, *RAIN_UNIFORMS}
+    assert declared == {*WATER_UNIFORMS, *RAIN_UNIFORMS, "underwater"}
     assert len(set(WATER_UNIFORMS)) == len(WATER_UNIFORMS)
 
 

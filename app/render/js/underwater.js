@@ -1,0 +1,38 @@
+// What is seen of water from below its surface, on a mesh with colours at its vertices (injection.js) that has a child
+// "<name>/underwater": webs of light that waves focus, which fade with depth, and particles. The first vertex of that
+// child is the uniform below. Where the colour is redder than blue there is oil, and neither.
+
+const UNDERWATER_VERTEX = "vPlace = (modelMatrix * vec4(position, 1.0)).xyz;";
+const UNDERWATER_GLSL = `
+  varying vec3 vPlace; // [m], y up from the mean level of the sea
+  uniform vec3 underwater; // strength of the webs, size of their meshes [m], time [s]
+  // Webs of light on a level plane, 0 to 1.
+  float webs(vec2 p, float t) {
+    float a = sin(3.1 * p.x + 1.2 * p.y + 1.6 * sin(2.3 * p.y - 1.1 * p.x + t));
+    float b = sin(3.0 * p.y - 1.4 * p.x + 1.6 * sin(2.2 * p.x + 0.9 * p.y - 0.8 * t));
+    vec2 ridge = 1.0 - abs(vec2(a, b));
+    return max(ridge.x * ridge.x * ridge.x, ridge.y * ridge.y * ridge.y);
+  }
+  // Light on particles, one of many sizes in some cells of a grid.
+  float particles(vec3 p) {
+    vec3 i = floor(p), r = fract(sin(vec3(dot(i, vec3(12.9, 78.2, 37.7)), dot(i, vec3(39.3, 11.1, 83.2)),
+                                          dot(i, vec3(73.2, 52.2, 9.1)))) * 43758.5);
+    return smoothstep(0.13 * r.z, 0.05 * r.z, distance(p - i, 0.3 + 0.4 * r)) * step(0.75, r.x);
+  }
+  vec3 seenUnderwater(vec3 color) {
+    float water = smoothstep(0.0, 0.02, color.b - color.r), depth = max(-vPlace.y, 0.0) / underwater.y;
+    // The sun's rays bring the webs down, and to the side.
+    float light = underwater.x * exp(-0.8 * depth) * (2.6 * webs((vPlace.xz + 0.4 * vPlace.y) / underwater.y, underwater.z) - 0.5);
+    return color * (1.0 + water * light) + water * 0.10 * exp(-0.5 * depth) * particles(9.0 * vPlace / underwater.y);
+  }`;
+
+const underwaters = new Map(); // name of the node -> its uniform, kept for good as those of seas
+
+// The uniform of a node that has the child, else null.
+function underwaterOf(base, mesh) {
+  const data = meshOf(`${base}/underwater`);
+  if (!data) return null;
+  if (!underwaters.has(base)) underwaters.set(base, { value: mesh.position.clone() });
+  underwaters.get(base).value.fromArray(data.geometry.attributes.position.array);
+  return underwaters.get(base);
+}

@@ -77,7 +77,7 @@ class BackgroundCheck:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 text=True,
-                start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle
+                process_group=0,  # Ctrl-C in the terminal is the lab's to handle
             )
             threading.Thread(target=self.read, args=(self.process,), name="verdicts", daemon=True).start()
         return self.process

@@ -235,7 +235,9 @@ class Runner:
             stderr=subprocess.DEVNULL,
             cwd=self.folder,
             env=surroundings,
-            start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle
+            # Ctrl-C in the terminal is the lab's to handle. No session of its own: Linux would give that as much of the
+            # processor as the lab, and a low priority would mean nothing.
+            process_group=0,
         )
 
     def _where(self) -> tuple[str, int, str] | None:

@@ -202,6 +202,14 @@ def has_group(group: int) -> bool:
     return True
 
 
+@pytest.mark.skipif(os.name != "posix", reason="process groups and sessions are POSIX")
+def test_a_process_has_a_group_and_no_session_of_its_own(tmp_path: Path) -> None:
+    write(tmp_path, "import os\n    return [os.getpid(), os.getpgid(0), os.getsid(0)]")
+    with Runner(tmp_path) as runner:
+        process, group, session = runner.call("mine.py", "f", 1.0)
+    assert (group, session) == (process, os.getsid(0))
+
+
 CHILD = "import os, subprocess\n    subprocess.Popen(['sleep', '60'])\n    os._exit(3)"
 
 

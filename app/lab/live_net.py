@@ -33,6 +33,7 @@ ROPE_FUNCTIONS = tuple(REFERENCE)
 CLOTH_STEPS = {"explicit_euler": "step_euler", "rk4": "step_rk4"}
 OTHER_CLOTH_STEP = "step_symplectic"
 CLOTH_FUNCTIONS = ("cloth_forces", "cloth_links")
+COMPILE_AFTER = 3.0  # [s] of processor time in plain Python: about what compiling takes
 
 
 class Job(NamedTuple):
@@ -159,13 +160,22 @@ CLOTH = Material(
 class LiveNet(Service[Job | Loaded]):
     """Runs jobs in a thread. `submit` is for the simulation thread; `attempt` and `adopt` for who loads versions."""
 
-    def __init__(self, material: Material, tell: Callable[[Saved, RunError], None]) -> None:
-        """tell: is told of a version that fails while it runs; on this object's thread."""
+    def __init__(
+        self,
+        material: Material,
+        tell: Callable[[Saved, RunError], None],
+        compile_it: Callable[[Saved], None] = lambda saved: None,
+    ) -> None:
+        """tell: is told of a version that fails while it runs; on this object's thread.
+
+        compile_it: called once with a version that has taken `COMPILE_AFTER` in plain Python.
+        """
         self.material = material
         self.runs = itertools.count(1)  # for all scenes
         self.connect(lambda: None, lambda: None)
         self.method, self.sphere = "rk4", False  # of the last job: what a new version is tried with
-        self.tell = tell
+        self.tell, self.compile_it = tell, compile_it
+        self.effort = 0.0  # [s] of processor time that the newest version has taken in plain Python
         # The one that is preferred last: the last version before the newest, the newest, the newest compiled.
         self.versions: list[Loaded] = []
         self.taken = 0  # number of the version that was taken last
@@ -181,12 +191,10 @@ class LiveNet(Service[Job | Loaded]):
         """Have steps taken; the answer comes through its queue."""
         self.inbox.put(job)
 
-    def attempt(self, loaded: Loaded) -> frozenset[str]:
-        """Take a few steps as the last job did; the student's functions among those that took them. Raises RunError."""
-        own = self.material.own_of(loaded.saved, self.method, sphere=self.sphere)
-        if own:
+    def attempt(self, loaded: Loaded) -> None:
+        """Take a few steps as the last job did, if the student's functions take them. Raises RunError."""
+        if self.material.own_of(loaded.saved, self.method, sphere=self.sphere):
             self.material.attempt(loaded.runner, loaded.saved, self.method, sphere=self.sphere)
-        return own
 
     def adopt(self, loaded: Loaded) -> None:
         """Take a version that has been tried, in place of those before it."""
@@ -226,7 +234,7 @@ class LiveNet(Service[Job | Loaded]):
         if loaded.compiled:
             return
         self.begin_again()
-        self.taken = loaded.saved.number
+        self.taken, self.effort = loaded.saved.number, 0.0
 
     def advance(self, job: Job) -> Answer:
         """The steps of a job by the newest version that works."""
@@ -250,6 +258,10 @@ class LiveNet(Service[Job | Loaded]):
                 elif not compiled:  # plain Python is tried next, and says where it was
                     self.tell(saved, error)
                 continue
+            if saved.number == self.taken and not compiled:
+                before, self.effort = self.effort, self.effort + done.effort
+                if before < COMPILE_AFTER <= self.effort:
+                    self.compile_it(saved)
             each = done.seconds / max(done.steps, 1)
             return Answer(job.run, done.x, done.v, each, done.left, saved.number, compiled)
         return unanswered(job)

@@ -75,6 +75,7 @@ class March(NamedTuple):
     v: np.ndarray  # (n, 3) [m/s] at the end of the last of these
     steps: int  # taken in all
     seconds: float  # that they took
+    effort: float  # [s] of processor time that they took
     left: bool  # the rope left all bounds; the rest of the segments was not taken
 
 
@@ -323,7 +324,7 @@ def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Seg
     """Advance a rope from positions x and velocities v, shape (n, 3), over some segments. Raises Unfit."""
     ends: list[np.ndarray] = []
     taken, last_v, left = 0, v, False
-    began = time.perf_counter()
+    began, effort = time.perf_counter(), time.thread_time()
     with np.errstate(all="ignore"):
         for segment in segments:
             functions.segment = segment
@@ -337,8 +338,8 @@ def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Seg
                 break
             ends.append(x)
             last_v = v
-    seconds = time.perf_counter() - began
-    return March(np.array(ends).reshape(-1, *x.shape), last_v, taken, seconds, left)
+    seconds, effort = time.perf_counter() - began, time.thread_time() - effort
+    return March(np.array(ends).reshape(-1, *x.shape), last_v, taken, seconds, effort, left)
 
 
 def packed(segment: Segment) -> list[Any]:

@@ -322,9 +322,10 @@ def is_march(answer: Any, shape: tuple[int, ...]) -> bool:
     """True if an answer holds what a `March` of points (n, 3) does: a student's function may have forged it."""
     if not isinstance(answer, tuple) or len(answer) != len(March._fields):
         return False
-    x, v, steps, seconds, left = answer
+    x, v, steps, seconds, effort, left = answer
     arrays = all(isinstance(array, np.ndarray) and array.dtype == np.float64 for array in (x, v))
-    numbers = isinstance(steps, int) and isinstance(seconds, float) and isinstance(left, bool)
+    times = isinstance(seconds, float) and isinstance(effort, float)
+    numbers = times and isinstance(steps, int) and isinstance(left, bool)
     return arrays and numbers and x.shape == (len(x), *shape) and v.shape == shape
 
 

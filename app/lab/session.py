@@ -32,7 +32,6 @@ from app.lab.task import Task
 
 SETTLE_TIME = 20  # [ms] without a further change before a save is read: editors write a file in several steps
 MAX_SETTLE_TIME = 400  # [ms]
-COMPILE_DELAY = 1.0  # [s] after a save: who saves again at once is not kept waiting
 LOOK_INTERVAL = 500  # [ms] between two looks whether to end
 
 
@@ -64,7 +63,8 @@ class Session:
         self.number = 0
         self.spare: Runner | None = self.make_runner()
         by_name = {task.name: task for task in tasks}
-        self.rope = LiveNet(ROPE, self.note_failure)
+        self.to_compile: queue.SimpleQueue[Saved | None] = queue.SimpleQueue()
+        self.rope = LiveNet(ROPE, self.note_failure, self.to_compile.put)
         self.cloth = LiveNet(CLOTH, self.note_failure)
         self.tables = LiveTables(by_name, time_limit)
         self.live = LiveCode(self.rope, self.cloth, self.tables)
@@ -72,7 +72,6 @@ class Session:
         self.values = SceneValues(by_name, time_limit)
         self.rope_version = 0  # number of the last version that was tried for the rope
         self.compiler: Runner | None = None  # of the version that is being compiled
-        self.to_compile: queue.SimpleQueue[Saved | None] = queue.SimpleQueue()
         self.stop = threading.Event()
         self.compiling = threading.Thread(target=self.compile_versions, name="student's compiler", daemon=True)
         self.compiling.start()
@@ -121,8 +120,7 @@ class Session:
             self.rope_version = saved.number
             if self.compiler is not None:
                 self.compiler.abort()
-            if self.try_version(self.rope, Loaded(saved, runner)):
-                self.to_compile.put(saved)
+            self.try_version(self.rope, Loaded(saved, runner))
             runner = None
         if CLOTH.file in texts and self.is_for(CLOTH.file, changed):
             self.try_version(self.cloth, Loaded(saved, runner or Runner(saved.folder, self.time_limit)))
@@ -143,25 +141,23 @@ class Session:
         others = {task.file for task in self.tasks} - {file}
         return not changed <= others
 
-    def try_version(self, net: LiveNet, loaded: Loaded) -> bool:
-        """Hand a version to rope or cloth if it takes a few steps; say why where it does not. Whether it moves it."""
+    def try_version(self, net: LiveNet, loaded: Loaded) -> None:
+        """Hand a version to rope or cloth if it takes a few steps; say why where it does not."""
         try:
-            own = net.attempt(loaded)
+            net.attempt(loaded)
         except RunError as error:
             loaded.runner.close()
             self.note_failure(loaded.saved, error)
-            return False
+            return
         self.state = self.state._replace(begun=loaded.saved.begun, not_compiled="")
         net.adopt(loaded)
-        return bool(own)
 
     def compile_versions(self) -> None:
         """Compile the functions that move the rope, and hand them over if that works; the latest version wins."""
         while (saved := self.to_compile.get()) is not None:
-            self.stop.wait(COMPILE_DELAY)
             self.compiler = runner = Runner(saved.folder, self.time_limit, compiles=True)
-            if not self.to_compile.empty() or self.stop.is_set():  # `close` sees the compiler, or this sees the end
-                continue
+            if saved.number != self.rope_version or self.stop.is_set():  # who loads or closes sees the compiler, or
+                continue  # this sees that
             try:
                 names, why = runner.compile(saved.begun)
             except RunError as error:

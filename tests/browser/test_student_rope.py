@@ -21,7 +21,7 @@ RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
 
 @pytest.mark.stress
 def test_a_wrong_turn_and_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, open_tab) -> None:
-    monkeypatch.setattr("app.lab.session.COMPILE_DELAY", 1e6)  # compiling takes seconds: see tests/stress
+    monkeypatch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)  # compiling takes seconds: see tests/stress
     tasks, folder = load_tasks(), tmp_path / "mine"
     make_folder(folder, tasks)
     session = Session(folder, tasks)

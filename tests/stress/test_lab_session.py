@@ -36,7 +36,7 @@ def session(tmp_path: Path) -> Iterator[Session]:
 def test_every_accident_in_every_function_is_named_within_three_seconds(
     session: Session, monkeypatch: pytest.MonkeyPatch, name: str, line: str
 ) -> None:
-    monkeypatch.setattr("app.lab.session.COMPILE_DELAY", 1e6)
+    monkeypatch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)
     session.rope.method, session.rope.sphere = METHODS.get(name, "rk4"), name == "sphere_force"
     assert name in (step_of(session.rope.method), "spring_force", "rope_acceleration", "sphere_force")
     source = inspect.getsource(REFERENCE[name])
@@ -70,7 +70,8 @@ def test_the_rope_moves_by_what_is_saved_within_a_second(session: Session, monke
         viewer.shut()
 
 
-def test_what_numba_can_compile_it_compiles(session: Session) -> None:
+def test_what_numba_can_compile_it_compiles(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.lab.live_net.COMPILE_AFTER", 1e-6)
     save(session, RIGHT)
     wait_for(lambda: session.rope.taken == session.state.version)
     scene = make_scene(session)
@@ -87,8 +88,9 @@ def test_what_numba_can_compile_it_compiles(session: Session) -> None:
     assert report.seconds < plain.seconds
     later = RIGHT.replace("    r = np", "    globals()\n    r = np")  # which numba does not know
     save(session, later)
+    wait_for(lambda: session.rope.taken == session.state.version)
+    run(make_scene(session))
     wait_for(lambda: session.state.not_compiled, 120.0)
-    scene = make_scene(session)
-    run(scene)
+    run(make_scene(session))
     assert session.rope.report.version == session.state.version
     assert session.rope.report.compiled == ()

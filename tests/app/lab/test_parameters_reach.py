@@ -56,7 +56,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
     folder = tmp_path_factory.mktemp("lab") / "mine"
     make_folder(folder, TASKS)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.lab.session.COMPILE_DELAY", 1e6)
+        patch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)
         session = Session(folder, TASKS)
         wait_for(lambda: session.state.version == 1)
         for name, file in FILES.items():

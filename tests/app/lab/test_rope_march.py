@@ -8,7 +8,7 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 
-from app.lab.live_net import ROPE, Job, LiveNet, Loaded
+from app.lab.live_net import COMPILE_AFTER, ROPE, Answer, Job, LiveNet, Loaded
 from app.lab.rope_march import Forces, Functions, March, Segment, Unfit, march
 from app.lab.saved import keep
 from app.lab.task import load_tasks
@@ -45,7 +45,7 @@ def test_an_error_of_the_lab_is_told_and_the_next_version_moves_the_rope(tmp_pat
         runner = Mock(**{"march.side_effect": [outcome, outcome]})
         return Loaded(keep({"rope.py": text}, folder, number, load_tasks()), runner)
 
-    done = March(x[None], x, 1, 1e-3, False)
+    done = March(x[None], x, 1, 1e-3, 1e-3, False)
     try:
         live.adopt(loaded(1, TypeError("not what was expected")))
         live.submit(job)
@@ -62,5 +62,27 @@ def test_an_error_of_the_lab_is_told_and_the_next_version_moves_the_rope(tmp_pat
         live.adopt(loaded(5, done))
         live.submit(job)
         assert job.answers.get(timeout=30.0).version == 5
+    finally:
+        live.close()
+
+
+def test_a_version_is_compiled_once_it_has_taken_as_long_as_compiling_does(tmp_path: Path) -> None:
+    asked: list[int] = []
+    live = LiveNet(ROPE, lambda saved, error: None, lambda saved: asked.append(saved.number))
+    x = np.array([[0.0, 0.0, 3.0], [-0.2, 0.0, 3.0]])
+    answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
+    job = Job(1, "rk4", x, 0.0 * x, [Segment(1, 0.01, FORCES, np.zeros((0, 4, 3)))], answers)
+    done = March(x[None], x, 1, 100.0, 0.4 * COMPILE_AFTER, False)
+    text = b"def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):\n    return x1\n"
+    try:
+        for number in (1, 2):
+            folder = tmp_path / str(number)
+            folder.mkdir()
+            saved = keep({"rope.py": text}, folder, number, load_tasks())
+            live.adopt(Loaded(saved, Mock(**{"march.return_value": done})))
+            for _ in range(2 * number):  # too few of the first version
+                live.submit(job)
+                assert answers.get(timeout=30.0).version == number
+        assert asked == [2]
     finally:
         live.close()

@@ -53,7 +53,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
     folder = tmp_path_factory.mktemp("lab") / "mine"
     make_folder(folder, TASKS)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.lab.session.COMPILE_DELAY", 1e6)  # compiling takes seconds: see tests/stress
+        patch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)  # compiling takes seconds: see tests/stress
         session = Session(folder, TASKS, time_limit=1.0)
         wait_for(lambda: session.state.version == 1)
         yield session

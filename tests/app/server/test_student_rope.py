@@ -22,7 +22,7 @@ RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
 def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.lab.session.COMPILE_DELAY", 1e6)
+    monkeypatch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)
     monkeypatch.setattr(Viewer, "audience", lambda self: 1)
     tasks, folder = load_tasks(), tmp_path / "mine"
     make_folder(folder, tasks)

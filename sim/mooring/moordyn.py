@@ -13,6 +13,7 @@ from sim.files import replacing
 from sim.mooring.system import Line, LineType, Point, System
 from sim.validation import argument_error
 
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?", re.ASCII)
 HEADER = re.compile(r"-{3,}\s*(.*?)\s*-*$")
 TYPES, POINTS, LINES, OPTIONS = "LINE TYPES", "POINTS", "LINES", "OPTIONS"
 ALIASES = {
@@ -40,7 +41,7 @@ def sections(path: Path) -> dict[str, list[tuple[int, list[str]]]]:
     found: dict[str, list[tuple[int, list[str]]]] = {}
     current, skip = None, 0
     try:
-        text = path.read_text(encoding="utf-8", errors="replace")
+        text = path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as error:
         raise argument_error("file", str(path), f"a file that can be read ({error.strerror})") from None
     for number, line in enumerate(text.splitlines(), 1):
@@ -58,10 +59,15 @@ def sections(path: Path) -> dict[str, list[tuple[int, list[str]]]]:
             continue
         if current is None:
             continue
+        row = re.split(r"(?:^|\s)[#!]", line, maxsplit=1)[0].split()  # without a comment
         if skip:
             skip -= 1
-        elif line.strip() and not line.lstrip().startswith("#"):
-            found[current].append((number, line.split()))
+            if any(map(NUMBER.fullmatch, row)):
+                raise argument_error(
+                    f"{current}, line {number}", line.strip(), "a line of column names, then one of units"
+                )
+        elif row:
+            found[current].append((number, row))
     for name in (TYPES, POINTS, LINES):
         if not found.get(name):
             raise argument_error("file", str(path.name), f"a MoorDyn file with a section {name}")
@@ -70,10 +76,7 @@ def sections(path: Path) -> dict[str, list[tuple[int, list[str]]]]:
 
 def number_in(where: str, text: str) -> float:
     """The finite number that `text` is; raises ValueError otherwise."""
-    try:
-        value = float(text.replace("D", "e").replace("d", "e"))
-    except ValueError:
-        value = math.nan
+    value = float(re.sub("[dD]", "e", text)) if NUMBER.fullmatch(text) else math.nan
     if not math.isfinite(value):
         raise argument_error(where, text, "a finite number")
     return value
@@ -87,16 +90,16 @@ def whole_in(where: str, text: str) -> int:
     return int(value)
 
 
-def columns(section: str, number: int, row: list[str], count: int) -> list[str]:
-    """The row; raises ValueError where it has fewer columns."""
-    if len(row) < count:
+def columns(section: str, number: int, row: list[str], count: int, most: int) -> list[str]:
+    """The row; raises ValueError where it has fewer columns, or more than `most`."""
+    if not count <= len(row) <= most:
         raise argument_error(f"{section}, line {number}", " ".join(row), f"{count} columns")
     return row
 
 
 def read_type(number: int, row: list[str]) -> LineType:
     """Name Diam MassDenInAir EA BA/-zeta EI Cd Ca CdAx CaAx."""
-    name, *rest = columns(TYPES, number, row, 10)
+    name, *rest = columns(TYPES, number, row, 10, 10)
     where = f"{TYPES}, line {number}"
     if any("|" in text for text in rest):
         raise argument_error(where, " ".join(rest), "constant stiffness and damping")
@@ -113,7 +116,7 @@ def read_type(number: int, row: list[str]) -> LineType:
 def read_point(number: int, row: list[str]) -> Point:
     """ID Attachment X Y Z M V CdA CA."""
     where = f"{POINTS}, line {number}"
-    row = columns(POINTS, number, row, 9)
+    row = columns(POINTS, number, row, 9, 9)
     kind = KINDS.get(row[1].lower())
     if kind is None:
         raise argument_error(f"{where}: attachment", row[1], "Fixed, Coupled or Free")
@@ -124,7 +127,7 @@ def read_point(number: int, row: list[str]) -> Point:
 def read_line(number: int, row: list[str], types: dict[str, LineType], points: dict[int, Point]) -> Line:
     """ID LineType AttachA AttachB UnstrLen NumSegs [Outputs]."""
     where = f"{LINES}, line {number}"
-    row = columns(LINES, number, row, 6)
+    row = columns(LINES, number, row, 6, 7)
     if row[1] not in types:
         raise argument_error(f"{where}: type", row[1], f"one of {sorted(types)}")
     ends = []
@@ -143,7 +146,7 @@ def read_options(rows: list[tuple[int, list[str]]]) -> dict[str, float]:
     found: dict[str, float] = {}
     for number, row in rows:
         where = f"{OPTIONS}, line {number}"
-        value, name = columns(OPTIONS, number, row, 2)[:2]
+        value, name = columns(OPTIONS, number, row, 2, len(row))[:2]
         key = name.lower()
         if key in IGNORED:
             continue
@@ -151,7 +154,7 @@ def read_options(rows: list[tuple[int, list[str]]]) -> dict[str, float]:
             if number_in(f"{where}: {name}", value) != 0.0:
                 raise argument_error(f"{where}: {name}", value, "0: water is still, or set by `waves` and `current`")
         elif key in FIELDS:
-            found[FIELDS[key]] = number_in(f"{where}: {name}", value)
+            add_new(found, FIELDS[key], number_in(f"{where}: {name}", value), f"{where}: {name}")
         else:
             raise argument_error(f"{where}: option", name, f"one of {sorted({*FIELDS, *IGNORED, *ZERO})}")
     return found
@@ -176,7 +179,10 @@ def read_moordyn(path: str | Path) -> System:
     for number, row in found[POINTS]:
         point = read_point(number, row)
         add_new(points, point.id, point, f"{POINTS}, line {number}: ID")
-    lines = tuple(read_line(number, row, kinds, points) for number, row in found[LINES])
+    lines: dict[int, Line] = {}
+    for number, row in found[LINES]:
+        line = read_line(number, row, kinds, points)
+        add_new(lines, line.id, line, f"{LINES}, line {number}: ID")
     options = read_options(found.get(OPTIONS, []))
     if "depth" not in options:
         anchors = [point.position[2] for point in points.values() if point.kind == "fixed"]
@@ -184,7 +190,7 @@ def read_moordyn(path: str | Path) -> System:
             raise argument_error(f"{OPTIONS}: WtrDpth", None, "the depth of the water [m]")
         options["depth"] = -min(anchors)
     depth = options.pop("depth")
-    return System(lines, tuple(points.values()), depth, **options)  # type: ignore[arg-type]
+    return System(tuple(lines.values()), tuple(points.values()), depth, **options)  # type: ignore[arg-type]
 
 
 def write_moordyn(path: str | Path, system: System) -> None:

@@ -25,6 +25,7 @@ Vector = tuple[float, float, float]
 KINDS = ("fixed", "coupled", "free", "body")
 FARTHEST = 1e5  # [m] from the origin
 MOST_SEGMENTS = 2000  # of a line
+MOST_DAMPING = 100.0  # ratio, of a segment
 
 
 class LineType(NamedTuple):
@@ -317,7 +318,7 @@ def check_type(kind: LineType) -> None:
     name = f"line type {kind.name}"
     for field, unit in (("diameter", "m"), ("mass", "kg/m"), ("stiffness", "N")):
         check_number(f"{name}: {field}", getattr(kind, field), 0, math.inf, unit, above=True)
-    check_number(f"{name}: damping", kind.damping, -math.inf, math.inf, "N s")
+    check_number(f"{name}: damping", kind.damping, -MOST_DAMPING, math.inf, "N s, or a ratio where negative")
     for field in ("added_across", "drag_across", "added_along", "drag_along"):
         check_number(f"{name}: {field}", getattr(kind, field), 0, math.inf, "")
 

@@ -37,16 +37,29 @@ ID    LineType   AttachA  AttachB  UnstrLen  NumSegs   LineOutputs
 FairTen1
 ------------------------- need this line ------------------------------------
 """
+CHAIN = next(line for line in TEXT.splitlines(keepends=True) if line.startswith("chain"))
+LINE = next(line for line in TEXT.splitlines(keepends=True) if line.startswith("1      chain"))
 
 
 def written(tmp_path, text: str):
     path = tmp_path / "line.txt"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     return path
 
 
 def test_a_file_in_the_form_of_moordyn_is_the_system_that_it_describes(tmp_path):
     assert read_moordyn(written(tmp_path, TEXT)) == chain_on_bed(40)
+
+
+def test_line_ends_and_marks_of_windows_comments_and_letters_of_any_alphabet_are_read(tmp_path):
+    text = TEXT.replace("pt\n", "pt  ! a line\n").replace("0.001    dtM", "# Schrittweite f\u00fcr dtM\n0.001  dtM")
+    path = tmp_path / "windows.txt"
+    path.write_bytes(b"\xef\xbb\xbf" + text.replace("\n", "\r\n").encode())
+    assert read_moordyn(path) == chain_on_bed(40)
+    path.write_bytes(text.split("\n", 2)[2].encode("utf-8-sig"))  # begins with the mark and the header of its types
+    assert read_moordyn(path) == chain_on_bed(40)
+    path.write_bytes(text.encode("latin-1"))
+    assert read_moordyn(path) == chain_on_bed(40)
 
 
 def test_without_a_depth_the_water_is_as_deep_as_its_lowest_anchor(tmp_path):
@@ -126,6 +139,32 @@ BROKEN = [
     ("density", replaced("1025 ", "-1025"), "-1025"),
     ("depth", replaced("40       WtrDpth", "0        WtrDpth"), "0"),
     ("OPTIONS, line 23: WaveKin", replaced("2        dtIC", "1        WaveKin"), "still"),
+    (
+        "LINE TYPES, line 5",
+        replaced("(name)     (m)     (kg/m)     (N)    (N-s/-)    (N-m^2)      (-)    (-)    (-)     (-)\n", ""),
+        "units",
+    ),
+    ("POINTS, line 9", replaced("(#)   (-)       (m)    (m)    (m)    (kg)   (m^3)  (m^2)  (-)\n", ""), "units"),
+    ("LINES, line 14", replaced("(#)    (name)      (#)      (#)      (m)       (-)        (-)\n", ""), "units"),
+    ("LINE TYPES, line 7: name", replaced(CHAIN, CHAIN + CHAIN), "'chain'"),
+    ("LINE TYPES, line 6", replaced(CHAIN, CHAIN[:-1] + "  0.3  0.1  0.1\n"), "10 columns"),
+    ("line type chain: stiffness", replaced("5e7 ", "-5e7"), "-5"),
+    ("line type chain: damping", replaced("-0.8", "-8e9"), "-100"),
+    ("line 12: section", replaced("- LINES -", "- FAILURE -"), "FAILURE"),
+    ("POINTS, line 10", replaced("-40.0    0 ", "-40.0  nan "), "'nan'"),
+    ("POINTS, line 10", replaced("-140.0 ", "\u2212140.0"), "finite"),
+    ("POINTS, line 10", replaced("-40.0    0 ", "-40.0  0 7 "), "9 columns"),
+    ("LINES, line 16: ID", replaced(LINE, LINE + LINE), "1"),
+    ("LINES, line 15", replaced("160.0 ", "160,0 "), "'160,0'"),
+    ("LINES, line 15", replaced("160.0 ", "1_60.0"), "'1_60.0'"),
+    ("LINES, line 15", replaced("160.0 ", "\uff11\uff16\uff10   "), "finite"),
+    ("LINES, line 15", replaced("   40         pt", "   40  pt  7"), "6 columns"),
+    ("LINES, line 15", TEXT[: TEXT.index("160.0")], "6 columns"),
+    ("file", TEXT[: TEXT.index(LINE)], "LINES"),
+    ("line 1: segments", replaced("   40         pt", "  -40         pt"), "-40"),
+    ("OPTIONS, line 18", replaced("3.0e6", "inf  "), "'inf'"),
+    ("OPTIONS, line 19: kb", replaced("cBot", "kb"), "no other"),
+    ("OPTIONS, line 23: WaveKin", replaced("2        dtIC", "yes      WaveKin"), "'yes'"),
     ("OPTIONS, line 23", replaced("2        dtIC", "dtIC"), "2 columns"),
     (
         "OPTIONS: WtrDpth",

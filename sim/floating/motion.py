@@ -441,9 +441,7 @@ def set_forces(fleet, water, coefficients, i, density, scratch):
     # Of the volume at rest: the change by a wave is of second order, and would lift the body on average.
     carried = min(m, density * m / fleet.density[i]) * share[2] * share[2]
     for c in range(2):
-        load[c] = (
-            fleet.mooring[i, 0] * H[0, c] + fleet.mooring[i, 1] * H[1, c] - carried * a * (H[0, c] * sx + H[1, c] * sy)
-        )
+        load[c] = -carried * a * (H[0, c] * sx + H[1, c] * sy)
     if water.excitation.shape[0] > 0:
         given = water.excitation[i]
         for c in range(6):
@@ -463,6 +461,9 @@ def set_forces(fleet, water, coefficients, i, density, scratch):
     for c in range(3):
         load[c] += scratch.force[c] - m * coefficients.gravity * H[2, c]
         load[3 + c] += scratch.moment[c]
+        for d in range(3):
+            load[c] += H[d, c] * fleet.mooring[i, d]
+            load[3 + c] += H[d, c] * fleet.mooring[i, 3 + d]
     scale = 2.0 * density * coefficients.gravity * coefficients.radiation
     for n in range(fleet.linear.coupled_count[s]):
         c, d = fleet.linear.coupled[s, n, 0], fleet.linear.coupled[s, n, 1]

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.floating import (
     SHAPES,
@@ -23,6 +24,7 @@ from sim.floating import (
 from sim.floating.body import pack_linear
 from sim.floating.excitation import LAST_RATES, WaveExcitation, rate_of_change
 from sim.floating.heave_meter import WindowMean
+from sim.floating.mooring_lines import MooringLines, fairleads, just_taut, pulls
 from sim.floating.rotation import body_z_axes
 from sim.floating.shapes import Appearance
 from sim.interruption import raise_if_stopped
@@ -34,11 +36,9 @@ FIRST_PLACES = ((-2.4, 1.0), (-3.0, 4.6), (0.4, -0.8))  # [m] at size 1 of the f
 FILE_PLACE = (-0.2, 2.4)  # [m] at size 1 of a hull from a file that is 2 m wide; a wider one floats farther out
 FILE_DIRECTION = (0.35, 0.94)  # in which a wider one is moved
 SPIRAL_SPACING = 4.2  # [m] at size 1 between the turns of the spiral of the other bodies
-MAX_DEPTH = 60.0  # [m] at which a sinking body comes to rest
-MOORING_SLACK = 1.5  # [m] at size 1 that a body drifts before its mooring line pulls
-MOORING_STIFFNESS = 0.06  # weights of the body per metre of pull-out at size 1: slower than the waves
-MOORING_DAMPING = 0.15  # of the critical damping, while the line is taut
-MAX_MOORING_PULL = 0.6  # weights of the body
+BED_DEPTH = 60.0  # [m] of the anchors, and of what has sunk
+LINE_REACH = 180.0  # [m] from a body to its anchors, level
+LINE_STIFFNESS = 8e3  # [N] EA of a line, per m3 of its body: an elastic rope, by which bodies surge slower than waves
 MAX_READINGS = 6  # bodies of the scene's own in the table
 MIN_COSINE = 0.2  # of the angle between a body's axis and the normal of the water, where drafts still mean something
 MAX_ACCELERATION = 2.0  # of gravity, of the water; where the sea is exchanged it jumps
@@ -114,6 +114,8 @@ class BodyReading(NamedTuple):
     draft: float  # [m] of the body below the surface, along its own axis
     mean_draft: float  # [m] over the last minute
     period: float  # [s] of heave, measured; NaN until it is known
+    offset: float  # [m] level, from where its mooring lines hold it
+    tension: float  # [N] the largest of its mooring lines'
     prediction: HydrostaticPrediction
     has_own_coefficients: bool  # of linear theory; otherwise those of a box are taken
 
@@ -155,10 +157,11 @@ class FloatingBodies:
             initial_draft = prediction.draft if math.isfinite(prediction.draft) else 0.5 * prediction.height
             bodies.append(Body(hull, self.densities[i], (x, y, -hull.extents[2, 0] - initial_draft)))
         self.fleet: Fleet = make_fleet(bodies, column.layers)
-        self.home = self.fleet.position[:, :2].copy()  # (n, 2) [m] where each is moored
         hulls = [self.hulls[kind.name] for kind in body_kinds]
         self.keel = np.array([hull.extents[2, 0] for hull in hulls])  # (n,) [m] height over the centre, negative
         self.is_round = np.array([kind.shape.is_round for kind in body_kinds], bool)
+        self.lines = self.taut_lines(self.fleet.position[:, :2])
+        self.tension = np.zeros((self.count, 4))  # [N] of each mooring line
         self.widths = np.array([np.ptp(hull.extents[0]) for hull in hulls])  # (n,) [m]
         self.excitation = self.make_excitation()
         self.rises: tuple[np.ndarray, ...] = ()  # (n,) [m/s] of the water at the bodies, the newest first
@@ -192,6 +195,14 @@ class FloatingBodies:
             self.known_predictions[key] = found
         return self.known_predictions[key]
 
+    def taut_lines(self, level: NDArray[np.float64]) -> MooringLines:
+        """Mooring lines that do not pull at the drafts of rest, about these places (n, 2) [m]."""
+        hulls = [self.hulls[kind.name] for kind in self.body_kinds]
+        drafts = [p.draft if math.isfinite(p.draft) else p.height for p in map(self.prediction, range(self.count))]
+        stiffness = LINE_STIFFNESS * np.array([hull.volume for hull in hulls])
+        rest = np.column_stack([level, -np.array(drafts)])
+        return just_taut(rest, self.keel, stiffness, BED_DEPTH, LINE_REACH)
+
     def set_fluids(self, density: float, column: FluidColumn, own_densities: tuple[float, ...] = ()) -> None:
         """Take other densities of the bodies [kg/m3], or other fluids; nothing is moved."""
         self.column = column
@@ -202,6 +213,7 @@ class FloatingBodies:
         hulls = [self.hulls[kind.name] for kind in self.body_kinds]
         linear_hull, linear = pack_linear(hulls, self.densities, column.layers)
         self.fleet = self.fleet._replace(linear_hull=linear_hull, linear=linear)
+        self.lines = self.taut_lines(self.lines.anchors.mean(axis=1)[:, :2])
         self.excitation = self.make_excitation()
         self.heave_meter, self.lift = self.make_meters()
 
@@ -241,26 +253,20 @@ class FloatingBodies:
             self.lift.restart(index)
             del self.holders[index], self.targets[index]
 
-    def moor(self) -> None:
-        """Pull each body that is out of its mooring's slack back, weakly and level; the held ones are left alone."""
+    def moor(self, h: float) -> None:
+        """Let the lines pull as in the middle of a step of h [s]: by a body's place before it they would drive it."""
         fleet = self.fleet
-        offset = self.home - fleet.position[:, :2]
-        distance = np.maximum(np.hypot(offset[:, 0], offset[:, 1]), 1e-9)
-        stretch = distance - MOORING_SLACK * self.size
-        if not (stretch > 0.0).any():
-            fleet.mooring[:] = 0.0
-            return
-        direction = offset / distance[:, None]
-        rate = math.sqrt(MOORING_STIFFNESS * GRAVITY / self.size)  # [rad/s] of the body on its line, without added mass
-        lengthening = -(fleet.velocity[:, :2] * direction).sum(axis=1)
-        tension = rate * rate * stretch + 2.0 * MOORING_DAMPING * rate * lengthening  # [m/s2], of the mass
-        tension = np.where(stretch > 0.0, np.clip(tension, 0.0, MAX_MOORING_PULL * GRAVITY), 0.0)
-        fleet.mooring[:] = (tension * fleet.mass)[:, None] * direction
-        fleet.mooring[list(self.holders)] = 0.0
+        fleet.mooring[:], self.tension = pulls(self.lines, fleet.position + 0.5 * h * fleet.velocity, fleet.rotation)
+
+    def mooring_lines(self) -> NDArray[np.float32]:
+        """Fairlead and anchor (lines, 2, 3) [m] of each line."""
+        anchors = self.lines.anchors
+        place = fairleads(self.lines, self.fleet.position, self.fleet.rotation)[:, None]
+        return np.stack(np.broadcast_arrays(place, anchors), axis=2).reshape(-1, 2, 3).astype(np.float32)
 
     def unmoor(self) -> None:
         """End the pull of all mooring lines."""
-        self.fleet.mooring[:] = 0.0
+        self.fleet.mooring[:] = self.tension[:] = 0.0
 
     def step(
         self,
@@ -306,8 +312,8 @@ class FloatingBodies:
         # A body that presses on the water with more or less than the weight it carries makes waves.
         carried = self.fleet.mass * coefficients.gravity
         self.impulse += np.where(self.fleet.buoyancy > 0.0, self.fleet.buoyancy - carried, 0.0) * h
-        at_rest = self.fleet.position[:, 2] < -MAX_DEPTH
-        self.fleet.position[at_rest, 2] = -MAX_DEPTH
+        at_rest = self.fleet.position[:, 2] < -BED_DEPTH
+        self.fleet.position[at_rest, 2] = -BED_DEPTH
         self.fleet.velocity[at_rest] = 0.0
 
     def acceleration_of(self, at: SurfaceAt, h: float, gravity: float) -> np.ndarray:
@@ -347,6 +353,7 @@ class FloatingBodies:
 
     def readings(self, t: float, count: int = MAX_READINGS) -> tuple[BodyReading, ...]:
         """The first `count` bodies at time t [s], and the one from a file."""
+        offsets = np.hypot(*(self.fleet.position - self.lines.anchors.mean(axis=1)).T[:2])
         return tuple(
             BodyReading(
                 kind.name,
@@ -360,6 +367,8 @@ class FloatingBodies:
                 draft=float(self.draft[i]),
                 mean_draft=float(self.heave_meter.mean.of(i)[0]),
                 period=self.heave_meter.period(i, t),
+                offset=float(offsets[i]),
+                tension=float(self.tension[i].max()),
                 prediction=self.prediction(i),
                 has_own_coefficients=bool(kind.shape.linear) or kind.shape.table is not None,
             )

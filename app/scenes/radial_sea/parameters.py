@@ -171,7 +171,9 @@ class Params:
     ripples: bool = parameter(
         True, doc="Bodies that move make waves of their own", group="Bodies", title="Radiated waves"
     )
-    mooring: bool = parameter(True, doc="A slack line keeps each body near its place", group="Bodies")
+    mooring: bool = parameter(
+        True, doc="Four elastic lines from the keel of each body to anchors on the bed, 60 m deep", group="Bodies"
+    )
     pull: float = parameter(
         6.0,
         0.5,

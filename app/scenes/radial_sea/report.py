@@ -68,7 +68,8 @@ def theory_html(readings: RadialReadings) -> Html:
 
 
 def forces_html(readings: RadialReadings) -> Html:
-    """Weight, buoyancy and heave period of each body."""
+    """Weight, buoyancy, mooring and heave period of each body."""
+    moored = [(body.title, fixed(body.offset, 2), number(body.tension)) for body in readings.bodies]
     periods = [(body.title, fixed(body.period, 2), fixed(body.prediction.period, 2)) for body in readings.bodies]
     approximated = [body.title for body in readings.bodies if not body.has_own_coefficients]
     note = faint(
@@ -86,6 +87,7 @@ def forces_html(readings: RadialReadings) -> Html:
     return join((
         *weight_tables(readings),
         table((("heave period", ""), ("measured", "s"), ("theory", "s")), periods),
+        table((("mooring lines", ""), ("offset", "m"), ("largest tension", "N")), moored),
         *([note] if approximated else []),
         *outside,
     ))  # fmt: skip
@@ -115,7 +117,7 @@ def weight_tables(readings: RadialReadings) -> tuple[Html, ...]:
         table((("mean upward force, 60 s", ""), ("weight", "N"), ("buoyancy", "N"), ("waves", "N"), ("drag", "N"),
                ("own motion", "N")), means),
         faint("On average buoyancy carries the weight. Waves, drag and what the motion meets (added mass, radiated "
-              "waves, a pull) push up and down; over a minute little of them remains."),
+              "waves, lines, a pull) push up and down; over a minute little of them remains."),
     )  # fmt: skip
 
 

@@ -305,7 +305,7 @@ class RadialSeaScene:
                 slick = self.slick_at(bodies.fleet.position[:, :2])
                 bodies.measure(self.time, at, h, h / 2)
                 if self.params.mooring:
-                    bodies.moor()
+                    bodies.moor(h)
                 else:
                     bodies.unmoor()
                 waves = sea.current(middle) if isinstance(sea, RadialSea) else None
@@ -373,6 +373,7 @@ class RadialSeaScene:
             positions=bodies.fleet.position.astype(np.float32),
             rotations=bodies.fleet.rotation.astype(np.float32),
             stains=bodies.stain.astype(np.float32),
+            moorings=bodies.mooring_lines() if p.mooring else np.empty((0, 2, 3), np.float32),
             pulls=tuple(((x, y, z), target) for (x, y, z), target in held),
             fire=None if fire is None else parcels_of(fire),
             jet=None if jet is None else flying_parcels(jet),

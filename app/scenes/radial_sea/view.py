@@ -17,7 +17,7 @@ from app.render.dragging import PullLine, drag
 from app.render.follow_camera import FollowCamera
 from app.render.html import bold, fill
 from app.render.material import Material
-from app.render.meshes import ball
+from app.render.meshes import ball, rod, tube_faces
 from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
 from app.render.water import Water
@@ -44,6 +44,9 @@ SUN_LAMP_STRENGTH = 5.0
 FILL_LAMP = (-0.6, -0.7, 0.5), 0.45  # direction towards the lamp that lights the shadows, and its share of the sun's
 GLOW_INTENSITY = 900.0  # of the lamp in the fire
 HANDLE_RADIUS = 0.75  # [m] at size 1 of the invisible ball about a body, which is dragged
+LINE_COLOUR = (226, 196, 120)  # of mooring lines
+ROD = rod(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]), 1.0)
+LINE_RADIUS = 0.02  # [m] at size 1 of a drawn mooring line
 CAMERA_INTERVAL = 0.2  # [s] between two messages to the scene about where the camera is
 VIEWS = {  # position and target [m] of the camera when one of them is chosen to be followed
     "rig": ((RIG[0] - 62.0, RIG[1] - 84.0, 40.0), (RIG[0] + 10.0, RIG[1] - 4.0, 16.0)),
@@ -82,6 +85,7 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
         self.size = 0.0
         self.bodies: dict[str, tuple[Any, np.ndarray]] = {}  # kind -> handle, numbers of its bodies
         self.handles: viser.BatchedMeshHandle | None = None
+        self.moorings: viser.BatchedMeshHandle | None = None
         self.followed, self.follow_camera = "free", FollowCamera()
         self.followed_body: np.ndarray | None = None  # (3,) [m] where the followed body is, at mean water
         self.camera_told_at = 0.0
@@ -115,6 +119,7 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
         if self.walls is not None:
             self.walls.show(frame, None if frame.cutaway is None else keel_of(frame))
         self.show_bodies(frame)
+        self.show_moorings(frame)
         self.stains.show(frame)
         self.show_pulls(frame)
         if self.rig.visible != p.rig:
@@ -231,6 +236,29 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
             self.pull_lines.append(PullLine(self.server, f"/pull{len(self.pull_lines)}"))
         for i, line in enumerate(self.pull_lines):
             line.show(frame.pulls[i] if i < len(frame.pulls) else None)
+
+    def show_moorings(self, frame: RadialFrame) -> None:
+        """Draw the mooring lines as rods: a stroke that passes the camera would be drawn where it is not."""
+        start = frame.moorings[:, 0]
+        way = frame.moorings[:, 1] - start
+        length = np.sqrt((way * way).sum(axis=1))
+        x, y, z = (way / length[:, None]).T
+        turn = np.stack([1.0 + x, np.zeros_like(x), -z, y], axis=1)  # of the x axis onto the line
+        turn /= np.sqrt((turn * turn).sum(axis=1, keepdims=True))
+        radius = np.full_like(length, LINE_RADIUS * frame.params.size)
+        poses = {
+            "batched_positions": start, "batched_wxyzs": turn, "batched_scales": np.stack([length, radius, radius], 1)
+        }  # fmt: skip
+        if self.moorings is not None and len(self.moorings.batched_positions) != len(start):
+            self.moorings.remove()
+            self.moorings = None
+        if not len(start):
+            return
+        if self.moorings is None:
+            self.moorings = self.server.scene.add_batched_meshes_simple(
+                "/moorings", ROD, tube_faces(2), batched_colors=LINE_COLOUR, lod="off", **poses, **NO_SHADOWS
+            )
+        set_arrays(self.moorings, **poses)
 
     def move_camera(self, frame: RadialFrame) -> None:
         """Move to the followed object when it is chosen, then along with it; report the camera's place to the scene."""

@@ -16,7 +16,7 @@ import trimesh
 from app.__main__ import main
 from app.messages import Grab, Place, Release
 from app.scenes.contract import AnyScene
-from app.scenes.radial_sea.bodies import BODY_KINDS, place_of
+from app.scenes.radial_sea.bodies import BED_DEPTH, BODY_KINDS, place_of
 from app.scenes.radial_sea.drawn_surface import FOAM_RADIUS, mean_square_slope, tile_of
 from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden
 from app.scenes.radial_sea.report import marks_of
@@ -115,7 +115,7 @@ def test_a_grabbed_buoy_goes_under_and_comes_back() -> None:
 
 def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
-    home = scene.bodies.home[2]
+    home = scene.bodies.fleet.position[2, :2].copy()
     scene.bodies.fleet.velocity[2] = (6.0, 0.0, 5.0)
     run(scene, 1.0)
     assert np.hypot(*(scene.bodies.fleet.position[2, :2] - home)) > 3.0
@@ -149,31 +149,19 @@ def test_a_browser_lets_go_only_of_what_it_holds() -> None:
     assert scene.bodies.fleet.pull_limit[1] == 0.0
 
 
-@pytest.mark.parametrize("size", [1.0, 2.0])
-def test_a_mooring_line_is_slack_then_stiff_then_at_its_limit(size: float) -> None:
-    """In weights of the body, at rest: none up to 1.5 m, 0.06 per metre from there, 0.6 at most; by the body's size."""
-    scene = RadialSeaScene(with_parameters(**CALM, size=size))
-    bodies = scene.bodies
-    weight = bodies.fleet.mass * 9.81
-    home = bodies.fleet.position[:, :2].copy()
-    bodies.fleet.velocity[:] = 0.0
-    for away, pull in ((0.0, 0.0), (1.49, 0.0), (2.5, 0.06), (6.5, 0.3), (11.4, 0.594), (11.6, 0.6), (50.0, 0.6)):
-        bodies.fleet.position[:, :2] = home + size * away * np.array([0.6, -0.8])
-        bodies.moor()
-        found = bodies.fleet.mooring / weight[:, None]
-        assert found == pytest.approx(np.tile(pull * np.array([-0.6, 0.8]), (bodies.count, 1)), abs=1e-6)
-
-
-def test_a_mooring_line_damps_and_never_pushes() -> None:
-    """0.15 of the critical damping while it pulls: 2 times 0.15 sqrt(0.06 g) times the speed outwards."""
-    scene = RadialSeaScene(with_parameters(**CALM, size=1.0))
-    fleet = scene.bodies.fleet
-    fleet.position[:, 0] += 3.5
-    for speed, acceleration in ((1.0, 0.12 * 9.81 + 0.3 * math.sqrt(0.06 * 9.81)), (-20.0, 0.0)):
-        fleet.velocity[:] = 0.0
-        fleet.velocity[:, 0] = speed
-        scene.bodies.moor()
-        assert fleet.mooring[:, 0] == pytest.approx(-acceleration * fleet.mass, abs=1e-6 * fleet.mass.max())
+def test_drifting_bodies_are_held_by_lines_that_the_picture_shows() -> None:
+    scene = RadialSeaScene(with_parameters(rig=False, wind_speed=8.0))
+    home = scene.bodies.fleet.position[:, :2].copy()
+    lines = scene.frame().moorings
+    assert lines.shape == (12, 2, 3)
+    assert (lines[:, 1, 2] == -BED_DEPTH).all()
+    assert np.linalg.norm(lines[:, 0] - np.repeat(scene.frame().positions, 4, axis=0), axis=1).max() < 1.5
+    run(scene, 60.0)
+    assert np.hypot(*(scene.bodies.fleet.position[:, :2] - home).T).max() < 8.0
+    for reading in scene.readings().bodies:
+        assert reading.offset > 0.2
+        assert reading.tension > 0.0
+    np.testing.assert_array_equal(scene.frame().moorings[:, 1], lines[:, 1])
 
 
 def test_a_mooring_that_is_taken_off_pulls_no_longer() -> None:
@@ -185,6 +173,7 @@ def test_a_mooring_that_is_taken_off_pulls_no_longer() -> None:
     scene.change_forces(dataclasses.replace(scene.params, mooring=False))
     scene.advance(2)
     assert not scene.bodies.fleet.mooring.any()
+    assert not len(scene.frame().moorings)
     assert scene.bodies.fleet.pull_limit[1] > 0.0
 
 

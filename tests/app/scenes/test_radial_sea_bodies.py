@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from app.scenes.radial_sea.bodies import LINE_REACH
 from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import PRESETS, Params
 from app.scenes.radial_sea.report import forces_html
@@ -30,8 +31,12 @@ def test_in_waves_bodies_float_on_average_as_archimedes_says(preset: str) -> Non
     """Draft within 1 mm, buoyancy within 0.1 % of the weight: over a minute, and as the page shows them.
 
     A ball's mean draft differs from that at rest by -A'/(2 A) of the variance of its draft: its cuts differ in area.
+    The mooring lines are level here, as others pull down.
     """
     scene = scene_with(**PRESETS[preset])
+    lines = scene.bodies.lines
+    lines.anchors[:, :, 2] = scene.bodies.fleet.position[:, None, 2] + scene.bodies.keel[:, None]
+    lines.length[:] = LINE_REACH
     bodies, drafts, forces = scene.bodies, [], []
     for _ in range(70 * 60):
         scene.advance(1)
@@ -167,7 +172,7 @@ def test_on_the_square_seas_surface_buoyancy_carries_the_weight_too() -> None:
     bodies, buoyancy = scene.bodies, []
     for _ in range(35 * 60):
         scene.advance(1)
-        buoyancy.append(bodies.fleet.buoyancy.copy())
+        buoyancy.append(bodies.fleet.buoyancy + bodies.fleet.mooring[:, 2])  # lines pull down
     window = np.hanning(1800)[:, None] / np.hanning(1800).sum()
     mean = (window * np.array(buoyancy[-1800:])).sum(axis=0)
     assert mean / (bodies.fleet.mass * scene.column.gravity) == pytest.approx(np.ones(bodies.count), abs=2e-3)

@@ -1,0 +1,51 @@
+"""Four elastic lines a body, for many bodies at once: ropes as heavy as water, straight while taut, without a state.
+
+T = EA (l/L - 1) while taut, 0 while slack: the catenary (sim.mooring) of a line without weight. Lines that are just
+taut at rest do not pull there, and one of each opposite two pulls elsewhere. So a body is held by K = EA/L cos^2 of
+their slope, alike in all level directions. Mass and drag of the lines are left out.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.floating.rotation import body_z_axes
+
+Array = NDArray[np.float64]
+DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])  # from a body to its anchors
+
+
+class MooringLines(NamedTuple):
+    """The lines of n bodies."""
+
+    fairlead: Array  # (n,) [m] height over the body's centre along its z axis
+    anchors: Array  # (n, 4, 3) [m]
+    length: Array  # (n, 4) [m] unstretched
+    stiffness: Array  # (n,) EA [N]
+
+
+def just_taut(rest: Array, fairlead: Array, stiffness: Array, depth: float, reach: float) -> MooringLines:
+    """Lines without tension where the fairleads rest (n, 3) [m]; fairlead (n,) [m], stiffness (n,) [N]: as above.
+
+    depth, reach [m]: of the anchors below still water, and level from the fairleads.
+    """
+    level = rest[:, None, :2] + reach * DIRECTIONS
+    anchors = np.concatenate((level, np.full((*level.shape[:2], 1), -depth)), axis=2)
+    return MooringLines(fairlead, anchors, np.linalg.norm(anchors - rest[:, None], axis=2), stiffness)
+
+
+def fairleads(lines: MooringLines, position: Array, rotation: Array) -> Array:
+    """Places (n, 3) [m] of the fairleads; position (n, 3) [m] and rotation (n, 4) are the bodies'."""
+    return position + lines.fairlead[:, None] * body_z_axes(rotation)
+
+
+def pulls(lines: MooringLines, position: Array, rotation: Array) -> tuple[Array, Array]:
+    """Force and moment (n, 6) [N, N m] about each body's centre in world axes, and tensions (n, 4) [N]."""
+    place = fairleads(lines, position, rotation)
+    way = lines.anchors - place[:, None]
+    distance = np.sqrt(np.einsum("nki,nki->nk", way, way))
+    tension = lines.stiffness[:, None] * np.maximum(distance / lines.length - 1.0, 0.0)
+    x, y, z = np.einsum("nk,nki->in", tension / distance, way)
+    a, b, c = (place - position).T
+    return np.stack((x, y, z, b * z - c * y, c * x - a * z, a * y - b * x), axis=1), tension

@@ -181,8 +181,6 @@ def quantity(unit: str) -> Callable[[str], float]:
         except ValueError:
             pass
         try:
-            if unit == "s" and text.strip().endswith("m"):
-                raise ValueError("m may mean milliseconds, minutes or metres")
             return read_number(text, unit)
         except ValueError as reason:
             raise argparse.ArgumentTypeError(f"{text!r}: {reason}; write a number, with or without {unit}") from None

@@ -1,4 +1,4 @@
-"""Numbers as people write them: `read_number` takes "1e4", "1/60", "0,02", "20k" and "5 ms"; `write_number` shows one.
+"""Numbers as people write them: `read_number` takes "1e4", "1/60", "0,02", "20k", "5 ms"; `write_number` shows one.
 
 A number is written so that reading it again gives the very same number.
 """
@@ -9,6 +9,7 @@ from fractions import Fraction
 
 PREFIXES = {"n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "k": 3, "K": 3, "M": 6, "G": 9}
 CENTI = {"c": -2}  # with a unit only: "5 c" is none
+TIMES = {"min": 60, "h": 3600}  # [s] that are typed for seconds
 MAX_LENGTH = 64  # characters of a number
 MAX_EXPONENT = 400  # beyond it every float is 0 or infinite
 MAX_DENOMINATOR = 100_000  # of a number that is written as 1/n
@@ -27,16 +28,24 @@ def plain_unit(unit: str) -> str:
     return unit
 
 
-def exponent_of(suffix: str, unit: str) -> int | None:
-    """The power of ten that a suffix stands for: a prefix, the unit, or both; None for any other suffix."""
-    suffix, unit = plain_unit(suffix), plain_unit(unit)
-    if suffix in ("", unit):
-        return 0
-    if not unit or not suffix.endswith(unit):
-        return PREFIXES.get(suffix)
-    power = re.match(r"[A-Za-z]+\^(\d)", unit)  # of a prefix: 1 mm² is 1e-6 m²
-    exponent = (PREFIXES | CENTI).get(suffix.removesuffix(unit).strip())
-    return None if exponent is None else exponent * (int(power[1]) if power else 1)
+def factor_of(suffix: str, unit: str) -> Fraction:
+    """The factor that a suffix stands for: a prefix, the unit, or both. Raises ValueError for any other suffix."""
+    suffix, plain = plain_unit(suffix), plain_unit(unit)
+    if suffix in ("", plain):
+        return Fraction(1)
+    if suffix == "m":  # a thousandth, a minute or a metre
+        raise ValueError(f"'m' alone may mean two things: write {'ms or min' if plain == 's' else 'e-3'}")
+    if plain == "s" and suffix in TIMES:
+        return Fraction(TIMES[suffix])
+    power = None
+    prefixes = PREFIXES
+    if plain and suffix.endswith(plain):
+        power = re.match(r"[A-Za-z]+\^(\d)", plain)  # of a prefix: 1 mm² is 1e-6 m²
+        prefixes = PREFIXES | CENTI
+        suffix = suffix.removesuffix(plain).strip()
+    if suffix not in prefixes:
+        raise ValueError(f"{suffix!r} is no unit of it")
+    return Fraction(10) ** (prefixes[suffix] * (int(power[1]) if power else 1))
 
 
 def fraction_of(digits: str) -> Fraction:
@@ -50,10 +59,10 @@ def fraction_of(digits: str) -> Fraction:
 def read_number(text: str, unit: str = "") -> float:
     """Parse a number, rounded once.
 
-    It may be a quotient, have a decimal comma, and end in a prefix (n, µ or u, m, k, M, G), in the unit, or in both;
-    "cm" too.
-    "5m" is five metres if the unit is m, and five thousandths otherwise.
-    Raises ValueError for text that is no number, and for "1,000", whose meaning depends on the country.
+    It may be a quotient, have a decimal comma, and end in a prefix (n, µ or u, k, M, G), in the unit, or in both;
+    "cm" too, and "min" or "h" for seconds.
+    Raises ValueError for text that is no number, for "1,000", whose meaning depends on the country, and for "5m" where
+    the unit is not the metre: five thousandths, or five minutes.
     """
     word = text.strip().replace("\u2212", "-")
     word = re.sub(r"(?<=\d)[\u00a0\u2009\u202f ](?=\d{3}(?!\d))", "", word)  # spaces between groups of digits
@@ -63,16 +72,13 @@ def read_number(text: str, unit: str = "") -> float:
     number, divisor, suffix = match["number"], match["divisor"], (match["suffix"] or "").strip()
     if GROUPED.fullmatch(number):
         raise ValueError("the comma may mean two things: write 1000 or 1.000")
-    exponent = exponent_of(suffix, unit)
-    if exponent is None:
-        raise ValueError(f"{suffix!r} is no unit of it")
-    value = fraction_of(number)
+    value = fraction_of(number) * factor_of(suffix, unit)
     if divisor is not None:
         if fraction_of(divisor) == 0:
             raise ValueError("divided by zero")
         value /= fraction_of(divisor)
     try:
-        return float(value * Fraction(10) ** exponent)
+        return float(value)
     except OverflowError:
         raise ValueError("too large a number") from None
 

@@ -11,10 +11,10 @@ from sim.quantities import plain, read_number, write_number
     ("text", "unit", "value"),
     [
         ("1e4", "", 1e4), ("3.7e+03", "N/m", 3700.0), ("1/60", "s", 1 / 60), ("1 / 60 s", "s", 1 / 60),
-        ("0,02", "s", 0.02), (".5", "", 0.5), ("20k", "N/m", 20e3), ("20 kN/m", "N/m", 20e3), ("5m", "s", 0.005),
-        ("5 ms", "s", 0.005), ("5m", "m", 5.0), ("5mm", "m", 0.005), ("9.81 m/s²", "m/s^2", 9.81),
-        ("9.81 m/s^2", "m/s²", 9.81), ("3 700", "N/m", 3700.0), ("\u22123", "", -3.0), ("0.1", "", 0.1),
-        ("0.3u", "m", 3e-7), ("11.25 cm", "m", 0.1125), ("3 mm²", "m²", 3e-6),
+        ("0,02", "s", 0.02), (".5", "", 0.5), ("20k", "N/m", 20e3), ("20 kN/m", "N/m", 20e3), ("5 ms", "s", 0.005),
+        ("5 min", "s", 300.0), ("0.5 h", "s", 1800.0), ("5m", "m", 5.0), ("5mm", "m", 0.005),
+        ("9.81 m/s²", "m/s^2", 9.81), ("9.81 m/s^2", "m/s²", 9.81), ("3 700", "N/m", 3700.0),
+        ("\u22123", "", -3.0), ("0.1", "", 0.1), ("0.3u", "m", 3e-7), ("11.25 cm", "m", 0.1125), ("3 mm²", "m²", 3e-6),
     ],
 )  # fmt: skip
 def test_a_number_is_read_in_the_ways_that_people_write_it(text: str, unit: str, value: float) -> None:
@@ -31,6 +31,12 @@ def test_a_number_is_read_in_the_ways_that_people_write_it(text: str, unit: str,
 def test_what_is_no_number_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r"\w"):
         read_number(text, "N/m")
+
+
+@pytest.mark.parametrize(("unit", "clear"), [("s", "ms or min"), ("N/m", "e-3"), ("", "e-3")])
+def test_m_alone_is_refused_where_it_is_no_metre(unit: str, clear: str) -> None:
+    with pytest.raises(ValueError, match=f"two things: write {clear}$"):
+        read_number("5m", unit)
 
 
 @pytest.mark.parametrize("text", ["1,000", "-12,345", "1,000,000"])

@@ -53,7 +53,7 @@ def make(hull_file: Path, out: Path | None) -> int:
         table = make_table(hull, drafts, progress=lambda: progress.advance(task))
     write_table(out, table, hull)
     note = "" if out == place else f" --hull looks for it at {place}."
-    print(f"Wrote {out}: {len(drafts)} drafts from {drafts[0]:.3g} to {drafts[-1]:.3g} m.{note}")
+    text_tables.say(f"Wrote {out}: {len(drafts)} drafts from {drafts[0]:.3g} to {drafts[-1]:.3g} m.{note}")
     return 0
 
 

@@ -26,7 +26,7 @@ PARALLEL = 2  # folders of a class that are checked at the same time
 def new(folder: Path, tasks: Sequence[Path], *, solutions: bool) -> int:
     """Write the exercises into a folder; returns the exit status."""
     written = make_folder(folder, load_tasks(*tasks), solutions=solutions)
-    print(f"Wrote {', '.join(path.name for path in written)} in {folder}. Begin with {folder / 'README.md'}")
+    text_tables.say(f"Wrote {', '.join(path.name for path in written)} in {folder}. Begin with {folder / 'README.md'}")
     return 0
 
 
@@ -76,18 +76,18 @@ def print_results(results: Sequence[FolderResult], *, everything: bool = False) 
     for text in [result.answers.error, *problems]:
         if text:
             console.print()
-            print_paragraph(text, console)
+            text_tables.say(plain(text))
     for entry in result.tasks:
         for text in entry.missing:
             console.print()
-            print_paragraph(f"{entry.task.item}, still to do: {text}", console)
+            text_tables.say(f"{entry.task.item}, still to do: {text}")
     rest = 0 if everything else sum(entry.state == "not begun" for entry in result.tasks)
     (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
     console.print()
     if rest:
-        print_paragraph(f"Not begun: {rest} of {len(result.tasks)} tasks; --all lists them.", console)
+        text_tables.say(f"Not begun: {rest} of {len(result.tasks)} tasks; --all lists them.")
     said = f"{right} of {count} tasks right, {more} of {optional} optional ones ({result.seconds:.1f} s)."
-    print_paragraph(said, console)
+    text_tables.say(said)
 
 
 def print_task(entry: TaskResult, console: Console) -> None:
@@ -96,13 +96,6 @@ def print_task(entry: TaskResult, console: Console) -> None:
     line = Text(f"{head}{plain(entry.task.title)}{' (optional)' if entry.task.optional else ''}")
     line.stylize(STYLES[entry.state], ITEM_WIDTH, len(head))
     console.print(line, soft_wrap=True)
-
-
-def print_paragraph(text: str, console: Console) -> None:
-    """Print a text at the width of the terminal, folded between words."""
-    console.print(
-        "\n".join(text_tables.fold(plain(text), console.width)), markup=False, highlight=False, soft_wrap=True
-    )
 
 
 def plain(text: str) -> str:

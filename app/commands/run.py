@@ -9,6 +9,7 @@ from rich import get_console
 from rich.progress import Progress
 
 from app.files import check_out_file
+from app.formats.text_tables import say
 from app.messages import DivergenceError
 from app.scenes.contract import Scene, SceneKind
 from app.scenes.setups import shared_values
@@ -69,9 +70,9 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
     about = {"scene": name, "parameters": shared_values(params), "units": units, "diverged": problem}
     kept = {"t": times[:count], **{key: array[:count] for key, array in arrays.items()}}
     write_arrays(out, {**kept, "about": np.array(json.dumps(about))})
-    print(f"{out}: {count} frames to t = {times[count - 1]:g} s, {', '.join(kept)}")
+    say(f"{out}: {count} frames to t = {times[count - 1]:g} s, {', '.join(kept)}")
     if problem:
-        print(f"The run ended early. {problem}")
+        say(f"The run ended early. {problem}")
         return 1
     return 0
 

@@ -13,6 +13,7 @@ from app.export import cloth_meshes, sea_pictures
 from app.export.cloth_meshes import ClothMeshes
 from app.export.sea_pictures import SeaPictures
 from app.export.sequence import Exporter, Sequence
+from app.formats.text_tables import say
 from app.messages import DivergenceError
 from app.scenes.setups import shared_values
 from sim.files import draft_of
@@ -70,9 +71,9 @@ def export(scene: str, params: Any, seconds: float, rate: float, start: float, f
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    print(f"{out}: {len(times)} frames, {form}; sequence.json says what they hold")
+    say(f"{out}: {len(times)} frames, {form}; sequence.json says what they hold")
     if problem:
-        print(f"The run ended early. {problem}")
+        say(f"The run ended early. {problem}")
         return 1
     return 0
 

@@ -1,5 +1,6 @@
 """Tables in a terminal: whole at any width, as rows or, if they are too wide, as lines "name: value unit"."""
 
+import shutil
 import textwrap
 from typing import Any
 
@@ -44,6 +45,11 @@ def show(title: str, rows: Rows) -> None:
     for row in rows:
         table.add_row(*(escape(written(row.get(name))) for name in names))
     console.print(table)
+
+
+def say(text: str) -> None:
+    """Print a text at the width of the terminal, folded between words."""
+    print("\n".join(fold(text, shutil.get_terminal_size().columns)))
 
 
 def fold(text: str, width: int) -> list[str]:

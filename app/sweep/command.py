@@ -8,6 +8,7 @@ from typing import Any
 
 from app.experiments.pool import progress_bar
 from app.files import check_out_file
+from app.formats.text_tables import say
 from app.sweep.case import DIVERGED, ENDS, FAILED, Outcome
 from app.sweep.spec import Spec, read_spec
 from sim.files import draft_of, replacing
@@ -43,7 +44,7 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
         if before is None:
             raise argument_error("--out", str(out), "a new name, or --fresh to replace what is there")
         check_same_sweep(out, before, identity(spec))
-        print(f"{out}: all {len(spec.cases)} cases are there; --fresh runs them again")
+        say(f"{out}: all {len(spec.cases)} cases are there; --fresh runs them again")
         return 0
     with contextlib.ExitStack() as stack:
         run = stack.enter_context(runner(spec, scheduler))
@@ -97,7 +98,7 @@ def run_missing(spec: Spec, store: Any, run: Run) -> dict[int, Outcome]:
                 outcomes[number] = outcome
                 advance(outcome)
     except KeyboardInterrupt:
-        print(f"stopped: {len(outcomes)} of {total} cases are kept in {store.path}; the same command goes on")
+        say(f"stopped: {len(outcomes)} of {total} cases are kept in {store.path}; the same command goes on")
         raise
     return outcomes
 
@@ -138,7 +139,7 @@ def report(out: Path, figures: list[Path], dataset: Any, outcomes: dict[int, Out
     ends = [outcome.end for outcome in outcomes.values()]
     counted = ", ".join(f"{ends.count(end)} {end}" for end in ENDS if end in ends)
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
-    print(f"{out}: {len(ends)} cases ({counted}) over {sizes}" + "".join(f", {path.name}" for path in figures))
+    say(f"{out}: {len(ends)} cases ({counted}) over {sizes}" + "".join(f", {path.name}" for path in figures))
     first = next((outcome.message for outcome in outcomes.values() if outcome.end == FAILED), "")
     if first:
-        print(f"The first that failed: {first}")
+        say(f"The first that failed: {first}")

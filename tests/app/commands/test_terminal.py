@@ -2,16 +2,21 @@
 
 import argparse
 import csv
+import io
+import re
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
 from app.__main__ import main, make_parser
 from app.commands import hydrodynamics
 from app.formats import text_tables
 from app.scenes import NAMES, scene_named
+from app.sweep import workers
+from app.sweep.case import run_case
 from sim.parameters import parameters_of
 
 WIDTH = 80  # [characters]
@@ -93,6 +98,22 @@ def test_the_comparison_of_hulls_is_whole(monkeypatch: pytest.MonkeyPatch, capsy
     monkeypatch.setattr(hydrodynamics, "compared", lambda *_: [row])
     assert main(["hydrodynamics", "--compare"]) == 0
     check_whole(capsys.readouterr().out, row.quantity, "1.2345", "1.2344", "+0.01%")
+
+
+def test_a_sweep_says_how_far_it_is_and_what_it_wrote(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("netCDF4")
+    monkeypatch.setattr(workers, "on_cores", lambda jobs: ((i, run_case(*job)) for i, job in jobs.items()))
+    Path("s.toml").write_text(
+        'scene = "rope"\nseconds = 1.0\n[set]\npoints = 2\nintegrator = "explicit_euler"\n'
+        "[parameters]\ntime_step = [0.001, 0.1]\ndrag = [0.0, 1.0]\n"
+    )
+    bar = io.StringIO()
+    monkeypatch.setattr("rich._console", Console(file=bar, force_terminal=True, width=WIDTH))
+    assert main(["sweep", "s.toml", "--out", f"{'results_' * 6}.nc"]) == 0
+    check_whole(re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", bar.getvalue()).replace("\r", "\n"), "4/4")
+    check_whole(capsys.readouterr().out, "4 cases", "time_step 2", ".svg")
 
 
 RESULTS = sorted(

@@ -250,7 +250,7 @@ def answer_of(question: Question, text: str) -> Value:
         return read_number(word, question.unit)
     except ValueError as reason:
         unit = f" in {question.unit}" if question.unit else ""
-        raise ValueError(f"{word!r} is not kept: write a number{unit} ({reason}).") from None
+        raise ValueError(f"{word!r} is not kept: {reason}. Write a number{unit}, such as 0.5.") from None
 
 
 def read_off(question: Question, values: LiveValues) -> str:

@@ -67,13 +67,13 @@ class QuestionWidgets:
             self.field = gui.add_text(label, shown, multiline=question.kind == "text")
         self.field.on_update(self.on_field)
         self.widgets.append(self.field)
+        self.line = gui.add_html("")
+        self.widgets.append(self.line)
         self.reader: GuiHandle | None = None
         if question.read_off:
             self.reader = gui.add_button_group("", ("Read off",), visible=False)
             self.reader.on_click(self.on_read_off)
             self.widgets.append(self.reader)
-        self.line = gui.add_html("")
-        self.widgets.append(self.line)
         self.show()
 
     def kept_text(self) -> str:
@@ -81,7 +81,7 @@ class QuestionWidgets:
         answer = self.workbook.answers.of(self.task, self.question)
         if self.question.kind == "choice":
             return answer if isinstance(answer, str) and answer in self.question.choices else UNANSWERED
-        return "" if answer is None else answer if isinstance(answer, str) else f"{answer:g}"
+        return "" if answer is None else answer if isinstance(answer, str) else f"{answer:.10g}"
 
     async def on_field(self, event: ViserEvent) -> None:
         """A browser has answered; a text is kept once the typing pauses."""
@@ -129,9 +129,9 @@ class QuestionWidgets:
         said = Html()
         if self.refusal:
             said = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal)
-        elif verdict.state in STATE_WORDS:
+        elif verdict.state in STATE_WORDS and (verdict.state != "given" or self.question.kind == "text"):
             text = verdict.text
-            if self.question.kind == "text" and verdict.state == "given":
+            if verdict.state == "given":
                 text = f"Compare: {self.question.why}" if self.question.why else ""
             said = fill(
                 '<div class="springtide-line springtide-verdict">{} {}</div>',

@@ -1,9 +1,7 @@
-"""`springtide run` under hostile words, full disks and folders that cannot be written."""
+"""`springtide run` as a user types it, also with hostile words, full disks and folders that cannot be written."""
 
 import json
 import resource
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +22,37 @@ def test_an_out_that_cannot_be_written_is_refused_before_any_work(out, tmp_path,
     assert "--out" in capsys.readouterr().err
 
 
+def test_a_method_that_refuses_the_net_is_refused_where_nobody_looks(tmp_path, capsys):
+    assert run(tmp_path / "a.npz", "--seconds", "1", "--set", "integrator=pefrl") == 2
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert "integrator: 'pefrl' is not allowed" in line
+    assert not list(tmp_path.iterdir())
+
+
+def test_run_writes_arrays_units_and_all_parameters(tmp_path):
+    (tmp_path / "other").write_text("")
+    out = tmp_path / "rope.npz"
+    assert run(out, "--seconds", "1", "--set", "points=20", "integrator=rk4") == 0
+    data = np.load(out)
+    assert data["x"].shape == (len(data["t"]), 20, 3)
+    assert data["t"][-1] == pytest.approx(1.0)
+    assert np.isfinite(data["x"]).all()
+    about = json.loads(str(data["about"]))
+    assert about["units"]["x"] == "m"
+    assert about["parameters"]["integrator"] == "rk4"
+    assert out.stat().st_mode == (tmp_path / "other").stat().st_mode  # whom any new file may be read by
+    assert run(out, "--seconds", "0.1", "--set", "mass=1000", "stiffness=1e9", "time_step=1e-5") in (0, 1)
+    assert json.loads(str(np.load(out)["about"]))["parameters"]["stiffness"] == 1e9
+
+
+def test_a_diverging_run_keeps_what_it_had_and_says_so(tmp_path, capsys):
+    assert run(tmp_path / "boom.npz", "--seconds", "5", "--set", "integrator=explicit_euler") == 1
+    assert "of the largest stable one for explicit Euler" in capsys.readouterr().out
+    data = np.load(tmp_path / "boom.npz")
+    assert 0 < data["t"][-1] < 5
+    assert np.isfinite(data["x"]).all()
+
+
 @pytest.mark.parametrize(("rate", "step"), [("1e5", 0.02), ("30", 0.02), ("30", 0.05), ("7", 1 / 60), ("0.1", 0.01)])
 def test_a_run_ends_at_the_first_step_at_or_after_the_time_asked_for(rate, step, tmp_path):
     parameters = ("--set", f"time_step={step}", "stiffness=100")
@@ -33,33 +62,15 @@ def test_a_run_ends_at_the_first_step_at_or_after_the_time_asked_for(rate, step,
     assert (np.diff(t) > 0.9 * step).all()
 
 
-def test_the_file_may_be_read_by_whom_any_new_file_may(tmp_path):
-    (tmp_path / "other").write_text("")
-    assert run(tmp_path / "a.npz", "--seconds", "0.1") == 0
-    assert (tmp_path / "a.npz").stat().st_mode == (tmp_path / "other").stat().st_mode
-
-
-def test_a_full_disk_ends_it_with_a_line_and_the_old_file_in_place(tmp_path):
+def test_a_full_disk_ends_it_with_a_line_and_the_old_file_in_place(tmp_path, capsys):
     out = tmp_path / "a.npz"
     out.write_bytes(b"precious")
-    command = [sys.executable, "-m", "app", "run", "rope", "--seconds", "20", "--out", str(out)]
-    done = subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        timeout=250,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000)),
-        check=False,
-    )
-    assert done.returncode == 1
-    assert len(done.stderr.strip().splitlines()) == 1, done.stderr
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, hard))
+    try:
+        assert run(out, "--seconds", "20") == 1
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
     assert out.read_bytes() == b"precious"
     assert list(tmp_path.iterdir()) == [out]
-
-
-def test_parameters_in_the_file_are_json_whatever_they_are(tmp_path):
-    assert run(tmp_path / "a.npz", "--seconds", "0.1", "--set", "mass=1000", "stiffness=1e9", "time_step=1e-5") in (
-        0,
-        1,
-    )
-    assert json.loads(str(np.load(tmp_path / "a.npz")["about"]))["parameters"]["stiffness"] == 1e9

@@ -38,12 +38,6 @@ def argument_error(capsys: pytest.CaptureFixture, *arguments: str) -> str:
     return lines[0]
 
 
-# ----- scene names
-
-
-# ----- presets
-
-
 def parameters_in(path: Path) -> dict[str, object]:
     return json.loads(str(np.load(path)["about"]))["parameters"]
 
@@ -59,16 +53,10 @@ def test_a_preset_is_a_name_or_a_file(tmp_path):
     assert parameters_in(out)["points"] == 7
 
 
-# ----- hosts
-
-
 @pytest.mark.parametrize("host", ["", "a\0b", "no host", "\ud800", "ä" * 70])
 def test_a_host_that_is_none_is_refused(capsys, monkeypatch, host):
     monkeypatch.setattr(serve_command, "Viewer", None)  # nothing is to be started
     assert "--host" in argument_error(capsys, "--host", host, "--port", "0", "--no-open")
-
-
-# ----- output files
 
 
 def test_a_link_is_followed_and_stays_a_link(tmp_path):
@@ -91,9 +79,6 @@ def test_what_is_no_file_is_refused_and_left_alone(capsys, tmp_path):
     assert stat.S_ISFIFO(pipe.stat().st_mode)
     assert loop.is_symlink()
     assert len(list(tmp_path.iterdir())) == 2
-
-
-# ----- terminals
 
 
 def test_an_ascii_terminal_takes_a_name_that_it_cannot_show(tmp_path):
@@ -130,9 +115,6 @@ def test_the_lab_is_served_where_nothing_can_be_printed(tmp_path):
         process.wait()
 
 
-# ----- signals
-
-
 def test_a_run_that_is_told_to_end_leaves_nothing(tmp_path):
     # A file of 100 MB, so that the signal comes while it is written.
     parameters = ("--set", "points=1000", "time_step=1e-3", "stiffness=100")
@@ -167,9 +149,6 @@ def test_waiting_for_the_end_never_blocks_for_long(monkeypatch):
     assert all(timeout is not None and timeout <= 1.0 for timeout in timeouts)
 
 
-# ----- memory
-
-
 def test_a_run_holds_its_arrays_once(tmp_path):
     out = tmp_path / "a.npz"
     arguments = ["run", "rope", "--rate", "1000", "--out", str(out), "--set", "points=1000", "time_step=1e-3"]
@@ -187,15 +166,11 @@ def test_a_run_holds_its_arrays_once(tmp_path):
     assert peak < size + 20e6  # numpy writes an array in pieces of 17 MB
 
 
-# ----- hulls
-
-
-def test_a_mesh_of_huge_coordinates_is_refused_without_warnings(tmp_path):
+def test_a_mesh_of_huge_coordinates_is_refused_without_warnings(capsys, recwarn, tmp_path):
     mesh = tmp_path / "huge.obj"
     for size in ("1e300", "1e15"):
         corners = "".join(f"v {x} {y} {z}\n" for x, y, z in ((0, 0, 0), (size, 0, 0), (0, size, 0), (0, 0, size)))
         mesh.write_text(corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
-        process = program("run", "radial_sea", "--seconds", "1", "--out", str(tmp_path / "a.npz"), "--hull", str(mesh))
-        _, errors = process.communicate(timeout=250)
-        assert process.returncode == 2
-        assert len(errors.strip().splitlines()) == 1, errors
+        out = str(tmp_path / "a.npz")
+        argument_error(capsys, "run", "radial_sea", "--seconds", "1", "--out", out, "--hull", str(mesh))
+        assert not recwarn.list

@@ -139,30 +139,6 @@ def number_or_text(cell: str) -> float | str:
         return cell
 
 
-REFUSALS = {
-    ("run", "ropes", "--seconds", "1", "--out", "a.npz"): "did you mean rope?",
-    ("run", "rope", "--preset", "Pendulm", "--seconds", "1", "--out", "a.npz"): "did you mean Pendulum?",
-    ("run", "rope"): "--seconds: missing",
-    ("run", "rope", "--preset", "nowhere.json", "--seconds", "1", "--out", "a.npz"): "nowhere.json: no such file",
-    ("sweep", "nowhere.toml", "--out", "a.nc"): "nowhere.toml: no such file",
-    ("hydrodynamics", "nowhere.stl"): "nowhere.stl: no such file",
-    ("hydrodynamics",): "HULL: give a mesh file",
-    ("lab", "nowhere"): "nowhere: no such folder",
-    ("lab", "check", "nowhere"): "nowhere: no such folder",
-    ("beside", "planet"): "did you mean planets?",
-    ("bench", "ropes"): "did you mean rope",
-}
-
-
-@pytest.mark.parametrize(("words", "said"), REFUSALS.items(), ids=map(" ".join, REFUSALS))
-def test_what_is_missing_or_mistyped_is_named(
-    words: tuple[str, ...], said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(list(words)) == 2
-    assert said in capsys.readouterr().err
-    assert list(Path().iterdir()) == []
-
-
 @pytest.mark.parametrize("seconds", ["0.02", "0.02 s", "20ms", "1/50", "0,02"])
 def test_a_time_may_have_its_unit(seconds: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "rope", "--set", "points=2", "--seconds", seconds, "--out", "a.npz"]) == 0

@@ -23,7 +23,8 @@ from tests.waiting import wait_for
 
 TASKS = load_tasks()
 FRAME = 1 / 15  # [s] of a scene's motion
-BEFORE, AFTER = 0.1, 1.0  # [s] of motion before and after the parameter is changed
+BEFORE, AFTER = 0.1, 0.5  # [s] of motion before and after the parameter is changed
+FALL = 1.0  # [s] after which the floor is reached
 # A parameter is tested in the first of these in which it acts on the motion. The rope falls over the sphere onto the
 # floor, its root swings, and a hand pulls it. The cloth falls over a sphere that moves up and down, onto the floor, in
 # the wind, and a hand pulls it; or it hangs in pleats that touch each other.
@@ -88,7 +89,7 @@ def run(scene: Any, seconds: float) -> None:
 
 
 def changed(name: str, base: Any, parameter: str, value: Value, session: Session | None = None) -> Any:
-    """A scene 1 s after the parameter was changed. session: moves a rope or a cloth beside the program's."""
+    """A scene some time after the parameter was changed. session: moves a rope or a cloth beside the program's."""
     scene = SCENES[name](base, None if session is None else session.live)
     scene.handle(Grab(HELD[name], (-1.0, 0.5, 1.5), 0))
     run(scene, BEFORE)
@@ -98,7 +99,7 @@ def changed(name: str, base: Any, parameter: str, value: Value, session: Session
         scene.reset()
     else:
         scene.change_forces(new)
-    run(scene, AFTER)
+    run(scene, FALL if parameter == "floor" else AFTER)
     return scene
 
 

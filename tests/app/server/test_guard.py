@@ -67,20 +67,14 @@ async def say(port: int, messages: list[dict[str, Any]], origin: str | None = No
                 cuts += 1
 
 
-def test_a_foreign_page_is_refused(lab: Viewer) -> None:
-    with pytest.raises(websockets.exceptions.InvalidStatus) as refusal:
-        coroutines.run(say(lab.port, [], "http://evil.example"))
-    assert refusal.value.response.status_code == 403
-
-
-def test_the_page_itself_is_let_in(lab: Viewer) -> None:
-    coroutines.run(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
-
-
-def test_the_page_is_served(lab: Viewer) -> None:
+def test_the_page_is_served_and_let_in_and_no_other(lab: Viewer) -> None:
     connection = http.client.HTTPConnection("127.0.0.1", lab.port)
     connection.request("GET", "/")
     assert connection.getresponse().status == 200
+    coroutines.run(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
+    with pytest.raises(websockets.exceptions.InvalidStatus) as refusal:
+        coroutines.run(say(lab.port, [], "http://evil.example"))
+    assert refusal.value.response.status_code == 403
 
 
 HOSTILE = [
@@ -142,6 +136,7 @@ def test_hostile_messages_leave_the_server_running_and_the_state_finite(lab: Vie
         elif not isinstance(value, bool):
             assert control.parameter.low <= value <= control.parameter.high, name
     assert lab.server._share_tunnel is None
+    assert not any("Share" in kind.__name__ for kind in lab.server._websock_server._incoming_handlers)
     coroutines.run(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
 
 
@@ -214,11 +209,6 @@ def test_a_callback_that_fails_is_reported_and_loses_no_other_message(capsys: py
     report = capsys.readouterr().err
     assert report.count("Traceback") == 1
     assert "no such colour" in report
-
-
-def test_the_share_tunnel_has_no_handler(lab: Viewer) -> None:
-    handlers = {kind.__name__ for kind in lab.server._websock_server._incoming_handlers}
-    assert not any("Share" in name for name in handlers)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e7, [math.nan], {"k": [1, math.inf]}, "x" * 2000, object()])

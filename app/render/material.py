@@ -11,7 +11,7 @@ from sim.validation import argument_error
 
 RGB = tuple[float, float, float]
 HAZE_DISTANCE = 3000.0  # [m]
-RAIN_HEIGHT = 1000.0  # [m] from which rain falls
+RAIN_HEIGHT = 350.0  # [m] of the clouds from which rain falls
 
 # Uniforms of the water shader, three numbers each, in the order in which they travel. The script takes the names from
 # here; `js/water_shader.js` declares each of them with its meaning.

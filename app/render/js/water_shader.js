@@ -185,7 +185,9 @@ const WATER_GLSL = {
     // Radiance c of the sky in the direction d as it is seen through the rain.
     vec3 behindRain(vec3 c, vec3 d) {
       if (rainVeil.x <= 0.0) return c;
-      return mix(horizon(d), c, exp(-rainVeil.x * rainVeil.y / max(d.z, 0.02)));
+      // It falls in shafts, aslant.
+      float bearing = atan(d.y, d.x) + d.z, shafts = 1.0 + 0.4 * sin(7.0 * bearing + 1.9 * sin(4.0 * bearing));
+      return mix(horizon(d), c, exp(-shafts * rainVeil.x * rainVeil.y / max(d.z, 0.02)));
     }`,
 
   noise: `

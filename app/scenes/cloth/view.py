@@ -67,7 +67,7 @@ STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 10
 class View(SceneView[Params, ClothFrame, ClothReadings]):
     """Draws `ClothFrame`s."""
 
-    CAMERA = ((0.85, -1.75, 2.15), (0.2, 0.0, 1.15))  # position, target [m]; of a level cloth
+    CAMERA = ((0.7, -1.5, 1.9), (0.12, 0.0, 1.12))  # position, target [m]; of a level cloth
     HANGING = ((0.62, -1.55, 1.75), (0.15, 0.0, 1.32))  # the same of one that hangs
     FIELD_OF_VIEW = 1.3  # [rad]
 

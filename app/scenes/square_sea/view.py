@@ -64,7 +64,8 @@ def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
 def rain_look(rate: float, gravity: float) -> tuple[tuple[float, float, float], float]:
     """The rings and the extinction [1/m] of `Material` in rain of this rate [mm/h]; they are asked for each frame."""
     length, speed = ring_wave(gravity, SURFACE_TENSION, WATER_DENSITY)
-    return (ring_flux(rate, gravity), length, speed), rainfall(rate, gravity).extinction
+    # Half of what drops take away they diffract by less than a degree: that part hides nothing.
+    return (ring_flux(rate, gravity), length, speed), 0.5 * rainfall(rate, gravity).extinction
 
 
 class View(SceneView[Params, SeaFrame, SeaReadings]):

@@ -27,6 +27,7 @@ from app.messages import (
     Release,
     Reset,
     StepOnce,
+    StudentAnswer,
     TogglePlay,
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
@@ -41,6 +42,9 @@ from sim.parameters import effect_of_change
 PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody looks: a browser that comes, or a command, ends it
+LATE_FRAMES = 4.0  # ratio of the frame interval to the time by which sleeps end too late, at least
+MAX_FRAME_INTERVAL = 0.1  # [s] that a busy machine may lead to
+LATENESS_WEIGHT = 0.1  # of the last sleep in the mean
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 
 
@@ -69,11 +73,17 @@ class SimLoop(Run):
         self.admit = admit
         self.is_late = False  # controls were answered in the middle of the last tick
         self.turn_at = 0.0  # [s] of the clock, when controls were last answered
+        self.lateness = 0.0  # [s] by which sleeps lately ended too late, as others had the processor
         self.read_params = read_params or (lambda: (scene.params, self.loaded))
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
         self.loaded = 0  # number of the last `Load` that was handled
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
         super().__init__(scene, audience, clock, effort, paused=paused)
+
+    @property
+    def frame_interval(self) -> float:
+        """Time [s] between frames: longer on a busy machine, whose processor all labs need for their controls."""
+        return max(self.scene.frame_interval, min(LATE_FRAMES * self.lateness, MAX_FRAME_INTERVAL))
 
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
@@ -265,13 +275,14 @@ class SimLoop(Run):
     def run(self, stop: threading.Event) -> None:
         """Tick until `stop` is set, at the frame rate while there is something to do."""
         use_request(self.request, self.give_turn, self.turn_is_due)
-        last = self.clock()
+        last = due = self.clock()
         while True:
             self.request[STOP] = self.request[TURN] = 0
             if stop.is_set():
                 return
             busy = self.running and (self.audience() > 0 or self.goal is not None)
             now = self.clock()
+            self.lateness += LATENESS_WEIGHT * (max(0.0, now - due) - self.lateness)
             try:
                 self.tick(now - last)
             except Exception as error:  # outside what `guarded` covers: the thread lives to say so
@@ -282,9 +293,16 @@ class SimLoop(Run):
                 self.busy_since = None
             last = now
             idle = IDLE_INTERVAL if self.audience() else ALONE_INTERVAL
-            rest = (self.frame_interval if busy else idle) - (self.clock() - now)
+            due = max(self.clock(), now + (self.frame_interval if busy else idle))
+            rest = due - self.clock()
             if rest > 0:
                 self.wait(rest, stop)
+
+    def take_answer(self, command: StudentAnswer) -> None:
+        """Let the scene take an answer of the student's functions within a sleep; the next tick shows it."""
+        self.busy_since = self.turn_at = self.clock()
+        self.handle(command)
+        self.busy_since, self.is_shown = None, False
 
     def wait(self, seconds: float, stop: threading.Event) -> None:
         """Sleep for `seconds`; a command or other parameters end a sleep that is longer than a hand should have to
@@ -292,9 +310,12 @@ class SimLoop(Run):
         start, left = self.clock(), seconds
         while left > MAX_DEAF_TIME and not self.waiting and not stop.is_set():
             with contextlib.suppress(queue.Empty):
-                self.take_in(self.commands.get(timeout=MAX_DEAF_TIME if self.audience() else left))
-                stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # not more ticks than frames
-                return
+                command = self.commands.get(timeout=MAX_DEAF_TIME if self.audience() else left)
+                if not isinstance(command, StudentAnswer):
+                    self.take_in(command)
+                    stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # not more ticks than frames
+                    return
+                self.take_answer(command)
             if self.poll()[0] != self.scene.params or self.waiting:
                 return
             left = seconds - (self.clock() - start)

@@ -1,5 +1,6 @@
 """The loop, ticked with a clock of the test's own."""
 
+import contextvars
 import dataclasses
 import threading
 from collections.abc import Callable
@@ -19,13 +20,15 @@ from app.messages import (
     Play,
     Reset,
     StepOnce,
+    StudentAnswer,
     TogglePlay,
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL
-from app.server.loop import IDLE_INTERVAL, SimLoop
+from app.server.loop import IDLE_INTERVAL, MAX_FRAME_INTERVAL, SimLoop
 from app.server.pacer import SOLVE_SHARE, FixedStep
 from sim.parameters import parameter
+from tests.waiting import wait_for
 
 
 @dataclasses.dataclass(frozen=True)
@@ -318,6 +321,42 @@ def test_other_parameters_end_a_long_sleep() -> None:
     sleep.join(10.0)
     stop.set()
     assert not sleep.is_alive()
+
+
+def test_an_answer_of_the_student_s_functions_is_taken_in_a_sleep_and_does_not_end_it() -> None:
+    loop, scene = make()
+    taken: list[object] = []
+    scene.handle = taken.append  # type: ignore[method-assign]
+    stop = threading.Event()
+    sleep = threading.Thread(target=loop.wait, args=(1000.0, stop))
+    sleep.start()
+    for count in (1, 2):
+        loop.commands.put(StudentAnswer())
+        wait_for(lambda count=count: len(taken) == count)
+    assert sleep.is_alive()
+    stop.set()
+    sleep.join(10.0)
+    loop.running, serial = False, loop.latest.serial
+    loop.tick(0.0)
+    assert loop.latest.serial == serial + 1
+
+
+@pytest.mark.parametrize(("late", "interval"), [(0.0, FRAME_INTERVAL), (0.01, 0.04), (0.1, MAX_FRAME_INTERVAL)])
+def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time(late: float, interval: float) -> None:
+    loop, scene = make()
+    clock, stop, starts = scene.clock, threading.Event(), []
+
+    def sleep(seconds: float, stop: threading.Event) -> None:
+        clock.now += seconds + late
+        starts.append(clock.now)
+        if len(starts) == 100:
+            stop.set()
+
+    loop.wait = sleep  # type: ignore[method-assign]
+    contextvars.copy_context().run(loop.run, stop)
+    assert loop.frame_interval == pytest.approx(interval, rel=1e-3)
+    assert starts[-1] - starts[-2] == pytest.approx(interval + late, rel=1e-3)
+    assert scene.time == pytest.approx(starts[-2], abs=interval + late + scene.step)
 
 
 @pytest.mark.parametrize("seconds", [IDLE_INTERVAL, 4 * FRAME_INTERVAL])

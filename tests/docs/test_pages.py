@@ -46,22 +46,13 @@ def parsers_below(parser: argparse.ArgumentParser, prefix: str = "") -> Iterator
             yield from parsers_below(inner, f"{prefix}{name} ")
 
 
-@pytest.mark.parametrize("link", links(), ids=str)
-def test_a_link_leads_somewhere(link):
-    page = ROOT / link.page
-    target = link.what.partition("#")[0]
-    assert (page.parent / target).exists()
-
-
-@pytest.mark.parametrize("path", sorted(set(paths())), ids=str)
-def test_a_file_is_there(path):
-    assert (ROOT / path.what).exists() or path.what in EXAMPLES | EXAMPLE_FOLDERS
-
-
-@pytest.mark.parametrize("named", sorted(set(named_tests())), ids=str)
-def test_a_test_is_there(named):
-    path, name = TEST.fullmatch(named.what).groups()
-    assert re.search(rf"^(?:async )?def {name}\(", (ROOT / path).read_text("utf-8"), re.MULTILINE)
+def test_links_files_and_tests_of_the_pages_are_there():
+    assert not [link for link in links() if not ((ROOT / link.page).parent / link.what.partition("#")[0]).exists()]
+    added = EXAMPLES | EXAMPLE_FOLDERS
+    assert not [path for path in set(paths()) if not (ROOT / path.what).exists() and path.what not in added]
+    for named in set(named_tests()):
+        path, name = TEST.fullmatch(named.what).groups()
+        assert re.search(rf"^(?:async )?def {name}\(", (ROOT / path).read_text("utf-8"), re.MULTILINE), named
 
 
 @pytest.mark.parametrize("named", sorted(set(commands())), ids=str)

@@ -154,27 +154,21 @@ SLIPS: tuple[tuple[str, Callable[[], object], str], ...] = (
     ("temperature", lambda: Spill(temperature=288.15), "40 C"),
     ("points", lambda: POND.ripples.add(0.0, (4.0, 4.0), width=0.5, volume=1.0), "(n, 2)"),
 )
-ROWS = [
-    pytest.param(one, name, id=f"{one.function.__qualname__}-{name}")
-    for one in CALLS
-    for name in one.right
-    if name not in one.left_out
-]
 
 
-@pytest.mark.parametrize(("one", "name"), ROWS)
-def test_a_wrong_type_is_refused_by_name(one: Call, name: str) -> None:
-    right = one.right[name]
-    for wrong in WRONG:
-        if right is wrong or type(right) is type(wrong) is str or (isinstance(right, bool) and wrong is True):
-            continue
-        with pytest.raises(ValueError, match=PATTERN.format(name)) as error:
-            one.function(**{**one.right, name: wrong})
-        assert "\n" not in str(error.value)
+@pytest.mark.parametrize("one", CALLS, ids=lambda one: one.function.__qualname__)
+def test_a_wrong_type_is_refused_by_name(one: Call) -> None:
+    for name, right in one.right.items():
+        for wrong in WRONG if name not in one.left_out else ():
+            if right is wrong or type(right) is type(wrong) is str or (isinstance(right, bool) and wrong is True):
+                continue
+            with pytest.raises(ValueError, match=PATTERN.format(name)) as error:
+                one.function(**{**one.right, name: wrong})
+            assert "\n" not in str(error.value)
 
 
 def test_the_table_is_of_300_arguments() -> None:
-    assert len(ROWS) >= 290
+    assert sum(len(one.right) - len(one.left_out) for one in CALLS) >= 290
 
 
 @pytest.mark.parametrize(("name", "slip", "words"), SLIPS)

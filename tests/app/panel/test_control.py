@@ -13,7 +13,7 @@ import viser
 from app.panel.control import SliderScale, title
 from app.scenes import NAMES, scene_named
 from app.server.viewer import Viewer
-from sim.parameters import parameters_of
+from sim.parameters import Parameter, parameters_of
 from tests import coroutines
 
 
@@ -27,26 +27,15 @@ def test_what_a_control_is_set_to_is_bounded_shown_and_passed_on(lab: Viewer) ->
     control.set(float("nan"))
     assert lab.panel.params.stiffness == 800.0
     assert control.field.value == "800"
-
-
-def test_setting_what_is_set_already_changes_no_record(lab: Viewer) -> None:
     before = lab.panel.read()
     lab.panel.set("stiffness", 800.0)
-    assert lab.panel.read() is before
-
-
-def test_a_preset_is_shown_and_holds_its_number(lab: Viewer) -> None:
+    assert lab.panel.read() is before  # nothing has changed
+    control.set(1234.5)
+    assert 1234.5 not in [value for value in vars(control).values() if isinstance(value, float)]  # it is the panel's
     lab.panel.load("Lab scene: 50 points")
     params, number = lab.panel.read()
-    assert number == 1
-    assert params.points == 50
+    assert (params.points, number) == (50, 1)
     assert lab.panel.controls["points"].field.value == "50"
-
-
-def test_a_control_holds_no_value_of_its_own(lab: Viewer) -> None:
-    control = lab.panel.controls["stiffness"]
-    control.set(1234.5)
-    assert 1234.5 not in [value for value in vars(control).values() if isinstance(value, float)]
 
 
 def test_two_threads_that_write_the_first_line_make_one(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -78,45 +67,34 @@ def test_two_threads_that_write_the_first_line_make_one(lab: Viewer, monkeypatch
 
 
 NUMBERS = [
-    (scene, name)
+    pytest.param(parameter, id=f"{scene}-{name}")
     for scene in NAMES
     for name, parameter in parameters_of(scene_named(scene).params()).items()
     if parameter.kind in (int, float)
 ]
 
 
-@pytest.mark.parametrize(("scene", "name"), NUMBERS)
-def test_a_slider_reaches_both_bounds_and_moves_over_numbers_of_a_few_digits(scene: str, name: str) -> None:
-    parameter = parameters_of(scene_named(scene).params())[name]
-    scale = SliderScale(parameter)
-    assert scale.value(scale.low) == parameter.low
-    assert scale.value(scale.high) == parameter.high
-    before = parameter.low
-    for step in range(1, 40):
-        value = scale.value(scale.low + (scale.high - scale.low) * step / 40)
-        assert type(value) is parameter.kind
-        assert before <= value <= parameter.high
-        assert value == float(f"{value:.6g}")
-        before = value
-    assert before > parameter.low
-
-
-@pytest.mark.parametrize(("scene", "name"), NUMBERS)
-def test_the_default_is_where_the_slider_shows_it(scene: str, name: str) -> None:
-    parameter = parameters_of(scene_named(scene).params())[name]
-    scale = SliderScale(parameter)
-    shown = scale.value(scale.position(parameter.default))
-    coarse = abs(scale.value(min(scale.position(parameter.default) + scale.step, scale.high)) - parameter.default)
-    assert abs(shown - parameter.default) <= max(coarse, 1e-9 * abs(parameter.default))
-
-
-@pytest.mark.parametrize(("scene", "name"), NUMBERS)
-def test_a_slider_one_step_from_its_ends_means_a_number_one_step_from_its_bounds(scene: str, name: str) -> None:
-    p = parameters_of(scene_named(scene).params())[name]
+@pytest.mark.parametrize("p", NUMBERS)
+def test_a_slider_reaches_both_bounds_in_fine_steps_and_shows_each_number_in_its_place(p: Parameter) -> None:
     scale = SliderScale(p)
     low, high = (math.log10(p.log_from), math.log10(p.high)) if p.log_from else (p.low, p.high)
     assert (scale.low, scale.high) == pytest.approx((low, high), rel=1e-12)
     assert (high - low) / scale.step < 401.0  # a keyboard crosses it in so many presses
+    assert (scale.value(scale.low), scale.value(scale.high)) == (p.low, p.high)
+    # Numbers of a few digits.
+    before = p.low
+    for step in range(1, 40):
+        value = scale.value(scale.low + (scale.high - scale.low) * step / 40)
+        assert type(value) is p.kind
+        assert before <= value <= p.high
+        assert value == float(f"{value:.6g}")
+        before = value
+    assert before > p.low
+    # The default is where it is shown.
+    shown = scale.value(scale.position(p.default))
+    coarse = abs(scale.value(min(scale.position(p.default) + scale.step, scale.high)) - p.default)
+    assert abs(shown - p.default) <= max(coarse, 1e-9 * abs(p.default))
+    # One step from its ends it means a number one step from its bounds.
     for position in (low + scale.step, high - scale.step):
         exact = 10.0**position if p.log_from else position
         value = scale.value(position)
@@ -127,12 +105,7 @@ def test_a_slider_one_step_from_its_ends_means_a_number_one_step_from_its_bounds
             assert p.low < value < p.high
             half = 0.501 * scale.step  # and round-off
             assert scale.position(value) == pytest.approx(position, abs=half)
-
-
-@pytest.mark.parametrize(("scene", "name"), NUMBERS)
-def test_numbers_beyond_a_slider_stand_at_its_ends(scene: str, name: str) -> None:
-    p = parameters_of(scene_named(scene).params())[name]
-    scale = SliderScale(p)
+    # Numbers beyond it stand at its ends.
     assert scale.position(p.low) == scale.low
     assert scale.position(p.high) == scale.position(2.0 * p.high - p.low) == scale.high
     middle = math.sqrt(p.log_from * p.high) if p.log_from else 0.5 * (p.low + p.high)

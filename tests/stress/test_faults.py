@@ -1,6 +1,5 @@
 """Machines that do not play along: homes that cannot be written, full disks, busy ports, rubbish in every file."""
 
-import contextlib
 import json
 import os
 import random
@@ -9,7 +8,6 @@ import signal
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +18,7 @@ from app.__main__ import main
 from app.experiments import tables
 from app.scenes import NAMES, scene_named
 from sim.parameters import parameters_of
+from tests.full_disk import full_disk
 from tests.stress.clients import clients_of, until
 from tests.stress.tally import Tally
 
@@ -45,17 +44,6 @@ def springtide(*arguments: str, limit: int | None = None, **changes: str | None)
         [sys.executable, "-m", "app", *arguments], cwd=ROOT, env=env, preexec_fn=fill_up, capture_output=True,
         text=True, timeout=280, check=False,
     )  # fmt: skip
-
-
-@contextlib.contextmanager
-def full_disk(limit: int) -> Iterator[None]:
-    """No file of this process may become longer than `limit` bytes."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 def test_a_home_that_cannot_be_written_and_no_cache(tmp_path: Path, tally: Tally) -> None:

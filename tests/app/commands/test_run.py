@@ -1,13 +1,13 @@
 """`springtide run` as a user types it, also with hostile words, full disks and folders that cannot be written."""
 
 import json
-import resource
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from app.__main__ import main
+from tests.full_disk import full_disk
 
 
 def run(out: Path | str, *more: str) -> int:
@@ -65,12 +65,8 @@ def test_a_run_ends_at_the_first_step_at_or_after_the_time_asked_for(rate, step,
 def test_a_full_disk_ends_it_with_a_line_and_the_old_file_in_place(tmp_path, capsys):
     out = tmp_path / "a.npz"
     out.write_bytes(b"precious")
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, hard))
-    try:
+    with full_disk(20_000):
         assert run(out, "--seconds", "20") == 1
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert len(capsys.readouterr().err.strip().splitlines()) == 1
     assert out.read_bytes() == b"precious"
     assert list(tmp_path.iterdir()) == [out]

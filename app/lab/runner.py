@@ -4,6 +4,7 @@ A call that takes more than 2 s is ended with its process, and the next call get
 `RunError`, which says what and where in words for the student.
 """
 
+import ast
 import contextlib
 import os
 import queue
@@ -67,6 +68,8 @@ class Runner:
         self.time_limit = time_limit
         self.compiles = compiles
         self.starts = 0  # processes started
+        self.is_fresh = False  # its process runs, and does not know the folder yet: another may be set
+        self._parsed: set[str] = set()  # files without an error of syntax
         self._process: subprocess.Popen[bytes] | None = None
         self._aborted = False
         self._trace: IO[bytes] | None = None  # where the process writes, when it is asked, where it is
@@ -144,6 +147,7 @@ class Runner:
         """Answer of the process to a message. function: its name for errors. time_limit: [s], or None."""
         if not (self.folder / file).is_file():
             raise RunError("missing", "there is no such file", file)
+        self._check_syntax(file)
         functions: list[Callable[..., Any]] = []
 
         def refer(function: Callable[..., Any]) -> int:
@@ -151,6 +155,9 @@ class Runner:
             return len(functions) - 1
 
         process = self._ready()
+        if self.is_fresh:
+            self._say(process, ["folder", str(self.folder)])
+            self.is_fresh = False
         time_limit = time_limit or self.time_limit
         deadline = time.monotonic() + time_limit
         self._say(process, [kind, file, function, pack(arguments, refer)])
@@ -174,7 +181,7 @@ class Runner:
 
     def close(self) -> None:
         """End the process, and all that it has started."""
-        process, self._process = self._process, None
+        process, self._process, self.is_fresh = self._process, None, False
         if process is None:
             return
         if process.returncode is None:  # else its number, and its group's, may be another process's by now
@@ -213,7 +220,20 @@ class Runner:
         self._answers = queue.SimpleQueue()
         threading.Thread(target=read_answers, args=(process, self._answers), daemon=True).start()
         self._next(time.monotonic() + LOAD_LIMIT, LOAD_LIMIT, "Python", "the start of the process")
+        self.is_fresh = True
         return process
+
+    def _check_syntax(self, file: str) -> None:
+        """Raises RunError for a file that cannot be parsed, in the words of the process, which is not needed for it."""
+        if file in self._parsed:
+            return
+        try:
+            ast.parse((self.folder / file).read_bytes())
+        except SyntaxError as error:
+            raise RunError("syntax", f"{type(error).__name__}: {error.msg}", file, error.lineno) from None
+        except (OSError, ValueError, RecursionError, MemoryError):  # which the process meets as well
+            return
+        self._parsed.add(file)
 
     def _started(self, surroundings: dict[str, str]) -> subprocess.Popen[bytes]:
         """A new process with these environment variables. Raises OSError."""
@@ -225,7 +245,6 @@ class Runner:
                 "-c",
                 START,
                 str(ROOT),
-                str(self.folder),
                 str(trace.fileno()),
                 COMPILES if self.compiles else "",
             ],
@@ -233,7 +252,6 @@ class Runner:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            cwd=self.folder,
             env=surroundings,
             # Ctrl-C in the terminal is the lab's to handle. No session of its own: Linux would give that as much of the
             # processor as the lab, and a low priority would mean nothing.

@@ -60,8 +60,7 @@ class Session:
         self.state = CodeState()
         self.copies = Path(tempfile.mkdtemp(prefix="springtide-lab-"))
         self.saved: Saved | None = None  # the newest version
-        self.number = 0
-        self.spare: Runner | None = self.make_runner()
+        self.spare: Runner | None = self.make_runner()  # with a process: starting it takes longer than a trial
         by_name = {task.name: task for task in tasks}
         self.to_compile: queue.SimpleQueue[Saved | None] = queue.SimpleQueue()
         self.rope = LiveNet(ROPE, self.note_failure, self.to_compile.put)
@@ -79,11 +78,8 @@ class Session:
         self.thread.start()
 
     def make_runner(self) -> Runner:
-        """A process that waits in an empty folder for the next version: starting it takes longer than trying that."""
-        self.number += 1
-        folder = self.copies / str(self.number)
-        folder.mkdir()
-        runner = Runner(folder, self.time_limit)
+        """A process that waits for the folder of the next version."""
+        runner = Runner(self.copies, self.time_limit)
         with contextlib.suppress(RunError):  # said when the version is tried
             runner.start()
         return runner
@@ -107,27 +103,27 @@ class Session:
         texts = read_files(self.folder)
         if self.saved is not None and texts == self.saved.texts:
             return
-        runner = self.spare = self.spare or self.make_runner()
-        saved = keep(texts, runner.folder, self.number, self.tasks)
+        number = 1 if self.saved is None else self.saved.number + 1
+        folder = self.copies / str(number)
+        folder.mkdir(exist_ok=True)
+        saved = keep(texts, folder, number, self.tasks)
         changed = saved.changed(self.saved)
         helpers = changed - {task.file for task in self.tasks}  # which any function may use
         names = [task.name for task in self.tasks if task.file and (helpers or task.file in changed)]
         self.check.request(saved.folder, names, saved.begun)
         self.tables.adopt(saved)
-        self.saved, self.spare = saved, None
+        self.saved = saved
+        runner, self.spare = self.spare or self.make_runner(), None
+        runner.folder = folder.resolve()
         self.state = self.state._replace(version=saved.number, saved_at=time.strftime("%H:%M:%S"), error=None)
         if ROPE.file in texts and self.is_for(ROPE.file, changed):
             self.rope_version = saved.number
             if self.compiler is not None:
                 self.compiler.abort()
-            self.try_version(self.rope, Loaded(saved, runner))
-            runner = None
+            self.try_version(self.rope, saved, runner)
         if CLOTH.file in texts and self.is_for(CLOTH.file, changed):
-            self.try_version(self.cloth, Loaded(saved, runner or Runner(saved.folder, self.time_limit)))
-        elif runner is not None:
-            runner.close()
-        with contextlib.suppress(OSError):  # said when it is needed
-            self.spare = self.make_runner()
+            self.try_version(self.cloth, saved, runner if runner.is_fresh else Runner(folder, self.time_limit))
+        self.spare = runner if runner.is_fresh else self.make_runner()
 
     def note_trouble(self, error: Exception) -> None:
         """The files could not be taken up, by no fault of theirs: a full disk, or no more processes."""
@@ -141,16 +137,20 @@ class Session:
         others = {task.file for task in self.tasks} - {file}
         return not changed <= others
 
-    def try_version(self, net: LiveNet, loaded: Loaded) -> None:
-        """Hand a version to rope or cloth if it takes a few steps; say why where it does not."""
+    def try_version(self, net: LiveNet, saved: Saved, runner: Runner) -> None:
+        """Hand a version to rope or cloth if it takes a few steps; say why where it does not.
+
+        A runner that is still fresh after it was not needed.
+        """
         try:
-            net.attempt(loaded)
+            net.attempt(Loaded(saved, runner))
         except RunError as error:
-            loaded.runner.close()
-            self.note_failure(loaded.saved, error)
+            if not runner.is_fresh:
+                runner.close()
+            self.note_failure(saved, error)
             return
-        self.state = self.state._replace(begun=loaded.saved.begun, not_compiled="")
-        net.adopt(loaded)
+        self.state = self.state._replace(begun=saved.begun, not_compiled="")
+        net.adopt(Loaded(saved, Runner(saved.folder, self.time_limit) if runner.is_fresh else runner))
 
     def compile_versions(self) -> None:
         """Compile the functions that move the rope, and hand them over if that works; the latest version wins."""

@@ -1,11 +1,11 @@
 """The process that runs a student's functions. `runner.py` starts it and speaks to it by pipes.
 
-It says `["ready"]` once. It takes `["call", file, function, arguments]` and answers with `["result", value]`,
-`["callback", number, arguments]` (a function among the arguments is called: the other side computes it), or
-`["failed", kind, text, file, line]`. With `["march", file, function, arguments]` it advances a rope or a cloth by the
-student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it compiles those of a
-rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function at many arguments
-(`tabulate.py`). What a student prints is counted and dropped: the pipes are the lab's own.
+It says `["ready"]` once, and gets `["folder", path]` once. It takes `["call", file, function, arguments]` and answers
+with `["result", value]`, `["callback", number, arguments]` (a function among the arguments is called: the other side
+computes it), or `["failed", kind, text, file, line]`. With `["march", file, function, arguments]` it advances a rope or
+a cloth by the student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it
+compiles those of a rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function
+at many arguments (`tabulate.py`). What a student prints is counted and dropped: the pipes are the lab's own.
 """
 
 import contextlib
@@ -57,8 +57,9 @@ class CountedOutput(io.TextIOBase):
 class Worker:
     """Loads a student's files and calls their functions."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    folder: Path
+
+    def __init__(self) -> None:
         self.output = CountedOutput()
         # The pipes get numbers of their own; 0, 1 and 2, which the student's code sees, lead nowhere.
         self.incoming = os.fdopen(os.dup(0), "rb")
@@ -68,13 +69,22 @@ class Worker:
             os.dup2(nowhere, number)
         sys.stdin = io.StringIO()
         sys.stdout = sys.stderr = self.output
-        sys.path.insert(0, str(folder))
         self.modules: dict[str, ModuleType] = {}
         self.compiled: dict[str, Callable[..., Any]] = {}
+
+    def enter(self, folder: Path) -> None:
+        """Work in the student's folder."""
+        self.folder = folder
+        os.chdir(folder)
+        sys.path.insert(0, str(folder))
 
     def serve(self) -> None:
         """Say that the process is ready, then answer until the lab closes the pipe."""
         send(self.outgoing, ["ready"])
+        told = receive(self.incoming)
+        if told is None:
+            return
+        self.enter(Path(told[1]))
         while (message := receive(self.incoming)) is not None:
             kind, file, function, arguments = message
             self.output.lines = 0
@@ -186,12 +196,12 @@ def end_with_parent(parent: int) -> None:
 
 
 def main() -> None:
-    """Serve the folder that the command line names."""
+    """The process."""
     end_with_parent(os.getppid())
     if TRACE_SIGNAL is not None:
-        faulthandler.register(TRACE_SIGNAL, file=int(sys.argv[3]), all_threads=False)
-    worker = Worker(Path(sys.argv[2]))
-    if sys.argv[4] == COMPILES:
+        faulthandler.register(TRACE_SIGNAL, file=int(sys.argv[2]), all_threads=False)
+    worker = Worker()
+    if sys.argv[3] == COMPILES:
         if hasattr(os, "nice"):
             os.nice(NICENESS)  # compiling takes seconds, in which the scenes go on
         importlib.import_module("app.lab.compiled")  # before the memory is limited

@@ -15,7 +15,7 @@ from app.lab.live_net import StudentReport, try_rope
 from app.lab.live_tables import TableReport
 from app.lab.program_check import Verdict
 from app.lab.rope_march import REFERENCE
-from app.lab.runner import RunError
+from app.lab.runner import RunError, Runner
 from app.lab.session import CodeState, Session
 from app.lab.task import load_tasks
 from app.messages import Grab, Place, StudentAnswer
@@ -328,3 +328,19 @@ def test_the_panel_says_which_functions_run_compiled_and_how_fast() -> None:
     said = "spring_force compiled by numba, step_rk4 plain Python: 80 µs a step, 200 times real time."
     assert said in code_lines(state, report, TableReport(), "rope")
     assert "Plain Python: 80 µs" in code_lines(state, report._replace(compiled=()), TableReport(), "rope")
+
+
+def test_an_error_of_syntax_starts_no_process_and_a_right_version_one(right: Session, monkeypatch) -> None:
+    wait_for(lambda: right.spare is not None and right.spare.is_fresh)
+    started: list[Path] = []
+    start = Runner._started
+    monkeypatch.setattr(Runner, "_started", lambda self, env: started.append(self.folder) or start(self, env))
+    spare = right.spare
+    save(right, with_line("return ("))
+    wait_for(lambda: right.state.error is not None and right.spare is spare)
+    assert right.state.error is not None
+    assert (right.state.error.kind, right.state.error.file) == ("syntax", "rope.py")
+    assert started == []
+    save(right, RIGHT)
+    wait_for(lambda: right.rope.taken == right.state.version and right.spare not in (None, spare))
+    assert len(started) == 1

@@ -15,6 +15,7 @@ CASES = {
     "race": ({"ropes": 2, "points": 6}, 10),
     "cloth": ({"rows": 8, "cols": 9, "sphere": True}, 10),
     "square_sea": ({"size": "64", "mesh": "64", "length": 20.0, "rain": 100.0}, 4),
+    "mooring": ({"lines": 2, "segments": 8}, 10),
     "radial_sea": ({"bodies": 3, "rings": 20, "spokes": 24, "jet": True, "fire": True}, 24),
 }
 

@@ -228,6 +228,7 @@ def test_a_preset_option_takes_a_file_of_its_own_scene_only(tmp_path: Any) -> No
         ("cloth", {"rows": 6, "cols": 7}, ("stiffness", 500.0, 900.0)),
         ("square_sea", {"size": "64", "mesh": "64"}, ("wind_speed", 4.0, 9.0)),
         ("radial_sea", {"bodies": 2, "rings": 20, "spokes": 24}, ("wind_speed", 4.0, 9.0)),
+        ("mooring", {"lines": 2, "segments": 8}, ("wave_height", 1.0, 5.0)),
     ],
 )
 def test_a_set_up_runs_as_the_record_does(name: str, values: dict[str, Any], digits: tuple[str, float, float]) -> None:

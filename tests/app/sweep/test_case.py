@@ -82,6 +82,18 @@ def test_bodies_that_are_not_there_have_no_draft():
     assert math.isnan(found["box_draft"][0])
 
 
+def test_a_mooring_in_calm_water_is_at_rest_and_one_with_too_long_a_step_diverges():
+    values = {"wave_height": 0.0, "segments": 12, "lines": 2}
+    found = run_case("mooring", values, (0.0, 2.0)).measures
+    assert found["largest_tension"][1] == pytest.approx(found["largest_tension"][0], rel=1e-6)
+    assert found["largest_offset"][1] == pytest.approx(0.0, abs=1e-6)
+    assert found["slack_share"] == [0.0, 0.0]
+    outcome = run_case("mooring", {**values, "time_step": 2.0 * found["critical_step"][0]}, (0.0, 20.0))
+    assert outcome.end == DIVERGED
+    assert outcome.measures["largest_tension"][0] == found["largest_tension"][0]
+    assert math.isnan(outcome.measures["largest_tension"][1])
+
+
 def test_what_a_scene_raises_is_the_outcome(monkeypatch):
     def burst(self, steps):
         raise MemoryError("no room for it")

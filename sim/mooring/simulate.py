@@ -12,6 +12,7 @@ from sim.interruption import raise_if_stopped
 from sim.mooring.gauge import critical_step
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.system import System
+from sim.springs import INTEGRATORS
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.energy_history import EnergyHistory, energy_history
 from sim.springs.forces.acceleration import set_acceleration
@@ -160,7 +161,9 @@ def simulate(
         raise argument_error("frames", frames, f"a whole number from 2 to {MOST_FRAMES}")
     record = integrator_named(integrator)
     if record.implicit or record.undamped_only:
-        raise argument_error("integrator", record.name, "an explicit one that takes damping, for lines under water")
+        usable = [one.name for one in INTEGRATORS.values() if not (one.implicit or one.undamped_only)]
+        allowed = f"one of {', '.join(usable)}: implicit methods know no water, bed or bodies, and pefrl no damping"
+        raise argument_error("integrator", record.name, allowed)
     if step is not None:
         check_number("step", step, 0, math.inf, "s", above=True)
     start = start or at_rest(system, {one: np.asarray(f(0.0), dtype=np.float64) for one, f in motion.items()})

@@ -33,7 +33,7 @@ THEIR_STEPS = (4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)  # [s] of MoorDyn's RK4
 OUR_FRACTIONS = (0.9, 0.7, 0.5, 0.35, 0.25, 0.12, 0.06)  # over the critical step
 OUR_METHODS = ("leapfrog", "rk4")
 TURNS = 5
-ERRORS = 3  # the level of what MoorDyn prints: it would print each step
+ERRORS = 3  # the level of what MoorDyn prints
 
 
 class Measured(NamedTuple):
@@ -67,7 +67,7 @@ def their_run(system: System, step: float) -> Measured:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "line.txt"
         write_moordyn(path, system)
-        options = f"rk4 tScheme\n{step} dtM\n2 dtIC\n40 TmaxIC\n1e-4 threshIC\n0 writeLog\n"
+        options = f"rk4 tScheme\n{step} dtM\n2 dtIC\n40 TmaxIC\n1e-4 threshIC\n0 writeLog\n1 disableOutTime\n"
         text = path.read_text(encoding="utf-8")
         mark = next(line for line in text.splitlines() if "OPTIONS" in line)
         path.write_text(text.replace(mark + "\n", mark + "\n" + options), encoding="utf-8")

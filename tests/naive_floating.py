@@ -85,13 +85,13 @@ def lumpy(rng: np.random.Generator, vertices: np.ndarray) -> np.ndarray:
 
 
 def naive_step(
-    hull: Hull, density: float, state, upper, lower, flow, lift, law: MotionCoefficients, h: float, given=None
+    hull: Hull, density: float, state, upper, lower, flow, lift, law: MotionCoefficients, h: float, given, lines
 ):
     """One leapfrog step of one body from motion.py's equations, in matrices and the axes of the body's heading.
 
     state: position, rotation, velocity, spin, the fluid (6,) carried at the last step or None, and the memory (p, 6);
     upper and lower: (density, height at the origin, slope) of the planes z = height + slope . (x, y); flow (3,) and
-    lift: velocity and upward acceleration of the surface; given (6,): excitation, or None.
+    lift: velocity and upward acceleration of the surface; given (6,): excitation, or None; lines (6,): of moorings.
     The drag is integrated in many small steps instead of in closed form.
     """
     position, rotation, velocity, spin, before, memory = state
@@ -148,6 +148,7 @@ def naive_step(
     moving = felt * np.append(v - (u if given is None else 0.0), w)
     memory = np.exp(poles * h)[:, None] * memory + ((np.exp(poles * h) - 1) / poles)[:, None] * moving
     load = np.append(heading.T @ (force - [0, 0, hull.volume * density * law.gravity]), heading.T @ moment)
+    load = load + np.append(heading.T @ lines[:3], heading.T @ lines[3:])
     carried = hull.volume * min(density, fluid) * felt[2] ** 2
     if given is None:
         load = load + np.append(carried * lift * heading.T @ np.array([*-upper[2], 1.0]), np.zeros(3))

@@ -16,7 +16,7 @@ import trimesh
 from app.__main__ import main
 from app.messages import Grab, Place, Release
 from app.scenes.contract import AnyScene
-from app.scenes.radial_sea.bodies import BED_DEPTH, BODY_KINDS, place_of
+from app.scenes.radial_sea.bodies import BED_DEPTH, BODY_KINDS, LINE_REACH, place_of
 from app.scenes.radial_sea.drawn_surface import FOAM_RADIUS, mean_square_slope, tile_of
 from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden
 from app.scenes.radial_sea.report import marks_of
@@ -162,6 +162,20 @@ def test_drifting_bodies_are_held_by_lines_that_the_picture_shows() -> None:
         assert reading.offset > 0.2
         assert reading.tension > 0.0
     np.testing.assert_array_equal(scene.frame().moorings[:, 1], lines[:, 1])
+
+
+def test_lines_pull_as_in_the_middle_of_a_step() -> None:
+    """By its place at the beginning of each step a body would gain energy."""
+    scene = RadialSeaScene(with_parameters(**CALM, bodies=1))
+    fleet = scene.bodies.fleet
+    fleet.velocity[0] = (2.0, -1.0, 0.0)
+    scene.bodies.moor(0.5)
+    level = fleet.mooring[0, :2] / fleet.velocity[0, :2]
+    assert (level < 0.0).all()
+    assert level[0] == pytest.approx(level[1], rel=0.02)
+    length = scene.bodies.lines.length[0, 0]
+    stiffness = scene.bodies.lines.stiffness[0] / length * (LINE_REACH / length) ** 2
+    assert level[0] == pytest.approx(-0.25 * stiffness, rel=0.02)
 
 
 def test_a_mooring_that_is_taken_off_pulls_no_longer() -> None:

@@ -319,9 +319,11 @@ def test_two_steps_match_the_naive_ones(seed):
     velocity, spin, flow, lift = rng.normal(size=3), rng.normal(size=3), rng.normal(size=3), rng.normal()
     slopes = rng.normal(0, 0.1, (2, 2))
     given = rng.normal(size=6) if seed % 2 else None
+    lines = 100.0 * rng.normal(size=6)
     coefficients = MotionCoefficients(9.0, 0.4, 0.9, 0.8, 0.7)
     body = Body(hull, 600.0, tuple(position), tuple(rotation), tuple(velocity), tuple(spin))
     fleet = make_fleet([body])
+    fleet.mooring[0] = lines
     water = make_water(
         fleet,
         [(850.0, 0.3), (1025.0, math.inf)],
@@ -339,7 +341,7 @@ def test_two_steps_match_the_naive_ones(seed):
     for middle in (0.005, 0.015):
         rise = middle * np.array([flow[2] - flow[:2] @ slopes[0], 0.0])
         risen = [(rho, height + up, slope) for (rho, height, slope), up in zip(planes, rise, strict=True)]
-        state = naive_step(hull, 600.0, state, *risen, flow, lift, coefficients, 0.01, given)
+        state = naive_step(hull, 600.0, state, *risen, flow, lift, coefficients, 0.01, given, lines)
     for value, wanted in zip((*fleet[:5], fleet.memory), state, strict=True):
         assert value[0] == pytest.approx(wanted, abs=1e-7)
 

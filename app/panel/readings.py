@@ -15,14 +15,20 @@ class Readings:
         """tab: the container, in which folders are made when a scene first has a text for them."""
         self.gui, self.view, self.tab = gui, view, tab
         self.readout = gui.add_html("")
-        self.notes: dict[str, viser.GuiHtmlHandle] = {}
+        self.notes: dict[str, tuple[viser.GuiFolderHandle, viser.GuiHtmlHandle]] = {}
 
     def show(self, snapshot: AnySnapshot, hidden: frozenset[str]) -> None:
-        """Bring all texts up to date. hidden: headings of texts that would answer a question of the workbook."""
+        """Bring all texts up to date; a folder without a text is not shown.
+
+        hidden: headings of texts that would answer a question of the workbook.
+        """
         self.readout.content = note(Html(self.view.readout(snapshot)))
         for heading, text in self.view.notes(snapshot).items():
             if heading not in self.notes:
                 order = None if self.notes else self.readout.order + 0.5  # the first below the short texts
-                with self.tab, self.gui.add_folder(heading, order=order, expand_by_default=False):
-                    self.notes[heading] = self.gui.add_html("")
-            self.notes[heading].content = note(WITHHELD if heading in hidden else Html(text))
+                with self.tab, self.gui.add_folder(heading, order=order, expand_by_default=False) as folder:
+                    self.notes[heading] = folder, self.gui.add_html("")
+            folder, line = self.notes[heading]
+            line.content = note(WITHHELD if heading in hidden else Html(text))
+            if folder.visible != bool(text):
+                folder.visible = bool(text)

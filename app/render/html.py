@@ -100,11 +100,14 @@ def coloured(text: object, colour: str) -> Html:
     return fill('<b style="color:{}">{}</b>', colour, text)
 
 
-def info(text: object) -> Html:
-    """A sign that shows a text below it under mouse or finger. text: two sentences, and where there is more."""
+def info(text: str, section: str) -> Html:
+    """A sign that shows a text below it under mouse or finger, and the section of docs/physics.md that says more.
+
+    text: two sentences.
+    """
     return fill(
         '<span class="springtide-info" tabindex="0" role="note" aria-label="{0}" data-text="{0}">i</span>',
-        text,
+        f"{text} More in docs/physics.md, {section}.",
     )
 
 

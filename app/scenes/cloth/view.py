@@ -205,7 +205,8 @@ class View(SceneView[Params, ClothFrame, ClothReadings]):
             parts.append(fill("<div>forces computed on {} threads</div>", readings.threads))
         if frame.colour == "strain":
             parts.append(colour_scale(
-                "0", fill("strain {}", info(STRAIN)), f"{number(100 * frame.full_strain)} %",
+                "0", fill("strain {}", info(STRAIN, "7. Numbers on the screen")),
+                f"{number(100 * frame.full_strain)} %",
                 clipped=float(frame.strain.max()) > frame.full_strain,
             ))  # fmt: skip
         return join(parts)

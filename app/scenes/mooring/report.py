@@ -78,7 +78,7 @@ def readout_of(snapshot: Snapshot) -> Html:
     """The key of the colours."""
     frame = snapshot.frame
     return colour_scale(
-        "slack", fill("tension {}", info(COLOURS)), f"{kilonewtons(frame.full_scale)} kN",
+        "slack", fill("tension {}", info(COLOURS, "6. Moorings")), f"{kilonewtons(frame.full_scale)} kN",
         clipped=float(frame.tension.max()) > frame.full_scale,
     )  # fmt: skip
 

@@ -9,7 +9,7 @@ from app.scenes.race.names import rope_name
 MIN_SHOWN_ENERGY = 1e-10  # [J]: less is round-off and is shown as 0
 TABLE_INFO = (
     "Step: the time step relative to the largest stable one; above 100 % a rope diverges. Forces: how often they are "
-    "computed in a second of the run; time: for one step on this computer. More in docs/physics.md, 1. Springs."
+    "computed in a second of the run; time: for one step on this computer."
 )
 HEAD = (("error", ""), ("energy error", "J"), ("step", "of limit"), ("forces", "a second"), ("time", "a step"))
 
@@ -86,5 +86,5 @@ def results_table(readings: RaceReadings) -> Html:
     rows = join(result_rows(result, stiffness_differs) for result in readings.results)
     return fill(
         '<table class="springtide-table">{}<tbody>{}</tbody></table><div>{} {}</div>',
-        table_head(HEAD), rows, info(TABLE_INFO), reference_text(readings),
+        table_head(HEAD), rows, info(TABLE_INFO, "1. Springs"), reference_text(readings),
     )  # fmt: skip

@@ -13,10 +13,10 @@ COMPARED_HOURS = 24.0  # [h] at which laws of evaporation are compared
 
 
 def budget_html(params: Params, weathering: Weathering | None) -> Html:
-    """The whole folder; a sentence on why where there is no spill to follow."""
+    """The whole folder; a sentence on why where a layer's spill cannot be followed, and nothing without a layer."""
     if weathering is None:
         if params.spill != "layer":
-            return fill("Choose a layer of oil to follow its spill over hours.")
+            return Html()
         return fill("The record of {} does not tell how it evaporates, so that it stays fresh here.", params.oil)
     rows = [row_of(weathering.at(hours), fixed(hours, 0)) for hours in HOURS]
     now = weathering.at(params.spill_hours)

@@ -57,7 +57,7 @@ class Params:
         doc="Cut the sea open beside the first buoy, to see the oil, the interface, and the hull in both",
         group="Main",
         affects="look",
-        title="Cut the sea open",
+        title="Cutaway",
     )
     follow: str = parameter(
         "free",

@@ -22,7 +22,7 @@ from sim.parameters import parameters_of
 SHORT_WAVE = 1.0  # [m] length of the wave in statements about viscosity
 HEIGHT = (
     "Significant height: the mean of the highest third of the waves, from trough to crest. Mean slope: the root of the "
-    "mean squared slope. More in docs/physics.md, 2. Waves."
+    "mean squared slope."
 )
 LEAST_LEFT = 1e-3  # share of a wave below which nothing is said of how much it is
 SURFACES = (("sum", "radial sum"), ("fft", "square FFT"))
@@ -128,7 +128,9 @@ def waves_text(readings: RadialReadings) -> Html:
     height, clean = number(readings.height), number(readings.clean_height)
     lowered = f" ({clean} m without oil)" if clean != height else ""
     slope = number(math.sqrt(readings.slope), 2)
-    return fill("<div>Significant height {} {} m{}, mean slope {}.</div>", info(HEIGHT), height, lowered, slope)
+    return fill(
+        "<div>Significant height {} {} m{}, mean slope {}.</div>", info(HEIGHT, "2. Waves"), height, lowered, slope
+    )
 
 
 def oil_budget_text(budget: OilBudget) -> Html:
@@ -148,7 +150,7 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
     return {
         "Archimedes' principle": theory_html(snapshot.readings),
-        "Weight, buoyancy, heave": forces_html(snapshot.readings),
+        "Forces": forces_html(snapshot.readings),
         "Fluids": fluids_html(snapshot),
         "Spill budget": budget_html(snapshot.frame.params, snapshot.readings.weathering),
         "Radial or square": surfaces_html(snapshot),
@@ -214,7 +216,7 @@ def surfaces_html(snapshot: Snapshot) -> Html:
     """The lab's question 1.2-6, answered by measurement where that is asked for."""
     readings: RadialReadings = snapshot.readings
     if not readings.surfaces:
-        return fill("Switch on <b>Compare surfaces</b> in the folder Grid to time both surfaces on the same vertices.")
+        return Html()
     found = [(title, readings.surfaces[name]) for name, title in SURFACES if name in readings.surfaces]
     head = (("", ""), *((title, "") for title, _ in found))
     rows = (

@@ -298,7 +298,7 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
-        return {"Drafts and waves": readout_of(snapshot), **notes_of(snapshot)}
+        return {"Drafts, waves": readout_of(snapshot), **notes_of(snapshot)}
 
 
 def keel_of(frame: RadialFrame) -> float | None:

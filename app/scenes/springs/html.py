@@ -10,7 +10,7 @@ from sim.springs.stability import Gauge
 
 STEP_INFO = (
     "hω is the time step h times the highest frequency ω of the springs. Above its limit, which depends on the damping "
-    "ratio ζ = {}, the motion grows without end. More in docs/physics.md, 1. Springs."
+    "ratio ζ = {}, the motion grows without end."
 )
 WARNING_SHARE = 0.8  # of the limit, from which h omega is shown in the colour of a warning
 
@@ -24,7 +24,7 @@ def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
         '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 4px">'
         '<div style="height:8px;border-radius:4px;width:{:.0f}%;background:{}"></div></div>',
         share_text(gauge, share, colour, exact=exact),
-        info(STEP_INFO.format(number(gauge.zeta, 2))),
+        info(STEP_INFO.format(number(gauge.zeta, 2)), "1. Springs"),
         100.0 * min(share, 1.0),
         colour,
     )

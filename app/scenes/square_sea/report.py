@@ -21,7 +21,7 @@ MIN_SLOPE_LEFT = 0.98  # share of the mean square slope below which the sea coun
 MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
 HEIGHT = (
     "Significant height: the mean of the highest third of the waves, from trough to crest. "
-    "The band holds 19 of 20 seas. More in docs/physics.md, 2. Waves."
+    "The band holds 19 of 20 seas."
 )
 SLOPE = "Mean square slope: the mean of the squared slope of the water, on which its glitter depends."
 BAND_WIDTH = 2.0  # standard deviations to each side: 95 of 100 seas lie within
@@ -110,12 +110,16 @@ def statistics_table(r: Report) -> Html:
         (("", ""), ("as drawn", ""), ("theory", "95 % band")),
         (
             (
-                fill("significant height [m] {}", info(HEIGHT)),
+                fill("significant height [m] {}", info(HEIGHT, "2. Waves")),
                 bold(height) if inside else coloured(height, WARNING_COLOUR),
                 f"{number(e.significant_height)} ± {number(band, 2)}",
             ),
             ("peak period [s]", bold(number(m.peak_period)), number(e.peak_period)),
-            (fill("mean square slope {}", info(SLOPE)), bold(number(m.mean_square_slope)), number(e.mean_square_slope)),
+            (
+                fill("mean square slope {}", info(SLOPE, "2. Waves")),
+                bold(number(m.mean_square_slope)),
+                number(e.mean_square_slope),
+            ),
             ("direction [°]", direction, fixed(math.degrees(e.direction), 0)),
         ),
     )

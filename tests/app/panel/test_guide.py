@@ -279,7 +279,7 @@ def test_the_guide_says_the_errors_of_a_race_as_its_table_does(monkeypatch: pyte
     def spy(panel: Panel, *arguments: Any) -> None:
         update(panel, *arguments)
         if panel.guide is not None and "Results" in panel.readings.notes:
-            table = re.findall(r"<tr><td>(?:<b>)?(.*?)(?:</b>)?</td>", panel.readings.notes["Results"].content)
+            table = re.findall(r"<tr><td>(?:<b>)?(.*?)(?:</b>)?</td>", panel.readings.notes["Results"][1].content)
             now = re.findall(r"Error of rope \d: <b>(.*?)</b>", panel.guide.readings.content)
             if now and table:
                 seen.append((now, table[: len(now)]))

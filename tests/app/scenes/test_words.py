@@ -3,6 +3,7 @@
 import html
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ from app.messages import DivergenceError
 from app.scenes import NAMES, scene_named, view_module
 from sim.parameters import check_record, parameters_of
 
+ROOT = Path(__file__).parents[3]
 # A symbol, and the words of which one is to stand in the same text.
 SYMBOLS = {
     r"h ?ω": "step", r"ζ": "damping ratio|twice the damping", r"(?<!h)(?<!h )ω": "frequency",
@@ -75,6 +77,14 @@ def test_every_symbol_of_a_scene_s_controls_and_presets_has_its_word(name: str) 
         for axes in (*kind.plots.values(), *kind.curves.values())
     ]
     assert not [(text, found) for text in (*texts, *charts) if (found := unexplained(text))]
+
+
+def test_each_info_sign_names_a_section_of_the_physics() -> None:
+    sources = (path.read_text("utf-8") for path in (ROOT / "app" / "scenes").rglob("*.py"))
+    named = {section for source in sources for section in re.findall(r'\binfo\([^"]*"([^"]*)"\)', source)}
+    headings = set(re.findall(r"(?m)^## (.*)$", (ROOT / "docs" / "physics.md").read_text("utf-8")))
+    assert len(named) >= 4
+    assert named <= headings
 
 
 def test_every_symbol_of_a_task_s_texts_has_its_word() -> None:

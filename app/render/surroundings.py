@@ -17,7 +17,7 @@ from app.render.viser_inside import update_node
 
 Colour = tuple[int, int, int]  # sRGB, 0 to 255
 FLOOR = "/floor"
-SUN, SUN_INTENSITY = (-0.55, -0.6, 1.0), 2.5  # direction towards the lamp: low enough that folds shade each other
+SUN, SUN_INTENSITY = (-0.55, -0.6, 1.0), 1.9  # direction towards the lamp: low enough that folds shade each other
 FILL, FILL_INTENSITY = (0.5, 0.2, -1.0), 0.4  # from below
 NO_FOG = 10.0, 50.0  # [m] where it would begin and be dense: viser's own numbers
 
@@ -59,7 +59,7 @@ class Surroundings:
         """near: [m] from the camera, where the picture begins."""
         scene = server.scene
         # viser keeps the light and the fog of the scene before, here those of a sea.
-        scene.configure_environment_map("studio", background=False, environment_intensity=0.6)
+        scene.configure_environment_map("studio", background=False, environment_intensity=0.4)
         scene.configure_default_lights(enabled=False, cast_shadow=False)
         self.sun = scene.add_light_directional("/sun", position=SUN, intensity=SUN_INTENSITY, cast_shadow=True)
         scene.add_light_directional("/fill", position=FILL, intensity=FILL_INTENSITY)

@@ -17,7 +17,8 @@ const UNDERWATER_GLSL = `
   float particles(vec3 p) {
     vec3 i = floor(p), r = fract(sin(vec3(dot(i, vec3(12.9, 78.2, 37.7)), dot(i, vec3(39.3, 11.1, 83.2)),
                                           dot(i, vec3(73.2, 52.2, 9.1)))) * 43758.5);
-    return smoothstep(0.13 * r.z, 0.05 * r.z, distance(p - i, 0.3 + 0.4 * r)) * step(0.75, r.x);
+    float size = 0.05 + 0.1 * r.z;
+    return (1.0 - smoothstep(0.4 * size, size, distance(p - i, 0.3 + 0.4 * r))) * step(0.75, r.x);
   }
   vec3 seenUnderwater(vec3 color) {
     float water = smoothstep(0.0, 0.02, color.b - color.r), depth = max(-vPlace.y, 0.0) / underwater.y;

@@ -33,6 +33,8 @@ def measures(scene: "RadialSeaScene") -> dict[str, Measure]:
             ("mean_buoyancy", "N", "mean buoyancy over the last minute", body and body.mean_lift[0]),
             ("wet_volume_above", "m3", "wet volume in the upper fluid", body and body.wet_volume[0]),
             ("wet_volume_below", "m3", "wet volume in the lower fluid", body and body.wet_volume[1]),
+            ("offset", "m", "level distance from where its lines hold it", body and body.offset),
+            ("line_tension", "N", "largest tension of its mooring lines", body and body.tension),
             ("heave_period", "s", "heave period as measured", body and body.period),
             ("heave_period_theory", "s", "heave period by theory", prediction and prediction.period),
         ):

@@ -14,12 +14,13 @@ import pytest
 import trimesh
 
 from app.__main__ import main
+from app.formats.formatting import fixed
 from app.messages import Grab, Place, Release
 from app.scenes.contract import AnyScene
 from app.scenes.radial_sea.bodies import BED_DEPTH, BODY_KINDS, LINE_REACH, place_of
 from app.scenes.radial_sea.drawn_surface import FOAM_RADIUS, mean_square_slope, tile_of
 from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden
-from app.scenes.radial_sea.report import marks_of
+from app.scenes.radial_sea.report import forces_html, marks_of
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import LANDING, WellBlowout, slick_reach
 from app.server.loop import SimLoop
@@ -161,6 +162,7 @@ def test_drifting_bodies_are_held_by_lines_that_the_picture_shows() -> None:
     for reading in scene.readings().bodies:
         assert reading.offset > 0.2
         assert reading.tension > 0.0
+        assert fixed(reading.offset, 2) in forces_html(scene.readings())
     np.testing.assert_array_equal(scene.frame().moorings[:, 1], lines[:, 1])
 
 

@@ -63,3 +63,12 @@ def test_scenes_that_are_compiled_are_not_imported_to_find_what_is_missing(monke
     monkeypatch.setattr(warmup, "is_kept", lambda name: "-everything-" in name)
     monkeypatch.setattr(warmup, "scene_named", lambda name: pytest.fail(f"{name} is imported"))
     assert all(warmup.missing(name) == () for name in NAMES)
+
+
+def test_the_process_of_a_student_s_functions_imports_little() -> None:
+    code = "import sys; import app.lab.worker; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    loaded = done.stdout.split()
+    assert {name.split(".")[0] for name in loaded} & {"numba", "scipy", "viser", "sim", "asyncio", "ssl"} == set()
+    assert "numpy.random" not in loaded
+    assert len(loaded) < 230

@@ -5,8 +5,10 @@ from typing import Any
 
 import numpy as np
 
+# The process of a student's functions imports this: annotations in quotes do not load numpy.random, a seventh of it.
 
-def random_acceleration(rng: np.random.Generator, *, with_velocity: bool) -> Callable[[Any, Any], np.ndarray]:
+
+def random_acceleration(rng: "np.random.Generator", *, with_velocity: bool) -> Callable[[Any, Any], np.ndarray]:
     """A law acceleration(x, v) [m/s2] for positions and velocities of shape (n, 3), neither linear nor symmetric.
 
     with_velocity: whether it depends on the velocity.
@@ -22,7 +24,7 @@ def random_acceleration(rng: np.random.Generator, *, with_velocity: bool) -> Cal
     return acceleration
 
 
-def step_inputs(rng: np.random.Generator, *, with_velocity: bool = True) -> tuple[Any, ...]:
+def step_inputs(rng: "np.random.Generator", *, with_velocity: bool = True) -> tuple[Any, ...]:
     """Arguments of a step: positions [m] and velocities [m/s] of shape (n, 3), a time step [s], an acceleration."""
     x, v = rng.normal(size=(2, int(rng.integers(2, 5)), 3))
     return x, v, rng.uniform(0.1, 0.4), random_acceleration(rng, with_velocity=with_velocity)

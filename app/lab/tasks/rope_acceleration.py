@@ -56,14 +56,6 @@ def variant(
     return function
 
 
-def weight_divided(x, v, mass, stiffness, damping, drag, rest_length, gravity):
-    return rope_acceleration(x, v, mass, stiffness, damping, drag, rest_length, gravity / mass)
-
-
-def weight_times_mass(x, v, mass, stiffness, damping, drag, rest_length, gravity):
-    return rope_acceleration(x, v, mass, stiffness, damping, drag, rest_length, gravity * mass)
-
-
 MISTAKES = (
     Mistake("mass forgotten", "The forces are not divided by the mass: a = F/m.", variant(spring_mass=0)),
     Mistake(
@@ -100,12 +92,16 @@ MISTAKES = (
     Mistake(
         "gravity divided by the mass",
         "Gravity is divided by the mass. The weight is m g, so that m cancels: every point falls with g.",
-        weight_divided,
+        lambda x, v, mass, stiffness, damping, drag, rest_length, gravity: rope_acceleration(
+            x, v, mass, stiffness, damping, drag, rest_length, gravity / mass
+        ),
     ),
     Mistake(
         "gravity multiplied by the mass",
         "Gravity is multiplied by the mass. The weight is m g, and its acceleration g.",
-        weight_times_mass,
+        lambda x, v, mass, stiffness, damping, drag, rest_length, gravity: rope_acceleration(
+            x, v, mass, stiffness, damping, drag, rest_length, gravity * mass
+        ),
     ),
     Mistake("air drag forgotten", "There is no air drag: each point gets -c v.", variant(air=0.0)),
     Mistake("sign of the drag reversed", "The air drives the points on. The drag is -c v.", variant(air=-1.0)),

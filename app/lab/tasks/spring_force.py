@@ -26,26 +26,6 @@ def inputs(rng):
     return x1, x1 + r, 3.0 * v1, 3.0 * v2, rng.uniform(5.0, 20.0), rng.uniform(1.0, 5.0), rng.uniform(0.5, 1.5)
 
 
-def no_rest_length(x1, x2, v1, v2, k, b, d):
-    return k * (x2 - x1) - b * (v1 - v2)
-
-
-def sign_reversed(*arguments):
-    return -spring_force(*arguments)
-
-
-def elastic_sign_reversed(x1, x2, v1, v2, k, b, d):
-    return spring_force(x1, x2, v1, v2, -k, b, d)
-
-
-def damping_sign_reversed(x1, x2, v1, v2, k, b, d):
-    return spring_force(x1, x2, v1, v2, k, -b, d)
-
-
-def absolute_damping(x1, x2, v1, v2, k, b, d):
-    return spring_force(x1, x2, v1, 0.0 * v2, k, b, d)
-
-
 def no_damping(x1, x2, v1, v2, k, b, d):
     return spring_force(x1, x2, v1, v2, k, 0.0, d)
 
@@ -53,10 +33,6 @@ def no_damping(x1, x2, v1, v2, k, b, d):
 def not_normalised(x1, x2, v1, v2, k, b, d):
     r = x2 - x1
     return k * (np.linalg.norm(r) - d) * r - b * (v1 - v2)
-
-
-def each_component(x1, x2, v1, v2, k, b, d):
-    return k * (x2 - x1 - d) - b * (v1 - v2)
 
 
 def axial_damping(x1, x2, v1, v2, k, b, d):
@@ -69,28 +45,28 @@ MISTAKES = (
         "sign reversed",
         "The force points the wrong way. A stretched spring pulls the first point towards the second: look at the "
         "direction of r, and at v1 - v2.",
-        sign_reversed,
+        lambda *arguments: -spring_force(*arguments),
     ),
     Mistake(
         "sign of the spring reversed",
         "A stretched spring pushes its ends apart here. r must run from x1 to x2, so that it pulls x1 towards x2.",
-        elastic_sign_reversed,
+        lambda x1, x2, v1, v2, k, b, d: spring_force(x1, x2, v1, v2, -k, b, d),
     ),
     Mistake(
         "sign of the damping reversed",
         "The damping drives the motion on. On the first point it is -b (v1 - v2).",
-        damping_sign_reversed,
+        lambda x1, x2, v1, v2, k, b, d: spring_force(x1, x2, v1, v2, k, -b, d),
     ),
     Mistake(
         "rest length forgotten",
         "The spring pulls as if its rest length were 0. The stretch is |r| - d, not |r|.",
-        no_rest_length,
+        lambda x1, x2, v1, v2, k, b, d: k * (x2 - x1) - b * (v1 - v2),
     ),
     Mistake(
         "damping on absolute velocity",
         "The damping uses v1 only, so that it also brakes a spring that moves as a whole. A spring damps the relative "
         "velocity v1 - v2.",
-        absolute_damping,
+        lambda x1, x2, v1, v2, k, b, d: spring_force(x1, x2, v1, 0.0 * v2, k, b, d),
     ),
     Mistake("damping forgotten", "There is no damping. Subtract b (v1 - v2).", no_damping),
     Mistake(
@@ -102,7 +78,7 @@ MISTAKES = (
         "force not along the link",
         "The rest length is subtracted from every component of r. Subtract it from the length |r|; the force then "
         "points along r.",
-        each_component,
+        lambda x1, x2, v1, v2, k, b, d: k * (x2 - x1 - d) - b * (v1 - v2),
     ),
     Mistake(
         "damping along the link only",

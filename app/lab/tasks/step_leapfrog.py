@@ -64,10 +64,6 @@ def whole_kicks(x, v, h, acceleration):
     return x, v + h * acceleration(x, v)
 
 
-def alternating(x, v, h, acceleration):
-    return x, v + h * acceleration(x, v)
-
-
 MISTAKES = (
     Mistake(
         "no half step",
@@ -91,7 +87,7 @@ MISTAKES = (
     Mistake(
         "position not moved",
         "x stays. Where x and v take turns from call to call, the motion has half its speed: one call moves both.",
-        alternating,
+        lambda x, v, h, acceleration: (x, v + h * acceleration(x, v)),
     ),
 )
 

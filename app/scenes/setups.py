@@ -361,13 +361,6 @@ def preset_named(what: str, preset: object, kind: SceneKind[Any, Any, Any]) -> M
     return kind.presets[preset]
 
 
-def preset_values(
-    option: str, preset: str, kind: SceneKind[Any, Any, Any], folder: Path | None = None
-) -> dict[str, Value]:
-    """The parameters that a preset names, as of `preset_setup`."""
-    return dict(preset_setup(option, preset, kind, folder).values)
-
-
 def preset_setup(option: str, preset: str, kind: SceneKind[Any, Any, Any], folder: Path | None = None) -> Setup:
     """The set-up that a preset names. preset: a name, or the path of a file, relative to `folder`.
 

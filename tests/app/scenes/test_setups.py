@@ -18,7 +18,7 @@ from app.scenes.setups import (
     MAX_LENGTH,
     MAX_NAME,
     OWN_KEYS,
-    preset_values,
+    preset_setup,
     read_file,
     read_query,
     read_setup_text,
@@ -214,10 +214,10 @@ def test_random_addresses_and_files_give_a_set_up_or_one_line() -> None:
 def test_a_preset_option_takes_a_file_of_its_own_scene_only(tmp_path: Any) -> None:
     rope, file = scene_named("rope"), tmp_path / "mine.json"
     file.write_text(write_file(rope, check_record(rope.params, {"points": 33, "time_step": 1 / 700})), "utf-8")
-    assert preset_values("--preset", str(file), rope) == {"points": 33, "time_step": 1 / 700}
-    assert preset_values("--preset", "mine.json", rope, tmp_path) == {"points": 33, "time_step": 1 / 700}
+    assert preset_setup("--preset", str(file), rope).values == {"points": 33, "time_step": 1 / 700}
+    assert preset_setup("--preset", "mine.json", rope, tmp_path).values == {"points": 33, "time_step": 1 / 700}
     with pytest.raises(ValueError, match=r"mine\.json: scene: 'rope' is not allowed; allowed: race"):
-        preset_values("--preset", str(file), scene_named("race"))
+        preset_setup("--preset", str(file), scene_named("race"))
 
 
 @pytest.mark.parametrize(
@@ -268,7 +268,7 @@ def test_a_record_survives_a_replay_and_a_recording_to_the_last_bit(name: str, t
         for content in (replay_of(kind, params), recording_of(kind, params)):
             file.write_bytes(content)
             assert read_file(read_setup_text("set-up", file)).params == params
-            assert kind.params(**preset_values("--preset", str(file), kind)) == params
+            assert kind.params(**preset_setup("--preset", str(file), kind).values) == params
 
 
 def test_hostile_replays_and_recordings_give_a_set_up_or_one_line(tmp_path: Any) -> None:
@@ -283,7 +283,7 @@ def test_hostile_replays_and_recordings_give_a_set_up_or_one_line(tmp_path: Any)
         file.write_bytes(good[: rng.choice((len(good), rng.randrange(len(good))))])
         problem = ""
         try:
-            preset_values("--preset", str(file), rope)
+            preset_setup("--preset", str(file), rope)
         except ValueError as reason:
             problem = str(reason)
         else:
@@ -298,7 +298,7 @@ def test_a_recording_with_a_huge_or_a_pickled_text_is_refused_unread(tmp_path: A
     for about in (np.array("1" * 10_000_000), np.array([{}], object), np.zeros(3), np.array("[1]"), np.array("{")):
         np.savez_compressed(file, about=about)
         with pytest.raises(ValueError, match=r"^--preset: .*kept.npz' is not allowed; allowed: a set-up file"):
-            preset_values("--preset", str(file), rope)
+            preset_setup("--preset", str(file), rope)
 
 
 def test_a_set_up_in_a_page_ends_where_it_should() -> None:

@@ -22,6 +22,7 @@ from app.scenes.mooring.arrangement import extent, hull_of
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, Params
 from app.scenes.mooring.report import figures_of, marks_of, notes_of, readout_of
+from app.scenes.springs.view import compile_tube
 
 SIDES = 6  # of a tube
 RING_COUNT = 90  # rings of a line, about
@@ -301,12 +302,4 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
 
 def warm_up() -> Pieces:
     """Call the kernels of the drawing."""
-    return {"drawing": compile_drawing, "packing": compile_packing}
-
-
-def compile_drawing() -> None:
-    """Draw a line of two points."""
-    line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
-    smooth_line(np.zeros((2, 3), np.float32), 2, line)
-    sweep(line, 1.0, SIDES, vertices)
-    set_tube_colours(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)
+    return {"drawing": compile_tube, "packing": compile_packing}

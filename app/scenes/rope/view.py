@@ -24,7 +24,7 @@ from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import Params
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE, link_and_point
-from app.scenes.springs.view import RopeSurroundings
+from app.scenes.springs.view import RopeSurroundings, compile_tube
 
 ROPE_COLOUR = (196, 154, 92)
 REFERENCE_COLOUR = (60, 110, 190)
@@ -261,15 +261,7 @@ def bead_radius(points: np.ndarray) -> float:
 
 def warm_up() -> Pieces:
     """Call the kernels of the drawing."""
-    return {"drawing": compile_drawing, "packing": compile_packing}
-
-
-def compile_drawing() -> None:
-    """Draw a rope of two points."""
-    line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
-    smooth_line(np.zeros((2, 3), np.float32), 2, line)
-    sweep(line, ROPE_RADIUS, SIDES, vertices)
-    set_tube_colours(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)
+    return {"drawing": compile_tube, "packing": compile_packing}
 
 
 def cost_text(cost: NumericalCost | None) -> Html:

@@ -5,8 +5,10 @@ import viser
 
 from app.messages import Vector
 from app.render.cameras import NEAR
+from app.render.colormap import SCALE, set_tube_colours
 from app.render.dragging import PullLine
 from app.render.gizmo import Gizmo
+from app.render.meshes import SIDES, smooth_line, sweep
 from app.render.surroundings import Surroundings
 from app.scenes.contract import PostCommand
 from app.scenes.springs.drag import PullFrame
@@ -32,3 +34,11 @@ class RopeSurroundings:
             self.pull.show(None)
         else:
             self.pull.show((points[pull.particle], pull.target), pull.load)
+
+
+def compile_tube() -> None:
+    """Call the kernels that draw a coloured tube."""
+    line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
+    smooth_line(np.zeros((2, 3), np.float32), 2, line)
+    sweep(line, 1.0, SIDES, vertices)
+    set_tube_colours(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)

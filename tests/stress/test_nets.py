@@ -93,16 +93,3 @@ def test_shapes_that_are_hardly_shapes(integrator: str, tally: Tally) -> None:
         net = dataclasses.replace(net, x0=np.zeros_like(net.x0), pinned=frozenset())
         run_few(net, integrator, 1e-4)
         assert np.isfinite(gauge(net, integrator, 1e-4, State.at_rest(net)).h_omega)
-
-
-@pytest.mark.parametrize(
-    ("bad", "words"),
-    [
-        ({"length": 0.0}, "length: 0.0"), ({"length": -1.0}, "length"), ({"mass": 0.0}, "mass"),
-        ({"stiffness": math.nan}, "stiffness"), ({"gravity": math.inf}, "gravity"), ({"points": 0}, "points"),
-        ({"root": (0.0, math.nan, 0.0)}, "root"), ({"sphere": (0.0, 0.0, 0.0, -1.0)}, "sphere"),
-    ],
-)  # fmt: skip
-def test_what_is_no_rope_is_refused_by_name(bad: dict, words: str, tally: Tally) -> None:
-    with tally.fault("bad argument"), pytest.raises(ValueError, match=f"{words}.* is not allowed; allowed: "):
-        rope(**bad)

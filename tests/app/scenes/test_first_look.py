@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from app.panel.recording_files import arrays_of
+from app.render.staff import HEIGHT, PLACE
 from app.scenes import NAMES, scene_named, view_module
 from app.scenes.contract import AnyKind
 
@@ -55,6 +56,19 @@ def test_what_hangs_takes_about_half_of_the_picture_s_height(name: str) -> None:
         shares.append(np.ptp(seen @ np.cross(right, ahead) / picture))
         assert (abs(seen @ right) < 0.59 * picture).all()  # at 1280 x 800 the panel covers the rest
     assert 0.4 < max(shares) < 0.75, shares
+
+
+@pytest.mark.parametrize("name", ["rope", "race", "cloth"])
+def test_the_staff_of_one_metre_is_in_the_first_picture(name: str) -> None:
+    kind, view = scene_named(name), view_module(name).View
+    position, target = np.array(view.first_view(object.__new__(view), kind.opening_params()))
+    ahead = (target - position) / np.linalg.norm(target - position)
+    right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
+    seen = np.array([(*PLACE, 0.0), (*PLACE, HEIGHT)]) - position
+    reach = np.tan(0.5 * view.FIELD_OF_VIEW) * (seen @ ahead)
+    assert HEIGHT == 1.0
+    assert (abs(seen @ np.cross(right, ahead)) < reach).all()
+    assert (abs(seen @ right) < 1.05 * reach).all()  # what js/camera.js shows beside the panel
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -119,7 +119,8 @@
     }
   }
   const sizes = new ResizeObserver(([{ target }]) => {
-    document.documentElement.style.setProperty("--springtide-head", `${target.offsetHeight}px`);
+    const height = Math.floor(target.getBoundingClientRect().height); // rounded up, the text would show in between
+    document.documentElement.style.setProperty("--springtide-head", `${height}px`);
   });
   function markLab() {
     const status = document.querySelector(".springtide-panel[data-state]"), lab = status?.closest(".mantine-Paper-root");

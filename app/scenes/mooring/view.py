@@ -42,9 +42,8 @@ WALL_COLOURS, WALL_OPACITY = ((150, 208, 226), (22, 70, 104)), 0.8
 WALL_ROWS, LIGHT_DEPTHS = 9, 2.0  # rows of vertices down a wall; e-foldings of the light from surface to bed
 ANCHOR_COLOUR, LIFTED_COLOUR, FAIRLEAD_COLOUR = (50, 54, 62), (214, 40, 40), (30, 32, 38)
 WATCH_COLOUR, PATH_COLOUR, SHADOW_COLOUR = (200, 30, 60), (250, 250, 250), (52, 72, 76)
-BED_FADE = 6.0  # distance at which the bed ends, in `extent`s
 CELLS = (1.0, 2.0, 5.0)  # of the bed's lines, times a power of ten
-FAR_VIEW = 40.0  # where the picture ends, in `extent`s
+FAR_VIEW = 40.0  # where the picture ends, and the bed would, in `extent`s
 MooringSnapshot: TypeAlias = Snapshot[Params, MooringFrame, MooringReadings]
 Shape: TypeAlias = tuple[Any, ...]
 
@@ -96,7 +95,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         cell = cell_of(far)
         self.bed = scene.add_grid(
             "/bed", width=frame.side, height=frame.side, cell_size=cell, section_size=5 * cell,
-            position=(0.0, 0.0, -p.depth), plane_opacity=1.0, fade_distance=BED_FADE * far, shadow_opacity=0.0,
+            position=(0.0, 0.0, -p.depth), plane_opacity=1.0, fade_distance=FAR_VIEW * far, shadow_opacity=0.0,
             plane_color=BED_COLOUR, cell_color=CELL_COLOUR, section_color=SECTION_COLOUR,
         )  # fmt: skip
         self.samples = max(1, RING_COUNT // (n - 1))

@@ -1,6 +1,6 @@
 """Clients that read all messages of a lab on this machine and draw nothing, until they are ended.
 
-`python -m app.bench.listener PORT [CLIENTS]`, in a process of its own, so that its time is not counted for the server.
+`python -m app.bench.listener PORT [CLIENTS]`, in a separate process, so that its time is not counted for the server.
 """
 
 import asyncio

@@ -2,7 +2,7 @@
 
 `tasks/` holds the tasks, one TOML file each and, where something is to be programmed, one Python file with the
 reference solution and its check. `folder.py` writes the student's folder, `runner.py` runs the student's functions in
-a process of their own, `program_check.py` and `answer_check.py` judge, `report.py` writes the page to hand in.
+a separate process, `program_check.py` and `answer_check.py` judge, `report.py` writes the page to hand in.
 `workbook.py` is the lab in the page, and `session.py` has a scene run what a student saves while the lab is served.
 Nothing here imports a viewer.
 """

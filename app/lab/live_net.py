@@ -1,4 +1,4 @@
-"""The rope or cloth that a student's functions move: a thread that has it computed, in a process of its own.
+"""The rope or cloth that a student's functions move: a thread that has it computed, in a separate process.
 
 A scene hands jobs over and takes answers; it never waits. Of the versions of the student's files the newest one runs
 that works; which one fails, and why, is kept until the next one is saved.

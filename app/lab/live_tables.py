@@ -1,4 +1,4 @@
-"""Tables of a student's functions that a sea runs by: a thread that has them computed, in a process of their own.
+"""Tables of a student's functions that a sea runs by: a thread that has them computed, in a separate process.
 
 A scene says which functions it has a use for, and at which arguments (`LiveTables.want`). What they return becomes a
 `Table`; a scene takes the tables that there are and never waits. Where the newest version of a function fails, the

@@ -1,4 +1,4 @@
-"""Runs a student's functions in a process of their own: nothing that they do harms the lab.
+"""Runs a student's functions in a separate process: nothing that they do harms the lab.
 
 A call that takes more than 2 s is ended with its process, and the next call gets a new one. What went wrong is a
 `RunError`, which says what and where in words for the student.

@@ -1,6 +1,6 @@
 """`springtide lab DIR` while it runs: watches the student's folder, tries saved files, and runs them.
 
-A thread waits for files to be saved. Each saved version is copied, tried in a process of its own, and handed to the
+A thread waits for files to be saved. Each saved version is copied, tried in a separate process, and handed to the
 rope (`live_net.py`) where it works; where it does not, the last one that worked goes on. The seas run by tables of
 functions (`live_tables.py`), in the same way. What the panel shows is one
 frozen record, `state`, which is replaced and never changed.

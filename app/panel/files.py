@@ -1,6 +1,6 @@
 """Files of the recording and of a browser's view, in the tab "Share".
 
-Callbacks run on viser's event loop. Each file is made in a thread of its own.
+Callbacks run on viser's event loop. Each file is made in a separate thread.
 """
 
 import io
@@ -71,7 +71,7 @@ class Files:
         gui.add_html(PAGE_BUTTONS)
 
     async def on_file(self, event: ViserEvent) -> None:
-        """Make a file in a thread of its own, and send it to the browser that asks."""
+        """Make a file in a separate thread, and send it to the browser that asks."""
         client = event.client
         if client is None:
             return

@@ -233,7 +233,7 @@ class Guide:
         ).start()
 
     def take_picture(self, client: viser.ClientHandle, task: Task) -> None:
-        """Keep a picture in the student's folder; whatever goes wrong is said. In a thread of its own."""
+        """Keep a picture in the student's folder; whatever goes wrong is said. In a separate thread."""
         try:
             time_now = self.values.get("time")
             at = f"-{time_now.value:.0f}s" if isinstance(time_now, LiveNumber) else ""

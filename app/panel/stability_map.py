@@ -103,7 +103,7 @@ def measure_row(scene: StabilityMap, axes: Axes, stiffness: float) -> Row:
 
 
 class StabilityMapPanel:
-    """The map in the panel: a button, the picture, and a thread of its own while it is measured."""
+    """The map in the panel: a button, the picture, and a separate thread while it is measured."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""Compiles in processes of their own, while the page stays alive: compiling in this process would stop its threads.
+"""Compiles in separate processes, while the page stays alive: compiling in this process would stop its threads.
 
 What is waited for is shared among some workers. Another one, of low priority, goes on with the rest of the open scene,
 and then with the other scenes. The workers fill the cache on disk, from which this process loads. If one of them is

@@ -133,7 +133,7 @@ class Comparison:
 
 
 class Comparing:
-    """Begins and ends comparisons, one after the other, on threads of their own."""
+    """Begins and ends comparisons, one after the other, on separate threads."""
 
     def __init__(self, first: "Viewer", make_pane: Callable[[int], "Viewer"]) -> None:
         self.first, self.make_pane = first, make_pane
@@ -157,11 +157,11 @@ class Comparing:
             self.latest.begin(setups[1:] if with_first else setups, resume=not with_first)
 
     def want(self, setups: Sequence[Setup], with_first: bool) -> None:
-        """The same at once, on a thread of its own."""
+        """The same at once, on a separate thread."""
         threading.Thread(target=self.try_to, args=(lambda: self.begin(setups, with_first),), daemon=True).start()
 
     def end(self) -> None:
-        """Show the first lab alone, on a thread of its own."""
+        """Show the first lab alone, on a separate thread."""
         threading.Thread(target=self.try_to, args=(self.end_now,), daemon=True).start()
 
     def end_now(self, timeout: float = -1.0) -> None:

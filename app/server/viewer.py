@@ -190,7 +190,7 @@ class Viewer:
         )
 
     def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:
-        """Ask for a scene; it is opened on a thread of its own."""
+        """Ask for a scene; it is opened on a separate thread."""
         self.wanted.put((name, params, camera))
 
     def open_wanted(self) -> None:

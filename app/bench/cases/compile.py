@@ -12,7 +12,7 @@ from typing import Any
 
 from app.scenes import NAMES
 
-# In a process of its own for each scene, with a cache of its own.
+# In a separate process for each scene, with a cache of its own.
 PROGRAM = """
 import sys, time
 from app.scenes.warmup import all_pieces, compile_piece

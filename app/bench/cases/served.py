@@ -17,7 +17,7 @@ MAX_WAIT = 60.0  # [s] for the client to connect
 def rows(quick: bool = False) -> list[dict[str, Any]]:
     """Processor time of the server over simulated time, and frames in a second of it. Quick: one preset a scene.
 
-    The client is a process of its own. Raises RuntimeError if it does not connect.
+    The client is a separate process. Raises RuntimeError if it does not connect.
     """
     from app.render.injection import record_shaders
     from app.server.viewer import Viewer

@@ -11,7 +11,7 @@ SETTLING = 8.0  # [s] until all clients have the scene
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Each sea with 1 and 20 clients that read all and draw nothing, in a process of their own.
+    """Each sea with 1 and 20 clients that read all and draw nothing, in a separate process.
 
     Quick: the square sea, with 1 and 4 clients, for a second.
     """

@@ -8,7 +8,7 @@ import pytest
 from app.server.page import ALIVE_PATH, COVER, TITLE
 from app.server.viewer import Viewer
 
-MAX_START = 20_000  # characters before the end of the cover; viser's client has 800,000
+MAX_START = 30_000  # characters before the end of the cover; viser's client has 800,000
 
 
 def get(port: int, path: str, **headers: str) -> tuple[int, bytes, dict[str, str]]:

@@ -163,10 +163,7 @@ def waterline_table(waterlines: Sequence[Waterline]) -> np.ndarray:
 
 
 def uniform_table(
-    material: Material,
-    sea_state: tuple[float, float, float],
-    grid: tuple[int, int, float],
-    tiles: int,
+    material: Material, sea_state: tuple[float, float, float], grid: tuple[int, int, float], tiles: int
 ) -> np.ndarray:
     """The uniforms of the water shader, (len(WATER_UNIFORMS), 3) float32, in their order.
 

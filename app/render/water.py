@@ -82,12 +82,7 @@ class Water:
         self._columns = cols + 1 if self._grid else columns
         self._fields = np.empty((6, self._rest.shape[1]), np.float32)  # displacement, slopes and foam
         self.mesh = server.scene.add_mesh_simple(
-            name,
-            points,
-            self._faces,
-            color=self._plain_color(),
-            cast_shadow=False,
-            receive_shadow=False,
+            name, points, self._faces, color=self._plain_color(), cast_shadow=False, receive_shadow=False
         )
         self._plain_meshes: dict[str, viser.MeshHandle] = {}
         self._injector = None if plain else injector_of(server)

@@ -49,15 +49,7 @@ OWN_KEYS = ("scene", "preset", "camera")  # of a query; all others are parameter
 MAX_REPLAY = 200_000_000  # [bytes] of a replay that is read; one of 20 s has 25 MB
 MAX_ABOUT = 100_000  # [bytes] of what a recording says of itself
 BLOCK, BLOCK_END = '<script type="application/json" id="springtide-setup">', "</script>"
-UNREADABLE = (
-    ValueError,
-    KeyError,
-    EOFError,
-    RuntimeError,
-    struct.error,
-    zipfile.BadZipFile,
-    zlib.error,
-)
+UNREADABLE = (ValueError, KeyError, EOFError, RuntimeError, struct.error, zipfile.BadZipFile, zlib.error)
 FORMS = "a set-up file (.json), a replay (.html) or a recording (.npz) of Springtide"
 FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", "hull", "name", "note")
 
@@ -253,13 +245,7 @@ def read_camera(numbers: object) -> Camera:
 
 
 def write_file(
-    kind: AnyKind,
-    params: BaseParams,
-    preset: str = "",
-    camera: Camera | None = None,
-    *,
-    name: str = "",
-    note: str = "",
+    kind: AnyKind, params: BaseParams, preset: str = "", camera: Camera | None = None, *, name: str = "", note: str = ""
 ) -> str:
     """The text of a file that says a set-up. Raises ValueError for a name or note that is not allowed."""
     base = nearest_preset(kind, params, preset)

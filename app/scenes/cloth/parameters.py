@@ -1,8 +1,10 @@
 """The parameters of the cloth, and its presets."""
 
 import dataclasses
+import functools
 from typing import Any
 
+from app.scenes.groups import in_look, in_main, in_plots, in_surroundings, speed_parameter
 from app.scenes.springs.laws import law_parameter
 from app.scenes.springs.methods import METHODS_AND_AUTO
 from sim.parameters import parameter
@@ -11,147 +13,87 @@ from sim.springs.cloth import PIN_CHOICES
 # Up to this number of particles the energy account is always kept. It costs 2 to 6 % of a leapfrog step of the presets,
 # but 164 % of a step of the drape (64 x 64, symplectic Euler), which would then no longer run in real time.
 MAX_ACCOUNTED_PARTICLES = 2500
+in_cloth = functools.partial(parameter, group="Cloth")
 
 
 @dataclasses.dataclass(frozen=True)
 class Params:
     """The cloth's parameters."""
 
-    integrator: str = parameter(
-        "leapfrog", choices=METHODS_AND_AUTO, doc="Method of integration", group="Main", title="Method"
+    integrator: str = in_main("leapfrog", choices=METHODS_AND_AUTO, doc="Method of integration", title="Method")
+    time_step: float = in_main(1 / 1800, 1e-5, 0.05, "s", "Step h of the integrator", log_from=1e-5)
+    stiffness: float = in_main(
+        800.0, 1.0, 1e5, "N/m", "Stiffness of the structural springs, to the next particle", log_from=1.0
     )
-    time_step: float = parameter(1 / 1800, 1e-5, 0.05, "s", "Step h of the integrator", log_from=1e-5, group="Main")
-    stiffness: float = parameter(
-        800.0, 1.0, 1e5, "N/m", "Stiffness of the structural springs, to the next particle", log_from=1.0, group="Main"
-    )
-    damping: float = parameter(0.02, 0.0, 1.0, "N·s/m", "Damping of every spring", log_from=1e-4, group="Main")
-    wind: float = parameter(1.5, 0.0, 25.0, "m/s", "Wind speed", group="Main")
-    sphere: bool = parameter(False, doc="A sphere; drag its arrows to move it", group="Main")
+    damping: float = in_main(0.02, 0.0, 1.0, "N·s/m", "Damping of every spring", log_from=1e-4)
+    wind: float = in_main(1.5, 0.0, 25.0, "m/s", "Wind speed")
+    sphere: bool = in_main(False, doc="A sphere; drag its arrows to move it")
 
-    start: str = parameter(
-        "hanging",
-        choices={"hanging": "Hanging", "level": "Level", "flag": "Flag on a pole"},
-        doc="How the cloth starts",
-        group="Cloth",
-        affects="start",
-    )
-    pinned: str = parameter("edge", choices=PIN_CHOICES, doc="Which particles are pinned", group="Cloth")
-    rows: int = parameter(32, 4, 128, "", "Particles down the cloth", group="Cloth")
-    cols: int = parameter(32, 4, 128, "", "Particles across the cloth", group="Cloth", title="Columns")
-    width: float = parameter(1.6, 0.2, 4.0, "m", "Width at rest", group="Cloth")
-    length: float = parameter(1.6, 0.2, 4.0, "m", "Length at rest", group="Cloth")
-    gather: float = parameter(
-        0.62,
-        0.4,
-        1.0,
-        "",
-        "Width of the hanging cloth at the start over its width at rest: below 1 it hangs in pleats",
-        group="Cloth",
-        affects="start",
+    start: str = in_cloth(
+        "hanging", choices={"hanging": "Hanging", "level": "Level", "flag": "Flag on a pole"},
+        doc="How the cloth starts", affects="start",
+    )  # fmt: skip
+    pinned: str = in_cloth("edge", choices=PIN_CHOICES, doc="Which particles are pinned")
+    rows: int = in_cloth(32, 4, 128, "", "Particles down the cloth")
+    cols: int = in_cloth(32, 4, 128, "", "Particles across the cloth", title="Columns")
+    width: float = in_cloth(1.6, 0.2, 4.0, "m", "Width at rest")
+    length: float = in_cloth(1.6, 0.2, 4.0, "m", "Length at rest")
+    gather: float = in_cloth(
+        0.62, 0.4, 1.0, "",
+        "Width of the hanging cloth at the start over its width at rest: below 1 it hangs in pleats", affects="start",
         title="Pleats",
+    )  # fmt: skip
+    density: float = in_cloth(0.3, 0.02, 5.0, "kg/m²", "Mass per square metre", log_from=0.02, title="Mass")
+    shear: float = in_main(
+        200.0, 0.0, 1e5, "N/m", "Stiffness of the shear springs, across a cell", log_from=1.0, title="Shear stiffness"
     )
-    density: float = parameter(
-        0.3, 0.02, 5.0, "kg/m²", "Mass per square metre", log_from=0.02, group="Cloth", title="Mass"
-    )
-    shear: float = parameter(
-        200.0,
-        0.0,
-        1e5,
-        "N/m",
-        "Stiffness of the shear springs, across a cell",
-        log_from=1.0,
-        group="Main",
-        title="Shear stiffness",
-    )
-    bend: float = parameter(
-        6.0,
-        0.0,
-        1e4,
-        "N/m",
-        "Stiffness of the bend springs, to the next particle but one",
-        log_from=0.1,
-        group="Main",
+    bend: float = in_main(
+        6.0, 0.0, 1e4, "N/m", "Stiffness of the bend springs, to the next particle but one", log_from=0.1,
         title="Bend stiffness",
-    )
+    )  # fmt: skip
     law: str = law_parameter("Cloth")
-    thickness: float = parameter(
-        0.0,
-        0.0,
-        0.1,
-        "m",
+    thickness: float = in_cloth(
+        0.0, 0.0, 0.1, "m",
         "Particles of the cloth that come nearer to each other than this are pushed apart; 0 is off",
-        group="Cloth",
         title="Self-collision distance",
-    )
-
-    gravity: float = parameter(9.81, 0.0, 30.0, "m/s²", "Gravity, downwards", group="Surroundings")
-    wind_direction: float = parameter(
-        90.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y", group="Surroundings"
-    )
-    gust: float = parameter(
-        0.5, 0.0, 1.0, "", "Strength of the gusts; 0 is a steady wind", group="Surroundings", title="Gusts"
-    )
-    air: float = parameter(
-        1.2, 0.0, 5.0, "kg/m³", "Density of the air; 0 is no air", group="Surroundings", title="Air density"
-    )
-    floor: bool = parameter(True, doc="Floor at height 0", group="Surroundings")
-    sphere_radius: float = parameter(0.4, 0.05, 1.5, "m", "Radius of the sphere", group="Surroundings")
-    bob: float = parameter(
-        0.0, 0.0, 1.0, "m", "Amplitude of the sphere's motion up and down", group="Surroundings", title="Sphere stroke"
-    )
-    friction: float = parameter(0.4, 0.0, 2.0, "", "Coefficient of Coulomb friction", group="Surroundings")
-    contact_stiffness: float = parameter(
-        300.0, 1.0, 1e5, "N/m", "Stiffness of floor, sphere and self-collision", log_from=1.0, group="Surroundings"
-    )
-    contact_damping: float = parameter(
-        0.2, 0.0, 100.0, "N·s/m", "Damping of floor, sphere and self-collision", log_from=1e-3, group="Surroundings"
-    )
-    pull: float = parameter(
-        8.0,
-        0.1,
-        1e3,
-        "N",
-        "Largest force with which the mouse pulls the cloth",
-        log_from=0.1,
-        group="Surroundings",
-        title="Mouse force",
-    )
-
-    speed: float = parameter(
-        1.0, 0.01, 4.0, "", "Simulated time over real time: 0.1 is slow motion", log_from=0.01, group="Time",
-        affects="look",
     )  # fmt: skip
 
-    colour: str = parameter(
-        "fabric",
-        choices={"fabric": "Fabric", "strain": "Strain"},
-        doc="What the colour of the cloth shows",
-        group="Look",
-        affects="look",
+    gravity: float = in_surroundings(9.81, 0.0, 30.0, "m/s²", "Gravity, downwards")
+    wind_direction: float = in_surroundings(90.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y")
+    gust: float = in_surroundings(0.5, 0.0, 1.0, "", "Strength of the gusts; 0 is a steady wind", title="Gusts")
+    air: float = in_surroundings(1.2, 0.0, 5.0, "kg/m³", "Density of the air; 0 is no air", title="Air density")
+    floor: bool = in_surroundings(True, doc="Floor at height 0")
+    sphere_radius: float = in_surroundings(0.4, 0.05, 1.5, "m", "Radius of the sphere")
+    bob: float = in_surroundings(
+        0.0, 0.0, 1.0, "m", "Amplitude of the sphere's motion up and down", title="Sphere stroke"
     )
-    full_strain: float = parameter(
-        5.0,
-        0.1,
-        100.0,
-        "%",
-        "Strain at the end of the colour scale",
-        log_from=0.1,
-        group="Look",
-        affects="look",
-        title="Strain scale",
+    friction: float = in_surroundings(0.4, 0.0, 2.0, "", "Coefficient of Coulomb friction")
+    contact_stiffness: float = in_surroundings(
+        300.0, 1.0, 1e5, "N/m", "Stiffness of floor, sphere and self-collision", log_from=1.0
     )
-    grid: bool = parameter(True, doc="Lines on the floor (key G)", group="Look", affects="look")
-    handles: bool = parameter(True, doc="Arrows that move the pins and the sphere", group="Look", affects="look")
-    plot_energy: bool = parameter(
+    contact_damping: float = in_surroundings(
+        0.2, 0.0, 100.0, "N·s/m", "Damping of floor, sphere and self-collision", log_from=1e-3
+    )
+    pull: float = in_surroundings(
+        8.0, 0.1, 1e3, "N", "Largest force with which the mouse pulls the cloth", log_from=0.1, title="Mouse force"
+    )
+
+    speed: float = speed_parameter(0.01, 4.0)
+
+    colour: str = in_look(
+        "fabric", choices={"fabric": "Fabric", "strain": "Strain"}, doc="What the colour of the cloth shows"
+    )
+    full_strain: float = in_look(
+        5.0, 0.1, 100.0, "%", "Strain at the end of the colour scale", log_from=0.1, title="Strain scale"
+    )
+    grid: bool = in_look(True, doc="Lines on the floor (key G)")
+    handles: bool = in_look(True, doc="Arrows that move the pins and the sphere")
+    plot_energy: bool = in_plots(
         False,
         doc=f"Energies over time; above {MAX_ACCOUNTED_PARTICLES} particles they are recorded once the plot is open",
-        group="Plots",
-        affects="look",
         title="Energy",
-    )
-    plot_strain: bool = parameter(
-        False, doc="Largest strain over time", group="Plots", affects="look", title="Largest strain"
-    )
+    )  # fmt: skip
+    plot_strain: bool = in_plots(False, doc="Largest strain over time", title="Largest strain")
 
 
 PRESETS: dict[str, dict[str, Any]] = {

@@ -1,8 +1,10 @@
 """The mooring's parameters and presets."""
 
 import dataclasses
+import functools
 from typing import Any
 
+from app.scenes.groups import in_look, in_main, in_plots, speed_parameter
 from app.scenes.springs.methods import METHODS
 from sim.parameters import parameter
 from sim.springs import INTEGRATORS
@@ -11,105 +13,81 @@ EXPLICIT = {
     name: METHODS[name] for name in METHODS if not (INTEGRATORS[name].implicit or INTEGRATORS[name].undamped_only)
 }
 MAX_LINES = 4
+in_body = functools.partial(parameter, group="Body")
+in_line = functools.partial(parameter, group="Line")
+in_sea = functools.partial(parameter, group="Sea")
 
 
 @dataclasses.dataclass(frozen=True)
 class Params:
     """The mooring's parameters; the defaults are a buoy on three chains."""
 
-    lines: int = parameter(3, 1, MAX_LINES, "", "Number of lines, spread evenly; the first leads into the waves",
-                           group="Main", affects="start")  # fmt: skip
-    length: float = parameter(
-        96.0, 2.0, 1000.0, "m", "Length of each line, unstretched", log_from=2.0, group="Main", affects="start"
+    lines: int = in_main(
+        3, 1, MAX_LINES, "", "Number of lines, spread evenly; the first leads into the waves", affects="start"
     )
-    reach: float = parameter(
-        80.0, 0.5, 900.0, "m", "Level distance from the body's middle to each anchor", log_from=0.5, group="Main",
-        affects="start", title="Distance of anchors",
+    length: float = in_main(96.0, 2.0, 1000.0, "m", "Length of each line, unstretched", log_from=2.0, affects="start")
+    reach: float = in_main(
+        80.0, 0.5, 900.0, "m", "Level distance from the body's middle to each anchor", log_from=0.5, affects="start",
+        title="Distance of anchors",
     )  # fmt: skip
-    depth: float = parameter(40.0, 2.0, 500.0, "m", "Depth of the water", log_from=2.0, group="Main", affects="start")
-    wave_height: float = parameter(
-        4.0, 0.0, 20.0, "m", "Significant height of the waves; the height of a regular wave", group="Main"
-    )
-    wave_period: float = parameter(8.0, 1.0, 25.0, "s", "Period of the highest waves", group="Main")
-    integrator: str = parameter("leapfrog", choices=EXPLICIT, doc="Method of integration", group="Main", title="Method")
-    time_step: float = parameter(1 / 480, 1e-5, 0.1, "s", "Step h of the integrator", log_from=1e-5, group="Main")
+    depth: float = in_main(40.0, 2.0, 500.0, "m", "Depth of the water", log_from=2.0, affects="start")
+    wave_height: float = in_main(4.0, 0.0, 20.0, "m", "Significant height of the waves; the height of a regular wave")
+    wave_period: float = in_main(8.0, 1.0, 25.0, "s", "Period of the highest waves")
+    integrator: str = in_main("leapfrog", choices=EXPLICIT, doc="Method of integration", title="Method")
+    time_step: float = in_main(1 / 480, 1e-5, 0.1, "s", "Step h of the integrator", log_from=1e-5)
 
-    diameter: float = parameter(
-        0.09, 0.003, 0.5, "m", "Diameter of a rope with the volume of the line", log_from=0.003, group="Line"
+    diameter: float = in_line(0.09, 0.003, 0.5, "m", "Diameter of a rope with the volume of the line", log_from=0.003)
+    line_mass: float = in_line(
+        80.0, 0.01, 1000.0, "kg/m", "Mass per metre of line, in air", log_from=0.01, title="Mass per metre"
     )
-    line_mass: float = parameter(
-        80.0,
-        0.01,
-        1000.0,
-        "kg/m",
-        "Mass per metre of line, in air",
-        log_from=0.01,
-        group="Line",
-        title="Mass per metre",
+    axial_stiffness: float = in_line(5e7, 1e3, 1e10, "N", "Stiffness EA of a line", log_from=1e3, title="Stiffness EA")
+    line_damping: float = in_line(
+        0.8, 0.0, 2.0, "", "Damping of the stretch of a segment, of the critical one", title="Internal damping"
     )
-    axial_stiffness: float = parameter(
-        5e7, 1e3, 1e10, "N", "Stiffness EA of a line", log_from=1e3, group="Line", title="Stiffness EA"
-    )
-    line_damping: float = parameter(
-        0.8, 0.0, 2.0, "", "Damping of the stretch of a segment, of the critical one", group="Line",
-        title="Internal damping",
-    )  # fmt: skip
-    drag_across: float = parameter(1.6, 0.0, 5.0, "", "Drag coefficient across the line", group="Line")
-    drag_along: float = parameter(0.1, 0.0, 2.0, "", "Drag coefficient along the line", group="Line")
-    added_mass: float = parameter(1.0, 0.0, 5.0, "", "Added mass coefficient across the line", group="Line")
-    floats: bool = parameter(False, doc="Floats on a part of each line", group="Line", affects="start")
-    lift: float = parameter(
-        300.0, 0.0, 5000.0, "N/m", "Upward force of the part with floats, per metre", group="Line", affects="start",
+    drag_across: float = in_line(1.6, 0.0, 5.0, "", "Drag coefficient across the line")
+    drag_along: float = in_line(0.1, 0.0, 2.0, "", "Drag coefficient along the line")
+    added_mass: float = in_line(1.0, 0.0, 5.0, "", "Added mass coefficient across the line")
+    floats: bool = in_line(False, doc="Floats on a part of each line", affects="start")
+    lift: float = in_line(
+        300.0, 0.0, 5000.0, "N/m", "Upward force of the part with floats, per metre", affects="start",
         title="Lift of floats",
     )  # fmt: skip
-    segments: int = parameter(40, 4, 100, "", "Segments of each line", log_from=4, group="Line", affects="start")
+    segments: int = in_line(40, 4, 100, "", "Segments of each line", log_from=4, affects="start")
 
-    body: str = parameter(
-        "buoy", choices={"buoy": "Buoy", "box": "Box"}, doc="Shape of the floating body", group="Body", affects="start"
+    body: str = in_body(
+        "buoy", choices={"buoy": "Buoy", "box": "Box"}, doc="Shape of the floating body", affects="start"
     )
-    size: float = parameter(9.0, 0.5, 40.0, "m", "Width of the body", log_from=0.5, group="Body", affects="start")
-    density: float = parameter(450.0, 100.0, 900.0, "kg/m³", "Density of the body", group="Body", affects="start")
-    pull: float = parameter(
-        1.0, 0.05, 5.0, "", "Largest force with which the mouse pulls the body, in weights of the body", group="Body",
-        affects="look", title="Mouse force",
+    size: float = in_body(9.0, 0.5, 40.0, "m", "Width of the body", log_from=0.5, affects="start")
+    density: float = in_body(450.0, 100.0, 900.0, "kg/m³", "Density of the body", affects="start")
+    pull: float = in_body(
+        1.0, 0.05, 5.0, "", "Largest force with which the mouse pulls the body, in weights of the body", affects="look",
+        title="Mouse force",
     )  # fmt: skip
 
-    regular: bool = parameter(False, doc="One regular wave instead of many waves", group="Sea", title="Regular wave")
-    direction: float = parameter(
-        0.0, -180.0, 180.0, "°", "Where waves, current and steady force go to, from +x towards +y", group="Sea"
+    regular: bool = in_sea(False, doc="One regular wave instead of many waves", title="Regular wave")
+    direction: float = in_sea(
+        0.0, -180.0, 180.0, "°", "Where waves, current and steady force go to, from +x towards +y"
     )
-    current: float = parameter(0.0, 0.0, 4.0, "m/s", "Speed of the water, the same at all depths", group="Sea")
-    steady_force: float = parameter(0.0, 0.0, 5000.0, "kN", "Force of the wind on the body", group="Sea", log_from=0.1)
-    friction: float = parameter(0.3, 0.0, 2.0, "", "Coefficient of friction of the bed", group="Sea")
+    current: float = in_sea(0.0, 0.0, 4.0, "m/s", "Speed of the water, the same at all depths")
+    steady_force: float = in_sea(0.0, 0.0, 5000.0, "kN", "Force of the wind on the body", log_from=0.1)
+    friction: float = in_sea(0.3, 0.0, 2.0, "", "Coefficient of friction of the bed")
 
-    speed: float = parameter(
-        1.0, 0.01, 8.0, "", "Simulated time over real time: 0.1 is slow motion", log_from=0.01, group="Time",
-        affects="look",
-    )  # fmt: skip
+    speed: float = speed_parameter(0.01, 8.0)
 
-    surface: bool = parameter(True, doc="The water's surface", group="Look", affects="look")
-    watch: bool = parameter(
-        True, doc="Path of the body, and the circle that it has not left", group="Look", affects="look",
-        title="Watch circle",
-    )  # fmt: skip
-    handles: bool = parameter(True, doc="Arrows that move anchors and fairleads", group="Look", affects="look")
-    grid: bool = parameter(True, doc="Lines on the bed (key G)", group="Look", affects="look")
-    plot_tension: bool = parameter(
-        False, doc="Tension at the fairlead of each line over time, and the largest", group="Plots", affects="look",
-        title="Tension",
-    )  # fmt: skip
-    plot_anchor: bool = parameter(
-        False, doc="Tension at the anchor of each line over time", group="Plots", affects="look",
-        title="Tension at anchors",
-    )  # fmt: skip
-    plot_offset: bool = parameter(
-        False, doc="Level distance of the body from its place of rest, over time", group="Plots", affects="look",
-        title="Offset",
-    )  # fmt: skip
-    plot_restoring: bool = parameter(
-        False, doc="Static force of all lines over the offset, and the force now", group="Plots", affects="look",
-        title="Restoring force",
-    )  # fmt: skip
+    surface: bool = in_look(True, doc="The water's surface")
+    watch: bool = in_look(True, doc="Path of the body, and the circle that it has not left", title="Watch circle")
+    handles: bool = in_look(True, doc="Arrows that move anchors and fairleads")
+    grid: bool = in_look(True, doc="Lines on the bed (key G)")
+    plot_tension: bool = in_plots(
+        False, doc="Tension at the fairlead of each line over time, and the largest", title="Tension"
+    )
+    plot_anchor: bool = in_plots(False, doc="Tension at the anchor of each line over time", title="Tension at anchors")
+    plot_offset: bool = in_plots(
+        False, doc="Level distance of the body from its place of rest, over time", title="Offset"
+    )
+    plot_restoring: bool = in_plots(
+        False, doc="Static force of all lines over the offset, and the force now", title="Restoring force"
+    )
 
 
 ROPE: dict[str, Any] = {

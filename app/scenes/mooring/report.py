@@ -59,9 +59,7 @@ def offset_text(snapshot: Snapshot) -> Html:
     """Offset and watch circle."""
     found: MooringReadings = snapshot.readings
     return fill(
-        "<div>Offset {}, watch circle of {} radius</div>",
-        bold(metres(found.offset)),
-        bold(metres(found.most_offset)),
+        "<div>Offset {}, watch circle of {} radius</div>", bold(metres(found.offset)), bold(metres(found.most_offset))
     )
 
 

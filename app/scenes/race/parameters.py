@@ -3,9 +3,10 @@
 import dataclasses
 from typing import Any
 
+from app.scenes.groups import in_look, in_main, in_plots, in_rope
 from app.scenes.springs.methods import METHODS
 from app.scenes.springs.rope_parameters import RopeParams, hidden_of_rope
-from sim.parameters import parameter, redeclare
+from sim.parameters import redeclare
 
 MAX_ROPES = 6
 NUMBERS = range(2, MAX_ROPES + 1)  # of the ropes that have an integrator and a step parameter of their own
@@ -14,56 +15,30 @@ STEP_RULES = {"same step": "Same step", "same cost": "Same cost", "own steps": "
 
 def method_of_rope(number: int, default: str) -> Any:
     """The parameter of one rope's method."""
-    return parameter(
-        default,
-        choices=METHODS,
-        doc=f"Method of integration of rope {number}",
-        group="Main",
-        affects="start",
-        title=f"{number}: method",
-    )
+    doc = f"Method of integration of rope {number}"
+    return in_main(default, choices=METHODS, doc=doc, affects="start", title=f"{number}: method")
 
 
 def step_of_rope(number: int) -> Any:
     """The parameter of one rope's time step."""
-    return parameter(
-        1 / 60,
-        1e-5,
-        0.1,
-        "s",
-        f"Step of rope {number}",
-        log_from=1e-5,
-        group="Main",
-        affects="start",
-        title=f"{number}: time step",
-    )
+    title = f"{number}: time step"
+    return in_main(1 / 60, 1e-5, 0.1, "s", f"Step of rope {number}", log_from=1e-5, affects="start", title=title)
 
 
 @dataclasses.dataclass(frozen=True)
 class RaceRules:
     """Number of ropes, and their differences."""
 
-    ropes: int = parameter(
-        3, 1, MAX_ROPES, "", "Number of ropes, each with its own method and step", group="Main", affects="start"
-    )
-    race_steps: str = parameter(
-        "same cost",
-        choices=STEP_RULES,
-        doc="Same cost: as many force evaluations a second as rope 1; own steps: as set for each rope",
-        group="Main",
-        affects="start",
+    ropes: int = in_main(3, 1, MAX_ROPES, "", "Number of ropes, each with its own method and step", affects="start")
+    race_steps: str = in_main(
+        "same cost", choices=STEP_RULES,
+        doc="Same cost: as many force evaluations a second as rope 1; own steps: as set for each rope", affects="start",
         title="Steps",
-    )
-    stiffness_ratio: float = parameter(
-        1.0,
-        1.0,
-        10.0,
-        "",
-        "Stiffness of each rope over that of the rope before it",
-        group="Rope",
-        affects="start",
+    )  # fmt: skip
+    stiffness_ratio: float = in_rope(
+        1.0, 1.0, 10.0, "", "Stiffness of each rope over that of the rope before it", affects="start",
         title="Stiffness ratio",
-    )
+    )  # fmt: skip
 
 
 @dataclasses.dataclass(frozen=True)
@@ -80,13 +55,10 @@ class RaceMethods:
     step_5: float = step_of_rope(5)
     integrator_6: str = method_of_rope(6, "implicit_midpoint")
     step_6: float = step_of_rope(6)
-    show_reference: bool = parameter(
-        True,
-        doc="Draw the reference run in grey: Dormand-Prince 5 with a tolerance of 1e-10",
-        group="Look",
-        affects="look",
+    show_reference: bool = in_look(
+        True, doc="Draw the reference run in grey: Dormand-Prince 5 with a tolerance of 1e-10"
     )
-    spacing: float = parameter(0.5, 0.0, 2.0, "m", "Distance between the drawn ropes", group="Look", affects="look")
+    spacing: float = in_look(0.5, 0.0, 2.0, "m", "Distance between the drawn ropes")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -94,15 +66,10 @@ class Params(RaceMethods, RopeParams, RaceRules):
     """The race's parameters. A change of the compared problem starts it again; other forces do not."""
 
     integrator: str = redeclare(
-        RopeParams,
-        "integrator",
-        default="explicit_euler",
-        choices=tuple(METHODS),
-        choice_titles=tuple(METHODS.values()),
-        doc="Method of integration of rope 1",
-        affects="start",
+        RopeParams, "integrator", default="explicit_euler", choices=tuple(METHODS),
+        choice_titles=tuple(METHODS.values()), doc="Method of integration of rope 1", affects="start",
         title="1: method",
-    )
+    )  # fmt: skip
     time_step: float = redeclare(
         RopeParams, "time_step", default=1 / 240, doc="Step of rope 1", affects="start", title="1: time step"
     )
@@ -110,19 +77,11 @@ class Params(RaceMethods, RopeParams, RaceRules):
     points: int = redeclare(RopeParams, "points", affects="start")
     length: float = redeclare(RopeParams, "length", affects="start")
 
-    plot_errors: bool = parameter(
-        True,
-        doc="Distance of each rope from the reference run over time",
-        group="Plots",
-        affects="look",
-        title="Distance from reference",
+    plot_errors: bool = in_plots(
+        True, doc="Distance of each rope from the reference run over time", title="Distance from reference"
     )
-    plot_energies: bool = parameter(
-        True,
-        doc="Numerical error of the energy of each rope over time",
-        group="Plots",
-        affects="look",
-        title="Energy errors",
+    plot_energies: bool = in_plots(
+        True, doc="Numerical error of the energy of each rope over time", title="Energy errors"
     )
 
 

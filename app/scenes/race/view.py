@@ -81,11 +81,7 @@ class RopesDrawing:
     """The handles of all ropes, made for their number and their points, then assigned to."""
 
     def __init__(
-        self,
-        server: viser.ViserServer,
-        frame: RaceFrame,
-        on_bead: Callable[[Any], Any],
-        on_tube: Callable[[Any], Any],
+        self, server: viser.ViserServer, frame: RaceFrame, on_bead: Callable[[Any], Any], on_tube: Callable[[Any], Any]
     ) -> None:
         """on_bead: called with viser's event for a bead; its instance is numbered through, rope after rope.
 

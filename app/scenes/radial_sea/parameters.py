@@ -1,10 +1,12 @@
 """The parameters of the radial sea, its presets, and which parameters mean nothing just now."""
 
 import dataclasses
+import functools
 import math
 from typing import Any
 
-from app.scenes.spectrum_parameters import SPECTRUM_PARAMETERS, spectrum_values
+from app.scenes.groups import in_grid, in_look, in_main, in_plots, in_waves, speed_parameter
+from app.scenes.sea_parameters import SKY_TITLES, SPECTRUM_PARAMETERS, SPECTRUM_TITLES, spectrum_values
 from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import Fluid, fluids
@@ -15,14 +17,14 @@ from sim.parameters import parameter, with_parameters
 
 OILS = tuple(name for name in fluids() if "water" not in name)
 CAMERA_TARGETS = ("free", "first buoy", "second buoy", "box", "cutaway", "from above", "rig")
-SPECTRUM_TITLES = {
-    name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
-}
 WATER = "sea water"
 MIN_FILM = 1e-6  # [m] of oil that counts as a layer: thinner, the spill is gone
 OWN_DENSITIES = ("density_1", "density_2", "density_3")  # parameters: densities of the first bodies
 LEVEL_SPECTRUM = "pierson_moskowitz"  # makes no waves without wind
-SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
+in_bodies = functools.partial(parameter, group="Bodies")
+in_oil = functools.partial(parameter, group="Oil")
+in_rig = functools.partial(parameter, group="Rig")
+in_spill = functools.partial(parameter, group="Spill over hours")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -30,60 +32,37 @@ SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night
 class Params:
     """The parameters, with those of all spectra; the defaults are clean water in a moderate breeze."""
 
-    wind_speed: float = parameter(
-        7.0,
-        0.5,
-        25.0,
-        "m/s",
-        "Wind speed 10 m above the sea",
-        group="Main",
-    )
-    spill: str = parameter(
-        "none",
-        choices={"none": "No oil", "layer": "Layer of oil", "mixed": "Entirely mixed"},
+    wind_speed: float = in_main(7.0, 0.5, 25.0, "m/s", "Wind speed 10 m above the sea")
+    spill: str = in_main(
+        "none", choices={"none": "No oil", "layer": "Layer of oil", "mixed": "Entirely mixed"},
         doc="Layer: oil floats on the water. Entirely mixed: oil and water are one fluid, as the lab assumes",
-        group="Main",
         title="Oil spill",
-    )
-    oil: str = parameter("Alaska North Slope 2002", choices=OILS, doc="Kind of oil, from NOAA's records", group="Main")
-    thickness: float = parameter(
-        0.2, 0.0, 2.0, "m", "Thickness d of the layer of oil", log_from=1e-5, group="Main", title="Layer thickness"
-    )
-    fraction: float = parameter(
-        0.5, 0.01, 0.99, "", "Share of oil in the mixture, by volume", group="Main", title="Share of oil"
-    )
-    cutaway: bool = parameter(
-        False,
-        doc="Cut the sea open beside the first buoy, to see the oil, the interface, and the hull in both",
-        group="Main",
-        affects="look",
-        title="Cutaway",
-    )
-    follow: str = parameter(
-        "free",
-        choices=CAMERA_TARGETS,
-        doc="What the camera looks at and moves with",
-        group="Main",
-        affects="look",
-        title="Camera follows",
-    )
-
-    waves: bool = parameter(True, doc="Waves; without them the sea is level", group="Waves")
-    wind_direction: float = parameter(
-        25.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y", group="Main"
-    )
-    spectrum: str = parameter(
-        "jonswap", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from", group="Waves"
-    )
-    wave_count: int = parameter(
-        96, 8, 512, "", "Number of waves in the sum; each has the same energy", log_from=8, group="Waves",
-        title="Number of waves",
     )  # fmt: skip
-    choppiness: float = parameter(
-        1.0, 0.0, 1.5, "", "Factor on the horizontal motion, which sharpens the crests; 1 is physics", group="Waves"
+    oil: str = in_main("Alaska North Slope 2002", choices=OILS, doc="Kind of oil, from NOAA's records")
+    thickness: float = in_main(
+        0.2, 0.0, 2.0, "m", "Thickness d of the layer of oil", log_from=1e-5, title="Layer thickness"
+    )
+    fraction: float = in_main(0.5, 0.01, 0.99, "", "Share of oil in the mixture, by volume", title="Share of oil")
+    cutaway: bool = in_main(
+        False, doc="Cut the sea open beside the first buoy, to see the oil, the interface, and the hull in both",
+        affects="look", title="Cutaway",
+    )  # fmt: skip
+    follow: str = in_main(
+        "free", choices=CAMERA_TARGETS, doc="What the camera looks at and moves with", affects="look",
+        title="Camera follows",
+    )  # fmt: skip
+
+    waves: bool = in_waves(True, doc="Waves; without them the sea is level")
+    wind_direction: float = in_main(25.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y")
+    spectrum: str = in_waves("jonswap", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from")
+    wave_count: int = in_waves(
+        96, 8, 512, "", "Number of waves in the sum; each has the same energy", log_from=8, title="Number of waves"
+    )
+    choppiness: float = in_waves(
+        1.0, 0.0, 1.5, "", "Factor on the horizontal motion, which sharpens the crests; 1 is physics"
     )
 
-    mixture_law: str = parameter(
+    mixture_law: str = in_oil(
         "pal_rhodes",
         choices={
             "pal_rhodes": "Pal-Rhodes (emulsion)",
@@ -93,166 +72,100 @@ class Params:
             "kendall_monroe": "Kendall-Monroe (solution)",
         },
         doc="Viscosity of the mixture",
-        group="Oil",
         title="Mixture law",
     )
-    continuous: str = parameter(
+    continuous: str = in_oil(
         "plentiful",
         choices={"plentiful": "The more plentiful", "water": "Water: oil in water", "oil": "Oil: water in oil"},
         doc="Fluid of an emulsion that the drops of the other are in. Spills at sea become water in oil (mousse)",
-        group="Oil",
         title="Continuous fluid",
-    )
-    film: bool = parameter(
-        False, doc="A surface film that cannot be stretched, which damps ripples", group="Oil", title="Surface film"
-    )
-    exposure: float = parameter(
-        60.0,
-        0.0,
-        3600.0,
-        "s",
-        "For how long the oil has damped the waves at the start",
-        log_from=1.0,
-        group="Oil",
+    )  # fmt: skip
+    film: bool = in_oil(False, doc="A surface film that cannot be stretched, which damps ripples", title="Surface film")
+    exposure: float = in_oil(
+        60.0, 0.0, 3600.0, "s", "For how long the oil has damped the waves at the start", log_from=1.0,
         title="Age at the start",
-    )
-    ageing: bool = parameter(True, doc="Keep damping the waves as time passes", group="Oil", title="Keep damping")
-    optics: str = parameter(
-        "physical",
-        choices={"physical": "Physical", "lab": "Lab: oil reflects less"},
+    )  # fmt: skip
+    ageing: bool = in_oil(True, doc="Keep damping the waves as time passes", title="Keep damping")
+    optics: str = in_oil(
+        "physical", choices={"physical": "Physical", "lab": "Lab: oil reflects less"},
         doc="Physical: Fresnel reflection by the fluid's refractive index. Lab: reflections of oil are scaled down",
-        group="Oil",
-        affects="look",
-        title="Reflections",
-    )
+        affects="look", title="Reflections",
+    )  # fmt: skip
 
-    spill_volume: float = parameter(
-        100.0, 1.0, 1e5, "m³", "Oil that was spilled, all at once", log_from=1.0, group="Spill over hours",
-        title="Volume spilled",
-    )  # fmt: skip
-    temperature: float = parameter(
-        15.0, 0.0, 30.0, "°C", "Temperature of the oil; the water's density stays that of 15 °C",
-        group="Spill over hours",
-    )  # fmt: skip
-    spill_hours: float = parameter(
-        0.0,
-        0.0,
-        120.0,
-        "h",
+    spill_volume: float = in_spill(
+        100.0, 1.0, 1e5, "m³", "Oil that was spilled, all at once", log_from=1.0, title="Volume spilled"
+    )
+    temperature: float = in_spill(
+        15.0, 0.0, 30.0, "°C", "Temperature of the oil; the water's density stays that of 15 °C"
+    )
+    spill_hours: float = in_spill(
+        0.0, 0.0, 120.0, "h",
         "Time since the spill: the oil evaporates, takes up water and thickens, and floats here as it is by then",
-        group="Spill over hours",
         title="Time since the spill",
-    )
-    spread: bool = parameter(
-        False,
-        doc="The layer is as thin as the oil has spread by then, instead of as thick as set",
-        group="Spill over hours",
-        title="Thickness as spread",
-    )
-
-    bodies: int = parameter(
-        3, 0, 200, "", "Number of floating bodies: two buoys, a box, then all kinds in turn", group="Main"
-    )
-    density: float = parameter(450.0, 50.0, 1020.0, "kg/m³", "Density of the bodies", group="Main")
-    own_densities: bool = parameter(
-        False, doc="Densities of their own for the first three bodies", group="Bodies", title="Own densities"
-    )
-    density_1: float = parameter(
-        300.0, 50.0, 1020.0, "kg/m³", "Density of the first body, the red buoy", group="Bodies", title="Red buoy"
-    )
-    density_2: float = parameter(
-        600.0, 50.0, 1020.0, "kg/m³", "Density of the second body, the yellow buoy", group="Bodies",
-        title="Yellow buoy",
     )  # fmt: skip
-    density_3: float = parameter(
-        900.0, 50.0, 1020.0, "kg/m³", "Density of the third body, the box", group="Bodies", title="Box"
+    spread: bool = in_spill(
+        False, doc="The layer is as thin as the oil has spread by then, instead of as thick as set",
+        title="Thickness as spread",
+    )  # fmt: skip
+
+    bodies: int = in_main(3, 0, 200, "", "Number of floating bodies: two buoys, a box, then all kinds in turn")
+    density: float = in_main(450.0, 50.0, 1020.0, "kg/m³", "Density of the bodies")
+    own_densities: bool = in_bodies(
+        False, doc="Densities of their own for the first three bodies", title="Own densities"
     )
-    size: float = parameter(1.5, 0.3, 4.0, "", "Size of the bodies; at 1 the box is 1.2 m wide", group="Main")
-    ripples: bool = parameter(
-        True, doc="Bodies that move make waves of their own", group="Bodies", title="Radiated waves"
+    density_1: float = in_bodies(
+        300.0, 50.0, 1020.0, "kg/m³", "Density of the first body, the red buoy", title="Red buoy"
     )
-    mooring: bool = parameter(
-        True, doc="Four elastic lines from the keel of each body to anchors on the bed, 60 m deep", group="Bodies"
+    density_2: float = in_bodies(
+        600.0, 50.0, 1020.0, "kg/m³", "Density of the second body, the yellow buoy", title="Yellow buoy"
     )
-    pull: float = parameter(
-        6.0,
-        0.5,
-        50.0,
-        "",
-        "Largest force with which the mouse pulls a body, in weights of the body",
-        group="Bodies",
-        affects="look",
+    density_3: float = in_bodies(900.0, 50.0, 1020.0, "kg/m³", "Density of the third body, the box", title="Box")
+    size: float = in_main(1.5, 0.3, 4.0, "", "Size of the bodies; at 1 the box is 1.2 m wide")
+    ripples: bool = in_bodies(True, doc="Bodies that move make waves of their own", title="Radiated waves")
+    mooring: bool = in_bodies(
+        True, doc="Four elastic lines from the keel of each body to anchors on the bed, 60 m deep"
+    )
+    pull: float = in_bodies(
+        6.0, 0.5, 50.0, "", "Largest force with which the mouse pulls a body, in weights of the body", affects="look",
         title="Mouse force",
-    )
+    )  # fmt: skip
 
-    rig: bool = parameter(True, doc="The oil rig", group="Rig")
-    fire: bool = parameter(False, doc="The rig burns", group="Rig")
-    fire_power: float = parameter(400.0, 10.0, 2000.0, "MW", "Power of the fire", log_from=10.0, group="Rig")
-    jet: bool = parameter(
-        False, doc="A jet of oil shoots from the rig and feeds a slick", group="Rig", title="Jet of oil"
-    )
-    jet_flow: float = parameter(2.0, 0.05, 20.0, "m³/s", "Flow of the jet", log_from=0.05, group="Rig")
-    particles: int = parameter(
-        4000, 100, 20000, "", "Particles of the fire; the jet has half as many", log_from=100, group="Rig"
-    )
+    rig: bool = in_rig(True, doc="The oil rig")
+    fire: bool = in_rig(False, doc="The rig burns")
+    fire_power: float = in_rig(400.0, 10.0, 2000.0, "MW", "Power of the fire", log_from=10.0)
+    jet: bool = in_rig(False, doc="A jet of oil shoots from the rig and feeds a slick", title="Jet of oil")
+    jet_flow: float = in_rig(2.0, 0.05, 20.0, "m³/s", "Flow of the jet", log_from=0.05)
+    particles: int = in_rig(4000, 100, 20000, "", "Particles of the fire; the jet has half as many", log_from=100)
 
-    surface: str = parameter(
-        "sum",
-        choices={"sum": "Sum of waves (radial)", "fft": "FFT (the square sea)"},
+    surface: str = in_grid(
+        "sum", choices={"sum": "Sum of waves (radial)", "fft": "FFT (the square sea)"},
         doc="How the surface is computed; both are drawn on the same radial grid",
-        group="Grid",
-    )
-    centre: str = parameter(
-        "fixed",
-        choices={"fixed": "At the bodies", "camera": "Below the camera"},
-        doc="Where the grid is dense",
-        group="Grid",
-        affects="look",
-        title="Grid centre",
-    )
-    rings: int = parameter(128, 16, 256, "", "Rings of the grid", group="Grid", affects="look")
-    spokes: int = parameter(128, 16, 256, "", "Points on a ring", group="Grid", affects="look")
-    ring_law: str = parameter(
-        "geometric",
-        choices={LAWS[0]: "Geometric", LAWS[1]: "Power (lab)"},
-        doc="How the spacing of the rings grows outwards",
-        group="Grid",
-        affects="look",
-        title="Ring spacing",
-    )
-    compare: bool = parameter(
-        False,
-        doc="Time both surfaces every 2 s, for the table 'Radial or square'",
-        group="Grid",
-        affects="look",
+    )  # fmt: skip
+    centre: str = in_grid(
+        "fixed", choices={"fixed": "At the bodies", "camera": "Below the camera"}, doc="Where the grid is dense",
+        affects="look", title="Grid centre",
+    )  # fmt: skip
+    rings: int = in_grid(128, 16, 256, "", "Rings of the grid", affects="look")
+    spokes: int = in_grid(128, 16, 256, "", "Points on a ring", affects="look")
+    ring_law: str = in_grid(
+        "geometric", choices={LAWS[0]: "Geometric", LAWS[1]: "Power (lab)"},
+        doc="How the spacing of the rings grows outwards", affects="look", title="Ring spacing",
+    )  # fmt: skip
+    compare: bool = in_grid(
+        False, doc="Time both surfaces every 2 s, for the table 'Radial or square'", affects="look",
         title="Compare surfaces",
-    )
+    )  # fmt: skip
 
     time_step: float = parameter(1 / 60, 1 / 500, 1 / 20, "s", "Step of the bodies' motion", group="Time")
-    speed: float = parameter(
-        1.0, 0.05, 4.0, "", "Simulated time over real time: 0.1 is slow motion", log_from=0.05, group="Time",
-        affects="look",
-    )  # fmt: skip
+    speed: float = speed_parameter(0.05, 4.0)
 
-    sky: str = parameter("park", choices=SKY_TITLES, doc="Sky and its light", group="Look", affects="look")
-    grid: bool = parameter(False, doc="Lines of the grid (key G)", group="Look", affects="look")
-    plot_draft: bool = parameter(
-        False, doc="Drafts of the first three bodies over time", group="Plots", affects="look", title="Drafts"
+    sky: str = in_look("park", choices=SKY_TITLES, doc="Sky and its light")
+    grid: bool = in_look(False, doc="Lines of the grid (key G)")
+    plot_draft: bool = in_plots(False, doc="Drafts of the first three bodies over time", title="Drafts")
+    plot_surface: bool = in_plots(
+        False, doc="Height of the sea at the first buoy, and of the buoy, over time", title="Buoy and sea"
     )
-    plot_surface: bool = parameter(
-        False,
-        doc="Height of the sea at the first buoy, and of the buoy, over time",
-        group="Plots",
-        affects="look",
-        title="Buoy and sea",
-    )
-    plot_budget: bool = parameter(
-        False,
-        doc="Where the oil of the spill is, over five days",
-        group="Plots",
-        affects="look",
-        title="Oil budget",
-    )
+    plot_budget: bool = in_plots(False, doc="Where the oil of the spill is, over five days", title="Oil budget")
 
     hull: str = ""  # a mesh file that floats too; it is named on the command line only, never by a browser
 
@@ -260,35 +173,20 @@ class Params:
 PRESETS: dict[str, dict[str, Any]] = {
     "Clear water": {},
     "Light crude spill 0.2 m": {
-        "spill": "layer",
-        "thickness": 0.2,
-        "exposure": 60.0,
-        "cutaway": True,
-        "follow": "cutaway",
-        "wind_speed": 5.0,
+        "spill": "layer", "thickness": 0.2, "exposure": 60.0, "cutaway": True, "follow": "cutaway", "wind_speed": 5.0,
     },
     "Heavy fuel oil": {
-        "spill": "layer",
-        "oil": "IFO 180",
-        "thickness": 0.5,
-        "exposure": 600.0,
-        "follow": "from above",
+        "spill": "layer", "oil": "IFO 180", "thickness": 0.5, "exposure": 600.0, "follow": "from above",
         "sky": "sunset",  # oil mirrors the sky: under a blue one it looks like water
     },
     "Entirely mixed": {"spill": "mixed", "oil": "Arabian Light", "fraction": 0.4, "follow": "from above"},
     "Storm with buoys": {"wind_speed": 17.0, "bodies": 12, "wave_count": 160, "size": 2.0, "follow": "from above"},
     "Burning rig": {"fire": True, "jet": True, "follow": "rig", "sky": "dawn", "wind_speed": 6.0},
     "A day after a spill": {
-        "spill": "layer",
-        "oil": "Arabian Light",
-        "spill_hours": 24.0,
-        "spread": True,
-        "exposure": 3600.0,
-        "plot_budget": True,
-        "follow": "from above",
-        "sky": "sunset",
+        "spill": "layer", "oil": "Arabian Light", "spill_hours": 24.0, "spread": True, "exposure": 3600.0,
+        "plot_budget": True, "follow": "from above", "sky": "sunset",
     },
-}
+}  # fmt: skip
 
 ABOUT = {  # preset -> what it shows and what to try
     "Clear water": "Buoys and a box float on clean water: push one under and let go.",
@@ -305,13 +203,11 @@ def hidden(params: Params) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
     names = SPECTRA[params.spectrum].unused(spectrum_values(params))
     if params.spill != "layer":
-        names.add("thickness")
+        names |= {"thickness", "temperature"}
     if spill_of(params) is None:
         names |= {"spill_volume", "spill_hours", "spread", "plot_budget"}
     elif params.spread:
         names.add("thickness")
-    if params.spill != "layer":
-        names.add("temperature")
     if params.spill != "mixed":
         names |= {"fraction", "mixture_law", "continuous"}
     elif not MIXTURE_LAWS[params.mixture_law].is_emulsion:
@@ -358,12 +254,9 @@ def spill_of(params: Params) -> Spill | None:
     if params.spill != "layer" or not can_weather(params.oil):
         return None
     return Spill(
-        oil=params.oil,
-        volume=params.spill_volume,
-        wind_speed=params.wind_speed,
-        temperature=params.temperature,
+        oil=params.oil, volume=params.spill_volume, wind_speed=params.wind_speed, temperature=params.temperature,
         water=WATER,
-    )
+    )  # fmt: skip
 
 
 def weathered_oil(params: Params) -> WeatheredOil | None:

@@ -7,15 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import (
-    DivergenceError,
-    Grab,
-    Place,
-    PlotRow,
-    Release,
-    SceneCommand,
-    StudentAnswer,
-)
+from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, StudentAnswer
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -23,13 +15,7 @@ from app.scenes.plot_rows import PlotRows
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
 from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.drawn_surface import DrawnSurface, Foam, tile_of
-from app.scenes.radial_sea.frame import (
-    JetParcels,
-    RadialFrame,
-    RadialReadings,
-    pack_frame,
-    unpack_frame,
-)
+from app.scenes.radial_sea.frame import JetParcels, RadialFrame, RadialReadings, pack_frame, unpack_frame
 from app.scenes.radial_sea.live_values import live_values
 from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import (

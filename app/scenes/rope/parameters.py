@@ -3,30 +3,22 @@
 import dataclasses
 from typing import Any
 
+from app.scenes.groups import in_look, in_main, in_plots, in_surroundings
 from app.scenes.springs.rope_parameters import RopeParams, hidden_of_rope
-from sim.parameters import parameter
 
 
 @dataclasses.dataclass(frozen=True)
 class Params(RopeParams):
     """The rope's parameters."""
 
-    sphere: bool = parameter(False, doc="A sphere; drag its arrows to move it", group="Main")
-    sphere_radius: float = parameter(0.75, 0.05, 3.0, "m", "Radius of the sphere", group="Surroundings")
+    sphere: bool = in_main(False, doc="A sphere; drag its arrows to move it")
+    sphere_radius: float = in_surroundings(0.75, 0.05, 3.0, "m", "Radius of the sphere")
 
-    colour: str = parameter(
-        "tension",
-        choices={"tension": "Tension", "plain": "One colour"},
-        doc="What the colour of the rope shows",
-        group="Look",
-        affects="look",
+    colour: str = in_look(
+        "tension", choices={"tension": "Tension", "plain": "One colour"}, doc="What the colour of the rope shows"
     )
-    plot_energy: bool = parameter(
-        False, doc="Energies over time, and what damping has dissipated", group="Plots", affects="look", title="Energy"
-    )
-    plot_tip: bool = parameter(
-        False, doc="Height of the last point over time", group="Plots", affects="look", title="Height of the tip"
-    )
+    plot_energy: bool = in_plots(False, doc="Energies over time, and what damping has dissipated", title="Energy")
+    plot_tip: bool = in_plots(False, doc="Height of the last point over time", title="Height of the tip")
 
 
 PRESETS: dict[str, dict[str, Any]] = {

@@ -6,15 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import (
-    Grab,
-    Place,
-    Release,
-    SceneCommand,
-    StudentAnswer,
-    Vector,
-    vector_of,
-)
+from app.messages import Grab, Place, Release, SceneCommand, StudentAnswer, Vector, vector_of
 from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings

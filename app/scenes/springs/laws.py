@@ -12,13 +12,9 @@ SPRING = next(iter(LAWS))  # the law whose kernels are compiled ahead
 
 def law_parameter(group: str) -> Any:
     """The parameter of the links' law."""
-    return parameter(
-        SPRING,
-        choices={name: law.title for name, law in LAWS.items()},
-        doc="How a link pulls: as a spring, as a line, which never pushes, or harder the more it is stretched",
-        group=group,
-        title="Link",
-    )
+    doc = "How a link pulls: as a spring, as a line, which never pushes, or harder the more it is stretched"
+    choices = {name: law.title for name, law in LAWS.items()}
+    return parameter(SPRING, choices=choices, doc=doc, group=group, title="Link")
 
 
 def pieces_of_law(names: tuple[str, ...], law: str) -> tuple[str, ...]:

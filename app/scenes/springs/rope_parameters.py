@@ -3,9 +3,9 @@
 import dataclasses
 
 from app.messages import Vector
+from app.scenes.groups import in_look, in_main, in_rope, in_surroundings, speed_parameter
 from app.scenes.springs.laws import law_parameter
 from app.scenes.springs.methods import METHODS_AND_AUTO
-from sim.parameters import parameter
 from sim.springs import Contact, Net, lab_units, rope
 from sim.springs.net import CONTACT_LAWS, DAMPING_MODELS
 
@@ -18,82 +18,54 @@ ROPE_RADIUS = 0.035  # [m] of the drawn rope, and of its points for contact
 class RopeParams:
     """Clock, material and surroundings of a rope; the defaults are the lab's code defaults with a better integrator."""
 
-    integrator: str = parameter(
-        "leapfrog", choices=METHODS_AND_AUTO, doc="Method of integration", group="Main", title="Method"
-    )
-    time_step: float = parameter(1 / 60, 1e-5, 0.1, "s", "Step h of the integrator", log_from=1e-5, group="Main")
-    stiffness: float = parameter(800.0, 1.0, 1e9, "N/m", "Stiffness k of a link", log_from=1.0, group="Main")
-    damping: float = parameter(7.0, 0.0, 1e5, "N·s/m", "Damping b of a link", log_from=1e-3, group="Main")
-    axial_stiffness: float = parameter(178.0, 1.0, 1e9, "N", "Stiffness EA", log_from=1.0, group="Main")
-    axial_viscosity: float = parameter(
-        1.56, 0.0, 1e5, "N·s", "Damping of one metre of rope", log_from=1e-3, group="Main"
-    )
-    points: int = parameter(10, 2, 1000, "", "Number of points, with the root", log_from=2, group="Main")
+    integrator: str = in_main("leapfrog", choices=METHODS_AND_AUTO, doc="Method of integration", title="Method")
+    time_step: float = in_main(1 / 60, 1e-5, 0.1, "s", "Step h of the integrator", log_from=1e-5)
+    stiffness: float = in_main(800.0, 1.0, 1e9, "N/m", "Stiffness k of a link", log_from=1.0)
+    damping: float = in_main(7.0, 0.0, 1e5, "N·s/m", "Damping b of a link", log_from=1e-3)
+    axial_stiffness: float = in_main(178.0, 1.0, 1e9, "N", "Stiffness EA", log_from=1.0)
+    axial_viscosity: float = in_main(1.56, 0.0, 1e5, "N·s", "Damping of one metre of rope", log_from=1e-3)
+    points: int = in_main(10, 2, 1000, "", "Number of points, with the root", log_from=2)
 
-    units: str = parameter(
-        "lab",
-        choices={"lab": "Per point and link (lab)", "material": "Per metre of rope"},
+    units: str = in_rope(
+        "lab", choices={"lab": "Per point and link (lab)", "material": "Per metre of rope"},
         doc="Per point and link, the rope changes with its number of points; per metre, it stays the same rope",
-        group="Rope",
         title="Values",
+    )  # fmt: skip
+    length: float = in_rope(2.0, 0.1, 10.0, "m", "Length at rest")
+    mass: float = in_rope(1.0, 1e-3, 1e3, "kg", "Mass of a point", log_from=1e-3)
+    drag: float = in_rope(1.0, 0.0, 1e3, "N·s/m", "Air drag c on a point", log_from=1e-3, title="Air drag")
+    mass_per_length: float = in_rope(
+        4.5, 1e-3, 1e3, "kg/m", "Mass per metre of rope", log_from=1e-3, title="Mass per metre"
     )
-    length: float = parameter(2.0, 0.1, 10.0, "m", "Length at rest", group="Rope")
-    mass: float = parameter(1.0, 1e-3, 1e3, "kg", "Mass of a point", log_from=1e-3, group="Rope")
-    drag: float = parameter(
-        1.0, 0.0, 1e3, "N·s/m", "Air drag c on a point", log_from=1e-3, group="Rope", title="Air drag"
-    )
-    mass_per_length: float = parameter(
-        4.5, 1e-3, 1e3, "kg/m", "Mass per metre of rope", log_from=1e-3, group="Rope", title="Mass per metre"
-    )
-    drag_per_length: float = parameter(
-        4.5, 0.0, 1e3, "N·s/m²", "Air drag per metre of rope", log_from=1e-3, group="Rope", title="Drag per metre"
+    drag_per_length: float = in_rope(
+        4.5, 0.0, 1e3, "N·s/m²", "Air drag per metre of rope", log_from=1e-3, title="Drag per metre"
     )
     law: str = law_parameter("Rope")
-    damping_model: str = parameter(
-        "isotropic",
-        choices={DAMPING_MODELS[0]: "Isotropic (lab eq. 2)", DAMPING_MODELS[1]: "Along the link"},
+    damping_model: str = in_rope(
+        "isotropic", choices={DAMPING_MODELS[0]: "Isotropic (lab eq. 2)", DAMPING_MODELS[1]: "Along the link"},
         doc="Isotropic: b acts on the whole relative velocity, as in the lab. Or on its part along the link only",
-        group="Rope",
-    )
-
-    gravity: float = parameter(10.0, 0.0, 100.0, "m/s²", "Gravity, downwards", group="Surroundings")
-    floor: bool = parameter(True, doc="Floor at height 0", group="Surroundings")
-    friction: float = parameter(0.3, 0.0, 2.0, "", "Coefficient of Coulomb friction", group="Surroundings")
-    contact_stiffness: float = parameter(
-        800.0, 1.0, 1e7, "N/m", "Stiffness of floor and sphere", log_from=1.0, group="Surroundings"
-    )
-    contact_damping: float = parameter(
-        5.0, 0.0, 1e4, "N·s/m", "Damping of floor and sphere", log_from=1e-2, group="Surroundings"
-    )
-    contact_law: str = parameter(
-        "clipped",
-        choices={CONTACT_LAWS[0]: "Pushes only, with friction", CONTACT_LAWS[1]: "Lab's law (may stick)"},
-        doc="The lab's own law may also pull, and its friction is viscous",
-        group="Surroundings",
-    )
-    root_swing: float = parameter(
-        0.0, 0.0, 1.0, "m", "Amplitude of the root's motion to and fro; 0 is off", group="Main"
-    )
-    swing_period: float = parameter(1.0, 0.2, 10.0, "s", "Period of the root's motion to and fro", group="Main")
-    pull: float = parameter(
-        300.0,
-        1.0,
-        1e5,
-        "N",
-        "Largest force with which the mouse pulls a point",
-        log_from=1.0,
-        group="Surroundings",
-        title="Mouse force",
-    )
-
-    speed: float = parameter(
-        1.0, 0.01, 8.0, "", "Simulated time over real time: 0.1 is slow motion", log_from=0.01, group="Time",
-        affects="look",
     )  # fmt: skip
 
-    show_points: bool = parameter(True, doc="Draw the points, which can be dragged", group="Look", affects="look")
-    grid: bool = parameter(True, doc="Lines on the floor (key G)", group="Look", affects="look")
-    handles: bool = parameter(True, doc="Arrows that move the root and the sphere", group="Look", affects="look")
+    gravity: float = in_surroundings(10.0, 0.0, 100.0, "m/s²", "Gravity, downwards")
+    floor: bool = in_surroundings(True, doc="Floor at height 0")
+    friction: float = in_surroundings(0.3, 0.0, 2.0, "", "Coefficient of Coulomb friction")
+    contact_stiffness: float = in_surroundings(800.0, 1.0, 1e7, "N/m", "Stiffness of floor and sphere", log_from=1.0)
+    contact_damping: float = in_surroundings(5.0, 0.0, 1e4, "N·s/m", "Damping of floor and sphere", log_from=1e-2)
+    contact_law: str = in_surroundings(
+        "clipped", choices={CONTACT_LAWS[0]: "Pushes only, with friction", CONTACT_LAWS[1]: "Lab's law (may stick)"},
+        doc="The lab's own law may also pull, and its friction is viscous",
+    )  # fmt: skip
+    root_swing: float = in_main(0.0, 0.0, 1.0, "m", "Amplitude of the root's motion to and fro; 0 is off")
+    swing_period: float = in_main(1.0, 0.2, 10.0, "s", "Period of the root's motion to and fro")
+    pull: float = in_surroundings(
+        300.0, 1.0, 1e5, "N", "Largest force with which the mouse pulls a point", log_from=1.0, title="Mouse force"
+    )
+
+    speed: float = speed_parameter(0.01, 8.0)
+
+    show_points: bool = in_look(True, doc="Draw the points, which can be dragged")
+    grid: bool = in_look(True, doc="Lines on the floor (key G)")
+    handles: bool = in_look(True, doc="Arrows that move the root and the sphere")
 
 
 LAB_ONLY = {"stiffness", "damping", "mass", "drag"}
@@ -121,14 +93,8 @@ def link_and_point(params: RopeParams) -> dict[str, float]:
     """Stiffness [N/m] and damping [N s/m] of a link, mass [kg] and air drag [N s/m] of a point."""
     if params.units == "lab":
         return {name: getattr(params, name) for name in LAB_ONLY}
-    return lab_units(
-        params.points,
-        params.length,
-        params.axial_stiffness,
-        params.mass_per_length,
-        params.axial_viscosity,
-        params.drag_per_length,
-    )
+    p = params
+    return lab_units(p.points, p.length, p.axial_stiffness, p.mass_per_length, p.axial_viscosity, p.drag_per_length)
 
 
 def build_rope(params: RopeParams, root: Vector = ROOT, sphere: tuple[float, float, float, float] | None = None) -> Net:

@@ -1,11 +1,13 @@
 """The parameters of the square sea, its presets, and the sea that they describe."""
 
 import dataclasses
+import functools
 import math
 from typing import Any, NamedTuple
 
 from app.formats.formatting import number
-from app.scenes.spectrum_parameters import SPECTRUM_PARAMETERS, spectrum_values
+from app.scenes.groups import in_grid, in_look, in_main, in_plots, in_waves, speed_parameter
+from app.scenes.sea_parameters import SKY_TITLES, SPECTRUM_PARAMETERS, SPECTRUM_TITLES, spectrum_values
 from sim.ocean.planets import RADIUS_RULES, SOLAR_SYSTEM, gravity_of
 from sim.ocean.spectra import SPECTRA
 from sim.parameters import parameter, with_parameters
@@ -13,16 +15,14 @@ from sim.parameters import parameter, with_parameters
 SIZES = ("64", "128", "256", "512")
 MESHES = ("32", "64", "128", "256")
 VIEW_HEIGHTS = {"swimmer": 1.7, "deck": 2.6, "bridge": 4.5, "mast": 8.0, "gull": 40.0}  # [m] of the camera
-SPECTRUM_TITLES = {
-    name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
-}
-SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
 PLANET_TITLES = {
     "by mass": "By mass",
     "by gravity": "By gravity",
     **{name: f"{name}, {number(planet.gravity)} m/s²" for name, planet in SOLAR_SYSTEM.items()},
 }
 SURFACE_TENSION = 0.0728  # [N/m] of water against air
+in_foam = functools.partial(parameter, group="Foam and rain")
+in_water = functools.partial(parameter, group="Water and planet")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -30,190 +30,92 @@ SURFACE_TENSION = 0.0728  # [N/m] of water against air
 class Params:
     """The square sea's parameters, with those of all spectra; the defaults are the first preset."""
 
-    wind_speed: float = parameter(
-        8.0,
-        0.0,
-        60.0,
-        "m/s",
-        "Wind speed 10 m above the sea",
-        group="Main",
-    )
-    rain: float = parameter(0.0, 0.0, 200.0, "mm/h", "Rainfall; 0 is no rain", log_from=0.1, group="Main")
-    planet: str = parameter("by mass", choices=PLANET_TITLES, doc="What sets the gravity", group="Main")
-    planet_mass: float = parameter(
-        1.0, 0.01, 100.0, "Earths", "Mass of the planet", log_from=0.01, group="Main", title="Mass"
-    )
-    gravity: float = parameter(9.81, 0.01, 1000.0, "m/s²", "Gravity", log_from=0.01, group="Main")
-    view: str = parameter(
-        "deck",
-        choices={name: f"{name.capitalize()}, {height:g} m up" for name, height in VIEW_HEIGHTS.items()},
-        doc="Where the camera stands",
-        group="Main",
-        affects="look",
-    )
-
-    spectrum: str = parameter(
-        "pierson_moskowitz", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from", group="Waves"
-    )
-    wind_direction: float = parameter(
-        20.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y", group="Main"
-    )
-    transition: float = parameter(
-        3.0,
-        0.0,
-        600.0,
-        "s",
-        "Time for the sea to adapt to new weather",
-        log_from=0.1,
-        group="Waves",
-        title="Time to adapt",
-    )
-    start: str = parameter(
-        "as set",
-        choices={"as set": "As set here", "calm": "Calm", "storm": "Storm"},
-        doc="The sea at the start: as set here, or a calm or a storm, from which it then develops",
-        group="Waves",
-        affects="start",
-    )
-
-    radius_rule: str = parameter(
-        "same_density",
-        choices=tuple(RADIUS_RULES),
-        doc="How the radius of the planet depends on its mass",
-        group="Water and planet",
-        title="Planet radius",
-    )
-    deep: bool = parameter(
-        True, doc="Deep water; off: water of the depth below", group="Water and planet", title="Deep water"
-    )
-    depth: float = parameter(20.0, 0.1, 5000.0, "m", "Depth of the water", log_from=0.1, group="Water and planet")
-    choppiness: float = parameter(
-        1.0, 0.0, 2.0, "", "Factor on the horizontal motion, which sharpens the crests; 1 is physics",
-        group="Main",
+    wind_speed: float = in_main(8.0, 0.0, 60.0, "m/s", "Wind speed 10 m above the sea")
+    rain: float = in_main(0.0, 0.0, 200.0, "mm/h", "Rainfall; 0 is no rain", log_from=0.1)
+    planet: str = in_main("by mass", choices=PLANET_TITLES, doc="What sets the gravity")
+    planet_mass: float = in_main(1.0, 0.01, 100.0, "Earths", "Mass of the planet", log_from=0.01, title="Mass")
+    gravity: float = in_main(9.81, 0.01, 1000.0, "m/s²", "Gravity", log_from=0.01)
+    view: str = in_main(
+        "deck", choices={name: f"{name.capitalize()}, {height:g} m up" for name, height in VIEW_HEIGHTS.items()},
+        doc="Where the camera stands", affects="look",
     )  # fmt: skip
-    amplitude: float = parameter(
-        1.0, 0.0, 5.0, "", "Factor on every height; 1 is physics", group="Water and planet", title="Height factor"
+
+    spectrum: str = in_waves("pierson_moskowitz", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from")
+    wind_direction: float = in_main(20.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y")
+    transition: float = in_waves(
+        3.0, 0.0, 600.0, "s", "Time for the sea to adapt to new weather", log_from=0.1, title="Time to adapt"
     )
-    low_pass: float = parameter(
-        0.0,
-        0.0,
-        100.0,
-        "m",
-        "The damping parameter of the course lab: a length l, below which waves are left out; 0 is off",
-        log_from=1e-2,
-        group="Water and planet",
+    start: str = in_waves(
+        "as set", choices={"as set": "As set here", "calm": "Calm", "storm": "Storm"},
+        doc="The sea at the start: as set here, or a calm or a storm, from which it then develops", affects="start",
+    )  # fmt: skip
+
+    radius_rule: str = in_water(
+        "same_density", choices=tuple(RADIUS_RULES), doc="How the radius of the planet depends on its mass",
+        title="Planet radius",
+    )  # fmt: skip
+    deep: bool = in_water(True, doc="Deep water; off: water of the depth below", title="Deep water")
+    depth: float = in_water(20.0, 0.1, 5000.0, "m", "Depth of the water", log_from=0.1)
+    choppiness: float = in_main(
+        1.0, 0.0, 2.0, "", "Factor on the horizontal motion, which sharpens the crests; 1 is physics"
+    )
+    amplitude: float = in_water(1.0, 0.0, 5.0, "", "Factor on every height; 1 is physics", title="Height factor")
+    low_pass: float = in_water(
+        0.0, 0.0, 100.0, "m",
+        "The damping parameter of the course lab: a length l, below which waves are left out; 0 is off", log_from=1e-2,
         title="Lab's damping length",
-    )
-    viscosity: float = parameter(
-        0.0,
-        0.0,
-        10.0,
-        "m²/s",
-        "Kinematic viscosity: waves decay after the last change. Water 1e-6, heavy oil 2e-2",
+    )  # fmt: skip
+    viscosity: float = in_water(
+        0.0, 0.0, 10.0, "m²/s", "Kinematic viscosity: waves decay after the last change. Water 1e-6, heavy oil 2e-2",
         log_from=1e-7,
-        group="Water and planet",
+    )  # fmt: skip
+    dispersion_scale: float = in_water(
+        1.0, 0.0, 4.0, "", "Factor on the frequency of every wave; 1 is physics", title="Frequency factor"
     )
-    dispersion_scale: float = parameter(
-        1.0,
-        0.0,
-        4.0,
-        "",
-        "Factor on the frequency of every wave; 1 is physics",
-        group="Water and planet",
-        title="Frequency factor",
-    )
-    loop_period: float = parameter(
-        0.0,
-        0.0,
-        1000.0,
-        "s",
-        "The dispersion of the course lab: the sea repeats after this time; 0 is off",
-        log_from=1.0,
-        group="Water and planet",
-        title="Lab's repeat period",
-    )
+    loop_period: float = in_water(
+        0.0, 0.0, 1000.0, "s", "The dispersion of the course lab: the sea repeats after this time; 0 is off",
+        log_from=1.0, title="Lab's repeat period",
+    )  # fmt: skip
 
-    foam: bool = parameter(True, doc="Foam where the surface is most compressed", group="Foam and rain")
-    foam_by_wind: bool = parameter(
-        True,
-        doc="As much foam as was measured at this wind speed; less on a damped sea",
-        group="Foam and rain",
-    )
-    foam_threshold: float = parameter(0.5, -1.0, 1.0, "", "Jacobian below which there is foam", group="Foam and rain")
-    foam_fade: float = parameter(
-        4.0, 0.1, 60.0, "s", "Time in which foam fades", log_from=0.1, group="Foam and rain", title="Foam lifetime"
-    )
-    drops: int = parameter(
-        1500, 1, 5000, "", "Largest number of drops shown", log_from=1, group="Foam and rain", title="Drops shown"
-    )
-    rings: float = parameter(
-        1.0, 0.0, 5.0, "", "Strength of the rings that drops make; 0 is off", group="Foam and rain", title="Drop rings"
-    )
+    foam: bool = in_foam(True, doc="Foam where the surface is most compressed")
+    foam_by_wind: bool = in_foam(True, doc="As much foam as was measured at this wind speed; less on a damped sea")
+    foam_threshold: float = in_foam(0.5, -1.0, 1.0, "", "Jacobian below which there is foam")
+    foam_fade: float = in_foam(4.0, 0.1, 60.0, "s", "Time in which foam fades", log_from=0.1, title="Foam lifetime")
+    drops: int = in_foam(1500, 1, 5000, "", "Largest number of drops shown", log_from=1, title="Drops shown")
+    rings: float = in_foam(1.0, 0.0, 5.0, "", "Strength of the rings that drops make; 0 is off", title="Drop rings")
 
-    length: float = parameter(
-        192.0,
-        32.0,
-        4096.0,
-        "m",
-        "Side of the square tile that repeats",
-        log_from=32.0,
-        group="Grid",
-        affects="start",
+    length: float = in_grid(
+        192.0, 32.0, 4096.0, "m", "Side of the square tile that repeats", log_from=32.0, affects="start",
         title="Tile side",
+    )  # fmt: skip
+    size: str = in_grid(
+        "256", choices={n: f"{n} × {n}" for n in SIZES}, doc="Grid on which the sea is solved", title="Solved grid"
     )
-    size: str = parameter(
-        "256",
-        choices={n: f"{n} × {n}" for n in SIZES},
-        doc="Grid on which the sea is solved",
-        group="Grid",
-        title="Solved grid",
-    )
-    mesh: str = parameter(
-        "128",
-        choices={n: f"{n} × {n}" for n in MESHES},
-        doc="Grid that is drawn, at most as fine as the solved one",
-        group="Grid",
+    mesh: str = in_grid(
+        "128", choices={n: f"{n} × {n}" for n in MESHES}, doc="Grid that is drawn, at most as fine as the solved one",
         title="Drawn grid",
-    )
-    seed: int = parameter(
-        4, 0, 999, "", "Seed of the random numbers: another sea in the same weather", group="Grid", affects="start",
+    )  # fmt: skip
+    seed: int = in_grid(
+        4, 0, 999, "", "Seed of the random numbers: another sea in the same weather", affects="start",
         title="Random seed",
     )  # fmt: skip
 
-    speed: float = parameter(
-        1.0, 0.01, 8.0, "", "Simulated time over real time: 0.1 is slow motion", log_from=0.01, group="Time",
-        affects="look",
-    )  # fmt: skip
-    frame_rate: float = parameter(30.0, 5.0, 60.0, "Hz", "Frames per second", group="Time", affects="look")
+    speed: float = speed_parameter(0.01, 8.0)
+    frame_rate: float = parameter(30.0, 5.0, 60.0, "Hz", "Frames per second", affects="look", group="Time")
 
-    grid: bool = parameter(False, doc="Lines of the drawn grid (key G)", group="Look", affects="look")
-    gauge: bool = parameter(True, doc="Draw the wave gauge, a buoy", group="Look", affects="look", title="Wave gauge")
-    sky: str = parameter("park", choices=SKY_TITLES, doc="Sky and its light", group="Look", affects="look")
-    sun: float = parameter(
-        18.0, -180.0, 180.0, "°", "Where the sun stands, from +x towards +y", group="Look", affects="look",
-        title="Sun direction",
-    )  # fmt: skip
-    clouds: float = parameter(
-        0.4, 0.0, 1.0, "", "Share of the sky that clouds cover", group="Look", affects="look", title="Cloud cover"
-    )
-    daylight: float = parameter(0.85, 0.05, 3.0, "", "Brightness", group="Look", affects="look", title="Brightness")
-    visibility: float = parameter(
-        3000.0, 50.0, 20000.0, "m", "Distance at which haze hides the sea", log_from=50.0, group="Look", affects="look"
-    )
+    grid: bool = in_look(False, doc="Lines of the drawn grid (key G)")
+    gauge: bool = in_look(True, doc="Draw the wave gauge, a buoy", title="Wave gauge")
+    sky: str = in_look("park", choices=SKY_TITLES, doc="Sky and its light")
+    sun: float = in_look(18.0, -180.0, 180.0, "°", "Where the sun stands, from +x towards +y", title="Sun direction")
+    clouds: float = in_look(0.4, 0.0, 1.0, "", "Share of the sky that clouds cover", title="Cloud cover")
+    daylight: float = in_look(0.85, 0.05, 3.0, "", "Brightness", title="Brightness")
+    visibility: float = in_look(3000.0, 50.0, 20000.0, "m", "Distance at which haze hides the sea", log_from=50.0)
 
-    statistics: bool = parameter(
-        True, doc="Measure the sea as drawn, and compare it with theory", group="Plots", affects="look"
+    statistics: bool = in_plots(True, doc="Measure the sea as drawn, and compare it with theory")
+    plot_wave_gauge: bool = in_plots(
+        False, doc="Height at the wave gauge over time; click the water to place the gauge", title="Wave gauge"
     )
-    plot_wave_gauge: bool = parameter(
-        False,
-        doc="Height at the wave gauge over time; click the water to place the gauge",
-        group="Plots",
-        affects="look",
-        title="Wave gauge",
-    )
-    plot_wave_spectrum: bool = parameter(
-        False, doc="Spectrum at the wave gauge beside theory", group="Plots", affects="look", title="Wave spectrum"
-    )
+    plot_wave_spectrum: bool = in_plots(False, doc="Spectrum at the wave gauge beside theory", title="Wave spectrum")
 
 
 PRESETS: dict[str, dict[str, Any]] = {

@@ -37,9 +37,7 @@ CHANGING = (  # as time passes
     "pace", "paced_at", "paced_of", "changed_at", "transition", "viscous_area",
 )  # fmt: skip
 PLOTS = {"plot_wave_gauge": PlotAxes("Height at the wave gauge", "m", SERIES)}
-CURVES = {
-    "plot_wave_spectrum": CurveAxes("Spectrum at the wave gauge", "m²/Hz", "f [Hz]", ("measured", "theory")),
-}
+CURVES = {"plot_wave_spectrum": CurveAxes("Spectrum at the wave gauge", "m²/Hz", "f [Hz]", ("measured", "theory"))}
 STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
 START_WIND_SPEEDS = {"calm": 3.0, "storm": 24.0}  # [m/s] wind of the sea at a reset, by the parameter `start`
 SETTLING_TRANSITIONS = 16.0  # transition times after which nothing is left of the old weather (e^-16 = 1e-7)
@@ -363,11 +361,7 @@ class SquareSeaScene:
     def arrays(self) -> dict[str, tuple[NDArray[np.floating], str]]:
         """The state for a file: name -> (array, unit)."""
         frame = self.frame()
-        return {
-            "vertices": (frame.vertices, "m"),
-            "slopes": (frame.slopes, ""),
-            "foam": (frame.foam, "0 to 1"),
-        }
+        return {"vertices": (frame.vertices, "m"), "slopes": (frame.slopes, ""), "foam": (frame.foam, "0 to 1")}
 
 
 SCENE = SceneKind(

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
 from app.lab.tabulate import Range
-from app.scenes.spectrum_parameters import spectrum_values
+from app.scenes.sea_parameters import spectrum_values
 from app.scenes.square_sea.parameters import Params, conditions, gravity
 from sim.ocean import Sea
 from sim.ocean.spectra import SPECTRA, Spectrum

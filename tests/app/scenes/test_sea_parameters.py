@@ -5,7 +5,7 @@ import math
 import pytest
 
 from app.scenes.radial_sea import parameters as radial
-from app.scenes.spectrum_parameters import SPECTRUM_PARAMETERS
+from app.scenes.sea_parameters import SPECTRUM_PARAMETERS
 from app.scenes.square_sea import parameters as square
 from sim.ocean import Sea
 from sim.ocean.spectra import PARAMETERS

@@ -1,11 +1,16 @@
-"""The parameters of all spectra as the panels of both seas hold them: angles in degrees, which the library takes in
+"""Parameters that both seas have: skies, and those of all spectra, with angles in degrees, which the library takes in
 radians."""
 
 import math
 from typing import Any
 
-from sim.ocean.spectra import PARAMETERS
+from sim.ocean.spectra import PARAMETERS, SPECTRA
 from sim.parameters import Parameter
+
+SPECTRUM_TITLES = {
+    name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
+}
+SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
 
 
 def in_degrees(declared: Parameter) -> Parameter:

@@ -1,4 +1,4 @@
-"""`springtide bench`. Comparisons with C and with other programs lie in benchmarks/, which is not installed."""
+"""`springtide bench`. Parts of the program, C and other programs are measured in benchmarks/, which is not installed."""
 
 import pkgutil
 from pathlib import Path

@@ -1,7 +1,7 @@
 """`springtide bench`: every module in cases/ is a benchmark, found by being there.
 
 A benchmark has `rows(quick)`, its table. It may have `findings(rows)`, a second table drawn from the first, and
-`figures(rows)`, figures by file name. In a checkout, benchmarks/ has further ones, against C, and other programs.
+`figures(rows)`, figures by file name. In a checkout, benchmarks/ has further ones, and compares with other programs.
 """
 
 import functools
@@ -18,7 +18,7 @@ from sim.files import replacing
 from sim.parameters import choice_error
 from sim.validation import argument_error
 
-ELSEWHERE = "comparisons with C, other programs and commits work in a checkout, where benchmarks/ lies"
+ELSEWHERE = "other benchmarks, and comparisons, work in a checkout, where benchmarks/ lies"
 
 
 def benchmarks() -> dict[str, ModuleType]:

@@ -9,16 +9,14 @@ import struct
 import time
 from collections.abc import AsyncGenerator, Callable
 from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import msgspec
-import websockets
 import zstandard
-from websockets.asyncio.client import ClientConnection, connect
+from websockets.asyncio.client import ClientConnection
 
-from app.bench.listener import CAMERA
+from app.bench.labs import connected
 
 STATUS = re.compile(r'data-state="(\w+)".*? t = ([\d.]+) s')
 STIFFNESS = "Stiffness [N/m]"
@@ -70,11 +68,9 @@ class Pupil:
     @contextlib.asynccontextmanager
     async def joined(self) -> AsyncGenerator[ClientConnection]:
         """A connection to the lab, once the panel is there."""
-        protocol = websockets.Subprotocol(f"viser-v{version('viser')}")
-        async with connect(f"ws://127.0.0.1:{self.port}", subprotocols=[protocol], max_size=None) as socket:
+        async with connected(self.port) as socket:
             reading = asyncio.ensure_future(self.read(socket))
             try:
-                await socket.send(msgspec.msgpack.encode(CAMERA))
                 async with asyncio.timeout(ANSWER_LIMIT):
                     while not {"Play or pause", STIFFNESS, "From the page", "Task"} <= self.controls.keys():
                         await self.hear()

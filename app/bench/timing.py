@@ -1,8 +1,7 @@
-"""Ways to time a call. Calls that are compared are timed in turns, so that other load on the machine hits all alike."""
+"""The time of a call."""
 
-import statistics
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 
@@ -11,16 +10,3 @@ def processor_time(call: Callable[[], Any]) -> float:
     start = time.thread_time()
     call()
     return time.thread_time() - start
-
-
-def median_times(calls: Sequence[Callable[[], Any]], repeats: int) -> list[float]:
-    """Median wall time of each call [s], in turns, after one call of each that is not timed: it compiles and plans."""
-    for call in calls:
-        call()
-    times: list[list[float]] = [[] for _ in calls]
-    for _ in range(repeats):
-        for own, call in zip(times, calls, strict=True):
-            start = time.perf_counter()
-            call()
-            own.append(time.perf_counter() - start)
-    return [statistics.median(own) for own in times]

@@ -1,1 +1,1 @@
-"""Benchmarks against C. Every module in this folder is one; `app/bench/command.py` says what it must offer."""
+"""Benchmarks of parts, some against C. Every module in this folder is one; `app/bench/command.py` has the contract."""

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.timing import median_times
 from benchmarks.native.build import build
+from benchmarks.timing import median_times
 from sim.ocean.wave_sum import add_waves
 
 WAVES, RINGS, SPOKES = 64, 128, 128

@@ -13,13 +13,14 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from app.bench.labs import served
 from app.bench.pupil import Pupil
 from app.lab.folder import make_folder
 from app.lab.task import load_tasks
@@ -101,19 +102,10 @@ def compile_kernels() -> None:
     subprocess.run([sys.executable, "-m", "app", "warmup"], stdout=subprocess.DEVNULL, check=True)
 
 
-@contextmanager
-def lab(folder: Path) -> Iterator[tuple[int, int]]:
+def lab(folder: Path) -> AbstractContextManager[tuple[int, int]]:
     """A lab on a folder: its process, and its port."""
-    command = [sys.executable, "-m", "app", "lab", str(folder), "--no-open", "--resume", "--port", "0"]
     data = {"SPRINGTIDE_DATA": str(folder.with_name(f"{folder.name}-data"))}
-    server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, **data})
-    try:
-        assert server.stdout is not None
-        address = next(word for line in server.stdout for word in line.split() if word.startswith("http"))
-        yield server.pid, int(address.rpartition(":")[2])
-    finally:
-        server.terminate()
-        server.wait()
+    return served("lab", str(folder), "--resume", environment=data)
 
 
 def play(ports: Sequence[int], folders: Sequence[Path], lesson: float) -> list[Result]:

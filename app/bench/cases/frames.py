@@ -4,6 +4,7 @@ import statistics
 import time
 from typing import Any
 
+from app.bench.labs import viewer_here
 from app.scenes import NAMES
 
 FRAME_INTERVAL = 1 / 30  # [s] of simulated time in a frame, for every scene
@@ -14,12 +15,7 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
 
     Without threads and without a browser: viser takes the messages all the same.
     """
-    from app.render.injection import record_shaders
-    from app.server.viewer import Viewer
-
-    viewer = Viewer("127.0.0.1", 0)
-    record_shaders(viewer.server)  # as to a browser that draws with them
-    try:
+    with viewer_here(shaders=True) as viewer:
         viewer.open(name)
         viewer.served.stop_threads()
         loop, scene, sent = viewer.loop, viewer.scene, viewer.transport.sent
@@ -36,8 +32,6 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
                 viewer.served.show_latest()
             times.append((solved - start, taken - solved, time.thread_time() - taken))
         return times, (sent["bytes"] - before) / frames
-    finally:
-        viewer.shut()
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:

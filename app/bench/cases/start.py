@@ -8,14 +8,9 @@ import sys
 import tempfile
 import time
 import urllib.request
-from importlib.metadata import version
 from typing import Any
 
-import msgspec
-import websockets
-from websockets.asyncio.client import connect
-
-from app.bench.listener import CAMERA
+from app.bench.labs import connected, served
 from app.scenes import NAMES
 
 STEPS = {
@@ -33,24 +28,21 @@ MAX_WAIT = 180.0  # [s]
 
 
 def environment(cache: str | None) -> dict[str, str]:
-    """The environment of a command. cache: a folder for kernels instead of the user's."""
-    return dict(os.environ) if cache is None else {**os.environ, "SPRINGTIDE_CACHE": cache}
+    """Variables of a command beside those of this process. cache: a folder for kernels instead of the user's."""
+    return {} if cache is None else {"SPRINGTIDE_CACHE": cache}
 
 
 def measured(code: str, cache: str | None = None) -> float:
     """Time of `code` in a new interpreter [s]."""
-    done = subprocess.run(
-        [sys.executable, "-c", TIMED.format(code)], env=environment(cache), capture_output=True, text=True, check=True
-    )
+    command, surroundings = [sys.executable, "-c", TIMED.format(code)], {**os.environ, **environment(cache)}
+    done = subprocess.run(command, env=surroundings, capture_output=True, text=True, check=True)
     return float(done.stdout.split()[-1])
 
 
 async def until_moving(port: int) -> None:
     """Wait until the lab sends pictures to a client, faster than it tells of progress."""
-    protocol = websockets.Subprotocol(f"viser-v{version('viser')}")
     times: list[float] = []
-    async with connect(f"ws://127.0.0.1:{port}", subprotocols=[protocol], max_size=None) as client:
-        await client.send(msgspec.msgpack.encode(CAMERA))
+    async with connected(port) as client:
         async for _ in client:
             now = time.perf_counter()
             times = [t for t in times if t > now - 1.0] + [now]
@@ -61,23 +53,11 @@ async def until_moving(port: int) -> None:
 def start_times(scene: str, cache: str | None) -> tuple[float, float]:
     """Seconds from the command to the first words in the page, and until the scene moves."""
     start = time.perf_counter()
-    server = subprocess.Popen(
-        [sys.executable, "-m", "app", "--no-open", "--port", "0", "--scene", scene],
-        stdout=subprocess.PIPE,
-        text=True,
-        env=environment(cache),
-    )
-    assert server.stdout is not None
-    try:
-        words = (word for line in server.stdout for word in line.split())
-        address = next(word for word in words if word.startswith("http"))
-        urllib.request.urlopen(address, timeout=30).read()
+    with served("--scene", scene, environment=environment(cache)) as (_, port):
+        urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=30).read()
         first = time.perf_counter() - start
-        asyncio.run(asyncio.wait_for(until_moving(int(address.rpartition(":")[2])), MAX_WAIT))
+        asyncio.run(asyncio.wait_for(until_moving(port), MAX_WAIT))
         return first, time.perf_counter() - start
-    finally:
-        server.terminate()
-        server.wait()
 
 
 def both(name: str, timed: Any, quick: bool, repeats: int) -> dict[str, Any]:

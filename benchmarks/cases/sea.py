@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from app.bench.timing import median_times
+from benchmarks.timing import median_times
 from sim.ocean import Sea
 from sim.ocean.transforms import Transforms
 

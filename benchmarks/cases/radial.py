@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from app.bench.timing import median_times
+from benchmarks.timing import median_times
 from sim.ocean import Sea
 from sim.ocean.gerstner import draw_waves
 from sim.ocean.radial import RadialSea

@@ -1,0 +1,19 @@
+"""Ways to time a call. Calls that are compared are timed in turns, so that other load on the machine hits all alike."""
+
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+
+def median_times(calls: Sequence[Callable[[], Any]], repeats: int) -> list[float]:
+    """Median wall time of each call [s], in turns, after one call of each that is not timed: it compiles and plans."""
+    for call in calls:
+        call()
+    times: list[list[float]] = [[] for _ in calls]
+    for _ in range(repeats):
+        for own, call in zip(times, calls, strict=True):
+            start = time.perf_counter()
+            call()
+            own.append(time.perf_counter() - start)
+    return [statistics.median(own) for own in times]

@@ -134,7 +134,9 @@ def make_parser() -> argparse.ArgumentParser:
     coefficients.add_argument("hull", type=Path, nargs="?", metavar="HULL", help="a closed mesh, as of --hull")
     default = "where to write the table (default: HULL.hydrodynamics.npz, where --hull finds it)"
     coefficients.add_argument("--out", type=Path, metavar="FILE.npz", help=default)
-    coefficients.add_argument("--compare", action="store_true", help="set the shipped shapes beside Capytaine, live")
+    coefficients.add_argument(
+        "--compare", action="store_true", help="in a checkout: set the shipped shapes beside Capytaine, live"
+    )
     coefficients.set_defaults(command=run_hydrodynamics)
 
     add_lab(commands.add_parser("lab", help="the course lab: make a folder of exercises, check it"))
@@ -436,11 +438,15 @@ def check_lab(arguments: argparse.Namespace) -> int:
 
 def run_hydrodynamics(arguments: argparse.Namespace) -> int:
     """`springtide hydrodynamics`."""
-    from app.commands.hydrodynamics import compare, make
-
     if arguments.compare == (arguments.hull is not None):
         raise ValueError("HULL: give a mesh file, or --compare without one")
-    return compare() if arguments.compare else make(arguments.hull, arguments.out)
+    if arguments.compare:
+        from app.bench.command import of_checkout
+
+        return of_checkout("--compare", "hydrodynamics").compare()
+    from app.commands.hydrodynamics import make
+
+    return make(arguments.hull, arguments.out)
 
 
 def run_warmup(arguments: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""`springtide bench`. Parts of the program, C and other programs are measured in benchmarks/, which is not installed."""
+"""`springtide bench`. benchmarks/, which is not installed, measures parts of the program, C and other programs."""
 
 import pkgutil
 from pathlib import Path

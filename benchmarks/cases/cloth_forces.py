@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from app.bench.cases.cloth import benchmark_cloth
+from benchmarks.cases.cloth import benchmark_cloth
 from benchmarks.native.build import build
 from sim.jit import MAX_THREADS, kernel, set_threads
 from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size

@@ -5,11 +5,11 @@ import statistics
 from collections.abc import Callable
 from typing import Any
 
-from app.bench.timing import processor_time
 from app.scenes.radial_sea.bodies import place_of
 from app.scenes.radial_sea.parameters import PRESETS, Params
 from app.scenes.radial_sea.scene import RadialSeaScene
 from benchmarks.cases.radial import default_sea
+from benchmarks.timing import processor_time
 from sim.floating import Body, Hull, make_fleet, make_water, step
 from sim.parameters import check_record
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from app.bench.reference import RESOLUTION, Positions, Reference, largest_distances
-from app.bench.timing import processor_time
+from benchmarks.timing import processor_time
 
 CANDIDATES = 4  # runs that are timed again before the quickest is chosen
 MAX_RETIMED = 0.1  # [s] runs that take longer are not timed again: chance matters less

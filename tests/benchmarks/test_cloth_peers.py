@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from app.bench.cases import cloth
 from app.bench.reference import largest_distances
+from benchmarks.cases import cloth
 from benchmarks.peers import cloth as cloth_peers
 from benchmarks.peers import cloth_engines
 from benchmarks.peers.ladder import rungs

@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 import pytest
 
+from benchmarks.linear_motion import first_swings, linear_decay, linear_response
 from sim.floating import (
     Body,
     Hull,
@@ -21,7 +22,6 @@ from sim.floating import (
 )
 from sim.floating.excitation import HullExcitation, WaveExcitation, plane_force
 from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange
-from sim.floating.linear_motion import first_swings, linear_decay, linear_response
 from sim.floating.linear_table import table_of
 from sim.floating.prediction import predict
 from sim.ocean.gerstner import Waves

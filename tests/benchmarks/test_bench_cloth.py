@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from app.bench.cases import cloth
+from benchmarks.cases import cloth
 from tests.sim.springs.reference import exact
 
 

@@ -22,8 +22,8 @@ import numpy as np
 from rich.progress import track
 
 from app.bench.reference import RESOLUTION, Positions, Reference, largest_distances
-from app.bench.timing import processor_time
 from app.experiments.tables import front
+from benchmarks.timing import processor_time
 from sim.springs import INTEGRATORS, Net, cloth
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, steps_for

@@ -1,6 +1,6 @@
 """Small motions of a hull in the frequency domain, of its linear coefficients: response in a wave, and free decay.
 
-`step` finds the same in time: tests and `springtide hydrodynamics --compare` compare the two.
+`step` finds the same in time: tests and hydrodynamics.py compare the two.
 """
 
 import itertools

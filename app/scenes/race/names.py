@@ -1,5 +1,7 @@
 """Names of the ropes of a race in charts, labels and tables."""
 
+import itertools
+from collections.abc import Sequence
 from typing import Protocol
 
 from app.formats.formatting import number, time_step
@@ -41,6 +43,13 @@ def rope_name(rope: Named, stiffness_differs: bool) -> str:
     return f"{words}, {number(rope.stiffness)} N/m" if stiffness_differs else words
 
 
-def rope_label(rope: Named, stiffness_differs: bool) -> str:
-    """The label at its root, short enough to stay in view: of a rope that has stopped, its number and why."""
-    return f"{rope.number} {rope.failure.partition(':')[0]}" if rope.failure else rope_name(rope, stiffness_differs)
+def rope_labels(ropes: Sequence[Named]) -> tuple[str, ...]:
+    """The labels at the roots, short enough for small windows: numbers with all that differs, or why a rope stopped."""
+    parts = [(method_name(rope.integrator), time_step(rope.step), f"{number(rope.stiffness)} N/m") for rope in ropes]
+    differs = [len(set(column)) > 1 for column in zip(*parts, strict=True)]
+    if not any(differs):
+        differs[0] = True
+    return tuple(
+        f"{rope.number}: " + (rope.failure.partition(":")[0] or ", ".join(itertools.compress(part, differs)))
+        for rope, part in zip(ropes, parts, strict=True)
+    )

@@ -14,7 +14,7 @@ from app.scenes.race.charts import CURVES, RaceCharts
 from app.scenes.race.entrants import Race, RaceReadings
 from app.scenes.race.live_values import live_values
 from app.scenes.race.measures import measures
-from app.scenes.race.names import rope_label
+from app.scenes.race.names import rope_labels
 from app.scenes.race.parameters import ABOUT, PRESETS, Params, hidden, method_of, offset_of
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
@@ -35,15 +35,12 @@ REFERENCE = "reference run"  # name of the piece to compile
 class RaceFrame(NamedTuple):
     """Drawn state of a race."""
 
+    params: Params
     ropes: NDArray[np.float32]  # (ropes, points, 3) [m], C-contiguous, side by side
     references: NDArray[np.float32] | None  # the same of the reference runs, or None where there are none to show
     labels: tuple[str, ...]
     failed: tuple[bool, ...]
     root: Vector  # [m] where the roots are going to
-    handles: bool
-    floor: bool
-    grid: bool
-    show_points: bool
     pull: PullFrame | None
 
 
@@ -160,20 +157,16 @@ class RaceScene:
         params, race, handles = self.params, self.race, self.handles
         offsets = np.array([(0.0, offset_of(params, i), 0.0) for i in range(len(race.entrants))])[:, None]
         references = race.reference_points() if params.show_reference else None
-        stiffness_differs = race.ratio != 1.0
         number, point = divmod(handles.drag.hold.particle if handles.drag.hold else 0, params.points)
         held = race.entrants[number].state.x[:, 0, point]
         offset = offset_of(params, number)
         return RaceFrame(
+            params=params,
             ropes=(race.points() + offsets).astype(np.float32),
             references=None if references is None else (references + offsets).astype(np.float32),
-            labels=tuple(rope_label(entrant, stiffness_differs) for entrant in race.entrants),
+            labels=rope_labels(race.entrants),
             failed=tuple(bool(entrant.failure) for entrant in race.entrants),
             root=handles.home,
-            floor=params.floor,
-            grid=params.grid,
-            handles=params.handles,
-            show_points=params.show_points,
             pull=handles.pull_frame(held, offset, self.net.mass, self.step, params.pull),
         )
 

@@ -35,8 +35,9 @@ REFERENCE_OPACITY = 0.4
 COLOUR_SCALE = 0.6  # of a colour's numbers, so that a rope lit from all sides has the colour it has in the charts
 DARK_LIFT = 0.15  # share of white that a black rope would get on a dark floor, where dark blue would hardly be seen
 FAILED_OPACITY = 0.35  # of a rope that has stopped
-LABEL_SCALE = 1.6  # of a label, over viser's own size: letters 14 pixels high
-LABEL_HEIGHT = 0.19  # [m] from a root to its label, and between the heights of two labels, so that they do not overlap
+LABEL_SCALE = 1.1  # of a label, over viser's own size: letters of 13 pixels
+LABEL_SHARE = 0.075  # height of a row of labels, over that of the first view: those of 200 pixels can still be read
+FIRST_LABEL, LABEL_AIR = 0.4, 1.3  # rows from a root to the lowest label, and from the highest to the picture's edge
 
 BEARING = math.cos(0.22), math.sin(0.22)  # of the first view: from the front, and as far aside as tells ropes apart
 ELEVATION = 0.05  # [rad] of the first view
@@ -62,6 +63,31 @@ def linear_colour(colour: tuple[int, int, int]) -> np.ndarray:
     return 255.0 * (np.array(colour) / 255.0) ** 2.2
 
 
+def label_heights(count: int) -> np.ndarray:
+    """Heights (count,) of the labels over the roots, in rows: the first half goes to the left, outer ones are lower."""
+    left = np.arange(count)
+    return FIRST_LABEL + np.minimum(left, left[::-1])
+
+
+def label_rows(count: int) -> float:
+    """Rows from the roots to the upper edge of the first view."""
+    return float(label_heights(count).max()) + LABEL_AIR
+
+
+def shown_height(params: Params) -> float:
+    """Height [m] of the first view: of all ropes, as far as they swing, and of their labels."""
+    depth = (params.ropes - 1) * params.spacing
+    across = BEARING[0] * 2.0 * params.length * SHOWN_SWING + BEARING[1] * depth
+    net = build_rope(params, ROOT)  # of rope 1, the softest
+    n = net.shape[1] - 1
+    stretch = 0.5 * n * (n + 1) * net.mass * abs(net.gravity[2]) / net.families[0].stiffness  # as it hangs
+    fall = params.length + min(PULL_OF_FALL * stretch, MAX_STRETCH)
+    if params.floor:
+        fall = min(fall, ROOT[2] + BELOW_FLOOR)
+    fall += 0.5 * depth * ELEVATION  # the nearest rope is drawn lower
+    return max(fall / (1.0 - LABEL_SHARE * label_rows(params.ropes)), across / SHOWN_ASPECT)
+
+
 def bead_colours(count: int, points: int, *, dark: bool = False) -> np.ndarray:
     """The colours (count points, 3) of the beads of all ropes."""
     ropes = [linear_colour(material_colour(i, dark=dark)) for i in range(count)]
@@ -81,10 +107,16 @@ class RopesDrawing:
     """The handles of all ropes, made for their number and their points, then assigned to."""
 
     def __init__(
-        self, server: viser.ViserServer, frame: RaceFrame, on_bead: Callable[[Any], Any], on_tube: Callable[[Any], Any]
+        self,
+        server: viser.ViserServer,
+        frame: RaceFrame,
+        row: float,
+        on_bead: Callable[[Any], Any],
+        on_tube: Callable[[Any], Any],
     ) -> None:
-        """on_bead: called with viser's event for a bead; its instance is numbered through, rope after rope.
+        """row: height [m] of a row of labels.
 
+        on_bead: called with viser's event for a bead; its instance is numbered through, rope after rope.
         on_tube: called with viser's event for a tube.
         """
         count, n, _ = self.shape = frame.ropes.shape
@@ -123,30 +155,35 @@ class RopesDrawing:
         self.beads.on_drag("left")(on_bead)
         self.poles = scene.add_line_segments(
             "/race/poles",
-            self.label_poles(frame),
+            self.label_poles(frame, row),
             colors=np.repeat([[linear_colour(rgb(colour))] for colour in PALETTE[:count]], 2, axis=1).astype(np.uint8),
             thickness=2.0,
             thickness_units="screen",
         )
         self.labels = [
-            scene.add_label(f"/race/label_{i + 1}", text, font_screen_scale=LABEL_SCALE, anchor="bottom-left")
+            scene.add_label(
+                f"/race/label_{i + 1}",
+                text,
+                font_screen_scale=LABEL_SCALE,
+                anchor="bottom-right" if i < count // 2 else "bottom-left",
+            )
             for i, text in enumerate(frame.labels)
         ]
-        self.shown_roots: np.ndarray | None = None
+        self.shown_poles: np.ndarray | None = None
         self.shown_failed = (False,) * count
 
     def tube_meshes(self, ropes: np.ndarray, radius: float) -> list[np.ndarray]:
         """The vertices of each rope of (ropes, points, 3) [m]."""
         return [tube_vertices(points, self.samples, radius) for points in ropes]
 
-    def label_poles(self, frame: RaceFrame) -> np.ndarray:
-        """(ropes, 2, 3): from each root up to its label [m], the farther the higher."""
+    def label_poles(self, frame: RaceFrame, row: float) -> np.ndarray:
+        """(ropes, 2, 3): from each root up to its label [m]. row: height [m] of a row of labels."""
         poles = np.repeat(frame.ropes[:, :1], 2, axis=1)
-        poles[:, 1, 2] += LABEL_HEIGHT * (1.0 + np.arange(len(frame.ropes)))
+        poles[:, 1, 2] += row * label_heights(len(poles))
         return poles
 
-    def show(self, frame: RaceFrame) -> None:
-        """Assign a new frame; call it where a picture is handed over as one."""
+    def show(self, frame: RaceFrame, row: float) -> None:
+        """Assign a new frame; call it where a picture is handed over as one. row: height [m] of a row of labels."""
         for i, tube in enumerate(self.tubes):
             if frame.failed[i] and self.shown_failed[i]:
                 continue  # it has stopped where it is drawn
@@ -157,13 +194,12 @@ class RopesDrawing:
         self.references.visible = frame.references is not None
         if frame.references is not None:
             set_arrays(self.references, vertices=np.concatenate(self.tube_meshes(frame.references, REFERENCE_RADIUS)))
-        self.beads.visible = frame.show_points
-        if frame.show_points:
+        self.beads.visible = frame.params.show_points
+        if frame.params.show_points:
             set_arrays(self.beads, batched_positions=frame.ropes.reshape(-1, 3))
-        poles = self.label_poles(frame)
-        if self.shown_roots is None or not np.array_equal(self.shown_roots, poles[:, 0]):
-            self.shown_roots = poles[:, 0]
-            self.poles.points = poles
+        poles = self.label_poles(frame, row)
+        if self.shown_poles is None or not np.array_equal(self.shown_poles, poles):
+            self.shown_poles = self.poles.points = poles
             for label, pole in zip(self.labels, poles, strict=True):
                 label.position = tuple(pole[1])
         for label, text in zip(self.labels, frame.labels, strict=True):
@@ -195,6 +231,8 @@ class View(SceneView[Params, RaceFrame, RaceReadings]):
         injector_of(server)  # its script draws labels dark where a browser asks for it (`js/dark.js`)
         self.surroundings.surroundings.floor.fade_from = "origin"  # the camera is far away
         self.ropes: RopesDrawing | None = None
+        self.params: Params | None = None  # that the height of a row of labels [m] is of
+        self.label_row = 0.0
         self.tube_drag = SurfaceDrag(post)
         self.dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that draw on a dark floor
 
@@ -208,34 +246,28 @@ class View(SceneView[Params, RaceFrame, RaceReadings]):
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: all ropes, as far as they swing, and labels."""
-        depth, labels = (params.ropes - 1) * params.spacing, (params.ropes + 2) * LABEL_HEIGHT
-        across = BEARING[0] * 2.0 * params.length * SHOWN_SWING + BEARING[1] * depth
-        net = build_rope(params, ROOT)  # of rope 1, the softest
-        n = net.shape[1] - 1
-        stretch = 0.5 * n * (n + 1) * net.mass * abs(net.gravity[2]) / net.families[0].stiffness  # as it hangs
-        fall = params.length + min(PULL_OF_FALL * stretch, MAX_STRETCH)
-        if params.floor:
-            fall = min(fall, ROOT[2] + BELOW_FLOOR)
-        fall += 0.5 * depth * ELEVATION  # the nearest rope is drawn lower
-        height = max(fall + labels, across / SHOWN_ASPECT)
+        depth, height = (params.ropes - 1) * params.spacing, shown_height(params)
         distance = 0.5 * height / math.tan(0.5 * self.FIELD_OF_VIEW) + 0.5 * BEARING[0] * depth
-        x, y, z = target = 0.0, 0.0, ROOT[2] + labels - 0.5 * height
+        above = LABEL_SHARE * height * label_rows(params.ropes)
+        x, y, z = target = 0.0, 0.0, ROOT[2] + above - 0.5 * height
         flat = distance * math.cos(ELEVATION)
         return (x + BEARING[1] * flat, y - BEARING[0] * flat, z + distance * math.sin(ELEVATION)), target
 
     def show(self, frame: RaceFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
         self.points = frame.ropes.reshape(-1, 3)
+        if frame.params is not self.params:
+            self.params, self.label_row = frame.params, LABEL_SHARE * shown_height(frame.params)
         if self.ropes is not None and self.ropes.shape != frame.ropes.shape:
             self.ropes.remove()
             self.ropes = None
         if self.ropes is None:
-            self.ropes = RopesDrawing(self.server, frame, self.on_bead, self.on_tube)
+            self.ropes = RopesDrawing(self.server, frame, self.label_row, self.on_bead, self.on_tube)
             for client in tuple(self.dark):
                 self.ropes.set_dark(client, True)
-        self.ropes.show(frame)
-        root = frame.root if frame.handles else None
-        self.surroundings.show(frame.floor, frame.grid, root, frame.pull, self.points)
+        self.ropes.show(frame, self.label_row)
+        p = frame.params
+        self.surroundings.show(p.floor, p.grid, frame.root if p.handles else None, frame.pull, self.points)
 
     def figures(self, snapshot: RaceSnapshot) -> str:
         """The ropes that are nearest to the reference and farthest from it."""

@@ -18,7 +18,7 @@ from app.scenes.race.html import results_table
 from app.scenes.race.measures import measures
 from app.scenes.race.parameters import PRESETS, Params, hidden, offset_of
 from app.scenes.race.scene import SCENE, RaceScene, compile_gauge
-from app.scenes.race.view import LABEL_HEIGHT, SHOWN_ASPECT, View
+from app.scenes.race.view import LABEL_SHARE, SHOWN_ASPECT, View, label_heights, shown_height
 from app.scenes.rope.parameters import Params as RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.scenes.springs.methods import method_name
@@ -314,15 +314,32 @@ def test_the_first_view_shows_the_whole_fall_of_all_ropes_and_their_labels(chang
     for _ in range(30):
         run(scene, 0.1)
         corners.append(scene.frame().references.reshape(-1, 3))
-    for number in range(params.ropes):
-        corners.append([(0.0, offset_of(params, number), ROOT[2] + LABEL_HEIGHT * (number + 1))])
     position, target = np.array(View.first_view(object.__new__(View), params))
     ahead = (target - position) / np.linalg.norm(target - position)
     right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
+    row = LABEL_SHARE * shown_height(params)
+    for number, height in enumerate(label_heights(params.ropes)):
+        corners.append([(0.0, offset_of(params, number), ROOT[2] + row * (height + 1.0))])
     seen = np.concatenate(corners) - position
     reach = np.tan(0.5 * View.FIELD_OF_VIEW) * (seen @ ahead)
     assert (abs(seen @ right) < SHOWN_ASPECT * reach).all()
     assert (abs(seen @ np.cross(right, ahead)) < reach).all()
+
+
+@pytest.mark.parametrize(("count", "rows"), [(1, [0]), (2, [0, 0]), (3, [0, 1, 0]), (6, [0, 1, 2, 2, 1, 0])])
+def test_no_two_labels_of_a_side_have_one_height(count, rows):
+    heights = label_heights(count)
+    np.testing.assert_allclose(heights - heights[0], rows)
+
+
+def test_labels_say_what_differs():
+    assert RaceOf(Params()).frame().labels == (
+        "1: explicit Euler, 1/240 s",
+        "2: Runge-Kutta 4, 1/60 s",
+        "3: leapfrog, 1/240 s",
+    )
+    assert raced("RK4 at the same values", 0.0).frame().labels[:2] == ("1: 160 N/m", "2: 400 N/m")
+    assert RaceOf(Params(ropes=1)).frame().labels == ("1: explicit Euler",)
 
 
 def test_all_ropes_look_equally_large_from_the_front():

@@ -44,11 +44,21 @@ def find_rest_positions(net: Net, x: NDArray[np.float64] | None = None) -> NDArr
     h, before = 1.0 / fastest, 0.0
     stiffens = largest_stiffness(net.law, -0.5, 1.0) > largest_stiffness(net.law, 0.0, 0.0)
     for _ in range(LOOKS):
+        last = state.copy()
         advance(still, state, LEAPFROG, h, STEPS)
         if stiffens:
-            h = 1.0 / gershgorin(still, state.x)[0]
+            with np.errstate(over="ignore", invalid="ignore"):
+                longest = 1.0 / gershgorin(still, state.x)[0]
+            # Where links became too stiff for the step on the way, the same again in shorter ones.
+            if not (state.is_bounded and h < 2.0 * longest):
+                state, h = last, 0.5 * h
+                continue
+            # A step that changes at each look does not keep the energy.
+            if not 0.5 * longest < h < 1.25 * longest:
+                h = longest
         now = energy(still, state)
         if now.kinetic < before:
+            state = last  # nearer to the peak
             if before < REST_ENERGY_SHARE * max(abs(now.gravity), now.elastic, 1e-12):
                 break
             state.v[:], before = 0.0, 0.0

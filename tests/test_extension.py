@@ -65,11 +65,6 @@ for name in ("square_sea", "radial_sea"):
     assert abs(low - 4.0) < 0.05, low
 viewer.shut()
 """
-# What tests of all scenes ask of a new one, those that only read it.
-OF_A_NEW_SCENE = (
-    "tests/app/sweep/test_case.py", "tests/app/scenes/test_first_look.py",
-    "tests/app/panel/test_recording_files.py", "tests/app/panel/test_control.py", "tests/app/scenes/test_setups.py",
-)  # fmt: skip
 BROWSED = """
 SCENE = "pendulum"
 
@@ -132,7 +127,8 @@ def test_a_spectrum_with_new_parameters_is_one_file(extended):
 def test_a_parameter_is_one_line_in_one_file(extended):
     copy, touched = extended
     assert len(touched["Add a parameter"]) == 1
-    (headless,) = commands(section("Add a parameter"))
+    test, headless = commands(section("Add a parameter"))
+    run_tests(copy, test)
     run_command(copy, headless)
     assert parameters_in(copy / "buoyant.npz")["buoyancy"] == 0.9
     with np.load(copy / "buoyant.npz") as file:
@@ -168,15 +164,12 @@ def test_a_scene_is_one_folder_and_passes_the_tests_of_all_scenes(extended):
     copy, touched = extended
     scene = {path for path in touched["Add a scene"] if path.endswith(".py")}
     assert {path.rpartition("/")[0] for path in scene} == {"app/scenes/pendulum"}
-    headless, sweep = commands(section("Add a scene"))
+    test, headless = commands(section("Add a scene"))
     run_command(copy, headless)
     with np.load(copy / "pendulum.npz") as file:
         assert file["t"][-1] == pytest.approx(1.0)
         assert abs(file["theta"][-1]) < np.pi / 4
-    run_command(copy, sweep)
-    with pytest.importorskip("xarray").open_dataset(copy / "moons.nc") as found:
-        assert found.sizes["gravity"] == 2
-    run_tests(copy, f"python -m pytest {' '.join(OF_A_NEW_SCENE)} -k pendulum -p no:cacheprovider")
+    run_tests(copy, test)
 
 
 def test_an_added_scene_and_an_added_body_are_shown(extended):

@@ -29,7 +29,7 @@ def test_arrays_for_files_are_finite_and_have_units(name: str) -> None:
     kind = scene_named(name)
     arrays = kind.make(kind.params()).arrays().values()
     assert all(np.isfinite(array).all() for array, _ in arrays)
-    assert "m" in [unit for _, unit in arrays]
+    assert any(unit for _, unit in arrays)
 
 
 @pytest.mark.parametrize(

@@ -52,12 +52,12 @@ def tube_faces(rings: int, sides: int = SIDES) -> NDArray[np.uint32]:
     return np.array(quads, dtype=np.uint32)
 
 
-def rod(ends: NDArray[np.float64], radius: float) -> NDArray[np.float32]:
-    """Vertices (2 SIDES + 2, 3) of a rod between two ends (2, 3) [m] apart, for `tube_faces(2)`."""
+def rod(ends: NDArray[np.float64], radius: float, sides: int = SIDES) -> NDArray[np.float32]:
+    """Vertices (2 sides + 2, 3) of a rod between two ends (2, 3) [m] apart, for `tube_faces(2, sides)`."""
     along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
     across = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
     across /= np.linalg.norm(across)
-    angle = 2 * np.pi * np.arange(SIDES)[:, None] / SIDES
+    angle = 2 * np.pi * np.arange(sides)[:, None] / sides
     ring = radius * (np.cos(angle) * across + np.sin(angle) * np.cross(along, across))
     return np.concatenate([ends[0] + ring, ends[1] + ring, ends]).astype(np.float32)
 

@@ -5,12 +5,14 @@ taut at rest do not pull there, and one of each opposite two pulls elsewhere. So
 their slope, alike in all level directions. Mass and drag of the lines are left out.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.floating.rotation import body_z_axes
+from sim.jit import kernel
 
 Array = NDArray[np.float64]
 DIRECTIONS = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])  # from a body to its anchors
@@ -40,12 +42,31 @@ def fairleads(lines: MooringLines, position: Array, rotation: Array) -> Array:
     return position + lines.fairlead[:, None] * body_z_axes(rotation)
 
 
+@kernel
+def set_pulls(lines, position, rotation, force, tension):
+    """Set force (n, 6) [N, N m] and tension (n, 4) [N]: see `pulls`."""
+    for i in range(position.shape[0]):
+        w, x, y, z = rotation[i, 0], rotation[i, 1], rotation[i, 2], rotation[i, 3]
+        lever = lines.fairlead[i]  # [m] along the z axis of the body, (a, b, c) in the world
+        a, b, c = lever * 2.0 * (x * z + w * y), lever * 2.0 * (y * z - w * x), lever * (1.0 - 2.0 * (x * x + y * y))
+        fx, fy, fz = 0.0, 0.0, 0.0
+        for k in range(lines.length.shape[1]):
+            dx = lines.anchors[i, k, 0] - position[i, 0] - a
+            dy = lines.anchors[i, k, 1] - position[i, 1] - b
+            dz = lines.anchors[i, k, 2] - position[i, 2] - c
+            distance = math.sqrt(dx * dx + dy * dy + dz * dz)
+            tension[i, k] = lines.stiffness[i] * max(distance / lines.length[i, k] - 1.0, 0.0)
+            share = tension[i, k] / distance
+            fx, fy, fz = fx + share * dx, fy + share * dy, fz + share * dz
+        force[i, 0], force[i, 1], force[i, 2] = fx, fy, fz
+        force[i, 3], force[i, 4], force[i, 5] = b * fz - c * fy, c * fx - a * fz, a * fy - b * fx
+
+
 def pulls(lines: MooringLines, position: Array, rotation: Array) -> tuple[Array, Array]:
-    """Force and moment (n, 6) [N, N m] about each body's centre in world axes, and tensions (n, 4) [N]."""
-    place = fairleads(lines, position, rotation)
-    way = lines.anchors - place[:, None]
-    distance = np.sqrt(np.einsum("nki,nki->nk", way, way))
-    tension = lines.stiffness[:, None] * np.maximum(distance / lines.length - 1.0, 0.0)
-    x, y, z = np.einsum("nk,nki->in", tension / distance, way)
-    a, b, c = (place - position).T
-    return np.stack((x, y, z, b * z - c * y, c * x - a * z, a * y - b * x), axis=1), tension
+    """Force and moment (n, 6) [N, N m] about each body's centre in world axes, and tensions (n, 4) [N].
+
+    position (n, 3) [m] and rotation (n, 4) are the bodies'.
+    """
+    force, tension = np.empty((len(position), 6)), np.empty(lines.length.shape)
+    set_pulls(lines, position, rotation, force, tension)
+    return force, tension

@@ -253,20 +253,19 @@ class FloatingBodies:
             self.lift.restart(index)
             del self.holders[index], self.targets[index]
 
-    def moor(self, h: float) -> None:
+    def moor(self, h: float, *, moored: bool = True) -> None:
         """Let the lines pull as in the middle of a step of h [s]: by a body's place before it they would drive it."""
         fleet = self.fleet
+        if not moored:
+            fleet.mooring[:] = self.tension[:] = 0.0
+            return
         fleet.mooring[:], self.tension = pulls(self.lines, fleet.position + 0.5 * h * fleet.velocity, fleet.rotation)
 
-    def mooring_lines(self) -> NDArray[np.float32]:
-        """Fairlead and anchor (lines, 2, 3) [m] of each line."""
-        anchors = self.lines.anchors
-        place = fairleads(self.lines, self.fleet.position, self.fleet.rotation)[:, None]
-        return np.stack(np.broadcast_arrays(place, anchors), axis=2).reshape(-1, 2, 3).astype(np.float32)
-
-    def unmoor(self) -> None:
-        """End the pull of all mooring lines."""
-        self.fleet.mooring[:] = self.tension[:] = 0.0
+    def fairleads(self, *, moored: bool) -> NDArray[np.float32]:
+        """Where the lines of each body are fixed to it (n, 3) [m]; (0, 3) without lines."""
+        if not moored:
+            return np.empty((0, 3), np.float32)
+        return fairleads(self.lines, self.fleet.position, self.fleet.rotation).astype(np.float32)
 
     def step(
         self,

@@ -290,10 +290,7 @@ class RadialSeaScene:
                 at = sea.at(bodies.fleet.position[:, :2], middle, bodies.widths)
                 slick = self.slick_at(bodies.fleet.position[:, :2])
                 bodies.measure(self.time, at, h, h / 2)
-                if self.params.mooring:
-                    bodies.moor(h)
-                else:
-                    bodies.unmoor()
+                bodies.moor(h, moored=self.params.mooring)
                 waves = sea.current(middle) if isinstance(sea, RadialSea) else None
                 try:
                     bodies.step(at, h, slick, coefficients, waves)
@@ -359,7 +356,8 @@ class RadialSeaScene:
             positions=bodies.fleet.position.astype(np.float32),
             rotations=bodies.fleet.rotation.astype(np.float32),
             stains=bodies.stain.astype(np.float32),
-            moorings=bodies.mooring_lines() if p.mooring else np.empty((0, 2, 3), np.float32),
+            fairleads=bodies.fairleads(moored=p.mooring),
+            anchors=bodies.lines.anchors,
             pulls=tuple(((x, y, z), target) for (x, y, z), target in held),
             fire=None if fire is None else parcels_of(fire),
             jet=None if jet is None else flying_parcels(jet),

@@ -45,8 +45,8 @@ FILL_LAMP = (-0.6, -0.7, 0.5), 0.45  # direction towards the lamp that lights th
 GLOW_INTENSITY = 900.0  # of the lamp in the fire
 HANDLE_RADIUS = 0.75  # [m] at size 1 of the invisible ball about a body, which is dragged
 LINE_COLOUR = (226, 196, 120)  # of mooring lines
-ROD = rod(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]), 1.0)
-LINE_RADIUS = 0.02  # [m] at size 1 of a drawn mooring line
+LINE_RADIUS, LINE_SIDES = 0.02, 4  # [m] at size 1 of a drawn mooring line, a rod
+NEAR_END = [*range(LINE_SIDES), 2 * LINE_SIDES]  # vertices of the rod at the fairlead
 CAMERA_INTERVAL = 0.2  # [s] between two messages to the scene about where the camera is
 VIEWS = {  # position and target [m] of the camera when one of them is chosen to be followed
     "rig": ((RIG[0] - 62.0, RIG[1] - 84.0, 40.0), (RIG[0] + 10.0, RIG[1] - 4.0, 16.0)),
@@ -85,7 +85,8 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
         self.size = 0.0
         self.bodies: dict[str, tuple[Any, np.ndarray]] = {}  # kind -> handle, numbers of its bodies
         self.handles: viser.BatchedMeshHandle | None = None
-        self.moorings: viser.BatchedMeshHandle | None = None
+        self.moorings: viser.MeshHandle | None = None
+        self.anchors = self.rods = self.at_fairleads = np.empty(0)  # of the lines: see `add_moorings`
         self.followed, self.follow_camera = "free", FollowCamera()
         self.followed_body: np.ndarray | None = None  # (3,) [m] where the followed body is, at mean water
         self.camera_told_at = 0.0
@@ -238,27 +239,32 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
             line.show(frame.pulls[i] if i < len(frame.pulls) else None)
 
     def show_moorings(self, frame: RadialFrame) -> None:
-        """Draw the mooring lines as rods: a stroke that passes the camera would be drawn where it is not."""
-        start = frame.moorings[:, 0]
-        way = frame.moorings[:, 1] - start
-        length = np.sqrt((way * way).sum(axis=1))
-        x, y, z = (way / length[:, None]).T
-        turn = np.stack([1.0 + x, np.zeros_like(x), -z, y], axis=1)  # of the x axis onto the line
-        turn /= np.sqrt((turn * turn).sum(axis=1, keepdims=True))
-        radius = np.full_like(length, LINE_RADIUS * frame.params.size)
-        poses = {
-            "batched_positions": start, "batched_wxyzs": turn, "batched_scales": np.stack([length, radius, radius], 1)
-        }  # fmt: skip
-        if self.moorings is not None and len(self.moorings.batched_positions) != len(start):
+        """Draw the mooring lines as rods: a stroke that passes the camera would be drawn where it is not.
+
+        Only the rings at the fairleads move from frame to frame.
+        """
+        if self.moorings is not None and (len(frame.fairleads) == 0 or frame.anchors is not self.anchors):
             self.moorings.remove()
             self.moorings = None
-        if not len(start):
+        if len(frame.fairleads) == 0:
             return
         if self.moorings is None:
-            self.moorings = self.server.scene.add_batched_meshes_simple(
-                "/moorings", ROD, tube_faces(2), batched_colors=LINE_COLOUR, lod="off", **poses, **NO_SHADOWS
-            )
-        set_arrays(self.moorings, **poses)
+            self.anchors = frame.anchors
+            self.moorings = self.add_moorings(frame)
+        self.rods[:, :, NEAR_END] = self.at_fairleads + frame.fairleads[:, None, None]
+        set_arrays(self.moorings, vertices=self.rods.reshape(-1, 3))
+
+    def add_moorings(self, frame: RadialFrame) -> viser.MeshHandle:
+        """The rods of all lines as one mesh."""
+        radius, (n, lines) = LINE_RADIUS * frame.params.size, frame.anchors.shape[:2]
+        ways = np.stack(np.broadcast_arrays(frame.fairleads[:, None], frame.anchors), axis=2)
+        self.rods = np.array([[rod(way, radius, LINE_SIDES) for way in body] for body in ways])
+        self.at_fairleads = self.rods[:, :, NEAR_END] - frame.fairleads[:, None, None]
+        first = self.rods.shape[2] * np.arange(n * lines, dtype=np.uint32)  # vertex of each rod
+        faces = (tube_faces(2, LINE_SIDES) + first[:, None, None]).reshape(-1, 3)
+        return self.server.scene.add_mesh_simple(
+            "/moorings", self.rods.reshape(-1, 3), faces, color=LINE_COLOUR, **NO_SHADOWS
+        )
 
     def move_camera(self, frame: RadialFrame) -> None:
         """Move to the followed object when it is chosen, then along with it; report the camera's place to the scene."""

@@ -153,17 +153,17 @@ def test_a_browser_lets_go_only_of_what_it_holds() -> None:
 def test_drifting_bodies_are_held_by_lines_that_the_picture_shows() -> None:
     scene = RadialSeaScene(with_parameters(rig=False, wind_speed=8.0))
     home = scene.bodies.fleet.position[:, :2].copy()
-    lines = scene.frame().moorings
-    assert lines.shape == (12, 2, 3)
-    assert (lines[:, 1, 2] == -BED_DEPTH).all()
-    assert np.linalg.norm(lines[:, 0] - np.repeat(scene.frame().positions, 4, axis=0), axis=1).max() < 1.5
+    frame, anchors = scene.frame(), scene.frame().anchors.copy()
+    assert anchors.shape == (3, 4, 3)
+    assert (anchors[..., 2] == -BED_DEPTH).all()
+    assert np.linalg.norm(frame.fairleads - frame.positions, axis=1).max() < 1.5
     run(scene, 60.0)
     assert np.hypot(*(scene.bodies.fleet.position[:, :2] - home).T).max() < 8.0
     for reading in scene.readings().bodies:
         assert reading.offset > 0.2
         assert reading.tension > 0.0
         assert fixed(reading.offset, 2) in forces_html(scene.readings())
-    np.testing.assert_array_equal(scene.frame().moorings[:, 1], lines[:, 1])
+    np.testing.assert_array_equal(scene.frame().anchors, anchors)
 
 
 def test_lines_pull_as_in_the_middle_of_a_step() -> None:
@@ -189,7 +189,7 @@ def test_a_mooring_that_is_taken_off_pulls_no_longer() -> None:
     scene.change_forces(dataclasses.replace(scene.params, mooring=False))
     scene.advance(2)
     assert not scene.bodies.fleet.mooring.any()
-    assert not len(scene.frame().moorings)
+    assert not len(scene.frame().fairleads)
     assert scene.bodies.fleet.pull_limit[1] > 0.0
 
 

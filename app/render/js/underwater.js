@@ -1,6 +1,6 @@
 // What is seen of water from below its surface, on a mesh with colours at its vertices (injection.js) that has a child
 // "<name>/underwater": webs of light that waves focus, which fade with depth, and particles. The first vertex of that
-// child is the uniform below. Where the colour is redder than blue there is oil, and neither.
+// child is the uniform below, but for the time. Where the colour is redder than blue there is oil, and neither.
 
 const UNDERWATER_VERTEX = "vPlace = (modelMatrix * vec4(position, 1.0)).xyz;";
 const UNDERWATER_GLSL = `
@@ -29,11 +29,15 @@ const UNDERWATER_GLSL = `
 
 const underwaters = new Map(); // name of the node -> its uniform, kept for good as those of seas
 
+const WEB_STEP = 1 / 30; // [s] by which the webs move on with each frame of the water
+
 // The uniform of a node that has the child, else null.
 function underwaterOf(base, mesh) {
   const data = meshOf(`${base}/underwater`);
   if (!data) return null;
   if (!underwaters.has(base)) underwaters.set(base, { value: mesh.position.clone() });
-  underwaters.get(base).value.fromArray(data.geometry.attributes.position.array);
-  return underwaters.get(base);
+  const uniform = underwaters.get(base), moving = meshOf("/water") || mesh; // a bed does not move
+  uniform.value.fromArray(data.geometry.attributes.position.array);
+  uniform.value.z = WEB_STEP * moving.geometry.attributes.position.version;
+  return uniform;
 }

@@ -1,5 +1,6 @@
 """The mooring seen above and below the water: surface, bed, lines coloured by tension, body, anchors, watch circle."""
 
+import math
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -13,6 +14,7 @@ from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.dragging import PullLine, drag
 from app.render.gizmo import Gizmo
+from app.render.injection import add_data_mesh, injector_of
 from app.render.material import as_linear_bytes
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.render.viser_inside import set_arrays
@@ -32,13 +34,20 @@ ANCHOR_SIZE, FAIRLEAD_SIZE = 0.02, 0.009  # radius, in the same
 ARROW_SIZE, SMALL_ARROW_SIZE = 0.12, 0.07
 CIRCLE_POINTS = 96
 MAX_DRAWN_PATH = 400  # places of the body's path
-WATER_COLOURS, WATER_OPACITY = ((8, 52, 96), (150, 205, 225)), 0.5  # of slopes away from the light, and towards it
+WATER_COLOURS, WATER_OPACITY = ((8, 52, 96), (150, 205, 225)), 0.4  # of slopes away from the light, and towards it
 FULL_SLOPE = 0.3  # of the water, that has the second colour
 WATER_STEP = 2.0**-7  # [m] to which points of the water are rounded for the page
-BED_COLOUR, CELL_COLOUR, SECTION_COLOUR = (104, 130, 132), (86, 112, 116), (62, 88, 94)  # sand in the light down there
+SHALLOW_BED, DEEP_BED = (108, 132, 124), (22, 60, 80)  # sand in the light near the surface, and where little is left
+CELL_COLOUR, SECTION_COLOUR = (58, 92, 106), (36, 68, 84)
+LIGHT_REACH = 40.0  # [m] of water that leave 1/e of the light of the sun
+BED_ROWS, BED_STEP = 65, 2.0**-5  # points along a side of the bed, and [m] to which they are rounded for the page
+BED_MOTTLE = 0.10  # standard deviation of the brightness of the sand
+BED_LIT = 0.35, 1.0  # distances from the middle, in half sides, at which the bed begins to be lost in the water, and is
+GRID_ABOVE = 0.0008  # [`extent`s] that the lines of the bed lie above it
+WEB_SIZE, MAX_WEB_SIZE = 0.6, 12.0  # of the webs of light that waves focus: in depths, and the largest [m]
 BODY_COLOUR, LYING_COLOUR = (236, 112, 40), (44, 28, 16)
 # Of the water behind everything, which has an end in the picture: under the surface, and where no light comes down.
-WALL_COLOURS, WALL_OPACITY = ((150, 208, 226), (22, 70, 104)), 0.8
+WALL_COLOURS, WALL_OPACITY = ((122, 184, 208), (8, 40, 68)), 0.9
 WALL_ROWS, LIGHT_DEPTHS = 9, 2.0  # rows of vertices down a wall; e-foldings of the light from surface to bed
 ANCHOR_COLOUR, LIFTED_COLOUR, FAIRLEAD_COLOUR = (50, 54, 62), (214, 40, 40), (30, 32, 38)
 WATCH_COLOUR, PATH_COLOUR, SHADOW_COLOUR = (200, 30, 60), (250, 250, 250), (52, 72, 76)
@@ -59,6 +68,37 @@ def cell_of(far: float) -> float:
     least = 0.1 * far
     power = 10.0 ** np.floor(np.log10(least))
     return float(next((power * cell for cell in CELLS if power * cell >= least), 10.0 * power))
+
+
+def square_points(rows: int) -> NDArray[np.float64]:
+    """Points (rows rows, 2) of the square from -1 to 1."""
+    axis = np.linspace(-1.0, 1.0, rows)
+    return np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def square_faces(rows: int) -> NDArray[np.int64]:
+    """Triangles (m, 3) of a square of rows by rows points."""
+    i, j = np.meshgrid(np.arange(rows - 1), np.arange(rows - 1), indexing="ij")
+    a = (i * rows + j).ravel()
+    return np.concatenate([np.stack([a, a + rows, a + 1], 1), np.stack([a + 1, a + rows, a + rows + 1], 1)])
+
+
+def mottle(rows: int) -> NDArray[np.float64]:
+    """Noise (rows rows, 1) of standard deviation 1 on a square: patches of several sizes, always the same."""
+    noise = np.random.default_rng(1).normal(size=(rows, rows))
+    k = np.hypot(*np.meshgrid(np.fft.fftfreq(rows), np.fft.fftfreq(rows)))
+    patches = np.fft.ifft2(np.fft.fft2(noise) / np.maximum(k, 1.0 / rows)).real
+    return ((patches - patches.mean()) / patches.std()).reshape(-1, 1)
+
+
+def bed_colours(depth: float) -> NDArray[np.float64]:
+    """Colours (BED_ROWS BED_ROWS, 3) of sand at a depth [m], sRGB in 0..1: lost in the water towards the sides."""
+    shallow, deep, lost = np.array([SHALLOW_BED, DEEP_BED, WALL_COLOURS[1]]) / 255.0
+    sand = deep + math.exp(-depth / LIGHT_REACH) * (shallow - deep)
+    near, far = BED_LIT
+    away = np.clip((np.hypot(*square_points(BED_ROWS).T) - near) / (far - near), 0.0, 1.0)[:, None]
+    mottled = sand * (1.0 + BED_MOTTLE * mottle(BED_ROWS))
+    return np.clip(mottled + away * away * (3.0 - 2.0 * away) * (lost - mottled), 0.0, 1.0)
 
 
 class View(SceneView[Params, MooringFrame, MooringReadings]):
@@ -95,8 +135,8 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         cell = cell_of(far)
         self.bed = scene.add_grid(
             "/bed", width=frame.side, height=frame.side, cell_size=cell, section_size=5 * cell,
-            position=(0.0, 0.0, -p.depth), plane_opacity=1.0, fade_distance=FAR_VIEW * far, shadow_opacity=0.0,
-            plane_color=BED_COLOUR, cell_color=CELL_COLOUR, section_color=SECTION_COLOUR,
+            position=(0.0, 0.0, -p.depth + GRID_ABOVE * far), fade_distance=FAR_VIEW * far, shadow_opacity=0.0,
+            cell_color=CELL_COLOUR, section_color=SECTION_COLOUR,
         )  # fmt: skip
         self.samples = max(1, RING_COUNT // (n - 1))
         rings = (n - 1) * self.samples + 1
@@ -138,20 +178,20 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             scene.add_label("/depth", f"{p.depth:g} m deep", position=(-half, half, -p.depth), anchor="bottom-left")
         )
         rows = len(frame.surface)
-        axis = np.linspace(-0.5 * frame.side, 0.5 * frame.side, rows)
-        self.places = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
-        i, j = np.meshgrid(np.arange(rows - 1), np.arange(rows - 1), indexing="ij")
-        a = (i * rows + j).ravel()
-        corners = np.concatenate([np.stack([a, a + rows, a + 1], 1), np.stack([a + 1, a + rows, a + rows + 1], 1)])
+        self.places = 0.5 * frame.side * square_points(rows)
         vertices, colours = self.surface_of(frame)
         self.water = ColouredMesh(
-            self.server, "/water", vertices, corners, colours, columns=rows, step=WATER_STEP,
+            self.server, "/water", vertices, square_faces(rows), colours, columns=rows, step=WATER_STEP,
             color=WATER_COLOURS[0], opacity=WATER_OPACITY, side="double", cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
-        self.walls = self.add_walls(frame)
+        self.walls, self.sand = self.add_walls(frame), self.add_sand(frame)
+        if injector_of(self.server) is not None:
+            webs = np.array([[1.0, min(WEB_SIZE * p.depth, MAX_WEB_SIZE), 0.0]])  # as `js/underwater.js` reads it
+            for lit in (self.walls, self.sand):
+                add_data_mesh(self.server, f"{lit.name}/underwater", webs)
         self.nodes = [
             self.bed, *self.tubes, self.body, self.anchors, self.fairleads, self.shadows,
-            *(handle for _, handle, _ in self.watch), *self.labels, self.water, self.walls,
+            *(handle for _, handle, _ in self.watch), *self.labels, self.water, self.walls, self.sand,
         ]  # fmt: skip
         self.built = self.shape_of(frame)
         self.lifted = np.zeros(lines, bool)
@@ -168,6 +208,16 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         return ColouredMesh(
             self.server, "/walls", vertices, faces, low + np.exp(-LIGHT_DEPTHS * down) * (high - low), columns=4,
             step=WATER_STEP, color=WALL_COLOURS[1], opacity=WALL_OPACITY, side="back", flat_shading=True,
+            cast_shadow=False, receive_shadow=False,
+        )  # fmt: skip
+
+    def add_sand(self, frame: MooringFrame) -> ColouredMesh:
+        """The bed: mottled sand, which is lost in the water with the distance from the middle."""
+        places = 0.5 * frame.side * square_points(BED_ROWS)
+        depth = frame.params.depth
+        return ColouredMesh(
+            self.server, "/sand", np.column_stack([places, np.full(len(places), -depth)]), square_faces(BED_ROWS),
+            bed_colours(depth), columns=BED_ROWS, step=BED_STEP, color=DEEP_BED, side="double",
             cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
 

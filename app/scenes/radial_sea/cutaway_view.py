@@ -37,8 +37,6 @@ LINE_HEIGHT = 0.13  # [m] at size 1 that a label needs
 LABEL_STEP = 0.02  # [m] by which ruler and labels move at least: each move is a message of its own
 LABEL_INTERVAL = 0.2  # [s] between two texts of a label while the sea moves: faster ones cannot be read
 
-MIN_LIGHT = 0.01  # of the light through the oil, under which no webs are seen
-WEB_PERIOD = 80.0 * math.pi  # [s] after which the webs are as they were
 WALL_STEP = 1e-3  # [m] to which points of the walls are rounded for the page
 
 
@@ -202,7 +200,7 @@ class Walls:
         say = self.labels_are_due(frame.time, frame.params.time_step)
         self.show_ruler(cutaway, keel, say=say, column=column)
         colours = self.paint(column)
-        self.light_water(column, frame.time)
+        self.light_water(column)
         self.mesh.set(self.vertices(cutaway), colours)
         for line, height in zip(self.lines, (cutaway.top, cutaway.interface), strict=True):
             at = np.column_stack(
@@ -210,11 +208,10 @@ class Walls:
             )
             set_arrays(line, points=np.stack([at[:-1], at[1:]], axis=1))
 
-    def light_water(self, column: FluidColumn, time: float) -> None:
+    def light_water(self, column: FluidColumn) -> None:
         """Show the webs of light under the waves, as far as the fluid above lets light through."""
         through = 0.0 if column.kind == "mixed" else float(light_through(column.thickness).mean())
-        strength = through if through >= MIN_LIGHT else 0.0
-        now = np.array([[strength, WEB_SIZE * self.size, time % WEB_PERIOD if strength else 0.0]], np.float32)
+        now = np.array([[through, WEB_SIZE * self.size, 0.0]], np.float32)
         if self.underwater_mesh is not None and not np.array_equal(now, self.underwater):
             self.underwater = now
             set_arrays(self.underwater_mesh, vertices=now)

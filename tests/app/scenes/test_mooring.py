@@ -13,6 +13,7 @@ from app.scenes.mooring.parameters import PRESETS, Params
 from app.scenes.mooring.restoring import force_of_lines, static_curve
 from app.scenes.mooring.scene import FADE, MooringScene
 from app.scenes.mooring.tensions import Tensions
+from app.scenes.mooring.view import BED_ROWS, bed_colours
 from sim.mooring import critical_step
 from sim.mooring.catenary import catenary
 from sim.parameters import check_record
@@ -187,3 +188,16 @@ def test_a_checkpoint_goes_on_as_the_run_did():
     run(scene, 1.0)
     np.testing.assert_array_equal(scene.frame().points, expected.points)
     assert scene.frame().offset == expected.offset
+
+
+def test_the_bed_is_darker_and_bluer_with_depth_and_is_lost_towards_the_sides():
+    shallow, deep = (bed_colours(depth).reshape(BED_ROWS, BED_ROWS, 3) for depth in (8.0, 120.0))
+    middle = slice(BED_ROWS // 2 - 5, BED_ROWS // 2 + 6)
+    lit, dim = (bed[middle, middle].mean(axis=(0, 1)) for bed in (shallow, deep))
+    assert (dim < 0.75 * lit).all()
+    assert dim[2] / dim[0] > 1.5 * lit[2] / lit[0]
+    np.testing.assert_allclose(shallow[0, 0], deep[0, 0])  # the colour of the water there
+    assert (shallow[0, 0] < 0.75 * lit).all()
+    assert shallow[middle, middle].std(axis=(0, 1)).min() > 0.01
+    # `js/underwater.js` takes what is redder than blue for oil.
+    assert (shallow[..., 2] - shallow[..., 0] > 0.02).all()

@@ -44,7 +44,7 @@ SUN_LAMP_STRENGTH = 5.0
 FILL_LAMP = (-0.6, -0.7, 0.5), 0.45  # direction towards the lamp that lights the shadows, and its share of the sun's
 GLOW_INTENSITY = 900.0  # of the lamp in the fire
 HANDLE_RADIUS = 0.75  # [m] at size 1 of the invisible ball about a body, which is dragged
-LINE_COLOUR = (226, 196, 120)  # of mooring lines
+LINE_COLOUR = (191, 158, 92)  # of mooring lines
 LINE_RADIUS, LINE_SIDES = 0.02, 4  # [m] at size 1 of a drawn mooring line, a rod
 NEAR_END = [*range(LINE_SIDES), 2 * LINE_SIDES]  # vertices of the rod at the fairlead
 CAMERA_INTERVAL = 0.2  # [s] between two messages to the scene about where the camera is
@@ -241,25 +241,29 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
     def show_moorings(self, frame: RadialFrame) -> None:
         """Draw the mooring lines as rods: a stroke that passes the camera would be drawn where it is not.
 
-        Only the rings at the fairleads move from frame to frame.
+        Only the rings at the fairleads move from frame to frame. The cutaway shows the lines of the body beside it
+        only: others would cross it as sticks that hang in the air.
         """
-        if self.moorings is not None and (len(frame.fairleads) == 0 or frame.anchors is not self.anchors):
+        fairleads = frame.fairleads if frame.cutaway is None else frame.fairleads[:1]
+        drawn = len(fairleads)
+        if self.moorings is not None and (drawn != len(self.rods) or frame.anchors is not self.anchors):
             self.moorings.remove()
             self.moorings = None
-        if len(frame.fairleads) == 0:
+        if drawn == 0:
             return
         if self.moorings is None:
             self.anchors = frame.anchors
-            self.moorings = self.add_moorings(frame)
-        self.rods[:, :, NEAR_END] = self.at_fairleads + frame.fairleads[:, None, None]
+            self.moorings = self.add_moorings(frame.params.size, fairleads)
+        self.rods[:, :, NEAR_END] = self.at_fairleads + fairleads[:, None, None]
         set_arrays(self.moorings, vertices=self.rods.reshape(-1, 3))
 
-    def add_moorings(self, frame: RadialFrame) -> viser.MeshHandle:
-        """The rods of all lines as one mesh."""
-        radius, (n, lines) = LINE_RADIUS * frame.params.size, frame.anchors.shape[:2]
-        ways = np.stack(np.broadcast_arrays(frame.fairleads[:, None], frame.anchors), axis=2)
+    def add_moorings(self, size: float, fairleads: np.ndarray) -> viser.MeshHandle:
+        """The rods of the lines of the first bodies, of this size, as one mesh; fairleads: (n, 3) [m] of these."""
+        anchors = self.anchors[: len(fairleads)]
+        radius, (n, lines) = LINE_RADIUS * size, anchors.shape[:2]
+        ways = np.stack(np.broadcast_arrays(fairleads[:, None], anchors), axis=2)
         self.rods = np.array([[rod(way, radius, LINE_SIDES) for way in body] for body in ways])
-        self.at_fairleads = self.rods[:, :, NEAR_END] - frame.fairleads[:, None, None]
+        self.at_fairleads = self.rods[:, :, NEAR_END] - fairleads[:, None, None]
         first = self.rods.shape[2] * np.arange(n * lines, dtype=np.uint32)  # vertex of each rod
         faces = (tube_faces(2, LINE_SIDES) + first[:, None, None]).reshape(-1, 3)
         return self.server.scene.add_mesh_simple(

@@ -13,7 +13,7 @@ from app.scenes.radial_sea import cutaway_view
 from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.materials import SPILL_RADIUS, material_of
-from app.scenes.radial_sea.view import keel_of
+from app.scenes.radial_sea.view import LINE_SIDES, NEAR_END, View, keel_of
 
 
 @pytest.fixture
@@ -51,6 +51,19 @@ def test_the_labels_of_the_window_say_what_is_there(server: viser.ViserServer) -
     assert ticks[:3] == pytest.approx([0.0, -0.1, -0.2])
     walls.show(frame._replace(cutaway=None), None)
     assert not walls.ruler.visible
+
+
+def test_the_cutaway_has_only_the_lines_of_the_body_beside_it(server: viser.ViserServer) -> None:
+    """Others cross it as sticks that hang in the air."""
+    view = View(server, lambda _: None)
+    rod = 2 * LINE_SIDES + 2  # vertices
+    for cutaway, bodies in ((True, 1), (False, 3), (True, 1)):
+        frame = frame_of(bodies=3, cutaway=cutaway)
+        view.show_moorings(frame)
+        assert view.moorings is not None
+        rods = view.moorings.vertices.reshape(-1, 4, rod, 3)
+        fairleads = rods[:, :, NEAR_END].mean(axis=2)
+        np.testing.assert_allclose(fairleads, np.repeat(frame.fairleads[:bodies, None], 4, axis=1), atol=1e-4)
 
 
 BOX_HEIGHT = 1.6  # of a label, over the height of its letters

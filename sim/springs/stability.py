@@ -336,15 +336,18 @@ def largest_scale(modes: list[Mode], integrator: Integrator, h: float) -> float:
             return math.inf
     # Steps go nearly as a power of the stiffness, so false position in the logarithms (its Illinois form) is quick.
     a, b = math.log(low), math.log(high)
+    side = 0  # which end moved last
     while b - a > NEARLY:
         smooth = math.isfinite(above) and math.isfinite(below)
         middle = (a * below - b * above) / (below - above) if smooth else 0.5 * (a + b)
         middle = min(max(middle, a + 0.4 * NEARLY), b - 0.4 * NEARLY)
         value = margin(math.exp(middle))
         if value >= 0.0:
-            a, above, below = middle, value, 0.5 * below
+            a, above, below = middle, value, 0.5 * below if side > 0 else below
+            side = 1
         else:
-            b, below, above = middle, value, 0.5 * above
+            b, below, above = middle, value, 0.5 * above if side < 0 else above
+            side = -1
     return math.exp(a)
 
 

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from sim.springs import INTEGRATORS, Contact, Grab, cloth, rope, simulate
+from sim.springs.analysis.amplification import eigenvalues, limit_of_polynomial
+from sim.springs.integrators import dop853, dopri5
 from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, set_tangent
 from sim.springs.stability import critical_step, critical_stiffness, gauge, gershgorin, most_touching, top_modes
 from sim.springs.state import State, advance
@@ -159,6 +161,29 @@ def growth(name, zeta, z):
 @pytest.mark.parametrize(("name", "zeta", "limit"), CASES)
 def test_declared_limits_are_the_table_s(name, zeta, limit):
     assert INTEGRATORS[name].limit(zeta) == pytest.approx(limit, rel=1e-2, abs=1e-12)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.3, 0.999, 1.0, 5.0])
+@pytest.mark.parametrize("coefficients", [(1.0, 1.0, 1 / 2, 1 / 6, 1 / 24), dopri5.POLYNOMIAL, dop853.POLYNOMIAL])
+def test_limits_of_runge_kutta_methods_are_where_their_growth_leaves_1(coefficients, zeta):
+    limit, both = limit_of_polynomial(coefficients, zeta), np.array(eigenvalues(zeta))
+
+    def growth(z):
+        return np.abs(np.polynomial.polynomial.polyval(z * both, coefficients)).max()
+
+    assert max(map(growth, np.linspace(1e-3, limit - 1e-8, 2000))) <= 1.0 + 2e-9
+    assert growth(limit + 2e-8) > 1.0 + 1e-9
+
+
+def test_the_search_for_a_stiffness_asks_for_few_limits():
+    asked = []
+    rk4 = INTEGRATORS["rk4"]
+    record = rk4._replace(limit=lambda zeta: asked.append(zeta) or rk4.limit(zeta))
+    net = rope(points=30, stiffness=8000.0, mass=0.3, damping=1.0, drag=0.1)
+    modes = top_modes(net)
+    found = critical_stiffness(net, record, 1 / 480, modes=modes)
+    assert critical_step(net.with_stiffness(found), "rk4") == pytest.approx(1 / 480, rel=1e-6)
+    assert len(asked) <= 12 * len(modes)
 
 
 @pytest.mark.parametrize(("name", "limit"), [("pefrl", 2.989), ("dopri5", 0.9972), ("dop853", 5.960), ("rkn8", 3.2937)])

@@ -127,14 +127,13 @@ def checked(before: Student, tasks: Sequence[Task], copies: Path) -> Student:
     try:
         texts, answers = read_files(before.folder), read_answers(before.folder)
         saved = keep(texts, copies, before.number + 1, tasks)
-        changed = saved.changed(before.saved)
-        helpers = changed - {task.file for task in tasks}  # which any function may use
+        affected = saved.affected(before.saved, tasks)
         programs, rope = dict(before.programs), before.rope
         with Runner(copies) as runner:
             for task in tasks:
-                if task.check is not None and (helpers or task.file in changed or task.name not in programs):
+                if task.check is not None and (task.file in affected or task.name not in programs):
                     programs[task.name] = check_program(copies, runner, task)
-            if helpers or ROPE_FILE in changed:
+            if ROPE_FILE in affected:
                 rope = rope_picture(runner, saved)
     finally:
         shutil.rmtree(copies, ignore_errors=True)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.lab.rope_march import Functions, Unfit, fitting
+from app.lab.rope_march import Functions, Unfit, fitting, not_a_number
 from app.lab.tasks.cloth_forces import cloth_forces
 from app.lab.tasks.cloth_links import cloth_links
 from app.lab.tasks.step_euler import step_euler
@@ -130,8 +130,7 @@ class ClothFunctions(Functions):
             "cloth_forces" in self.own
             and np.isnan(self.link_forces(x, v, self.kind >= 0, f.stiffness, f.damping)).any()
         ):
-            text = "cloth_forces returns NaN (not a number): look for a division by 0 or the root of a negative number"
-            raise Unfit("NaN", text, self.own["cloth_forces"])
+            raise not_a_number("cloth_forces", self.own["cloth_forces"])
 
 
 def corners(of: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ that works; which one fails, and why, is kept until the next one is saved.
 import itertools
 import math
 import queue
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,23 +16,11 @@ from numpy.typing import NDArray
 from app.lab.cloth_march import FILE as CLOTH_FILE
 from app.lab.cloth_march import Sheet
 from app.lab.rope_march import FILE as ROPE_FILE
-from app.lab.rope_march import REFERENCE, Forces, Segment
+from app.lab.rope_march import Forces, Segment
 from app.lab.runner import RunError, Runner, unexpected
 from app.lab.saved import Saved
 from app.lab.service import Service
 
-STEPS = {  # method of the scene -> the task with its step
-    "explicit_euler": "step_euler",
-    "rk4": "step_rk4",
-    "leapfrog": "step_leapfrog",
-    "leapfrog_lagged": "step_leapfrog",
-}
-OTHER_STEP = "step_rk4"  # for the methods that no task asks for
-ROPE_FUNCTIONS = tuple(REFERENCE)
-# A cloth's step is the program's: by the method of the scene where that is cheap enough for plain Python.
-CLOTH_STEPS = {"explicit_euler": "step_euler", "rk4": "step_rk4"}
-OTHER_CLOTH_STEP = "step_symplectic"
-CLOTH_FUNCTIONS = ("cloth_forces", "cloth_links")
 COMPILE_AFTER = 3.0  # [s] of processor time in plain Python: about what compiling takes
 
 
@@ -68,6 +56,15 @@ class Loaded(NamedTuple):
     compiled: tuple[str, ...] = ()  # the functions that are compiled in this process
 
 
+class Trial(NamedTuple):
+    """State and forces in which a new version takes a few steps."""
+
+    x: np.ndarray  # (n, 3) [m]
+    v: np.ndarray  # (n, 3) [m/s]
+    forces: Forces
+    sheet: Sheet | None = None
+
+
 class StudentReport(NamedTuple):
     """A scene's report on the student's rope or cloth, for the panel. It is replaced, never changed."""
 
@@ -87,73 +84,77 @@ class StudentReport(NamedTuple):
     differences: NDArray[np.float64] = np.zeros(0)  # (rows,) [m]
 
 
-def step_of(method: str) -> str:
-    """The function that takes the steps of a method."""
-    return STEPS.get(method, OTHER_STEP)
-
-
-def own_of(saved: Saved, method: str, *, sphere: bool) -> frozenset[str]:
-    """The student's functions that move a rope by this method."""
-    unused = {"step_euler", "step_rk4", "step_leapfrog"} - {step_of(method)}
-    if not sphere:
-        unused.add("sphere_force")
-    if "rope_acceleration" in saved.begun:
-        unused.add("spring_force")  # it calls that itself, if it does
-    return saved.begun & set(ROPE_FUNCTIONS) - unused
-
-
 class Material(NamedTuple):
     """Differences between a rope and a cloth."""
 
     file: str  # of the student's functions
     exact: frozenset[str]  # methods by which a right solution moves as the program's, to rounding
-    step_of: Callable[[str], str]  # method -> the function that takes its steps
-    own_of: Callable[..., frozenset[str]]  # version, method, sphere -> the student's functions that move it
-    attempt: Callable[..., None]  # runner, version, method, sphere: takes a few steps, and raises RunError
+    steps: Mapping[str, str]  # method of the scene -> the function that takes its steps
+    other_step: str  # that of the other methods
+    used: Callable[[Collection[str], str, bool], Sequence[str]]  # begun, step, sphere -> functions that move it
+    trial: Callable[[bool], Trial]  # sphere -> what a new version is tried with
+
+    def step_of(self, method: str) -> str:
+        """The function that takes the steps of a method."""
+        return self.steps.get(method, self.other_step)
+
+    def in_use(self, begun: Collection[str], method: str, *, sphere: bool) -> dict[str, bool]:
+        """The functions that move it by this method, and whether each is the student's own."""
+        return {name: name in begun for name in self.used(begun, self.step_of(method), sphere)}
+
+    def own_of(self, begun: Collection[str], method: str, *, sphere: bool) -> frozenset[str]:
+        """The student's functions that move it by this method."""
+        return frozenset(name for name, is_own in self.in_use(begun, method, sphere=sphere).items() if is_own)
 
 
-def step_of_cloth(method: str) -> str:
-    """The function that takes the steps of a method."""
-    return CLOTH_STEPS.get(method, OTHER_CLOTH_STEP)
+def used_by_rope(begun: Collection[str], step: str, sphere: bool) -> Sequence[str]:
+    """The functions that move a rope; `rope_acceleration` calls `spring_force` itself, if it does."""
+    forces = "rope_acceleration" if "rope_acceleration" in begun else "spring_force"
+    return (forces, *(["sphere_force"] if sphere else []), step)
 
 
-def own_of_cloth(saved: Saved, method: str, *, sphere: bool) -> frozenset[str]:
-    """The student's functions that move a cloth, by any method."""
-    return saved.begun & set(CLOTH_FUNCTIONS)
-
-
-def try_cloth(runner: Runner, saved: Saved, method: str, *, sphere: bool) -> None:
-    """Take a few steps from a level cloth that is stretched. Raises RunError."""
-    rows, cols, spacing = 4, 5, 0.1
-    j, i = np.meshgrid(1.1 * spacing * np.arange(cols), 1.2 * spacing * np.arange(rows))
-    x = np.stack([j, i, 2.0 + 0.1 * np.sin(3.0 * i + j)], axis=-1).reshape(-1, 3)
-    forces = Forces(
-        0.05, 200.0, 0.1, 0.0, spacing, 9.81, -math.inf, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 300.0, 0.2, 0.0, False,
-        -1, (0.0, 0.0, 0.0), 0.0, 0.0, 1.0,
-    )  # fmt: skip
-    sheet = Sheet(rows, cols, (spacing, spacing), 100.0, 3.0, (0, cols - 1))
-    own = own_of_cloth(saved, method, sphere=sphere)
-    runner.march(own, step_of_cloth(method), x, 0.1 * x, [Segment(3, 1 / 480, forces, np.zeros((0, 4, 3)))], sheet)
-
-
-def try_rope(runner: Runner, saved: Saved, method: str, *, sphere: bool) -> None:
-    """Take a few steps from a bent rope. Raises RunError."""
+def bent_rope(sphere: bool) -> Trial:
+    """A bent rope in motion, at a sphere or not."""
     n = 6
     x = np.zeros((n, 3))
     x[:, 0], x[:, 2] = -0.2 * np.arange(n), 3.0 - 0.02 * np.arange(n) ** 2
     v = np.linspace(0.0, 1.0, n)[:, None] * np.array([0.3, 0.2, -0.5])
-    near = (-0.6, 0.0, 2.5), 0.4 if sphere else 0.0
-    forces = Forces(
-        1.0, 800.0, 7.0, 1.0, 0.2, 10.0, 0.0, near[1], near[0], (0.0, 0.0, 0.0), 800.0, 5.0, 0.3, False, -1,
-        (0.0, 0.0, 0.0), 0.0, 0.0, 1.0,
-    )  # fmt: skip
-    own = own_of(saved, method, sphere=sphere)
-    runner.march(own, step_of(method), x, v, [Segment(3, 1 / 480, forces, np.zeros((0, 4, 3)))])
+    radius = 0.4 if sphere else 0.0
+    return Trial(
+        x, v, Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, floor=0.0, radius=radius, centre=(-0.6, 0.0, 2.5), friction=0.3)
+    )
 
 
-ROPE = Material(ROPE_FILE, frozenset({"explicit_euler", "rk4"}), step_of, own_of, try_rope)
+def stretched_cloth(sphere: bool) -> Trial:
+    """A level cloth that is stretched, in motion."""
+    rows, cols, spacing = 4, 5, 0.1
+    j, i = np.meshgrid(1.1 * spacing * np.arange(cols), 1.2 * spacing * np.arange(rows))
+    x = np.stack([j, i, 2.0 + 0.1 * np.sin(3.0 * i + j)], axis=-1).reshape(-1, 3)
+    sheet = Sheet(rows, cols, (spacing, spacing), 100.0, 3.0, (0, cols - 1))
+    return Trial(x, 0.1 * x, Forces(0.05, 200.0, 0.1, 0.0, spacing, 9.81), sheet)
+
+
+ROPE = Material(
+    ROPE_FILE,
+    frozenset({"explicit_euler", "rk4"}),
+    {
+        "explicit_euler": "step_euler",
+        "rk4": "step_rk4",
+        "leapfrog": "step_leapfrog",
+        "leapfrog_lagged": "step_leapfrog",
+    },
+    "step_rk4",
+    used_by_rope,
+    bent_rope,
+)
+# A cloth's step is the program's: by the method of the scene where that is cheap enough for plain Python.
 CLOTH = Material(
-    CLOTH_FILE, frozenset({"explicit_euler", "rk4", "symplectic_euler"}), step_of_cloth, own_of_cloth, try_cloth
+    CLOTH_FILE,
+    frozenset({"explicit_euler", "rk4", "symplectic_euler"}),
+    {"explicit_euler": "step_euler", "rk4": "step_rk4"},
+    "step_symplectic",
+    lambda begun, step, sphere: ("cloth_forces", "cloth_links"),
+    stretched_cloth,
 )
 
 
@@ -193,8 +194,11 @@ class LiveNet(Service[Job | Loaded]):
 
     def attempt(self, loaded: Loaded) -> None:
         """Take a few steps as the last job did, if the student's functions take them. Raises RunError."""
-        if self.material.own_of(loaded.saved, self.method, sphere=self.sphere):
-            self.material.attempt(loaded.runner, loaded.saved, self.method, sphere=self.sphere)
+        own = self.material.own_of(loaded.saved.begun, self.method, sphere=self.sphere)
+        if own:
+            x, v, forces, sheet = self.material.trial(self.sphere)
+            segment = Segment(3, 1 / 480, forces, np.zeros((0, 4, 3)))
+            loaded.runner.march(own, self.material.step_of(self.method), x, v, [segment], sheet)
 
     def adopt(self, loaded: Loaded) -> None:
         """Take a version that has been tried, in place of those before it."""
@@ -241,7 +245,7 @@ class LiveNet(Service[Job | Loaded]):
         self.method = job.method
         self.sphere = any(segment.forces.radius > 0.0 for segment in job.segments)
         for saved, runner, compiled in reversed(self.versions):
-            own = self.material.own_of(saved, job.method, sphere=self.sphere)
+            own = self.material.own_of(saved.begun, job.method, sphere=self.sphere)
             if not own:
                 break  # the student has written nothing that moves this
             attempt = saved.number, bool(compiled), own
@@ -270,15 +274,3 @@ class LiveNet(Service[Job | Loaded]):
 def unanswered(job: Job) -> Answer:
     """The answer to a job that no version has done."""
     return Answer(job.run, job.x[None][:0], job.v, 0.0, False, 0)
-
-
-def cloth_functions_in_use(begun: Collection[str]) -> dict[str, bool]:
-    """The functions that move a cloth, and whether each is the student's own."""
-    return {name: name in begun for name in CLOTH_FUNCTIONS}
-
-
-def functions_in_use(begun: Collection[str], method: str, *, sphere: bool) -> dict[str, bool]:
-    """The functions that move a rope by this method, and whether each is the student's own."""
-    names = ["rope_acceleration" if "rope_acceleration" in begun else "spring_force"]
-    names += ["sphere_force"] if sphere else []
-    return {name: name in begun for name in (*names, step_of(method))}

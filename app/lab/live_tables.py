@@ -2,9 +2,11 @@
 
 A scene says which functions it has a use for, and at which arguments (`LiveTables.want`). What they return becomes a
 `Table`; a scene takes the tables that there are and never waits. Where the newest version of a function fails, the
-last version that worked goes on.
+last version that worked goes on. The panel shows functions that move nothing at the numbers of a scene in the same way
+(`scene_values.py`).
 """
 
+import math
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
@@ -25,7 +27,8 @@ class Call(NamedTuple):
 
     columns: tuple[NDArray[np.float64], ...]  # (n, ...) each: row i holds the arguments of call i
     allowed: Range  # what the function may return
-    shape: tuple[int, ...] = ()  # of what it returns
+    shape: tuple[int, ...] | None = ()  # of what it returns; None: its number of entries counts
+    program: float = math.nan  # the program's own result, where there is one call
 
     def same(self, other: "Call") -> bool:
         """True if both ask for the same."""
@@ -130,9 +133,8 @@ class LiveTables(Service[Saved | Mapping[str, Call]]):
 
     def take(self, saved: Saved) -> None:
         """Go over to a version: a function of a file that has not changed is not called again."""
-        changed = saved.changed(self.newest)
-        helpers = changed - {task.file for task in self.tasks.values()}  # which any function may use
-        same = {name for name, task in self.tasks.items() if not helpers and task.file not in changed}
+        affected = saved.affected(self.newest, self.tasks.values())
+        same = {name for name, task in self.tasks.items() if task.file not in affected}
         before = 0 if self.newest is None else self.newest.number
         self.tried = {name: (saved.number, call) for name, (_, call) in self.tried.items() if name in same}
         self.errors = {name: error for name, error in self.errors.items() if name in same}

@@ -38,19 +38,19 @@ class Forces(NamedTuple):
     drag: float  # [N s/m]
     rest_length: float  # [m]
     gravity: float  # [m/s2], downwards
-    floor: float  # [m] where points meet it; -inf: none
-    radius: float  # [m] at which points meet the sphere; 0: none
-    centre: tuple[float, float, float]  # [m] of the sphere at time 0 of the segment
-    velocity: tuple[float, float, float]  # [m/s] of the sphere
-    contact_stiffness: float  # [N/m]
-    contact_damping: float  # [N s/m]
-    friction: float  # Coulomb coefficient
-    lab_contact: bool  # the lab's law of contact instead of the clipped one
-    held: int  # point that the mouse pulls, -1: none
-    hand: tuple[float, float, float]  # [m]
-    pull_stiffness: float  # [N/m]
-    pull_damping: float  # [N s/m]
-    max_pull: float  # [N]
+    floor: float = -np.inf  # [m] where points meet it; -inf: none
+    radius: float = 0.0  # [m] at which points meet the sphere; 0: none
+    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m] of the sphere at time 0 of the segment
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m/s] of the sphere
+    contact_stiffness: float = 800.0  # [N/m]
+    contact_damping: float = 5.0  # [N s/m]
+    friction: float = 0.0  # Coulomb coefficient
+    lab_contact: bool = False  # the lab's law of contact instead of the clipped one
+    held: int = -1  # point that the mouse pulls, -1: none
+    hand: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m]
+    pull_stiffness: float = 0.0  # [N/m]
+    pull_damping: float = 0.0  # [N s/m]
+    max_pull: float = 1.0  # [N]
     wind: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m/s] at a cloth
     air_drag: float = 0.0  # [kg/m3] half the density of the air times the coefficient of drag
     air_lift: float = 0.0  # [kg/m3] the same of lift
@@ -95,8 +95,14 @@ class Unfit(Exception):  # noqa: N818 - a judgement on a result, not an error of
         self.line = None if code is None else int(code.co_firstlineno)
 
 
+def not_a_number(name: str, function: Callable[..., Any]) -> Unfit:
+    """The judgement on a function of this name that returns NaN."""
+    text = f"{name} returns NaN (not a number): look for a division by 0 or the root of a negative number"
+    return Unfit("NaN", text, function)
+
+
 def fitting(name: str, value: Any, shape: tuple[int, ...], function: Callable[..., Any]) -> np.ndarray:
-    """Result of the function of this name as an array of this shape. Raises Unfit."""
+    """Result of the function of this name as an array of this shape; one entry is a number too. Raises Unfit."""
     expected = f"expected is an array of shape {shape}" if shape else "expected is a number"
     if value is None:
         raise Unfit("returns nothing", f"{name} returns nothing: the last line must be return ...", function)
@@ -107,6 +113,8 @@ def fitting(name: str, value: Any, shape: tuple[int, ...], function: Callable[..
     if array.dtype.kind not in "biuf":
         text = f"{name} returns a value of type {type(value).__name__}; {expected}"
         raise Unfit("wrong type", text, function)
+    if shape == () and array.size == 1:
+        array = array.reshape(())
     if array.shape != shape:
         form = f"an array of shape {array.shape}" if array.shape else "a number"
         raise Unfit("wrong shape", f"{name} returns {form}; {expected}", function)
@@ -286,8 +294,7 @@ class Functions:
                     self.sphere(x[i], v[i] - velocity, centre, float(distance[i]), f.mass) for i in range(1, len(x))
                 ]
             if any(np.isnan(value).any() for value in values):
-                text = f"{name} returns NaN (not a number): look for a division by 0 or the root of a negative number"
-                raise Unfit("NaN", text, self.own[name])
+                raise not_a_number(name, self.own[name])
 
     def advance(self, x: np.ndarray, v: np.ndarray, start: float) -> tuple[np.ndarray, np.ndarray]:
         """One step from time `start` [s] of the segment. Raises Unfit.
@@ -310,8 +317,7 @@ class Functions:
             raise Unfit("wrong shape" if size else "wrong type", text, self.get(self.step))
         x_new, v_new = self.fit(self.step, value[0], x.shape), self.fit(self.step, value[1], x.shape)
         if np.isnan(x_new.sum() + v_new.sum()) and (np.isnan(x_new).any() or np.isnan(v_new).any()):
-            text = f"{self.step} returns NaN (not a number): look for a division by 0 or the root of a negative number"
-            raise Unfit("NaN", text, self.get(self.step))
+            raise not_a_number(self.step, self.get(self.step))
         return self.held(x_new, v_new, start + h) if len(self.segment.path) else (x_new, v_new)
 
     def start_clock(self, x: np.ndarray, v: np.ndarray) -> None:

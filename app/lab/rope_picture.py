@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.live_net import own_of, step_of
+from app.lab.live_net import ROPE
 from app.lab.rope_march import FILE, Forces, Functions, Segment, march
 from app.lab.runner import RunError, Runner
 from app.lab.saved import Saved
@@ -17,10 +17,7 @@ POINTS, LINK = 10, 0.2  # of the rope, and length of a link at rest [m]
 TOP = 2.0  # height of the root [m]
 POSES, POSE_STEPS, STEP = 5, 48, 1 / 240  # pictures over each other, steps to the next, length of a step [s]
 # Material of the lab code's rope in air, without floor and sphere.
-FORCES = Forces(
-    1.0, 800.0, 7.0, 1.0, LINK, 10.0, -np.inf, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 800.0, 5.0, 0.0, False, -1,
-    (0.0, 0.0, 0.0), 0.0, 0.0, 1.0,
-)  # fmt: skip
+FORCES = Forces(1.0, 800.0, 7.0, 1.0, LINK, 10.0)
 METHODS = {"step_rk4": "rk4", "step_leapfrog": "leapfrog", "step_euler": "explicit_euler"}  # the first that is begun
 WIDTH, HEIGHT = 132, 80  # [px]
 SCALE = 30.0  # [px/m]
@@ -47,10 +44,10 @@ def start() -> tuple[NDArray[np.float64], NDArray[np.float64], list[Segment]]:
 def rope_picture(runner: Runner, saved: Saved) -> RopePicture:
     """The rope of a version of the student's files, by the first of RK4, leapfrog and Euler that is begun."""
     method = next((name for step, name in METHODS.items() if step in saved.begun), "rk4")
-    own = own_of(saved, method, sphere=False)
+    own = ROPE.own_of(saved.begun, method, sphere=False)
     if not own:
         return RopePicture()
-    step = step_of(method)
+    step = ROPE.step_of(method)
     reference = reference_poses(step)
     try:
         found = runner.march(own, step, *start())

@@ -106,18 +106,19 @@ class Runner:
         return March(*answer)
 
     def table(
-        self, file: str, function: str, columns: Sequence[np.ndarray], shape: tuple[int, ...], allowed: Range
+        self, file: str, function: str, columns: Sequence[np.ndarray], shape: tuple[int, ...] | None, allowed: Range
     ) -> np.ndarray:
         """(n, *shape) results of a function for each row of its arguments (`tabulate.py`). Raises RunError.
 
-        columns: (n, ...) each. The limit in time is that of each `TABLE_ROWS` rows.
+        columns: (n, ...) each. shape: None for the number of entries of each result. The limit in time is that of each
+        `TABLE_ROWS` rows.
         """
         parts: list[np.ndarray] = []
         for first in range(0, len(columns[0]), TABLE_ROWS):
             rows = [column[first : first + TABLE_ROWS] for column in columns]
-            part = self._ask("table", file, function, [rows, list(shape), list(allowed)])
+            part = self._ask("table", file, function, [rows, shape, list(allowed)])
             is_table = isinstance(part, np.ndarray) and part.dtype == np.float64
-            if not is_table or part.shape != (len(rows[0]), *shape) or not np.isfinite(part).all():
+            if not is_table or part.shape != (len(rows[0]), *(shape or ())) or not np.isfinite(part).all():
                 self.close()
                 raise RunError("ended", f"{function} wrote into the pipe of the lab", file)
             parts.append(part)

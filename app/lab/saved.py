@@ -20,10 +20,15 @@ class Saved(NamedTuple):
     texts: Mapping[str, bytes]  # file -> what it holds
     begun: frozenset[str]  # functions of the tasks that have a body
 
-    def changed(self, before: "Saved | None") -> frozenset[str]:
-        """The files that differ from those of an earlier version."""
+    def affected(self, before: "Saved | None", tasks: Iterable[Task]) -> frozenset[str]:
+        """The files of tasks whose functions may do something else than in an earlier version.
+
+        Those that differ; all where another file does, as any function may use that.
+        """
         old = {} if before is None else before.texts
-        return frozenset(name for name in {*self.texts, *old} if self.texts.get(name) != old.get(name))
+        changed = frozenset(name for name in {*self.texts, *old} if self.texts.get(name) != old.get(name))
+        files = frozenset(task.file for task in tasks if task.file)
+        return changed if changed <= files else files
 
 
 def read_files(folder: Path) -> dict[str, bytes]:

@@ -27,7 +27,6 @@ from app.lab.live_net import CLOTH, ROPE, LiveNet, Loaded
 from app.lab.live_tables import LiveTables
 from app.lab.runner import TIME_LIMIT, RunError, Runner
 from app.lab.saved import Saved, keep, read_files
-from app.lab.scene_values import SceneValues
 from app.lab.task import Task
 
 SETTLE_TIME = 20  # [ms] without a further change before a save is read: editors write a file in several steps
@@ -68,7 +67,7 @@ class Session:
         self.tables = LiveTables(by_name, time_limit)
         self.live = LiveCode(self.rope, self.cloth, self.tables)
         self.check = BackgroundCheck(own_tasks)
-        self.values = SceneValues(by_name, time_limit)
+        self.values = LiveTables(by_name, time_limit)  # of functions that move nothing, beside the program's number
         self.rope_version = 0  # number of the last version that was tried for the rope
         self.compiler: Runner | None = None  # of the version that is being compiled
         self.stop = threading.Event()
@@ -107,21 +106,21 @@ class Session:
         folder = self.copies / str(number)
         folder.mkdir(exist_ok=True)
         saved = keep(texts, folder, number, self.tasks)
-        changed = saved.changed(self.saved)
-        helpers = changed - {task.file for task in self.tasks}  # which any function may use
-        names = [task.name for task in self.tasks if task.file and (helpers or task.file in changed)]
+        affected = saved.affected(self.saved, self.tasks)
+        names = [task.name for task in self.tasks if task.file in affected]
         self.check.request(saved.folder, names, saved.begun)
         self.tables.adopt(saved)
+        self.values.adopt(saved)
         self.saved = saved
         runner, self.spare = self.spare or self.make_runner(), None
         runner.folder = folder.resolve()
         self.state = self.state._replace(version=saved.number, saved_at=time.strftime("%H:%M:%S"), error=None)
-        if ROPE.file in texts and self.is_for(ROPE.file, changed):
+        if ROPE.file in texts and ROPE.file in affected:
             self.rope_version = saved.number
             if self.compiler is not None:
                 self.compiler.abort()
             self.try_version(self.rope, saved, runner)
-        if CLOTH.file in texts and self.is_for(CLOTH.file, changed):
+        if CLOTH.file in texts and CLOTH.file in affected:
             self.try_version(self.cloth, saved, runner if runner.is_fresh else Runner(folder, self.time_limit))
         self.spare = runner if runner.is_fresh else self.make_runner()
 
@@ -131,11 +130,6 @@ class Session:
         if self.state.error is None or self.state.error.text != text:  # it is tried again twice a second
             traceback.print_exception(error)
             self.state = self.state._replace(error=RunError("ended", text, str(self.folder)))
-
-    def is_for(self, file: str, changed: frozenset[str]) -> bool:
-        """True if a change of these files can change the functions of a file: itself, or one no task names."""
-        others = {task.file for task in self.tasks} - {file}
-        return not changed <= others
 
     def try_version(self, net: LiveNet, saved: Saved, runner: Runner) -> None:
         """Hand a version to rope or cloth if it takes a few steps; say why where it does not.

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.lab.rope_march import Unfit, fitting
+from app.lab.rope_march import Unfit, fitting, not_a_number
 
 
 class Range(NamedTuple):
@@ -25,21 +25,26 @@ class Range(NamedTuple):
 
 
 def tabulate(
-    function: Callable[..., Any], name: str, columns: Sequence[np.ndarray], shape: tuple[int, ...], allowed: Range
+    function: Callable[..., Any],
+    name: str,
+    columns: Sequence[np.ndarray],
+    shape: tuple[int, ...] | None,
+    allowed: Range,
 ) -> np.ndarray:
     """(n, *shape) results of the function for each row of its arguments, columns of shape (n, ...).
 
-    Raises Unfit for a result of another shape or type, or that is not finite or not allowed.
+    shape: None for the number of entries of each result, (n,). Raises Unfit for a result of another shape or type, or
+    that is not finite or not allowed.
     """
     rows = len(columns[0])
-    table = np.empty((rows, *shape))
+    table = np.empty((rows, *(shape or ())))
     with np.errstate(all="ignore"):
         for i in range(rows):
-            given = [column[i].copy() if column.ndim > 1 else float(column[i]) for column in columns]
-            value = fitting(name, function(*given), shape, function)
+            given = [column[i].copy() if column.ndim > 1 else column[i].item() for column in columns]
+            result = function(*given)
+            value = np.array(float(len(result))) if shape is None else fitting(name, result, shape, function)
             if np.isnan(value).any():
-                text = f"{name} returns NaN (not a number): look for a division by 0 or the root of a negative number"
-                raise Unfit("NaN", text, function)
+                raise not_a_number(name, function)
             is_fit = (allowed.low <= value) & (value <= allowed.high) & ~np.isinf(value)
             if not is_fit.all():
                 arguments = ", ".join(np.array2string(column[i], precision=4) for column in columns)

@@ -118,7 +118,7 @@ class Worker:
                 return ["failed", "missing", f"there is no function {function}", file, None]
             if kind == "table":
                 columns, shape, allowed = unpack(arguments, self.remote)
-                return ["result", pack(tabulate(target, function, columns, tuple(shape), Range(*allowed)), lambda _: 0)]
+                return ["result", pack(tabulate(target, function, columns, shape, Range(*allowed)), lambda _: 0)]
             value = target(*unpack(arguments, self.remote))
             return ["result", pack(value, lambda _: 0)]
         except Unfit as error:

@@ -4,12 +4,12 @@ import numpy as np
 import viser
 
 from app.formats.formatting import number
-from app.lab.live_net import StudentReport, cloth_functions_in_use, functions_in_use
-from app.lab.live_tables import TableReport
+from app.lab.live_net import CLOTH, ROPE, StudentReport
+from app.lab.live_tables import Call, LiveTables, TableReport
 from app.lab.live_values import LiveValues
 from app.lab.program_check import Verdict
 from app.lab.runner import RunError
-from app.lab.scene_values import Compared
+from app.lab.scene_values import VALUES, calls_here
 from app.lab.session import CodeState, Session
 from app.lab.task import Task
 from app.panel.plots import scale_of
@@ -57,6 +57,7 @@ class CodePanel:
         self.session, self.scene = session, scene
         self.net = session.cloth if scene == "cloth" else session.rope
         self.shown = ""
+        self.calls: dict[str, Call] = {}  # of functions at the numbers of the scene
         with gui.add_folder("Your code"):
             self.text = gui.add_html("")
             self.choice = gui.add_checkbox(
@@ -77,9 +78,12 @@ class CodePanel:
     def update(self, live: LiveValues) -> None:
         """Show changes; called a few times a second. live: the values of the scene."""
         session = self.session
-        session.values.ask(self.scene, session.saved, live)
+        calls = calls_here(self.scene, begun_of(session), live)
+        if calls.keys() != self.calls.keys() or not all(call.same(self.calls[name]) for name, call in calls.items()):
+            self.calls = calls
+            session.values.want(calls)
         said = code_lines(state_of(session), self.net.report, tables_of(session), self.scene)
-        text = note(lines([said, function_lines(session)]))
+        text = note(lines([said, function_lines(session, self.scene)]))
         if text != self.shown:
             self.shown = text
             self.text.content = text
@@ -181,10 +185,7 @@ def saved_text(state: CodeState, hint: str, *, runs: bool) -> Html:
 
 def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]:
     """The rope or cloth that the student's functions move."""
-    if scene == "cloth":
-        used = cloth_functions_in_use(state.begun)
-    else:
-        used = functions_in_use(state.begun, report.method, sphere=report.sphere)
+    used = (CLOTH if scene == "cloth" else ROPE).in_use(state.begun, report.method, sphere=report.sphere)
     own = ", ".join(name for name, is_own in used.items() if is_own)
     other = ", ".join(name for name, is_own in used.items() if not is_own)
     said = [fill("Your {} moves by {}{}.", scene, bold(own), fill(" (reference: {})", other) if other else "")]
@@ -260,9 +261,9 @@ def tick_mark(y: float, word: str) -> Html:
     )  # fmt: skip
 
 
-def function_lines(session: Session) -> Html:
+def function_lines(session: Session, scene: str) -> Html:
     """State and errors of every function that is begun; the right ones come last."""
-    verdicts, waiting, compared = session.check.verdicts, session.check.waiting, session.values.found
+    verdicts, waiting = session.check.verdicts, session.check.waiting
     rows: list[tuple[int, Html]] = []
     not_begun = 0
     for task in session.tasks:
@@ -272,23 +273,22 @@ def function_lines(session: Session) -> Html:
         if verdict.state == "not begun":
             not_begun += 1
         else:
-            rows.append((ORDER.index(verdict.state), function_line(task, verdict, compared.get(task.name))))
+            compared = compared_text(scene, task.name, session.values)
+            rows.append((ORDER.index(verdict.state), function_line(task, verdict, compared)))
     rest = faint(f"{not_begun} functions not begun") if not_begun else Html()
     return join([*(row for _, row in sorted(rows, key=lambda row: row[0])), rest])
 
 
-def compared_text(compared: Compared | None) -> Html:
-    """The function at the numbers of the scene, beside the program's number."""
-    if compared is None or compared.student is None:
+def compared_text(scene: str, task: str, values: LiveTables) -> Html:
+    """The function at the numbers of the scene, beside the program's number; nothing where its newest version fails."""
+    value, table = VALUES.get((scene, task)), values.tables.get(task)
+    if value is None or table is None or task in values.errors:
         return Html()
-    value, unit = compared.value, f" {compared.value.unit}" if compared.value.unit else ""
-    return fill(
-        '<div class="springtide-faint">{}: {}, program {}</div>',
-        value.what, bold(f"{number(compared.student, 4)}{unit}"), f"{number(compared.program, 4)}{unit}",
-    )  # fmt: skip
+    student, program = (f"{number(x, 4)} {value.unit}".rstrip() for x in (float(table.values[0]), table.call.program))
+    return fill('<div class="springtide-faint">{}: {}, program {}</div>', value.what, bold(student), program)
 
 
-def function_line(task: Task, verdict: Verdict, compared: Compared | None = None) -> Html:
+def function_line(task: Task, verdict: Verdict, compared: Html) -> Html:
     """One function: its name and state, its errors, and its values in the scene."""
     place = f"{verdict.place}: " if verdict.place else ""
     why = f"{place}{verdict.sentence}" if verdict.state in ("wrong", "failed") else ""
@@ -296,5 +296,5 @@ def function_line(task: Task, verdict: Verdict, compared: Compared | None = None
         '<div class="springtide-function" data-function="{}" data-state="{}">{} {}{}{}</div>',
         task.name, verdict.state, task.name, coloured(verdict.state, COLOURS[verdict.state]),
         fill('<div class="springtide-faint">{}</div>', why) if why else "",
-        compared_text(compared),
+        compared,
     )  # fmt: skip

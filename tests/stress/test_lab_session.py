@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.lab.folder import make_folder
-from app.lab.live_net import step_of
+from app.lab.live_net import ROPE
 from app.lab.rope_march import REFERENCE
 from app.lab.session import Session
 from app.lab.task import load_tasks
@@ -38,7 +38,7 @@ def test_every_accident_in_every_function_is_named_within_three_seconds(
 ) -> None:
     monkeypatch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)
     session.rope.method, session.rope.sphere = METHODS.get(name, "rk4"), name == "sphere_force"
-    assert name in (step_of(session.rope.method), "spring_force", "rope_acceleration", "sphere_force")
+    assert name in (ROPE.step_of(session.rope.method), "spring_force", "rope_acceleration", "sphere_force")
     source = inspect.getsource(REFERENCE[name])
     body = source.index('"""', source.index('"""') + 3) + 3
     time.sleep(1.0)  # a student takes longer between two saves: the process for the next one runs

@@ -30,85 +30,68 @@ def inputs(rng):
     return x, 3.0 * v, centre, radius, rng.uniform(10.0, 30.0), rng.uniform(2.0, 6.0)
 
 
-def parts(x, v, centre, radius):
-    r = x - centre
-    distance = np.linalg.norm(r)
-    return r / distance, radius - distance, r
+def variant(push, everywhere=False):
+    """A mistake: another push, a function of n, p, r = x - c, v, k and b; inside the sphere only, or everywhere."""
 
+    def function(x, v, centre, radius, stiffness, damping):
+        r = x - centre
+        distance = np.linalg.norm(r)
+        force = push(r / distance, radius - distance, r, v, stiffness, damping)
+        return force if everywhere or distance < radius else np.zeros(3)
 
-def pulling(x, v, centre, radius, k, b):
-    n, p, _ = parts(x, v, centre, radius)
-    return (k * p - b * (v @ n)) * n if p > 0 else np.zeros(3)
-
-
-def not_normalised(x, v, centre, radius, k, b):
-    _, p, r = parts(x, v, centre, radius)
-    return max(k * p - b * (v @ r), 0.0) * r if p > 0 else np.zeros(3)
-
-
-def normal_only_scaled(x, v, centre, radius, k, b):
-    n, p, r = parts(x, v, centre, radius)
-    return max(k * p - b * (v @ n), 0.0) * r if p > 0 else np.zeros(3)
-
-
-def inward(x, v, centre, radius, k, b):
-    return -sphere_force(x, v, centre, radius, k, b)
-
-
-def everywhere(x, v, centre, radius, k, b):
-    n, p, _ = parts(x, v, centre, radius)
-    return (k * p - b * (v @ n)) * n
-
-
-def full_velocity(x, v, centre, radius, k, b):
-    n, p, _ = parts(x, v, centre, radius)
-    return k * p * n - b * v if p > 0 else np.zeros(3)
-
-
-def no_damping(x, v, centre, radius, k, b):
-    return sphere_force(x, v, centre, radius, k, 0.0)
-
-
-def damping_reversed(x, v, centre, radius, k, b):
-    return sphere_force(x, v, centre, radius, k, -b)
-
-
-def distance_for_depth(x, v, centre, radius, k, b):
-    n, p, _ = parts(x, v, centre, radius)
-    return max(k * (radius - p) - b * (v @ n), 0.0) * n if p > 0 else np.zeros(3)
-
-
-def unclipped_undamped(x, v, centre, radius, k, b):
-    n, p, _ = parts(x, v, centre, radius)
-    return k * p * n
+    return function
 
 
 MISTAKES = (
     Mistake(
         "damping that pulls",
         "A point that leaves fast is pulled back. A contact only pushes: take max(..., 0).",
-        pulling,
+        variant(lambda n, p, r, v, k, b: (k * p - b * (v @ n)) * n),
     ),
-    Mistake("normal not unit length", "n is x - c. Divide it by its length.", not_normalised),
+    Mistake(
+        "normal not unit length",
+        "n is x - c. Divide it by its length.",
+        variant(lambda n, p, r, v, k, b: max(k * p - b * (v @ r), 0.0) * r),
+    ),
     Mistake(
         "normal not unit length",
         "The force points along x - c, undivided. Divide it by its length.",
-        normal_only_scaled,
+        variant(lambda n, p, r, v, k, b: max(k * p - b * (v @ n), 0.0) * r),
     ),
-    Mistake("sign reversed", "The force points into the sphere. The normal runs from the centre to the point.", inward),
-    Mistake("force outside the sphere", "Points outside are pulled too. Outside the force is 0.", everywhere),
-    Mistake("force outside the sphere", "Points outside are pulled too, and there is no damping.", unclipped_undamped),
+    Mistake(
+        "sign reversed",
+        "The force points into the sphere. The normal runs from the centre to the point.",
+        lambda *arguments: -sphere_force(*arguments),
+    ),
+    Mistake(
+        "force outside the sphere",
+        "Points outside are pulled too. Outside the force is 0.",
+        variant(lambda n, p, r, v, k, b: (k * p - b * (v @ n)) * n, everywhere=True),
+    ),
+    Mistake(
+        "force outside the sphere",
+        "Points outside are pulled too, and there is no damping.",
+        variant(lambda n, p, r, v, k, b: k * p * n, everywhere=True),
+    ),
     Mistake(
         "damping with the whole velocity",
         "The damping also brakes motion along the surface. Use its normal part v . n only, and never let it pull.",
-        full_velocity,
+        variant(lambda n, p, r, v, k, b: k * p * n - b * v),
     ),
-    Mistake("damping forgotten", "There is no damping: subtract b (v . n).", no_damping),
-    Mistake("sign of the damping reversed", "The damping drives the point on.", damping_reversed),
+    Mistake(
+        "damping forgotten",
+        "There is no damping: subtract b (v . n).",
+        lambda x, v, c, R, k, b: sphere_force(x, v, c, R, k, 0.0),
+    ),
+    Mistake(
+        "sign of the damping reversed",
+        "The damping drives the point on.",
+        lambda x, v, c, R, k, b: sphere_force(x, v, c, R, k, -b),
+    ),
     Mistake(
         "distance instead of depth",
         "The force grows with the distance from the centre. It grows with the depth R - |x - c|.",
-        distance_for_depth,
+        variant(lambda n, p, r, v, k, b: max(k * np.linalg.norm(r) - b * (v @ n), 0.0) * n),
     ),
 )
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.live_net import ROPE, step_of
+from app.lab.live_net import ROPE
 from app.lab.rope_march import Segment
 from app.scenes.rope.parameters import Params
 from app.scenes.springs.laws import SPRING
@@ -33,7 +33,7 @@ def unlike(params: Params) -> tuple[str, ...]:
             "Method: the program's takes damping exactly; a right step_leapfrog differs by a centimetre or so."
         )
     elif method not in ROPE.exact:
-        lines.append(f"Method: your rope steps by {step_of(method)}, the program's by the method that you chose.")
+        lines.append(f"Method: your rope steps by {ROPE.step_of(method)}, the program's by the method that you chose.")
     if params.law != SPRING:
         lines.append("Link: the program's pulls as you chose, that of spring_force as a spring.")
     if params.damping_model == "axial":

@@ -13,7 +13,7 @@ from msgspec.structs import replace
 from app.lab.folder import stub
 from app.lab.program_check import SAMPLES, SEED, Verdict, call, check_program, is_begun, same
 from app.lab.runner import Runner
-from app.lab.saved import is_there
+from app.lab.saved import is_there, keep
 from app.lab.task import Task, load_tasks
 from tests.app.lab.right_solutions import RIGHT
 from tests.app.lab.wrong_solutions import WRONG
@@ -142,6 +142,17 @@ def test_a_file_that_nests_too_deeply_has_failed(desk: Desk, deep: str) -> None:
     source = f"def gravity(mass):\n    return {deep}\n"
     assert verdict_of(desk, task, source).state == "failed"
     assert is_there(task, {task.file: source.encode()})
+
+
+def test_a_change_affects_its_file_and_one_that_no_task_names_all_files(tmp_path: Path) -> None:
+    first, second, third, fourth = (
+        keep(texts, tmp_path, 1, ())
+        for texts in ({"rope.py": b""}, {"rope.py": b"#"}, {"rope.py": b"#", "mine.py": b""}, {"mine.py": b""})
+    )
+    tasks = list(TASKS.values())
+    assert first.affected(first, tasks) == frozenset()
+    assert second.affected(first, tasks) == first.affected(None, tasks) == fourth.affected(third, tasks) == {"rope.py"}
+    assert third.affected(second, tasks) == {task.file for task in tasks}
 
 
 def test_the_sign_reversed_is_named_in_every_task(desk: Desk) -> None:

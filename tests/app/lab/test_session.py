@@ -11,7 +11,7 @@ import pytest
 
 from app.lab.background_check import BackgroundCheck
 from app.lab.folder import make_folder
-from app.lab.live_net import StudentReport, try_rope
+from app.lab.live_net import StudentReport
 from app.lab.live_tables import TableReport
 from app.lab.program_check import Verdict
 from app.lab.rope_march import REFERENCE
@@ -250,7 +250,7 @@ def test_a_forged_answer_is_named(right: Session) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(found, "_ask", lambda *_: (1, 2, 3))
         with pytest.raises(RunError, match="pipe of the lab"):
-            try_rope(found, right.rope.versions[-1].saved, "rk4", sphere=False)
+            right.rope.attempt(right.rope.versions[-1])
 
 
 def test_what_is_no_folder_is_refused(tmp_path: Path) -> None:
@@ -269,7 +269,7 @@ def test_the_functions_of_a_saved_file_are_checked_as_lab_check_does(right: Sess
     assert (cloth.state, cloth.place) == ("failed", "cloth.py:4")
     assert cloth.text == "ZeroDivisionError: division by zero"
     assert verdicts["step_euler"].state == "not begun"
-    page = function_lines(right)
+    page = function_lines(right, "rope")
     assert 'data-function="spring_force" data-state="wrong"' in page
     assert "sign of the spring reversed" in page.lower()
     assert page.index('data-function="cloth_links"') < page.index('data-function="spring_force"')  # failed, then wrong
@@ -287,6 +287,7 @@ def test_a_check_that_is_killed_is_made_once_more_and_then_said(tmp_path: Path) 
     try:
         check.request(tmp_path, ["spring_force"], frozenset({"spring_force"}))
         assert check.waiting
+        wait_for(lambda: check.process is not None)
         first = check.process
         assert first is not None
         first.kill()

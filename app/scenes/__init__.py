@@ -3,18 +3,13 @@
 import importlib
 import pkgutil
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING
 
 from sim.parameters import choice_error
 from sim.validation import argument_error
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from viser import ViserServer
-
-    from app.scenes.contract import AnyKind, AnyView, PostCommand
+    from app.scenes.contract import AnyKind, AnyView
 
 NAMES = tuple(
     module.name
@@ -38,11 +33,6 @@ def scene_named(name: str) -> "AnyKind":
     return importlib.import_module(f"{__name__}.{check_name(name)}.scene").SCENE
 
 
-def view_module(name: str) -> ModuleType:
-    """The module that draws a scene; imports viser."""
-    return importlib.import_module(f"{__name__}.{check_name(name)}.view")
-
-
-def view_named(name: str) -> "Callable[[ViserServer, PostCommand], AnyView]":
+def view_named(name: str) -> "type[AnyView]":
     """The class that draws a scene; imports viser."""
-    return view_module(name).View
+    return importlib.import_module(f"{__name__}.{check_name(name)}.view").View

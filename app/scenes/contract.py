@@ -6,15 +6,14 @@ To add a scene, add one folder here, named as the scene is on the command line:
    each declaring what its change affects, and `PRESETS`, name -> the values that differ from the defaults; the first
    preset is the defaults. `ABOUT` holds a sentence on each: what it shows and what to try.
 2. `scene.py`: the simulation, a class that satisfies `Scene`, and `SCENE = SceneKind(...)`. It imports no viewer.
-3. `view.py`: the drawing, a class `View` derived from `View` below, and `warm_up()`. Only it and `*_view.py` beside it
-   import viser.
+3. `view.py`: the drawing, a class `View` derived from `View` below. Only it and `*_view.py` beside it import viser.
 
 The folder is found by being here: command line, panel, sweeps, benchmarks and tests take it up from there.
 """
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Generic, NamedTuple, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +23,7 @@ from app.scenes.charts import Chart, Columns, CurveAxes, PlotAxes
 from sim.parameters import Value, check_record
 
 if TYPE_CHECKING:
-    from viser import ClientHandle
+    from viser import ClientHandle, ViserServer
 
     from app.lab.live_code import LiveCode
     from sim.springs.net import Net
@@ -135,13 +134,18 @@ class Scene(Protocol[P, F_co, R_co]):
 
 
 class View(Protocol[P, F, R]):
-    """The drawing of a scene, used on the viewer's thread only: `View(server, post)`, and `post` takes commands.
+    """The drawing of a scene, used on the viewer's thread only.
 
     FIELD_OF_VIEW: of a new camera, vertical [rad]. CAMERA: position and target [m] of a camera that has not been moved.
+    WARM_UP: everything to compile that the drawing may call.
     """
 
+    WARM_UP: ClassVar[Pieces] = {}
     FIELD_OF_VIEW: float
     CAMERA: tuple[Vector, Vector]
+
+    def __init__(self, server: "ViserServer", post: "PostCommand") -> None:
+        """Make the nodes that are always there. post: takes commands."""
 
     def first_view(self, params: P) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved, with these parameters."""
@@ -221,10 +225,11 @@ class SceneKind(Generic[P, F, R]):
     params: type[P]
     presets: Mapping[str, Mapping[str, Value]]  # name -> the values that differ from the defaults
     make: Callable[[P], Scene[P, F, R]]
-    hidden: Callable[[P], set[str]]  # the parameters that mean nothing with the others as they are
-    warm_up: Callable[[], Pieces]  # everything to compile that the scene may call
     series: tuple[str, ...]  # names of the columns of a plot row after its time
     plots: Mapping[str, PlotAxes]  # parameter that opens the plot -> what it shows
+    # The parameters that mean nothing with the others as they are.
+    hidden: Callable[[P], set[str]] = lambda params: set()
+    warm_up: Callable[[], Pieces] = dict[str, Callable[[], object]]  # everything to compile that the scene may call
     curves: Mapping[str, CurveAxes] = field(
         default_factory=dict[str, CurveAxes]
     )  # parameter that opens the chart -> its axes

@@ -5,7 +5,7 @@ import gc
 from collections.abc import Callable, Iterable
 
 from app.messages import BaseParams
-from app.scenes import scene_named, view_module
+from app.scenes import scene_named, view_named
 from app.scenes.contract import Pieces
 from sim.jit import ROOT, is_kept, keep, reachable_hash
 
@@ -42,7 +42,7 @@ def pieces_on_use(name: str) -> Pieces:
 
 def drawing_pieces(name: str) -> Pieces:
     """The pieces of a scene's drawing; imports viser."""
-    return view_module(name).warm_up()
+    return view_named(name).WARM_UP
 
 
 def all_pieces(name: str) -> tuple[tuple[str, bool], ...]:

@@ -89,4 +89,4 @@ def test_the_sphere_moves_by_its_vertices_like_the_cloth(shown: tuple[Viewer, Ta
         return len(sphere) > 0 and np.allclose(np.linalg.norm(sphere - centre, axis=1), radius, atol=1e-5)
 
     tab.wait(drawn, 30)
-    assert np.array_equal(lab.view.ball.position, (0.0, 0.0, 0.0))
+    assert np.array_equal(lab.view.sphere.ball.position, (0.0, 0.0, 0.0))

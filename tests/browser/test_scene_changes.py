@@ -104,5 +104,5 @@ def test_a_scene_after_another_looks_as_in_a_fresh_start(new: Callable[[str], Pa
     page.open("rope")
     view = page.lab.view
     assert isinstance(view, View)
-    view.surroundings.surroundings.sun.cast_shadow = False
+    view.surroundings.sun.cast_shadow = False
     page.tab.wait(lambda: np.abs(page.picture() - fresh["rope"]).mean() > 2.0 * MAX_DIFFERENCE)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
+from app.scenes.cloth.parameters import Params
 from app.scenes.springs.drag import PullFrame
 from sim.springs.stability import Gauge
 
@@ -13,17 +14,12 @@ from sim.springs.stability import Gauge
 class ClothFrame(NamedTuple):
     """Drawn state of a cloth."""
 
+    params: Params
     points: NDArray[np.float32]  # (rows, cols, 3) [m], C-contiguous
     strain: NDArray[np.float32]  # (rows, cols), largest of the structural springs at a particle
-    full_strain: float  # strain at the end of the colour scale
     pins: tuple[Vector, Vector] | None  # [m] where the two ends of the first row are going to
-    pole: bool
     sphere: tuple[float, float, float, float] | None  # x, y, z, radius [m]
     sphere_home: Vector  # [m] where the sphere's arrows are
-    handles: bool
-    floor: bool
-    grid: bool
-    colour: str
     pull: PullFrame | None
     student: NDArray[np.float32] | None  # (r, c, 3) [m] the student's cloth beside the program's
 

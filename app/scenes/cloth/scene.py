@@ -313,17 +313,12 @@ class ClothScene(NetScene[Params]):
         if both is not None:
             x, student = both
         frame = ClothFrame(
+            params=params,
             points=np.ascontiguousarray(np.moveaxis(x, 0, -1), dtype=np.float32),
             strain=structural_strain(self.net, x).astype(np.float32),
-            full_strain=0.01 * params.full_strain,
             pins=None if params.pinned == "free" else (self.handles[0].target, self.handles[1].target),
-            pole=params.start == "flag" and params.pinned in ("corners", "edge"),
             sphere=(*self.sphere_at(self.time), params.sphere_radius) if params.sphere else None,
             sphere_home=self.sphere.target,
-            floor=params.floor,
-            grid=params.grid,
-            handles=params.handles,
-            colour=params.colour,
             pull=pull,
             student=student,
         )

@@ -1,7 +1,7 @@
 """The mooring seen above and below the water: surface, bed, lines coloured by tension, body, anchors, watch circle."""
 
 import math
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 import viser
@@ -105,6 +105,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
     """Draws `MooringFrame`s."""
 
     FIELD_OF_VIEW = 0.8  # [rad]
+    WARM_UP: ClassVar[Pieces] = {"drawing": compile_tube, "packing": compile_packing}
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         self.server, self.post = server, post
@@ -347,8 +348,3 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
     def notes(self, snapshot: MooringSnapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
         return notes_of(snapshot)
-
-
-def warm_up() -> Pieces:
-    """Call the kernels of the drawing."""
-    return {"drawing": compile_tube, "packing": compile_packing}

@@ -3,28 +3,26 @@
 import math
 import weakref
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 import viser
 
 from app.messages import Snapshot, Vector
 from app.render.colormap import lifted, rgb
-from app.render.dragging import SurfaceDrag, drag
+from app.render.gizmo import Gizmo
 from app.render.injection import add_contact_shadow, injector_of
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
-from app.render.surroundings import set_dark
 from app.render.viser_inside import set_arrays, update_node
 from app.scenes.charts import PALETTE
 from app.scenes.contract import Pieces, PostCommand
-from app.scenes.contract import View as SceneView
 from app.scenes.race.entrants import RaceReadings
 from app.scenes.race.html import errors_line, results_table
 from app.scenes.race.parameters import Params
 from app.scenes.race.scene import RaceFrame
 from app.scenes.springs.html import step_mark
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
-from app.scenes.springs.view import RopeSurroundings
+from app.scenes.springs.view import ROOT_ARROW_LENGTH, SpringView
 
 RING_COUNT = 90  # rings of a drawn tube, about
 SIDES = 8  # of a drawn tube
@@ -219,30 +217,21 @@ class RopesDrawing:
             handle.remove()
 
 
-class View(SceneView[Params, RaceFrame, RaceReadings]):
+class View(SpringView[Params, RaceFrame, RaceReadings]):
     """Draws `RaceFrame`s."""
 
     FIELD_OF_VIEW = 0.06  # [rad], from so far away that all ropes look equally large
+    WARM_UP: ClassVar[Pieces] = {"drawing": lambda: tube_vertices(np.zeros((2, 3), np.float32), 2, TUBE_RADIUS)}
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
-        self.server = server
-        self.post = post
-        self.surroundings = RopeSurroundings(server, post, NEAR)
+        super().__init__(server, post, NEAR)
+        self.root = Gizmo(server, post, "root", ROOT_ARROW_LENGTH, position=ROOT)
         injector_of(server)  # its script draws labels dark where a browser asks for it (`js/dark.js`)
-        self.surroundings.surroundings.floor.fade_from = "origin"  # the camera is far away
+        self.surroundings.floor.fade_from = "origin"  # the camera is far away
         self.ropes: RopesDrawing | None = None
         self.params: Params | None = None  # that the height of a row of labels [m] is of
         self.label_row = 0.0
-        self.tube_drag = SurfaceDrag(post)
         self.dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that draw on a dark floor
-
-    async def on_bead(self, event: Any) -> None:
-        """Pull the bead that is dragged."""
-        drag(self.post, event, event.instance_index)
-
-    async def on_tube(self, event: Any) -> None:
-        """Pull the point nearest to where the drag began."""
-        self.tube_drag.handle(event, self.points)
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: all ropes, as far as they swing, and labels."""
@@ -262,12 +251,13 @@ class View(SceneView[Params, RaceFrame, RaceReadings]):
             self.ropes.remove()
             self.ropes = None
         if self.ropes is None:
-            self.ropes = RopesDrawing(self.server, frame, self.label_row, self.on_bead, self.on_tube)
+            self.ropes = RopesDrawing(self.server, frame, self.label_row, self.on_bead, self.on_surface)
             for client in tuple(self.dark):
                 self.ropes.set_dark(client, True)
         self.ropes.show(frame, self.label_row)
         p = frame.params
-        self.surroundings.show(p.floor, p.grid, frame.root if p.handles else None, frame.pull, self.points)
+        self.root.show(frame.root if p.handles else None)
+        self.show_surroundings(p.floor, p.grid, frame.pull)
 
     def figures(self, snapshot: RaceSnapshot) -> str:
         """The ropes that are nearest to the reference and farthest from it."""
@@ -284,17 +274,7 @@ class View(SceneView[Params, RaceFrame, RaceReadings]):
 
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Draw sky, floor and ropes dark, or light again, for one browser."""
-        set_dark(client, dark)
+        super().set_dark(client, dark)
         (self.dark.add if dark else self.dark.discard)(client)
         if self.ropes is not None:
             self.ropes.set_dark(client, dark)
-
-
-def warm_up() -> Pieces:
-    """Call the kernels of the drawing."""
-    return {"drawing": compile_drawing}
-
-
-def compile_drawing() -> None:
-    """Draw a rope of two points."""
-    tube_vertices(np.zeros((2, 3), np.float32), 2, TUBE_RADIUS)

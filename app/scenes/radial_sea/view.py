@@ -3,7 +3,7 @@
 import importlib.resources
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import viser
@@ -73,6 +73,7 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
 
     CAMERA = ((-6.5, -7.5, 3.0), (3.9, 3.2, 1.0))  # position, target [m]
     FIELD_OF_VIEW = 1.3  # [rad]
+    WARM_UP: ClassVar[Pieces] = {"packing": compile_packing, "fields of the surface": compile_surface_fields}
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
@@ -331,8 +332,3 @@ def handle_scale(frame: RadialFrame, kind: str) -> float:
     if hull.shape.lengths:
         return frame.params.size
     return 0.5 * float(np.ptp(hull.extents, axis=1).mean()) / HANDLE_RADIUS
-
-
-def warm_up() -> Pieces:
-    """Call the kernels of the drawing."""
-    return {"packing": compile_packing, "fields of the surface": compile_surface_fields}

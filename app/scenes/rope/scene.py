@@ -249,17 +249,13 @@ class RopeScene(NetScene[Params]):
         x = self.state.x if both is None else state_of(both[0])
         held = x[:, 0, handles.drag.hold.particle if handles.drag.hold else 0]
         frame = RopeFrame(
+            params=params,
             points=np.ascontiguousarray(x[:, 0].T, dtype=np.float32),
             reference=None if both is None else both[1].astype(np.float32),
             tension=rope_tension(self.net, x).astype(np.float32),
             full_scale=max(1.25 * weight, 1e-3),
             root=handles.home,
             sphere=(*handles.sphere.position, params.sphere_radius) if self.net.sphere else None,
-            floor=params.floor,
-            grid=params.grid,
-            handles=params.handles,
-            colour=params.colour,
-            show_points=params.show_points,
             pull=handles.pull_frame(held, 0.0, self.net.mass, self.step, params.pull),
         )
         self.last_moments.add(self.state.t, frame, frame.points)

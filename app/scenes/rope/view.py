@@ -1,7 +1,7 @@
 """The rope as a tube coloured by tension, its points as beads to be dragged, root and sphere with arrows."""
 
 import math
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 import viser
@@ -11,20 +11,18 @@ from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
-from app.render.dragging import HELD_COLOUR, SurfaceDrag, drag
+from app.render.dragging import HELD_COLOUR
 from app.render.gizmo import Gizmo
 from app.render.html import Html, bold, fill
 from app.render.injection import add_contact_shadow
 from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
-from app.render.surroundings import set_dark
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
-from app.scenes.contract import View as SceneView
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import Params
 from app.scenes.springs.html import colour_scale, stability_bar, step_mark
-from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE, link_and_point
-from app.scenes.springs.view import RopeSurroundings, compile_tube
+from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, link_and_point
+from app.scenes.springs.view import ROOT_ARROW_LENGTH, SecondNet, Sphere, SpringView, compile_tube
 
 ROPE_COLOUR = (196, 154, 92)
 REFERENCE_COLOUR = (60, 110, 190)
@@ -33,7 +31,6 @@ TUBE_STEP = 2.0**-15  # [m] to which points of the tube are rounded for the page
 REFERENCE_RADIUS = 1.35 * ROPE_RADIUS  # [m]: seen around the student's rope where both are in one place
 BEAD_COLOUR = (58, 68, 86)
 HOOK_COLOUR = (60, 66, 80)
-SPHERE_COLOUR = (92, 140, 190)
 SPHERE_ARROW_LENGTH = 0.45  # [m]
 SPHERE_ARROW_GAP = 0.08  # [m] between the top of the sphere and its arrows
 RING_COUNT = 120  # rings of the drawn tube, about
@@ -49,26 +46,23 @@ COLOUR_TOLERANCE = 2e-3  # of the colour scale that a link may be from its drawn
 RopeSnapshot: TypeAlias = Snapshot[Params, RopeFrame, RopeReadings]
 
 
-class View(SceneView[Params, RopeFrame, RopeReadings]):
+class View(SpringView[Params, RopeFrame, RopeReadings]):
     """Draws `RopeFrame`s."""
 
     FIELD_OF_VIEW = 1.3  # [rad]
+    WARM_UP: ClassVar[Pieces] = {"drawing": compile_tube, "packing": compile_packing}
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
-        self.server = server
-        self.post = post
+        super().__init__(server, post)
         self.tube: ColouredMesh | None = None
         self.beads: viser.BatchedMeshHandle | None = None
-        self.reference: viser.MeshHandle | None = None  # the program's rope beside the student's, once there was one
-        self.labels: tuple[viser.LabelHandle, ...] = ()  # of the student's rope and the program's
         self.count = 0  # points that tube and beads are made for
-        self.tube_drag = SurfaceDrag(post)
-        self.shown_sphere: tuple[float, float, float, float] | None = None
-        scene = server.scene
-        self.surroundings = RopeSurroundings(server, post)
-        self.ball = scene.add_mesh_simple("/sphere/ball", *ball(32), color=SPHERE_COLOUR, visible=False)
-        self.sphere = Gizmo(server, post, "sphere", SPHERE_ARROW_LENGTH, position=SPHERE, visible=False)
-        self.hook = scene.add_mesh_simple("/hook", *ball(8), scale=MAX_BEAD_RADIUS, color=HOOK_COLOUR)
+        self.root = Gizmo(server, post, "root", ROOT_ARROW_LENGTH, position=ROOT)
+        self.sphere = Sphere(server, post, SPHERE_ARROW_LENGTH, SPHERE_ARROW_GAP)
+        self.hook = server.scene.add_mesh_simple("/hook", *ball(8), scale=MAX_BEAD_RADIUS, color=HOOK_COLOUR)
+        self.reference = SecondNet(
+            server, "/reference", "yours", color=REFERENCE_COLOUR, opacity=REFERENCE_OPACITY, receive_shadow=False
+        )
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: in front of the rope as it hangs."""
@@ -95,20 +89,11 @@ class View(SceneView[Params, RopeFrame, RopeReadings]):
             self.tube.remove()
         if self.beads is not None:
             self.beads.remove()
-        if self.reference is not None:
-            self.reference.remove()
-            self.reference = None
+        self.faces = tube_faces(rings)
         self.tube = ColouredMesh(
-            self.server,
-            "/rope",
-            self.vertices,
-            tube_faces(rings),
-            self.rgb,
-            columns=SIDES,
-            step=TUBE_STEP,
-            color=ROPE_COLOUR,
-            side="double",
-        )
+            self.server, "/rope", self.vertices, self.faces, self.rgb, columns=SIDES, step=TUBE_STEP,
+            color=ROPE_COLOUR, side="double",
+        )  # fmt: skip
         add_contact_shadow(self.server, "/rope")
         self.beads = self.server.scene.add_batched_meshes_simple(
             "/points",
@@ -120,18 +105,10 @@ class View(SceneView[Params, RopeFrame, RopeReadings]):
             lod="off",
         )
         self.beads.on_drag("left")(self.on_bead)
-        self.tube.mesh.on_drag("left")(self.on_tube)
+        self.tube.mesh.on_drag("left")(self.on_surface)
         self.shown_pull = -1  # point that is drawn as held
         self.shown_hook: Any = None
         self.count = n
-
-    async def on_bead(self, event: Any) -> None:
-        """Pull the bead that is dragged."""
-        drag(self.post, event, event.instance_index)
-
-    async def on_tube(self, event: Any) -> None:
-        """Pull the point nearest to where the drag began: beads may be close to each other, or hidden."""
-        self.tube_drag.handle(event, self.points)
 
     def shape_tube(self, frame: RopeFrame) -> None:
         """Compute the tube's vertices, which then stand for this frame and for all that look the same."""
@@ -142,15 +119,15 @@ class View(SceneView[Params, RopeFrame, RopeReadings]):
     def set_tube_colours(self, frame: RopeFrame) -> None:
         """Compute the tube's colours, which then stand for this frame and for all that look the same."""
         self.tension = frame.tension
-        self.painted = frame.colour, frame.full_scale
-        if frame.colour == "plain":
+        self.painted = frame.params.colour, frame.full_scale
+        if frame.params.colour == "plain":
             self.rgb[:] = np.array(ROPE_COLOUR, np.float32) / 255
         else:
             set_tube_colours(frame.tension, self.samples, frame.full_scale, SCALE, SIDES, self.rgb)
 
     def colours_differ(self, frame: RopeFrame) -> bool:
         """True if a frame's colours can be told from those that are shown."""
-        if self.painted != (frame.colour, frame.full_scale):
+        if self.painted != (frame.params.colour, frame.full_scale):
             return True
         return float(np.abs(frame.tension - self.tension).max()) >= COLOUR_TOLERANCE * frame.full_scale
 
@@ -166,8 +143,9 @@ class View(SceneView[Params, RopeFrame, RopeReadings]):
         if repaint:
             self.set_tube_colours(frame)
         self.tube.set(self.vertices, self.rgb if repaint else None)
-        self.beads.visible = frame.show_points
-        if frame.show_points:
+        p = frame.params
+        self.beads.visible = p.show_points
+        if p.show_points:
             set_arrays(self.beads, batched_positions=self.points)
         held = -1 if frame.pull is None else frame.pull.particle
         if held != self.shown_pull:
@@ -182,47 +160,16 @@ class View(SceneView[Params, RopeFrame, RopeReadings]):
         if root != self.shown_hook:
             self.shown_hook = root
             self.hook.position = root
-        root = frame.root if frame.handles else None
-        self.surroundings.show(frame.floor, frame.grid, root, frame.pull, frame.points)
-        self.show_sphere(frame)
-        self.show_reference(frame.reference)
-
-    def show_reference(self, points: np.ndarray | None) -> None:
-        """Assign the program's rope, points (n, 3) [m], as a translucent tube; None hides it."""
-        if points is not None:
-            line, vertices = np.empty_like(self.line), np.empty_like(self.vertices)
-            smooth_line(points, self.samples, line)
-            sweep(line, REFERENCE_RADIUS, SIDES, vertices)
-            if self.reference is None:
-                self.reference = self.server.scene.add_mesh_simple(
-                    "/reference", vertices, tube_faces(len(line)), color=REFERENCE_COLOUR, opacity=REFERENCE_OPACITY,
-                    cast_shadow=False, receive_shadow=False,
-                )  # fmt: skip
-            else:
-                self.reference.vertices = vertices
-            if not self.labels:
-                self.labels = (
-                    self.server.scene.add_label("/yours", "yours", anchor="top-center"),
-                    self.server.scene.add_label("/program", "the program's", anchor="bottom-left"),
-                )
-            for label, tip in zip(self.labels, (self.points[-1], points[-1]), strict=True):
-                label.position = tuple(tip.tolist())
-        for handle in (self.reference, *self.labels):
-            if handle is not None:
-                handle.visible = points is not None
-
-    def show_sphere(self, frame: RopeFrame) -> None:
-        """Assign the sphere and its arrows."""
-        if frame.sphere is None or not frame.handles:
-            self.sphere.show(None)
+        self.root.show(frame.root if p.handles else None)
+        self.sphere.show(frame.sphere, frame.sphere[:3] if frame.sphere and p.handles else None)
+        self.show_surroundings(p.floor, p.grid, frame.pull)
+        if frame.reference is None:
+            self.reference.set_visible(False)
         else:
-            self.sphere.show(frame.sphere[:3], frame.sphere[3] + SPHERE_ARROW_GAP)
-        if frame.sphere != self.shown_sphere:
-            self.shown_sphere = frame.sphere
-            self.ball.visible = frame.sphere is not None
-            if frame.sphere is not None:
-                self.ball.position = frame.sphere[:3]
-                self.ball.scale = frame.sphere[3]
+            line, vertices = np.empty_like(self.line), np.empty_like(self.vertices)
+            smooth_line(frame.reference, self.samples, line)
+            sweep(line, REFERENCE_RADIUS, SIDES, vertices)
+            self.reference.show(vertices, self.faces, self.points[-1], frame.reference[-1])
 
     def figures(self, snapshot: RopeSnapshot) -> str:
         """The stability bar."""
@@ -231,7 +178,7 @@ class View(SceneView[Params, RopeFrame, RopeReadings]):
     def readout(self, snapshot: RopeSnapshot) -> str:
         """The cost of an implicit method and the colour scale, as HTML."""
         frame, scale = snapshot.frame, ""
-        if frame.colour == "tension":
+        if frame.params.colour == "tension":
             scale = colour_scale(
                 "slack", "tension", f"{number(frame.full_scale)} N",
                 clipped=float(frame.tension.max()) > frame.full_scale,
@@ -248,20 +195,11 @@ class View(SceneView[Params, RopeFrame, RopeReadings]):
             text = "every stiffness is stable"
         return {"integrator": g.note, "time_step": step_mark(step), g.parameter: text}
 
-    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
-        """Draw sky and floor dark, or light again, for one browser."""
-        set_dark(client, dark)
-
 
 def bead_radius(points: np.ndarray) -> float:
     """Radius [m] of the beads at points (n, 3) [m]: smaller where they are close to each other."""
     spacing = float(np.abs(np.diff(points, axis=0)).sum()) / max(len(points) - 1, 1)
     return float(np.clip(0.4 * spacing, MIN_BEAD_RADIUS, MAX_BEAD_RADIUS))
-
-
-def warm_up() -> Pieces:
-    """Call the kernels of the drawing."""
-    return {"drawing": compile_tube, "packing": compile_packing}
 
 
 def cost_text(cost: NumericalCost | None) -> Html:

@@ -1,39 +1,116 @@
-"""Common parts of the drawings of rope and race: sky, floor, the arrows at the root, and the line of a drag."""
+"""Common parts of the drawings of rope, race and cloth: surroundings, drags, the sphere, and a net beside another."""
+
+import math
+from typing import Any
 
 import numpy as np
 import viser
 
-from app.messages import Vector
+from app.messages import F, P, R, Vector
 from app.render.cameras import NEAR
 from app.render.colormap import SCALE, set_tube_colours
-from app.render.dragging import PullLine
+from app.render.dragging import PullLine, SurfaceDrag, drag
 from app.render.gizmo import Gizmo
-from app.render.meshes import SIDES, smooth_line, sweep
-from app.render.surroundings import Surroundings
+from app.render.meshes import SIDES, ball, smooth_line, sweep
+from app.render.surroundings import Surroundings, set_dark
+from app.render.viser_inside import set_arrays
 from app.scenes.contract import PostCommand
+from app.scenes.contract import View as SceneView
 from app.scenes.springs.drag import PullFrame
-from app.scenes.springs.rope_parameters import ROOT
 
 ROOT_ARROW_LENGTH = 0.34  # [m]
+SPHERE_ROWS = 24  # of the drawn sphere, from pole to pole
+SPHERE_COLOUR = (92, 140, 190)
 
 
-class RopeSurroundings:
-    """The handles of all that is drawn around ropes."""
+class SpringView(SceneView[P, F, R]):
+    """Surroundings of springs, and drags of their points."""
+
+    points: np.ndarray  # (n, 3) [m] as drawn
 
     def __init__(self, server: viser.ViserServer, post: PostCommand, near: float = NEAR) -> None:
         """near: [m] from the camera, where the picture begins."""
+        self.server, self.post = server, post
         self.surroundings = Surroundings(server, near)
-        self.root = Gizmo(server, post, "root", ROOT_ARROW_LENGTH, position=ROOT)
-        self.pull = PullLine(server)
+        self.pull, self.surface_drag = PullLine(server), SurfaceDrag(post)
 
-    def show(self, floor: bool, grid: bool, root: Vector | None, pull: PullFrame | None, points: np.ndarray) -> None:
-        """Assign changes. root: [m] of its arrows; None hides them. points: (n, 3) as drawn [m]; the pull names one."""
+    async def on_bead(self, event: Any) -> None:
+        """Pull the bead that is dragged."""
+        drag(self.post, event, event.instance_index)
+
+    async def on_surface(self, event: Any) -> None:
+        """Pull the point nearest to where the drag began: beads may be close to each other, or hidden."""
+        self.surface_drag.handle(event, self.points)
+
+    def show_surroundings(self, floor: bool, grid: bool, pull: PullFrame | None) -> None:
+        """Assign changes of the floor, of its lines and of the pull, which is on one of `points`."""
         self.surroundings.show(floor, grid)
-        self.root.show(root)
         if pull is None:
             self.pull.show(None)
         else:
-            self.pull.show((points[pull.particle], pull.target), pull.load)
+            self.pull.show((self.points[pull.particle], pull.target), pull.load)
+
+    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
+        """Draw sky and floor dark, or light again, for one browser."""
+        set_dark(client, dark)
+
+
+class Sphere:
+    """The sphere and its arrows.
+
+    It moves by its vertices, as ropes and cloths do: a slow page applies positions of nodes at other times.
+    """
+
+    def __init__(self, server: viser.ViserServer, post: PostCommand, arrow_length: float, gap: float) -> None:
+        """arrow_length [m]. gap: [m] from the sphere up to its arrows; below 0 they are under it."""
+        self.unit_ball, faces = ball(SPHERE_ROWS)
+        self.ball = server.scene.add_mesh_simple(
+            "/sphere/ball", self.unit_ball, faces, color=SPHERE_COLOUR, visible=False
+        )
+        self.arrows, self.gap = Gizmo(server, post, "sphere", arrow_length, visible=False), gap
+        self.shown: tuple[float, float, float, float] | None = None
+
+    def show(self, sphere: tuple[float, float, float, float] | None, home: Vector | None) -> None:
+        """Assign changes. sphere: x, y, z, radius [m]. home: where it is going to [m]; None without arrows."""
+        self.ball.visible = sphere is not None
+        self.arrows.show(home if sphere else None, self.gap + math.copysign(sphere[3] if sphere else 0.0, self.gap))
+        if sphere is not None and sphere != self.shown:
+            self.shown = sphere
+            set_arrays(self.ball, vertices=self.unit_ball * sphere[3] + sphere[:3])
+
+
+class SecondNet:
+    """A translucent net, where the student's and the program's are drawn, and labels of both."""
+
+    def __init__(self, server: viser.ViserServer, name: str, own: str, **mesh: Any) -> None:
+        """own: words for the student's. mesh: arguments of viser's mesh."""
+        self.server, self.name, self.own, self.options = server, name, own, mesh
+        self.mesh: viser.MeshHandle | None = None
+        self.faces: np.ndarray | None = None
+        self.labels: tuple[viser.LabelHandle, ...] = ()
+
+    def show(self, vertices: np.ndarray, faces: np.ndarray, own_end: np.ndarray, program_end: np.ndarray) -> None:
+        """vertices (n, 3) [m] of the translucent net; faces (m, 3): another array is another net; ends (3,) [m]."""
+        scene = self.server.scene
+        if self.mesh is None or faces is not self.faces:
+            self.faces = faces
+            self.mesh = scene.add_mesh_simple(self.name, vertices, faces, cast_shadow=False, **self.options)
+        else:
+            self.mesh.vertices = vertices
+        if not self.labels:
+            self.labels = (
+                scene.add_label("/yours", self.own, anchor="top-center"),
+                scene.add_label("/program", "the program's", anchor="bottom-left"),
+            )
+        for label, end in zip(self.labels, (own_end, program_end), strict=True):
+            label.position = tuple(end.tolist())
+        self.set_visible(True)
+
+    def set_visible(self, visible: bool) -> None:
+        """Draw what there is, or hide it."""
+        for handle in (self.mesh, *self.labels):
+            if handle is not None:
+                handle.visible = visible
 
 
 def compile_tube() -> None:

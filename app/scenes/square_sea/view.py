@@ -4,7 +4,7 @@ import dataclasses
 import functools
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import viser
@@ -72,6 +72,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
     """Draws `SeaFrame`s."""
 
     FIELD_OF_VIEW = 0.65  # [rad]
+    WARM_UP: ClassVar[Pieces] = {"packing": compile_packing, "fields of the surface": compile_surface_fields}
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
@@ -266,8 +267,3 @@ def upright(radius: float, low: float, high: float) -> tuple[np.ndarray, np.ndar
     sides = np.hstack([np.concatenate([ring, ring]), heights])
     vertices = np.concatenate([sides, [[0.0, 0.0, low], [0.0, 0.0, high]]])
     return vertices, tube_faces(2, GAUGE_SIDES)
-
-
-def warm_up() -> Pieces:
-    """Call the kernels of the drawing."""
-    return {"packing": compile_packing, "fields of the surface": compile_surface_fields}

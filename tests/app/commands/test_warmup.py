@@ -22,13 +22,13 @@ def compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
         ahead = {piece: table[piece] for piece in pieces}
         on_use = {"on use": table["on use"]}
         return lambda name: SimpleNamespace(
-            warm_up=lambda: ahead, needs=lambda params: params, warm_up_on_use=lambda: on_use
+            WARM_UP=ahead, warm_up=lambda: ahead, needs=lambda params: params, warm_up_on_use=lambda: on_use
         )
 
     monkeypatch.setattr(jit, "CACHE", tmp_path)
     monkeypatch.setattr(jit, "SHARED", ())
     monkeypatch.setattr(warmup, "scene_named", side("gauge", "rk4"))
-    monkeypatch.setattr(warmup, "view_module", side("drawing"))
+    monkeypatch.setattr(warmup, "view_named", side("drawing"))
     warmup.hash_of.cache_clear()
     return found
 

@@ -5,7 +5,7 @@ import pytest
 
 from app.panel.recording_files import arrays_of
 from app.render.staff import HEIGHT, PLACE
-from app.scenes import NAMES, scene_named, view_module
+from app.scenes import NAMES, scene_named, view_named
 from app.scenes.contract import AnyKind
 
 DURATION, LATER = 30.0, 0.5  # [s] of simulated time
@@ -42,7 +42,7 @@ def test_the_first_look_still_moves_after_half_a_minute(name: str, duration: flo
 
 @pytest.mark.parametrize("name", ["rope", "race", "cloth"])
 def test_what_hangs_takes_about_half_of_the_picture_s_height(name: str) -> None:
-    kind, view = scene_named(name), view_module(name).View
+    kind, view = scene_named(name), view_named(name)
     params = kind.opening_params()
     scene = kind.make(params)
     position, target = np.array(view.first_view(object.__new__(view), params))
@@ -60,7 +60,7 @@ def test_what_hangs_takes_about_half_of_the_picture_s_height(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["rope", "race", "cloth"])
 def test_the_staff_of_one_metre_is_in_the_first_picture(name: str) -> None:
-    kind, view = scene_named(name), view_module(name).View
+    kind, view = scene_named(name), view_named(name)
     position, target = np.array(view.first_view(object.__new__(view), kind.opening_params()))
     ahead = (target - position) / np.linalg.norm(target - position)
     right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])

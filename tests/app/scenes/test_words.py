@@ -11,7 +11,7 @@ import pytest
 
 from app.lab.task import load_tasks
 from app.messages import DivergenceError
-from app.scenes import NAMES, scene_named, view_module
+from app.scenes import NAMES, scene_named, view_named
 from sim.parameters import check_record, parameters_of
 
 ROOT = Path(__file__).parents[3]
@@ -45,7 +45,7 @@ def test_a_symbol_without_a_word_is_found() -> None:
 
 def texts_of(name: str, changes: dict[str, Any]) -> Iterator[str]:
     """The texts that the panel shows of a scene after a few steps."""
-    kind, view = scene_named(name), view_module(name).View
+    kind, view = scene_named(name), view_named(name)
     scene = kind.make(check_record(kind.params, changes))
     try:
         scene.advance(3)

@@ -59,7 +59,7 @@ def test_a_look_and_a_drag_show_in_the_middle_of_a_solve_and_nothing_new_does_no
     busy.read_params.params = dataclasses.replace(busy.scene.params, grid=False)
     busy.give_turn()
     assert busy.latest.serial == 2
-    assert not busy.latest.frame.grid
+    assert not busy.latest.frame.params.grid
     assert busy.latest.params is busy.read_params.params
     busy.commands.put(Play())
     busy.commands.put(Place("root", (0.0, 0.0, 0.5)))
@@ -344,9 +344,9 @@ def test_a_look_that_is_taken_in_the_middle_of_a_picture_is_drawn_by_the_next(bu
     busy.read_params.params = dataclasses.replace(busy.scene.params, grid=False)
     busy.publish()
     assert busy.latest.serial == 3  # the answer in between was the second
-    assert busy.latest.frame.grid
+    assert busy.latest.frame.params.grid
     busy.tick(0.0)
-    assert not busy.latest.frame.grid
+    assert not busy.latest.frame.params.grid
 
 
 @pytest.mark.parametrize(

@@ -18,16 +18,17 @@ import time
 import traceback
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, TypeAlias
 
 import numpy as np
 
 from app.lab.cloth_march import FILE as CLOTH_FILE
 from app.lab.cloth_march import Sheet
-from app.lab.process import COMPILES, TRACE_SIGNAL
+from app.lab.process import COMPILES, FORKS, TRACE_SIGNAL
 from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_march import March, Segment, packed
 from app.lab.tabulate import Range
+from app.lab.template import Forked, Template, can_fork
 from app.lab.wire import pack, receive, send, unpack
 
 TIME_LIMIT = 2.0  # [s] of one call
@@ -39,6 +40,9 @@ MAX_TRACE = 2**16  # [bytes] of what it says
 FRAME = re.compile(r'File "(.+)", line (\d+) in (.+)')  # as faulthandler writes it
 ROOT = Path(__file__).resolve().parents[2]  # the folder that holds `app`
 START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.worker import main; main()"
+COMMAND = (sys.executable, "-P", "-c", START, str(ROOT))
+TEMPLATE = Template() if can_fork() else None  # of all runners
+Process: TypeAlias = subprocess.Popen[bytes] | Forked
 
 
 class RunError(Exception):
@@ -70,7 +74,7 @@ class Runner:
         self.starts = 0  # processes started
         self.is_fresh = False  # its process runs, and does not know the folder yet: another may be set
         self._parsed: set[str] = set()  # files without an error of syntax
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: Process | None = None
         self._aborted = False
         self._trace: IO[bytes] | None = None  # where the process writes, when it is asked, where it is
         self._answers: queue.SimpleQueue[list[Any] | None] = queue.SimpleQueue()
@@ -199,7 +203,7 @@ class Runner:
         if self._trace is not None:
             self._trace.close()
 
-    def _ready(self) -> subprocess.Popen[bytes]:
+    def _ready(self) -> Process:
         """The process, started unless it runs already. Raises RunError where it does not start."""
         if self._process is not None and not has_ended(self._process):
             return self._process
@@ -236,19 +240,13 @@ class Runner:
             return
         self._parsed.add(file)
 
-    def _started(self, surroundings: dict[str, str]) -> subprocess.Popen[bytes]:
-        """A new process with these environment variables. Raises OSError."""
+    def _started(self, surroundings: dict[str, str]) -> Process:
+        """A new process; these are the environment variables of one that is not forked. Raises OSError."""
         trace = self._trace = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
+        if TEMPLATE is not None:
+            return TEMPLATE.fork((*COMMAND, FORKS), surroundings, trace.fileno(), compiles=self.compiles)
         return subprocess.Popen(
-            [
-                sys.executable,
-                "-P",
-                "-c",
-                START,
-                str(ROOT),
-                str(trace.fileno()),
-                COMPILES if self.compiles else "",
-            ],
+            [*COMMAND, str(trace.fileno()), COMPILES if self.compiles else ""],
             pass_fds=(trace.fileno(),) if TRACE_SIGNAL is not None else (),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -275,7 +273,7 @@ class Runner:
             found = [f for f in FRAME.findall(text) if Path(f[0]).parent == self.folder]
         return (Path(found[0][0]).name, int(found[0][1]), found[0][2]) if found else None
 
-    def _say(self, process: subprocess.Popen[bytes], message: list[Any]) -> None:
+    def _say(self, process: Process, message: list[Any]) -> None:
         """Send a message; a process that has ended is noticed at the next answer."""
         assert process.stdin is not None
         with contextlib.suppress(OSError):
@@ -305,7 +303,7 @@ class Runner:
         return answer
 
 
-def read_answers(process: subprocess.Popen[bytes], answers: "queue.SimpleQueue[list[Any] | None]") -> None:
+def read_answers(process: Process, answers: "queue.SimpleQueue[list[Any] | None]") -> None:
     """Put every message of the process into the queue, and None at its end."""
     assert process.stdout is not None
     while True:
@@ -318,11 +316,13 @@ def read_answers(process: subprocess.Popen[bytes], answers: "queue.SimpleQueue[l
             return
 
 
-def has_ended(process: subprocess.Popen[bytes], *, block: bool = False) -> bool:
+def has_ended(process: Process, *, block: bool = False) -> bool:
     """Return whether a process has ended, and leave it unreaped where the system can: its group keeps its number.
 
     block: wait until it has.
     """
+    if isinstance(process, Forked):
+        return process.has_ended(block=block)
     if process.returncode is None and hasattr(os, "waitid"):  # not on Windows, nor on macOS before Python 3.13
         with contextlib.suppress(ChildProcessError):  # another thread has reaped it
             return os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT | (0 if block else os.WNOHANG)) is not None

@@ -24,9 +24,10 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 from app.lab.cloth_march import ClothFunctions, Sheet
-from app.lab.process import COMPILES, NICENESS, TRACE_SIGNAL
+from app.lab.process import COMPILES, FORKS, NICENESS, TRACE_SIGNAL
 from app.lab.rope_march import Functions, Unfit, march, unpacked
 from app.lab.tabulate import Range, tabulate
+from app.lab.template import fork_on_request
 from app.lab.wire import pack, receive, send, unpack
 
 MAX_LINES = 10_000  # printed in one call or march
@@ -196,12 +197,13 @@ def end_with_parent(parent: int) -> None:
 
 
 def main() -> None:
-    """The process."""
+    """The process, or the template that it is forked from."""
+    trace, compiles = fork_on_request() if sys.argv[2] == FORKS else (int(sys.argv[2]), sys.argv[3] == COMPILES)
     end_with_parent(os.getppid())
     if TRACE_SIGNAL is not None:
-        faulthandler.register(TRACE_SIGNAL, file=int(sys.argv[2]), all_threads=False)
+        faulthandler.register(TRACE_SIGNAL, file=trace, all_threads=False)
     worker = Worker()
-    if sys.argv[3] == COMPILES:
+    if compiles:
         if hasattr(os, "nice"):
             os.nice(NICENESS)  # compiling takes seconds, in which the scenes go on
         importlib.import_module("app.lab.compiled")  # before the memory is limited

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.lab import runner
 from app.lab.runner import RunError, Runner, has_ended
 from tests.waiting import wait_for
 
@@ -233,3 +234,27 @@ def test_what_an_ended_process_has_started_is_ended_and_no_other_group(tmp_path:
         runner.abort()
         process.wait()  # it is reaped: nobody may use its number
     assert len(killed) == 2
+
+
+@pytest.mark.skipif(runner.TEMPLATE is None, reason="processes are forked on Linux only")
+def test_processes_are_forked_from_one_that_is_started_again_where_it_has_ended(tmp_path: Path) -> None:
+    write(tmp_path, "import os\n    return [os.getpid(), os.getppid()]")
+    with Runner(tmp_path) as first, Runner(tmp_path) as second:
+        (one, parent), (other, its_parent) = first.call("mine.py", "f", 1.0), second.call("mine.py", "f", 1.0)
+        assert one != other
+        assert parent == its_parent == runner.TEMPLATE.process.pid
+        os.kill(parent, signal.SIGKILL)
+        wait_for(lambda: gone(one) and gone(other))
+        for one_more in (first, second):
+            assert one_more.call("mine.py", "right", 3.0) == 6.0
+            assert one_more.call("mine.py", "f", 1.0)[1] == runner.TEMPLATE.process.pid != parent
+
+
+@pytest.mark.skipif(runner.TEMPLATE is None, reason="processes are forked on Linux only")
+def test_forked_processes_draw_different_random_numbers(tmp_path: Path) -> None:
+    write(tmp_path, "import random\n    return [random.random(), float(np.random.default_rng().random())]")
+    drawn = []
+    for _ in range(2):
+        with Runner(tmp_path) as each:
+            drawn += each.call("mine.py", "f", 1.0)
+    assert len(set(drawn)) == 4

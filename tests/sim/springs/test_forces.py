@@ -10,7 +10,7 @@ from sim.springs.forces.acceleration import accelerate, make_scratch, set_accele
 from sim.springs.forces.damping import damp, make_decay
 from sim.springs.state import energy
 from tests import naive
-from tests.sim.springs.nets import hairpin, patch, touching_patch
+from tests.sim.springs.nets import KNIGHT, hairpin, patch, touching_patch
 
 
 @kernel
@@ -59,11 +59,12 @@ def test_a_net_s_forces_are_the_formulas(shape, model, law):
     rows, cols = shape
     contact = Contact(900.0, 20.0, 0.4, law)
     grab = Grab(rows - 1, cols - 1, (1.0, 1.0, 1.0), 200.0, 5.0, 30.0)
-    net = dataclasses.replace(touching_patch(model, contact, rows=rows, cols=cols), grab=grab, radius=0.02)
-    for seed in range(3):
-        x, v = shaken(net, seed)
-        agrees(net, x, v)
-        agrees(net, x, 30.0 * v)
+    cloth = dataclasses.replace(touching_patch(model, contact, rows=rows, cols=cols), grab=grab, radius=0.02)
+    for net in (cloth, dataclasses.replace(cloth, families=(*cloth.families, KNIGHT))):
+        for seed in range(3):
+            x, v = shaken(net, seed)
+            agrees(net, x, v)
+            agrees(net, x, 30.0 * v)
 
 
 @pytest.mark.parametrize("max_force", [1.0, 1e6])

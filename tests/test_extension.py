@@ -3,11 +3,13 @@
 The examples are those of docs/contributing.md, in its order.
 """
 
+import functools
 import json
 import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -85,11 +87,13 @@ def parameters_in(path) -> dict:
 
 
 @pytest.fixture(scope="module")
-def extended(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, set[str]]]:
-    """A copy of the sources with every example added, and the files that each of them touches."""
+def extended(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Path, set[str]]]:
+    """A function that adds an example to a copy of the sources, once, and returns the copy and the files it touches.
+
+    Each test adds its own: before a law and an integrator are there, the kernels are those of the other tests.
+    """
     copy = copy_of_sources(tmp_path_factory.mktemp("extended"))
-    headings = re.findall(r"^## (Add .+)$", PAGE.read_text("utf-8"), re.MULTILINE)
-    return copy, {heading: add(section(heading), copy) for heading in headings}
+    return functools.cache(lambda heading: (copy, add(section(heading), copy)))
 
 
 def run_tests(copy: Path, line: str) -> None:
@@ -98,35 +102,9 @@ def run_tests(copy: Path, line: str) -> None:
     assert " failed" not in said
 
 
-@pytest.mark.parametrize(
-    ("heading", "written", "parameter", "value"),
-    [("Add an integrator", "rk2.npz", "integrator", "rk2"), ("Add a law of a link", "rubber.npz", "law", "rubber")],
-)
-def test_an_integrator_and_a_law_of_a_link_are_one_file_each(extended, heading, written, parameter, value):
-    copy, touched = extended
-    assert len(touched[heading]) == 1
-    test, headless = commands(section(heading))
-    run_tests(copy, test)
-    run_command(copy, headless)
-    assert parameters_in(copy / written)[parameter] == value
-
-
-@pytest.mark.stress  # five processes; the other examples are tried in fewer
-def test_a_spectrum_with_new_parameters_is_one_file(extended):
-    copy, touched = extended
-    assert len(touched["Add a spectrum"]) == 1
-    test, *headless = commands(section("Add a spectrum"))
-    run_tests(copy, test)
-    for line in headless:
-        run_command(copy, line)
-    for name in ("square", "radial"):
-        assert parameters_in(copy / f"{name}.npz")["sea_height"] == 3.0
-    run(copy, "-c", MEASURED)
-
-
 def test_a_parameter_is_one_line_in_one_file(extended):
-    copy, touched = extended
-    assert len(touched["Add a parameter"]) == 1
+    copy, touched = extended("Add a parameter")
+    assert len(touched) == 1
     test, headless = commands(section("Add a parameter"))
     run_tests(copy, test)
     run_command(copy, headless)
@@ -139,8 +117,8 @@ def test_a_parameter_is_one_line_in_one_file(extended):
 
 
 def test_a_body_shape_is_one_file(extended):
-    copy, touched = extended
-    assert len(touched["Add a body shape"]) == 1
+    copy, touched = extended("Add a body shape")
+    assert len(touched) == 1
     (headless,) = commands(section("Add a body shape"))
     run_command(copy, headless)
     with np.load(copy / "cone.npz") as file:
@@ -151,8 +129,8 @@ def test_a_body_shape_is_one_file(extended):
 
 
 def test_a_task_is_two_files_and_its_solutions(extended):
-    copy, touched = extended
-    assert len(touched["Add a task"]) == 5
+    copy, touched = extended("Add a task")
+    assert len(touched) == 5
     new, check, test = commands(section("Add a task"))
     run_command(copy, new)
     assert "def phase_speed(k, gravity):" in (copy / "solved" / "square_sea.py").read_text("utf-8")
@@ -161,9 +139,8 @@ def test_a_task_is_two_files_and_its_solutions(extended):
 
 
 def test_a_scene_is_one_folder_and_passes_the_tests_of_all_scenes(extended):
-    copy, touched = extended
-    scene = {path for path in touched["Add a scene"] if path.endswith(".py")}
-    assert {path.rpartition("/")[0] for path in scene} == {"app/scenes/pendulum"}
+    copy, touched = extended("Add a scene")
+    assert {path.rpartition("/")[0] for path in touched} == {"app/scenes/pendulum"}
     test, headless = commands(section("Add a scene"))
     run_command(copy, headless)
     with np.load(copy / "pendulum.npz") as file:
@@ -173,13 +150,41 @@ def test_a_scene_is_one_folder_and_passes_the_tests_of_all_scenes(extended):
 
 
 def test_an_added_scene_and_an_added_body_are_shown(extended):
-    run(extended[0], "-c", SHOWN)
+    extended("Add a body shape")
+    run(extended("Add a scene")[0], "-c", SHOWN)
+
+
+@pytest.mark.stress  # five processes; the other examples are tried in fewer
+def test_a_spectrum_with_new_parameters_is_one_file(extended):
+    copy, touched = extended("Add a spectrum")
+    assert len(touched) == 1
+    test, *headless = commands(section("Add a spectrum"))
+    run_tests(copy, test)
+    for line in headless:
+        run_command(copy, line)
+    for name in ("square", "radial"):
+        assert parameters_in(copy / f"{name}.npz")["sea_height"] == 3.0
+    run(copy, "-c", MEASURED)
+
+
+@pytest.mark.parametrize(
+    ("heading", "written", "parameter", "value"),
+    [("Add an integrator", "rk2.npz", "integrator", "rk2"), ("Add a law of a link", "rubber.npz", "law", "rubber")],
+)
+def test_an_integrator_and_a_law_of_a_link_are_one_file_each(extended, heading, written, parameter, value):
+    copy, touched = extended(heading)
+    assert len(touched) == 1
+    test, headless = commands(section(heading))
+    run_tests(copy, test)
+    run_command(copy, headless)
+    assert parameters_in(copy / written)[parameter] == value
 
 
 @pytest.mark.skipif(shutil.which("pyright") is None, reason="pyright is not installed")
 def test_the_examples_pass_the_type_checker(extended):
-    copy, touched = extended
-    sources = sorted(path for path in set().union(*touched.values()) if re.match(r"(?!tests/).*\.py$", path))
+    headings = re.findall(r"^## (Add .+)$", PAGE.read_text("utf-8"), re.MULTILINE)
+    (copy, *_), touched = zip(*map(extended, headings), strict=True)
+    sources = sorted(path for path in set().union(*touched) if re.match(r"(?!tests/).*\.py$", path))
     done = subprocess.run(
         ["pyright", "--pythonpath", sys.executable, *sources], cwd=copy, capture_output=True, text=True, timeout=240
     )

@@ -15,9 +15,12 @@ from app.messages import Grab, StudentAnswer
 from app.panel.code_panel import code_lines, tables_of
 from app.scenes.cloth.parameters import Params as ClothParams
 from app.scenes.cloth.scene import ClothScene
+from app.scenes.cloth.start import build, sphere_home
+from app.scenes.cloth.student_cloth import unlike
 from app.scenes.rope.parameters import Params as RopeParams
 from app.scenes.rope.scene import RopeScene
 from sim.parameters import Parameter, Value, effect_of_change, in_words, parameters_of
+from sim.springs import LAWS
 from tests.app.lab.test_session import save
 from tests.waiting import wait_for
 
@@ -43,8 +46,9 @@ BASES = {"rope": (ROPE, dataclasses.replace(ROPE, units="material")), "cloth": (
 SCENES: dict[str, Any] = {"rope": RopeScene, "cloth": ClothScene}
 HELD = {"rope": 5, "cloth": 22}  # point that the hand pulls
 FILES = {"rope": "rope.py", "cloth": "cloth.py"}
+ALONE = {("cloth", "law")}  # for which kernels are compiled that no other test runs
 CASES = [
-    (name, parameter)
+    pytest.param(name, parameter, marks=pytest.mark.stress if (name, parameter) in ALONE else ())
     for name, bases in BASES.items()
     for parameter, declared in parameters_of(bases[0]).items()
     if declared.affects != "look"
@@ -135,3 +139,11 @@ def test_right_solutions_feel_every_parameter_or_the_panel_names_it(
             said = code_lines(session.state, report, tables_of(session), name)
             title = declared.title or in_words(parameter)
             assert title.lower() in said.lower(), f"{value}: {report.difference} m"
+
+
+def test_the_panel_names_the_link_of_a_cloth():
+    stiffening = dataclasses.replace(CLOTH, law="stiffening")
+    assert build(CLOTH, sphere_home(CLOTH)).law == LAWS["spring"].numbers
+    assert build(stiffening, sphere_home(stiffening)).law == LAWS["stiffening"].numbers
+    assert not any(line.startswith("Link: ") for line in unlike(CLOTH))
+    assert any(line.startswith("Link: ") for line in unlike(stiffening))

@@ -8,7 +8,7 @@ import pytest
 from scipy.special import ellipk
 
 from sim.jit import kernel
-from sim.springs import INTEGRATORS, LAWS, PinPath, State, advance, critical_step, rope, simulate
+from sim.springs import INTEGRATORS, LAWS, PinPath, State, advance, cloth, critical_step, rope, simulate
 from sim.springs.analysis.growth import STABLE, outcome
 from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.analysis.strain import strain_range
@@ -102,9 +102,11 @@ def test_a_length_has_the_tension_it_was_asked_for(name):
 
 
 @pytest.mark.parametrize("model", ["isotropic", "axial"])
-@pytest.mark.parametrize("name", OTHERS)
-def test_forces_are_the_formulas(name, model):
-    net = rope(9, damping_model=model, law=name)
+@pytest.mark.parametrize(
+    ("make", "shape", "name"), [*((rope, (9,), name) for name in OTHERS), (cloth, (3, 4), "stiffening")]
+)
+def test_forces_are_the_formulas(make, shape, name, model):
+    net = make(*shape, damping_model=model, law=name)
     for seed in range(3):
         agrees(net, *shaken(net, seed))
 
@@ -119,8 +121,7 @@ def test_tangents_are_the_derivatives_of_the_forces(name, model):
     assert products(net, x, DAMPING) == pytest.approx(damping, rel=1e-6, abs=1e-6 * np.abs(damping).max())
 
 
-@pytest.mark.parametrize("method", ["leapfrog", "rk4"])
-@pytest.mark.parametrize("name", OTHERS)
+@pytest.mark.parametrize(("name", "method"), [("slack", "leapfrog"), ("stiffening", "leapfrog"), ("stiffening", "rk4")])
 def test_a_short_step_books_the_powers_of_the_formulas(name, method):
     """Of links of which some are slack, whose damping comes and goes; and of a root that moves."""
     h, net = 1e-6, dataclasses.replace(rope(9, law=name), pin_paths=(((0, 0), PATH),))

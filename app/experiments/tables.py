@@ -98,8 +98,8 @@ def mark_slopes(axes: Any, curves: Iterable[tuple[list[float], list[float]]]) ->
             marked.add(order)
 
 
-def work_precision(rows: Rows, title: str, error: str = "error [m]") -> Any:
-    """The column `error` over run time and over force evaluations, one curve for each method, in logarithmic axes."""
+def work_precision(rows: Rows, title: str) -> Any:
+    """Errors over run time and over force evaluations, one curve for each method, in logarithmic axes."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10.0, 5.2), layout="constrained")
@@ -115,7 +115,7 @@ def work_precision(rows: Rows, title: str, error: str = "error [m]") -> Any:
         curves = []
         for index, method in enumerate(methods):
             own = sorted((row for row in rows if row["method"] == method), key=lambda row: row["force evaluations"])
-            x, y = [row[column] for row in own], [row[error] for row in own]
+            x, y = [row[column] for row in own], [row["error [m]"] for row in own]
             dash = "-" if index < len(PALETTE) else "--"
             style = {"color": PALETTE[index % 8], "marker": MARKERS[index % 13], "markersize": 5, "linestyle": dash}
             axes.loglog(x, y, label=method.replace("_", " "), **style)
@@ -126,7 +126,7 @@ def work_precision(rows: Rows, title: str, error: str = "error [m]") -> Any:
         axes.grid(visible=True, which="major", color="0.9")
         axes.spines[["top", "right"]].set_visible(False)
     floor = max(row["reference good to [m]"] for row in rows)
-    panels[0].set_ylabel(error)
+    panels[0].set_ylabel("error [m]")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False, fontsize=8)
     for axes in panels:

@@ -1,6 +1,5 @@
 """A student's rope as a small picture: it falls from the level by the student's functions, beside the reference's."""
 
-from collections.abc import Collection
 from types import ModuleType
 from typing import NamedTuple
 
@@ -62,9 +61,9 @@ def rope_picture(runner: Runner, saved: Saved) -> RopePicture:
     )
 
 
-def reference_poses(step: str, own: Collection[str] = ()) -> NDArray[np.float64]:
+def reference_poses(step: str) -> NDArray[np.float64]:
     """Poses (poses, n, 3) [m] of the rope by the reference solutions."""
-    return march(Functions(ModuleType(FILE), own, step, {}), *start()).x
+    return march(Functions(ModuleType(FILE), (), step, {}), *start()).x
 
 
 def svg(picture: RopePicture) -> Html:

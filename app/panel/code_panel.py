@@ -56,7 +56,6 @@ class CodePanel:
     def __init__(self, gui: viser.GuiApi, session: Session, scene: str) -> None:
         self.session, self.scene = session, scene
         self.net = session.cloth if scene == "cloth" else session.rope
-        self.shown = ""
         self.calls: dict[str, Call] = {}  # of functions at the numbers of the scene
         with gui.add_folder("Your code"):
             self.text = gui.add_html("")
@@ -83,13 +82,8 @@ class CodePanel:
             self.calls = calls
             session.values.want(calls)
         said = code_lines(state_of(session), self.net.report, tables_of(session), self.scene)
-        text = note(lines([said, function_lines(session, self.scene)]))
-        if text != self.shown:
-            self.shown = text
-            self.text.content = text
-        has_choice = bool(session.tables.tables)
-        if self.choice.visible != has_choice:
-            self.choice.visible = has_choice
+        self.text.content = note(lines([said, function_lines(session, self.scene)]))
+        self.choice.visible = bool(session.tables.tables)
 
 
 def state_of(session: Session) -> CodeState:

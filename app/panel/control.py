@@ -160,13 +160,9 @@ class Control:
         if self.refusal:
             self.refusal = ""
             self.show_lines()
-        shown = self.shown(value)
-        if self.field.value != shown:
-            self.field.value = shown
+        self.field.value = self.shown(value)
         if self.slider is not None:
-            position = (self.scale.position(value),)
-            if self.slider.value != position:
-                self.slider.value = position
+            self.slider.value = (self.scale.position(value),)
 
     def show(self, visible: bool) -> None:
         """Show or hide all of it."""

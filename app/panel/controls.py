@@ -69,5 +69,4 @@ class Controls:
                 control.show(control.name not in hidden)
         shown = {self.parameters[name].group for name in self.own if name not in hidden}
         for group, folder in self.folders.items():
-            if folder.visible != (group in shown):
-                folder.visible = group in shown
+            folder.visible = group in shown

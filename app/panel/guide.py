@@ -116,16 +116,12 @@ class QuestionWidgets:
     def show(self) -> None:
         """Show the stored answer and its check; a text that is being typed is left alone."""
         verdict = self.workbook.verdict(self.task, self.question)
-        locked = self.question.key == PREDICTION and self.workbook.is_shown(self.task)
-        if self.field.disabled != locked:
-            self.field.disabled = locked
+        self.field.disabled = self.question.key == PREDICTION and self.workbook.is_shown(self.task)
         shown = self.kept_text()
         if self.typed is self.flushed and not self.refusal and self.field.value.strip() != shown:
             self.field.value = shown
         if self.reader is not None:
-            can_read = bool(read_off(self.question, self.guide.values))
-            if self.reader.visible != can_read:
-                self.reader.visible = can_read
+            self.reader.visible = bool(read_off(self.question, self.guide.values))
         said = Html()
         if self.refusal:
             said = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal)
@@ -138,8 +134,7 @@ class QuestionWidgets:
                 coloured(STATE_WORDS[verdict.state], STATE_COLOURS[verdict.state]),
                 text,
             )
-        if self.line.content != str(said):
-            self.line.content = str(said)
+        self.line.content = str(said)
 
     def remove(self) -> None:
         """Take it from the page."""
@@ -321,15 +316,9 @@ class Guide:
             tools = (SET_UP, HIDE if shown else SHOW)
         if self.tools.options != tools:
             self.tools.options = tools
-        text = note(join((self.statement(task), self.steps(task))))
-        if self.text.content != text:
-            self.text.content = text
-        now = str(fill('<div class="springtide-note springtide-readings">{}</div>', self.now(task)))
-        if self.readings.content != now:
-            self.readings.content = now
-        answer = note(join((self.said(), self.answer_text(task) if shown else "")))
-        if self.answer.content != answer:
-            self.answer.content = answer
+        self.text.content = note(join((self.statement(task), self.steps(task))))
+        self.readings.content = str(fill('<div class="springtide-note springtide-readings">{}</div>', self.now(task)))
+        self.answer.content = note(join((self.said(), self.answer_text(task) if shown else "")))
         for widgets in self.questions:
             widgets.show()
 
@@ -346,9 +335,7 @@ class Guide:
         if titles != self.titles:
             self.titles = titles
             self.chooser.options = titles
-        title = titles[self.workbook.tasks.index(task)]
-        if self.chooser.value != title:
-            self.chooser.value = title
+        self.chooser.value = titles[self.workbook.tasks.index(task)]
 
     def statement(self, task: Task) -> Html:
         """The task, and where to look."""

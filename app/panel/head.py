@@ -80,8 +80,7 @@ class Head:
         options = (*names, *((shown,) if changed else ()))
         if self.preset.options != options:
             self.preset.options = options
-        if self.preset.value != shown:
-            self.preset.value = shown
+        self.preset.value = shown
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
         """True if the rarely changing parts of the head are not as shown."""

@@ -117,9 +117,7 @@ class Ballot:
             words = question.words(visitors)
             if question.number not in self.drawn:
                 self.drawn[question.number] = self.add(question.number, words)
-            text, _ = self.drawn[question.number]
-            if text.content != words:
-                text.content = words
+            self.drawn[question.number][0].content = words
 
     def add(self, number: int, words: str) -> tuple[viser.GuiHtmlHandle, viser.GuiButtonGroupHandle]:
         """The handles of a question."""

@@ -30,5 +30,4 @@ class Readings:
                     self.notes[heading] = folder, self.gui.add_html("")
             folder, line = self.notes[heading]
             line.content = note(WITHHELD if heading in hidden else Html(text))
-            if folder.visible != bool(text):
-                folder.visible = bool(text)
+            folder.visible = bool(text)

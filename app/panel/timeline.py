@@ -114,13 +114,10 @@ class Timeline:
         held = now - self.moved_at < HAND_TIME and not self.recorder.playing  # what comes late would pull it back
         if not held and self.span[1] > self.span[0] and abs(self.time.value - at) > 0.5 * SLIDER_STEP:
             self.time.value = round(min(max(at, self.time.min), self.time.max), 2)
-        words = note(fill("Recorded: {:.1f} s, {}", high - low, size_words(self.recorder.memory.bytes)))
-        if self.state.content != words:
-            self.state.content = words
-        words = "" if shown is None else note(fill(MOMENT, shown.time, shown.time))
-        if self.moment.content != words:
-            self.moment.content, self.moment.visible = words, bool(words)
-            self.resume.disabled = not words
+        recorded = fill("Recorded: {:.1f} s, {}", high - low, size_words(self.recorder.memory.bytes))
+        self.state.content = note(recorded)
+        self.moment.content = "" if shown is None else note(fill(MOMENT, shown.time, shown.time))
+        self.moment.visible, self.resume.disabled = shown is not None, shown is None
 
 
 def size_words(size: float) -> str:

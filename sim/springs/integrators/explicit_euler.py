@@ -4,7 +4,7 @@ Unstable without damping at every step size: a mode's energy grows by 1 + (h ome
 """
 
 import math
-from typing import Any
+from functools import partial
 
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.symplectic_euler import take_euler_steps
@@ -15,10 +15,7 @@ def limit(zeta: float) -> float:
     return 2.0 * zeta if zeta <= 1.0 else 2.0 * (zeta - math.sqrt(zeta * zeta - 1.0))
 
 
-def advance(*arguments: Any) -> int:
-    return take_euler_steps(*arguments, False)
-
-
 RECORD = Integrator(
-    "explicit_euler", 1, False, 1, limit, advance, "To see an instability: the lab text's Euler, never stable undamped."
-)
+    "explicit_euler", 1, False, 1, limit, partial(take_euler_steps, False),
+    "To see an instability: the lab text's Euler, never stable undamped.",
+)  # fmt: skip

@@ -5,7 +5,7 @@ A step that Newton's method cannot take whole is taken in halves, quarters, ...,
 """
 
 import math
-from typing import Any
+from functools import partial
 
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import EULER, advance_implicit
@@ -16,11 +16,8 @@ def limit(zeta: float) -> float:
     return math.inf
 
 
-def advance(*arguments: Any) -> int:
-    return advance_implicit(EULER, *arguments)
-
-
 RECORD = Integrator(
-    "implicit_euler", 1, False, 1, limit, advance, "For looks at any stiffness: damps what it cannot follow.",
+    "implicit_euler", 1, False, 1, limit, partial(advance_implicit, EULER),
+    "For looks at any stiffness: damps what it cannot follow.",
     implicit=True, l_stable=True,
 )  # fmt: skip

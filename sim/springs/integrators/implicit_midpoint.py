@@ -9,7 +9,7 @@ cannot take whole is taken in halves, quarters, ..., in longer parts again after
 """
 
 import math
-from typing import Any
+from functools import partial
 
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import MIDPOINT, advance_implicit
@@ -20,11 +20,8 @@ def limit(zeta: float) -> float:
     return math.inf
 
 
-def advance(*arguments: Any) -> int:
-    return advance_implicit(MIDPOINT, *arguments)
-
-
 RECORD = Integrator(
-    "implicit_midpoint", 2, False, 1, limit, advance, "For energy at any stiffness: keeps it, damps nothing.",
+    "implicit_midpoint", 2, False, 1, limit, partial(advance_implicit, MIDPOINT),
+    "For energy at any stiffness: keeps it, damps nothing.",
     implicit=True,
 )  # fmt: skip

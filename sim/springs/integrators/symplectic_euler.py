@@ -1,7 +1,7 @@
 """Symplectic (semi-implicit) Euler, the lab code's "Euler": v += h a(x, v), then x += h v with the new v."""
 
 import math
-from typing import Any
+from functools import partial
 
 import numpy as np
 
@@ -26,7 +26,7 @@ def kick_and_drift(x, v, h, a):
 
 
 @kernel(noalias=True)
-def take_euler_steps(x, v, ledger, t, h, steps, p, with_account, by_new_velocity):
+def take_euler_steps(by_new_velocity, x, v, ledger, t, h, steps, p, with_account):
     """`advance` of an integrator. by_new_velocity: x += h v with the velocity at the end of the step, not its start.
 
     Both methods share one kernel, as its forces take long to compile.
@@ -48,10 +48,7 @@ def take_euler_steps(x, v, ledger, t, h, steps, p, with_account, by_new_velocity
     return steps
 
 
-def advance(*arguments: Any) -> int:
-    return take_euler_steps(*arguments, True)
-
-
+advance = partial(take_euler_steps, True)
 RECORD = Integrator(
     "symplectic_euler", 1, True, 1, limit, advance, "What the lab's code calls Euler: cheap and steady, first order."
 )

@@ -6,7 +6,7 @@ halves, quarters, ..., in longer parts again after an easy one.
 """
 
 import math
-from typing import Any
+from functools import partial
 
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import TR_BDF2, advance_implicit
@@ -17,11 +17,8 @@ def limit(zeta: float) -> float:
     return math.inf
 
 
-def advance(*arguments: Any) -> int:
-    return advance_implicit(TR_BDF2, *arguments)
-
-
 RECORD = Integrator(
-    "tr_bdf2", 2, False, 3, limit, advance, "For stiff ropes with some accuracy: L-stable and second order.",
+    "tr_bdf2", 2, False, 3, limit, partial(advance_implicit, TR_BDF2),
+    "For stiff ropes with some accuracy: L-stable and second order.",
     implicit=True, l_stable=True, evals_outside_newton=1,
 )  # fmt: skip

@@ -75,6 +75,22 @@ def test_oil_has_the_colours_of_its_thickness(page: Any) -> None:
     np.testing.assert_allclose(through, light_through(thickness), atol=1e-5)
 
 
+@pytest.mark.parametrize("thickness", [1e-3, 0.2])
+def test_the_rim_of_a_slick_has_bands_of_every_appearance(page: Any, thickness: float) -> None:
+    """In the order of their thickness, each wide enough to be seen: by where the rim begins and ends."""
+    radius, bounds = 45.0, [*APPEARANCES.values()]
+    points = np.random.default_rng(2).uniform(-1.5 * radius, 1.5 * radius, (40_000, 2))
+    uniforms = {"slick": (0.0, 0.0, radius), "slickOptics": (thickness, 0.02, 0.1), "wind": (0.7, 9.81, 1.0)}
+    found = evaluate(page, "vec4(oilThickness(p.xy, slickCover(p.xy)), slickCover(p.xy), 0, 0)", points, uniforms)
+    kind = np.searchsorted(bounds, found[:, 0])  # 0: too thin to be seen
+    away = np.hypot(*points.T)
+    places = [np.median(away[kind == i + 1]) for i in range(len(bounds))]
+    assert places == sorted(places, reverse=True)
+    assert (np.bincount(kind, minlength=6)[1:] > 0.02 * (found[:, 1] > 0.0).sum()).all()
+    assert found[away < 10.0, 0] == pytest.approx(thickness, rel=4.0)  # streaks
+    assert (found[away > 1.4 * radius] == 0.0).all()
+
+
 @pytest.mark.parametrize("footprint", [0.02, 0.7])
 def test_facets_that_glint_have_their_variance_and_the_light_of_a_smooth_path(page: Any, footprint: float) -> None:
     """At two times, at 20,000 places that are far apart."""

@@ -399,22 +399,25 @@ const WATER_GLSL = {
     float slickCover(vec2 x) {
       if (slick.z <= 0.0) return 0.0;
       vec2 d = x - slick.xy, w = vec2(cos(wind.x), sin(wind.x));
-      float off = slick.z - length(d), size = 0.22 * slick.z + 1.0;
+      float off = slick.z - length(d), size = 0.4 * slick.z + 1.0;
       if (abs(off) > 1.5 * size) return off > 0.0 ? 1.0 : 0.0;
       // Wind tears the edge into streaks along itself.
       vec2 p = vec2(0.3 * dot(d, w), dot(d, vec2(-w.y, w.x))) / size;
-      float torn = gradientNoise(p).x + 0.8 * gradientNoise(p * 4.1 + 5.0).x;
-      return smoothstep(-0.1, 0.5, off / size + 0.8 * torn);
+      float torn = gradientNoise(p).x + 0.5 * gradientNoise(p * 3.3 + 5.0).x;
+      return smoothstep(-0.5, 1.0, off / size + 0.8 * torn);
     }
 
-    // Thickness of the oil [m]. It varies along the wind; the rim of a slick thins out over all classes of appearance,
-    // from the slick's own thickness to that of a sheen.
+    const float RAINBOW = 1.5e-6; // thickness [m] of a film whose colours are fading
+
+    // Thickness of the oil [m]. It varies along the wind; the rim of a slick thins out over all classes of appearance:
+    // from the slick's own thickness to RAINBOW by equal factors, and then evenly, so that each colour has its band.
     float oilThickness(vec2 x, float inside) {
       if (inside <= 0.0) return 0.0;
       vec2 d = vec2(cos(wind.x), sin(wind.x));
       vec2 p = vec2(dot(x, d) / 23.0, dot(x, vec2(-d.y, d.x)) / 7.0);
-      float streaks = exp(0.7 * gradientNoise(p).x + 0.4 * gradientNoise(p * 3.1 + 8.0).x);
-      return 3e-8 * pow(max(slickOptics.x, 3e-8) * streaks / 3e-8, inside);
+      float streaks = exp(2.0 * gradientNoise(p).x + 1.2 * gradientNoise(p * 3.1 + 8.0).x);
+      float thin = min(slickOptics.x, RAINBOW), towards = 2.0 * inside - 1.0;
+      return streaks * thin * min(2.0 * inside, 1.0) * pow(slickOptics.x / thin, max(towards, 0.0));
     }
 
     // Share of the light from below that a film of oil lets through, in red, green and blue.
@@ -534,7 +537,7 @@ const WATER_GLSL = {
       }
       slopeAndFoam.z *= 1.0 - oil;
       vec4 fine = ripples(at.xy, footprint);
-      float calm = mix(1.0, slickOptics.z, oil);
+      float calm = mix(1.0, slickOptics.z, min(2.5 * oil, 1.0)); // a sheen calms ripples as a thick layer does
       fine.xyz *= vec3(calm, calm, calm * calm);
       slope += fine.xy;
       // Beyond a mesh that is no grid, noise of the same slope continues the swell while a pixel can show it.

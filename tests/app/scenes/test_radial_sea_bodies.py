@@ -95,8 +95,8 @@ def test_bodies_of_their_own_densities_float_at_their_own_drafts() -> None:
         check_record(Params, {**CALM, "bodies": 5, "own_densities": True, "density_1": 300.0, "density_3": 700.0})
     )
     assert scene.bodies.fleet.density.tolist() == [300.0, 600.0, 700.0, 450.0, 450.0]
-    for _ in range(60 * 60):
-        scene.advance(1)
+    for _ in range(60 * 10):
+        scene.advance(6)
     for i, reading in enumerate(scene.readings().bodies):
         hull = scene.bodies.hulls[reading.kind]
         rest = equilibrium_draft(hull, scene.bodies.densities[i], scene.column.layers)
@@ -110,7 +110,7 @@ def test_bodies_of_their_own_densities_float_at_their_own_drafts() -> None:
 def test_the_slick_of_the_jet_counts_at_rest() -> None:
     scene = scene_with(waves=False, ripples=False, jet=True, bodies=1)
     scene.well_blowout.closed_jets_total = JetTotal(2000.0, 2000.0, 100)
-    for _ in range(150 * 6):
+    for _ in range(100 * 6):
         scene.advance(10)
     slick = scene.well_blowout.slick(scene.column)
     assert slick is not None

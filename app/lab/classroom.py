@@ -28,7 +28,7 @@ from app.lab.task import Task
 
 WORKERS = 2  # folders that are checked at the same time
 LOOK_INTERVAL = 500  # [ms] between two looks whether to end
-SETTLE_TIME, MAX_SETTLE_TIME = 20, 400  # [ms] as of a student's own lab
+SETTLE_TIME, MAX_SETTLE_TIME = 50, 400  # [ms] as of a student's own lab
 
 
 class Student(NamedTuple):

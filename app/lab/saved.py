@@ -2,6 +2,8 @@
 written."""
 
 import ast
+import contextlib
+import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -29,6 +31,17 @@ class Saved(NamedTuple):
         changed = frozenset(name for name in {*self.texts, *old} if self.texts.get(name) != old.get(name))
         files = frozenset(task.file for task in tasks if task.file)
         return changed if changed <= files else files
+
+
+def stamps(folder: Path) -> frozenset[tuple[str, int, int, int]]:
+    """Name, inode, size and time of change of each Python file directly in a folder: cheaper than reading them."""
+    found: set[tuple[str, int, int, int]] = set()
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:  # the folder, or a file, was removed meanwhile
+        for entry in entries:
+            if entry.name.endswith(".py"):
+                stat = entry.stat()
+                found.add((entry.name, stat.st_ino, stat.st_size, stat.st_mtime_ns))
+    return frozenset(found)
 
 
 def read_files(folder: Path) -> dict[str, bytes]:

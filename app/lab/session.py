@@ -26,10 +26,11 @@ from app.lab.live_code import LiveCode
 from app.lab.live_net import CLOTH, ROPE, LiveNet, Loaded
 from app.lab.live_tables import LiveTables
 from app.lab.runner import TIME_LIMIT, RunError, Runner
-from app.lab.saved import Saved, keep, read_files
+from app.lab.saved import Saved, keep, read_files, stamps
 from app.lab.task import Task
 
-SETTLE_TIME = 20  # [ms] without a further change before a save is read: editors write a file in several steps
+# [ms] without a further change before a save is read: editors write a file in several steps. So often it wakes.
+SETTLE_TIME = 50
 MAX_SETTLE_TIME = 400  # [ms]
 LOOK_INTERVAL = 500  # [ms] between two looks whether to end
 
@@ -84,16 +85,20 @@ class Session:
         return runner
 
     def watch(self) -> None:
-        """Load the files as they are, then each time that one is saved."""
+        """Load the files as they are, then each time that one is saved, also where the system does not tell of it."""
         changes = watchfiles.watch(
             self.folder, stop_event=self.stop, recursive=False, raise_interrupt=False, step=SETTLE_TIME,
             debounce=MAX_SETTLE_TIME, rust_timeout=LOOK_INTERVAL, yield_on_timeout=True,
         )  # fmt: skip
-        for _ in itertools.chain([()], changes):
+        seen = None
+        for told in itertools.chain([()], changes):
             if self.stop.is_set():
                 return
             try:
-                self.load()
+                now = stamps(self.folder)
+                if told or now != seen:
+                    self.load()
+                seen = now
             except Exception as error:  # the thread lives: the files are taken up once that is possible
                 self.note_trouble(error)
 

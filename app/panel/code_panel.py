@@ -56,6 +56,7 @@ class CodePanel:
     def __init__(self, gui: viser.GuiApi, session: Session, scene: str) -> None:
         self.session, self.scene = session, scene
         self.net = session.cloth if scene == "cloth" else session.rope
+        self.state = session.state  # as the headline shows it
         self.calls: dict[str, Call] = {}  # of functions at the numbers of the scene
         with gui.add_folder("Your code"):
             self.text = gui.add_html("")
@@ -67,16 +68,15 @@ class CodePanel:
         async def _(_: object) -> None:  # no coroutine: viser would call it in a pool of threads
             session.tables.show(self.choice.value)
 
-    def headline(self) -> Html:
-        """One line on the state of the files."""
-        session = self.session
-        return headline(
-            state_of(session), self.net.report, tables_of(session), self.scene, mistake_of(session, begun_of(session))
-        )
+    @property
+    def is_stale(self) -> bool:
+        """True if a version was saved, or has failed, since the last update."""
+        return self.session.state is not self.state
 
-    def update(self, live: LiveValues) -> None:
-        """Show changes; called a few times a second. live: the values of the scene."""
+    def update(self, live: LiveValues) -> Html:
+        """Show changes, and return one line on the state of the files. live: the values of the scene."""
         session = self.session
+        self.state = session.state
         calls = calls_here(self.scene, begun_of(session), live)
         if calls.keys() != self.calls.keys() or not all(call.same(self.calls[name]) for name, call in calls.items()):
             self.calls = calls
@@ -84,6 +84,8 @@ class CodePanel:
         said = code_lines(state_of(session), self.net.report, tables_of(session), self.scene)
         self.text.content = note(lines([said, function_lines(session, self.scene)]))
         self.choice.visible = bool(session.tables.tables)
+        mistake = mistake_of(session, begun_of(session))
+        return headline(state_of(session), self.net.report, tables_of(session), self.scene, mistake)
 
 
 def state_of(session: Session) -> CodeState:

@@ -333,14 +333,14 @@ class Panel:
         self.plots.update(snapshot, rows, None if shown is None else shown.time)
         visitors = len(self.server.get_clients())
         hidden = frozenset[str]() if self.guide is None else self.guide.workbook.hidden()
-        refresh = self.head.is_stale(snapshot, visitors) or now - self.status_at >= STATUS_INTERVAL
+        stale = self.head.is_stale(snapshot, visitors) or (self.code is not None and self.code.is_stale)
+        refresh = stale or now - self.status_at >= STATUS_INTERVAL
         if refresh:
             self.status_at = now
             self.head.show(snapshot, busy, visitors)
             self.readings.show(snapshot, hidden)
             if self.code is not None:
-                self.code.update({} if self.guide is None else self.guide.values)
-                self.head.show_code(self.code.headline())
+                self.head.show_code(self.code.update({} if self.guide is None else self.guide.values))
         if now - self.marks_at >= MARKS_INTERVAL:
             self.marks_at = now
             for name, text in self.view.marks(snapshot).items():

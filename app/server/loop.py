@@ -78,6 +78,7 @@ class SimLoop(Run):
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
         self.loaded = 0  # number of the last `Load` that was handled
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
+        self.tick_time = 0.0  # [s] that the last tick took
         super().__init__(scene, audience, clock, effort, paused=paused)
 
     @property
@@ -123,7 +124,12 @@ class SimLoop(Run):
             self.publish()
         if self.goal is not None:
             self.settle(self.goal)
-        self.busy_since = None
+        self.tick_time, self.busy_since = self.clock() - self.busy_since, None
+
+    @property
+    def takes_long(self) -> bool:
+        """True if controls may have to be answered in the middle of a tick soon."""
+        return self.busy_since is not None or self.tick_time > 0.5 * PATIENCE
 
     def poll(self) -> tuple[BaseParams, int]:
         """Take in the commands that have come, then read the parameters: these are as new as any preset among them."""

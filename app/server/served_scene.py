@@ -79,9 +79,9 @@ class ServedScene:
         shown_at = loop.clock()
         while not self.stop.is_set():
             alone = not self.viewer.audience()
-            woken = loop.fresh.wait(ALONE_INTERVAL if alone else min(PATIENCE, PLAYED_INTERVAL))
-            loop.ask_for_turn()
             beat = PLAYED_INTERVAL if recorder.playing else ALONE_HEARTBEAT if alone else HEARTBEAT
+            woken = loop.fresh.wait(min(beat, PATIENCE if loop.takes_long and not alone else ALONE_INTERVAL))
+            loop.ask_for_turn()
             if not woken and loop.clock() - shown_at < beat:
                 continue
             loop.fresh.clear()

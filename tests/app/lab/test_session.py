@@ -16,6 +16,7 @@ from app.lab.live_tables import TableReport
 from app.lab.program_check import Verdict
 from app.lab.rope_march import REFERENCE
 from app.lab.runner import RunError, Runner
+from app.lab.saved import read_files, stamps
 from app.lab.session import CodeState, Session
 from app.lab.task import load_tasks
 from app.messages import Grab, Place, StudentAnswer
@@ -243,6 +244,18 @@ def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None
         assert right.state.version == before
     wait_for(lambda: right.state.version > before)
     assert right.state.error is None
+
+
+def test_files_that_stay_as_they_are_are_not_read_again(right: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    looks, reads = [], []
+    monkeypatch.setattr("app.lab.session.stamps", lambda folder: looks.append(1) or stamps(folder))
+    monkeypatch.setattr("app.lab.session.read_files", lambda folder: reads.append(1) or read_files(folder))
+    wait_for(lambda: len(looks) >= 2)
+    assert not reads
+    version = right.state.version
+    save(right, RIGHT + "# once more\n")
+    assert right.state.version > version
+    assert reads
 
 
 def test_a_forged_answer_is_named(right: Session) -> None:

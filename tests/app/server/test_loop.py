@@ -25,7 +25,7 @@ from app.messages import (
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL
-from app.server.loop import IDLE_INTERVAL, MAX_FRAME_INTERVAL, SimLoop
+from app.server.loop import IDLE_INTERVAL, MAX_FRAME_INTERVAL, PATIENCE, SimLoop
 from app.server.pacer import SOLVE_SHARE, FixedStep
 from sim.parameters import parameter
 from tests.waiting import wait_for
@@ -307,6 +307,22 @@ def test_whoever_shows_is_told_of_each_new_snapshot_and_of_nothing_else() -> Non
     loop.commands.put(StepOnce())
     loop.tick(FRAME_INTERVAL)
     assert loop.fresh.is_set()
+
+
+def test_whoever_shows_has_to_look_often_only_where_ticks_take_long() -> None:
+    loop, scene = make()
+    now, seen, spent = [0.0], [], iter((0.1 * PATIENCE, PATIENCE, 0.1 * PATIENCE))
+    loop.clock = lambda: now[0]
+
+    def advance(steps: int) -> None:
+        now[0] += next(spent)
+        seen.append(loop.takes_long)
+
+    scene.advance = advance  # type: ignore[method-assign]
+    for _ in range(3):
+        loop.tick(FRAME_INTERVAL)
+        seen.append(loop.takes_long)
+    assert seen == [True, False, True, True, True, False]  # within a tick and after it
 
 
 def test_other_parameters_end_a_long_sleep() -> None:

@@ -24,7 +24,7 @@ class ColouredMesh:
 
     vertices: (n, 3) [m]. faces: (m, 3). colors: (n, 3), sRGB in 0..1. columns: the vertices lie in rows of so many
     neighbours. step [m]: to which browsers with the shader round the vertices. color: the only colour in browsers
-    without it. plain: never send the shader. Further arguments go to viser's `add_mesh_simple`.
+    without it. Further arguments go to viser's `add_mesh_simple`.
     Raises ValueError where there is not one colour a vertex.
     """
 
@@ -39,14 +39,13 @@ class ColouredMesh:
         columns: int,
         step: float,
         color: tuple[int, int, int] = (200, 160, 90),
-        plain: bool = False,
         **mesh: Any,
     ) -> None:
         self.name = name
         self._columns, self._step = columns, step
         self._fields = np.empty((6, len(vertices)), np.float32)  # x, y, z and red, green, blue
         self._fill(vertices, colors)
-        self._injector = None if plain else injector_of(server)
+        self._injector = injector_of(server)
         faces = np.asarray(faces, np.uint32)
         self.mesh = server.scene.add_mesh_simple(name, self._vertices(), faces, color=color, **mesh)
         if self._injector is not None:

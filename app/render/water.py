@@ -40,7 +40,7 @@ class Water:
     drawn from the same buffers. With `faces`, (m, 3) indices into the rows * cols points, it is a mesh of any shape
     around the origin, drawn once, with radius length [m]; its points rest about `rest`, (rows * cols, 3) [m], which
     lies in rows of `columns` neighbours.
-    plain: draw without shaders, by viser's public API. Raises ValueError for an even number of tiles.
+    Raises ValueError for an even number of tiles.
     """
 
     def __init__(
@@ -56,7 +56,6 @@ class Water:
         rest: np.ndarray | None = None,
         columns: int = 1,
         material: Material | None = None,
-        plain: bool = False,
     ) -> None:
         if tiles < 1 or tiles % 2 == 0:
             raise argument_error("tiles", tiles, "an odd number")
@@ -85,7 +84,7 @@ class Water:
             name, points, self._faces, color=self._plain_color(), cast_shadow=False, receive_shadow=False
         )
         self._plain_meshes: dict[str, viser.MeshHandle] = {}
-        self._injector = None if plain else injector_of(server)
+        self._injector = injector_of(server)
         if self._injector is not None:
             add_data_mesh(server, f"{name}/water_rest", points)
             level = np.ascontiguousarray(rest[:rows, :cols])

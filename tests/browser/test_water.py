@@ -13,7 +13,7 @@ import pytest
 import viser
 from PIL import Image
 
-from app.render.injection import injector_of
+from app.render.injection import disable_shaders, injector_of
 from app.render.skies import set_sky
 from app.render.water import Water
 from tests.browser.conftest import NO_NOTES, new_page, vertices_of
@@ -233,7 +233,8 @@ def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, no_answer):
 
 
 def test_plain_water_sends_no_script(chromium, server):
-    water = make_water(server, plain=True)
+    disable_shaders(server)
+    water = make_water(server)
     page, errors = visit(chromium, server, drawn=False)
     # A script would come before it, and act with the next frames.
     assert wait(page, lambda: len(vertices_of(page, "/sea")) > 0)

@@ -2,48 +2,19 @@
 
 import itertools
 from collections.abc import Sequence
-from typing import Protocol
 
 from app.formats.formatting import number, time_step
+from app.scenes.race.entrants import Entrant, Result
 from app.scenes.springs.methods import method_name
 
 
-class Named(Protocol):
-    """Parts of a name; entrants and results have them."""
-
-    @property
-    def number(self) -> int:
-        """From 1."""
-        ...
-
-    @property
-    def integrator(self) -> str:
-        """Name of the method."""
-        ...
-
-    @property
-    def step(self) -> float:
-        """[s]."""
-        ...
-
-    @property
-    def stiffness(self) -> float:
-        """[N/m] of a link."""
-        ...
-
-    @property
-    def failure(self) -> str:
-        """Why the rope has stopped, or ""."""
-        ...
-
-
-def rope_name(rope: Named, stiffness_differs: bool) -> str:
+def rope_name(rope: Entrant | Result, stiffness_differs: bool) -> str:
     """A rope by number, method and step, and by its stiffness where the ropes differ in it."""
     words = f"{rope.number} {method_name(rope.integrator)}, {time_step(rope.step)}"
     return f"{words}, {number(rope.stiffness)} N/m" if stiffness_differs else words
 
 
-def rope_labels(ropes: Sequence[Named]) -> tuple[str, ...]:
+def rope_labels(ropes: Sequence[Entrant]) -> tuple[str, ...]:
     """The labels at the roots, short enough for small windows: numbers with all that differs, or why a rope stopped."""
     parts = [(method_name(rope.integrator), time_step(rope.step), f"{number(rope.stiffness)} N/m") for rope in ropes]
     differs = [len(set(column)) > 1 for column in zip(*parts, strict=True)]

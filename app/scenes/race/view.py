@@ -2,8 +2,7 @@
 
 import math
 import weakref
-from collections.abc import Callable
-from typing import Any, ClassVar, TypeAlias
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 import viser
@@ -104,19 +103,8 @@ def tube_vertices(points: np.ndarray, samples: int, radius: float) -> np.ndarray
 class RopesDrawing:
     """The handles of all ropes, made for their number and their points, then assigned to."""
 
-    def __init__(
-        self,
-        server: viser.ViserServer,
-        frame: RaceFrame,
-        row: float,
-        on_bead: Callable[[Any], Any],
-        on_tube: Callable[[Any], Any],
-    ) -> None:
-        """row: height [m] of a row of labels.
-
-        on_bead: called with viser's event for a bead; its instance is numbered through, rope after rope.
-        on_tube: called with viser's event for a tube.
-        """
+    def __init__(self, server: viser.ViserServer, frame: RaceFrame, row: float) -> None:
+        """row: height [m] of a row of labels."""
         count, n, _ = self.shape = frame.ropes.shape
         self.samples = max(1, RING_COUNT // (n - 1))
         faces = tube_faces((n - 1) * self.samples + 1, SIDES)
@@ -127,7 +115,6 @@ class RopesDrawing:
             for i, tube in enumerate(tubes)
         ]
         for tube in self.tubes:
-            tube.on_drag("left")(on_tube)
             add_contact_shadow(server, tube.name)
         each = len(tubes[0])
         self.references = scene.add_mesh_simple(
@@ -150,7 +137,6 @@ class RopesDrawing:
             batched_colors=bead_colours(count, n),
             lod="off",
         )
-        self.beads.on_drag("left")(on_bead)
         self.poles = scene.add_line_segments(
             "/race/poles",
             self.label_poles(frame, row),
@@ -251,7 +237,10 @@ class View(SpringView[Params, RaceFrame, RaceReadings]):
             self.ropes.remove()
             self.ropes = None
         if self.ropes is None:
-            self.ropes = RopesDrawing(self.server, frame, self.label_row, self.on_bead, self.on_surface)
+            self.ropes = RopesDrawing(self.server, frame, self.label_row)
+            self.ropes.beads.on_drag("left")(self.on_bead)  # beads are numbered through, rope after rope
+            for tube in self.ropes.tubes:
+                tube.on_drag("left")(self.on_surface)
             for client in tuple(self.dark):
                 self.ropes.set_dark(client, True)
         self.ropes.show(frame, self.label_row)

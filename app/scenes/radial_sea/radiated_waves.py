@@ -17,7 +17,6 @@ class RadiatedWaves:
     def __init__(self) -> None:
         self.sea = Sea(size=SIZE, length=LENGTH, wind_speed=0.0, choppiness=0.0)
         self.sea.ripples.leak = LEAK
-        self.pressed = 0
 
     def press(self, t: float, points: np.ndarray, widths: np.ndarray, impulses: np.ndarray, density: float) -> None:
         """At time t [s], bodies at points (n, 2) [m] of widths (n,) [m] have pressed with impulses (n,) [N s].
@@ -28,7 +27,6 @@ class RadiatedWaves:
         if not inside.any():
             return
         cell = LENGTH / SIZE
-        self.pressed += int(inside.sum())
         spread = np.maximum(0.5 * widths[inside], 1.6 * cell)
         self.sea.ripples.add(
             t, points[inside] + 0.5 * LENGTH, spread, impulse=impulses[inside] * self.sea.conditions.density / density

@@ -41,7 +41,6 @@ class NetScene(abc.ABC, Generic[P]):
         self.params = params
         self.plot_rows = PlotRows(columns)
         self.last_moments = LastMoments()
-        self.checks = 0  # of the stability, while the net moves
         self.reset()
 
     @property
@@ -152,7 +151,6 @@ class NetScene(abc.ABC, Generic[P]):
         self.net = net
         self.moved(good, steps, found)
         if self.state.t - self.assessed_at >= self.ASSESSMENT_INTERVAL and self.has_news():
-            self.checks += 1
             self.assess_stability()
         if self.plot_rows.is_due(self.state.t):
             self.add_plot_row()

@@ -41,9 +41,9 @@ def test_rings_are_where_the_bodies_pressed_and_fade_to_the_edge_of_their_square
 def test_a_press_beyond_the_square_makes_no_rings():
     rings = RadiatedWaves()
     rings.press(0.0, np.array([[WIDEST * LENGTH + 0.1, 0.0]]), np.array([2.0]), np.array([4000.0]), 1000.0)
-    assert rings.pressed == 0
+    assert not rings.sea.ripples.alive
     rings.press(0.0, np.array([[WIDEST * LENGTH - 0.1, 0.0]]), np.array([2.0]), np.array([4000.0]), 1000.0)
-    assert rings.pressed == 1
+    assert rings.sea.ripples.alive
 
 
 def test_a_lighter_fluid_moves_by_more():

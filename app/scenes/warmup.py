@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable
 
 from app.messages import BaseParams
 from app.scenes import scene_named, view_named
-from app.scenes.contract import Pieces
 from sim.jit import ROOT, is_kept, keep, reachable_hash
 
 EVERYTHING = "everything"  # stands for all pieces of a scene, so that a later start need not ask it for them
@@ -30,28 +29,13 @@ def is_marked(name: str, piece: str, *, drawn: bool) -> bool:
     return is_kept(mark_of(name, piece, drawn=drawn))
 
 
-def scene_pieces(name: str) -> Pieces:
-    """The pieces of a scene without its drawing that are compiled ahead."""
-    return scene_named(name).warm_up()
-
-
-def pieces_on_use(name: str) -> Pieces:
-    """Those that are compiled when parameters first need them."""
-    return scene_named(name).warm_up_on_use()
-
-
-def drawing_pieces(name: str) -> Pieces:
-    """The pieces of a scene's drawing; imports viser."""
-    return view_named(name).WARM_UP
-
-
 def all_pieces(name: str) -> tuple[tuple[str, bool], ...]:
     """(piece, whether it is of the drawing) of a scene, those of the drawing last.
 
     None of these takes long: where two processes share the pieces, both come to their end at about the same time.
     """
-    drawing = ((piece, True) for piece in drawing_pieces(name))
-    return *((piece, False) for piece in scene_pieces(name)), *drawing
+    drawing = ((piece, True) for piece in view_named(name).WARM_UP)
+    return *((piece, False) for piece in scene_named(name).warm_up()), *drawing
 
 
 def missing(name: str, params: BaseParams | None = None) -> tuple[tuple[str, bool], ...]:
@@ -66,25 +50,26 @@ def missing(name: str, params: BaseParams | None = None) -> tuple[tuple[str, boo
     ahead = () if is_marked(name, EVERYTHING, drawn=True) else all_pieces(name)
     wanted = [(piece, drawn) for piece, drawn in ahead if drawn or needed is None or piece in needed]
     if needed is not None:
-        wanted = [(piece, False) for piece in pieces_on_use(name) if piece in needed] + wanted
+        wanted = [(piece, False) for piece in scene_named(name).warm_up_on_use() if piece in needed] + wanted
     return tuple((piece, drawn) for piece, drawn in wanted if not is_marked(name, piece, drawn=drawn))
 
 
 def compile_piece(name: str, piece: str, *, drawn: bool) -> None:
     """Compile one piece, and remember it."""
+    kind = scene_named(name)
     # A compiler makes many objects that stay: looking through all of them again and again takes a fifth of the time.
     was_enabled = gc.isenabled()
     gc.disable()
     try:
-        pieces = drawing_pieces(name) if drawn else {**pieces_on_use(name), **scene_pieces(name)}
+        pieces = view_named(name).WARM_UP if drawn else {**kind.warm_up_on_use(), **kind.warm_up()}
         pieces[piece]()
     finally:
         if was_enabled:
             gc.enable()
     keep(mark_of(name, piece, drawn=drawn))
     # The drawing, and with it viser, is asked only where all else is compiled.
-    done = all(is_marked(name, other, drawn=False) for other in scene_pieces(name))
-    if done and all(is_marked(name, other, drawn=True) for other in drawing_pieces(name)):
+    done = all(is_marked(name, other, drawn=False) for other in kind.warm_up())
+    if done and all(is_marked(name, other, drawn=True) for other in view_named(name).WARM_UP):
         keep(mark_of(name, EVERYTHING, drawn=True))
 
 
@@ -104,7 +89,7 @@ def compile_here(name: str, pieces: Iterable[tuple[str, bool]], show: Callable[[
 
 def prepare(name: str, *, drawn: bool = True) -> None:
     """Compile the kernels of a scene that are not compiled yet. drawn: those of its drawing, too."""
-    pieces = all_pieces(name) if drawn else tuple((piece, False) for piece in scene_pieces(name))
+    pieces = all_pieces(name) if drawn else tuple((piece, False) for piece in scene_named(name).warm_up())
     todo = [(piece, of_drawing) for piece, of_drawing in pieces if not is_marked(name, piece, drawn=of_drawing)]
     if todo:
         compile_here(name, todo, lambda text: None)

@@ -21,6 +21,7 @@ from app.bench.labs import connected
 STATUS = re.compile(r'data-state="(\w+)".*? t = ([\d.]+) s')
 STIFFNESS = "Stiffness [N/m]"
 TASKS = ("3.2-1", "3.2-2", "3.2-3", "3.3-1")  # of the rope
+SHADED = "/rope"  # node that a page draws with its shader, and says so: it is sent no vertices of its own
 PAUSE = (1.0, 5.0)  # [s] between two actions
 ANSWER_LIMIT = 30.0  # [s] after which an action counts as not answered
 SPRING_FORCE = """# version {number}
@@ -72,8 +73,9 @@ class Pupil:
             reading = asyncio.ensure_future(self.read(socket))
             try:
                 async with asyncio.timeout(ANSWER_LIMIT):
-                    while not {"Play or pause", STIFFNESS, "From the page", "Task"} <= self.controls.keys():
+                    while not {"Play or pause", STIFFNESS, "From the page", "Task", "Shaders"} <= self.controls.keys():
                         await self.hear()
+                await self.send(socket, "Shaders", f"pupil\n{SHADED}")
                 yield socket
             finally:
                 reading.cancel()

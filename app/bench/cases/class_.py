@@ -1,7 +1,7 @@
 """A class on one machine: a lab for each student, with a client that plays a lesson on the rope.
 
-The clients share a separate process, and its processor time is not counted. Kernels are compiled before the first
-student arrives; the others follow one by one.
+The clients share a separate process, and the table gives their processor time apart: those of a real class run on the
+students' machines. Kernels are compiled before the first student arrives; the others follow one by one.
 """
 
 import asyncio
@@ -81,7 +81,7 @@ def rows(quick: bool = False, students: int | None = None) -> list[dict[str, Any
         before = [usage(pid) for pid, _ in labs]
         time.sleep(0.5 * lesson)
         after = [usage(pid) for pid, _ in labs]
-        results = playing.result()
+        results, of_clients = playing.result()
     return [
         {"what": f"{count} students: command to address [s]", **spread(starts)},
         *(answer_row(action, results) for action in ACTIONS),
@@ -91,6 +91,7 @@ def rows(quick: bool = False, students: int | None = None) -> list[dict[str, Any
         {"what": "processor of a lab [% of a core]", **spread(
             [100.0 * (b.seconds - a.seconds) / (b.at - a.at) for a, b in zip(before, after, strict=True)]
         )},
+        {"what": "processor of a client [% of a core]", "median": 100.0 * of_clients / count},
         {"what": "private memory of a lab [MB]", **spread([u.private for u in after])},
         {"what": "memory of all labs [MB]", "median": sum(u.proportional for u in after)},
         {"what": "processes waiting (load)", "median": os.getloadavg()[0]},
@@ -108,15 +109,20 @@ def lab(folder: Path) -> AbstractContextManager[tuple[int, int]]:
     return served("lab", str(folder), "--resume", environment=data)
 
 
-def play(ports: Sequence[int], folders: Sequence[Path], lesson: float) -> list[Result]:
-    """Play a lesson with one client for each lab; runs in a separate process."""
+def play(ports: Sequence[int], folders: Sequence[Path], lesson: float) -> tuple[list[Result], float]:
+    """Play a lesson with one client for each lab; runs in a separate process.
+
+    Returns the results, and the fraction of a core that all clients took.
+    """
+    start, spent = time.monotonic(), time.process_time()
 
     async def all_of_them() -> list[Result]:
         pupils = [Pupil(port, folder, seed) for seed, (port, folder) in enumerate(zip(ports, folders, strict=True))]
         await asyncio.gather(*(pupil.attend(lesson) for pupil in pupils))
         return [result_of(pupil) for pupil in pupils]
 
-    return asyncio.run(all_of_them())
+    results = asyncio.run(all_of_them())
+    return results, (time.process_time() - spent) / (time.monotonic() - start)
 
 
 def result_of(pupil: Pupil) -> Result:

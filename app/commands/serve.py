@@ -94,7 +94,8 @@ def serve_lab(
             workbook=workbook or Workbook(load_tasks(with_checks=False)),
         )  # fmt: skip
     except OSError as error:
-        print(f"springtide: cannot serve on {host}:{port}: {error.strerror or error}; try --port 0", file=sys.stderr)
+        remedy = "--port 0" if port else "--host 127.0.0.1"
+        print(f"springtide: cannot serve on {host}:{port}: {error.strerror or error}; try {remedy}", file=sys.stderr)
         return 1
     done, keeper = threading.Event(), Keeper(viewer)
     before = signal.getsignal(signal.SIGINT)

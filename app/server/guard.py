@@ -373,9 +373,7 @@ def quiet() -> Generator[None]:
 
 
 def check_port(host: str, port: int) -> None:
-    """Raise OSError where `port` cannot be bound: viser would silently take the next one."""
-    if port == 0:
-        return
+    """Raise OSError where it cannot be bound: viser would take the next port, or wait for the address forever."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     with socket.socket(family, socket.SOCK_STREAM) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -241,3 +241,9 @@ def test_a_busy_port_is_an_error_not_another_port() -> None:
         taken.listen()
         with pytest.raises(OSError, match=r"[Aa]ddress"):
             open_server("127.0.0.1", taken.getsockname()[1])
+
+
+@pytest.mark.timeout(20)
+def test_an_address_of_another_machine_is_an_error_at_once() -> None:
+    with pytest.raises(OSError, match=r"[Aa]ddress"):
+        open_server("192.0.2.1", 0)  # of RFC 5737: nobody has it

@@ -197,7 +197,7 @@ def add_lab(lab: argparse.ArgumentParser) -> None:
         "`springtide lab DIR` opens the scenes with the functions in that folder, live; "
         "`springtide lab class/*` shows the teacher of a class who is at which task."
     )
-    live = commands.add_parser(LIVE)
+    live = commands.add_parser(LIVE, prog=lab.prog)
     made = "a folder that `springtide lab new` has made; several: those of a class"
     live.add_argument("folders", type=Path, nargs="+", metavar="DIR", help=made)
     add_serving(live)

@@ -1,4 +1,4 @@
-"""Checks of the files that a command is to write, made before any work."""
+"""Checks of the files and folders that a command is to write, made before any work."""
 
 import os
 from pathlib import Path
@@ -28,3 +28,13 @@ def check_out_file(option: str, path: Path, *names: str) -> None:
         raise argument_error(option, str(path), f"a file that can be written ({error.strerror})") from None
     except UnicodeError:
         raise argument_error(option, str(path), "a name that the file system can store") from None
+
+
+def make_out_folder(option: str, path: Path | None) -> None:
+    """Make the folder that an option names, if it names one; raises ValueError where it cannot be made."""
+    if path is None:
+        return
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise argument_error(option, str(path), f"a folder that can be written ({error.strerror})") from None

@@ -13,6 +13,7 @@ from typing import Any
 
 from app.bench import in_checkout, places
 from app.experiments import tables
+from app.files import make_out_folder
 from app.formats import text_tables
 from sim.files import replacing
 from sim.parameters import choice_error
@@ -54,7 +55,7 @@ def run(
     measure_peers = None if peers is None else of_checkout("--peers", "command").run
     if students is not None and "class" not in names:
         raise argument_error("--students", students, "a number together with the benchmark class")
-    tables.make_folder(out)
+    make_out_folder("--out", out)
     print(tables.machine())
     for name in (names or known) if not peers else ():
         case = known[name]

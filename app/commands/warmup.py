@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rich import get_console
 
+from app.files import make_out_folder
 from app.scenes import NAMES
 from app.scenes.warmup import all_pieces, compile_here
 from sim.cache import SHARED_VARIABLE, level_environment
@@ -29,10 +30,10 @@ def warm_up_into(folder: Path, level: str) -> int:
 
     level: of processors; "" for this processor. Runs in a separate process, as numba reads folder and level at import.
 
-    Raises ValueError where this processor does not have the level, and OSError where the folder cannot be made.
+    Raises ValueError where this processor does not have the level, or the folder cannot be made.
     """
     processor = level_environment(level) if level else {}
-    folder.mkdir(parents=True, exist_ok=True)
+    make_out_folder("--into", folder)
     # Nothing is taken from other folders: this one is to have all.
     environment = {**os.environ, **processor, "SPRINGTIDE_CACHE": str(folder.resolve()), SHARED_VARIABLE: ""}
     return subprocess.run([sys.executable, "-m", "app", "warmup"], env=environment, check=False).returncode

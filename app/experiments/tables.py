@@ -13,7 +13,6 @@ import numpy as np
 from app.formats.text_tables import Rows, columns
 from app.scenes.charts import PALETTE
 from sim.files import replacing
-from sim.validation import argument_error
 
 # Curves that share a colour differ in shape.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*", "<", ">", "h", "p", "d")
@@ -34,16 +33,6 @@ def machine() -> str:
         except PackageNotFoundError:
             versions.append(f"{package} from its sources")
     return f"{name}, {os.cpu_count()} cores; Python {platform.python_version()}, " + ", ".join(versions)
-
-
-def make_folder(out: Path | None) -> None:
-    """Make the folder for results, if one is asked for; raises ValueError where it cannot be made."""
-    if out is None:
-        return
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as problem:
-        raise argument_error("--out", str(out), f"a folder that can be written ({problem.strerror})") from None
 
 
 def save_table(rows: Rows, path: Path) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from app.experiments import tables
+from app.files import make_out_folder
 from app.formats import text_tables
 from app.stability import drift, figures, linear, rope
 from sim.files import replacing
@@ -23,7 +24,7 @@ def run(quick: bool = False, out: Path | None = None, workers: int = 0) -> int:
 
     Returns the exit status, 0. Raises ValueError for an `out` that is not a folder.
     """
-    tables.make_folder(out)
+    make_out_folder("--out", out)
     print(tables.machine())
     for name, title, part, details, figure in PARTS:
         found = part.measure(quick=quick, workers=workers)

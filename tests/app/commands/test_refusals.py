@@ -52,6 +52,7 @@ REFUSED: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
     (("beside", "planet"), ("did you mean planets?",)),
     (("bench", "ropes"), ("did you mean rope",)),
     (("stability", "--quick", "--out", os.path.join(os.devnull, "inner")), ("--out",)),
+    (("warmup", "--into", os.path.join(os.devnull, "inner")), ("--into",)),
 ]
 PRESETS = [
     b"{", b"[]", b"[" * 100_000, b"\x00", b"\xff\xfe", b'{"parameters": {"points": 1}}',

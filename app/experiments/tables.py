@@ -63,6 +63,14 @@ def front(rows: Rows) -> list[str]:
     return list(dict.fromkeys(ahead))
 
 
+def edges(values: np.ndarray, *, logarithmic: bool = False) -> np.ndarray:
+    """Edges (n + 1,) of the cells of `values` (n,), halfway between them or between their logarithms."""
+    v = np.log(values) if logarithmic else np.asarray(values, float)
+    middle = 0.5 * (v[1:] + v[:-1])
+    found = np.concatenate([[2 * v[0] - middle[0]], middle, [2 * v[-1] - middle[-1]]])
+    return np.exp(found) if logarithmic else found
+
+
 def slope_mark(axes: Any, x: float, y: float, order: int) -> None:
     """A small triangle with the slope of a method of `order`, its upper left corner at (x, y)."""
     right, low = 2.0 * x, y / 2.0**order

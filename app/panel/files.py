@@ -42,6 +42,7 @@ PAGE_BUTTONS = (
     '<button type="button" data-springtide-charts>Plots as PNG</button></div>'
 )
 
+Make = Callable[[viser.ClientHandle], tuple[str, bytes]]  # name and content of a file
 MakeReplay = Callable[[AnyKind, Sequence[Kept], Plotted], str]
 
 
@@ -75,21 +76,24 @@ class Files:
         client = event.client
         if client is None:
             return
-        make = {
-            PLOTS: self.plots_file,
-            CHARTS: self.charts_file,
+        panel, kind = self.panel, self.panel.kind
+        makers: dict[str, Make] = {
+            PLOTS: lambda _: (file_name(panel, ".csv"), plots_csv(kind, panel.plotted()).encode()),
+            CHARTS: lambda _: (file_name(panel, ".svg"), plots_svg(kind, panel.plotted()).encode()),
             PICTURE: self.picture_file,
-            REPLAY: self.replay_file,
-            ARRAYS: self.arrays_file,
+            REPLAY: lambda _: self.replay_file(),
+            ARRAYS: lambda _: (file_name(panel, ".npz"), recording_npz(kind, self.recorder.kept())),
             FILM: self.film_file,
-        }[event.target.value]
+        }
         if not self.busy.acquire(blocking=False):
             self.say("Another file is still being made.")
             return
         self.say(f"{event.target.value}: being made …")
-        threading.Thread(target=self.send, args=(make, client), name="file for the page", daemon=True).start()
+        threading.Thread(
+            target=self.send, args=(makers[event.target.value], client), name="file for the page", daemon=True
+        ).start()
 
-    def send(self, make: Callable[[viser.ClientHandle], tuple[str, bytes]], client: viser.ClientHandle) -> None:
+    def send(self, make: Make, client: viser.ClientHandle) -> None:
         """Make a file and send it; whatever goes wrong is said in the folder."""
         try:
             name, content = make(client)
@@ -103,25 +107,10 @@ class Files:
         finally:
             self.busy.release()
 
-    def plots_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
-        """All plots as CSV with names and units. Raises ValueError where there are none."""
-        kind = self.panel.kind
-        return file_name(self.panel, ".csv"), plots_csv(kind, self.panel.plotted()).encode()
-
     def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """One browser's view, drawn again at the chosen size."""
         picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
         return file_name(self.panel, ".png"), picture
-
-    def charts_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
-        """All plots as SVG. Raises ValueError where there are none."""
-        kind = self.panel.kind
-        return file_name(self.panel, ".svg"), plots_svg(kind, self.panel.plotted()).encode()
-
-    def arrays_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
-        """The arrays of the recording. Raises ValueError where nothing was recorded."""
-        kind = self.panel.kind
-        return file_name(self.panel, ".npz"), recording_npz(kind, self.recorder.kept())
 
     def film_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """A PNG of every frame of the recording from the one that is shown on, drawn by one browser, in a ZIP file.
@@ -162,7 +151,7 @@ class Files:
             time.sleep(0.01)
         self.panel.server.flush()
 
-    def replay_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+    def replay_file(self) -> tuple[str, bytes]:
         """The recording up to the moment that is shown as one page. Raises ValueError where nothing was recorded."""
         shown = self.recorder.shown
         frames = [kept for kept in self.recorder.kept() if shown is None or kept.time <= shown.time]

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from app.experiments.tables import MARKERS
+from app.experiments.tables import MARKERS, edges
 from app.render.colormap import OUTCOME_COLOURS
 from app.scenes.charts import PALETTE
 from app.stability.drift import Drift
@@ -33,14 +33,6 @@ def panels(count: int, title: str) -> tuple[Any, list[Any], list[Any]]:
         if index + across >= count:
             grid[index].tick_params(labelbottom=True)
     return figure, [grid[i] for i in range(count) if i + across >= count], grid[:count]
-
-
-def edges(centres: np.ndarray, *, logarithmic: bool = False) -> np.ndarray:
-    """Edges (n + 1,) of cells about `centres` (n,), evenly spaced in themselves or in their logarithms."""
-    c = np.log(centres) if logarithmic else centres
-    half = 0.5 * (c[1] - c[0])
-    e = np.concatenate([[c[0] - half], c + half])
-    return np.exp(e) if logarithmic else e
 
 
 def linear_figure(maps: list[LinearMap]) -> Any:

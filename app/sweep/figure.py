@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from app.experiments.tables import MARKERS
+from app.experiments.tables import MARKERS, edges
 from app.scenes.charts import PALETTE
 
 MAX_ROWS, MAX_COLUMNS, MAX_CURVES = 2, 4, 8
@@ -81,7 +81,7 @@ def draw_panel(axes: Any, values: Any, names: list[str], colours: Any, is_first:
         x, y = (values[n] for n in names)
         axes.set_facecolor(NO_VALUE_GREY)
         image = axes.pcolormesh(
-            edges(x.values), edges(y.values), values.transpose(names[1], names[0]).values,
+            *(edges(v.values, logarithmic=is_log(v)) for v in (x, y)), values.transpose(names[1], names[0]).values,
             cmap="viridis", norm=colours,
         )  # fmt: skip
         set_axis(axes, "x", x)
@@ -131,15 +131,6 @@ def set_axis(axes: Any, which: str, x: Any) -> None:
         getattr(axes, f"set_{which}scale")("log")
     elif x.dtype.kind == "i":
         getattr(axes, f"{which}axis").get_major_locator().set_params(integer=True)
-
-
-def edges(values: Any) -> Any:
-    """Edges (n + 1,) of the cells of `values` (n,), halfway between them; in logarithms over a large ratio."""
-    logs = values.min() > 0.0 and values.max() / values.min() >= MIN_LOG_RATIO
-    v = np.log(values) if logs else np.asarray(values, float)
-    middle = 0.5 * (v[1:] + v[:-1])
-    found = np.concatenate([[2 * v[0] - middle[0]], middle, [2 * v[-1] - middle[-1]]])
-    return np.exp(found) if logs else found
 
 
 def scale(values: Any) -> Any:

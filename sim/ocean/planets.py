@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from sim.validation import check_choice, check_number, check_positive
+from sim.validation import check_choice, check_number
 
 G = 6.67430e-11  # [m3/(kg s2)] CODATA 2018
 MAX_MASS = 1e9  # [Earth masses] hundreds of suns: no planet
@@ -53,10 +53,3 @@ def gravity_of(mass: float, rule: str = "same_radius") -> float:
     check_number("mass", mass, 0.0, MAX_MASS, "Earth masses", above=True)
     check_choice("rule", rule, RADIUS_RULES)
     return EARTH_GRAVITY * mass ** (1.0 - 2.0 * RADIUS_RULES[rule])
-
-
-def mass_for(gravity: float, rule: str = "same_density") -> float:
-    """Mass [Earth masses] that has this surface gravity [m/s2] under the rule. Errors as for `gravity_of`."""
-    check_positive("gravity", gravity, "m/s2")
-    check_choice("rule", rule, RADIUS_RULES)
-    return (gravity / EARTH_GRAVITY) ** (1.0 / (1.0 - 2.0 * RADIUS_RULES[rule]))

@@ -72,12 +72,6 @@ def buoyancy_flux(power: float) -> float:
     return GRAVITY * heat / (math.pi * AIR_DENSITY * AIR_HEAT * AIR_TEMPERATURE)
 
 
-def bent_rise(distance: ArrayLike, power: float, wind_speed: float) -> NDArray[np.float64]:
-    """Rise [m] at distances [m] downwind of a fire of this power [W]; wind [m/s], above 0."""
-    wind = check_positive("wind_speed", wind_speed, "m/s")
-    return 1.6 * buoyancy_flux(power) ** (1.0 / 3.0) * np.asarray(distance, float) ** (2.0 / 3.0) / wind
-
-
 def turbulent_radius(distance: ArrayLike) -> NDArray[np.float64]:
     """Radius [m] by which the wind's turbulence alone widens smoke at distances [m] downwind."""
     x = np.asarray(distance, float)

@@ -1,6 +1,6 @@
 """Makes assets/barge.nc: what Capytaine says of a barge of 60 m x 16 m x 6 m at a draft of 3 m, its own RAO included.
 
-python assets/make_barge.py    (needs the extras `bem` and `sweep`; some minutes on one core)
+python -m assets.make_barge    (needs the extras `bem` and `sweep`; some minutes on one core)
 
 The dataset is one that `capytaine.export_dataset` writes. Its centre of mass is 4 m over the keel, and its radii of
 gyration are 5.6 m and 15 m. The restoring forces are the closed forms of a box: Capytaine's sums over the middles of
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.floating.shape_panels import box
+from assets.shape_panels import box
 
 cpt: Any = importlib.import_module("capytaine")
 LENGTH, WIDTH, DRAFT, CENTRE = 60.0, 16.0, 3.0, 1.0  # [m], the last one over the waterline

@@ -1,6 +1,6 @@
 """Makes sim/floating/tables: linear coefficients of boxes, cylinders and spheres afloat in deep water.
 
-python assets/make_tables.py [box cylinder sphere]    (needs the extra `bem`; half an hour on one core)
+python -m assets.make_tables [box cylinder sphere]    (needs the extra `bem`; half an hour on one core)
 
 A box, or a cylinder with its axis upright, is to the water only its wet part. So the tables go by draft, and of boxes
 by the ratio of their sides. Lengths are in units of half the root of length times width of a box, and of the radius
@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
+from assets.shape_panels import PANELS
 from sim.floating.boundary_elements import FREQUENCIES, Solution, solve
-from sim.floating.shape_panels import PANELS
 
 TABLES = Path(__file__).parents[1] / "sim" / "floating" / "tables"
 ASPECTS = (1.0, 1.5, 2.5, 5.0)  # of the sides of a box

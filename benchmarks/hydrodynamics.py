@@ -10,6 +10,7 @@ from rich.progress import Progress
 
 from app.commands.hydrodynamics import require_capytaine
 from app.formats import text_tables
+from assets.shape_panels import panels_of_shape
 from benchmarks.linear_motion import GRAVITY, SEA_DENSITY, first_swings, linear_decay, linear_response
 from sim.floating import Body, Hull, MotionCoefficients, equilibrium_draft, make_fleet, step, still_water
 from sim.floating.boundary_elements import FREQUENCIES, make_table
@@ -64,7 +65,7 @@ def compare() -> int:
         task = progress.add_task("Boundary elements", total=len(COMPARED) * len(FREQUENCIES))
         for name, hull in COMPARED:
             draft = equilibrium_draft(hull, COMPARED_DENSITY, SEA_WATER)
-            table = make_table(hull, [draft], progress=lambda: progress.advance(task))
+            table = make_table(hull, [draft], lambda: progress.advance(task), panels_of_shape)
             rows += compared(name, hull, Hull.of(dataclasses.replace(hull.shape, table=table), hull))
     text_tables.show("", [shown(row) for row in rows])
     print("Periods: of small motions, undamped.")

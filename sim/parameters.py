@@ -184,12 +184,6 @@ def clamp_value(parameter: Parameter, value: object) -> Value:
     return as_float(bounded)
 
 
-def clamp(record: P) -> P:
-    """The same record with every parameter bounded: NaN and wrong types become defaults."""
-    fixed = {name: clamp_value(p, getattr(record, name)) for name, p in parameters_of(record).items()}
-    return dataclasses.replace(record, **fixed)  # type: ignore[type-var]
-
-
 def check_value(name: str, parameter: Parameter, value: object) -> Any:
     """`value` as the parameter's kind. Raises ValueError where `clamp_value` would have changed it."""
     if parameter.choices:

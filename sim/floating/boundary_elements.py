@@ -15,7 +15,6 @@ from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import DIRECTIONS, table_length
 from sim.floating.linear_table import LinearTable
 from sim.floating.panels import WANTED_PANELS, wet_panels
-from sim.floating.shape_panels import PANELS
 
 # Frequencies omega sqrt(length/g): densest about resonance, up to three times it
 FREQUENCIES = (
@@ -87,24 +86,25 @@ def solve(
     return Solution(np.array(added), np.array(damping), infinite, np.array(excitation))
 
 
+def panels_of(hull: Hull, draft: float) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and faces of the wet surface of a hull at a draft [m], over `table_length`, as `solve` takes them."""
+    panels = wet_panels(hull, draft, WANTED_PANELS) / table_length(hull)
+    corner = np.arange(3 * len(panels)).reshape(-1, 3)
+    return panels.reshape(-1, 3), np.column_stack([corner, corner[:, 2]])
+
+
 def make_table(
-    hull: Hull, drafts: Sequence[float], wanted_panels: int = WANTED_PANELS, progress: Callable[[], None] = lambda: None
+    hull: Hull,
+    drafts: Sequence[float],
+    progress: Callable[[], None] = lambda: None,
+    wet_surface: Callable[[Hull, float], tuple[np.ndarray, np.ndarray]] = panels_of,
 ) -> LinearTable:
     """The table of a hull at drafts (d,) [m], each less than its height; `progress` is called after each frequency.
 
-    A shipped shape has the panels of its committed table. Raises ValueError for a mesh of too many triangles,
-    ModuleNotFoundError without Capytaine.
+    Raises ValueError for a mesh of too many triangles, ModuleNotFoundError without Capytaine.
     """
     length = table_length(hull)
-    found = []
-    for draft in drafts:
-        if hull.shape.linear:
-            vertices, faces = PANELS[hull.shape.linear](float(hull.size[0] / hull.size[1]), draft / length)
-        else:
-            panels = wet_panels(hull, draft, wanted_panels) / length
-            corner = np.arange(3 * len(panels)).reshape(-1, 3)
-            vertices, faces = panels.reshape(-1, 3), np.column_stack([corner, corner[:, 2]])
-        found.append(solve(vertices, faces, DIRECTIONS, progress=progress))
+    found = [solve(*wet_surface(hull, draft), DIRECTIONS, progress=progress) for draft in drafts]
     stacked = {field: np.array([[getattr(one, field) for one in found]]) for field in Solution._fields}
     return LinearTable(
         aspect=np.ones(1), draft=np.array(drafts, float) / length, direction=DIRECTIONS,

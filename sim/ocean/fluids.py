@@ -134,8 +134,3 @@ def diffuse_reflectance(index: float) -> float:
     nodes, weights = np.polynomial.legendre.leggauss(64)
     angle = 0.25 * math.pi * (nodes + 1.0)
     return float((weights * 0.25 * math.pi * fresnel(angle, index).mean * np.sin(2.0 * angle)).sum())
-
-
-def brewster_angle(index: float) -> float:
-    """Angle [rad] at which p-polarised light is not reflected: arctan n."""
-    return math.atan(check_within("index", index, 1.0, 10.0))

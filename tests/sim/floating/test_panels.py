@@ -7,8 +7,8 @@ import types
 import numpy as np
 import pytest
 
+from assets.shape_panels import PANELS, clustered
 from sim.floating.boundary_elements import solve
-from sim.floating.shape_panels import PANELS, clustered
 
 VOLUMES = {
     "box": lambda draft: 4.0 * draft,

@@ -8,6 +8,9 @@ import math
 
 import numpy as np
 
+from sim.floating.hull import Hull
+from sim.floating.hydrodynamics import table_length
+
 
 def clustered(n: int) -> np.ndarray:
     """n + 1 numbers from 0 to 1, closer together towards 1, where a hull has its edge."""
@@ -81,3 +84,8 @@ def sphere(_: float, draft: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 PANELS = {"box": box, "cylinder": cylinder, "sphere": sphere}  # of sides (a box) and a draft
+
+
+def panels_of_shape(hull: Hull, draft: float) -> tuple[np.ndarray, np.ndarray]:
+    """The wet surface of a shipped shape at a draft [m]: the panels of its committed table."""
+    return PANELS[hull.shape.linear](float(hull.size[0] / hull.size[1]), draft / table_length(hull))

@@ -85,7 +85,7 @@ def commands(blocks: list[Block]) -> list[str]:
 
 def run(copy: Path, *arguments: str) -> str:
     """Run `python` with arguments in a copy; returns what it printed. Fails the test where the exit status is not 0."""
-    environment = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = {**os.environ, "PYTHONPATH": str(copy)}
     done = subprocess.run(
         [sys.executable, *arguments], cwd=copy, env=environment, capture_output=True, text=True, timeout=SECONDS
     )

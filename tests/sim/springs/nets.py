@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 
-from sim.springs import INTEGRATORS, Contact, Grab, Net, rope
+from sim.springs import INTEGRATORS, Contact, Grab, Net, cloth, rope
 from sim.springs.net import Family
 
 DAMPABLE = [name for name, record in INTEGRATORS.items() if not record.undamped_only]
@@ -66,3 +66,15 @@ def hairpin(contact_damping, damping=0.0, drag=0.0, moving=()) -> Net:
     net = rope(8, 1.75, 1.0, 400.0, damping, drag, 10.0, contact=Contact(300.0, contact_damping))
     other = (family._replace(stiffness=0.0, damping=0.0) for family in FAMILIES[1:])
     return dataclasses.replace(net, x0=x, families=(*net.families, *other), thickness=0.1, pin_paths=moving)
+
+
+def folded_sheet(stiffness) -> Net:
+    """A sheet; its last six rows come down on the rows before them, which are pinned."""
+    net = cloth(
+        20, 8, 0.4, 1.0, 0.3, 400.0, 100.0, 0.0, 0.02, pinned=[(i, j) for i in range(14) for j in range(8)],
+        contact=Contact(stiffness, 0.05), thickness=0.05,
+    )  # fmt: skip
+    x = net.x0.copy()
+    for i in range(14, 20):
+        x[1, i], x[2, i] = x[1, 13] - (i - 14.0) / 19, 0.055 + 0.02 * (i - 14)
+    return dataclasses.replace(net, x0=x)

@@ -18,6 +18,7 @@ from sim.springs.net import CLOTH, SKIN
 from sim.springs.state import State, advance, energy
 from sim.springs.statics import catenary, hanging_chain
 from tests.naive import acceleration
+from tests.sim.springs.nets import folded_sheet
 
 
 def forces_of(net, x=None, v=None):
@@ -329,14 +330,8 @@ def test_a_heap_that_fills_the_list_of_pairs_is_reported():
 
 
 def test_a_cloth_that_falls_onto_itself_does_not_pass_through():
-    """A sheet folded over itself: the upper half comes down on the lower and stays above it."""
-    net = cloth(20, 8, 0.4, 1.0, 0.3, 400.0, 100.0, 0.0, 0.02, pinned=[(i, j) for i in range(14) for j in range(8)],
-                contact=Contact(100.0, 0.05), thickness=0.05)  # fmt: skip
-    x = net.x0.copy()
-    spacing = 1.0 / 19
-    for i in range(14, 20):
-        x[1, i], x[2, i] = x[1, 13] - (i - 14.0) * spacing, 0.055 + 0.02 * (i - 14)
-    net = dataclasses.replace(net, x0=np.ascontiguousarray(x))
+    """The upper part comes down on the lower and stays above it."""
+    net = folded_sheet(100.0)
     for name in ("leapfrog", "rk4"):
         state = State.at_rest(net)
         advance(net, state, INTEGRATORS[name], 1 / 3000, 2000)

@@ -12,7 +12,7 @@ from sim.springs.integrators.implicit.conjugate_gradients import factorise, solv
 from sim.springs.state import State, advance, energy
 from sim.springs.statics import hanging_chain
 from tests.naive import tangent
-from tests.sim.springs.nets import touching_patch
+from tests.sim.springs.nets import folded_sheet, touching_patch
 
 IMPLICIT = [name for name, record in INTEGRATORS.items() if record.implicit]
 STIFF = rope(2, stiffness=1e12, damping=0.0, drag=0.0, gravity=0.0)  # omega = 1e6 1/s
@@ -241,18 +241,6 @@ def test_a_light_cloth_in_a_storm_is_held_in_long_steps(name):
     advance(STORM, short, INTEGRATORS["leapfrog"], 1 / 6000, 1200)
     assert np.abs(state.v).max() < 15.0
     assert np.linalg.norm(state.x - short.x, axis=0).max() < 0.15
-
-
-def folded_sheet(stiffness):
-    """A sheet; its last six rows come down on the rows before them, which are pinned."""
-    net = cloth(
-        20, 8, 0.4, 1.0, 0.3, 400.0, 100.0, 0.0, 0.02, pinned=[(i, j) for i in range(14) for j in range(8)],
-        contact=Contact(stiffness, 0.05), thickness=0.05,
-    )  # fmt: skip
-    x = net.x0.copy()
-    for i in range(14, 20):
-        x[1, i], x[2, i] = x[1, 13] - (i - 14.0) / 19, 0.055 + 0.02 * (i - 14)
-    return dataclasses.replace(net, x0=x)
 
 
 @pytest.mark.parametrize("stiffness", [300.0, 1000.0])

@@ -8,7 +8,7 @@ import pytest
 from scipy.special import ellipk
 
 from sim.jit import kernel
-from sim.springs import INTEGRATORS, LAWS, PinPath, State, advance, cloth, critical_step, rope, simulate
+from sim.springs import INTEGRATORS, LAWS, State, advance, cloth, critical_step, rope, simulate
 from sim.springs.analysis.growth import STABLE, outcome
 from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.analysis.strain import strain_range
@@ -23,7 +23,7 @@ from sim.springs.state import acceleration, energy
 from sim.springs.statics import equilibrium, hanging_chain
 from tests import naive
 from tests.sim.springs.reference import exact, integrated, slope
-from tests.sim.springs.test_energy import residual
+from tests.sim.springs.test_energy import PATH, residual
 from tests.sim.springs.test_forces import agrees, own_power, shaken
 from tests.sim.springs.test_stability import products
 
@@ -31,7 +31,6 @@ K, REST = 700.0, 0.4
 STRAINS = np.array([-0.7, -0.2, -1e-3, 1e-3, 0.05, 0.3, 1.5])
 KNOWN = ["spring", "slack", "stiffening"]  # laws that `tests.naive` has as well
 OTHERS = KNOWN[1:]
-PATH = PinPath(0.0, ((0.0, 0.0, 0.0), (0.5, 0.2, 0.3), (-0.5, 0.4, 1.0), (0.4, 0.5, -1.0)))
 
 
 @kernel

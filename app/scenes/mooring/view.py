@@ -40,7 +40,8 @@ WATER_STEP = 2.0**-7  # [m] to which points of the water are rounded for the pag
 SHALLOW_BED, DEEP_BED = (108, 132, 124), (22, 60, 80)  # sand in the light near the surface, and where little is left
 CELL_COLOUR, SECTION_COLOUR = (58, 92, 106), (36, 68, 84)
 LIGHT_REACH = 40.0  # [m] of water that leave 1/e of the light of the sun
-BED_ROWS, BED_STEP = 65, 2.0**-5  # points along a side of the bed, and [m] to which they are rounded for the page
+BED_ROWS, BED_STEP = 65, 2.0**-7  # points along a side of the bed, and [m] to which they are rounded for the page
+BED_SIDE = 1.004  # of the bed, over that of the water, so that no gap is seen below the walls
 BED_MOTTLE = 0.10  # standard deviation of the brightness of the sand
 BED_LIT = 0.35, 1.0  # distances from the middle, in half sides, at which the bed begins to be lost in the water, and is
 GRID_ABOVE = 0.0008  # [`extent`s] that the lines of the bed lie above it
@@ -214,7 +215,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
 
     def add_sand(self, frame: MooringFrame) -> ColouredMesh:
         """The bed: mottled sand, which is lost in the water with the distance from the middle."""
-        places = 0.5 * frame.side * square_points(BED_ROWS)
+        places = 0.5 * BED_SIDE * frame.side * square_points(BED_ROWS)
         depth = frame.params.depth
         return ColouredMesh(
             self.server, "/sand", np.column_stack([places, np.full(len(places), -depth)]), square_faces(BED_ROWS),

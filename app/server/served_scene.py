@@ -153,6 +153,7 @@ class ServedScene:
         for thread, longest in zip(self.threads, (MAX_JOIN_TIME, picture_time), strict=False):
             thread.join(longest)
         self.threads = []
+        self.transport.wait()
 
     def close(self, picture_time: float | None = None) -> None:
         """Stop the threads and release the resources of the scene, once."""

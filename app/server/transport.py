@@ -39,6 +39,8 @@ class Transport:
         self.sent: collections.Counter[str] = collections.Counter()
         self.counting_thread: int | None = None
         self.picture: list[object] = []  # messages of the picture that is being drawn
+        self.given = threading.Event()  # viser has the last picture
+        self.given.set()
         self.loop = server.get_event_loop()
         self.send_together = watch_messages(server, self.take)
 
@@ -63,10 +65,7 @@ class Transport:
 
     @contextlib.contextmanager
     def counted(self) -> Generator[None]:
-        """While open, messages of this thread are collected; at the end they are sent as one.
-
-        It has been when this ends: what is removed later must not come before it.
-        """
+        """While open, messages of this thread are collected; at the end they are sent as one: see `wait`."""
         self.counting_thread = threading.get_ident()
         try:
             yield
@@ -77,14 +76,20 @@ class Transport:
                 self.hand_over(picture)
 
     def hand_over(self, picture: Sequence[object]) -> None:
-        """Give viser the messages of a picture on its event loop, and wait until it has them."""
-        done = threading.Event()
+        """Give viser the messages of a picture on its event loop, after those of the picture before."""
+        self.wait()
+        given = self.given = threading.Event()
 
         def send_all() -> None:
             # It cannot be cut in two: the loop puts no message together while this runs on it.
             self.send_together(picture)
-            done.set()
+            given.set()
 
-        with contextlib.suppress(RuntimeError):  # the server has ended
+        try:
             self.loop.call_soon_threadsafe(send_all)
-            done.wait(MAX_WAIT)
+        except RuntimeError:  # the server has ended
+            given.set()
+
+    def wait(self) -> None:
+        """Wait until viser has the last picture: what another thread removes must not come before it."""
+        self.given.wait(MAX_WAIT)

@@ -91,3 +91,25 @@ def test_mesh_and_poses_of_a_picture_come_in_one_message() -> None:
     finally:
         ended.set()
         server.stop()
+
+
+def test_a_picture_is_not_waited_for_but_before_the_next_and_before_the_end() -> None:
+    server, _ = open_server("127.0.0.1", 0)
+    busy, loop, sent = threading.Event(), server.get_event_loop(), []
+    try:
+        transport = Transport(server)
+        label = server.scene.add_label("/label", "")
+        send, transport.send_together = transport.send_together, lambda picture: (sent.append(picture), send(picture))
+        loop.call_soon_threadsafe(busy.wait)
+        with transport.counted():
+            label.text = "first"
+        assert not sent
+        threading.Timer(0.05, busy.set).start()
+        with transport.counted():
+            label.text = "second"
+        assert sent
+        transport.wait()
+        assert len(sent) == 2
+    finally:
+        busy.set()
+        server.stop()

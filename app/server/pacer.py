@@ -4,7 +4,7 @@ from app.scenes.contract import FRAME_INTERVAL
 
 SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
 PART_GROWTH = 8  # ratio of two successive parts of a frame's steps while the cost of a step is not known
-MAX_CATCH_UP = 0.25  # [s] of wall time that one tick makes up for
+MAX_CATCH_UP = 0.5  # [s] of wall time that one tick makes up for: on a busy machine sleeps end late by tenths
 
 
 class FixedStep:

@@ -131,6 +131,11 @@ def test_steps_are_whole_and_owe_less_than_one() -> None:
     assert taken == 700 or (taken == 699 and pacer.debt < 0.01 * (1 + 1e-9))
 
 
+def test_a_sleep_that_ended_late_is_made_up_for_up_to_half_a_second() -> None:
+    assert FixedStep().steps(0.4, 1.0, 0.01) == (40, False)
+    assert FixedStep().steps(5.0, 1.0, 0.01) == (50, False)
+
+
 def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
     loop, scene = make(cost=0.02)  # a step of 10 ms takes 20 ms
     for _ in range(100):

@@ -214,15 +214,12 @@ class System:
                     share * drag * kind.drag_across, share * drag * math.pi * kind.drag_along, share * kind.diameter,
                 ))  # fmt: skip
                 mass[at[i]] += share * kind.mass
-        knots_at, knots = [], []
         for i, point in enumerate(self.points):
             mass[i] += point.mass
             if point.mass > 0.0 or point.volume > 0.0 or point.drag_area > 0.0:
-                displaced = self.density * point.volume
-                knots_at.append(i)
-                knots.append(
-                    (point.mass, displaced, point.added_mass * displaced, 0.5 * self.density * point.drag_area)
-                )
+                places.append((i, i, i))
+                added, drag = point.added_mass, 0.5 * self.density * point.drag_area
+                parts.append((point.mass, self.density * point.volume, added, added, drag, 0.0, 0.0))
         free = np.array([point.kind == "free" for point in self.points] + [True] * (nodes - len(self.points)))
         inverse = np.zeros(n)
         inverse[:nodes][free] = 1.0 / np.maximum(mass[:nodes][free], 1e-12)
@@ -244,8 +241,6 @@ class System:
             links=np.array(links, dtype=np.float64),
             places=np.array(places, dtype=np.int64),
             parts=np.array(parts, dtype=np.float64),
-            knots_at=np.array(knots_at, dtype=np.int64),
-            knots=np.array(knots, dtype=np.float64).reshape(-1, 4),
             bed=-float(self.depth),
             bed_stiffness=float(self.bed_stiffness),
             bed_damping=float(self.bed_damping),

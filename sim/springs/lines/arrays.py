@@ -2,7 +2,8 @@
 
 Nodes of all lines stand in one row of points; the last two points of a body are its displacement and its small
 rotation. A link joins any two nodes. What water does is summed over parts: an inner node of a line is one part, a free
-point where several lines end has one for each of them, half a segment long.
+point where several lines end has one for each of them, half a segment long. A mass or a float at a point is a part too:
+its neighbours are the point itself, so that it has no direction, and water acts on it alike in all.
 """
 
 from typing import Any, NamedTuple
@@ -12,8 +13,6 @@ from numpy.typing import NDArray
 
 # Columns of `parts`.
 MASS, DISPLACED, ACROSS, ALONG, DRAG_ACROSS, DRAG_ALONG, BED_AREA = range(7)
-# Columns of `knots`.
-KNOT_MASS, KNOT_DISPLACED, KNOT_ADDED, KNOT_DRAG = range(4)
 # Where a row of `bodies` holds its (6, 6) matrices, flat, and its place.
 INVERSE_MASS, BODY_MASS, STIFFNESS, DAMPING, PLACE = 0, 36, 72, 108, 144
 
@@ -32,8 +31,6 @@ class LineArrays(NamedTuple):
     links: NDArray[np.float64]  # (links, 3): rest length [m], stiffness [N/m], damping [N s/m]
     places: NDArray[np.int64]  # (parts, 3): node, and the nodes before and after it along the line
     parts: NDArray[np.float64]  # (parts, 7): mass, displaced mass [kg], added masses and drags over speed, bed area
-    knots_at: NDArray[np.int64]  # (knots,) nodes with a mass or a float of their own
-    knots: NDArray[np.float64]  # (knots, 4): mass, displaced mass, added mass [kg], drag over speed^2 [kg/m]
     bed: float  # height [m]
     bed_stiffness: float  # [Pa/m]
     bed_damping: float  # [Pa s/m]

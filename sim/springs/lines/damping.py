@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.lines.arrays import BED_AREA, DAMPING, DRAG_ACROSS, DRAG_ALONG, INVERSE_MASS, KNOT_DRAG
+from sim.springs.lines.arrays import BED_AREA, DAMPING, DRAG_ACROSS, DRAG_ALONG, INVERSE_MASS
 from sim.springs.lines.forces import (
     damping_of,
     lines_scratch_size,
@@ -135,23 +135,15 @@ def damp_body(v, s, p, b):
     set_carried(v, p)
 
 
-@kernel(allocates=False)
-def damp_knot(x, v, t, s, p, f, i):
-    """Drag on knot i."""
-    n, j = p.cols, p.knots_at[i]
-    u, w, c, _, _, _ = water_at(x, t, p, j)
-    drag_along(v, s, p, f, j, p.knots[i, KNOT_DRAG], u - v[j], w - v[n + j], c - v[2 * n + j])
-
-
 @kernel
 def damp_lines(x, v, t, s, decay, p, reverse):
     """All damping for a time s [s]; `reverse` runs through it backwards. Returns 0: there is no sphere to do work."""
     f = np.empty(lines_scratch_size(p))
     set_inverse_masses(x, p, f)
-    links, parts, knots, bodies = p.ends.shape[0], p.places.shape[0], p.knots_at.shape[0], p.bodies.shape[0]
-    for turn in range(5):
-        kind = 4 - turn if reverse else turn
-        count = links if kind == 0 else bodies if kind == 4 else knots if kind == 2 else parts
+    links, parts, bodies = p.ends.shape[0], p.places.shape[0], p.bodies.shape[0]
+    for turn in range(4):
+        kind = 3 - turn if reverse else turn
+        count = links if kind == 0 else bodies if kind == 3 else parts
         for step in range(count):
             i = count - 1 - step if reverse else step
             if kind == 0:
@@ -159,8 +151,6 @@ def damp_lines(x, v, t, s, decay, p, reverse):
             elif kind == 1:
                 damp_part(x, v, t, s, p, f, i, reverse)
             elif kind == 2:
-                damp_knot(x, v, t, s, p, f, i)
-            elif kind == 3:
                 damp_on_bed(x, v, s, p, f, i)
             else:
                 damp_body(v, s, p, i)

@@ -17,9 +17,6 @@ from sim.springs.lines.arrays import (
     DISPLACED,
     DRAG_ACROSS,
     DRAG_ALONG,
-    KNOT_DISPLACED,
-    KNOT_DRAG,
-    KNOT_MASS,
     MASS,
     STIFFNESS,
 )
@@ -83,10 +80,6 @@ def lines_energies(x, v, t, p):
             gravity += (p.parts[i, MASS] - p.parts[i, DISPLACED]) * p.gravity * x[2 * n + j]
             depth = max(0.0, p.bed - x[2 * n + j])
             contact += 0.5 * p.parts[i, BED_AREA] * p.bed_stiffness * depth * depth
-    for i in range(p.knots_at.shape[0]):
-        j = p.knots_at[i]
-        if is_moving(p, j):
-            gravity += (p.knots[i, KNOT_MASS] - p.knots[i, KNOT_DISPLACED]) * p.gravity * x[2 * n + j]
     return lines_kinetic_energy(v, p), elastic, gravity, contact
 
 
@@ -113,10 +106,6 @@ def stored_rate(x, v, a, p):
             depth = max(0.0, p.bed - x[2 * n + j])
             lift = p.parts[i, BED_AREA] * p.bed_stiffness * depth
             rate += ((p.parts[i, MASS] - p.parts[i, DISPLACED]) * p.gravity - lift) * v[2 * n + j]
-    for i in range(p.knots_at.shape[0]):
-        j = p.knots_at[i]
-        if is_moving(p, j):
-            rate += (p.knots[i, KNOT_MASS] - p.knots[i, KNOT_DISPLACED]) * p.gravity * v[2 * n + j]
     return rate
 
 
@@ -147,11 +136,6 @@ def lost_in_water(x, v, t, p):
             bx, by, bz = bed_force(x, v, p, i, j, p.parts[i, MASS], True)
             _, _, lift = bed_force(x, v, p, i, j, p.parts[i, MASS], False)
             lost -= bx * v[j] + by * v[n + j] + (bz - lift) * v[2 * n + j]
-    for i in range(p.knots_at.shape[0]):
-        j = p.knots_at[i]
-        u, w, s, _, _, _ = water_at(x, t, p, j)
-        u, w, s = u - v[j], w - v[n + j], s - v[2 * n + j]
-        lost += p.knots[i, KNOT_DRAG] * math.sqrt(u * u + w * w + s * s) ** 3
     for b in range(p.bodies.shape[0]):
         lost += 2.0 * half_form(p, b, DAMPING, six(v, n, p.nodes + 2 * b))
     return lost

@@ -26,10 +26,6 @@ from sim.springs.lines.arrays import (
     DRAG_ACROSS,
     DRAG_ALONG,
     INVERSE_MASS,
-    KNOT_ADDED,
-    KNOT_DISPLACED,
-    KNOT_DRAG,
-    KNOT_MASS,
     MASS,
     PLACE,
     STIFFNESS,
@@ -113,9 +109,6 @@ def set_inverse_masses(x, p, f):
         f[6 * n + j] += across + s * qy * qy
         f[7 * n + j] += s * qy * qz
         f[8 * n + j] += across + s * qz * qz
-    for i in range(p.knots_at.shape[0]):
-        for e in (3, 6, 8):
-            f[e * n + p.knots_at[i]] += p.knots[i, KNOT_ADDED]
     for j in range(p.nodes):
         if p.inverse_masses[j] == 0.0:
             for e in range(3, 9):
@@ -253,18 +246,6 @@ def add_water_and_bed(x, v, t, p, with_damping, f):
         f[j] += fx + bx
         f[n + j] += fy + by
         f[2 * n + j] += fz + bz
-    for i in range(p.knots_at.shape[0]):
-        j, md = p.knots_at[i], p.knots[i, KNOT_DISPLACED]
-        u, w, s, du, dw, ds = water_at(x, t, p, j)
-        c = md + p.knots[i, KNOT_ADDED]
-        fx, fy, fz = c * du, c * dw, c * ds - (p.knots[i, KNOT_MASS] - md) * p.gravity
-        if with_damping:
-            u, w, s = u - v[j], w - v[n + j], s - v[2 * n + j]
-            c = p.knots[i, KNOT_DRAG] * math.sqrt(u * u + w * w + s * s)
-            fx, fy, fz = fx + c * u, fy + c * w, fz + c * s
-        f[j] += fx
-        f[n + j] += fy
-        f[2 * n + j] += fz
 
 
 @kernel(noalias=True, allocates=False)

@@ -12,6 +12,9 @@ from sim.mooring import Line, LineType, Point, System, critical_step, simulate
 from sim.mooring.simulate import LineState, paths_of
 from sim.mooring.statics import Rest
 from sim.ocean.kinematics import Components
+from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.lines.damping import damp_lines
+from sim.springs.lines.energy import lines_energies, lines_power
 from tests.sim.mooring.systems import Shaking, chain_on_bed, floating_body, in_vacuum, taut_rope
 
 
@@ -39,6 +42,23 @@ def test_tension_of_a_shaken_line_is_that_of_moordyn(system, motion, period, mea
     found = harmonic(run.t, run.tension[1][:, -1], period)
     assert found[0] == pytest.approx(mean, rel=1e-3)
     assert found[1] == pytest.approx(first, rel=0.02)
+
+
+@pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, 0.6, 0.8)])
+def test_water_acts_on_a_float_by_its_volume_and_areas_alike_in_all_directions(way):
+    hair = LineType("hair", 1e-9, 1e-9, 1.0)  # slack, and nothing beside the float
+    points = [Point(1, "fixed", (0.0, 0.0, -50.0)), Point(2, "free", (0.0, 0.0, -45.0), 300.0, 0.6, 0.8, 0.5)]
+    p = System([Line(1, hair, 1, 2, 20.0, 1)], points, 50.0, bed_stiffness=0.0).kernel_view(1.0)
+    x, v, a = np.array([0.0, 0.0, 0.0, 0.0, -50.0, -45.0]), np.zeros(6), np.empty(6)
+    v[1::2] = 2.0 * np.array(way)
+    heavy, drag = 300.0 + 0.5 * 1025.0 * 0.6, 0.5 * 1025.0 * 0.8
+    lift = (1025.0 * 0.6 - 300.0) * 9.81
+    set_acceleration(x, v, 0.0, p, a)
+    assert a[1::2] == pytest.approx((np.array((0.0, 0.0, lift)) - drag * 2.0 * v[1::2]) / heavy, rel=1e-6)
+    assert lines_energies(x, v, 0.0, p)[2] == pytest.approx(45.0 * lift, rel=1e-6)
+    assert lines_power(x, v, 0.0, p, True)[0] == pytest.approx(drag * 2.0**3, rel=1e-6)
+    damp_lines(x, v, 0.0, 0.3, np.zeros((1, 1)), p, False)
+    assert v[1::2] == pytest.approx(2.0 * np.array(way) / (1.0 + drag * 2.0 * 0.3 / heavy), rel=1e-6)
 
 
 @pytest.mark.parametrize("integrator", ["leapfrog", "rk4"])

@@ -166,23 +166,10 @@ def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None) -> Any:
     return chosen(variants if lines is None else {**variants, LineArrays: lines})
 
 
-@kernel(inline=True)
-def one_mass(p, j):
-    return p.mass
-
-
-@kernel(inline=True)
-def own_mass(p, j):
-    return p.mass[j]
-
-
 # Mass of point j [kg]. A rope of equal masses has one number for all, which its kernels need not load.
-mass_at = by_net(rope=one_mass, grid=own_mass)
-
-
-@kernel(inline=True)
-def equal_link(p, q, i, j):
-    return 1.0
+mass_at = by_net(
+    rope=kernel(lambda p, j: p.mass, inline=True), grid=kernel(lambda p, j: p.mass[j], inline=True)
+)  # fmt: skip
 
 
 @kernel(inline=True)
@@ -193,7 +180,7 @@ def placed_link(p, q, i, j):
 
 
 # Stiffness and damping of the link of family q that begins at (i, j), over the family's.
-link_ratio = by_net(rope=equal_link, grid=placed_link)
+link_ratio = by_net(rope=kernel(lambda p, q, i, j: 1.0, inline=True), grid=placed_link)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -209,11 +209,6 @@ def contact_power(x, v, t, p, with_damping):
     return dissipated, work
 
 
-@kernel(inline=True)
-def no_wide_power(x, v, p, with_damping):
-    return 0.0, 0.0
-
-
 @kernel
 def wide_power(x, v, p, with_damping):
     """(dissipated, put in) [W] by air, and through the net's contact with itself."""
@@ -230,12 +225,7 @@ def wide_power(x, v, p, with_damping):
     return dissipated, work
 
 
-power_of_width = by_net(rope=no_wide_power, grid=wide_power)
-
-
-@kernel(inline=True)
-def no_wide_damping_work(x, v, p):
-    return 0.0
+power_of_width = by_net(rope=kernel(lambda x, v, p, with_damping: (0.0, 0.0), inline=True), grid=wide_power)
 
 
 @kernel
@@ -246,12 +236,7 @@ def wide_damping_work(x, v, p):
 
 
 # What moving pins put in [W] through the damping of the net's contact with itself.
-damping_work_of_width = by_net(rope=no_wide_damping_work, grid=wide_damping_work)
-
-
-@kernel(inline=True)
-def no_self_contact_energy(x, p):
-    return 0.0
+damping_work_of_width = by_net(rope=kernel(lambda x, v, p: 0.0, inline=True), grid=wide_damping_work)
 
 
 @kernel
@@ -259,7 +244,7 @@ def wide_self_contact_energy(x, p):
     return self_contact_energy(x, p) if p.thickness > 0.0 else 0.0
 
 
-energy_of_own_contacts = by_net(rope=no_self_contact_energy, grid=wide_self_contact_energy)
+energy_of_own_contacts = by_net(rope=kernel(lambda x, p: 0.0, inline=True), grid=wide_self_contact_energy)
 
 
 @kernel(allocates=False)

@@ -114,11 +114,6 @@ def grab_secant(dx, dy, dz, p):
 accelerate_links = by_net(rope=accelerate_rope, grid=accelerate_grid, cloth=accelerate_cloth)
 
 
-@kernel(inline=True)
-def add_no_wide_forces(x, v, p, with_damping, f, a):
-    """A rope has no cells that catch air, and does not push itself."""
-
-
 @kernel(noalias=True, inline=True)
 def add_wide_forces(x, v, p, with_damping, f, a):
     """Air, and the net against itself."""
@@ -128,7 +123,8 @@ def add_wide_forces(x, v, p, with_damping, f, a):
         add_self_contacts(x, v, p, with_damping, a)
 
 
-add_forces_of_width = by_net(rope=add_no_wide_forces, grid=add_wide_forces)
+# A rope has no cells that catch air, and does not push itself.
+add_forces_of_width = by_net(rope=kernel(lambda x, v, p, with_damping, f, a: None, inline=True), grid=add_wide_forces)
 
 
 @kernel(noalias=True, inline=True)
@@ -154,23 +150,11 @@ def accelerate_wide(x, v, t, p, with_damping, f, a):
 accelerate = by_net(rope=accelerate_inline, grid=accelerate_wide, lines=accelerate_lines)
 
 
-@kernel(inline=True)
-def rope_scratch_size(p):
-    return 3 * (p.cols + 1)
-
-
-@kernel(inline=True)
-def grid_scratch_size(p):
-    return 3 * (p.cols + 1) + wind_scratch_size(p)
-
-
-@kernel(inline=True)
-def whole_cloth_scratch_size(p):
-    return p.bands * cloth_scratch_size(p.cols) + wind_scratch_size(p)
-
-
 scratch_size = by_net(
-    rope=rope_scratch_size, grid=grid_scratch_size, cloth=whole_cloth_scratch_size, lines=lines_scratch_size
+    rope=kernel(lambda p: 3 * (p.cols + 1), inline=True),
+    grid=kernel(lambda p: 3 * (p.cols + 1) + wind_scratch_size(p), inline=True),
+    cloth=kernel(lambda p: p.bands * cloth_scratch_size(p.cols) + wind_scratch_size(p), inline=True),
+    lines=lines_scratch_size,
 )
 
 

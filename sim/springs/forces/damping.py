@@ -225,23 +225,11 @@ def make_net_decay(p, s):
     return decay
 
 
-@kernel(inline=True)
-def no_kept_shares(law, families):
-    return 0
-
-
-@kernel(inline=True)
-def all_kept_shares(law, families):
-    return families
-
-
 # Rows of `make_net_decay` that keep the shares of links whose damping comes and goes.
-kept_shares = by_damping(always=no_kept_shares, at_some_lengths=all_kept_shares)
-
-
-@kernel(inline=True)
-def keep_all_shares(law, x, decay, p):
-    """Every link is damped."""
+kept_shares = by_damping(
+    always=kernel(lambda law, families: 0, inline=True),
+    at_some_lengths=kernel(lambda law, families: families, inline=True),
+)
 
 
 @kernel(allocates=False)
@@ -259,7 +247,7 @@ def choose_shares(law, x, decay, p):
                 decay[q, a] = decay[families + 1 + q, a] if acts else 0.0
 
 
-set_shares = by_damping(always=keep_all_shares, at_some_lengths=choose_shares)
+set_shares = by_damping(always=kernel(lambda law, x, decay, p: None, inline=True), at_some_lengths=choose_shares)
 
 # Factors of `damp` for a time s [s].
 make_decay = by_net(rope=make_net_decay, grid=make_net_decay, lines=no_decay)
@@ -307,25 +295,9 @@ def damp_motion(x, v, decay, p, reverse):
             scale(v, keep, n + n, n)
 
 
-@kernel(inline=True)
-def never_pushes_itself(p):
-    return False
-
-
-@kernel(inline=True)
-def wide_pushes_itself(p):
-    return p.thickness > 0.0
-
-
-pushes_itself = by_net(rope=never_pushes_itself, grid=wide_pushes_itself, lines=never_pushes_itself)
-
-
-@kernel(inline=True)
-def damp_no_self_contacts(x, v, s, p, reverse):
-    """A rope does not push itself."""
-
-
-damp_own_contacts = by_net(rope=damp_no_self_contacts, grid=damp_self_contacts)
+never = kernel(lambda p: False, inline=True)
+pushes_itself = by_net(rope=never, grid=kernel(lambda p: p.thickness > 0.0, inline=True), lines=never)
+damp_own_contacts = by_net(rope=kernel(lambda x, v, s, p, reverse: None, inline=True), grid=damp_self_contacts)
 
 
 @kernel(allocates=False)
@@ -383,13 +355,8 @@ def rope_gaps_merge(p):
     return p.damped and not (p.axial or p.has_floor or p.has_sphere) and p.grabbed < 0
 
 
-@kernel(inline=True)
-def grid_gaps_merge(p):
-    return False
-
-
 # Whether `cross_gap` knows the net's damping.
-gaps_merge = by_net(rope=rope_gaps_merge, grid=grid_gaps_merge, lines=grid_gaps_merge)
+gaps_merge = by_net(rope=rope_gaps_merge, grid=never, lines=never)
 
 
 class Gap(NamedTuple):
@@ -494,11 +461,9 @@ def cross_rope_gap(v, a, s, gap, p, reverse):
             kick_back(gap.v, pad + np.uint64(e) * width, v, a, np.uint64(e) * n, n, s)
 
 
-@kernel(inline=True)
-def cross_grid_gap(v, a, s, gap, p, reverse):
-    """Nets of several rows take the parts one by one."""
-
+# Nets of several rows take the parts one by one.
+cross_no_gap = kernel(lambda v, a, s, gap, p, reverse: None, inline=True)
 
 # From kick to kick, each of a time s [s], past the damping that ends a step and that which begins the next, in the same
 # order: of a rope both are one pass over the points. a: accelerations (3 cols,) [m/s2]; gap: of `make_gap`.
-cross_gap = by_net(rope=cross_rope_gap, grid=cross_grid_gap, lines=cross_grid_gap)
+cross_gap = by_net(rope=cross_rope_gap, grid=cross_no_gap, lines=cross_no_gap)

@@ -138,9 +138,7 @@ def blow(x, v, s, p, f, a, middle, with_account, ledger):
     ledger[1] += work
 
 
-@kernel(noalias=True, inline=True)
-def drift_rope(x, v, h, p, f, a, middle, with_account, ledger):
-    add_scaled(x, h, v)
+drift_rope = kernel(lambda x, v, h, p, f, a, middle, with_account, ledger: add_scaled(x, h, v), inline=True)
 
 
 @kernel(noalias=True, inline=True)
@@ -156,15 +154,6 @@ def drift_wide(x, v, h, p, f, a, middle, with_account, ledger):
 # x += h v; where there is air, it pushes in the middle.
 drift = by_net(rope=drift_rope, grid=drift_wide, lines=drift_rope)
 
-
-@kernel(inline=True)
-def no_air_scratch_size(x, p):
-    return 0
-
-
-@kernel(inline=True)
-def wide_air_scratch_size(x, p):
-    return x.shape[0] if p.has_air else 0
-
-
-air_scratch_size = by_net(rope=no_air_scratch_size, grid=wide_air_scratch_size, lines=no_air_scratch_size)
+no_size = kernel(lambda x, p: 0, inline=True)
+wide_size = kernel(lambda x, p: x.shape[0] if p.has_air else 0, inline=True)
+air_scratch_size = by_net(rope=no_size, grid=wide_size, lines=no_size)

@@ -180,13 +180,8 @@ def is_bare_net(p):
     return not (p.has_floor or p.has_sphere) and p.grabbed < 0 and p.pins.shape[0] == 0
 
 
-@kernel(inline=True)
-def never_bare(p):
-    return False
-
-
 # Whether links, gravity and drag are all there is.
-is_bare = by_net(rope=is_bare_net, grid=is_bare_net, lines=never_bare)
+is_bare = by_net(rope=is_bare_net, grid=is_bare_net, lines=kernel(lambda p: False, inline=True))
 
 
 @kernel(noalias=True, inline=True)

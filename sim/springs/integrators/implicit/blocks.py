@@ -108,22 +108,11 @@ def add_pull_block(x, g, p, points):
     add_block(points, j, n, along, across, dx / r, dy / r, dz / r)
 
 
-@kernel(inline=True)
-def no_air_numbers(p):
-    return 0
+# A rope has no cells that catch air, and does not push itself.
+no_numbers = kernel(lambda p: 0, inline=True)
+set_no_blocks = kernel(lambda x, v, g, p, blocks: None, inline=True)
 
-
-@kernel(inline=True)
-def grid_air_numbers(p):
-    return 6 * p.rows * p.cols if p.has_air else 0
-
-
-air_numbers = by_net(rope=no_air_numbers, grid=grid_air_numbers)
-
-
-@kernel(inline=True)
-def set_no_air_blocks(x, v, g, p, air):
-    """A rope has no cells that catch air."""
+air_numbers = by_net(rope=no_numbers, grid=kernel(lambda p: 6 * p.rows * p.cols if p.has_air else 0, inline=True))
 
 
 @kernel(allocates=False)
@@ -154,7 +143,7 @@ def set_cell_blocks(x, v, g, p, air):
             add_block(air, a, n, along, across, ax / area, ay / area, az / area)
 
 
-set_air_blocks = by_net(rope=set_no_air_blocks, grid=set_cell_blocks)
+set_air_blocks = by_net(rope=set_no_blocks, grid=set_cell_blocks)
 
 
 @kernel(allocates=False)
@@ -196,22 +185,7 @@ def add_air_products(p, air, u, q):
                 q[2 * n + m] += fz
 
 
-@kernel(inline=True)
-def no_pair_numbers(p):
-    return 0
-
-
-@kernel(inline=True)
-def grid_pair_numbers(p):
-    return 3 * (p.pairs.shape[0] - 1)
-
-
-pair_numbers = by_net(rope=no_pair_numbers, grid=grid_pair_numbers)
-
-
-@kernel(inline=True)
-def set_no_pair_blocks(x, v, g, p, own):
-    """A rope does not push itself."""
+pair_numbers = by_net(rope=no_numbers, grid=kernel(lambda p: 3 * (p.pairs.shape[0] - 1), inline=True))
 
 
 @kernel(allocates=False)
@@ -231,7 +205,7 @@ def set_touching_blocks(x, v, g, p, own):
         own[3 * s], own[3 * s + 1], own[3 * s + 2] = q * dx, q * dy, q * dz
 
 
-set_pair_blocks = by_net(rope=set_no_pair_blocks, grid=set_touching_blocks)
+set_pair_blocks = by_net(rope=set_no_blocks, grid=set_touching_blocks)
 
 
 @kernel(allocates=False)

@@ -61,18 +61,11 @@ class WorkCount(NamedTuple):
     u: NDArray[np.float64]
 
 
-@kernel(inline=True)
-def rope_sizes(p, mean):
-    """Numbers of a link's block, rows of a rope's matrix, and numbers in a vector of conjugate gradients."""
-    return GENERAL if mean else SYMMETRIC, p.cols, 0
-
-
-@kernel(inline=True)
-def grid_sizes(p, mean):
-    return SYMMETRIC, 0, 3 * p.rows * p.cols
-
-
-solver_sizes = by_net(rope=rope_sizes, grid=grid_sizes)
+# Numbers of a link's block, rows of a rope's matrix, and numbers in a vector of conjugate gradients.
+solver_sizes = by_net(
+    rope=kernel(lambda p, mean: (GENERAL if mean else SYMMETRIC, p.cols, 0), inline=True),
+    grid=kernel(lambda p, mean: (SYMMETRIC, 0, 3 * p.rows * p.cols), inline=True),
+)
 
 
 @kernel
@@ -176,17 +169,9 @@ def correct_net(before, p, work):
 correct = by_net(rope=correct_rope, grid=correct_net)
 
 
-@kernel(inline=True)
-def rope_tolerance(p):
-    return SETTLED
-
-
-@kernel(inline=True)
-def net_tolerance(p):
-    return SETTLED_NET
-
-
-tolerance = by_net(rope=rope_tolerance, grid=net_tolerance)
+tolerance = by_net(
+    rope=kernel(lambda p: SETTLED, inline=True), grid=kernel(lambda p: SETTLED_NET, inline=True)
+)  # fmt: skip
 
 
 @kernel(inline=True)

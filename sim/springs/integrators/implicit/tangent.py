@@ -120,11 +120,6 @@ def add_pull(x, u, p, part, out):
     out[2 * n + g] += across * u[2 * n + g] - inward * dz
 
 
-@kernel(noalias=True, inline=True)
-def add_no_pairs(x, u, p, part, out):
-    """A rope does not push itself."""
-
-
 @kernel(noalias=True, allocates=False)
 def add_pairs(x, u, p, part, out):
     """The net's touching pairs: K = k [n n^T - depth/r (I - n n^T)] between the two, D = b n n^T."""
@@ -151,7 +146,8 @@ def add_pairs(x, u, p, part, out):
         out[2 * n + j] += fz
 
 
-add_own_contacts = by_net(rope=add_no_pairs, grid=add_pairs)
+# A rope does not push itself.
+add_own_contacts = by_net(rope=kernel(lambda x, u, p, part, out: None, inline=True), grid=add_pairs)
 
 
 @kernel(noalias=True, inline=True)

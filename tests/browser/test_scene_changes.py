@@ -1,5 +1,6 @@
 """Scenes that are opened after each other on one page look as in a fresh start: light, shadow, haze, floor, labels."""
 
+import contextlib
 import io
 import itertools
 from collections.abc import Callable, Iterator
@@ -70,39 +71,36 @@ class Page:
         return shots[-1]
 
 
-@pytest.fixture
-def new(open_tab: Callable[..., Tab]) -> Iterator[Callable[[str], Page]]:
-    """Opens pages with servers, and ends these after the test."""
-    pages: list[Page] = []
-
-    def make(flat: str) -> Page:
-        pages.append(Page(open_tab, flat))
-        return pages[-1]
-
-    yield make
-    for page in pages:
+@contextlib.contextmanager
+def opened(open_tab: Callable[..., Tab], flat: str, scene: str) -> Iterator[Page]:
+    """A page with a scene, which is drawn no longer than it is needed."""
+    page = Page(open_tab, flat)
+    try:
+        page.open(scene)
+        yield page
+    finally:
+        page.tab.page.close()
         page.lab.shut()
 
 
 @pytest.mark.timeout(1500)  # on two busy cores all orders take twelve minutes
 @pytest.mark.parametrize("walk", [SAMPLE, pytest.param(all_orders(), marks=pytest.mark.stress)], ids=["few", "all"])
-def test_a_scene_after_another_looks_as_in_a_fresh_start(new: Callable[[str], Page], walk: list[str]) -> None:
+def test_a_scene_after_another_looks_as_in_a_fresh_start(open_tab: Callable[..., Tab], walk: list[str]) -> None:
     """In the short walk no picture of water is looked at; without its shader, which takes long, it has one colour."""
     flat = WATER if walk == SAMPLE else ""
-    page, fresh, found = new(flat), dict[str, np.ndarray](), dict[tuple[str, str], float]()
-    page.open(walk[0])
-    for before, scene in itertools.pairwise(walk):
-        if scene not in fresh:
-            alone = new(flat)
-            alone.open(scene)
+    fresh, found = dict[str, np.ndarray](), dict[tuple[str, str], float]()
+    for scene in dict.fromkeys(walk[1:]):
+        with opened(open_tab, flat, scene) as alone:
             fresh[scene] = alone.picture()
-        page.open(scene)
-        found[before, scene] = float(np.abs(page.picture() - fresh[scene]).mean())
-    assert all(shown.std() > 5.0 for shown in fresh.values())  # there is something to see
-    assert {pair: value for pair, value in found.items() if value > MAX_DIFFERENCE} == {}
-    # The measure sees a missing shadow.
-    page.open("rope")
-    view = page.lab.view
-    assert isinstance(view, View)
-    view.surroundings.sun.cast_shadow = False
-    page.tab.wait(lambda: np.abs(page.picture() - fresh["rope"]).mean() > 2.0 * MAX_DIFFERENCE)
+    with opened(open_tab, flat, walk[0]) as page:
+        for before, scene in itertools.pairwise(walk):
+            page.open(scene)
+            found[before, scene] = float(np.abs(page.picture() - fresh[scene]).mean())
+        assert all(shown.std() > 5.0 for shown in fresh.values())  # there is something to see
+        assert {pair: value for pair, value in found.items() if value > MAX_DIFFERENCE} == {}
+        # The measure sees a missing shadow.
+        page.open("rope")
+        view = page.lab.view
+        assert isinstance(view, View)
+        view.surroundings.sun.cast_shadow = False
+        page.tab.wait(lambda: np.abs(page.picture() - fresh["rope"]).mean() > 2.0 * MAX_DIFFERENCE)

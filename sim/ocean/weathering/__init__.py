@@ -15,14 +15,6 @@ from sim.ocean.weathering.components import (
 from sim.ocean.weathering.spill import Spill, WeatheredOil, Weathering, weather
 
 __all__ = [
-    "OilRecord",
-    "PseudoComponents",
-    "Spill",
-    "WeatheredOil",
-    "Weathering",
-    "can_weather",
-    "oil_at",
-    "oil_records",
-    "pseudo_components",
-    "weather",
-]
+    "OilRecord", "PseudoComponents", "Spill", "WeatheredOil", "Weathering", "can_weather", "oil_at", "oil_records",
+    "pseudo_components", "weather",
+]  # fmt: skip

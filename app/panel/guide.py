@@ -169,6 +169,7 @@ class Guide:
         self.shown: Task | None = None
         self.questions: list[QuestionWidgets] = []
         workbook.go_to_scene(kind.name)
+        self.judged: tuple[object, ...] = ()  # what the signs before the titles come from
         self.titles = self.titles_now()
         self.controls = controls
         self.names: tuple[str, ...] = ()  # of the parameters that the task shows again
@@ -331,11 +332,14 @@ class Guide:
 
     def show_titles(self, task: Task) -> None:
         """Show the list of tasks, with this one chosen."""
-        titles = self.titles_now()
-        if titles != self.titles:
-            self.titles = titles
-            self.chooser.options = titles
-        self.chooser.value = titles[self.workbook.tasks.index(task)]
+        judged = self.workbook.revision, self.workbook.programs()
+        if judged != self.judged:  # all answers of all tasks are checked for the signs, which takes a millisecond
+            self.judged = judged
+            titles = self.titles_now()
+            if titles != self.titles:
+                self.titles = titles
+                self.chooser.options = titles
+        self.chooser.value = self.titles[self.workbook.tasks.index(task)]
 
     def statement(self, task: Task) -> Html:
         """The task, and where to look."""

@@ -329,6 +329,24 @@ def test_a_page_that_is_turned_in_the_middle_of_a_look_does_not_tick_off_a_step_
     assert watched == ["step_euler"]
 
 
+def test_the_signs_of_all_tasks_are_worked_out_where_an_answer_or_a_check_is_new(student: Viewer) -> None:
+    guide = show(student, "step_euler")
+    student.served.stop_threads()
+    states: dict[str, str] = {}
+    asked = []
+    guide.workbook.programs = lambda: dict(states)
+    guide.titles_now = lambda: asked.append(1) or guide.titles  # type: ignore[method-assign]
+    guide.update(student.loop.latest, True)
+    asked.clear()
+    for state, count in (({}, 0), ({"gravity": "right"}, 1), ({"gravity": "right"}, 1), ({"gravity": "wrong"}, 2)):
+        states = state
+        guide.update(student.loop.latest, True)
+        assert len(asked) == count
+    guide.workbook.revision += 1
+    guide.update(student.loop.latest, True)
+    assert len(asked) == 3
+
+
 def test_what_is_asked_for_in_the_middle_of_a_look_is_shown_by_the_next(
     student: Viewer, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -18,6 +18,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from app.experiments import tables
+from app.files import make_out_folder
 from app.formats import text_tables
 from sim.files import replacing
 from sim.validation import argument_error
@@ -146,7 +147,7 @@ def compare(
         raise ValueError("--compare: name the benchmarks to run")
     hashes = [commit_of(root, name) for name in commits]
     check_clean(root)
-    tables.make_folder(out)
+    make_out_folder("--out", out)
     print(tables.machine())
     runs: list[tuple[dict, dict]] = []
     with worktrees(root, hashes) as places, tempfile.TemporaryDirectory(prefix="springtide-") as results:

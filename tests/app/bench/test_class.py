@@ -60,7 +60,8 @@ def test_usage_counts_the_processes_of_a_lab() -> None:
         child.stdout.readline()
         after = CLASS.usage(os.getpid())
         child.kill()
-    assert 50.0 < after.private - before.private < 70.0
+    # Pages of Python's own code are not private any more where no other process had them.
+    assert 35.0 < after.private - before.private < 70.0
     end = time.thread_time() + 0.1
     while time.thread_time() < end:
         pass

@@ -40,13 +40,10 @@ def test_a_part_imports_nothing_that_it_does_not_need(parts: tuple[tuple[str, se
         assert not names & absent, part
 
 
-def test_a_served_rope_has_no_linear_algebra_of_scipy_which_can_still_be_had() -> None:
-    code = (
-        f"from app.commands.serve import load_numba; load_numba(); {SERVE}; "
-        "assert 'scipy.linalg' not in sys.modules; "
-        "import scipy.linalg; print(scipy.linalg.det([[2.0, 0.0], [0.0, 3.0]]))"
-    )
-    assert float(python(code)[-1]) == 6.0
+def test_kept_kernels_need_nothing_that_compiles() -> None:
+    code = f"{SERVE}; print(*sys.modules)"
+    python(code)  # compiles what is missing
+    assert not set(python(code)[-1].split()) & {"numba.np.arraymath", "numba.np.linalg", "scipy.linalg"}
 
 
 def test_a_headless_run_imports_no_viewer(tmp_path: Path) -> None:

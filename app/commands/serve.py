@@ -17,32 +17,12 @@ from app.scenes.setups import Setup, write_query
 from app.server.access import KEY_VARIABLE, Access, read_base_path, read_key, read_origin
 from app.server.guard import is_loopback
 from app.server.viewer import Viewer
-from sim.jit import kernel
 from sim.validation import argument_error
 
 if TYPE_CHECKING:
     from app.lab.session import Session
 
 WAIT_INTERVAL = 0.5  # [s] between two looks for Ctrl-C, which on Windows does not interrupt a wait
-
-
-@kernel
-def nothing() -> int:
-    """The shortest kernel."""
-    return 0
-
-
-def load_numba() -> None:
-    """Have numba load its inside, as the first call of a kernel would; before other threads run.
-
-    numba looks for BLAS and so imports scipy.linalg, a tenth of the start of a rope and 7 MB. No kernel calls BLAS.
-    """
-    if "scipy.linalg" not in sys.modules:
-        sys.modules["scipy.linalg"] = None  # type: ignore[assignment]  # to be found missing, in this moment only
-        try:
-            nothing()
-        finally:
-            del sys.modules["scipy.linalg"]
 
 
 def check_address(host: str, port: int) -> None:
@@ -87,7 +67,6 @@ def serve_lab(
     check_address(host, port)
     key = read_key(os.environ.pop(KEY_VARIABLE, ""))
     access = Access(read_base_path(base_path), tuple(read_origin(origin) for origin in origins), key)
-    load_numba()
     try:
         viewer = Viewer(
             host, port, plain=plain, compile_ahead=True, say=say, session=session, access=access,

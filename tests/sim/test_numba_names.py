@@ -14,7 +14,8 @@ PUBLIC = {"llvmlite", "llvmlite.binding", "numba", "numba.extending", "numba.typ
 
 # Each name that `sim/compiler.py` takes from numba's inside. Without the ones in QUIET compiling is only slower.
 NAMES = (
-    "CompileResultCacheImpl", "IndexDataCacheFile", "JITCodeLibrary", "Compiler", "CompileResult", "Flags",
+    "CompileResultCacheImpl", "FunctionCache", "IndexDataCacheFile", "JITCodeLibrary", "Compiler", "CompileResult",
+    "Flags", "rtsys", "initialize",
     "global_compiler_lock", "lookup_environment", "TargetOptions", "CPUDispatcher", "cpu_target", "event", "sigutils",
     "_load_index", "_index_path", "flush", "_values", "_codegen", "_data_layout", "_function_pass_manager",
     "_finalized", "_optimize_final_module", "_finalize_final_module", "_finalize_specific", "_ensure_finalized",

@@ -6,14 +6,13 @@ The process takes a folder and a function as a line of JSON, and answers with it
 import contextlib
 import dataclasses
 import json
-import os
 import subprocess
 import sys
 import threading
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from app.lab.process import NICENESS
+from app.lab.process import NICENESS, lower_priority
 from app.lab.program_check import Verdict, check_program
 from app.lab.runner import ROOT, RunError, Runner
 from app.lab.service import Service
@@ -118,8 +117,7 @@ def end(process: "subprocess.Popen[str]") -> None:
 
 def main() -> None:
     """The process."""
-    if hasattr(os, "nice"):
-        os.nice(NICENESS)
+    lower_priority(NICENESS)
     tasks = {task.name: task for task in load_tasks(*map(Path, sys.argv[2:]))}
     with contextlib.ExitStack() as opened, contextlib.suppress(BrokenPipeError):
         runner: Runner | None = None

@@ -24,7 +24,7 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 from app.lab.cloth_march import ClothFunctions, Sheet
-from app.lab.process import COMPILES, FORKS, NICENESS, TRACE_SIGNAL
+from app.lab.process import COMPILER_NICENESS, COMPILES, FORKS, NICENESS, TRACE_SIGNAL, lower_priority
 from app.lab.rope_march import Functions, Unfit, march, unpacked
 from app.lab.tabulate import Range, tabulate
 from app.lab.template import fork_on_request
@@ -72,6 +72,7 @@ class Worker:
         sys.stdout = sys.stderr = self.output
         self.modules: dict[str, ModuleType] = {}
         self.compiled: dict[str, Callable[..., Any]] = {}
+        self.was_tried = False  # a first march has come to an end, for which the student waits
 
     def enter(self, folder: Path) -> None:
         """Work in the student's folder."""
@@ -96,6 +97,9 @@ class Worker:
                 return
             except ValueError as error:  # the result is too long to send
                 send(self.outgoing, ["failed", "raised", f"the result has {error}", file, None])
+            if kind == "march" and not self.was_tried:
+                self.was_tried = True
+                lower_priority(NICENESS)
 
     def answer(self, kind: str, file: str, function: str, arguments: Any) -> list[Any]:
         """The message with the result of a call or a march."""
@@ -204,8 +208,7 @@ def main() -> None:
         faulthandler.register(TRACE_SIGNAL, file=trace, all_threads=False)
     worker = Worker()
     if compiles:
-        if hasattr(os, "nice"):
-            os.nice(NICENESS)  # compiling takes seconds, in which the scenes go on
+        lower_priority(COMPILER_NICENESS)
         importlib.import_module("app.lab.compiled")  # before the memory is limited
     limit_memory()
     worker.serve()

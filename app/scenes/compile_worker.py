@@ -10,16 +10,15 @@ import signal
 import sys
 import traceback
 
+from app.lab.process import NICENESS, lower_priority
 from app.scenes.warmup import compile_piece
-
-NICENESS = 10  # of what nobody waits for
 
 
 def main() -> None:
     """Compile the pieces that are asked for."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the lab, which then closes our input
-    if "--ahead" in sys.argv and hasattr(os, "nice"):
-        os.nice(NICENESS)
+    if "--ahead" in sys.argv:
+        lower_priority(NICENESS)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # whatever a library prints is no answer
     for line in sys.stdin:

@@ -42,7 +42,7 @@ from sim.parameters import effect_of_change
 PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody looks: a browser that comes, or a command, ends it
-LATE_FRAMES = 8.0  # ratio of the frame interval to the time by which sleeps end too late, at least
+LATE_FRAMES = 16.0  # ratio of the frame interval to the time by which sleeps end too late, at least
 MAX_FRAME_INTERVAL = 0.1  # [s] that a busy machine may lead to
 LATENESS_WEIGHT = 0.1  # of the last sleep in the mean
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands

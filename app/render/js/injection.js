@@ -115,7 +115,7 @@ function beforeRender(renderer, scene, camera) {
   }
   for (const shader of shaders) if (shader.removeUnused) shader.removeUnused();
   dressSmoke(scene);
-  darkenLabels(scene);
+  dressLabels(renderer, scene, camera);
   drawn = active.sort().join("\n");
   report();
 }

@@ -36,7 +36,7 @@ DARK = FloorColours((36, 42, 51), (48, 56, 67), (66, 76, 90))
 
 
 class SkyColours(NamedTuple):
-    """Of the sky behind rope, race and cloth, as in `js/page.css`: bright behind what hangs there, dark at the corners."""
+    """Of the sky behind rope, race and cloth, as in `js/page.css`: bright in the middle, dark at the corners."""
 
     middle: Colour
     around: Colour  # at AROUND
@@ -49,7 +49,7 @@ class SkyColours(NamedTuple):
         return f"radial-gradient(at {x} {y}, rgb{self.middle}, rgb{self.around} {100 * AROUND:.0f}%, rgb{self.corner})"
 
     def pixels(self, height: int, width: int) -> NDArray[np.float64]:
-        """(height, width, 3): the ellipse of the style sheet goes through the corners that are farthest from the middle."""
+        """(height, width, 3): the ellipse of the style sheet goes through the corners farthest from the middle."""
         x, y = ((np.arange(n) + 0.5) / n - part for n, part in zip((width, height), MIDDLE, strict=True))
         sides = [max(part, 1.0 - part) for part in MIDDLE]
         away = np.hypot(x / sides[0], (y / sides[1])[:, None]) / np.sqrt(2.0)

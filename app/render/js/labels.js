@@ -47,7 +47,8 @@ function darkenLabels(meshes) {
 
 // The rectangles of the visible labels with a size on the screen, in coordinates from -1 to 1 across the picture.
 function labelBoxes({ geometry, material }, camera) {
-  const { aLabelIndex, aRect, aParams } = geometry.attributes, { uLabelData, uFovScale, uViewportHeight } = material.uniforms;
+  const { aLabelIndex, aRect, aParams } = geometry.attributes;
+  const { uLabelData, uFovScale, uViewportHeight } = material.uniforms;
   const numbers = uLabelData.value.image.data, boxes = [];
   const [across, , , , , upwards] = camera.projectionMatrix.elements;
   for (let k = 0; k < geometry.instanceCount; k++) {
@@ -62,7 +63,8 @@ function labelBoxes({ geometry, material }, camera) {
     const unit = (aParams.getY(k) * uFovScale.value * 80) / uViewportHeight.value;
     const [left, bottom] = [x + unit * across * aRect.getX(k), y + unit * upwards * aRect.getY(k)];
     const [width, height] = [unit * across * aRect.getZ(k), unit * upwards * aRect.getW(k)];
-    boxes.push({ k, index, at, place, y, left, right: left + width, bottom, height, rows: aRect.getW(k), unit: unit * depth });
+    const rows = aRect.getW(k);
+    boxes.push({ k, index, at, place, y, left, right: left + width, bottom, height, rows, unit: unit * depth });
   }
   return boxes;
 }

@@ -19,6 +19,7 @@ Colour = tuple[int, int, int]  # sRGB, 0 to 255
 FLOOR = "/floor"
 SUN, SUN_INTENSITY = (-0.55, -0.6, 1.0), 1.9  # direction towards the lamp: low enough that folds shade each other
 FILL, FILL_INTENSITY = (0.5, 0.2, -1.0), 0.4  # from below
+FLOOR_REACH = 12.0  # [m] from the middle, where the floor is lost in the sky
 NO_FOG = 10.0, 50.0  # [m] where it would begin and be dense: viser's own numbers
 
 
@@ -35,20 +36,29 @@ DARK = FloorColours((36, 42, 51), (48, 56, 67), (66, 76, 90))
 
 
 class SkyColours(NamedTuple):
-    """Of the sky behind rope, race and cloth, as in `js/page.css`."""
+    """Of the sky behind rope, race and cloth, as in `js/page.css`: bright in the middle, dark at the corners."""
 
-    top: Colour
-    bottom: Colour  # from HORIZON on
+    middle: Colour
+    around: Colour  # at AROUND
+    corner: Colour
 
     @property
     def css(self) -> str:
         """As a background in a style sheet."""
-        return f"linear-gradient(rgb{self.top}, rgb{self.bottom} {100 * HORIZON:.0f}%)"
+        x, y = (f"{100 * part:.0f}%" for part in MIDDLE)
+        return f"radial-gradient(at {x} {y}, rgb{self.middle}, rgb{self.around} {100 * AROUND:.0f}%, rgb{self.corner})"
+
+    def pixels(self, height: int, width: int) -> NDArray[np.float64]:
+        """(height, width, 3): the ellipse of the style sheet goes through the corners farthest from the middle."""
+        x, y = ((np.arange(n) + 0.5) / n - part for n, part in zip((width, height), MIDDLE, strict=True))
+        sides = [max(part, 1.0 - part) for part in MIDDLE]
+        away = np.hypot(x / sides[0], (y / sides[1])[:, None]) / np.sqrt(2.0)
+        return np.stack([np.interp(away, (0.0, AROUND, 1.0), part) for part in zip(*self, strict=True)], axis=-1)
 
 
-HORIZON = 0.45  # of the height, from above, where the sky ends
-LIGHT_SKY = SkyColours((126, 168, 214), (232, 237, 243))
-DARK_SKY = SkyColours((16, 22, 32), (38, 47, 60))
+MIDDLE, AROUND = (0.5, 0.42), 0.55  # of width and height of the picture; and of the way to the corners
+LIGHT_SKY = SkyColours((240, 243, 246), (190, 206, 224), (112, 140, 172))
+DARK_SKY = SkyColours((38, 47, 60), (26, 33, 43), (10, 13, 19))
 _dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that draw dark
 
 
@@ -78,8 +88,9 @@ class Surroundings:
             section_size=1.0,
             **LIGHT._asdict(),
             plane_opacity=1.0,
-            fade_distance=26.0,
-            shadow_opacity=0.3,
+            fade_distance=FLOOR_REACH,
+            fade_from="origin",
+            shadow_opacity=0.35,
         )
 
     def show(self, floor: bool, grid: bool) -> None:
@@ -103,8 +114,6 @@ def before_sky(client: viser.ClientHandle, pixels: NDArray[np.uint8]) -> NDArray
 
     Returns sRGB (height, width, 3). Where a scene draws a sky of its own, nothing of this one is seen.
     """
-    top, bottom = (np.array(colour, float) for colour in (DARK_SKY if client in _dark else LIGHT_SKY))
-    down = (np.arange(len(pixels)) + 0.5) / len(pixels)
-    sky = top + np.minimum(down / HORIZON, 1.0)[:, None, None] * (bottom - top)
+    sky = (DARK_SKY if client in _dark else LIGHT_SKY).pixels(*pixels.shape[:2])
     alpha = pixels[..., 3:] / 255.0
     return np.rint(alpha * pixels[..., :3] + (1.0 - alpha) * sky).astype(np.uint8)

@@ -63,7 +63,7 @@ shaders.push({
   suffix: "/vertex_colors",
   update({ base, mesh, data }) {
     if (!applyPacked(mesh, data, "vertexColor", null)) return null;
-    const dark = isDark(), underwater = underwaterOf(base, mesh);
+    const dark = isDark(), underwater = underwaterOf(base, mesh), open = openPartOf(base, underwater);
     const edit = (shader) => {
       insertAfter(shader, "vertexShader", "common", "attribute vec3 vertexColor; varying vec3 vVertexColor;");
       insertAfter(shader, "vertexShader", "begin_vertex", `
@@ -72,13 +72,13 @@ shaders.push({
       insertAfter(shader, "fragmentShader", "common", "varying vec3 vVertexColor;");
       insertAfter(shader, "fragmentShader", "color_fragment",
                   `diffuseColor.rgb = ${underwater ? "seenUnderwater(vVertexColor)" : "vVertexColor"};`);
+      if (open) addOpenWater(shader, open);
       if (!underwater) return;
       Object.assign(shader.uniforms, { underwater });
-      insertAfter(shader, "vertexShader", "common", "varying vec3 vPlace;");
-      insertAfter(shader, "vertexShader", "begin_vertex", UNDERWATER_VERTEX);
       insertAfter(shader, "fragmentShader", "common", UNDERWATER_GLSL);
+      addPlace(shader);
     };
-    const key = `springtide-vertex-colors-${dark ? "dark" : "light"}${underwater ? base : ""}`;
+    const key = `springtide-vertex-colors-${dark ? "dark" : "light"}${underwater ? base : ""}${open}`;
     return replaceShader(mesh.material, key, edit) ? mesh.material : null;
   },
 });
@@ -115,7 +115,7 @@ function beforeRender(renderer, scene, camera) {
   }
   for (const shader of shaders) if (shader.removeUnused) shader.removeUnused();
   dressSmoke(scene);
-  darkenLabels(scene);
+  dressLabels(renderer, scene, camera);
   drawn = active.sort().join("\n");
   report();
 }

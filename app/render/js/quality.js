@@ -161,6 +161,7 @@ const QUALITY = (() => {
     makeJudge,
     choice: () => choice,
     now: () => ({ ...current, step: STEPS.indexOf(current), steps: STEPS.length }),
+    isCapturing, // a picture that the server asked for
     // How much detail the shaders of this frame have: 2 all, 1 less, 0 least.
     details: () => (isFixed || isCapturing() ? 2 : current.details),
     // Called before each frame is drawn: sets its pixels, and has its length measured.

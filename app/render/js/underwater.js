@@ -2,9 +2,13 @@
 // "<name>/underwater": webs of light that waves focus, which fade with depth, and particles. The first vertex of that
 // child is the uniform below, but for the time. Where the colour is redder than blue there is oil, and neither.
 
-const UNDERWATER_VERTEX = "vPlace = (modelMatrix * vec4(position, 1.0)).xyz;";
+// The place [m] that is drawn, y up from the mean level of the sea.
+function addPlace(shader) {
+  for (const stage of ["vertexShader", "fragmentShader"]) insertAfter(shader, stage, "common", "varying vec3 vPlace;");
+  insertAfter(shader, "vertexShader", "begin_vertex", "vPlace = (modelMatrix * vec4(position, 1.0)).xyz;");
+}
+
 const UNDERWATER_GLSL = `
-  varying vec3 vPlace; // [m], y up from the mean level of the sea
   uniform vec3 underwater; // strength of the webs, size of their meshes [m], time [s]
   // Webs of light on a level plane, 0 to 1.
   float webs(vec2 p, float t) {

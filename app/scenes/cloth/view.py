@@ -66,6 +66,7 @@ class View(SpringView[Params, ClothFrame, ClothReadings]):
     """Draws `ClothFrame`s."""
 
     CAMERA = ((0.7, -1.5, 1.9), (0.12, 0.0, 1.12))  # position, target [m]; of a level cloth
+    FALLEN = ((0.55, -1.2, 1.55), (0.08, 0.0, 0.88))  # the same of one that nothing holds
     HANGING = ((0.62, -1.55, 1.75), (0.15, 0.0, 1.32))  # the same of one that hangs
     FIELD_OF_VIEW = 1.3  # [rad]
     WARM_UP: ClassVar[Pieces] = {"packing": compile_packing}
@@ -91,7 +92,9 @@ class View(SpringView[Params, ClothFrame, ClothReadings]):
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved."""
-        return self.CAMERA if params.start == "level" else self.HANGING
+        if params.start != "level":
+            return self.HANGING
+        return self.FALLEN if params.pinned == "free" else self.CAMERA
 
     def build(self, frame: ClothFrame) -> None:
         """Make the mesh for another grid."""

@@ -29,27 +29,28 @@ from app.scenes.springs.view import compile_tube
 SIDES = 6  # of a tube
 RING_COUNT = 90  # rings of a line, about
 TUBE_STEP = 2.0**-9  # [m] to which points of a tube are rounded for the page
-LINE_SIZE = 0.0045  # radius of a drawn line, in `extent`s: true ones could not be seen
+LINE_SIZE = 0.0055  # radius of a drawn line, in `extent`s: true ones could not be seen
 ANCHOR_SIZE, FAIRLEAD_SIZE = 0.02, 0.009  # radius, in the same
 ARROW_SIZE, SMALL_ARROW_SIZE = 0.12, 0.07
 CIRCLE_POINTS = 96
 MAX_DRAWN_PATH = 400  # places of the body's path
-WATER_COLOURS, WATER_OPACITY = ((8, 52, 96), (150, 205, 225)), 0.4  # of slopes away from the light, and towards it
-FULL_SLOPE = 0.3  # of the water, that has the second colour
+WATER_COLOUR, WATER_OPACITY = (64, 120, 156), 0.4  # in browsers without shaders
 WATER_STEP = 2.0**-7  # [m] to which points of the water are rounded for the page
 SHALLOW_BED, DEEP_BED = (108, 132, 124), (22, 60, 80)  # sand in the light near the surface, and where little is left
 CELL_COLOUR, SECTION_COLOUR = (58, 92, 106), (36, 68, 84)
 LIGHT_REACH = 40.0  # [m] of water that leave 1/e of the light of the sun
 BED_ROWS, BED_STEP = 65, 2.0**-7  # points along a side of the bed, and [m] to which they are rounded for the page
-BED_SIDE = 1.004  # of the bed, over that of the water, so that no gap is seen below the walls
 BED_MOTTLE = 0.10  # standard deviation of the brightness of the sand
-BED_LIT = 0.35, 1.0  # distances from the middle, in half sides, at which the bed begins to be lost in the water, and is
+BED_LIT = 0.6, 1.1  # distances from the middle, in half sides, at which the bed begins to be lost in the water, and is
+GRID_SIDE = 0.56  # of the side of the bed, where its lines are lost
 GRID_ABOVE = 0.0008  # [`extent`s] that the lines of the bed lie above it
 WEB_SIZE, MAX_WEB_SIZE = 0.6, 12.0  # of the webs of light that waves focus: in depths, and the largest [m]
-BODY_COLOUR, LYING_COLOUR = (236, 112, 40), (44, 28, 16)
-# Of the water behind everything, which has an end in the picture: under the surface, and where no light comes down.
-WALL_COLOURS, WALL_OPACITY = ((122, 184, 208), (8, 40, 68)), 0.9
-WALL_ROWS, LIGHT_DEPTHS = 9, 2.0  # rows of vertices down a wall; e-foldings of the light from surface to bed
+# The body as drawn, from below: antifouling up to the waterline, a stripe and paint.
+PAINTS = ((1.0, (112, 30, 26)), (1.012, (238, 240, 240)), (1.0, (240, 128, 24)))  # width over the hull's, colour
+STRIPE = 0.045  # height, in widths of the hull
+# What stands on deck, without weight: width over the hull's, height in widths of the hull, colour.
+ON_DECK = ((0.46, 0.18, (236, 238, 238)), (0.06, 0.42, (60, 66, 74)), (0.13, 0.08, (250, 206, 60)))
+LYING_COLOUR, LOST_COLOUR = (44, 28, 16), (9, 42, 65)  # of a line on the bed, and of water without light
 ANCHOR_COLOUR, LIFTED_COLOUR, FAIRLEAD_COLOUR = (50, 54, 62), (214, 40, 40), (30, 32, 38)
 WATCH_COLOUR, PATH_COLOUR, SHADOW_COLOUR = (200, 30, 60), (250, 250, 250), (52, 72, 76)
 CELLS = (1.0, 2.0, 5.0)  # of the bed's lines, times a power of ten
@@ -94,7 +95,7 @@ def mottle(rows: int) -> NDArray[np.float64]:
 
 def bed_colours(depth: float) -> NDArray[np.float64]:
     """Colours (BED_ROWS BED_ROWS, 3) of sand at a depth [m], sRGB in 0..1: lost in the water towards the sides."""
-    shallow, deep, lost = np.array([SHALLOW_BED, DEEP_BED, WALL_COLOURS[1]]) / 255.0
+    shallow, deep, lost = np.array([SHALLOW_BED, DEEP_BED, LOST_COLOUR]) / 255.0
     sand = deep + math.exp(-depth / LIGHT_REACH) * (shallow - deep)
     near, far = BED_LIT
     away = np.clip((np.hypot(*square_points(BED_ROWS).T) - near) / (far - near), 0.0, 1.0)[:, None]
@@ -137,7 +138,8 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         cell = cell_of(far)
         self.bed = scene.add_grid(
             "/bed", width=frame.side, height=frame.side, cell_size=cell, section_size=5 * cell,
-            position=(0.0, 0.0, -p.depth + GRID_ABOVE * far), fade_distance=FAR_VIEW * far, shadow_opacity=0.0,
+            position=(0.0, 0.0, -p.depth + GRID_ABOVE * far), fade_distance=GRID_SIDE * frame.side,
+            fade_from="origin", shadow_opacity=0.0,
             cell_color=CELL_COLOUR, section_color=SECTION_COLOUR,
         )  # fmt: skip
         self.samples = max(1, RING_COUNT // (n - 1))
@@ -156,10 +158,18 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
                 )
             )  # fmt: skip
         hull = hull_of(p)
+        width, low, high = p.size, *(float(edge) for edge in hull.extents[2])
+        line = min(max(-float(frame.body[2]), low + 2 * STRIPE * width), high - 2 * STRIPE * width)  # as it floats
+        edges = [low, line, line + STRIPE * width, high, *(high + width * np.cumsum([part for _, part, _ in ON_DECK]))]
+        self.slices = np.array(edges[:-1]) + 0.5 * np.diff(edges)  # heights [m] of their middles over the body's centre
+        wide = [part for part, *_ in (*PAINTS, *ON_DECK)]
+        self.outline = (0.0, 0.0, 0.5 * width) if p.body == "buoy" else (*hull.extents[:2, 1], 0.0)
+        place = self.body_place(frame)
         self.body = scene.add_batched_meshes_simple(
-            "/body", hull.vertices.astype(np.float32), hull.faces.astype(np.uint32), flat_shading=True, lod="off",
-            batched_wxyzs=frame.rotation[None], batched_positions=frame.body[None],
-            batched_colors=linear(BODY_COLOUR),
+            "/body", (hull.vertices / (1.0, 1.0, high - low)).astype(np.float32), hull.faces.astype(np.uint32),
+            flat_shading=p.body == "box", lod="off", **place,
+            batched_scales=np.column_stack([wide, wide, np.diff(edges)]).astype(np.float32),
+            batched_colors=np.array([linear(colour) for *_, colour in (*PAINTS, *ON_DECK)], np.uint8),
         )  # fmt: skip
         self.body.on_drag("left")(self.on_body)
         self.anchors = self.balls("/anchors", frame.points[:, 0], ANCHOR_SIZE * far, ANCHOR_COLOUR)
@@ -175,47 +185,30 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             scene.add_label(f"/number_{i + 1}", str(i + 1), position=tuple(place), anchor="bottom-center")
             for i, place in enumerate((frame.points[:, 0] + (0.0, 0.0, 2 * ANCHOR_SIZE * far)).tolist())
         ]
-        half = 0.5 * frame.side
-        self.labels.append(  # in the far corner, as first seen
-            scene.add_label("/depth", f"{p.depth:g} m deep", position=(-half, half, -p.depth), anchor="bottom-left")
-        )
+        behind = -0.35 * far, 0.65 * far, -p.depth  # as first seen
+        self.labels.append(scene.add_label("/depth", f"{p.depth:g} m deep", position=behind, anchor="bottom-center"))
         rows = len(frame.surface)
         self.places = 0.5 * frame.side * square_points(rows)
-        vertices, colours = self.surface_of(frame)
+        vertices = self.surface_of(frame)
         self.water = ColouredMesh(
-            self.server, "/water", vertices, square_faces(rows), colours, columns=rows, step=WATER_STEP,
-            color=WATER_COLOURS[0], opacity=WATER_OPACITY, side="double", cast_shadow=False, receive_shadow=False,
+            self.server, "/water", vertices, square_faces(rows), np.zeros_like(vertices), columns=rows, step=WATER_STEP,
+            color=WATER_COLOUR, opacity=WATER_OPACITY, side="double", cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
-        self.walls, self.sand = self.add_walls(frame), self.add_sand(frame)
+        self.sand, self.around = self.add_sand(frame), None
         if injector_of(self.server) is not None:
             webs = np.array([[1.0, min(WEB_SIZE * p.depth, MAX_WEB_SIZE), 0.0]])  # as `js/underwater.js` reads it
-            for lit in (self.walls, self.sand):
-                add_data_mesh(self.server, f"{lit.name}/underwater", webs)
+            add_data_mesh(self.server, f"{self.sand.name}/underwater", webs)
+            self.around = add_data_mesh(self.server, f"{self.water.name}/open_water", self.open_water(frame))
         self.nodes = [
             self.bed, *self.tubes, self.body, self.anchors, self.fairleads, self.shadows,
-            *(handle for _, handle, _ in self.watch), *self.labels, self.water, self.walls, self.sand,
+            *(handle for _, handle, _ in self.watch), *self.labels, self.water, self.sand,
         ]  # fmt: skip
         self.built = self.shape_of(frame)
         self.lifted = np.zeros(lines, bool)
 
-    def add_walls(self, frame: MooringFrame) -> ColouredMesh:
-        """The sides of the water from the surface to the bed, of which those behind are seen: darker with depth."""
-        ring = 0.5 * frame.side * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-        down = np.repeat(np.linspace(0.0, 1.0, WALL_ROWS), 4)[:, None]
-        vertices = np.column_stack([np.tile(ring, (WALL_ROWS, 1)), -frame.params.depth * down])
-        high, low = np.array(WALL_COLOURS) / 255.0
-        i = np.arange(4 * (WALL_ROWS - 1))
-        j = i - i % 4 + (i + 1) % 4
-        faces = np.concatenate([np.stack([i, i + 4, j], 1), np.stack([j, i + 4, j + 4], 1)])
-        return ColouredMesh(
-            self.server, "/walls", vertices, faces, low + np.exp(-LIGHT_DEPTHS * down) * (high - low), columns=4,
-            step=WATER_STEP, color=WALL_COLOURS[1], opacity=WALL_OPACITY, side="back", flat_shading=True,
-            cast_shadow=False, receive_shadow=False,
-        )  # fmt: skip
-
     def add_sand(self, frame: MooringFrame) -> ColouredMesh:
         """The bed: mottled sand, which is lost in the water with the distance from the middle."""
-        places = 0.5 * BED_SIDE * frame.side * square_points(BED_ROWS)
+        places = 0.5 * frame.side * square_points(BED_ROWS)
         depth = frame.params.depth
         return ColouredMesh(
             self.server, "/sand", np.column_stack([places, np.full(len(places), -depth)]), square_faces(BED_ROWS),
@@ -249,14 +242,23 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         """Pull the body."""
         drag(self.post, event, 0)
 
-    def surface_of(self, frame: MooringFrame) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Vertices (m m, 3) [m] of the water and their colours, brighter where it slopes towards the light."""
-        z = frame.surface
-        across, along = np.gradient(z, frame.side / (len(z) - 1))
-        share = np.clip(0.5 - (across + along) / (2.0 * FULL_SLOPE), 0.0, 1.0).reshape(-1, 1)
-        dark, bright = np.array(WATER_COLOURS) / 255.0
-        vertices = np.column_stack([self.places, z.ravel()]).astype(np.float32)
-        return vertices, (dark + share * (bright - dark)).astype(np.float32)
+    def surface_of(self, frame: MooringFrame) -> NDArray[np.float32]:
+        """Vertices (m m, 3) [m] of the water."""
+        return np.column_stack([self.places, frame.surface.ravel()]).astype(np.float32)
+
+    def body_place(self, frame: MooringFrame) -> dict[str, NDArray[np.float32]]:
+        """Places and rotations of the slices of the body."""
+        w, x, y, z = frame.rotation
+        axis = np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
+        places = frame.body + self.slices[:, None] * axis
+        turns = np.tile(frame.rotation, (len(places), 1))
+        return {"batched_positions": places.astype(np.float32), "batched_wxyzs": turns}
+
+    def open_water(self, frame: MooringFrame) -> NDArray[np.float64]:
+        """What `js/open_water.js` draws: the water (3,) [m], and the body seen from above (2, 3)."""
+        w, _, _, z = frame.rotation.tolist()
+        place = (*frame.body[:2].tolist(), 2.0 * math.atan2(z, w))
+        return np.array([(0.5 * frame.side, frame.params.depth, extent(frame.params)), place, self.outline])
 
     def shape_tube(self, frame: MooringFrame, i: int) -> None:
         """Compute the tube of line i: vertices, and colours by the tension, or brown where it lies on the bed."""
@@ -279,7 +281,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         for i, tube in enumerate(self.tubes):
             self.shape_tube(frame, i)
             tube.set(self.vertices, self.rgb)
-        set_arrays(self.body, batched_positions=frame.body[None], batched_wxyzs=frame.rotation[None])
+        set_arrays(self.body, **self.body_place(frame))
         set_arrays(self.anchors, batched_positions=frame.points[:, 0])
         set_arrays(self.fairleads, batched_positions=frame.points[:, -1])
         if (frame.uplift != self.lifted).any():
@@ -291,9 +293,11 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         shadows[:, :, 2] = -p.depth + 0.3 * self.radius
         set_arrays(self.shadows, points=np.stack([shadows[:, :-1], shadows[:, 1:]], axis=2).reshape(-1, 2, 3))
         if self.water.mesh.visible != p.surface:
-            self.water.mesh.visible = self.walls.mesh.visible = p.surface
+            self.water.mesh.visible = p.surface
         if p.surface:
-            self.water.set(*self.surface_of(frame))
+            self.water.set(self.surface_of(frame))
+        if self.around is not None:
+            set_arrays(self.around, vertices=self.open_water(frame))
         thickness = 1.0 if p.grid else 0.0
         if self.bed.cell_thickness != thickness:
             self.bed.cell_thickness = self.bed.section_thickness = thickness

@@ -213,7 +213,6 @@ class View(SpringView[Params, RaceFrame, RaceReadings]):
         super().__init__(server, post, NEAR)
         self.root = Gizmo(server, post, "root", ROOT_ARROW_LENGTH, position=ROOT)
         injector_of(server)  # its script draws labels dark where a browser asks for it (`js/dark.js`)
-        self.surroundings.floor.fade_from = "origin"  # the camera is far away
         self.ropes: RopesDrawing | None = None
         self.params: Params | None = None  # that the height of a row of labels [m] is of
         self.label_row = 0.0

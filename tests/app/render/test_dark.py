@@ -21,7 +21,7 @@ def contrast(a: np.ndarray, b: np.ndarray) -> float:
     return (high + 0.05) / (low + 0.05)
 
 
-@pytest.mark.parametrize("behind", [DARK.plane_color, DARK_SKY.bottom])
+@pytest.mark.parametrize("behind", [DARK.plane_color, DARK_SKY.middle])
 def test_every_colour_of_the_scale_and_of_the_race_stands_out_from_a_dark_floor(behind: tuple[int, int, int]) -> None:
     """3 is WCAG's for what is no text."""
     ropes = [np.array(material_colour(i, dark=True)) for i in range(6)]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import app.render
-from app.render.surroundings import DARK_SKY, LIGHT_SKY, before_sky, set_dark
+from app.render.surroundings import AROUND, DARK_SKY, LIGHT_SKY, MIDDLE, before_sky, set_dark
 
 BACKGROUND = r"canvas\[data-engine\] \{ background: (.*?); \}"
 
@@ -27,17 +27,19 @@ def test_the_page_has_the_same_skies() -> None:
 
 
 def test_what_is_not_drawn_is_sky_light_or_dark_by_browser() -> None:
-    pixels = np.zeros((200, 3, 4), np.uint8)
-    pixels[:, 1] = (10, 20, 30, 255)  # drawn
-    pixels[:, 2] = (10, 20, 30, 51)  # a fifth of it is
+    pixels = np.zeros((200, 301, 4), np.uint8)
+    pixels[:, :10] = (10, 20, 30, 255)  # drawn
+    pixels[:, -10:] = (10, 20, 30, 51)  # a fifth of it is
     browser, other = Browser(), Browser()
+    middle = round(MIDDLE[1] * 200), round(MIDDLE[0] * 300)
     for sky, dark in ((DARK_SKY, True), (LIGHT_SKY, False)):
         set_dark(browser, dark)  # pyright: ignore[reportArgumentType]
         picture = before_sky(browser, pixels).astype(float)  # pyright: ignore[reportArgumentType]
-        assert picture.shape == (200, 3, 3)
-        assert picture[0, 0] == pytest.approx(sky.top, abs=1.5)
-        assert picture[45, 0] == pytest.approx(np.add(*sky) / 2, abs=1.5)
-        assert (picture[95:, 0] == sky.bottom).all()
-        assert (picture[:, 1] == (10, 20, 30)).all()
-        assert picture[-1, 2] == pytest.approx(0.2 * np.array((10, 20, 30)) + 0.8 * np.array(sky.bottom), abs=0.51)
-        assert before_sky(other, pixels)[0, 0].astype(float) == pytest.approx(LIGHT_SKY.top, abs=1.5)  # pyright: ignore
+        assert picture.shape == (200, 301, 3)
+        assert picture[middle] == pytest.approx(sky.middle, abs=1.5)
+        # A CSS ellipse to the farthest corner is sqrt(2) times as far as its farthest sides.
+        halfway = middle[0], middle[1] + round(0.5 * AROUND * 150 * 2**0.5)
+        assert picture[halfway] == pytest.approx(np.add(sky.middle, sky.around) / 2, abs=1.5)
+        assert (picture[:, :10] == (10, 20, 30)).all()
+        assert picture[-1, -1] == pytest.approx(0.2 * np.array((10, 20, 30)) + 0.8 * np.array(sky.corner), abs=1.5)
+        assert before_sky(other, pixels)[middle].astype(float) == pytest.approx(LIGHT_SKY.middle, abs=1.5)  # pyright: ignore

@@ -246,7 +246,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         """Vertices (m m, 3) [m] of the water."""
         return np.column_stack([self.places, frame.surface.ravel()]).astype(np.float32)
 
-    def body_place(self, frame: MooringFrame) -> dict[str, NDArray[np.float32]]:
+    def body_place(self, frame: MooringFrame) -> dict[str, Any]:
         """Places and rotations of the slices of the body."""
         w, x, y, z = frame.rotation
         axis = np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])

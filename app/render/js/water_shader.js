@@ -127,18 +127,19 @@ const WATER_GLSL = {
     }
 
     // A layer of cloud in front of the photograph. The last number of the result is the share of the sky it hides.
-    vec4 addClouds(vec3 c, vec3 d, float blur, vec3 ambient) {
+    // isMirrored: it has no relief; with a literal here, the compiler leaves out what is not used.
+    vec4 addClouds(vec3 c, vec3 d, float blur, vec3 ambient, bool isMirrored) {
       if (clouds.x <= 0.0 || d.z < 0.004) return vec4(c, 0.0);
       vec2 w = vec2(cos(wind.x), sin(wind.x));
       vec2 p = d.xy / (d.z + 0.11);
       p = vec2(dot(p, w) * 0.55 - 0.004 * seaState.x, dot(p, vec2(-w.y, w.x))) / clouds.y;
-      int octaves = (blur < 0.1 ? 4 : 1) + DETAILS;
+      int octaves = (isMirrored ? 1 : 4) + DETAILS;
       float n = cloudNoise(p, octaves) + 1.3 * (clouds.x - 0.5);
       float cover = smoothstep(-0.12 - blur, 0.55 + blur, n);
       vec2 s = normalize(sunDirection.xy + 1e-4);
       if (cover <= 0.003) return vec4(c, 0.0);
-      float lit = 0.6; // mirrored clouds have no relief
-      if (blur < 0.1) {
+      float lit = 0.6;
+      if (!isMirrored) {
         float sunward = cloudNoise(p + 0.22 * vec2(dot(s, w), dot(s, vec2(-w.y, w.x))), 3);
         lit = clamp(0.55 + 1.4 * (n - 1.3 * (clouds.x - 0.5) - sunward), 0.15, 1.2);
       }
@@ -584,7 +585,7 @@ const WATER_GLSL = {
       R = normalize(R);
       float dim = clamp(sqrt(sigma) * 0.7, 0.0, 0.8);
       vec3 ambient = ambientLight();
-      vec3 mirrored = behindRain(addClouds(sky(R, dim), R, max(dim, 0.1), ambient).rgb, R);
+      vec3 mirrored = behindRain(addClouds(sky(R, dim), R, max(dim, 0.1), ambient, true).rgb, R);
       if (hull < 60.0) {
         vec4 hulls = mirroredHulls(at, R, 1.5 * sigma, around);
         mirrored = mix(mirrored, hulls.rgb / max(hulls.a, 1e-3), hulls.a);
@@ -641,7 +642,7 @@ const WATER_GLSL = {
     // The light from the sky in the direction d, above the horizon.
     vec3 skyLight(vec3 d) {
       float off = length(d - sunDirection);
-      vec4 layer = addClouds(clearSky(d) + sunLight * sunGlow(off), d, 0.0, ambientLight());
+      vec4 layer = addClouds(clearSky(d) + sunLight * sunGlow(off), d, 0.0, ambientLight(), false);
       float through = 1.0 - layer.a;
       // The lowest degree of the sky passes into the haze over the far sea, or a line would part them.
       layer.rgb = mix(horizonGlow(d), layer.rgb, smoothstep(-0.003, 0.025, d.z));

@@ -492,12 +492,15 @@ const WATER_GLSL = {
     const float LIGHT_LIMIT = 6.0; // radiance that is reduced to its half
     const float GLINT_SHARE = 0.7; // of the variance of slopes too fine to be drawn: that between facets that glint
 
-    // Random slope of the facet at x, which turns with time, Gaussian with this variance along each axis: glints are
-    // single sparkles about as wide as a pixel, with the mean light of a smooth path.
-    vec2 facetSlope(vec2 x, float footprint, float variance) {
-      vec2 u = hash2(floor(x / exp2(ceil(log2(max(0.8 * footprint, 0.01))))));
+    // The facet at x: its random slope, which turns with time, Gaussian with this variance along each axis; and the share
+    // of its light that comes from x, of mean 1: it is brightest in its middle. So glints are single round sparkles about
+    // as wide as a pixel (width, [m]), with the mean light of a smooth path.
+    vec3 facetAt(vec2 x, float width, float variance) {
+      vec2 p = x / exp2(ceil(log2(max(1.4 * width, 0.01))));
+      p.x += 0.38 * floor(p.y);
+      vec2 u = hash2(floor(p)), light = 1.0 - cos(6.2832 * p);
       float turn = 6.2832 * (u.y + seaState.x * (0.2 + u.x));
-      return sqrt(-2.0 * variance * log(max(u.x, 1e-4))) * vec2(cos(turn), sin(turn));
+      return vec3(sqrt(-2.0 * variance * log(max(u.x, 1e-4))) * vec2(cos(turn), sin(turn)), light.x * light.y);
     }
 
     // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; slopeAndFoam: of a
@@ -591,8 +594,9 @@ const WATER_GLSL = {
         mirrored = mix(mirrored, hulls.rgb / max(hulls.a, 1e-3), hulls.a);
       }
 
-      float glitter = 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z
-                    * mirroredFrom(sunDirection, V, slope + facetSlope(rest, footprint, GLINT_SHARE * variance),
+      vec3 facet = facetAt(rest, sqrt(min(dot(fx, fx), dot(fy, fy))), GLINT_SHARE * variance);
+      float glitter = 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z * facet.z
+                    * mirroredFrom(sunDirection, V, slope + facet.xy,
                                    (1.0 - GLINT_SHARE) * variance + 0.0004, facing, optics.x);
       vec3 toFire = firePlace - at;
       float near = dot(toFire, toFire) + 1.0;

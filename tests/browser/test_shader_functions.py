@@ -68,11 +68,16 @@ def test_oil_has_the_colours_of_its_thickness(page: Any) -> None:
     thickness = np.concatenate([np.geomspace(low, high, 12) for low, high in itertools.pairwise(bounds)])
     index, water = 1.48, 1.333
     uniforms = {"oilFilm": (index, water, 1.0), "oilExtinction": EXTINCTION}
-    gain = evaluate(page, "vec4(filmGain(p.x, 1.0), 0.0)", thickness[:, None], uniforms)[:, :3]
+    gain = evaluate(page, f"vec4(filmGain(p.x, 0.0, 1.0, {index}), 0.0)", thickness[:, None], uniforms)[:, :3]
     through = evaluate(page, "vec4(lightThrough(p.x), 0.0)", thickness[:, None], uniforms)[:, :3]
     face = ((1.0 - index) / (1.0 + index)) ** 2
     np.testing.assert_allclose(gain * face, mirrored_light(thickness, index, water), rtol=2e-3)
     np.testing.assert_allclose(through, light_through(thickness), atol=1e-5)
+    # Where a film begins, it mirrors as the water: its edge is no line. Of many fringes in a pixel none is seen.
+    edge = evaluate(page, f"vec4(filmGain(0.0, 0.0, p.x, {water}), 0.0)", np.array([[1.0], [0.2]]), uniforms)[:, :3]
+    np.testing.assert_allclose(edge, 1.0, rtol=0.02)
+    blurred = evaluate(page, f"vec4(filmGain(p.x, 1e-6, 1.0, {index}), 0.0)", thickness[:12, None], uniforms)[:, :3]
+    assert np.ptp(blurred, axis=0).max() < 0.01 < np.ptp(gain[:12], axis=0).min()
 
 
 @pytest.mark.parametrize("thickness", [1e-3, 0.2])

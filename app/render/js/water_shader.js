@@ -404,10 +404,11 @@ const WATER_GLSL = {
       if (abs(off) > 1.5 * size) return off > 0.0 ? 1.0 : 0.0;
       // Wind tears the edge into streaks along itself.
       vec2 p = vec2(0.3 * dot(d, w), dot(d, vec2(-w.y, w.x))) / size;
-      float torn = gradientNoise(p).x + 0.5 * gradientNoise(p * 3.3 + 5.0).x;
-      return smoothstep(-0.5, 1.0, off / size + 0.8 * torn);
+      float torn = gradientNoise(p).x + 0.5 * gradientNoise(p * 3.3 + 5.0).x + 0.3 * gradientNoise(p * vec2(7.0, 14.0)).x;
+      return smoothstep(-0.5, 1.0, off / size + 0.65 * torn);
     }
 
+    const float THIN_FILM = 5e-8; // thickness [m] of a film that mirrors in part as oil does, in part as water
     const float RAINBOW = 1.5e-6; // thickness [m] of a film whose colours are fading
 
     // Thickness of the oil [m]. It varies along the wind; the rim of a slick thins out over all classes of appearance:
@@ -415,7 +416,7 @@ const WATER_GLSL = {
     float oilThickness(vec2 x, float inside) {
       if (inside <= 0.0) return 0.0;
       vec2 d = vec2(cos(wind.x), sin(wind.x));
-      vec2 p = vec2(dot(x, d) / 23.0, dot(x, vec2(-d.y, d.x)) / 7.0);
+      vec2 p = vec2(dot(x, d) / 40.0, dot(x, vec2(-d.y, d.x)) / 7.0);
       float streaks = exp(2.0 * gradientNoise(p).x + 1.2 * gradientNoise(p * 3.1 + 8.0).x);
       float thin = min(slickOptics.x, RAINBOW), towards = 2.0 * inside - 1.0;
       return streaks * thin * min(2.0 * inside, 1.0) * pow(slickOptics.x / thin, max(towards, 0.0));
@@ -424,15 +425,15 @@ const WATER_GLSL = {
     // Share of the light from below that a film of oil lets through, in red, green and blue.
     vec3 lightThrough(float d) { return exp(-oilExtinction * d); }
 
-    // What a film of oil mirrors over what its upper face alone does, in red, green and blue (sim/ocean/oil_film.py).
-    // facing: cosine of the angle from which it is seen.
-    vec3 filmGain(float d, float facing) {
+    // What a film of oil mirrors over what a fluid of this index does, in red, green and blue (sim/ocean/oil_film.py).
+    // facing: cosine of the angle from which it is seen; change: of the thickness d across a pixel, which blurs fringes.
+    vec3 filmGain(float d, float change, float facing, float index) {
       float n = oilFilm.x, r1 = (1.0 - n) / (1.0 + n);
       vec3 q = (1.0 - r1 * r1) * (n - oilFilm.y) / (n + oilFilm.y) * exp(-0.5 * oilExtinction * d);
       float inOil = sqrt(1.0 - (1.0 - facing * facing) / (n * n));
-      vec3 phase = 12.566371 * n * d * inOil / vec3(610e-9, 545e-9, 450e-9);
-      vec3 fringes = exp(-0.5 * phase * phase * 0.002025) * cos(min(phase, 200.0));
-      return (r1 * r1 + q * q + 2.0 * r1 * q * fringes) / (r1 * r1);
+      vec3 turns = 12.566371 * n * inOil / vec3(610e-9, 545e-9, 450e-9), phase = turns * d, blur = turns * change;
+      vec3 fringes = exp(-0.5 * (0.002025 * phase * phase + blur * blur)) * cos(min(phase, 200.0));
+      return (r1 * r1 + q * q + 2.0 * r1 * q * fringes) * pow((index + 1.0) / (index - 1.0), 2.0);
     }
 
     uniform vec3 firePlace; // [m]
@@ -511,7 +512,8 @@ const WATER_GLSL = {
       vec3 clear = lightThrough(film);
       vec3 deep = mix(oilColor, deepColor, clear), scatter = mix(1.8 * oilColor, scatterColor, clear);
       vec3 optics = mix(optics, vec3(optics.x, slickOptics.y, optics.z), oil);
-      if (film > 0.0) optics.x = oilFilm.x;
+      // A film that is much thinner than a wave of light mirrors as the water below it does.
+      optics.x = mix(optics.x, oilFilm.x, film / (film + THIN_FILM));
       optics.z *= mix(1.0, oilFilm.z, oil);
       vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
       vec3 toEye = eye - at;
@@ -581,7 +583,7 @@ const WATER_GLSL = {
       float F = mirroring.x;
       vec3 N = normalize(vec3(-slope + level * mirroring.y, 1.0));
       vec3 mirror = vec3(F);
-      if (film > 0.0) mirror *= mix(filmGain(film, facing), vec3(1.0), F);
+      if (film > 0.0) mirror *= mix(filmGain(film, fwidth(film), facing, optics.x), vec3(1.0), F);
       mirror *= optics.z;
       vec3 R = reflect(-V, N);
       R.z = abs(R.z) + 0.01;

@@ -566,7 +566,7 @@ const WATER_GLSL = {
       float hull = distanceToHull(at.xy);
       float wash = (1.0 - smoothstep(0.0, 0.15 + 0.35 * sqrt(seaState.y), hull)) * smoothstep(0.05, 0.6, seaState.y);
       wash *= (1.0 - oil) * (0.75 + 0.5 * gradientNoise(at.xy * 2.3 - 0.4 * seaState.x).x);
-      float foamShare = clamp(max(slopeAndFoam.z, 0.8 * wash), 0.0, 1.0);
+      float foamShare = clamp(max(slopeAndFoam.z, 0.8 * wash * wash), 0.0, 1.0);
       vec4 bubbles = foamCover(rest, foamShare, footprint);
       // Whitecaps reflect about half of the light when they are old (Koepke 1984, Appl. Opt. 23:1816): their bubbles are
       // a thin layer, and half of what is seen there is the water.

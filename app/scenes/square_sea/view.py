@@ -15,7 +15,7 @@ from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
 from app.render.html import bold, fill
-from app.render.material import RAIN_HEIGHT, Material, as_linear_bytes
+from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes
 from app.render.meshes import ball, tube_faces
 from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
@@ -50,6 +50,7 @@ FOAM_CELLS = 0.9  # size of a patch of foam, in cells of the mesh, so that it hi
 MAX_RIPPLE_SLOPE = 0.25  # rms, beyond which the shader's ripples look like noise
 RAIN_BLUR = 0.9  # of the haze's colour in rain: all of the sky is haze there, and shows the blocks of the photograph
 GAUGE_SIDES = 24  # of its cylinders
+FLOAT_RADIUS, FLOAT_TOP, SPAR_RADIUS, SPAR_TOP = 0.45, 0.5, 0.09, 3.0  # [m]
 GAUGE_COLOUR, SPAR_COLOUR = (0.94, 0.376, 0.125), (0.96, 0.96, 0.94)
 
 
@@ -189,6 +190,8 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             self.gauge = WaveGaugeMesh(self.server)
         if self.gauge is not None:
             self.gauge.show(frame.gauge)
+            assert self.water is not None
+            self.water.set_waterlines(waterlines_of(frame.gauge))
 
     def move_cameras(self, old: float, new: float) -> None:
         """Move every camera from over a tile of side `old` [m] to as far from the middle of one of side `new` [m]."""
@@ -233,9 +236,9 @@ class WaveGaugeMesh:
     def __init__(self, server: viser.ViserServer) -> None:
         vertices, faces = ball(8)
         parts = {
-            "spar": (*upright(0.09, -1.2, 3.0), SPAR_COLOUR),
-            "float": (*upright(0.45, -0.1, 0.5), GAUGE_COLOUR),
-            "ball": (0.3 * vertices + (0.0, 0.0, 3.0), faces, GAUGE_COLOUR),
+            "spar": (*upright(SPAR_RADIUS, -1.2, SPAR_TOP), SPAR_COLOUR),
+            "float": (*upright(FLOAT_RADIUS, -0.1, FLOAT_TOP), GAUGE_COLOUR),
+            "ball": (0.3 * vertices + (0.0, 0.0, SPAR_TOP), faces, GAUGE_COLOUR),
         }
         self.parts = [
             server.scene.add_batched_meshes_simple(
@@ -257,6 +260,17 @@ class WaveGaugeMesh:
             part.visible = position is not None
             if position is not None:
                 set_arrays(part, batched_positions=np.array([position]))
+
+
+def waterlines_of(gauge: Vector | None) -> list[Waterline]:
+    """Float and spar of a wave gauge at this position [m], as the water mirrors them; None: there is none."""
+    if gauge is None:
+        return []
+    x, y, z = gauge
+    return [
+        Waterline((x, y), 0.0, (0.0, 0.0), radius, z + top, color=colour)
+        for radius, top, colour in ((FLOAT_RADIUS, FLOAT_TOP, GAUGE_COLOUR), (SPAR_RADIUS, SPAR_TOP, SPAR_COLOUR))
+    ]
 
 
 def upright(radius: float, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:

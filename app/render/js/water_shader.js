@@ -494,12 +494,12 @@ const WATER_GLSL = {
     const float GLINT_SHARE = 0.7; // of the variance of slopes too fine to be drawn: that between facets that glint
 
     // The facet at x: its random slope, which turns with time, Gaussian with this variance along each axis; and the share
-    // of its light that comes from x, of mean 1: it is brightest in its middle. So glints are single round sparkles about
+    // of its light that comes from x, of mean 1: it is brightest near its middle. So glints are single round sparkles about
     // as wide as a pixel (width, [m]), with the mean light of a smooth path.
     vec3 facetAt(vec2 x, float width, float variance) {
-      vec2 p = x / exp2(ceil(log2(max(1.4 * width, 0.01))));
+      vec2 p = x / exp2(ceil(log2(max(1.4 * width, 0.004))));
       p.x += 0.38 * floor(p.y);
-      vec2 u = hash2(floor(p)), light = 1.0 - cos(6.2832 * p);
+      vec2 u = hash2(floor(p)), light = 1.0 - cos(6.2832 * (p + 0.4 * fract(17.0 * u)));
       float turn = 6.2832 * (u.y + seaState.x * (0.2 + u.x));
       return vec3(sqrt(-2.0 * variance * log(max(u.x, 1e-4))) * vec2(cos(turn), sin(turn)), light.x * light.y);
     }

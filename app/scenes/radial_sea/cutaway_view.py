@@ -9,11 +9,11 @@ import viser
 from app.formats.formatting import number
 from app.render.coloured_mesh import ColouredMesh
 from app.render.injection import add_data_mesh, injector_of
-from app.render.material import RGB
+from app.render.material import RGB, blend
 from app.render.viser_inside import set_arrays
 from app.scenes.radial_sea.cutaway import DIRECTION, FAR_WALL_POINTS, HALF_WIDTH, Cutaway
 from app.scenes.radial_sea.frame import RadialFrame
-from app.scenes.radial_sea.materials import blend, mixture_share, rgb_of
+from app.scenes.radial_sea.materials import mixture_share, rgb_of
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.oil_film import light_through
 

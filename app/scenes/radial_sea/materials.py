@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.render.material import MAX_WATERLINES, RGB, Cutout, Material, Oil, SlickRegion, Waterline
+from app.render.material import MAX_WATERLINES, RGB, Cutout, Material, Oil, SlickRegion, Waterline, blend
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.well_blowout import FIRE, FIRE_WIDTH, RIG, Slick
@@ -65,12 +65,6 @@ LEGS = tuple(
 DECKS = Waterline(
     RIG, 0.0, (DECK_SIDES[0] - 1.0, DECK_SIDES[1] - 1.0), 1.0, DECK_HEIGHTS[1], DECK_HEIGHTS[0], colour_of(DECK_COLOUR)
 )
-
-
-def blend(a: RGB | np.ndarray, b: RGB | np.ndarray, share: float) -> RGB:
-    """The colour `share` of the way from a to b."""
-    x, y, z = ((1.0 - share) * np.asarray(a) + share * np.asarray(b)).tolist()
-    return x, y, z
 
 
 def ripple_slope(p: Params, column: FluidColumn, age: float) -> float:

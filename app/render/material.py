@@ -137,6 +137,12 @@ def linear(color: RGB) -> tuple[float, float, float]:
     return red, green, blue
 
 
+def blend(a: RGB | np.ndarray, b: RGB | np.ndarray, share: float) -> RGB:
+    """The colour `share` of the way from a to b."""
+    x, y, z = ((1.0 - share) * np.asarray(a) + share * np.asarray(b)).tolist()
+    return x, y, z
+
+
 def as_bytes(color: RGB) -> tuple[int, int, int]:
     """An sRGB colour in 0..1 as 0..255."""
     red, green, blue = (round(255 * min(max(c, 0.0), 1.0)) for c in color)

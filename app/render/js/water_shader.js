@@ -127,18 +127,19 @@ const WATER_GLSL = {
     }
 
     // A layer of cloud in front of the photograph. The last number of the result is the share of the sky it hides.
-    vec4 addClouds(vec3 c, vec3 d, float blur, vec3 ambient) {
+    // isMirrored: it has no relief; with a literal here, the compiler leaves out what is not used.
+    vec4 addClouds(vec3 c, vec3 d, float blur, vec3 ambient, bool isMirrored) {
       if (clouds.x <= 0.0 || d.z < 0.004) return vec4(c, 0.0);
       vec2 w = vec2(cos(wind.x), sin(wind.x));
       vec2 p = d.xy / (d.z + 0.11);
       p = vec2(dot(p, w) * 0.55 - 0.004 * seaState.x, dot(p, vec2(-w.y, w.x))) / clouds.y;
-      int octaves = (blur < 0.1 ? 4 : 1) + DETAILS;
+      int octaves = (isMirrored ? 1 : 4) + DETAILS;
       float n = cloudNoise(p, octaves) + 1.3 * (clouds.x - 0.5);
       float cover = smoothstep(-0.12 - blur, 0.55 + blur, n);
       vec2 s = normalize(sunDirection.xy + 1e-4);
       if (cover <= 0.003) return vec4(c, 0.0);
-      float lit = 0.6; // mirrored clouds have no relief
-      if (blur < 0.1) {
+      float lit = 0.6;
+      if (!isMirrored) {
         float sunward = cloudNoise(p + 0.22 * vec2(dot(s, w), dot(s, vec2(-w.y, w.x))), 3);
         lit = clamp(0.55 + 1.4 * (n - 1.3 * (clouds.x - 0.5) - sunward), 0.15, 1.2);
       }
@@ -403,10 +404,11 @@ const WATER_GLSL = {
       if (abs(off) > 1.5 * size) return off > 0.0 ? 1.0 : 0.0;
       // Wind tears the edge into streaks along itself.
       vec2 p = vec2(0.3 * dot(d, w), dot(d, vec2(-w.y, w.x))) / size;
-      float torn = gradientNoise(p).x + 0.5 * gradientNoise(p * 3.3 + 5.0).x;
-      return smoothstep(-0.5, 1.0, off / size + 0.8 * torn);
+      float torn = gradientNoise(p).x + 0.5 * gradientNoise(p * 3.3 + 5.0).x + 0.3 * gradientNoise(p * vec2(7.0, 14.0)).x;
+      return smoothstep(-0.5, 1.0, off / size + 0.65 * torn);
     }
 
+    const float THIN_FILM = 5e-8; // thickness [m] of a film that mirrors in part as oil does, in part as water
     const float RAINBOW = 1.5e-6; // thickness [m] of a film whose colours are fading
 
     // Thickness of the oil [m]. It varies along the wind; the rim of a slick thins out over all classes of appearance:
@@ -414,7 +416,7 @@ const WATER_GLSL = {
     float oilThickness(vec2 x, float inside) {
       if (inside <= 0.0) return 0.0;
       vec2 d = vec2(cos(wind.x), sin(wind.x));
-      vec2 p = vec2(dot(x, d) / 23.0, dot(x, vec2(-d.y, d.x)) / 7.0);
+      vec2 p = vec2(dot(x, d) / 40.0, dot(x, vec2(-d.y, d.x)) / 7.0);
       float streaks = exp(2.0 * gradientNoise(p).x + 1.2 * gradientNoise(p * 3.1 + 8.0).x);
       float thin = min(slickOptics.x, RAINBOW), towards = 2.0 * inside - 1.0;
       return streaks * thin * min(2.0 * inside, 1.0) * pow(slickOptics.x / thin, max(towards, 0.0));
@@ -423,15 +425,15 @@ const WATER_GLSL = {
     // Share of the light from below that a film of oil lets through, in red, green and blue.
     vec3 lightThrough(float d) { return exp(-oilExtinction * d); }
 
-    // What a film of oil mirrors over what its upper face alone does, in red, green and blue (sim/ocean/oil_film.py).
-    // facing: cosine of the angle from which it is seen.
-    vec3 filmGain(float d, float facing) {
+    // What a film of oil mirrors over what a fluid of this index does, in red, green and blue (sim/ocean/oil_film.py).
+    // facing: cosine of the angle from which it is seen; change: of the thickness d across a pixel, which blurs fringes.
+    vec3 filmGain(float d, float change, float facing, float index) {
       float n = oilFilm.x, r1 = (1.0 - n) / (1.0 + n);
       vec3 q = (1.0 - r1 * r1) * (n - oilFilm.y) / (n + oilFilm.y) * exp(-0.5 * oilExtinction * d);
       float inOil = sqrt(1.0 - (1.0 - facing * facing) / (n * n));
-      vec3 phase = 12.566371 * n * d * inOil / vec3(610e-9, 545e-9, 450e-9);
-      vec3 fringes = exp(-0.5 * phase * phase * 0.002025) * cos(min(phase, 200.0));
-      return (r1 * r1 + q * q + 2.0 * r1 * q * fringes) / (r1 * r1);
+      vec3 turns = 12.566371 * n * inOil / vec3(610e-9, 545e-9, 450e-9), phase = turns * d, blur = turns * change;
+      vec3 fringes = exp(-0.5 * (0.002025 * phase * phase + blur * blur)) * cos(min(phase, 200.0));
+      return (r1 * r1 + q * q + 2.0 * r1 * q * fringes) * pow((index + 1.0) / (index - 1.0), 2.0);
     }
 
     uniform vec3 firePlace; // [m]
@@ -491,12 +493,15 @@ const WATER_GLSL = {
     const float LIGHT_LIMIT = 6.0; // radiance that is reduced to its half
     const float GLINT_SHARE = 0.7; // of the variance of slopes too fine to be drawn: that between facets that glint
 
-    // Random slope of the facet at x, which turns with time, Gaussian with this variance along each axis: glints are
-    // single sparkles about as wide as a pixel, with the mean light of a smooth path.
-    vec2 facetSlope(vec2 x, float footprint, float variance) {
-      vec2 u = hash2(floor(x / exp2(ceil(log2(max(0.8 * footprint, 0.01))))));
+    // The facet at x: its random slope, which turns with time, Gaussian with this variance along each axis; and the share
+    // of its light that comes from x, of mean 1: it is brightest near its middle. So glints are single round sparkles about
+    // as wide as a pixel (width, [m]), with the mean light of a smooth path.
+    vec3 facetAt(vec2 x, float width, float variance) {
+      vec2 p = x / exp2(ceil(log2(max(1.4 * width, 0.004))));
+      p.x += 0.38 * floor(p.y);
+      vec2 u = hash2(floor(p)), light = 1.0 - cos(6.2832 * (p + 0.4 * fract(17.0 * u)));
       float turn = 6.2832 * (u.y + seaState.x * (0.2 + u.x));
-      return sqrt(-2.0 * variance * log(max(u.x, 1e-4))) * vec2(cos(turn), sin(turn));
+      return vec3(sqrt(-2.0 * variance * log(max(u.x, 1e-4))) * vec2(cos(turn), sin(turn)), light.x * light.y);
     }
 
     // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; slopeAndFoam: of a
@@ -507,7 +512,8 @@ const WATER_GLSL = {
       vec3 clear = lightThrough(film);
       vec3 deep = mix(oilColor, deepColor, clear), scatter = mix(1.8 * oilColor, scatterColor, clear);
       vec3 optics = mix(optics, vec3(optics.x, slickOptics.y, optics.z), oil);
-      if (film > 0.0) optics.x = oilFilm.x;
+      // A film that is much thinner than a wave of light mirrors as the water below it does.
+      optics.x = mix(optics.x, oilFilm.x, film / (film + THIN_FILM));
       optics.z *= mix(1.0, oilFilm.z, oil);
       vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
       vec3 toEye = eye - at;
@@ -560,7 +566,7 @@ const WATER_GLSL = {
       float hull = distanceToHull(at.xy);
       float wash = (1.0 - smoothstep(0.0, 0.15 + 0.35 * sqrt(seaState.y), hull)) * smoothstep(0.05, 0.6, seaState.y);
       wash *= (1.0 - oil) * (0.75 + 0.5 * gradientNoise(at.xy * 2.3 - 0.4 * seaState.x).x);
-      float foamShare = clamp(max(slopeAndFoam.z, 0.8 * wash), 0.0, 1.0);
+      float foamShare = clamp(max(slopeAndFoam.z, 0.8 * wash * wash), 0.0, 1.0);
       vec4 bubbles = foamCover(rest, foamShare, footprint);
       // Whitecaps reflect about half of the light when they are old (Koepke 1984, Appl. Opt. 23:1816): their bubbles are
       // a thin layer, and half of what is seen there is the water.
@@ -577,21 +583,22 @@ const WATER_GLSL = {
       float F = mirroring.x;
       vec3 N = normalize(vec3(-slope + level * mirroring.y, 1.0));
       vec3 mirror = vec3(F);
-      if (film > 0.0) mirror *= mix(filmGain(film, facing), vec3(1.0), F);
+      if (film > 0.0) mirror *= mix(filmGain(film, fwidth(film), facing, optics.x), vec3(1.0), F);
       mirror *= optics.z;
       vec3 R = reflect(-V, N);
       R.z = abs(R.z) + 0.01;
       R = normalize(R);
       float dim = clamp(sqrt(sigma) * 0.7, 0.0, 0.8);
       vec3 ambient = ambientLight();
-      vec3 mirrored = behindRain(addClouds(sky(R, dim), R, max(dim, 0.1), ambient).rgb, R);
+      vec3 mirrored = behindRain(addClouds(sky(R, dim), R, max(dim, 0.1), ambient, true).rgb, R);
       if (hull < 60.0) {
         vec4 hulls = mirroredHulls(at, R, 1.5 * sigma, around);
         mirrored = mix(mirrored, hulls.rgb / max(hulls.a, 1e-3), hulls.a);
       }
 
-      float glitter = 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z
-                    * mirroredFrom(sunDirection, V, slope + facetSlope(rest, footprint, GLINT_SHARE * variance),
+      vec3 facet = facetAt(rest, sqrt(min(dot(fx, fx), dot(fy, fy))), GLINT_SHARE * variance);
+      float glitter = 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z * facet.z
+                    * mirroredFrom(sunDirection, V, slope + facet.xy,
                                    (1.0 - GLINT_SHARE) * variance + 0.0004, facing, optics.x);
       vec3 toFire = firePlace - at;
       float near = dot(toFire, toFire) + 1.0;
@@ -641,7 +648,7 @@ const WATER_GLSL = {
     // The light from the sky in the direction d, above the horizon.
     vec3 skyLight(vec3 d) {
       float off = length(d - sunDirection);
-      vec4 layer = addClouds(clearSky(d) + sunLight * sunGlow(off), d, 0.0, ambientLight());
+      vec4 layer = addClouds(clearSky(d) + sunLight * sunGlow(off), d, 0.0, ambientLight(), false);
       float through = 1.0 - layer.a;
       // The lowest degree of the sky passes into the haze over the far sea, or a line would part them.
       layer.rgb = mix(horizonGlow(d), layer.rgb, smoothstep(-0.003, 0.025, d.z));

@@ -9,18 +9,18 @@ import viser
 from app.formats.formatting import number
 from app.render.coloured_mesh import ColouredMesh
 from app.render.injection import add_data_mesh, injector_of
-from app.render.material import RGB
+from app.render.material import RGB, blend
 from app.render.viser_inside import set_arrays
 from app.scenes.radial_sea.cutaway import DIRECTION, FAR_WALL_POINTS, HALF_WIDTH, Cutaway
 from app.scenes.radial_sea.frame import RadialFrame
-from app.scenes.radial_sea.materials import blend, mixture_share, rgb_of
+from app.scenes.radial_sea.materials import mixture_share, rgb_of
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.oil_film import light_through
 
 BRIGHT_WATER: RGB = (0.13, 0.50, 0.60)  # of the water under its surface, as if light came through
 DEEP_WATER: RGB = (0.03, 0.16, 0.27)  # of the water at the floor
-OIL_AGAINST_LIGHT: RGB = (0.42, 0.27, 0.10)  # what a few centimetres of oil let through
-OIL_LIGHT_SHARES = 0.9, 0.15  # of that colour in the drawn one, at the oil's surface and where the water begins
+OIL_AGAINST_LIGHT: RGB = (0.70, 0.42, 0.12)  # what a few centimetres of oil let through
+OIL_LIGHT_SHARES = 1.0, 0.3  # of that colour in the drawn one, at the oil's surface and where the water begins
 WEB_SIZE = 0.7  # [m] at size 1 of the meshes of light that waves focus (`js/underwater.js`)
 SURFACE_LINE, INTERFACE_LINE = (235, 246, 250), (255, 196, 64)
 LINE_OFFSET = 0.02  # [m] that lines stand before the wall

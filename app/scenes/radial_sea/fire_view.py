@@ -19,8 +19,8 @@ from sim.particles.plume import soot_made
 MAX_FIRE_SPLATS, MAX_OIL_SPLATS = 2000, 900
 HEAT = (0.0, 0.15, 0.26, 0.34, 0.5, 0.8, 1.0)  # of a parcel, at which it has the colour below
 HEAT_COLOURS = np.array([
-    (62, 57, 53),
-    (44, 39, 36),
+    (104, 98, 92),
+    (58, 50, 45),
     (60, 32, 20),
     (214, 62, 10),
     (255, 132, 22),
@@ -29,15 +29,16 @@ HEAT_COLOURS = np.array([
 ])  # fmt: skip
 SPLAT_SHARE = 0.3  # standard deviation of a splat of smoke over the radius of the plume
 THINNEST = 0.01  # [m] least radius of the plume that opacity is calculated with: at its source the radius is 0
-FADED_SHARE = 0.6  # of the plume's length in time, in which its end fades out
-DENSEST_SMOKE = 0.75  # opacity of a splat of smoke at most
+FADED_SHARE = 0.9  # of the plume's length in time, in which its end fades out
+DENSEST_SMOKE = 0.5  # opacity of a splat of smoke at most
+RIM_OPACITY = 0.2  # the same at the rim of the plume, as a share of that in its middle
 SUN_STRENGTHS, SMOKE_LIGHT = (0.5, 2.5), (0.4, 1.0)  # night and dawn, and the share of its colours that smoke has then
 PLUME_PARTS = 48  # along its length, in each of which the middle of the smoke is looked for
-SUNNY_SIDE, GLOWING_SIDE = 0.55, (150.0, 62.0, 14.0)  # brighter by this share; colour that the flames add underneath
-GLOW_REACH = 28.0  # [m] from the flames, where their light on smoke is half as strong
+SUNNY_SIDE, GLOWING_SIDE = 0.55, (200.0, 82.0, 20.0)  # brighter by this share; colour that the flames add underneath
+GLOW_REACH = 40.0  # [m] from the flames, where their light on smoke is half as strong
 OIL_COLOURS = np.array([(20, 13, 8), (44, 27, 13), (96, 60, 26), (150, 132, 112)])  # thick, film, thin, in the sun
-OIL_WIDTHS, OIL_LENGTHS = (0.14, 0.045), (0.6, 0.5)  # [m] standard deviations of a streak: at the nozzle, where it ends
-OIL_OPACITY = 0.95, 0.6  # the same
+OIL_WIDTHS, OIL_LENGTHS = (0.1, 0.03), (1.5, 1.0)  # [m] standard deviations of a streak: at the nozzle, where it ends
+OIL_OPACITY = 0.8, 0.4  # the same
 OIL_BREAKS_UP = 1.6  # [s] after the nozzle
 MIST_SHARE, MIST_WIDTH, MIST_OPACITY = 0.2, 0.7, 0.12  # of the splats of oil; [m]
 
@@ -100,6 +101,7 @@ class Flames:
             sun = np.asarray(light.sun_direction) / np.linalg.norm(light.sun_direction)
             lit = bright * shade * (1.0 + SUNNY_SIDE * np.clip(2.0 * off @ sun, -1.0, 1.0))
             far = np.linalg.norm(x - FIRE, axis=1)
+            opacity *= np.where(is_smoke, np.maximum(1.0 - (off**2).sum(axis=1), RIM_OPACITY), 1.0)
             glow = np.clip(0.6 - off[:, 2], 0.0, 1.5) / (1.0 + (far / GLOW_REACH) ** 2)
             rgb = np.where(is_smoke[:, None], rgb * lit[:, None] + glow[:, None] * GLOWING_SIDE, rgb)
         self.put(0, x, ball_covariance(width, height), rgb, np.where(age < 0.0, 0.0, opacity))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.render.material import MAX_WATERLINES, RGB, Cutout, Material, Oil, SlickRegion, Waterline
+from app.render.material import MAX_WATERLINES, RGB, Cutout, Material, Oil, SlickRegion, Waterline, blend
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.well_blowout import FIRE, FIRE_WIDTH, RIG, Slick
@@ -19,9 +19,9 @@ LAB_SPECULAR = 0.4  # share of oil's reflection that is drawn with optics "lab"
 RIPPLE_LENGTH = 0.9  # [m] of the wave that stands for all ripples of the material, in how they decay under oil
 CALM_SLOPE, MAX_SLOPE = 0.02, 0.24  # rms slope of the ripples without wind, and the greatest
 MIN_RIPPLE_SHARE = 0.12  # of the ripples' slope that oil leaves at least, so that the sea does not turn into a mirror
-MIXTURE_SCATTER: RGB = (0.40, 0.26, 0.14)  # what an emulsion scatters
-MIXTURE_ROUGHNESS = 0.06
-MIXTURE_BASE_SHARE = 0.35  # share of oil's colours in a mixture with hardly any oil; it grows with the fraction
+MIXTURE_SCATTER: RGB = (0.80, 0.47, 0.22)  # what an emulsion scatters
+MIXTURE_ROUGHNESS = 0.12
+MIXTURE_BASE_SHARE = 0.5  # share of oil's colours in a mixture with hardly any oil; it grows with the fraction
 MIXTURE_THICKNESS = 1e-3  # [m] of a film that shows as much of its colour as a mixture does: all
 FIRE_COLOUR = (1.0, 0.45, 0.12)  # of the light of flames, linear
 VISIBLE_SHARE = 0.02  # of what a flame radiates
@@ -65,12 +65,6 @@ LEGS = tuple(
 DECKS = Waterline(
     RIG, 0.0, (DECK_SIDES[0] - 1.0, DECK_SIDES[1] - 1.0), 1.0, DECK_HEIGHTS[1], DECK_HEIGHTS[0], colour_of(DECK_COLOUR)
 )
-
-
-def blend(a: RGB | np.ndarray, b: RGB | np.ndarray, share: float) -> RGB:
-    """The colour `share` of the way from a to b."""
-    x, y, z = ((1.0 - share) * np.asarray(a) + share * np.asarray(b)).tolist()
-    return x, y, z
 
 
 def ripple_slope(p: Params, column: FluidColumn, age: float) -> float:
@@ -157,7 +151,7 @@ def spill_look(frame: RadialFrame) -> dict[str, Any]:
     colour: RGB = (red, green, blue)
     index, thickness, roughness = column.oil.refractive_index, column.thickness, OIL_ROUGHNESS
     if column.kind == "mixed":
-        colour = blend(Material().deep_color, blend(colour, MIXTURE_SCATTER, 0.45), mixture_share(column))
+        colour = blend(Material().deep_color, blend(colour, MIXTURE_SCATTER, 0.8), mixture_share(column))
         index, thickness, roughness = column.surface.refractive_index, MIXTURE_THICKNESS, MIXTURE_ROUGHNESS
     farthest = float(np.hypot(frame.positions[:, 0], frame.positions[:, 1]).max(initial=0.0))
     radius = max(SPILL_RADIUS, 5.0 * math.ceil((farthest + SPILL_MARGIN) / 5.0))

@@ -15,7 +15,7 @@ from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
 from app.render.html import bold, fill
-from app.render.material import RAIN_HEIGHT, Material, as_linear_bytes
+from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes, blend
 from app.render.meshes import ball, tube_faces
 from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
@@ -42,6 +42,7 @@ MAX_CAMERA_SETBACK = 20.0  # [m] but no farther than this, so that it is near th
 TILES = 5  # copies of the tile along a side
 WATER_DENSITY = 1000.0  # [kg/m3]
 OVERCAST_TINT = (0.80, 0.92, 1.02)  # colour filter on the sky where clouds cover all of it
+OVERCAST_DEEP = (0.15, 0.33, 0.35)  # colour of deep water there: foam and bubbles make it paler
 OVERCAST_FROM = 0.6  # cloud cover from which the sun fades; it is gone where the cover is 1
 MAX_CLICK_DISTANCE = 1e5  # [m] of the camera from the origin; a click from farther away is ignored
 MAX_RIPPLE_CELLS = 2.5  # longest ripple of the shader, in cells of the mesh: there its waves end
@@ -50,6 +51,7 @@ FOAM_CELLS = 0.9  # size of a patch of foam, in cells of the mesh, so that it hi
 MAX_RIPPLE_SLOPE = 0.25  # rms, beyond which the shader's ripples look like noise
 RAIN_BLUR = 0.9  # of the haze's colour in rain: all of the sky is haze there, and shows the blocks of the photograph
 GAUGE_SIDES = 24  # of its cylinders
+FLOAT_RADIUS, FLOAT_TOP, SPAR_RADIUS, SPAR_TOP = 0.45, 0.5, 0.09, 3.0  # [m]
 GAUGE_COLOUR, SPAR_COLOUR = (0.94, 0.376, 0.125), (0.96, 0.96, 0.94)
 
 
@@ -137,9 +139,12 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         cell, g = p.length / len(frame.vertices), gravity(p)
         capillary = 2.0 * math.pi * math.sqrt(SURFACE_TENSION / (WATER_DENSITY * g))
         overcast = min(max((p.clouds - OVERCAST_FROM) / (1.0 - OVERCAST_FROM), 0.0), 1.0)
-        red, green, blue = (
-            float(grey * overcast + clear * (1.0 - overcast))
-            for grey, clear in zip(OVERCAST_TINT, self.sky_material.sky_tint, strict=True)
+        tint, deep = (
+            blend(clear, grey, overcast)
+            for clear, grey in (
+                (self.sky_material.sky_tint, OVERCAST_TINT),
+                (self.sky_material.deep_color, OVERCAST_DEEP),
+            )
         )
         fold, blur, limit = self.sky_material.sky_fold
         rings, extinction, sun_left = (0.0, 1.0, 1.0), 0.0, 1.0
@@ -153,7 +158,8 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             rain_rings=rings,
             rain_extinction=extinction,
             clouds=p.clouds,
-            sky_tint=(red, green, blue),
+            sky_tint=tint,
+            deep_color=deep,
             sun_strength=self.sky_material.sun_strength * (1.0 - 0.93 * overcast) * sun_left,
             sun_disc=(1.0 - overcast) ** 2 * sun_left,
             cloud_darkness=0.25 + 0.45 * overcast,
@@ -189,6 +195,8 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             self.gauge = WaveGaugeMesh(self.server)
         if self.gauge is not None:
             self.gauge.show(frame.gauge)
+            assert self.water is not None
+            self.water.set_waterlines(waterlines_of(frame.gauge))
 
     def move_cameras(self, old: float, new: float) -> None:
         """Move every camera from over a tile of side `old` [m] to as far from the middle of one of side `new` [m]."""
@@ -233,9 +241,9 @@ class WaveGaugeMesh:
     def __init__(self, server: viser.ViserServer) -> None:
         vertices, faces = ball(8)
         parts = {
-            "spar": (*upright(0.09, -1.2, 3.0), SPAR_COLOUR),
-            "float": (*upright(0.45, -0.1, 0.5), GAUGE_COLOUR),
-            "ball": (0.3 * vertices + (0.0, 0.0, 3.0), faces, GAUGE_COLOUR),
+            "spar": (*upright(SPAR_RADIUS, -1.2, SPAR_TOP), SPAR_COLOUR),
+            "float": (*upright(FLOAT_RADIUS, -0.1, FLOAT_TOP), GAUGE_COLOUR),
+            "ball": (0.3 * vertices + (0.0, 0.0, SPAR_TOP), faces, GAUGE_COLOUR),
         }
         self.parts = [
             server.scene.add_batched_meshes_simple(
@@ -257,6 +265,17 @@ class WaveGaugeMesh:
             part.visible = position is not None
             if position is not None:
                 set_arrays(part, batched_positions=np.array([position]))
+
+
+def waterlines_of(gauge: Vector | None) -> list[Waterline]:
+    """Float and spar of a wave gauge at this position [m], as the water mirrors them; None: there is none."""
+    if gauge is None:
+        return []
+    x, y, z = gauge
+    return [
+        Waterline((x, y), 0.0, (0.0, 0.0), radius, z + top, color=colour)
+        for radius, top, colour in ((FLOAT_RADIUS, FLOAT_TOP, GAUGE_COLOUR), (SPAR_RADIUS, SPAR_TOP, SPAR_COLOUR))
+    ]
 
 
 def upright(radius: float, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:

@@ -133,9 +133,9 @@ def test_the_shaders_declare_every_uniform_that_travels_and_no_other() -> None:
 def test_the_shader_has_the_bands_of_light_of_the_model_of_oil() -> None:
     """The numbers stand in both, since a shader has constants and no table."""
     source = source_of("water_shader.js")
-    (bands,) = re.findall(r"phase = .* / vec3\((.*)\);", source)
+    (bands,) = re.findall(r"turns = .* / vec3\(([^)]*)\)", source)
     assert [float(band) for band in bands.split(",")] == pytest.approx(BANDS)
-    (width_squared,) = re.findall(r"exp\(-0\.5 \* phase \* phase \* ([0-9.]+)\)", source)
+    (width_squared,) = re.findall(r"exp\(-0\.5 \* \(([0-9.]+) \* phase \* phase", source)
     assert float(width_squared) == pytest.approx(BAND_WIDTH**2)
 
 

@@ -5,10 +5,8 @@ import signal
 
 COMPILES = "compiles"  # argument of a process that compiles, too
 FORKS = "forks"  # argument of a process that forks others (`template.py`)
-NICENESS = (
-    10  # of processes that yield to the controls of all labs on a machine: those that move a rope, and that check
-)
-COMPILER_NICENESS = 19  # of those that compile: on a busy machine only if nothing else is to be done
+NICENESS = 10  # of processes that move a rope or check: the controls of all labs on a machine go first
+COMPILER_NICENESS = 19  # of processes that compile: everything else goes first
 TRACE_SIGNAL = getattr(signal, "SIGUSR1", None)  # asks a process where it is; None on Windows, which has no such signal
 
 

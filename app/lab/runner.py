@@ -225,6 +225,7 @@ class Runner:
             raise RunError("ended", f"no process can be started: {error.strerror or error}", "Python") from error
         if self._aborted:
             process.kill()
+        self._used = 0.0
         self._answers = queue.SimpleQueue()
         threading.Thread(target=read_answers, args=(process, self._answers), daemon=True).start()
         self._next(time.monotonic() + LOAD_LIMIT, LOAD_LIMIT, "Python", "the start of the process")

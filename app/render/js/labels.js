@@ -1,7 +1,7 @@
-// Labels on a canvas of their own over the picture: with all pixels of the screen at every quality, and none over another.
+// Labels on a separate canvas over the picture: at the full resolution of the screen at every quality, without overlaps.
 //
-// A label that would cover another is raised above it, and a line leads down to its place. In pictures and clips labels
-// are part of the picture, as they are where this script does not run.
+// A label that would cover another is raised above it, and a line leads down to its place. Pictures and clips
+// contain the labels, and so does the page if this script does not run.
 //
 // Of viser this file uses the meshes of its labels, which stand in one group: those with the uniform uLabelData, a texture
 // of four numbers for each label, its place and whether it is visible; and of the mesh of their backgrounds the attributes
@@ -13,7 +13,7 @@ const MAX_RAISE = 12; // [heights of a label] by which one is raised: one that h
 const MAX_LEADERS = 64; // lines from raised labels to their places
 const LEADER_WIDTH = 0.1; // of such a line, in heights of a label
 const LEADER_FRAGMENT = "void main() { gl_FragColor = vec4(0.45, 0.49, 0.54, 1.0); }";
-// Light on dark is the same text with two other colours; where a new viser has other lines, labels stay as they are.
+// The colours of labels on a dark floor. If a new viser has other lines, labels keep their colours.
 const LABEL_COLOURS = [
   ["gl_FragColor = vec4(0.0, 0.0, 0.0, a);", "gl_FragColor = vec4(0.91, 0.93, 0.95, a);"],
   ["gl_FragColor = vec4(1.0, 1.0, 1.0, 0.85 * vAlpha);", "gl_FragColor = vec4(0.10, 0.12, 0.15, 0.85 * vAlpha);"],

@@ -255,7 +255,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         return {"batched_positions": places.astype(np.float32), "batched_wxyzs": turns}
 
     def open_water(self, frame: MooringFrame) -> NDArray[np.float64]:
-        """What `js/open_water.js` draws: the water (3,) [m], and the body seen from above (2, 3)."""
+        """Rows for `js/open_water.js`: the water (3,) [m], and the body seen from above (2, 3)."""
         w, _, _, z = frame.rotation.tolist()
         place = (*frame.body[:2].tolist(), 2.0 * math.atan2(z, w))
         return np.array([(0.5 * frame.side, frame.params.depth, extent(frame.params)), place, self.outline])

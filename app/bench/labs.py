@@ -26,13 +26,17 @@ MAX_WAIT = 60.0  # [s] for clients to connect
 
 
 @contextlib.contextmanager
-def served(*words: str, environment: Mapping[str, str] | None = None) -> Iterator[tuple[int, int]]:
+def served(
+    *words: str, environment: Mapping[str, str] | None = None, session: bool = False
+) -> Iterator[tuple[int, int]]:
     """A lab in a separate process: its process and its port, once it prints its address.
 
-    words: of its command line. environment: variables beside those of this process.
+    words: of its command line. environment: variables beside those of this process. session: in one of its own, as a
+    JupyterHub starts it.
     """
     command = [sys.executable, "-m", "app", *words, "--no-open", "--port", "0"]
-    server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, **(environment or {})})
+    surroundings = {**os.environ, **(environment or {})}
+    server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=surroundings, start_new_session=session)
     try:
         assert server.stdout is not None
         address = next(word for line in server.stdout for word in line.split() if word.startswith("http"))

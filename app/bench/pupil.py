@@ -48,7 +48,7 @@ class Pupil:
         self.port, self.folder, self.random = port, folder, random.Random(seed)
         self.answers: list[tuple[str, float]] = []
         self.frames: list[float] = []  # [s] when a picture came
-        self.clock: list[tuple[float, float]] = []  # [s] when a status line came, and the simulated time in it
+        self.clock: list[tuple[float, float]] = []  # [s] when a status line came, and the time of a running rope in it
         self.made: list[tuple[str, str]] = []  # label and uuid of each control and command, in order
         self.state = ""  # "running" or "paused"
         self.headline = ""  # on the student's files
@@ -120,13 +120,14 @@ class Pupil:
         text = str(updates.get("content") or props.get("content") or "")
         if found := STATUS.search(text):
             self.state = found[1]
-            self.clock.append((now, float(found[2])))
+            self.clock.append((now, float(found[2]) if self.state == "running" else math.nan))
         elif "Your code:" in text:
             self.headline = text
 
     async def act(self, action: str, change: Callable[[], Any], seen: Callable[[], bool]) -> None:
         """Do something, and note how long it took until it was seen."""
         start = time.monotonic()
+        self.clock.append((start, math.nan))  # what follows may set the clock back, or stop it
         await change()
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(ANSWER_LIMIT):

@@ -12,7 +12,7 @@ import threading
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from app.lab.process import NICENESS, lower_priority
+from app.lab.process import BACKGROUND_NICENESS, lower_priority
 from app.lab.program_check import Verdict, check_program
 from app.lab.runner import ROOT, RunError, Runner
 from app.lab.service import Service
@@ -88,7 +88,7 @@ class BackgroundCheck(Service[Path]):
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
-            process_group=0,  # Ctrl-C in the terminal is the lab's to handle
+            start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle
         )
 
     def close(self) -> None:
@@ -117,7 +117,7 @@ def end(process: "subprocess.Popen[str]") -> None:
 
 def main() -> None:
     """The process."""
-    lower_priority(NICENESS)
+    lower_priority(BACKGROUND_NICENESS)
     tasks = {task.name: task for task in load_tasks(*map(Path, sys.argv[2:]))}
     with contextlib.ExitStack() as opened, contextlib.suppress(BrokenPipeError):
         runner: Runner | None = None

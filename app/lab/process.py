@@ -2,15 +2,35 @@
 
 import os
 import signal
+import time
+from pathlib import Path
 
 COMPILES = "compiles"  # argument of a process that compiles, too
 FORKS = "forks"  # argument of a process that forks others (`template.py`)
-NICENESS = 10  # of processes that move a rope or check: the controls of all labs on a machine go first
-COMPILER_NICENESS = 19  # of processes that compile: everything else goes first
+ON_HUB = "JUPYTERHUB_USER" in os.environ  # labs of others run on this machine, and their controls go first
+ROPE_NICENESS = 19 if ON_HUB else 0  # of a process that moves a student's rope, once it has been tried
+BACKGROUND_NICENESS = 19 if ON_HUB else 10  # of processes that check or compile
+GROUP_TRIES, GROUP_INTERVAL = 20, 0.1  # [s]: Linux changes one session in a tenth of a second
 TRACE_SIGNAL = getattr(signal, "SIGUSR1", None)  # asks a process where it is; None on Windows, which has no such signal
 
 
 def lower_priority(niceness: int) -> None:
-    """Lower the priority of this process, if the system can."""
-    if hasattr(os, "nice"):
-        os.nice(niceness)
+    """Add to the niceness of this process, if the system can.
+
+    Linux may share the processor among sessions first ("autogroup"), and compares niceness only within one. So a
+    process with a session of its own gives that its niceness, too.
+    """
+    if not hasattr(os, "nice"):
+        return
+    total = os.nice(niceness)
+    if total == 0 or os.getsid(0) != os.getpid():
+        return
+    for _ in range(GROUP_TRIES):
+        try:
+            Path("/proc/self/autogroup").write_text(str(total))
+        except BlockingIOError:
+            time.sleep(GROUP_INTERVAL)
+        except OSError:  # no Linux, or sessions do not count
+            return
+        else:
+            return

@@ -189,22 +189,17 @@ class Runner:
 
     def close(self) -> None:
         """End the process, and all that it has started."""
-        process, self._process, self.is_fresh = self._process, None, False
+        process, trace = self._process, self._trace
+        self._process, self._trace, self.is_fresh = None, None, False
         if process is None:
             return
         if process.returncode is None:  # else its number, and its group's, may be another process's by now
             with contextlib.suppress(OSError):
-                if os.name == "posix":
-                    os.killpg(process.pid, signal.SIGKILL)
-                else:
-                    process.kill()
-        for stream in (process.stdin, process.stdout):
-            with contextlib.suppress(OSError):  # what was not yet sent is dropped
-                if stream is not None:
-                    stream.close()
-        process.wait()
-        if self._trace is not None:
-            self._trace.close()
+                kill_group(process)
+        if has_ended(process):
+            dispose(process, trace)
+        else:  # one of a low priority needs the processor to die, which can take seconds on a busy machine
+            threading.Thread(target=dispose, args=(process, trace), daemon=True).start()
 
     def _ready(self) -> Process:
         """The process, started unless it runs already. Raises RunError where it does not start."""
@@ -256,9 +251,7 @@ class Runner:
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             env=surroundings,
-            # Ctrl-C in the terminal is the lab's to handle. No session of its own: Linux would give that as much of the
-            # processor as the lab, and a low priority would mean nothing.
-            process_group=0,
+            start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle; see also `lower_priority`
         )
 
     def _where(self) -> tuple[str, int, str] | None:
@@ -335,6 +328,27 @@ def read_answers(process: Process, answers: "queue.SimpleQueue[list[Any] | None]
         answers.put(answer)
         if answer is None:
             return
+
+
+def kill_group(process: Process) -> None:
+    """Kill a process and all that it has started. Raises OSError where that is not possible."""
+    if os.name == "posix":
+        try:
+            os.killpg(process.pid, signal.SIGKILL)
+            return
+        except ProcessLookupError:  # just forked: it has no group yet, nor started anything
+            pass
+    process.kill()
+
+
+def dispose(process: Process, trace: IO[bytes] | None) -> None:
+    """Wait for the end of a process, reap it, and close its files."""
+    has_ended(process, block=True)
+    for stream in (process.stdin, process.stdout, trace):
+        with contextlib.suppress(OSError):  # what was not yet sent is dropped
+            if stream is not None:
+                stream.close()
+    process.wait()
 
 
 def processor_time(pid: int) -> tuple[bool, float]:

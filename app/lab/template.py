@@ -165,14 +165,12 @@ def fork_on_request() -> tuple[int, bool]:
                 answer = -(error.errno or 1)
             if answer == 0:
                 connection.close()
-                os.setpgid(0, 0)
+                os.setsid()
                 os.dup2(files[0], 0)
                 os.dup2(files[1], 1)
                 os.close(files[0])
                 os.close(files[1])
                 return files[2], request == FORK_COMPILER
-            with contextlib.suppress(OSError):  # it has done so itself, or could not be forked
-                os.setpgid(answer, answer)
             for file in files:
                 os.close(file)
         connection.send(ANSWER.pack(answer))

@@ -24,7 +24,7 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 from app.lab.cloth_march import ClothFunctions, Sheet
-from app.lab.process import COMPILER_NICENESS, COMPILES, FORKS, NICENESS, TRACE_SIGNAL, lower_priority
+from app.lab.process import BACKGROUND_NICENESS, COMPILES, FORKS, ROPE_NICENESS, TRACE_SIGNAL, lower_priority
 from app.lab.rope_march import Functions, Unfit, march, unpacked
 from app.lab.tabulate import Range, tabulate
 from app.lab.template import fork_on_request
@@ -60,7 +60,8 @@ class Worker:
 
     folder: Path
 
-    def __init__(self) -> None:
+    def __init__(self, *, was_tried: bool) -> None:
+        """was_tried: another process has tried the functions, for which the student waits."""
         self.output = CountedOutput()
         # The pipes get numbers of their own; 0, 1 and 2, which the student's code sees, lead nowhere.
         self.incoming = os.fdopen(os.dup(0), "rb")
@@ -72,7 +73,7 @@ class Worker:
         sys.stdout = sys.stderr = self.output
         self.modules: dict[str, ModuleType] = {}
         self.compiled: dict[str, Callable[..., Any]] = {}
-        self.was_tried = False  # a first march has come to an end, for which the student waits
+        self.was_tried = was_tried
 
     def enter(self, folder: Path) -> None:
         """Work in the student's folder."""
@@ -99,7 +100,7 @@ class Worker:
                 send(self.outgoing, ["failed", "raised", f"the result has {error}", file, None])
             if kind == "march" and not self.was_tried:
                 self.was_tried = True
-                lower_priority(NICENESS)
+                lower_priority(ROPE_NICENESS)
 
     def answer(self, kind: str, file: str, function: str, arguments: Any) -> list[Any]:
         """The message with the result of a call or a march."""
@@ -206,9 +207,9 @@ def main() -> None:
     end_with_parent(os.getppid())
     if TRACE_SIGNAL is not None:
         faulthandler.register(TRACE_SIGNAL, file=trace, all_threads=False)
-    worker = Worker()
+    worker = Worker(was_tried=compiles)
+    lower_priority(BACKGROUND_NICENESS if compiles else 0)
     if compiles:
-        lower_priority(COMPILER_NICENESS)
         importlib.import_module("app.lab.compiled")  # before the memory is limited
     limit_memory()
     worker.serve()

@@ -10,7 +10,7 @@ import signal
 import sys
 import traceback
 
-from app.lab.process import NICENESS, lower_priority
+from app.lab.process import BACKGROUND_NICENESS, lower_priority
 from app.scenes.warmup import compile_piece
 
 
@@ -18,7 +18,7 @@ def main() -> None:
     """Compile the pieces that are asked for."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the lab, which then closes our input
     if "--ahead" in sys.argv:
-        lower_priority(NICENESS)
+        lower_priority(BACKGROUND_NICENESS)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # whatever a library prints is no answer
     for line in sys.stdin:

@@ -104,9 +104,9 @@ def compile_kernels() -> None:
 
 
 def lab(folder: Path) -> AbstractContextManager[tuple[int, int]]:
-    """A lab on a folder: its process, and its port."""
-    data = {"SPRINGTIDE_DATA": str(folder.with_name(f"{folder.name}-data"))}
-    return served("lab", str(folder), "--resume", environment=data)
+    """A lab on a folder, as a JupyterHub starts it: its process, and its port."""
+    environment = {"SPRINGTIDE_DATA": str(folder.with_name(f"{folder.name}-data")), "JUPYTERHUB_USER": folder.name}
+    return served("lab", str(folder), "--resume", environment=environment, session=True)
 
 
 def play(ports: Sequence[int], folders: Sequence[Path], lesson: float) -> tuple[list[Result], float]:
@@ -128,7 +128,7 @@ def play(ports: Sequence[int], folders: Sequence[Path], lesson: float) -> tuple[
 def result_of(pupil: Pupil) -> Result:
     """Answers and rates of a client."""
     frames = pupil.frames
-    # Steps between two status lines in which the clock of the rope went on: it is not paused, and was not set back.
+    # Steps between two status lines of a running rope, without those in which the student did something.
     steps = [(b[0] - a[0], b[1] - a[1]) for a, b in itertools.pairwise(pupil.clock) if b[1] > a[1]]
     wall = sum(step[0] for step in steps)
     gaps = [b - a for a, b in itertools.pairwise(frames)]

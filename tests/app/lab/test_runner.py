@@ -4,15 +4,15 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from app.lab import runner
-from app.lab.process import NICENESS
-from app.lab.rope_march import Forces, Segment
 from app.lab.runner import RunError, Runner, has_ended
 from tests.waiting import wait_for
 
@@ -69,8 +69,8 @@ BUSY = "import os, time\n    os.sched_setaffinity(0, {x})\n    while time.proces
 def test_a_call_that_waits_for_the_processor_is_no_endless_loop(tmp_path: Path) -> None:
     write(tmp_path, BUSY)
     core = min(os.sched_getaffinity(0))
-    loops = [subprocess.Popen([sys.executable, "-c", f"import os; os.sched_setaffinity(0, {{{core}}})\nwhile 1: pass"])
-             for _ in range(8)]  # fmt: skip
+    endless = f"import os; os.sched_setaffinity(0, {{{core}}})\nwhile 1: pass"
+    loops = [subprocess.Popen([sys.executable, "-c", endless], start_new_session=True) for _ in range(8)]
     try:
         with Runner(tmp_path, 0.5) as runner:
             start = time.monotonic()
@@ -82,17 +82,40 @@ def test_a_call_that_waits_for_the_processor_is_no_endless_loop(tmp_path: Path) 
             loop.wait()
 
 
+PRIORITIES = """import os
+from pathlib import Path
+def spring_force(x1, x2, *rest):
+    group = Path("/proc/self/autogroup")
+    of_session = int(group.read_text().split()[-1]) if group.exists() else 0
+    return (x2 - x1) * 0 + [os.getpriority(os.PRIO_PROCESS, 0), of_session, 0.0]
+"""
+ROPE_TWICE = """import sys, numpy as np
+from pathlib import Path
+from app.lab.rope_march import Forces, Segment
+from app.lab.runner import Runner
+x = np.linspace([0.0, 0.0, 3.0], [1.0, 0.0, 3.0], 3)
+segment = Segment(1, 0.1, Forces(1.0, 800.0, 7.0, 0.0, 0.2, 0.0), np.zeros((0, 4, 3)))
+with Runner(Path(sys.argv[1])) as runner:
+    for _ in range(2):
+        v = runner.march({"spring_force"}, "step_euler", x, 0.0 * x, [segment]).v[-1]
+        print(*np.round(-10.0 * v[:2]).astype(int))
+"""
+
+
 @pytest.mark.skipif(not hasattr(os, "getpriority"), reason="priorities are POSIX")
-def test_a_rope_is_tried_at_once_and_then_yields_to_the_controls(tmp_path: Path) -> None:
-    (tmp_path / "rope.py").write_text(
-        "import os\ndef spring_force(x1, x2, *rest):\n    return (x2 - x1) * 0 + os.getpriority(os.PRIO_PROCESS, 0)"
-    )
-    x = np.linspace([0.0, 0.0, 3.0], [1.0, 0.0, 3.0], 3)
-    segment = Segment(1, 0.1, Forces(1.0, 800.0, 7.0, 0.0, 0.2, 0.0), np.zeros((0, 4, 3)))
-    with Runner(tmp_path) as runner:
-        ends = [runner.march({"spring_force"}, "step_euler", x, 0.0 * x, [segment]).v[-1, 0] for _ in range(2)]
-    before = os.getpriority(os.PRIO_PROCESS, 0)
-    assert ends == pytest.approx([-0.1 * before, -0.1 * min(19, before + NICENESS)])
+@pytest.mark.parametrize(("user", "added"), [("ada", 19), ("", 0)])
+def test_a_rope_is_tried_at_once_and_then_yields_to_the_labs_of_a_hub(tmp_path: Path, user: str, added: int) -> None:
+    (tmp_path / "rope.py").write_text(PRIORITIES)
+    surroundings = {key: value for key, value in os.environ.items() if key != "JUPYTERHUB_USER"}
+    output = subprocess.run(
+        [sys.executable, "-c", ROPE_TWICE, tmp_path],
+        env=surroundings | ({"JUPYTERHUB_USER": user} if user else {}), cwd=ROOT, capture_output=True, text=True,
+        check=True,
+    )  # fmt: skip
+    own = os.getpriority(os.PRIO_PROCESS, 0)
+    has_sessions = Path("/proc/self/autogroup").exists()
+    expected = [[niceness, niceness if has_sessions else 0] for niceness in (own, min(19, own + added))]
+    assert [[int(number) for number in line.split()] for line in output.stdout.splitlines()] == expected
 
 
 def test_an_abort_before_the_process_runs_is_not_lost(tmp_path: Path) -> None:
@@ -239,11 +262,34 @@ def has_group(group: int) -> bool:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="process groups and sessions are POSIX")
-def test_a_process_has_a_group_and_no_session_of_its_own(tmp_path: Path) -> None:
+def test_a_process_has_a_session_of_its_own(tmp_path: Path) -> None:
     write(tmp_path, "import os\n    return [os.getpid(), os.getpgid(0), os.getsid(0)]")
     with Runner(tmp_path) as runner:
         process, group, session = runner.call("mine.py", "f", 1.0)
-    assert (group, session) == (process, os.getsid(0))
+    assert (group, session) == (process, process)
+
+
+def test_a_call_does_not_wait_for_the_death_of_the_last_process(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(tmp_path, "while True: pass")
+    dead, disposed = threading.Event(), threading.Event()
+
+    def dispose(*arguments: Any) -> None:
+        dead.wait()
+        runner.dispose(*arguments)
+        disposed.set()
+
+    with Runner(tmp_path, time_limit=0.2) as one:
+        with monkeypatch.context() as patch:
+            patch.setattr("app.lab.runner.dispose", dispose)
+            patch.setattr("app.lab.runner.has_ended", lambda *_, **__: False)
+            with pytest.raises(RunError, match="endless"):
+                one.call("mine.py", "f", 1.0)
+        assert one.call("mine.py", "right", 3.0) == 6.0
+        assert not disposed.is_set()
+        dead.set()
+        assert disposed.wait(10.0)
 
 
 CHILD = "import os, subprocess\n    subprocess.Popen(['sleep', '60'])\n    os._exit(3)"

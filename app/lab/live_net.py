@@ -7,6 +7,7 @@ that works; which one fails, and why, is kept until the next one is saved.
 import itertools
 import math
 import queue
+import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from app.lab.cloth_march import FILE as CLOTH_FILE
 from app.lab.cloth_march import Sheet
+from app.lab.process import ON_HUB
 from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_march import Forces, Segment
 from app.lab.runner import RunError, Runner, unexpected
@@ -22,6 +24,9 @@ from app.lab.saved import Saved
 from app.lab.service import Service
 
 COMPILE_AFTER = 3.0  # [s] of processor time in plain Python: about what compiling takes
+# On a hub: ratio of a rest after a march to the time for which other labs kept it from the processor, and the longest.
+# Containers get equal parts of a busy processor, and a lab that always wants more than its part answers late.
+REST_RATIO, MAX_REST = 16.0, 0.5  # [s]
 
 
 class Job(NamedTuple):
@@ -177,6 +182,7 @@ class LiveNet(Service[Job | Loaded]):
         self.method, self.sphere = "rk4", False  # of the last job: what a new version is tried with
         self.tell, self.compile_it = tell, compile_it
         self.effort = 0.0  # [s] of processor time that the newest version has taken in plain Python
+        self.waited = 0.0  # [s] for which its last march waited for the processor
         # The one that is preferred last: the last version before the newest, the newest, the newest compiled.
         self.versions: list[Loaded] = []
         self.taken = 0  # number of the version that was taken last
@@ -209,12 +215,14 @@ class LiveNet(Service[Job | Loaded]):
         if isinstance(item, Loaded):
             self.take(item)
             return
-        answer = unanswered(item)
+        answer, self.waited = unanswered(item), 0.0
         try:
             answer = self.advance(item)
         finally:
             item.answers.put(answer)
             self.wake()
+        if ON_HUB:
+            time.sleep(min(REST_RATIO * self.waited, MAX_REST))
 
     def fail(self, item: Job | Loaded, error: RunError) -> None:
         """Say it of the version that was to be taken, or of the newest."""
@@ -262,9 +270,12 @@ class LiveNet(Service[Job | Loaded]):
                 elif not compiled:  # plain Python is tried next, and says where it was
                     self.tell(saved, error)
                 continue
+            self.waited = max(0.0, done.seconds - done.effort)
             if saved.number == self.taken and not compiled:
-                before, self.effort = self.effort, self.effort + done.effort
-                if before < COMPILE_AFTER <= self.effort:
+                self.effort += done.effort
+                is_busy = ON_HUB and self.waited > done.effort
+                if self.effort >= COMPILE_AFTER and not is_busy:
+                    self.effort = -math.inf  # not again
                     self.compile_it(saved)
             each = done.seconds / max(done.steps, 1)
             return Answer(job.run, done.x, done.v, each, done.left, saved.number, compiled)

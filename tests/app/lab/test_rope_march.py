@@ -8,7 +8,7 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 
-from app.lab.live_net import COMPILE_AFTER, ROPE, Answer, Job, LiveNet, Loaded
+from app.lab.live_net import COMPILE_AFTER, MAX_REST, REST_RATIO, ROPE, Answer, Job, LiveNet, Loaded
 from app.lab.rope_march import Forces, Functions, March, Segment, Unfit, march
 from app.lab.saved import keep
 from app.lab.task import load_tasks
@@ -86,3 +86,29 @@ def test_a_version_is_compiled_once_it_has_taken_as_long_as_compiling_does(tmp_p
         assert asked == [2]
     finally:
         live.close()
+
+
+def test_on_a_busy_hub_a_function_rests_and_is_not_compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.lab.live_net.ON_HUB", True)
+    asked: list[int] = []
+    rests: list[float] = []
+    monkeypatch.setattr("app.lab.live_net.time", Mock(sleep=rests.append))
+    live = LiveNet(ROPE, lambda saved, error: None, lambda saved: asked.append(saved.number))
+    x = np.array([[0.0, 0.0, 3.0], [-0.2, 0.0, 3.0]])
+    answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
+    job = Job(1, "rk4", x, 0.0 * x, [Segment(1, 0.01, FORCES, np.zeros((0, 4, 3)))], answers)
+    text = b"def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):\n    return x1\n"
+    saved = keep({"rope.py": text}, tmp_path, 1, load_tasks())
+    waited = [2.0 * COMPILE_AFTER, 2.0 * COMPILE_AFTER, 0.01, -1e-4]  # it takes `COMPILE_AFTER` each time
+    marches = [March(x[None], x, 1, COMPILE_AFTER + wait, COMPILE_AFTER, False) for wait in waited]
+    live.adopt(Loaded(saved, Mock(**{"march.side_effect": marches})))
+    try:
+        compiled = []
+        for _ in marches:
+            live.submit(job)
+            assert answers.get(timeout=30.0).version == 1
+            compiled.append(list(asked))
+        assert compiled == [[], [], [1], [1]]
+    finally:
+        live.close()
+    assert rests == pytest.approx([MAX_REST, MAX_REST, 0.01 * REST_RATIO, 0.0])

@@ -144,7 +144,7 @@ def make_parser() -> argparse.ArgumentParser:
     warmup = commands.add_parser("warmup", help="compile all kernels and plan all transforms, once")
     into = "for all users, into a folder that SPRINGTIDE_KERNELS names; without a name into that of the installation"
     warmup.add_argument("--into", nargs="?", const="", metavar="FOLDER", help=into)
-    level = "with --into: for all processors of a level: x86-64-v3, x86-64-v4 or arm64 (default: for this processor)"
+    level = "with --into: for all processors of a level (x86-64-v3, x86-64-v4, arm64), or all: each that this one has"
     warmup.add_argument("--processor", default="", metavar="LEVEL", help=level)
     warmup.set_defaults(command=run_warmup)
     return parser

@@ -10,7 +10,7 @@ from rich import get_console
 from app.files import make_out_folder
 from app.scenes import NAMES
 from app.scenes.warmup import all_pieces, compile_here
-from sim.cache import SHARED_VARIABLE, level_environment
+from sim.cache import SHARED_VARIABLE, host_levels, level_environment
 from sim.jit import CACHE
 
 
@@ -28,12 +28,17 @@ def warm_up() -> int:
 def warm_up_into(folder: Path, level: str) -> int:
     """`warm_up` into a folder that others only read; returns the exit status.
 
-    level: of processors; "" for this processor. Runs in a separate process, as numba reads folder and level at import.
+    level: of processors; "all" for each that this processor has, "" for this processor. Runs in separate processes, as
+    numba reads folder and level at import.
 
     Raises ValueError where this processor does not have the level, or the folder cannot be made.
     """
-    processor = level_environment(level) if level else {}
+    levels = (host_levels() if level == "all" else ()) or (level,)
+    processors = [level_environment(each) if each else {} for each in levels]
     make_out_folder("--into", folder)
-    # Nothing is taken from other folders: this one is to have all.
-    environment = {**os.environ, **processor, "SPRINGTIDE_CACHE": str(folder.resolve()), SHARED_VARIABLE: ""}
-    return subprocess.run([sys.executable, "-m", "app", "warmup"], env=environment, check=False).returncode
+    for processor in processors:
+        # Nothing is taken from other folders: this one is to have all.
+        environment = {**os.environ, **processor, "SPRINGTIDE_CACHE": str(folder.resolve()), SHARED_VARIABLE: ""}
+        if status := subprocess.run([sys.executable, "-m", "app", "warmup"], env=environment, check=False).returncode:
+            return status
+    return 0

@@ -90,3 +90,23 @@ def test_a_level_that_this_processor_does_not_have_is_refused(
     assert not list(tmp_path.iterdir())
     assert main(["warmup", "--processor", "x86-64-v3"]) == 2
     assert "together with --into" in capsys.readouterr().err
+
+
+def test_all_levels_of_this_processor_go_into_one_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    runs: list[tuple[str, str]] = []
+
+    def run(command: list[str], env: dict[str, str], check: bool) -> SimpleNamespace:
+        runs.append((env["NUMBA_CPU_NAME"], env["SPRINGTIDE_CACHE"]))
+        return SimpleNamespace(returncode=3 * (len(runs) == 4))
+
+    monkeypatch.setattr("app.commands.warmup.subprocess.run", run)
+    words = ["warmup", "--into", str(tmp_path), "--processor", "all"]
+    monkeypatch.setattr("sim.cache.host_levels", lambda: ("x86-64-v4", "x86-64-v3"))
+    monkeypatch.setattr("app.commands.warmup.host_levels", lambda: ("x86-64-v4", "x86-64-v3"))
+    assert main(words) == 0
+    assert runs == [("x86-64-v4", str(tmp_path)), ("x86-64-v3", str(tmp_path))]
+    assert main(words) == 3  # the second one fails
+    monkeypatch.setattr("sim.cache.host_levels", lambda: ())
+    monkeypatch.setattr("app.commands.warmup.host_levels", lambda: ())
+    assert main(words) == 2
+    assert len(runs) == 4

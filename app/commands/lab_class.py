@@ -8,6 +8,7 @@ import webbrowser
 from collections.abc import Sequence
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from app.commands.serve import say, wait_until
@@ -45,6 +46,17 @@ def serve_class(folders: Sequence[Path], tasks: Sequence[Path], port: int, *, br
             server.shutdown()
             server.server_close()
     return 0
+
+
+class Server(ThreadingHTTPServer):
+    """Prints nothing about a browser that left before its answer."""
+
+    daemon_threads = True
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Called where an exception leaves a handler."""
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
 
 
 def make_server(classroom: Classroom, key: str, port: int) -> ThreadingHTTPServer:
@@ -91,6 +103,4 @@ def make_server(classroom: Classroom, key: str, port: int) -> ThreadingHTTPServe
         def log_message(self, format: str, *args: object) -> None:
             """Print nothing: the path is a secret."""
 
-    server = ThreadingHTTPServer((HOST, port), Handler)
-    server.daemon_threads = True
-    return server
+    return Server((HOST, port), Handler)

@@ -41,6 +41,24 @@ def test_the_cover_goes_with_the_first_scene_and_comes_back_with_the_end(chromiu
     page.close()
 
 
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [("/", "with the command: springtide"), ("/user/ada/springtide/", "Reload this page to start it again.")],
+)
+def test_a_page_behind_a_proxy_names_no_command(chromium: Any, path: str, words: str) -> None:
+    """Its user has no terminal where the lab runs: on a JupyterHub a page that is loaded again starts the lab."""
+    viewer = Viewer("127.0.0.1", 0, access=Access(path.removesuffix("/")))
+    page = new_page(chromium, 640, 400, drawn=False)
+    try:
+        page.goto(f"http://127.0.0.1:{viewer.port}{path}", wait_until="commit")
+        wait_for(page, lambda said: "Connecting" in said)
+    finally:
+        viewer.shut()
+    wait_for(page, lambda said: "The lab has stopped." in said)
+    assert words in shown(page)
+    page.close()
+
+
 def test_without_webgl_the_page_says_so(chromium: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
     page = new_page(chromium, 640, 400, drawn=False)

@@ -5,11 +5,14 @@ import itertools
 import json
 import re
 from collections.abc import Iterator
+from types import SimpleNamespace
+from unittest import mock
 
 import pytest
 
 from app.__main__ import make_parser
 from app.bench.command import benchmarks
+from app.notebook.server_proxy import LAB_VARIABLE
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import FILE_KEYS, read_file
 from sim.parameters import parameters_of
@@ -107,6 +110,24 @@ def test_the_set_up_file_of_the_page_is_read_back():
     setup = read_file(block, "docs/share.md")
     assert set(json.loads(block)) == set(FILE_KEYS) - {"hull"}  # which only a radial sea has
     assert setup.camera == ((0.5, -4.0, 2.0), (0.0, 0.0, 1.3))
+
+
+def test_the_hub_of_the_class_starts_what_is_there():
+    """Both ways to run it: its configuration, and the image that it names."""
+    page = text_of(ROOT / "docs" / "class.md")
+    common, *ways = re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    for way in ways:
+        config = mock.MagicMock()
+        exec(common + way, {"c": config})
+        assert {LAB_VARIABLE} <= config.Spawner.environment.keys() <= {LAB_VARIABLE, "SPRINGTIDE_DATA"}
+        folder = config.Spawner.environment[LAB_VARIABLE]
+        student = SimpleNamespace(user=SimpleNamespace(name="ada"))
+        root = config.Spawner.notebook_dir.format(username="ada")  # JupyterLab opens the lab's files
+        assert (folder(student) if callable(folder) else folder) == root
+    dockerfile = text_of(ROOT / "Dockerfile")
+    for target, argument in re.findall(r"--target (\w+) --build-arg (\w+)=", page):
+        assert re.search(rf"^FROM \S+ AS {target}\nARG {argument}$", dockerfile, re.MULTILINE)
+    assert len(ways) == 2
 
 
 def test_the_readme_shows_every_scene():

@@ -8,6 +8,9 @@
   const ALIVE_INTERVAL = 2000; // [ms] between two questions whether the server is still there
   const cover = document.getElementById("springtide-cover");
   const words = document.getElementById("springtide-cover-words");
+  // A path is that of a proxy, such as a JupyterHub, or of a pane of several.
+  const path = location.pathname.replace(/(pane\/\d+\/)?(index\.html)?$/, "");
+  const restart = path === "/" ? "Start it again with the command: springtide" : "Reload this page to start it again.";
   let lost = false;
 
   function hasWebGL() {
@@ -24,7 +27,7 @@
   }
 
   function update() {
-    if (lost) return say("The lab has stopped. Start it again with the command: springtide", false);
+    if (lost) return say(`The lab has stopped. ${restart}`, false);
     const progress = document.querySelector(".springtide-progress");
     if (progress) return say(progress.textContent, false);
     if (document.querySelector(".springtide-panel")) return say(null, true);

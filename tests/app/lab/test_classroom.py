@@ -1,6 +1,8 @@
 """The teacher's page: folders that are checked as files are saved, ropes, and who may read the page."""
 
 import http.client
+import socket
+import struct
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -181,6 +183,25 @@ def test_rows_come_once_they_are_new(served: tuple[Classroom, int]) -> None:
         assert b"Class of 3" in answer.read()
     save(next(iter(classroom.students)), "-")
     assert int(asked(port, f"/secret/rows?after={revision}").headers["X-Revision"]) > revision
+
+
+def test_a_browser_that_leaves_before_its_answer_prints_nothing(
+    served: tuple[Classroom, int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    classroom, port = served
+    wait_for(lambda: all(student.results for student in classroom.students.values()))
+
+    def answers() -> bool:
+        return any("process_request" in thread.name for thread in threading.enumerate())
+
+    with socket.create_connection(("127.0.0.1", port)) as browser:
+        browser.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # closing it resets it
+        asks = f"GET /secret/rows?after={classroom.revision} HTTP/1.1\r\nHost: localhost:{port}\r\n\r\n"
+        browser.sendall(asks.encode())
+        wait_for(answers)
+    save(next(iter(classroom.students)), "-")
+    wait_for(lambda: not answers())
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize("options", [["--scene", "cloth"], ["--host", "0.0.0.0"], ["--resume"], ["--set", "points=9"]])

@@ -50,7 +50,7 @@ def merged(commands: Iterable[Command]) -> list[Command]:
             case Halt():
                 halt = halt or command
             case Load():
-                start, steps = command, 0
+                start, steps, motion = command, 0, None  # it starts the run
                 scene.clear()
             case Reset():
                 start = start if isinstance(start, Load) else command
@@ -60,7 +60,7 @@ def merged(commands: Iterable[Command]) -> list[Command]:
                 steps = 0 if isinstance(command, Play) else steps
                 motion = AFTER.get((motion, type(command)), "play" if isinstance(command, Play) else "pause")
             case StepOnce(more):
-                steps, motion = steps + more, None
+                steps, motion = steps + more, "pause"
             case Place(thing, _):
                 put_last(scene, ("place", thing), command)
             case Grab() | Release():
@@ -77,7 +77,7 @@ def merged(commands: Iterable[Command]) -> list[Command]:
     found.extend(scene.values())
     if steps:
         found.append(StepOnce(steps))
-    if motion is not None:
+    if motion is not None and not (steps and motion == "pause"):  # a step pauses the run
         found.append(COMMAND_OF[motion])
     return found + asked
 

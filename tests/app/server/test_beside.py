@@ -144,8 +144,8 @@ def test_the_lab_goes_on_from_where_it_was_when_it_is_alone_again() -> None:
     try:
         viewer.open("rope", paused=True)
         viewer.loop.commands.put(StepOnce(5))
-        wait_for(lambda: viewer.loop.scene.time > 0)
-        time_before = viewer.loop.scene.time
+        time_before = pytest.approx(5 * viewer.loop.scene.step)
+        wait_for(lambda: viewer.loop.scene.time == time_before)
         viewer.comparing.begin([read_query("?scene=rope&stiffness=2000")], False)
         wait_for(lambda: viewer.loop.latest.status.time == 0.0)
         pane = viewer.comparison.viewers[1] if viewer.comparison else None

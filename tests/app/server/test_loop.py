@@ -2,6 +2,7 @@
 
 import contextvars
 import dataclasses
+import itertools
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -26,6 +27,7 @@ from app.messages import (
 )
 from app.scenes.contract import FRAME_INTERVAL
 from app.server.loop import IDLE_INTERVAL, MAX_FRAME_INTERVAL, PATIENCE, SimLoop
+from app.server.merging import merged
 from app.server.pacer import SOLVE_SHARE, FixedStep
 from sim.parameters import parameter
 from tests.waiting import wait_for
@@ -413,6 +415,20 @@ def test_a_change_of_look_touches_neither_forces_nor_start() -> None:
     values = Params(points=5)
     loop.tick(FRAME_INTERVAL)
     assert (scene.changes, scene.starts) == (1, [values])
+
+
+@pytest.mark.parametrize("paused", [False, True])
+def test_merged_commands_leave_the_run_as_all_of_them_in_order_do(paused: bool) -> None:
+    commands = (Play(), Pause(), TogglePlay(), StepOnce(), Reset(), Load(Params(stiffness=3.0), 1, None))
+    for length in (2, 3, 4):
+        for sequence in itertools.product(commands, repeat=length):
+            ends = []
+            for several in (sequence, merged(sequence)):
+                loop, scene = make(paused=paused)
+                for command in several:
+                    loop.handle(command)
+                ends.append((loop.running, loop.halted, loop.loaded, scene.params))
+            assert ends[0] == ends[1], sequence
 
 
 def test_a_preset_is_one_command_and_starts_from_exactly_its_record() -> None:

@@ -31,8 +31,8 @@ def served(
 ) -> Iterator[tuple[int, int]]:
     """A lab in a separate process: its process and its port, once it prints its address.
 
-    words: of its command line. environment: variables beside those of this process. session: in one of its own, as a
-    JupyterHub starts it.
+    words: of its command line. environment: variables to add to those of this process. session: whether it starts a
+    new session, as under a JupyterHub.
     """
     command = [sys.executable, "-m", "app", *words, "--no-open", "--port", "0"]
     surroundings = {**os.environ, **(environment or {})}

@@ -182,7 +182,7 @@ class LiveNet(Service[Job | Loaded]):
         self.method, self.sphere = "rk4", False  # of the last job: what a new version is tried with
         self.tell, self.compile_it = tell, compile_it
         self.effort = 0.0  # [s] of processor time that the newest version has taken in plain Python
-        self.waited = 0.0  # [s] for which its last march waited for the processor
+        self.waited = 0.0  # [s] for which other labs of a hub kept the last march from the processor
         # The one that is preferred last: the last version before the newest, the newest, the newest compiled.
         self.versions: list[Loaded] = []
         self.taken = 0  # number of the version that was taken last
@@ -221,8 +221,7 @@ class LiveNet(Service[Job | Loaded]):
         finally:
             item.answers.put(answer)
             self.wake()
-        if ON_HUB:
-            time.sleep(min(REST_RATIO * self.waited, MAX_REST))
+        time.sleep(min(REST_RATIO * self.waited, MAX_REST))
 
     def fail(self, item: Job | Loaded, error: RunError) -> None:
         """Say it of the version that was to be taken, or of the newest."""
@@ -270,11 +269,10 @@ class LiveNet(Service[Job | Loaded]):
                 elif not compiled:  # plain Python is tried next, and says where it was
                     self.tell(saved, error)
                 continue
-            self.waited = max(0.0, done.seconds - done.effort)
+            self.waited = max(0.0, done.seconds - done.effort) if ON_HUB else 0.0
             if saved.number == self.taken and not compiled:
                 self.effort += done.effort
-                is_busy = ON_HUB and self.waited > done.effort
-                if self.effort >= COMPILE_AFTER and not is_busy:
+                if self.effort >= COMPILE_AFTER and self.waited <= done.effort:
                     self.effort = -math.inf  # not again
                     self.compile_it(saved)
             each = done.seconds / max(done.steps, 1)

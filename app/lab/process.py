@@ -10,15 +10,15 @@ FORKS = "forks"  # argument of a process that forks others (`template.py`)
 ON_HUB = "JUPYTERHUB_USER" in os.environ  # labs of others run on this machine, and their controls go first
 ROPE_NICENESS = 19 if ON_HUB else 0  # of a process that moves a student's rope, once it has been tried
 BACKGROUND_NICENESS = 19 if ON_HUB else 10  # of processes that check or compile
-GROUP_TRIES, GROUP_INTERVAL = 20, 0.1  # [s]: Linux changes one session in a tenth of a second
+GROUP_TRIES, GROUP_INTERVAL = 20, 0.1  # [s]: Linux allows one such change in 0.1 s to all users together
 TRACE_SIGNAL = getattr(signal, "SIGUSR1", None)  # asks a process where it is; None on Windows, which has no such signal
 
 
 def lower_priority(niceness: int) -> None:
     """Add to the niceness of this process, if the system can.
 
-    Linux may share the processor among sessions first ("autogroup"), and compares niceness only within one. So a
-    process with a session of its own gives that its niceness, too.
+    Linux can schedule sessions as groups ("autogroup") and compare niceness only within a session. The leader of a
+    session therefore sets the niceness of the session, too.
     """
     if not hasattr(os, "nice"):
         return

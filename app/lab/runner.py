@@ -332,12 +332,10 @@ def read_answers(process: Process, answers: "queue.SimpleQueue[list[Any] | None]
 
 def kill_group(process: Process) -> None:
     """Kill a process and all that it has started. Raises OSError where that is not possible."""
-    if os.name == "posix":
-        try:
+    with contextlib.suppress(ProcessLookupError):  # just forked: it has no group yet, and has started nothing
+        if os.name == "posix":
             os.killpg(process.pid, signal.SIGKILL)
             return
-        except ProcessLookupError:  # just forked: it has no group yet, nor started anything
-            pass
     process.kill()
 
 

@@ -6,6 +6,7 @@ Times are of the processor, and the ratio is the median of those of pairs: what 
 import ctypes
 import statistics
 import time
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -46,35 +47,42 @@ def run_c(library: ctypes.CDLL, net: Net, name: str, h: float, steps: int) -> tu
     return time.thread_time() - start, x
 
 
+def cases(work: int) -> Iterator[tuple[Net, str, float, int]]:
+    """Each rope and method: net, method, time step [s], and steps, of which longer ropes and dearer methods take fewer.
+
+    work: evaluations of the force of a link.
+    """
+    for links in LINKS:
+        net, h = benchmark_rope(links), 0.8 * 1.94e-3 * 16 / links
+        for name in C_LOOPS:
+            run_ours(net, name, h, 10)  # compiles it
+            yield net, name, h, work // (links * INTEGRATORS[name].evals)
+
+
 def rows(quick: bool = False) -> list[dict[str, Any]]:
     """Nanoseconds per point and step of ours and of C, medians of repeats in turns, and the ratio."""
     library = build("kernels")
     table = []
-    for links in LINKS:
-        net = benchmark_rope(links)
-        for name in C_LOOPS:
-            h = 0.8 * 1.94e-3 * 16 / links
-            steps = (400_000 if quick else 2_000_000) // (links * INTEGRATORS[name].evals)
-            repeats = 7 if quick else 21
-            run_ours(net, name, h, 10)
-            ours, theirs, difference = [], [], float("nan")
-            for _ in range(repeats):
-                seconds, x = run_ours(net, name, h, steps)
-                ours.append(seconds)
-                if library is not None:
-                    seconds, y = run_c(library, net, name, h, steps)
-                    theirs.append(seconds)
-                    difference = float(np.abs(x - y).max())
-            scale = 1e9 / (steps * (links + 1))
-            ratios = [mine / c for mine, c in zip(ours, theirs, strict=False)]
-            table.append(
-                {
-                    "integrator": name,
-                    "points": links + 1,
-                    "ns per point-step": statistics.median(ours) * scale,
-                    "C ns per point-step": statistics.median(theirs) * scale if theirs else float("nan"),
-                    "ratio": statistics.median(ratios) if ratios else float("nan"),
-                    "difference [m]": difference,
-                }
-            )
+    for net, name, h, steps in cases(400_000 if quick else 2_000_000):
+        points = net.x0.shape[2]
+        ours, theirs, difference = [], [], float("nan")
+        for _ in range(7 if quick else 21):
+            seconds, x = run_ours(net, name, h, steps)
+            ours.append(seconds)
+            if library is not None:
+                seconds, y = run_c(library, net, name, h, steps)
+                theirs.append(seconds)
+                difference = float(np.abs(x - y).max())
+        scale = 1e9 / (steps * points)
+        ratios = [mine / c for mine, c in zip(ours, theirs, strict=False)]
+        table.append(
+            {
+                "integrator": name,
+                "points": points,
+                "ns per point-step": statistics.median(ours) * scale,
+                "C ns per point-step": statistics.median(theirs) * scale if theirs else float("nan"),
+                "ratio": statistics.median(ratios) if ratios else float("nan"),
+                "difference [m]": difference,
+            }
+        )
     return table

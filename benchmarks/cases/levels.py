@@ -16,16 +16,11 @@ TURNS, QUICK_TURNS = 7, 2
 HERE = "this processor"
 PROGRAM = """
 import json
-from benchmarks.cases.kernels import C_LOOPS, LINKS, run_ours
-from benchmarks.tasks.rope import benchmark_rope
-from sim.springs import INTEGRATORS
+from benchmarks.cases.kernels import cases, run_ours
 times = {}
-for links in LINKS:
-    net, h = benchmark_rope(links), 0.8 * 1.94e-3 * 16 / links
-    for name in C_LOOPS:
-        steps = 400_000 // (links * INTEGRATORS[name].evals)
-        run_ours(net, name, h, 10)
-        times[f"{name}, {links + 1} points"] = min(run_ours(net, name, h, steps)[0] for _ in range(7))
+for net, name, h, steps in cases(400_000):
+    least = min(run_ours(net, name, h, steps)[0] for _ in range(7))
+    times[f"{name}, {net.x0.shape[2]} points"] = least
 print(json.dumps(times))
 """
 

@@ -1,5 +1,6 @@
 """What tests of several folders share."""
 
+import hashlib
 import signal
 from collections.abc import Iterator
 from typing import Any
@@ -16,19 +17,33 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 EARLY = ("test_shader_functions.py", "test_water.py", "test_water_pixels.py", "test_extension.py")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--shuffle", metavar="SEED", help="run the files, and the tests of each, in a random order")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Everything in tests/browser needs a browser, and has a second try, since a page drawn in software can be late.
 
     These tests begin first, as no other group takes as long: at first those that call no kernel, so that the others
     find kernels that another process has compiled. The longest file comes next, so that the last groups are short, and
     no process ends long before the others.
+
+    `--shuffle SEED` shuffles each of the groups. A seed gives the tests of a few files the order that they have among
+    all tests, so that a failure can be repeated with less.
     """
+    seed = config.getoption("--shuffle")
+    if seed is not None:
+        items.sort(key=lambda item: (digest(seed, item.nodeid.split("::")[0]), digest(seed, item.nodeid)))
     for item in items:
         if "/tests/browser/" in item.path.as_posix():
             item.add_marker(pytest.mark.browser)
         if item.get_closest_marker("browser") is not None:
             item.add_marker(pytest.mark.flaky(reruns=1))
     items.sort(key=lambda item: (item.get_closest_marker("browser") is None, item.path.name not in EARLY))
+
+
+def digest(seed: str, name: str) -> str:
+    return hashlib.sha256(f"{seed} {name}".encode()).hexdigest()
 
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist, which is asked for with `-n`

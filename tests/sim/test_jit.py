@@ -2,6 +2,7 @@ import ast
 import contextlib
 import io
 import os
+import textwrap
 import tokenize
 from collections import Counter
 from pathlib import Path
@@ -242,7 +243,7 @@ print(x[0])
 
 
 def test_a_full_disk_and_rubbish_in_the_cache_cost_a_compilation_and_no_more(tmp_path):
-    full = f"import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))\n{ADDS}"
+    full = f"from tests.full_disk import full_disk\nwith full_disk(3000):{textwrap.indent(ADDS, '    ')}"
     assert python(full, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"
     assert not list(tmp_path.rglob("*.nbc"))
     assert python(ADDS, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"

@@ -30,9 +30,11 @@ RUN = ("run", "rope", "--seconds", "0.1", "--out")
 def springtide(*arguments: str, limit: int | None = None, **changes: str | None) -> subprocess.CompletedProcess[str]:
     """The program in a process of its own, with these environment variables (None: without them).
 
-    limit: no file may become longer [bytes], as on a disk that fills up.
+    limit: no file may become longer [bytes], as on a disk that fills up. No byte code is written, as a cut file stays.
     """
     env = {**os.environ, **{name: value for name, value in changes.items() if value is not None}}
+    if limit is not None:
+        env["PYTHONDONTWRITEBYTECODE"] = "1"
     for name in [name for name, value in changes.items() if value is None]:
         env.pop(name, None)
 

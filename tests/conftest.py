@@ -64,10 +64,12 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def no_own_setups(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """The lists of presets are those of the program, whatever the user keeps."""
+def no_surroundings(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """The lists of presets are those of the program, whatever the user keeps, and the terminal has 80 columns."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SPRINGTIDE_DATA", str(tmp_path_factory.mktemp("data")))
+        patch.setenv("COLUMNS", "80")
+        patch.delenv("FORCE_COLOR", raising=False)  # Rich would colour what is no terminal
         yield
 
 

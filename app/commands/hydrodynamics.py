@@ -38,6 +38,7 @@ def make(hull_file: Path, out: Path | None) -> int:
         task = progress.add_task("Boundary elements", total=len(drafts) * len(FREQUENCIES))
         table = make_table(hull, drafts, progress=lambda: progress.advance(task))
     write_table(out, table, hull)
-    note = "" if out == place else f" --hull looks for it at {place}."
-    text_tables.say(f"Wrote {out}: {len(drafts)} drafts from {drafts[0]:.3g} to {drafts[-1]:.3g} m.{note}")
+    text_tables.say(f"{len(drafts)} drafts from {drafts[0]:.3g} to {drafts[-1]:.3g} m", out)
+    if out != place:
+        text_tables.say("where --hull looks for the table", place)
     return 0

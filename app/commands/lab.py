@@ -26,7 +26,7 @@ PARALLEL = 2  # folders of a class that are checked at the same time
 def new(folder: Path, tasks: Sequence[Path], *, solutions: bool) -> int:
     """Write the exercises into a folder; returns the exit status."""
     written = make_folder(folder, load_tasks(*tasks), solutions=solutions)
-    text_tables.say(f"Wrote {', '.join(path.name for path in written)} in {folder}. Begin with {folder / 'README.md'}")
+    text_tables.say(f"wrote {', '.join(path.name for path in written)}. Begin with README.md.", folder)
     return 0
 
 

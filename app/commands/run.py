@@ -70,7 +70,7 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
     about = {"scene": name, "parameters": shared_values(params), "units": units, "diverged": problem}
     kept = {"t": times[:count], **{key: array[:count] for key, array in arrays.items()}}
     write_arrays(out, {**kept, "about": np.array(json.dumps(about))})
-    say(f"{out}: {count} frames to t = {times[count - 1]:g} s, {', '.join(kept)}")
+    say(f"{count} frames to t = {times[count - 1]:g} s, {', '.join(kept)}", out)
     if problem:
         say(f"The run ended early. {problem}")
         return 1

@@ -71,7 +71,7 @@ def export(scene: str, params: Any, seconds: float, rate: float, start: float, f
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    say(f"{out}: {len(times)} frames, {form}; sequence.json says what they hold")
+    say(f"{len(times)} frames, {form}; sequence.json says what they hold", out)
     if problem:
         say(f"The run ended early. {problem}")
         return 1

@@ -2,6 +2,7 @@
 
 import shutil
 import textwrap
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -47,9 +48,19 @@ def show(title: str, rows: Rows) -> None:
     console.print(table)
 
 
-def say(text: str) -> None:
-    """Print a text at the width of the terminal, folded between words."""
-    print("\n".join(fold(text, shutil.get_terminal_size().columns)))
+def say(text: str, path: Path | None = None) -> None:
+    """Print a text at the width of the terminal, folded between words, after the path that it is about.
+
+    A path is never folded. It has a line of its own, to be copied whole, unless it fits on one line with the text.
+    """
+    width = shutil.get_terminal_size().columns
+    if path is None:
+        lines = fold(text, width)
+    elif len(line := f"{path}: {text}") <= width:
+        lines = [line]
+    else:
+        lines = [str(path), *fold(f"  {text}", width)]
+    print("\n".join(lines))
 
 
 def fold(text: str, width: int) -> list[str]:

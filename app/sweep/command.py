@@ -44,7 +44,7 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
         if before is None:
             raise argument_error("--out", str(out), "a new name, or --fresh to replace what is there")
         check_same_sweep(out, before, identity(spec))
-        say(f"{out}: all {len(spec.cases)} cases are there; --fresh runs them again")
+        say(f"all {len(spec.cases)} cases are there; --fresh runs them again", out)
         return 0
     with contextlib.ExitStack() as stack:
         run = stack.enter_context(runner(spec, scheduler))
@@ -98,7 +98,7 @@ def run_missing(spec: Spec, store: Any, run: Run) -> dict[int, Outcome]:
                 outcomes[number] = outcome
                 advance(outcome)
     except KeyboardInterrupt:
-        say(f"stopped: {len(outcomes)} of {total} cases are kept in {store.path}; the same command goes on")
+        say(f"stopped; {len(outcomes)} of {total} cases are kept, and the same command goes on", store.path)
         raise
     return outcomes
 
@@ -139,7 +139,7 @@ def report(out: Path, figures: list[Path], dataset: Any, outcomes: dict[int, Out
     ends = [outcome.end for outcome in outcomes.values()]
     counted = ", ".join(f"{ends.count(end)} {end}" for end in ENDS if end in ends)
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
-    say(f"{out}: {len(ends)} cases ({counted}) over {sizes}" + "".join(f", {path.name}" for path in figures))
+    say(f"{len(ends)} cases ({counted}) over {sizes}" + "".join(f", {path.name}" for path in figures), out)
     first = next((outcome.message for outcome in outcomes.values() if outcome.end == FAILED), "")
     if first:
         say(f"The first that failed: {first}")

@@ -97,6 +97,27 @@ def test_a_line_is_folded_between_words_and_indented_further() -> None:
     assert lines == ["  word word word", *["    word word word"] * 2]
 
 
+@pytest.mark.parametrize("width", [30, 80])
+@pytest.mark.parametrize(
+    "path", [Path("out.nc"), Path("/a folder", "of a long name, with spaces " * 4, "out.nc")], ids=["short", "long"]
+)
+def test_a_path_is_whole_and_the_text_about_it_does_not_depend_on_its_length(
+    path: Path, width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(width))
+    text_tables.say("8 cases", path)
+    assert capsys.readouterr().out in (f"{path}: 8 cases\n", f"{path}\n  8 cases\n")
+    text_tables.say("8 cases over a grid of three parameters", path)
+    lines = capsys.readouterr().out.splitlines()
+    assert str(path) in lines[0]
+    if lines[0] == str(path):
+        assert lines[1].startswith("  8 cases")
+        assert max(map(len, lines[1:])) <= width
+    else:
+        assert lines == [f"{path}: 8 cases over a grid of three parameters"]
+        assert len(lines[0]) <= width
+
+
 def test_the_results_of_the_lab_are_folded_and_not_cut(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -1,11 +1,10 @@
 """`springtide run SCENE --list`: parameters, presets and measures of a scene, in the width of the terminal."""
 
-import textwrap
+import shutil
 from collections.abc import Iterable
 from typing import Any
 
-from rich import get_console
-
+from app.formats.text_tables import fold
 from app.scenes.contract import SceneKind
 from app.scenes.measures import plotted
 from app.scenes.setups import write_value
@@ -32,11 +31,11 @@ def list_scene(kind: SceneKind[Any, Any, Any]) -> int:
 
 def print_entries(entries: Iterable[tuple[str, str]]) -> None:
     """Print names, each with its meaning below, folded between words."""
-    width, margin = get_console().width, " " * INDENT
+    width, margin = shutil.get_terminal_size().columns, " " * INDENT
     for name, meaning in entries:
         print(f"  {name}")
         if meaning:
-            print(textwrap.fill(meaning, width, initial_indent=margin, subsequent_indent=margin))
+            print("\n".join(fold(margin + meaning, width)))
 
 
 def setting_text(parameter: Parameter) -> str:

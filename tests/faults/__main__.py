@@ -1,6 +1,7 @@
 """`python -m tests.faults draw|run|table`."""
 
 import argparse
+import os
 import tempfile
 from pathlib import Path
 
@@ -11,21 +12,25 @@ def main() -> None:
     commands.add_parser("draw", help="draw the list of faults, keeping those with lines that are still there")
     run = commands.add_parser("run", help="try each fault that has no result yet")
     run.add_argument("--modules", default="", help="paths that begin so, for example sim/ocean")
-    run.add_argument("--again", action="store_true", help="only those that were not found, again")
-    run.add_argument("--plain", action="store_true", help="kernels as plain Python only; what that misses stays open")
-    run.add_argument("--seconds", type=float, default=1e9, help="begin no other fault after this time")
+    run.add_argument("--again", choices=("not found", "open"), default="", help="only those with this result, again")
+    run.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="processes")
+    run.add_argument("--limit", type=float, default=120.0, help="time of a fault [s]; what takes longer stays open")
+    run.add_argument("--most", type=int, default=10**9, help="so many faults, drawn at random")
     run.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "springtide-faults")
     commands.add_parser("table", help="print what was found, by package")
     arguments = parser.parse_args()
     if arguments.command == "draw":
-        from tests.faults.drawing import draw, write_list
+        from tests.faults.drawing import SEED, draw, write_list
 
+        print(f"seed {SEED}")
         write_list(draw())
     elif arguments.command == "run":
         from tests.faults.running import run_faults
 
-        only = "not found" if arguments.again else ""
-        run_faults(arguments.work, arguments.modules, only, arguments.seconds, plain_only=arguments.plain)
+        run_faults(
+            arguments.work, arguments.modules, arguments.again, workers=arguments.workers, limit=arguments.limit,
+            most=arguments.most,
+        )  # fmt: skip
     else:
         from tests.faults.table import print_table
 

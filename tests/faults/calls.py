@@ -1,21 +1,27 @@
-"""Which functions each test calls, so that a fault is tried first against the quick tests that reach it."""
+"""Which functions each test calls, and which functions a line of a source reaches.
+
+A function is "module:name", with the name as Python qualifies it.
+"""
 
 import ast
+import functools
 import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 from types import CodeType, FrameType
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
+FunctionDef = ast.FunctionDef | ast.AsyncFunctionDef
+
 
 class CallRecorder:
-    """A plugin of pytest: the functions of the checkout that each test calls, as "module:line of the definition".
+    """A plugin of pytest: the functions of the checkout that each test calls.
 
-    Compiled kernels are not seen, but for a run as plain Python. A fixture that several tests share counts for the
-    first of them.
+    Compiled kernels are not seen, but for a run as plain Python; nor is what a test starts in another process. A
+    fixture that several tests share counts for the first of them.
     """
 
     def __init__(self, tree: Path) -> None:
@@ -37,23 +43,96 @@ class CallRecorder:
             sys.settrace(None)
             threading.settrace(None)  # type: ignore[arg-type]
             own = [code for code in self.codes if code.co_filename.startswith((f"{self.tree}sim/", f"{self.tree}app/"))]
-            self.called[item.nodeid] = sorted(
-                f"{code.co_filename.removeprefix(self.tree)}:{code.co_firstlineno}" for code in own
-            )
+            called = {f"{code.co_filename.removeprefix(self.tree)}:{code.co_qualname}" for code in own}
+            self.called[item.nodeid] = sorted(called)
 
 
-def function_at(source: str, line: int) -> int | None:
-    """The first line, decorators included, of the innermost function around a line (from 1), or None."""
-    found = None
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.body[0].lineno <= line <= (
-            node.end_lineno or 0
-        ):
-            first = min([node.lineno, *(decorator.lineno for decorator in node.decorator_list)])
-            found = first if found is None else max(found, first)
-    return found
+class Function(NamedTuple):
+    """A function or a method of a source."""
+
+    name: str  # "module:qualified name"
+    is_kernel: bool  # whether it is compiled
+    lines: range  # of its body, from 1
+    mentions: frozenset[str]  # names and attributes in it, those of inner functions included
+
+    @property
+    def own_name(self) -> str:
+        """The name by which others mention it."""
+        return self.name.rpartition(":")[2].rpartition(".")[2]
 
 
-def is_kernel(source: str, first: int) -> bool:
-    """Whether the function that begins at a line is compiled."""
-    return source.split("\n")[first - 1].strip().startswith("@kernel")
+class Source(NamedTuple):
+    """What calls are looked up in."""
+
+    functions: tuple[Function, ...]
+    bindings: tuple[tuple[range, frozenset[str], frozenset[str]], ...]  # at the top: lines, bound, mentioned
+
+    def function_at(self, line: int) -> Function | None:
+        """The innermost function with a line (from 1) in its body."""
+        around = [function for function in self.functions if line in function.lines]
+        return max(around, key=lambda function: function.lines.start, default=None)
+
+    def bound_at(self, line: int) -> frozenset[str]:
+        """The names that the statement with a line binds, at the top of the source."""
+        return frozenset(name for lines, names, _ in self.bindings if line in lines for name in names)
+
+
+@functools.cache
+def read_source(path: Path, module: str) -> Source:
+    """The functions of a source."""
+    functions: list[Function] = []
+    bindings = []
+
+    def visit(node: ast.AST, prefix: str) -> None:
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, FunctionDef):
+                lines = range(child.body[0].lineno, (child.end_lineno or child.lineno) + 1)
+                compiled = any("kernel" in mentions_of(decorator) for decorator in child.decorator_list)
+                functions.append(Function(f"{module}:{prefix}{child.name}", compiled, lines, mentions_of(child)))
+                visit(child, f"{prefix}{child.name}.<locals>.")
+            else:
+                visit(child, f"{prefix}{child.name}." if isinstance(child, ast.ClassDef) else prefix)
+
+    tree = ast.parse(path.read_text("utf-8"))
+    visit(tree, "")
+    for node in tree.body:
+        lines = range(node.lineno, (node.end_lineno or node.lineno) + 1)
+        if isinstance(node, ast.ClassDef):
+            outside = [mentions_of(child) for child in node.body if not isinstance(child, FunctionDef)]
+            bindings.append((lines, frozenset({node.name}), frozenset().union(*outside)))
+        elif not isinstance(node, FunctionDef | ast.Import | ast.ImportFrom):
+            names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+            bindings.append((lines, frozenset(names), mentions_of(node)))
+    return Source(tuple(functions), tuple(bindings))
+
+
+def mentions_of(node: ast.AST) -> frozenset[str]:
+    """Names and attributes below a node."""
+    return frozenset(getattr(n, "id", getattr(n, "attr", "")) for n in ast.walk(node)) - {""}
+
+
+def reached(module: str, line: int, sources: dict[str, Source]) -> tuple[set[str], bool]:
+    """The functions to see called by a test that reaches a line, and whether a kernel is among them.
+
+    sources: of all modules that a path of imports leads from to `module`, with itself.
+
+    A line of a function that is no kernel is reached by its calls. The others are looked up by the names of the kernel,
+    or of what the line binds, through the kernels and bindings that mention them: more functions rather than fewer.
+    """
+    around = sources[module].function_at(line)
+    if around is not None and not around.is_kernel:
+        return {around.name}, False
+    names = {around.own_name} if around else set(sources[module].bound_at(line))
+    before: set[str] = set()
+    while names != before:
+        before = set(names)
+        for source in sources.values():
+            for function in source.functions:
+                if function.is_kernel and function.mentions & names:
+                    names.add(function.own_name)
+            for _, bound, mentioned in source.bindings:
+                if mentioned & names:
+                    names |= bound
+    found = [f for source in sources.values() for f in source.functions if f.mentions & names]
+    found += [around] if around else []
+    return {function.name for function in found}, any(function.is_kernel for function in found)

@@ -1,4 +1,4 @@
-"""The list of faults: drawn with a fixed seed, evenly over the modules of `sim` and the numbers that scenes report."""
+"""The list of faults: drawn at random over all of `sim` and `app`, of each module in proportion to its lines."""
 
 import csv
 import random
@@ -9,11 +9,8 @@ from tests.faults.sites import Fault, faults_in
 
 ROOT = Path(__file__).parent.parent.parent
 LIST = Path(__file__).parent / "faults.csv"
-SEED = 20261122
-LINES_PER_FAULT, FEWEST, MOST = 45, 2, 7  # of a module
-COMPILER = {"sim/jit.py", "sim/compiler.py", "sim/files.py"}  # they hold no physics
-REPORTED = ("report.py", "html.py", "measures.py", "statistics.py", "charts.py", "scene.py")
-DRAWN = ("radiated_waves.py", "tile_mesh.py", "tracking.py")  # of scenes: the numbers that are drawn or dragged
+SEED = 20261126
+LINES_PER_FAULT = 60
 
 
 class Listed(NamedTuple):
@@ -25,18 +22,14 @@ class Listed(NamedTuple):
 
 def modules() -> list[str]:
     """The modules that faults are planted into."""
-    sim = list((ROOT / "sim").rglob("*.py"))
-    sim += (ROOT / "app" / "formats").rglob("*.py")
-    reported = [path for path in (ROOT / "app" / "scenes").rglob("*.py") if path.name in (*REPORTED, *DRAWN)]
-    names = sorted(path.relative_to(ROOT).as_posix() for path in [*sim, *reported])
-    return [name for name in names if name not in COMPILER]
+    return sorted(path.relative_to(ROOT).as_posix() for top in ("app", "sim") for path in (ROOT / top).rglob("*.py"))
 
 
 def read_list() -> list[Listed]:
     """The committed list."""
     if not LIST.exists():
         return []
-    with LIST.open(newline="") as file:
+    with LIST.open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     return [
         Listed(
@@ -47,19 +40,23 @@ def read_list() -> list[Listed]:
 
 
 def write_list(faults: list[Listed]) -> None:
-    with LIST.open("w", newline="") as file:
+    with LIST.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([*Fault._fields, "equivalent"])
         writer.writerows([*listed.fault, listed.equivalent] for listed in faults)
 
 
 def drawn(module: str, source: str, kept: list[Listed]) -> list[Listed]:
-    """The faults of a module: those that it already has, and so many more that it has its share."""
+    """The faults of a module: of those that it already has, and others, so many that it has its share.
+
+    A module has one fault for so many lines, and one more with the probability that the rest asks for. Modules do not
+    depend on each other, so that an edit of one leaves the faults of the others as they are.
+    """
     faults = faults_in(module, source)
-    share = min(MOST, max(FEWEST, round(source.count("\n") / LINES_PER_FAULT)))
-    chosen = [listed for listed in kept if listed.fault in faults]
-    taken = {(listed.fault.before, listed.fault.occurrence) for listed in chosen}
     random_numbers = random.Random(f"{SEED} {module}")
+    share = int(source.count("\n") / LINES_PER_FAULT + random_numbers.random())
+    chosen = [listed for listed in kept if listed.fault in faults][:share]
+    taken = {(listed.fault.before, listed.fault.occurrence) for listed in chosen}
     # Kinds come evenly, as constants and operators would be nearly all of a list drawn from all places.
     while len(chosen) < share:
         kinds: dict[str, list[Fault]] = {}
@@ -80,5 +77,5 @@ def draw() -> list[Listed]:
     return [
         listed
         for module in modules()
-        for listed in drawn(module, (ROOT / module).read_text(), [k for k in kept if k.fault.module == module])
+        for listed in drawn(module, (ROOT / module).read_text("utf-8"), [k for k in kept if k.fault.module == module])
     ]

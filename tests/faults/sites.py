@@ -1,9 +1,10 @@
-"""Where a source can be made wrong by a small change: constants, signs, exponents, operators, indices, swaps.
+"""Where a source can be made wrong by a small change: constants, flags, signs, operators, logic, indices, swaps.
 
 A fault is a line and the line that takes its place, so that a list of them can be read, and outlives other edits.
 """
 
 import ast
+import itertools
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -17,14 +18,19 @@ SYMMETRIC = {"hypot", "isclose", "gcd", "lcm", "dot", "min", "max", "minimum", "
 NOT_NUMBERS = {"isinstance", "getattr", "setattr", "hasattr", "argument_error", "cast", "TypeVar", "namedtuple"}
 OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 OPPOSITES = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*"}
-COMPARISONS = {ast.Lt: ("<", ">"), ast.LtE: ("<=", ">="), ast.Gt: (">", "<"), ast.GtE: (">=", "<=")}
+COMPARISONS = {
+    ast.Lt: ("<", ">"), ast.LtE: ("<=", ">="), ast.Gt: (">", "<"), ast.GtE: (">=", "<="), ast.Eq: ("==", "!="),
+    ast.NotEq: ("!=", "=="), ast.Is: ("is", "is not"), ast.IsNot: ("is not", "is"), ast.In: ("in", "not in"),
+    ast.NotIn: ("not in", "in"),
+}  # fmt: skip
+LOGIC = {ast.And: ("and", "or"), ast.Or: ("or", "and")}
 
 
 class Fault(NamedTuple):
     """One line of a module, and the wrong line that takes its place."""
 
     module: str  # path from the root of the checkout
-    kind: str  # constant, exponent, sign, operator, comparison, index, function or arguments
+    kind: str  # constant, flag, exponent, sign, operator, comparison, logic, index, function or arguments
     before: str  # the line without its indent
     occurrence: int  # 0 for the first such line of the module
     after: str
@@ -79,6 +85,8 @@ def children(node: ast.AST) -> Iterator[ast.AST]:
     if isinstance(node, ast.Raise | ast.Import | ast.ImportFrom | ast.JoinedStr | ast.Assert):
         return
     if isinstance(node, ast.Call) and name_of(node.func) in NOT_NUMBERS:
+        return
+    if isinstance(node, ast.keyword) and node.arg == "strict":  # of zip: a guard, which no right call trips
         return
     for field, value in ast.iter_fields(node):
         if field in ("annotation", "returns", "decorator_list", "type_params"):
@@ -143,11 +151,18 @@ def edits_of(node: ast.AST, source: str) -> Iterator[Edit]:
         assert isinstance(value, int | float)
         if value == 0 or SMALL < abs(value) < LARGE:
             yield from replaced("constant", node, changed(value))
-    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        yield from replaced("sign", node, ast.get_source_segment(source, node.operand) or "")
+    elif isinstance(node, ast.Constant) and isinstance(node.value, bool):
+        yield from replaced("flag", node, str(not node.value))
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.Not):
+        kind = "sign" if isinstance(node.op, ast.USub) else "logic"
+        yield from replaced(kind, node, ast.get_source_segment(source, node.operand) or "")
+    elif isinstance(node, ast.BoolOp):
+        for left, right in itertools.pairwise(node.values):
+            yield from between("logic", left, right, source, *LOGIC[type(node.op)])
     elif isinstance(node, ast.BinOp):
         if isinstance(node.op, ast.Pow) and is_number(node.right):
             assert isinstance(node.right, ast.Constant)
+            assert isinstance(node.right.value, int | float)
             yield from replaced("exponent", node.right, changed(node.right.value))
         elif type(node.op) in OPERATORS and not is_text(node):
             kind = "sign" if isinstance(node.op, ast.Add | ast.Sub) else "operator"

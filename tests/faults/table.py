@@ -2,15 +2,18 @@
 
 from collections import Counter
 
-from tests.faults.drawing import read_list
+from tests.faults.drawing import LINES_PER_FAULT, SEED, read_list
 from tests.faults.running import key_of_fault, read_results
 
 RESULTS = ("found", "not found", "open", "untried")
+# Deeper than packages, and counted in them too.
+PARTS = ("app/scenes/mooring", "sim/springs/lines")
 
 
-def package_of(module: str) -> str:
-    parts = module.split("/")
-    return "/".join(parts[:2]) if len(parts) > 2 else "sim"
+def rows_of(module: str) -> list[str]:
+    """The rows of the table that a module counts in."""
+    folders = module.split("/")[:-1]
+    return ["all", "/".join(folders[:2]), *(part for part in PARTS if module.startswith(f"{part}/"))]
 
 
 def counts() -> Counter[tuple[str, str]]:
@@ -20,7 +23,7 @@ def counts() -> Counter[tuple[str, str]]:
     for listed in read_list():
         row = results.get(key_of_fault(listed))
         result = "equivalent" if listed.equivalent else row["result"] if row else "untried"
-        for package in (package_of(listed.fault.module), "all"):
+        for package in rows_of(listed.fault.module):
             found[package, result if result in (*RESULTS, "equivalent") else "untried"] += 1
     return found
 
@@ -28,6 +31,7 @@ def counts() -> Counter[tuple[str, str]]:
 def print_table() -> None:
     """As a table in Markdown. Only what a test has noticed is found; a fault that is open or untried is not."""
     found = counts()
+    print(f"Seed {SEED}, a fault for {LINES_PER_FAULT} lines.\n")
     print(f"| in | {' | '.join(RESULTS)} | equivalent | found |\n|---|{'---|' * (len(RESULTS) + 2)}")
     for package in [*sorted({package for package, _ in found} - {"all"}), "all"]:
         numbers = [found[package, result] for result in RESULTS]

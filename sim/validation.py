@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import os
 from collections.abc import Iterable
 from types import UnionType
 from typing import Any, TypeVar
@@ -11,14 +12,15 @@ import numpy as np
 MAX_DISTANCE = 1e12  # [m] of a position: farther away, the cells of a grid can no longer be counted
 MAX_WAVENUMBER = 1e20  # [rad/m]: its powers are still finite
 MAX_SHOWN = 200  # characters of a value in an error
+MAX_SHOWN_PATH = 4096  # of one with a path in it, which is shown whole: most systems allow no longer one
 
 Kind = TypeVar("Kind")
 
 
 def argument_error(name: str, value: object, allowed: str) -> ValueError:
     """The one form of an argument error, in one line: the name, the value given, and the allowed values."""
-    shown = " ".join(repr(value).split())  # in one line, arrays too
-    if len(shown) > MAX_SHOWN:
+    shown = repr(value) if isinstance(value, str) else " ".join(repr(value).split())  # in one line, arrays too
+    if len(shown) > (MAX_SHOWN_PATH if isinstance(value, str) and os.sep in value else MAX_SHOWN):
         is_record = dataclasses.is_dataclass(value) or hasattr(value, "_fields")
         shown = f"{type(value).__name__}(...)" if is_record else f"{shown[:MAX_SHOWN]}..."
     return ValueError(f"{name}: {shown} is not allowed; allowed: {allowed}")

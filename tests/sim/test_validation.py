@@ -1,6 +1,7 @@
 """Checks of arguments: what passes, what does not, and what the error says."""
 
 import math
+import os
 
 import numpy as np
 import pytest
@@ -18,6 +19,14 @@ def refused(call, *arguments, **options) -> str:
 
 def test_an_error_is_the_name_the_value_and_what_is_allowed():
     assert str(v.argument_error("mass", -1.0, "above 0 kg")) == "mass: -1.0 is not allowed; allowed: above 0 kg"
+
+
+def test_an_error_shows_a_path_whole_and_of_another_text_the_beginning():
+    path = os.path.join("a folder  with spaces" * 20, "with the hull boat.obj")
+    assert str(v.argument_error("--out", path, "a file")) == f"--out: {path!r} is not allowed; allowed: a file"
+    for value in ("1 " * 1000, [0.0] * 1000, os.sep * 5000):
+        assert len(str(v.argument_error("a", value, "less"))) < v.MAX_SHOWN_PATH + 50
+    assert "1 1..." in str(v.argument_error("a", "1 " * 1000, "less"))
 
 
 @pytest.mark.parametrize("value", NOT_NUMBERS)

@@ -83,7 +83,8 @@ def test_what_is_no_file_is_refused_and_left_alone(capsys, tmp_path):
 
 def test_an_ascii_terminal_takes_a_name_that_it_cannot_show(tmp_path):
     out = tmp_path / "mer–水.npz"
-    process = program(*RUN, str(out), PYTHONIOENCODING="ascii", PYTHONUTF8="0")
+    # The name has to be one in the locale, or Python hands it over as bytes.
+    process = program(*RUN, str(out), PYTHONIOENCODING="ascii", PYTHONUTF8="0", LC_ALL="C.UTF-8")
     said, errors = process.communicate(timeout=250)
     assert (process.returncode, errors) == (0, "")
     assert "mer\\u2013\\u6c34.npz" in said

@@ -1,5 +1,6 @@
 """A student's folder while the lab is served: what is saved runs, what is wrong is named, and the lab goes on."""
 
+import contextlib
 import dataclasses
 import inspect
 import time
@@ -48,18 +49,24 @@ def with_line(line: str) -> str:
     return RIGHT.replace("    r = np", f"    {line}\n    r = np")
 
 
+@contextlib.contextmanager
+def working_in(folder: Path) -> Iterator[Session]:
+    """A new folder of exercises that is being worked on."""
+    make_folder(folder, TASKS)
+    session = Session(folder, TASKS, time_limit=1.0)
+    wait_for(lambda: session.state.version == 1)
+    yield session
+    session.close()
+
+
 @pytest.fixture(scope="module")
 def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
-    """A folder of exercises that is being worked on."""
-    folder = tmp_path_factory.mktemp("lab") / "mine"
-    make_folder(folder, TASKS)
+    """The folder that most tests save into, one after the other."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)  # compiling takes seconds: see tests/stress
-        session = Session(folder, TASKS, time_limit=1.0)
-        wait_for(lambda: session.state.version == 1)
-        yield session
-        copies = session.copies
-        session.close()
+        with working_in(tmp_path_factory.mktemp("lab") / "mine") as session:
+            yield session
+            copies = session.copies
     assert not copies.exists()
 
 
@@ -93,11 +100,12 @@ def right(session: Session) -> Session:
     return session
 
 
-def test_without_a_function_there_is_no_second_rope(session: Session) -> None:
-    scene = make_scene(session)
-    run(scene, 3)
-    assert scene.frame().reference is None
-    assert session.rope.report.version == 0
+def test_without_a_function_there_is_no_second_rope(tmp_path: Path) -> None:
+    with working_in(tmp_path / "mine") as session:
+        scene = make_scene(session)
+        run(scene, 3)
+        assert scene.frame().reference is None
+        assert session.rope.report.version == 0
 
 
 @pytest.mark.parametrize(

@@ -3,18 +3,18 @@
 import dataclasses
 import inspect
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from app.lab.folder import make_folder
 from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.messages import Grab, Place, StudentAnswer
 from app.panel.code_panel import code_lines, tables_of
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.scene import ClothScene
-from tests.app.lab.test_session import save
+from tests.app.lab.test_session import save, working_in
 from tests.waiting import wait_for
 
 TASKS = load_tasks()
@@ -42,12 +42,8 @@ WRONG_LINKS = {
 
 @pytest.fixture(scope="module")
 def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
-    folder = tmp_path_factory.mktemp("lab") / "mine"
-    make_folder(folder, TASKS)
-    session = Session(folder, TASKS, time_limit=1.0)
-    wait_for(lambda: session.state.version == 1)
-    yield session
-    session.close()
+    with working_in(tmp_path_factory.mktemp("lab") / "mine") as session:
+        yield session
 
 
 @pytest.fixture
@@ -70,10 +66,11 @@ def run(scene: ClothScene, frames: int = 20) -> None:
         scene.handle(StudentAnswer())
 
 
-def test_without_a_function_there_is_no_second_cloth(session: Session) -> None:
-    scene = ClothScene(SMALL, session.live)
-    run(scene, 2)
-    assert scene.frame().student is None
+def test_without_a_function_there_is_no_second_cloth(tmp_path: Path) -> None:
+    with working_in(tmp_path / "mine") as session:
+        scene = ClothScene(SMALL, session.live)
+        run(scene, 2)
+        assert scene.frame().student is None
 
 
 @pytest.mark.parametrize(

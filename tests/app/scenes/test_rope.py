@@ -374,7 +374,7 @@ def test_the_line_under_the_time_step_names_the_largest_that_is_stable() -> None
     ("h_omega", "share", "colour"), [(1.5, 75, GOOD_COLOUR), (1.7, 85, WARNING_COLOUR), (2.1, 105, ERROR_COLOUR)]
 )
 def test_the_stability_bar_has_the_step_in_the_colour_of_its_verdict(h_omega: float, share: int, colour: str) -> None:
-    bar = stability_bar(Gauge(h_omega / 1e-3, 0.0, h_omega, 2.0, 2e-3))
+    bar = stability_bar(Gauge(h_omega / 1e-3, 0.0, h_omega, 2.0, 2e-3, 1e-3 * h_omega, h_omega / 1e-3))
     assert coloured(f"{share}\u00a0%", colour) in bar
     assert f"width:{min(50.0 * h_omega, 100.0):.0f}%;background:{colour}" in bar
 

@@ -10,7 +10,7 @@ from sim.springs.stability import Gauge
 def gauge_of(name, h_omega):
     """The gauge of a step of h_omega / 1000 s."""
     limit = INTEGRATORS[name].limit(0.1)
-    return Gauge(1000.0, 0.1, h_omega, limit, limit / 1000.0)
+    return Gauge(1000.0, 0.1, h_omega, limit, limit / 1000.0, h_omega / 1000.0, 1000.0)
 
 
 @pytest.mark.parametrize(

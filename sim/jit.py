@@ -14,7 +14,6 @@ import importlib
 import inspect
 import os
 import pkgutil
-import platform
 import re
 import shutil
 import sys
@@ -205,7 +204,7 @@ def load_compiler() -> tuple[ModuleType | None, str]:
     except (AttributeError, ImportError, TypeError) as error:
         return None, str(error)
     try:
-        works = f"compiler-{numba.__version__}-{llvmlite.__version__}-{platform.python_version()}"
+        works = f"compiler-{numba.__version__}-{llvmlite.__version__}-{sys.implementation.cache_tag}"
         mark = f"{works}-{reachable_hash(Path(compiler.__file__))}"
         if not is_kept(mark):
             with tempfile.TemporaryDirectory() as folder, kept_in(Path(folder)):
@@ -222,7 +221,7 @@ COMPILER, MISSING = load_compiler()
 if MISSING:
     warnings.warn(
         f"numba {numba.__version__} has changed inside ({MISSING}): kernels are compiled in numba's own way, "
-        "which takes longer",
+        "which takes longer, and run up to five times slower",
         stacklevel=1,
     )
 

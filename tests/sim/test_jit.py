@@ -83,6 +83,22 @@ def test_the_hash_of_a_kernel_follows_its_imports_and_nothing_else(tmp_path, mon
     forget_sources()
 
 
+@pytest.mark.parametrize("folder", jit.OWN_PACKAGES)
+def test_the_imports_of_our_sources_are_those_that_python_s_parser_sees(folder):
+    for path in (ROOT / folder).rglob("*.py"):
+        names: set[str] = set()
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Import):
+                names.update(alias.name for alias in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                assert node.level == 0, f"{path}: a relative import is not seen"
+                names.update((node.module or "", *(f"{node.module}.{alias.name}" for alias in node.names)))
+        siblings = set(path.parent.glob("*.py")) if jit.MODULES_OF.search(jit.code_of(path)) else set()
+        parsed, found = {file for file in map(jit.source_of, names) if file} | siblings, jit.imported_files(path)
+        # Tests hold sources as strings, whose imports count too.
+        assert parsed <= found if folder == "tests" else parsed == found, path
+
+
 def forget_sources() -> None:
     for remembered in (jit.source_of, jit.code_of, jit.imported_files):
         remembered.cache_clear()

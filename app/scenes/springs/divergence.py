@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from app.formats.formatting import number, percent, seconds
+from app.formats.formatting import longest_step, number, percent, time_step
 from app.messages import Moment, vector_of
 from app.scenes.springs.methods import method_name
 from sim.springs import INTEGRATORS
@@ -60,13 +60,13 @@ def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge,
     start = f"The run became unstable at t = {t:.2f} s: its time step was"
     limit = limit_text(gauge)
     if gauge.share > 1.0:
-        holds = f"a time step below {seconds(gauge.critical_step, 2)}" if gauge.critical_step > 0 else ""
+        holds = f"a time step up to {longest_step(gauge.critical_step)}" if gauge.critical_step > 0 else ""
         proposals = " or ".join(words for words in (holds, alternative) if words)
         over = f"{percent(gauge.share)} of the largest stable one" if gauge.critical_step > 0 else "too long"
         return f"{start} {over} for {method} ({limit}). Use {proposals or 'another method'}."
     return (
         f"{start} within the limit of {method} ({limit}), so an impact or a pull was too sudden for it. "
-        f"Try a time step of {seconds(step / 4, 2)}."
+        f"Try a time step of {time_step(step / 4)}."
     )
 
 
@@ -75,7 +75,7 @@ def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
     longest = INTEGRATORS["leapfrog"].stable_step(gauge.highest, 0.0)
     if integrator.name == "leapfrog" or not 0.0 < longest < math.inf:
         return ""
-    return f"leapfrog with one below {seconds(longest, 2)}"
+    return f"leapfrog with one up to {longest_step(longest)}"
 
 
 def holding_step(step: float, gauge: Gauge) -> float:

@@ -1,6 +1,6 @@
 """Advice on faster steps of a spring network."""
 
-from app.formats.formatting import seconds
+from app.formats.formatting import longest_step
 from app.scenes.springs.methods import method_name
 from sim.springs import INTEGRATORS
 from sim.springs.integrators import Integrator
@@ -17,7 +17,7 @@ def faster_steps(integrator: Integrator, gauge: Gauge, points: str, *, touches_i
     if integrator.implicit:
         proposals.append("a larger step")
     elif gauge.share < 0.5 * CAUTION:
-        proposals.append(f"a larger step, up to {seconds(CAUTION * gauge.critical_step, 2)}")
+        proposals.append(f"a larger step, up to {longest_step(CAUTION * gauge.critical_step)}")
     leapfrog = INTEGRATORS["leapfrog"]
     longest = leapfrog.stable_step(gauge.highest, 0.0)  # at any damping
     costs_more = integrator.evals > leapfrog.evals or integrator.implicit

@@ -17,7 +17,7 @@ def gauge_of(name, h_omega):
     ("name", "h_omega", "text"),
     [
         ("leapfrog", 1.0, "fewer points"),
-        ("leapfrog", 0.5, "fewer points or a larger step, up to 1.8 ms"),
+        ("leapfrog", 0.5, "fewer points or a larger step, up to 1/556 s (1.8 ms)"),
         ("rk4", 1.5, "fewer points or leapfrog instead of Runge-Kutta 4"),
         ("rk4", 2.0, "fewer points"),  # with which leapfrog would not hold
         ("implicit_euler", 1.0, "fewer points, a larger step or leapfrog instead of implicit Euler"),

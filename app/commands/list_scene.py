@@ -1,4 +1,7 @@
-"""`springtide run SCENE --list`: parameters, presets and measures of a scene, in the width of the terminal."""
+"""`springtide run SCENE --list`: parameters, presets and measures of a scene, in the width of the terminal.
+
+Without SCENE, the scenes.
+"""
 
 import textwrap
 from collections.abc import Iterable
@@ -6,12 +9,20 @@ from typing import Any
 
 from rich import get_console
 
+from app.scenes import NAMES, scene_named
 from app.scenes.contract import SceneKind
 from app.scenes.measures import plotted
 from app.scenes.setups import write_value
 from sim.parameters import Parameter, parameters_of
 
 INDENT = 4  # [characters] of the lines below a name
+
+
+def list_scenes() -> int:
+    """Print the name and the title of each scene; returns the exit status."""
+    print("Scenes (springtide run SCENE)")
+    print_entries((name, scene_named(name).title) for name in NAMES)
+    return 0
 
 
 def list_scene(kind: SceneKind[Any, Any, Any]) -> int:

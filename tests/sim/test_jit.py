@@ -42,6 +42,13 @@ def test_the_hash_changes_with_any_edit_and_any_new_name(tmp_path):
     assert len({first, second, sources_hash(tmp_path)}) == 3
 
 
+def test_another_llvm_finds_no_kernels_of_this_one(monkeypatch):
+    path = ROOT / "sim" / "ocean" / "evolve.py"
+    before = reachable_hash(path)
+    monkeypatch.setattr(jit.llvmlite, "__version__", "0.0.1")
+    assert reachable_hash(path) != before
+
+
 def test_other_files_do_not_change_the_hash(tmp_path):
     (tmp_path / "a.py").write_text("x = 1\n")
     first = sources_hash(tmp_path)

@@ -4,6 +4,7 @@ import argparse
 import contextlib
 import dataclasses
 import io
+import os
 import signal
 import sys
 import threading
@@ -14,7 +15,9 @@ from typing import Any, NoReturn
 from app.bench import places
 from app.scenes import NAMES, scene_named
 from sim.quantities import read_number
+from sim.validation import ConvergenceError
 
+CLOSED_OUTPUT = 141  # exit status of a program that SIGPIPE ends, by convention of shells
 LIVE = "live"  # the command of the lab that need not be named
 MAX_HULL_FACES = 20_000  # of a hull from a file: pressure is summed over all of them at each step
 
@@ -24,13 +27,18 @@ def main(argv: list[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A file name that the terminal cannot show is printed with replacements.
         sys.stdout.reconfigure(errors="backslashreplace")
-    arguments = make_parser().parse_args(with_live(sys.argv[1:] if argv is None else argv))
+    arguments = make_parser().parse_args(complete(sys.argv[1:] if argv is None else argv))
     try:
         with cleaning_up_at_sigterm():
-            return arguments.command(arguments)
+            status: int = arguments.command(arguments)
+        if sys.stdout is not None:
+            sys.stdout.flush()
+        return status
+    except BrokenPipeError as error:
+        return CLOSED_OUTPUT if drop_closed_output() else print_error(str(error), 1)
     except ValueError as error:
         return print_error(str(error), 2)
-    except OSError as error:
+    except (OSError, ConvergenceError) as error:
         return print_error(str(error), 1)
     except MemoryError as error:
         return print_error(f"not enough memory ({error})", 1)
@@ -38,11 +46,24 @@ def main(argv: list[str] | None = None) -> int:
         return 128 + signal.SIGINT
 
 
-def with_live(words: list[str]) -> list[str]:
-    """The words of the command line with the command that `springtide lab DIR` leaves out."""
+def complete(words: list[str]) -> list[str]:
+    """The words of the command line with those that `springtide lab DIR` and `springtide run --list` leave out."""
+    if words == ["run", "--list"]:
+        return ["run", "", "--list"]
     if words[:1] == ["lab"] and not {*words[1:2]} <= {"new", "check", LIVE, "-h", "--help"}:
         return ["lab", LIVE, *words[1:]]
     return words
+
+
+def drop_closed_output() -> bool:
+    """Write no more if the reader of the output has closed it, as `head` does; returns True if it has."""
+    try:
+        print(flush=True)  # what failed before may have been another pipe
+    except BrokenPipeError:
+        # What could not be written stays in the buffer, and would fail again when Python ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return True
+    return False
 
 
 def print_error(text: str, status: int) -> int:
@@ -155,7 +176,11 @@ def add_recording(commands: Any) -> None:
     seconds, hertz, rate = quantity("s"), quantity("Hz"), "frames a simulated second (default: 30)"
     run = commands.add_parser("run", help="run a scene without a browser, and write it to a file")
     run.add_argument("scene", metavar="SCENE", help=", ".join(NAMES))
-    run.add_argument("--list", action="store_true", help="list the scene's parameters, presets and measures instead")
+    run.add_argument(
+        "--list",
+        action="store_true",
+        help="list the scene's parameters, presets and measures instead; without SCENE, the scenes",
+    )
     run.add_argument("--seconds", type=seconds, metavar="S", help="simulated time [s]")
     run.add_argument("--out", type=Path, metavar="FILE.npz")
     run.add_argument("--rate", type=hertz, default=30.0, metavar="HZ", help=rate)
@@ -168,7 +193,7 @@ def add_recording(commands: Any) -> None:
     export.add_argument("--out", type=Path, required=True, metavar="DIR", help="a new or empty folder")
     export.add_argument("--rate", type=hertz, default=30.0, metavar="HZ", help=rate)
     export.add_argument("--start", type=seconds, default=0.0, metavar="S", help="time of the first frame (default: 0)")
-    forms = "exr (32-bit, the sea's default), exr16, png, or obj (the cloth's)"
+    forms = "exr (32-bit, the sea's default if OpenEXR is installed, else png), exr16, png, or obj (the cloth's)"
     export.add_argument("--format", metavar="FORMAT", help=forms)
     add_parameters(export)
     export.set_defaults(command=run_export)
@@ -344,11 +369,11 @@ def serving(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def run_headless(arguments: argparse.Namespace) -> int:
     """`springtide run`."""
-    scene = scene_named(arguments.scene)
     if arguments.list:
-        from app.commands.list_scene import list_scene
+        from app.commands.list_scene import list_scene, list_scenes
 
-        return list_scene(scene)
+        return list_scene(scene_named(arguments.scene)) if arguments.scene else list_scenes()
+    scene = scene_named(arguments.scene)
     for option in ("seconds", "out"):
         if getattr(arguments, option) is None:
             raise ValueError(f"--{option}: missing; or give --list for the scene's parameters, presets and measures")

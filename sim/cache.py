@@ -11,6 +11,7 @@ import os
 import platform
 import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,6 +23,10 @@ from sim.validation import argument_error
 
 INSTALLED = Path(sys.prefix) / "share" / "springtide"  # the folder of the installation
 SHARED_VARIABLE = "SPRINGTIDE_KERNELS"
+
+
+# Intel's library of vector functions: kernels that call it do not load where it is absent.
+VECTOR_LIBRARY = "-svml" if getattr(numba.config, "USING_SVML", False) else ""
 
 
 class Level(NamedTuple):
@@ -79,6 +84,11 @@ def level_environment(name: str) -> dict[str, str]:
 
 def processor() -> str:
     """Name of the processor that numba compiles for: a level, or all that numba knows of this one."""
+    return f"{target_name()}{VECTOR_LIBRARY}"
+
+
+def target_name() -> str:
+    """The same without the vector library that kernels call."""
     cpu, features = numba.config.CPU_NAME, numba.config.CPU_FEATURES  # type: ignore[attr-defined]
     for name, level in LEVELS.items():
         if (cpu, features) == (level.cpu, level.tuning):
@@ -95,7 +105,18 @@ def processor() -> str:
 
 def own_folder() -> Path:
     """The user's folder, which may not exist."""
-    return Path(os.environ.get("SPRINGTIDE_CACHE") or platformdirs.user_cache_dir("springtide"))
+    return user_folder("SPRINGTIDE_CACHE", platformdirs.user_cache_dir)
+
+
+def user_folder(variable: str, folder_of: Callable[[str], str]) -> Path:
+    """The folder that an environment variable names, else that of platformdirs for this program.
+
+    Without a home folder (a container with a user of any number) it is one that cannot be made: then nothing is kept.
+    """
+    try:
+        return Path(os.environ.get(variable) or folder_of("springtide"))
+    except RuntimeError:
+        return Path(os.devnull, "springtide")
 
 
 def shared_folders() -> tuple[Path, ...]:
@@ -109,6 +130,7 @@ def shared_folders() -> tuple[Path, ...]:
 
 def shared_kernels() -> tuple[Path, ...]:
     """Folders of kernels for this processor and for its levels, in the order in which they are looked for."""
-    names = dict.fromkeys([processor(), *(f"{sys.platform}-{level}" for level in host_levels())])
+    levels = (f"{sys.platform}-{level}{VECTOR_LIBRARY}" for level in host_levels())
+    names = dict.fromkeys([processor(), *levels])
     found = (folder / "kernels" / name for folder in shared_folders() for name in names)
     return tuple(folder for folder in found if folder.is_dir())

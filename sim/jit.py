@@ -14,7 +14,6 @@ import importlib
 import inspect
 import os
 import pkgutil
-import platform
 import re
 import shutil
 import sys
@@ -108,14 +107,17 @@ def modules_of(package: str) -> list[ModuleType]:
 
 
 def reachable_hash(*paths: Path) -> str:
-    """Hash of these sources and of all of ours that they import, directly or not: names and code."""
+    """Hash of these sources and of all of ours that they import, directly or not: names and code.
+
+    LLVM's version counts too, as numba's own keys hold only numba's.
+    """
     found, waiting = set(), list(paths)
     while waiting:
         path = waiting.pop()
         if path not in found:
             found.add(path)
             waiting.extend(imported_files(path))
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(llvmlite.__version__.encode())
     for path in sorted(found):
         digest.update(path.name.encode() if ROOT not in path.parents else path.relative_to(ROOT).as_posix().encode())
         digest.update(code_of(path).encode())
@@ -205,7 +207,7 @@ def load_compiler() -> tuple[ModuleType | None, str]:
     except (AttributeError, ImportError, TypeError) as error:
         return None, str(error)
     try:
-        works = f"compiler-{numba.__version__}-{llvmlite.__version__}-{platform.python_version()}"
+        works = f"compiler-{numba.__version__}-{sys.implementation.cache_tag}"
         mark = f"{works}-{reachable_hash(Path(compiler.__file__))}"
         if not is_kept(mark):
             with tempfile.TemporaryDirectory() as folder, kept_in(Path(folder)):
@@ -222,7 +224,7 @@ COMPILER, MISSING = load_compiler()
 if MISSING:
     warnings.warn(
         f"numba {numba.__version__} has changed inside ({MISSING}): kernels are compiled in numba's own way, "
-        "which takes longer",
+        "which takes longer, and run up to five times slower",
         stacklevel=1,
     )
 

@@ -11,13 +11,12 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
-from app.commands.serve import say, wait_until
+from app.commands.serve import LOOPBACK, reached_host, say, wait_until
 from app.lab.class_page import page, policy, rows
 from app.lab.classroom import Classroom
 from app.lab.task import load_tasks
 from app.server.access import make_key
 
-HOST = "127.0.0.1"
 PATIENCE = 20.0  # [s] for which a request for what is new waits
 
 
@@ -31,15 +30,17 @@ def serve_class(folders: Sequence[Path], tasks: Sequence[Path], port: int, *, br
         try:
             server = make_server(classroom, key, port)
         except OSError as error:
-            print(f"springtide: cannot serve on {HOST}:{port}: {error.strerror or error}", file=sys.stderr)
+            print(f"springtide: cannot serve on {LOOPBACK}:{port}: {error.strerror or error}", file=sys.stderr)
             return 1
-        address = f"http://localhost:{server.server_address[1]}/{key}/"
         threading.Thread(target=server.serve_forever, name="class page", daemon=True).start()
-        say(f"The class is on {address}  (Ctrl-C ends it)")
-        if browser:
-            webbrowser.open(address)
+        bound = int(server.server_address[1])
         try:
-            wait_until(threading.Event())
+            with reached_host(LOOPBACK, bound) as reached:
+                address = f"http://{reached}:{bound}/{key}/"
+                say(f"The class is on {address}  (Ctrl-C ends it)")
+                if browser:
+                    webbrowser.open(address)
+                wait_until(threading.Event())
         except KeyboardInterrupt:
             pass
         finally:
@@ -69,7 +70,7 @@ def make_server(classroom: Classroom, key: str, port: int) -> ThreadingHTTPServe
             """The page, or the rows once they are newer than the revision in `after`."""
             asked = urlsplit(self.path)
             own, _, name = asked.path.removeprefix("/").partition("/")
-            hosts = {f"{host}:{self.server.server_port}" for host in ("localhost", HOST)}  # type: ignore[attr-defined]
+            hosts = {f"{host}:{self.server.server_port}" for host in ("localhost", LOOPBACK)}  # type: ignore[attr-defined]
             # Another name is that of a page elsewhere whose name was made to lead here.
             if self.headers.get("Host") not in hosts or not hmac.compare_digest(own.encode(), key.encode()):
                 self.send_error(404)
@@ -103,4 +104,4 @@ def make_server(classroom: Classroom, key: str, port: int) -> ThreadingHTTPServe
         def log_message(self, format: str, *args: object) -> None:
             """Print nothing: the path is a secret."""
 
-    return Server((HOST, port), Handler)
+    return Server((LOOPBACK, port), Handler)

@@ -1,16 +1,27 @@
-"""`springtide run SCENE --list`: parameters, presets and measures of a scene, in the width of the terminal."""
+"""`springtide run SCENE --list`: parameters, presets and measures of a scene, in the width of the terminal.
+
+Without SCENE, the scenes.
+"""
 
 import shutil
 from collections.abc import Iterable
 from typing import Any
 
 from app.formats.text_tables import fold
+from app.scenes import NAMES, scene_named
 from app.scenes.contract import SceneKind
 from app.scenes.measures import plotted
 from app.scenes.setups import write_value
 from sim.parameters import Parameter, parameters_of
 
 INDENT = 4  # [characters] of the lines below a name
+
+
+def list_scenes() -> int:
+    """Print the name and the title of each scene; returns the exit status."""
+    print("Scenes (springtide run SCENE)")
+    print_entries((name, scene_named(name).title) for name in NAMES)
+    return 0
 
 
 def list_scene(kind: SceneKind[Any, Any, Any]) -> int:

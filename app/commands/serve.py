@@ -1,13 +1,14 @@
 """`springtide`: serve the lab until it is interrupted."""
 
 import contextlib
+import errno
 import os
 import signal
 import socket
 import sys
 import threading
 import webbrowser
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from app.lab.task import load_tasks
@@ -22,6 +23,7 @@ from sim.validation import argument_error
 if TYPE_CHECKING:
     from app.lab.session import Session
 
+LOOPBACK = "127.0.0.1"
 WAIT_INTERVAL = 0.5  # [s] between two looks for Ctrl-C, which on Windows does not interrupt a wait
 
 
@@ -37,6 +39,31 @@ def check_address(host: str, port: int) -> None:
     except (OSError, ValueError, TypeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "not a host name"
         raise argument_error("--host", host, f"{allowed} ({reason})") from None
+
+
+@contextlib.contextmanager
+def reached_host(host: str, port: int) -> Generator[str]:
+    """The host to print and to open for a server that is bound to `host` and `port`, as it stands in an address.
+
+    It is localhost for 127.0.0.1, which browsers look up as ::1 first. Inside, that port of ::1 is taken, so that
+    localhost leads here and to no other program. If another program has it already, or for other hosts, it is the
+    address that is bound.
+    """
+    if host not in (LOOPBACK, "0.0.0.0"):
+        yield f"[{host}]" if ":" in host else host
+        return
+    with contextlib.ExitStack() as stack:
+        try:
+            taken = stack.enter_context(socket.socket(socket.AF_INET6, socket.SOCK_STREAM))
+            # Not with SO_REUSEADDR, by which another program could take the port too.
+            taken.bind(("::1", port))
+        except OSError as error:
+            if error.errno in (errno.EADDRINUSE, errno.EACCES):
+                say(f"localhost:{port} may lead to another program.")
+                yield LOOPBACK
+                return
+            # Without IPv6, localhost is 127.0.0.1.
+        yield "localhost"
 
 
 def serve_lab(
@@ -65,6 +92,7 @@ def serve_lab(
     Raises ValueError for what is no address, path or origin.
     """
     check_address(host, port)
+    host = LOOPBACK if host == "localhost" else host  # the one of its addresses that every system has
     key = read_key(os.environ.pop(KEY_VARIABLE, ""))
     access = Access(read_base_path(base_path), tuple(read_origin(origin) for origin in origins), key)
     try:
@@ -89,17 +117,17 @@ def serve_lab(
     if before is signal.default_int_handler:  # not in a background job of a shell, which ignores it
         signal.signal(signal.SIGINT, end)
     try:
-        shown = "localhost" if is_loopback(host) or host == "0.0.0.0" else f"[{host}]" if ":" in host else host
-        address = f"http://{shown}:{viewer.port}{access.base_path}"
-        say(f"Springtide is on {address}  (Ctrl-C ends it)")
-        if not is_loopback(host):
-            say(f"Warning: anyone who can reach {host} on port {viewer.port} can drive this lab.")
-        if browser:
-            webbrowser.open(address)
-        viewer.open(name, params, paused=paused)
-        if others:
-            viewer.comparing.begin(others, False)
-        wait_until(done, keeper.keep if resumes else lambda: None)
+        with reached_host(host, viewer.port) as reached:
+            address = f"http://{reached}:{viewer.port}{access.base_path}"
+            say(f"Springtide is on {address}  (Ctrl-C ends it)")
+            if not is_loopback(host):
+                say(f"Warning: anyone who can reach {host} on port {viewer.port} can drive this lab.")
+            if browser:
+                webbrowser.open(address)
+            viewer.open(name, params, paused=paused)
+            if others:
+                viewer.comparing.begin(others, False)
+            wait_until(done, keeper.keep if resumes else lambda: None)
     except KeyboardInterrupt:
         pass
     finally:

@@ -29,24 +29,29 @@ MAX_BYTES = 50e9  # of all files, before they are compressed
 VERSION = 1  # of the JSON file
 
 
+def is_installed(form: str) -> bool:
+    """True if the library that writes this format is installed."""
+    return not form.startswith("exr") or importlib.util.find_spec("OpenEXR") is not None
+
+
 def export(scene: str, params: Any, seconds: float, rate: float, start: float, form: str | None, out: Path) -> int:
     """Write `seconds` [s] of a scene from `start` [s] on, `rate` frames a second [Hz], into the new folder `out`.
 
-    form: of the files; None for the scene's default. Returns the exit status: 0; 1 for a run that diverged, which
-    keeps the frames before that. Raises ValueError for arguments that are not allowed, before any work, and OSError
-    where the files cannot be written; then there is no folder.
+    form: of the files; None for the first of the scene's that this installation can write. Returns the exit status: 0;
+    1 for a run that diverged, which keeps the frames before that. Raises ValueError for arguments that are not allowed,
+    before any work, and OSError where the files cannot be written; then there is no folder.
     """
     if scene not in EXPORTERS:
         raise argument_error("SCENE", scene, "one of " + ", ".join(EXPORTERS))
     formats = EXPORTERS[scene].formats
-    form = form or formats[0]
+    form = form or next(name for name in formats if is_installed(name))
     if form not in formats:
         raise argument_error("--format", form, f"{' or '.join(formats)} for {scene}")
     check_number("--seconds", seconds, 0.0, MAX_DURATION, "s", above=True)
     check_number("--rate", rate, *RATES, "Hz")
     check_number("--start", start, 0.0, MAX_DURATION, "s")
     check_folder(out)
-    if form.startswith("exr") and importlib.util.find_spec("OpenEXR") is None:
+    if not is_installed(form):
         raise ValueError("export: OpenEXR is not installed (pip install '.[exr]'), or choose --format png")
     count = max(1, round(seconds * rate))
     sequence = EXPORTERS[scene].make(params, 1.0 / rate, form)

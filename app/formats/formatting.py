@@ -21,7 +21,7 @@ TIME_UNITS = (
     ("µs", 1e-6, 0.0),
 )
 COUNT_UNITS = (("billion", 1e9), ("million", 1e6))
-MAX_STEP_RATE = 10_000  # [1/s] up to which a step is written as one over a whole number
+MIN_STEP_RATE, MAX_STEP_RATE = 10, 10_000  # [1/s] between which a step is written as one over a whole number
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -89,12 +89,24 @@ def seconds(value: float, digits: int = 3) -> str:
     return f"{number(float(f'{value / size:.{digits}g}'), digits)} {unit}"
 
 
-def time_step(step: float) -> str:
-    """A time step [s]: 1/240 s if it is nearly one over a whole number, else in ms or µs."""
+def short_step(step: float) -> str:
+    """A time step [s], for labels: 1/240 s if it is nearly one over a whole number, else in ms or µs."""
     rate = round(1.0 / step)
-    if 10 <= rate <= MAX_STEP_RATE and abs(rate * step - 1.0) < 1e-4:
+    if MIN_STEP_RATE <= rate <= MAX_STEP_RATE and abs(rate * step - 1.0) < 1e-4:
         return f"1/{rate} s"
     return seconds(step)
+
+
+def time_step(step: float) -> str:
+    """A time step [s] in both notations, 1/240 s (4.2 ms), or in the one that it has."""
+    short = short_step(step)
+    return f"{short} ({seconds(step, 2)})" if short.startswith("1/") else short
+
+
+def longest_step(step: float) -> str:
+    """An upper bound of time steps [s], as the longest one over a whole number that is not above it."""
+    rate = math.ceil((1.0 - 1e-9) / step)
+    return time_step(1.0 / rate) if MIN_STEP_RATE <= rate <= MAX_STEP_RATE else seconds(step)
 
 
 def count(value: float) -> str:

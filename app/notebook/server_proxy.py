@@ -39,11 +39,11 @@ def lab_words() -> list[str]:
     from app.lab.folder import make_folder
     from app.lab.task import load_tasks
 
-    folder = Path(named).expanduser().absolute()
     try:
+        folder = Path(named).expanduser().absolute()
         if not folder.exists() or not any(folder.iterdir()):
             make_folder(folder, load_tasks())
-    except OSError as error:
+    except (OSError, RuntimeError) as error:  # the latter without a home folder
         print(f"springtide: {LAB_VARIABLE}: {error}", file=sys.stderr)
         return []
     return ["lab", str(folder)]

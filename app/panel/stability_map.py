@@ -30,6 +30,7 @@ from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.automatic import AUTO, choose_for_step
 from sim.springs.stability import critical_step
 from sim.springs.state import State
+from sim.validation import ConvergenceError
 
 ROWS, COLS = 20, 28
 DECADES = 1.5  # of step and of stiffness to each side of where the parameters stand
@@ -158,6 +159,9 @@ class StabilityMapPanel:
                 if self.asked != number:
                     return
                 self.axes, self.rows, self.problem = axes, list(rows), ""
+        except ConvergenceError as error:
+            if self.asked == number:
+                self.problem = f"The map could not be measured: {error}."
         except Exception as error:
             traceback.print_exc()
             if self.asked == number:

@@ -3,7 +3,6 @@
 Each is a file as `app/scenes/setups.py` writes it. What is in the folder and cannot be read is left out.
 """
 
-import os
 import re
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import platformdirs
 
 from app.scenes.contract import AnyKind
 from app.scenes.setups import MAX_LENGTH, Setup, read_file
+from sim.cache import user_folder
 from sim.files import replacing
 from sim.validation import argument_error
 
@@ -20,7 +20,7 @@ FILE_NAME = re.compile(r"[^a-z0-9]+")  # what is replaced in a name
 
 def data_folder() -> Path:
     """Folder of what the user keeps."""
-    return Path(os.environ.get("SPRINGTIDE_DATA") or platformdirs.user_data_dir("springtide"))
+    return user_folder("SPRINGTIDE_DATA", platformdirs.user_data_dir)
 
 
 def folder_of(kind: AnyKind) -> Path:

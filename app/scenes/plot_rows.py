@@ -27,7 +27,7 @@ class PlotRows:
         """Clear the plots, by a row without numbers (see `app/messages.py`)."""
         self.waiting.clear()
         self.waiting.append((math.nan,) * (self.columns + 1))
-        self.number = 0  # of the last row; the first row comes one interval after time 0
+        self.number = -1  # of the last row; the first is that of the start
 
     def resume(self) -> None:
         """Take the next row at once: the run goes on from another moment."""

@@ -7,12 +7,13 @@ from typing import Any
 from app.experiments import tables
 from app.files import make_out_folder
 from app.formats import text_tables
-from app.stability import drift, figures, linear, rope
+from app.stability import damping, drift, figures, linear, rope
 from sim.files import replacing
 
 PARTS: tuple[tuple[str, str, Any, Callable[[Any], Any], Callable[[Any], Any]], ...] = (
     ("linear", "Linear oscillator, h ω and ζ", linear, linear.boundary_rows, figures.linear_figure),
     ("rope", "Rope, step and stiffness", rope, rope.boundary_rows, figures.rope_figure),
+    ("damping", "Networks, step and damping", damping, damping.curve_rows, figures.damping_figure),
     ("drift", "Energy of the undamped rope", drift, drift.course_rows, figures.drift_figure),
 )
 

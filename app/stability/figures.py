@@ -8,6 +8,7 @@ import numpy as np
 from app.experiments.tables import MARKERS, edges
 from app.render.colormap import OUTCOME_COLOURS
 from app.scenes.charts import PALETTE
+from app.stability.damping import DampingRow
 from app.stability.drift import Drift
 from app.stability.linear import LinearMap, extra_damping
 from app.stability.rope import RopeMap
@@ -102,6 +103,24 @@ def rope_figure(maps: list[RopeMap]) -> Any:
     handles: list[Any] = [Patch(color=colour, label=name) for name, colour in OUTCOME_COLOURS.items()]
     handles.append(Line2D([], [], color="black", label="critical_step"))
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
+    return figure
+
+
+def damping_figure(found: list[DampingRow]) -> Any:
+    """Measured limits as marks and `critical_step` as lines, for each network; methods without a limit are left out."""
+    names = list(dict.fromkeys(row.net for row in found))
+    figure, lowest, grid = panels(len(names), "The largest stable step over damping: marks measured, lines by theory")
+    for axes, name in zip(grid, names, strict=True):
+        limited = [row for row in found if row.net == name and np.isfinite(row.theory[1:]).any()]
+        for index, row in enumerate(limited):
+            colour, marker = PALETTE[index % 8], MARKERS[index % 8]
+            axes.loglog(row.dampings, row.theory, color=colour, linewidth=1.2)
+            axes.loglog(row.dampings, row.measured, marker, color=colour, label=row.name.replace("_", " "))
+        axes.set_title(name, fontsize=10)
+    for axes in lowest:
+        axes.set_xlabel("damping [N s/m]")
+    grid[0].set_ylabel("step h [s]")
+    figure.legend(*grid[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
     return figure
 
 

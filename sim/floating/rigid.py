@@ -24,9 +24,7 @@ class Scratch(NamedTuple):
     mass: np.ndarray  # (6, 6) [kg, kg m, kg m2] of the solid with added mass, in the axes of the heading
     factor: np.ndarray  # (6, 6) lower Cholesky factor of it
     wet: np.ndarray  # (6,) share of the body that is wet for each motion: 1 as at rest, 0 in air
-    share: (
-        np.ndarray
-    )  # (6,) factor on the waves that it feels and makes: its root, less if the body is below the surface
+    share: np.ndarray  # (6,) factor on its waves, felt and made: the root of `wet`, less if it is below the surface
     load: np.ndarray  # (6,) [N, N m] of all forces, and what they change
     substep: np.ndarray  # (s,) [s] for which decay and gain hold, of each linear hull
     decay: np.ndarray  # (s, p) complex: what a substep leaves of the memory

@@ -13,7 +13,7 @@ import numpy as np
 
 from sim.springs.integrators import Integrator, discover
 from sim.springs.net import Net
-from sim.springs.stability import MOST_DAMPED, gershgorin
+from sim.springs.stability import gershgorin
 
 AUTO = "auto"  # what takes the place of a method's name
 SOFT = 100.0  # radians of the fastest vibration while gravity moves the net by its size: a softer net excites it
@@ -46,13 +46,13 @@ def choose_for_tolerance(net: Net, rtol: float, interval: float) -> Choice:
 
 def choose_for_step(net: Net, h: float) -> Choice:
     """The embedded method with the fewest evaluations that holds at steps of h [s], or the one that is nearest to."""
-    omega, zeta = bounds(net)
+    omega, rate = gershgorin(net)
     embedded = sorted((r for r in discover().values() if r.adaptive), key=lambda r: r.evals)
     # What nothing but damping holds, as a rope's links across themselves, is the most damped.
-    ratios = [*((part, part * zeta) for part in PARTS), (zeta / MOST_DAMPED, MOST_DAMPED)]
-    limits = [min(record.limit(ratio) / part for part, ratio in ratios if part > 0.0) for record in embedded]
+    modes = [*((part * omega, part**2 * rate) for part in PARTS), (0.0, rate)]
+    limits = [min(record.stable_step(*mode) for mode in modes) for record in embedded]
     for record, limit in zip(embedded, limits, strict=True):
-        if h * omega <= limit:
+        if h <= limit:
             return Choice(record, "it holds at this step with the fewest force evaluations")
     return Choice(embedded[limits.index(max(limits))], "it comes nearest to holding at this step")
 

@@ -1,13 +1,13 @@
 """How large a step a net allows: its extreme modes, and each integrator's limit at their damping.
 
 Explicit integrators blow up from the top of the spectrum, a sawtooth along the links. An integrator declares the
-largest stable h omega of an oscillator of damping ratio zeta, so a net's largest stable step is the least of
-limit(zeta)/omega over the modes that can be the first to leave: the stiffest, the most damped, and one across the
+largest stable step of an oscillator of any frequency and damping rate, so a net's largest stable step is the least of
+these over the modes that can be the first to leave: the stiffest, the most damped, and one across the
 links. Of isotropic damping that is the most damped there, which is as damped as along them and less stiff, so that
 in a soft rope it is the more overdamped; of axial damping it is the stiffest there. Each mode's damping is its
 Rayleigh quotient, exact where D is a combination of K and M, as along a straight rope. Contact or crossing links
-couple the modes: the step is then right to some per cent, except explicit Euler's, which hangs on the least damped of
-all modes and is a guide only.
+couple the modes: the step is then right to some per cent, and a sixth too long at worst where they are damped
+critically; explicit Euler's, which hangs on the least damped of all modes, is a guide only.
 
 Each link counts as stiff as it or any other could be if it were stretched as the most stretched one now is: a slack
 line is about to be taut, and a wave carries the strain of one link of a stiffening rope to the others. What stretches
@@ -31,7 +31,6 @@ from sim.springs.state import State, check_net, check_state
 from sim.validation import check_number
 
 VECTORS = 32  # of Lanczos: the stiffest frequency to 0.1 % on nets of any size
-MOST_DAMPED = 1000.0  # zeta above which only the rate matters, not the frequency
 TOUCHING = 12  # equal spheres that can touch one of them
 LEAST_SLIDING = 1e-6  # below, friction does not count
 SECANTS = 8  # most of them, to 1e-4 of a step
@@ -48,17 +47,15 @@ class Mode(NamedTuple):
 
     @property
     def omega(self) -> float:
-        """[rad/s]; at least the value at which zeta is MOST_DAMPED."""
-        return max(math.sqrt(max(self.stiffness, 0.0)), 0.5 * self.rate / MOST_DAMPED)
+        """[rad/s]; 0 if only damping acts."""
+        return math.sqrt(max(self.stiffness, 0.0))
 
     @property
     def zeta(self) -> float:
-        """Without friction."""
-        return 0.5 * self.rate / self.omega if self.omega > 0.0 else 0.0
-
-    def zeta_at(self, h: float) -> float:
-        """With the strongest damping that friction has in steps of h [s]."""
-        return self.zeta + 0.5 * self.sliding / (h * self.omega) if self.omega > 0.0 else 0.0
+        """Without friction; infinite if only damping acts."""
+        if self.omega > 0.0:
+            return 0.5 * self.rate / self.omega
+        return math.inf if self.rate > 0.0 else 0.0
 
     def with_links(self, scale: float) -> "Mode":
         """The same vibration with every link `scale` times as stiff."""
@@ -68,11 +65,18 @@ class Mode(NamedTuple):
 class Gauge(NamedTuple):
     """The mode nearest to its limit, for the live display."""
 
-    omega: float  # [rad/s]
-    zeta: float
+    omega: float  # [rad/s]; 0 if only damping acts
+    zeta: float  # infinite if only damping acts
     h_omega: float
     limit: float  # largest stable h omega at this zeta
     critical_step: float  # [s]
+    step: float  # h [s]
+    highest: float  # highest frequency of the net [rad/s], which another method may be nearest to its limit at
+
+    @property
+    def share(self) -> float:
+        """The step over the largest stable one: above 1 the motion grows."""
+        return self.step / self.critical_step if self.critical_step > 0.0 else math.inf
 
 
 def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
@@ -240,19 +244,17 @@ def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) ->
 
 def step_limit(mode: Mode, integrator: Integrator) -> float:
     """Largest stable step [s] of one mode; inf where nothing moves it."""
-    if mode.omega == 0.0:
-        return math.inf
-    free = integrator.limit(mode.zeta) / mode.omega
+    free = integrator.stable_step(mode.omega, mode.rate)
     if mode.sliding < LEAST_SLIDING or free == 0.0 or math.isinf(free):
         return free
-    # Friction damps by anything up to its strongest, which is more the shorter the step is: the limit is where a step
-    # is that of its damping. By secants, as `limit` of the methods of high order is a search of its own.
+    # Friction damps by anything up to its strongest, 1/h, which is more the shorter the step is: the limit is where a
+    # step is that of its damping. By secants, as a limit of the methods of high order is a search of its own.
     h, before, missed_before = free, 0.0, 0.0
     for _ in range(SECANTS):
-        limit = integrator.limit(mode.zeta_at(h))
-        if limit == 0.0:
+        longest = integrator.stable_step(mode.omega, mode.rate + mode.sliding / h)
+        if longest == 0.0:
             return 0.0
-        missed = limit / mode.omega - h
+        missed = longest - h
         if missed >= 0.0 and h == free:
             return free
         if abs(missed) <= 1e-4 * h:
@@ -361,11 +363,9 @@ def gauge(net: Net, integrator: str | Integrator, h: float, state: State, modes:
 
 def gauge_of(modes: list[Mode], record: Integrator, h: float) -> Gauge:
     """h omega of the mode nearest to its limit at step h [s], and that limit; of no modes there is none."""
-    if not modes:
-        return Gauge(0.0, 0.0, 0.0, math.inf, math.inf)
-    mode = min(modes, key=lambda mode: step_limit(mode, record))
+    mode = min(modes, key=lambda mode: step_limit(mode, record), default=Mode(0.0, 0.0, 0.0))
     longest = step_limit(mode, record)
     # Of a mode that slides the damping depends on the step, so that the limit is that of the longest step.
     is_sliding = mode.omega > 0.0 and mode.sliding >= LEAST_SLIDING
     limit = longest * mode.omega if is_sliding else record.limit(mode.zeta)
-    return Gauge(mode.omega, mode.zeta, h * mode.omega, limit, longest)
+    return Gauge(mode.omega, mode.zeta, h * mode.omega, limit, longest, h, max((m.omega for m in modes), default=0.0))

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.springs.laws import TAUT, check_law, law_of, of_arrays
 from sim.springs.net import Family, Net
-from sim.validation import argument_error, as_array, check_kind, check_number
+from sim.validation import ConvergenceError, argument_error, as_array, check_kind, check_number
 
 ITERATIONS = 200  # of Newton: a dozen is usual
 
@@ -62,7 +62,7 @@ def catenary(
     convex: Newton's method with a line search on that, less (span, rise) . (H, V), comes to the one answer from any
     start.
 
-    Raises ValueError, naming the argument, its value and what is allowed.
+    Raises ValueError, naming the argument, its value and what is allowed, and ConvergenceError.
 
     >>> rest = catenary(points=9, length=2.0, span=1.0, rise=0.0, stiffness=1e4, mass=0.1, gravity=9.81)
     >>> round(float(rest.x[4, 2]), 3)  # [m] of its middle
@@ -85,6 +85,10 @@ def catenary(
     length_at, energy_at, slope_at = found.length, of_arrays(found.energy), of_arrays(found.stiffness)
     load = gravity * np.concatenate([[0.0], np.broadcast_to(masses, (links + 1,))[1:-1].cumsum()])
     end = np.array([span, rise])
+    reach = math.hypot(span, rise)
+    small = 1e-11 * (length + reach)
+    if not load.any() and reach < length - small:
+        raise argument_error("span", span, "a distance at which gravity or stretch keeps every link taut")
 
     def value(force):
         T = np.hypot(force[0], force[1] + load)
@@ -102,11 +106,12 @@ def catenary(
         return np.array([(across * H).sum(), (across * V).sum()]) - end, np.array([[hh, hv], [hv, vv]])
 
     # Half the weight hangs on each end; the pull is that of a rope as steep as it is long, or of the stretch.
-    stretch = max(math.hypot(span, rise) / length - 1.0, 0.0) * stiffness * rest
+    stretch = max(reach / length - 1.0, 0.0) * stiffness * rest
     force = np.array([math.copysign(abs(load[-1]) / 4.0 + stretch + 1e-9 * stiffness * rest, span), -load[-1] / 2.0])
-    force, gap = minimise(value, gap_and_jacobian, force, 1e-12 * (length + math.hypot(span, rise)))
-    if not np.hypot(*gap) <= 1e-11 * (length + math.hypot(span, rise)):
-        raise argument_error("span", span, "a distance at which gravity or stretch keeps every link taut")
+    force, gap, iterations = minimise(value, gap_and_jacobian, force, 0.1 * small)
+    left = float(np.hypot(*gap))
+    if not left <= small:
+        raise ConvergenceError("the catenary of a rope", f"{left:.3g} m at its last point", iterations)
     H, V = force[0], force[1] + load
     T = np.hypot(H, V)
     links_xz = (length_at(numbers, stiffness, rest, T) / T)[:, None] * np.stack([np.full_like(V, H), V], axis=1)
@@ -116,13 +121,16 @@ def catenary(
     return Equilibrium(x, T)
 
 
-def minimise(value: Any, gap_and_jacobian: Any, force: Any, small: float) -> tuple[Any, Any]:
-    """The least of a convex value(force) and the gap there, its gradient: Newton's method with a line search.
+def minimise(value: Any, gap_and_jacobian: Any, force: Any, small: float) -> tuple[Any, Any, int]:
+    """The least of a convex value(force), the gap there, its gradient, and the iterations taken: Newton's method with
+    a line search.
 
     gap_and_jacobian(force): gradient (2,) and its derivative (2, 2). small: of a gap that may be the last.
     """
     gap, jacobian = gap_and_jacobian(force)
-    for _ in range(ITERATIONS):
+    iterations = 0
+    while iterations < ITERATIONS:
+        iterations += 1
         step = -np.linalg.solve(jacobian, gap)
         slope, before = float(gap @ step), value(force)
         share = 1.0
@@ -138,13 +146,14 @@ def minimise(value: Any, gap_and_jacobian: Any, force: Any, small: float) -> tup
         if np.hypot(*new_gap) >= np.hypot(*gap) and np.hypot(*gap) <= small:
             break
         force, gap, jacobian = new, new_gap, new_jacobian
-    return force, gap
+    return force, gap, iterations
 
 
 def equilibrium(net: Net) -> Equilibrium:
     """Rest state of the rope `net`, hanging from point 0 or from both its ends; without floor and sphere.
 
-    Raises ValueError as `hanging_chain` and `catenary` do, and where gravity is not along z.
+    Raises ValueError and ConvergenceError as `hanging_chain` and `catenary` do, and ValueError where gravity is not
+    along z.
     """
     family = single_family(net)
     last = net.shape[1] - 1

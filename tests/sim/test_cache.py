@@ -101,7 +101,8 @@ def test_kernels_of_another_processor_are_left_alone(place: Place) -> None:
 @pytest.mark.parametrize("level", host_levels())
 def test_kernels_of_a_level_serve_a_processor_that_has_it(level: str, place: Place) -> None:
     assert place.run(own=place.shared, level=level) == COMPILED
-    assert [folder.name.partition("-")[2] for folder in (place.shared / "kernels").iterdir()] == [level]
+    name = f"{level}{cache.VECTOR_LIBRARY}"
+    assert [folder.name.partition("-")[2] for folder in (place.shared / "kernels").iterdir()] == [name]
     assert place.run(shared=place.shared) == LOADED
 
 
@@ -150,3 +151,36 @@ def test_where_nothing_can_be_kept_one_line_says_so(place: Place) -> None:
     environment = {"SPRINGTIDE_CACHE": str(place.module), "PYTHONPATH": str(place.module.parent)}
     said = "['no folder for kernels is writable: what is missing compiles at each start']"
     assert python(NOWHERE, **environment) == said
+
+
+HOMELESS = """
+import os, pwd
+def unknown(number):
+    raise KeyError(number)
+pwd.getpwuid = unknown
+for name in ("HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME", "SPRINGTIDE_CACHE", "SPRINGTIDE_DATA"):
+    os.environ.pop(name, None)
+from app.scenes.own_setups import data_folder
+from sim.cache import own_folder
+for folder in (own_folder(), data_folder()):
+    try:
+        folder.mkdir(parents=True)
+    except OSError:
+        print("not made")
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows knows the folder of each user")
+def test_a_user_without_a_home_folder_has_folders_that_cannot_be_made(place: Place) -> None:
+    """As in a container that is run by a number without an entry in the list of users."""
+    assert python(HOMELESS).split("\n") == ["not made", "not made"]
+    environment = {"PYTHONPATH": str(place.module.parent)}
+    said = "['no folder for kernels is writable: what is missing compiles at each start']"
+    assert python(HOMELESS.partition("from app")[0] + NOWHERE, **environment) == said
+
+
+def test_kernels_that_call_a_vector_library_lie_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = cache.target_name()
+    for library in ("", "-svml"):
+        monkeypatch.setattr(cache, "VECTOR_LIBRARY", library)
+        assert cache.processor() == f"{plain}{library}"

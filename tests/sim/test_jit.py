@@ -43,6 +43,13 @@ def test_the_hash_changes_with_any_edit_and_any_new_name(tmp_path):
     assert len({first, second, sources_hash(tmp_path)}) == 3
 
 
+def test_another_llvm_finds_no_kernels_of_this_one(monkeypatch):
+    path = ROOT / "sim" / "ocean" / "evolve.py"
+    before = reachable_hash(path)
+    monkeypatch.setattr(jit.llvmlite, "__version__", "0.0.1")
+    assert reachable_hash(path) != before
+
+
 def test_other_files_do_not_change_the_hash(tmp_path):
     (tmp_path / "a.py").write_text("x = 1\n")
     first = sources_hash(tmp_path)
@@ -82,6 +89,22 @@ def test_the_hash_of_a_kernel_follows_its_imports_and_nothing_else(tmp_path, mon
     assert reached() != first
     monkeypatch.undo()
     forget_sources()
+
+
+@pytest.mark.parametrize("folder", jit.OWN_PACKAGES)
+def test_the_imports_of_our_sources_are_those_that_python_s_parser_sees(folder):
+    for path in (ROOT / folder).rglob("*.py"):
+        names: set[str] = set()
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Import):
+                names.update(alias.name for alias in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                assert node.level == 0, f"{path}: a relative import is not seen"
+                names.update((node.module or "", *(f"{node.module}.{alias.name}" for alias in node.names)))
+        siblings = set(path.parent.glob("*.py")) if jit.MODULES_OF.search(jit.code_of(path)) else set()
+        parsed, found = {file for file in map(jit.source_of, names) if file} | siblings, jit.imported_files(path)
+        # Tests hold sources as strings, whose imports count too.
+        assert parsed <= found if folder == "tests" else parsed == found, path
 
 
 def forget_sources() -> None:

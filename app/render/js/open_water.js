@@ -86,7 +86,7 @@ const OPEN_SURFACE = `
 // The same of the bed.
 const OPEN_BED = `
   vec2 sunwards = 0.35 * SUN.xz * openWater[0].y; // light under water falls steeply
-  float shade = smoothstep(0.10 * openWater[0].y, -0.02 * openWater[0].y, toBody(vPlace.xz + sunwards));
+  float shade = 1.0 - smoothstep(-0.02 * openWater[0].y, 0.10 * openWater[0].y, toBody(vPlace.xz + sunwards));
   gl_FragColor.rgb *= 1.0 - 0.55 * shade;
   gl_FragColor.rgb = mix(gl_FragColor.rgb, DEEP, smoothstep(0.6, 0.98, length(vPlace.xz) / openWater[0].x));
   gl_FragColor.rgb = seenThrough(gl_FragColor.rgb, normalize(vPlace - cameraPosition));`;

@@ -383,7 +383,7 @@ const WATER_GLSL = {
             vec2 along = mat2(cos(turned), -sin(turned), sin(turned), cos(turned)) * d / max(r, 1e-3);
             slope += RING_SLOPE * strength * fade * sin(6.2832 * w) * along;
           }
-          splash += smoothstep(0.5, 0.1, r) * smoothstep(0.2, 0.0, age);
+          splash += (1.0 - smoothstep(0.1, 0.5, r)) * (1.0 - smoothstep(0.0, 0.2, age));
         }
       }
       return vec4(seen * slope, (1.0 - seen * seen) * share * RING_VARIANCE, seen * min(splash, 1.0));

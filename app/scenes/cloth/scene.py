@@ -30,7 +30,7 @@ from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.strain import structural_strain
 from sim.springs.integrator_fallback import integrator_or_fallback
 from sim.springs.net import PinPath
-from sim.springs.stability import Gauge, gauge, gershgorin
+from sim.springs.stability import Mode, gauge, gauge_of, gershgorin
 from sim.springs.state import State, advance, energy
 
 if TYPE_CHECKING:
@@ -278,9 +278,7 @@ class ClothScene(NetScene[Params]):
             stability = gauge(self.net, record, self.step, self.state)
         else:
             omega, rate = gershgorin(self.net, self.state.x)
-            zeta = 0.5 * rate / omega if omega > 0.0 else 0.0
-            limit = record.limit(zeta)
-            stability = Gauge(omega, zeta, self.step * omega, limit, limit / omega if omega > 0.0 else math.inf)
+            stability = gauge_of([Mode(omega**2, omega**2, rate)], record, self.step)
         self.stability = ClothReadings(stability, exact, self.corrections, self.fallback_note, self.tuner.threads)
         self.assessed_at = self.state.t
 

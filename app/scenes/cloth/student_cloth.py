@@ -48,8 +48,7 @@ class StudentCloth(StudentNet):
         before = self.sheet
         self.sheet = Sheet(rows, cols, (across.rest, down.rest), shear.stiffness, bend.stiffness, pins)
         method = INTEGRATORS["symplectic_euler"]
-        omega, rate = gershgorin(self.net, self.net.x0)
-        self.longest = STEP_SHARE * method.limit(0.5 * rate / omega) / omega if omega > 0.0 else math.inf
+        self.longest = STEP_SHARE * method.stable_step(*gershgorin(self.net, self.net.x0))
         return before is None or (before.rows, before.cols, before.pins) != (rows, cols, pins)
 
     def rows_of(self, values: NDArray[np.float64]) -> NDArray[np.float64]:

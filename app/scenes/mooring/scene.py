@@ -232,6 +232,7 @@ class MooringScene:
 
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where the state leaves its bounds, and keeps the last good one."""
+        self.add_due_row()  # of the start
         method, h = INTEGRATORS[self.params.integrator], self.step
         piece = max(1, round(SAMPLE / h))
         for first in range(0, steps, piece):
@@ -242,6 +243,10 @@ class MooringScene:
                 self.state = good
                 raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
             self.measure()
+        self.add_due_row()
+
+    def add_due_row(self) -> None:
+        """Add the plot row of now, if one is due."""
         if self.plot_rows.is_due(self.time):
             self.add_plot_row()
 

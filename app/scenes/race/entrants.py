@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.race.parameters import Params, method_of
-from app.scenes.springs.divergence import stability_number
+from app.scenes.springs.divergence import limit_text
 from sim.springs import INTEGRATORS, Integrator, Net
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
@@ -175,10 +175,8 @@ class Entrant:
     def failure_at(self, t: float) -> str:
         """Why it diverged at time t [s]."""
         g = self.gauge
-        h_omega, limit = stability_number(g.h_omega), stability_number(g.limit)
-        if g.h_omega > g.limit:
-            return f"diverged at {t:.2f} s: its step is too long (hω {h_omega} of {limit})"
-        return f"diverged at {t:.2f} s: an impact was too sudden for its step (hω {h_omega} of {limit})"
+        cause = "its step is too long" if g.share > 1.0 else "an impact was too sudden for its step"
+        return f"diverged at {t:.2f} s: {cause} ({limit_text(g)})"
 
     def move_root(self, position: Vector) -> None:
         """Put the root to rest at a position [m]."""

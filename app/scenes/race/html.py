@@ -29,10 +29,10 @@ def energy_text(result: Result) -> str:
 def stability_text(result: Result) -> Html:
     """The step relative to the largest stable one."""
     gauge = result.gauge
-    if gauge.limit <= 0.0:
+    if gauge.critical_step <= 0.0:
         return coloured("none", ERROR_COLOUR)
-    text = percent(gauge.h_omega / gauge.limit)
-    return escape(text) if gauge.h_omega <= gauge.limit else coloured(text, ERROR_COLOUR)
+    text = percent(gauge.share)
+    return escape(text) if gauge.share <= 1.0 else coloured(text, ERROR_COLOUR)
 
 
 def result_rows(result: Result, stiffness_differs: bool) -> Html:

@@ -25,7 +25,7 @@ def live_values(snapshot: Snapshot) -> dict[str, Measure]:
             f"evaluations_{n}": Measure(r.evals, "1", f"Evaluations of the forces in a step of rope {n}"),
         }
     stopped = [r for r in readings.results if r.failure]
-    stable = [r for r in readings.results if r.gauge.h_omega <= r.gauge.limit]
+    stable = [r for r in readings.results if r.gauge.share <= 1.0]
     return found | {
         "ropes_stopped": Measure(len(stopped), "1", "Ropes that left their bounds"),
         "ropes_stable": Measure(len(stable), "1", "Ropes within the limit of their method"),

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from app.formats.formatting import number, percent, seconds
+from app.formats.formatting import longest_step, number, percent, time_step
 from app.messages import Moment, vector_of
 from app.scenes.springs.methods import method_name
+from sim.springs import INTEGRATORS
 from sim.springs.integrators import Integrator
 from sim.springs.stability import Gauge
 
@@ -46,32 +47,40 @@ def stability_number(value: float) -> str:
     return f"{value:.2f}" if 0.1 <= value < 100.0 else number(value, 2)
 
 
+def limit_text(gauge: Gauge) -> str:
+    """The frequency nearest to its limit beside that limit, in symbols."""
+    if gauge.omega == 0.0:
+        return "damping alone limits it"
+    return f"hω {stability_number(gauge.h_omega)} of {stability_number(gauge.limit)}"
+
+
 def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge, alternative: str) -> str:
     """The sentences for the panel. t [s]; step [s]; alternative: another setting that would hold, or ""."""
     method = method_name(integrator.name)
     start = f"The run became unstable at t = {t:.2f} s: its time step was"
-    limit = f"hω {stability_number(gauge.h_omega)} of {stability_number(gauge.limit)}"
-    if gauge.h_omega > gauge.limit:
-        holds = f"a time step below {seconds(gauge.critical_step, 2)}" if gauge.critical_step > 0 else ""
+    limit = limit_text(gauge)
+    if gauge.share > 1.0:
+        holds = f"a time step up to {longest_step(gauge.critical_step)}" if gauge.critical_step > 0 else ""
         proposals = " or ".join(words for words in (holds, alternative) if words)
-        over = f"{percent(gauge.h_omega / gauge.limit, 3)} of the largest stable one" if gauge.limit > 0 else "too long"
+        over = f"{percent(gauge.share)} of the largest stable one" if gauge.critical_step > 0 else "too long"
         return f"{start} {over} for {method} ({limit}). Use {proposals or 'another method'}."
     return (
         f"{start} within the limit of {method} ({limit}), so an impact or a pull was too sudden for it. "
-        f"Try a time step of {seconds(step / 4, 2)}."
+        f"Try a time step of {time_step(step / 4)}."
     )
 
 
 def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
     """The step at which leapfrog would hold; "" where that is no news."""
-    if integrator.name == "leapfrog" or not 0.0 < gauge.omega < math.inf:
+    longest = INTEGRATORS["leapfrog"].stable_step(gauge.highest, 0.0)
+    if integrator.name == "leapfrog" or not 0.0 < longest < math.inf:
         return ""
-    return f"leapfrog with one below {seconds(2.0 / gauge.omega, 2)}"
+    return f"leapfrog with one up to {longest_step(longest)}"
 
 
 def holding_step(step: float, gauge: Gauge) -> float:
     """A time step [s], 1/n with a round n, that would have held in a run that diverged; 0 if there is none."""
-    largest = MARGIN * gauge.critical_step if gauge.h_omega > gauge.limit else step / 4
+    largest = MARGIN * gauge.critical_step if gauge.share > 1.0 else step / 4
     if not SHORTEST_STEP <= largest < math.inf:
         return 0.0
     rate = FIRST_RATE

@@ -2,45 +2,44 @@
 
 import math
 
-from app.formats.formatting import number, percent, seconds
+from app.formats.formatting import longest_step, number, percent
 from app.render.colormap import css_scale
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, info
-from app.scenes.springs.divergence import stability_number
+from app.scenes.springs.divergence import limit_text
 from sim.springs.stability import Gauge
 
 STEP_INFO = (
     "hω is the time step h times the highest frequency ω of the springs. Above its limit, which depends on the damping "
     "ratio ζ = {}, the motion grows without end."
 )
-WARNING_SHARE = 0.8  # of the limit, from which h omega is shown in the colour of a warning
+WARNING_SHARE = 0.8  # of the largest stable step, from which the step is shown in the colour of a warning
 
 
 def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
     """The step relative to the largest stable one, as a bar. exact: it is that of the state, not a bound of it."""
-    share = gauge.h_omega / gauge.limit if gauge.limit > 0 else math.inf
+    share = gauge.share
     colour = GOOD_COLOUR if share < WARNING_SHARE else WARNING_COLOUR if share <= 1.0 else ERROR_COLOUR
     return fill(
         '<div><span class="springtide-step-share">{}</span> {}</div>'
         '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 4px">'
         '<div style="height:8px;border-radius:4px;width:{:.0f}%;background:{}"></div></div>',
-        share_text(gauge, share, colour, exact=exact),
+        share_text(gauge, colour, exact=exact),
         info(STEP_INFO.format(number(gauge.zeta, 2)), "1. Springs"),
         100.0 * min(share, 1.0),
         colour,
     )
 
 
-def share_text(gauge: Gauge, share: float, colour: str, *, exact: bool) -> Html:
+def share_text(gauge: Gauge, colour: str, *, exact: bool) -> Html:
     """The step relative to the largest stable one, in words and then in symbols."""
-    if gauge.limit == math.inf:
+    if gauge.critical_step == math.inf:
         return fill("Step: {}", coloured("any is stable", colour))
-    if gauge.limit <= 0.0:
+    if gauge.critical_step <= 0.0:
         return fill("Step: {}", coloured("none is stable with this method", colour))
     return fill(
-        "Step: {} of the largest stable (hω {} of {})",
-        coloured(f"{'' if exact else 'at most '}{percent(share)}", colour),
-        stability_number(gauge.h_omega),
-        stability_number(gauge.limit),
+        "Step: {} of the largest stable ({})",
+        coloured(f"{'' if exact else 'at most '}{percent(gauge.share)}", colour),
+        limit_text(gauge),
     )
 
 
@@ -48,7 +47,7 @@ def step_mark(critical_step: float) -> str:
     """The line below the control of the time step. critical_step: the largest stable step [s], 0 or infinity too."""
     if critical_step == math.inf:
         return "every step is stable"
-    return f"stable up to {seconds(critical_step)}" if critical_step > 0 else "no step is stable with this method"
+    return f"stable up to {longest_step(critical_step)}" if critical_step > 0 else "no step is stable with this method"
 
 
 def colour_scale(low: str, name: object, high: str, *, clipped: bool) -> Html:

@@ -9,9 +9,7 @@ def stability_values(gauge: Gauge) -> dict[str, Measure]:
     return {
         "h_omega": Measure(gauge.h_omega, "1", "hω, step times highest frequency"),
         "h_omega_limit": Measure(gauge.limit, "1", "Limit of hω, step times highest frequency"),
-        "limit_used": Measure(
-            gauge.h_omega / gauge.limit if gauge.limit else float("inf"), "1", "Step over the largest stable one"
-        ),
+        "limit_used": Measure(gauge.share, "1", "Step over the largest stable one"),
         "damping_ratio": Measure(gauge.zeta, "1", "Damping ratio ζ of the fastest mode"),
         "critical_step": Measure(gauge.critical_step, "s", "Largest stable step"),
     }

@@ -137,6 +137,7 @@ class NetScene(abc.ABC, Generic[P]):
 
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where the net leaves its bounds, and keeps the last good state."""
+        self.add_due_row()  # of the start
         good, state = self.state, self.state.copy()  # what is shown in the middle of the steps, and what moves
         net = self.net_during(good.t, steps * self.step)
         try:
@@ -152,6 +153,10 @@ class NetScene(abc.ABC, Generic[P]):
         self.moved(good, steps, found)
         if self.state.t - self.assessed_at >= self.ASSESSMENT_INTERVAL and self.has_news():
             self.assess_stability()
+        self.add_due_row()
+
+    def add_due_row(self) -> None:
+        """Add the plot row of now, if one is due."""
         if self.plot_rows.is_due(self.state.t):
             self.add_plot_row()
 

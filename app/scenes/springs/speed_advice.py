@@ -1,6 +1,6 @@
 """Advice on faster steps of a spring network."""
 
-from app.formats.formatting import seconds
+from app.formats.formatting import longest_step
 from app.scenes.springs.methods import method_name
 from sim.springs import INTEGRATORS
 from sim.springs.integrators import Integrator
@@ -16,11 +16,12 @@ def faster_steps(integrator: Integrator, gauge: Gauge, points: str, *, touches_i
         proposals.append("no self-collision")
     if integrator.implicit:
         proposals.append("a larger step")
-    elif gauge.h_omega < 0.5 * CAUTION * gauge.limit:
-        proposals.append(f"a larger step, up to {seconds(CAUTION * gauge.critical_step, 2)}")
+    elif gauge.share < 0.5 * CAUTION:
+        proposals.append(f"a larger step, up to {longest_step(CAUTION * gauge.critical_step)}")
     leapfrog = INTEGRATORS["leapfrog"]
+    longest = leapfrog.stable_step(gauge.highest, 0.0)  # at any damping
     costs_more = integrator.evals > leapfrog.evals or integrator.implicit
-    if costs_more and gauge.h_omega < CAUTION * leapfrog.limit(gauge.zeta):
+    if costs_more and gauge.step < CAUTION * longest:
         proposals.append(f"leapfrog instead of {method_name(integrator.name)}")
     return either(proposals)
 

@@ -1,7 +1,11 @@
-"""Linear stability of one-step methods on x'' + 2 zeta omega x' + omega^2 x = 0, in units of z = h omega."""
+"""Linear stability of one-step methods on x'' + rate x' + omega^2 x = 0.
 
-import cmath
+The unit is z, the step times the size of the faster eigenvalue: h omega up to critical damping, and close to h rate far
+above it. In this unit a limit stays between 1 and 10 at every damping ratio zeta = rate / (2 omega), 0 to infinity.
+"""
+
 import functools
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -16,10 +20,28 @@ PARTS, REFINEMENTS = 64, 4  # of a step in which the crossing lies: one evaluati
 SLACK = 1e-9  # growth above 1 that is taken for round-off
 
 
+def fastest(omega: float, rate: float) -> float:
+    """Size of the faster eigenvalue [1/s] of x'' + rate x' + omega^2 x = 0."""
+    half = 0.5 * rate
+    if half <= omega:
+        return omega
+    return half + math.sqrt((half - omega) * (half + omega)) if half < math.inf else math.inf
+
+
 def eigenvalues(zeta: float) -> tuple[complex, complex]:
-    """s / omega of the oscillator: -zeta +- sqrt(zeta^2 - 1)."""
-    root = cmath.sqrt(zeta * zeta - 1.0)
-    return -zeta + root, -zeta - root
+    """The two eigenvalues of the oscillator over the size of the faster one, which is the first; zeta may be inf."""
+    if zeta < 1.0:
+        first = complex(-zeta, math.sqrt(1.0 - zeta * zeta))
+        return first, first.conjugate()
+    return -1.0 + 0j, -1.0 / fastest(1.0, 2.0 * zeta) ** 2 + 0j
+
+
+def stable_step_of(limit: Callable[[float], float], omega: float, rate: float) -> float:
+    """Largest stable step [s] of a method, from limit(zeta), its step times `fastest`; inf if nothing moves."""
+    size = fastest(omega, rate)
+    if size == 0.0:
+        return math.inf
+    return limit(0.5 * rate / omega if omega > 0.0 else math.inf) / size
 
 
 def limit_of(growth: Callable[[Any], Any]) -> float:
@@ -50,7 +72,7 @@ def first_powers(count: int) -> Any:
 
 @functools.lru_cache(maxsize=1000)
 def limit_of_polynomial(coefficients: tuple[float, ...], zeta: float) -> float:
-    """Largest stable z of a Runge-Kutta method with R(s) = sum c_i s^i.
+    """Largest stable z of an explicit Runge-Kutta method with R(s) = sum c_i s^i.
 
     |R|^2 along the ray of an eigenvalue is a polynomial in z with real coefficients: one product with the powers of
     all z that are tried. Below zeta = 1 the two eigenvalues are conjugate, and one is enough.
@@ -68,12 +90,24 @@ def limit_of_polynomial(coefficients: tuple[float, ...], zeta: float) -> float:
     return limit_of(growth)
 
 
+def stable_step_of_polynomial(coefficients: tuple[float, ...], omega: float, rate: float) -> float:
+    """Largest stable step [s] of an explicit Runge-Kutta method, see `limit_of_polynomial`."""
+    return stable_step_of(functools.partial(limit_of_polynomial, coefficients), omega, rate)
+
+
+def stable_step_of_nystroem(step: tuple[Any, Any, Any], omega: float, rate: float) -> float:
+    """Largest stable step [s] of an explicit Nystroem method. step: the first arguments of `nystroem_growth`."""
+    return stable_step_of(lambda zeta: limit_of(nystroem_growth(*step, zeta)), omega, rate)
+
+
 def nystroem_growth(c: Any, velocity: Any, position: Any, zeta: float) -> Callable[[Any], Any]:
-    """Largest eigenvalue of a step of x'' + 2 zeta x' + x = 0, of an explicit Nystroem method, as a function of h = z.
+    """Largest eigenvalue of a step of an explicit Nystroem method, as a function of z.
 
     c: (stages,) times; velocity, position: (stages + 1, stages) weights of the stages, and of the new state last. The
     step matrix's entries are polynomials in z, found once: a stage adds two powers.
     """
+    first, second = eigenvalues(zeta)
+    rate, square = -(first + second).real, (first * second).real
     one = np.zeros(2 * len(c) + 3)
     one[0] = 1.0
     entries = []
@@ -81,7 +115,7 @@ def nystroem_growth(c: Any, velocity: Any, position: Any, zeta: float) -> Callab
         k = np.zeros((len(c), len(one)))
         for i, time in enumerate(c):
             xs = x + time * times_z(v) + times_z(times_z(position[i] @ k))
-            k[i] = -xs - 2.0 * zeta * (v + times_z(velocity[i] @ k))
+            k[i] = -square * xs - rate * (v + times_z(velocity[i] @ k))
         entries += [x + times_z(v) + times_z(times_z(position[-1] @ k)), v + times_z(velocity[-1] @ k)]
     matrix = np.array(entries).T
 

@@ -21,6 +21,7 @@ TALL, LOW = 30.0, 0.1  # the same of a run that was cut short: a leapfrog that h
 STIR = 1e-9  # energy of a disturbance, in parts of what is large for its net
 GROWN = 1e4  # times its energy at which a disturbance has grown: still far too small for the rope not to be linear
 MUCH = 100.0  # parts of what is large, which no link comes back from
+PUSH = 1e-5  # of a link, in the differences of `step_growth`: their error is its square
 STABLE, BOUNDED_GROWTH, EXPLODING = range(3)
 
 
@@ -122,6 +123,32 @@ def outcome(integrator: Integrator, net: Net, h: float, rest: NDArray[np.float64
         if above < STIR * scale / GROWN:
             break
     return BOUNDED_GROWTH if grown_at else STABLE
+
+
+def step_growth(integrator: Integrator, net: Net, h: float, rest: NDArray[np.float64]) -> float:
+    """Logarithm per step of the fastest growing small disturbance of `net` at rest at `rest` (3, rows, cols) [m].
+
+    The largest eigenvalue of the matrix of two steps of h [s], as some methods alternate. Its columns are central
+    differences of runs of the kernel; only for nets of a few points. inf if a run leaves the finite numbers.
+    """
+    p = net.kernel_view(h)
+    free = np.flatnonzero(np.tile(net.inverse_masses() > 0.0, 3))
+    size = PUSH * max((f.rest for f in net.families), default=1.0)
+    start = np.concatenate([np.ascontiguousarray(rest).reshape(-1), np.zeros(rest.size)])
+    columns = []
+    for pushed, by in [(i, size) for i in free] + [(rest.size + i, size / h) for i in free]:
+        ends = []
+        for sign in (1.0, -1.0):
+            state = start.copy()
+            state[pushed] += sign * by
+            x, v = state[: rest.size], state[rest.size :]
+            integrator.advance(x, v, np.zeros(2), 0.0, h, 2, p, False)
+            ends.append(np.concatenate([x[free], h * v[free]]))
+        columns.append((ends[0] - ends[1]) / (2.0 * size))
+    matrix = np.array(columns)
+    if not np.isfinite(matrix).all():
+        return math.inf
+    return 0.5 * math.log(max(float(np.abs(np.linalg.eigvals(matrix)).max()), 1e-300))
 
 
 def energy_course(

@@ -11,8 +11,9 @@ from sim.springs.net import Net
 from sim.springs.stability import gershgorin
 from sim.springs.state import State, advance, energy
 from sim.springs.statics import hanging_chain
+from sim.validation import ConvergenceError
 
-LOOKS, STEPS = 4000, 20  # most looks, and steps between two
+LOOKS, STEPS = 20_000, 20  # most looks, and steps between two
 REST_ENERGY_SHARE = 1e-16  # kinetic energy of a peak, over the potential's, at which it rests
 
 
@@ -21,7 +22,7 @@ def find_rest_positions(net: Net, x: NDArray[np.float64] | None = None) -> NDArr
 
     Dynamic relaxation with kinetic damping: whenever the kinetic energy has passed a peak, a minimum of the potential
     is near, and everything stops there (Cundall 1976; Barnes 1988). Undamped, so that there is only a step to choose.
-    A rope that hangs free is where `hanging_chain` says, exactly.
+    A rope that hangs free is where `hanging_chain` says, exactly. Raises ConvergenceError.
     """
     if net.is_rope and net.sphere is None and net.pinned == {(0, 0)}:
         hanging = hanging_chain(net).x
@@ -64,4 +65,6 @@ def find_rest_positions(net: Net, x: NDArray[np.float64] | None = None) -> NDArr
             state.v[:], before = 0.0, 0.0
         else:
             before = now.kinetic
+    else:
+        raise ConvergenceError("a state of rest", f"{max(before, energy(still, state).kinetic):.2g} J of motion", LOOKS)
     return state.x

@@ -1,1 +1,1 @@
-"""NetArrays of springs, contact and air on the particles of a net."""
+"""Forces of springs, contact and air on the particles of a net."""

@@ -6,8 +6,9 @@ To add one, write a module in this folder with
    (3 rows cols,) in place by `steps` steps of h [s] from time t, calls `accelerate` inside its loop and `set_pins` at
    every time it evaluates forces, and returns how many force evaluations that took. With `with_account` it adds what
    damping took and what pins put in [J] to ledger[0] and ledger[1], by a quadrature of its own order.
-2. `limit(zeta)`: the largest stable h omega of x'' + 2 zeta omega x' + omega^2 x = 0, in closed form or from
-   the largest h omega at which the method's amplification stays within 1.
+2. `stable_step(omega, rate)`: the largest stable step [s] of x'' + rate x' + omega^2 x = 0, with omega [rad/s] and
+   rate [1/s] from 0 on, in closed form or from the largest step at which the method's amplification stays within 1.
+   0 if no step is stable, inf if every step is.
 3. `RECORD = Integrator(...)`, which declares what the tests then check.
 """
 
@@ -27,7 +28,7 @@ class Integrator(NamedTuple):
     order: int  # of the global error, with damping
     symplectic: bool  # without damping
     evals: int  # force evaluations a step
-    limit: Callable[[float], float]  # zeta -> largest stable h omega, of damping ratio zeta
+    stable_step: Callable[[float, float], float]  # omega [rad/s], damping rate [1/s] -> largest stable step [s]
     advance: Callable[..., int]
     summary: str  # when to choose it
     lag: float = 0.0  # v is stored this part of a step before x
@@ -41,6 +42,10 @@ class Integrator(NamedTuple):
     def __deepcopy__(self, memo: object) -> "Integrator":
         """The record itself: nothing changes it."""
         return self
+
+    def limit(self, zeta: float) -> float:
+        """Largest stable h omega at damping ratio zeta."""
+        return self.stable_step(1.0, 2.0 * zeta)
 
     @property
     def adaptive(self) -> bool:

@@ -6,7 +6,7 @@ errors below 1e-8. Coefficients of Hairer's dop853.f: Hairer, Norsett & Wanner (
 
 from functools import partial
 
-from sim.springs.analysis.amplification import limit_of_polynomial, polynomial_of
+from sim.springs.analysis.amplification import polynomial_of, stable_step_of_polynomial
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.embedded.march import march
 from sim.springs.integrators.embedded.stages import tableau, take_steps
@@ -51,13 +51,13 @@ METHOD = tableau(8, C, A, B, (E5, E3))
 POLYNOMIAL = polynomial_of(A, B)
 
 
-def limit(zeta: float) -> float:
+def stable_step(omega: float, rate: float) -> float:
     """Limit at which the stability polynomial of its twelve stages exceeds 1 on the ray of s = h lambda."""
-    return limit_of_polynomial(POLYNOMIAL, zeta)
+    return stable_step_of_polynomial(POLYNOMIAL, omega, rate)
 
 
 RECORD = Integrator(
-    "dop853", 8, False, 12, limit, partial(take_steps, METHOD),
+    "dop853", 8, False, 12, stable_step, partial(take_steps, METHOD),
     "For the truth: eighth order, chooses its own steps, errors to 1e-12.",
     march=partial(march, METHOD),
 )  # fmt: skip

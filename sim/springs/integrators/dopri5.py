@@ -7,7 +7,7 @@ Coefficients: Dormand & Prince (1980), J. Comp. Appl. Math. 6, table 2.
 
 from functools import partial
 
-from sim.springs.analysis.amplification import limit_of_polynomial, polynomial_of
+from sim.springs.analysis.amplification import polynomial_of, stable_step_of_polynomial
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.embedded.march import march
 from sim.springs.integrators.embedded.stages import tableau, take_steps
@@ -33,13 +33,13 @@ METHOD = tableau(5, C, A, B, (E,))
 POLYNOMIAL = polynomial_of(A, B)
 
 
-def limit(zeta: float) -> float:
+def stable_step(omega: float, rate: float) -> float:
     """Limit: the stability polynomial, 1 + s + ... + s^5/120 + s^6/600, exceeds 1 on the ray of s = h lambda."""
-    return limit_of_polynomial(POLYNOMIAL, zeta)
+    return stable_step_of_polynomial(POLYNOMIAL, omega, rate)
 
 
 RECORD = Integrator(
-    "dopri5", 5, False, 6, limit, partial(take_steps, METHOD),
+    "dopri5", 5, False, 6, stable_step, partial(take_steps, METHOD),
     "For a known error: chooses its own steps, errors of 1e-5 to 1e-8.",
     march=partial(march, METHOD),
 )  # fmt: skip

@@ -6,16 +6,20 @@ Unstable without damping at every step size: a mode's energy grows by 1 + (h ome
 import math
 from functools import partial
 
+from sim.springs.analysis.amplification import fastest
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.symplectic_euler import take_euler_steps
 
 
-def limit(zeta: float) -> float:
-    """z = 2 zeta for zeta <= 1: |1 + h s|^2 = 1 - 2 zeta z + z^2 of the complex pair s; the faster real root beyond."""
-    return 2.0 * zeta if zeta <= 1.0 else 2.0 * (zeta - math.sqrt(zeta * zeta - 1.0))
+def stable_step(omega: float, rate: float) -> float:
+    """h omega^2 < rate below critical damping: |1 + h s|^2 = 1 - h rate + h^2 omega^2 of the complex pair s; beyond,
+    h < 2/|s| of the faster real root."""
+    if rate > 2.0 * omega:
+        return 2.0 / fastest(omega, rate)
+    return rate / omega**2 if omega > 0.0 else math.inf
 
 
 RECORD = Integrator(
-    "explicit_euler", 1, False, 1, limit, partial(take_euler_steps, False),
+    "explicit_euler", 1, False, 1, stable_step, partial(take_euler_steps, False),
     "To see an instability: the lab text's Euler, never stable undamped.",
 )  # fmt: skip

@@ -11,13 +11,13 @@ from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import EULER, advance_implicit
 
 
-def limit(zeta: float) -> float:
+def stable_step(omega: float, rate: float) -> float:
     """No limit: |1 - s| >= 1 for every s of negative real part."""
     return math.inf
 
 
 RECORD = Integrator(
-    "implicit_euler", 1, False, 1, limit, partial(advance_implicit, EULER),
+    "implicit_euler", 1, False, 1, stable_step, partial(advance_implicit, EULER),
     "For looks at any stiffness: damps what it cannot follow.",
     implicit=True, l_stable=True,
 )  # fmt: skip

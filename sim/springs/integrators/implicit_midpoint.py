@@ -15,13 +15,13 @@ from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import MIDPOINT, advance_implicit
 
 
-def limit(zeta: float) -> float:
+def stable_step(omega: float, rate: float) -> float:
     """No limit: |1 + s/2| <= |1 - s/2| for every s of negative real part."""
     return math.inf
 
 
 RECORD = Integrator(
-    "implicit_midpoint", 2, False, 1, limit, partial(advance_implicit, MIDPOINT),
+    "implicit_midpoint", 2, False, 1, stable_step, partial(advance_implicit, MIDPOINT),
     "For energy at any stiffness: keeps it, damps nothing.",
     implicit=True,
 )  # fmt: skip

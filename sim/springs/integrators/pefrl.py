@@ -4,6 +4,8 @@ Drifts and kicks in turn, symmetric: X(xi) K((1-2 lambda)/2) X(chi) K(lambda) X(
 Some of them run backwards, where damping would drive: a damped net is refused.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -35,9 +37,11 @@ def growth(z: NDArray[np.float64]) -> NDArray[np.float64]:
 UNDAMPED_LIMIT = limit_of(growth)
 
 
-def limit(zeta: float) -> float:
+def stable_step(omega: float, rate: float) -> float:
     """Limit at which half the trace of the step matrix leaves -1..1; unstable with damping."""
-    return UNDAMPED_LIMIT if zeta <= 1e-9 else 0.0
+    if rate > 2e-9 * omega:
+        return 0.0
+    return UNDAMPED_LIMIT / omega if omega > 0.0 else math.inf
 
 
 @kernel(noalias=True)
@@ -61,6 +65,6 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
 
 
 RECORD = Integrator(
-    "pefrl", 4, True, 4, limit, advance, "For long undamped motions: symplectic, fourth order; refuses damping.",
+    "pefrl", 4, True, 4, stable_step, advance, "For long undamped motions: symplectic, fourth order; refuses damping.",
     undamped_only=True,
 )  # fmt: skip

@@ -16,7 +16,7 @@ itself small.
 
 import functools
 
-from sim.springs.analysis.amplification import limit_of, nystroem_growth
+from sim.springs.analysis.amplification import stable_step_of_nystroem
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.embedded.march import march
 from sim.springs.integrators.embedded.stages import rows_of, tableau_of_rows, take_steps
@@ -65,13 +65,13 @@ STEP = C, VELOCITY[: len(C) + 1, :-1], POSITION[: len(C) + 1, :-1]
 
 
 @functools.lru_cache(maxsize=1000)
-def limit(zeta: float) -> float:
+def stable_step(omega: float, rate: float) -> float:
     """Limit at which the step matrix of its eight stages has an eigenvalue above 1."""
-    return limit_of(nystroem_growth(*STEP, zeta))
+    return stable_step_of_nystroem(STEP, omega, rate)
 
 
 RECORD = Integrator(
-    "rkn8", 5, False, 8, limit, functools.partial(take_steps, METHOD),
+    "rkn8", 5, False, 8, stable_step, functools.partial(take_steps, METHOD),
     "For the truth of stiff or weakly damped nets: chooses its own steps.",
     undamped_order=8, march=functools.partial(march, METHOD),
 )  # fmt: skip

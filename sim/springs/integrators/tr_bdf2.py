@@ -12,13 +12,13 @@ from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import TR_BDF2, advance_implicit
 
 
-def limit(zeta: float) -> float:
+def stable_step(omega: float, rate: float) -> float:
     """No limit: A-stable, and R -> 0 at infinity."""
     return math.inf
 
 
 RECORD = Integrator(
-    "tr_bdf2", 2, False, 3, limit, partial(advance_implicit, TR_BDF2),
+    "tr_bdf2", 2, False, 3, stable_step, partial(advance_implicit, TR_BDF2),
     "For stiff ropes with some accuracy: L-stable and second order.",
     implicit=True, l_stable=True, evals_outside_newton=1,
 )  # fmt: skip

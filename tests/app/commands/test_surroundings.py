@@ -17,6 +17,7 @@ import pytest
 
 from app.__main__ import main
 from app.commands import serve as serve_command
+from app.scenes import NAMES
 
 ROOT = Path(__file__).parents[3]
 RUN = ("run", "rope", "--seconds", "0.1", "--out")
@@ -28,6 +29,25 @@ def program(*arguments: str, **changes: str) -> subprocess.Popen[str]:
         [sys.executable, "-m", "app", *arguments], cwd=ROOT, env={**os.environ, **changes},
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
+
+
+@pytest.mark.skipif(os.name == "nt", reason="head is a program of Unix")
+@pytest.mark.parametrize("words", [("run", "rope", "--list"), ("run", "--list")])
+def test_a_reader_that_leaves_early_is_no_error(words):
+    """As `head` does: longer output fails at a write, shorter output when it is flushed."""
+    read, write = os.pipe()
+    os.close(read)
+    process = subprocess.run(
+        [sys.executable, "-m", "app", *words], cwd=ROOT, stdout=write, stderr=subprocess.PIPE, text=True, check=False
+    )
+    os.close(write)
+    assert (process.returncode, process.stderr) == (141, "")
+
+
+def test_scenes_are_listed_without_a_scene(capsys):
+    assert main(["run", "--list"]) == 0
+    said = capsys.readouterr().out.split()
+    assert set(NAMES) <= set(said)
 
 
 def argument_error(capsys: pytest.CaptureFixture, *arguments: str) -> str:

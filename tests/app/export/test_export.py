@@ -155,5 +155,7 @@ def test_an_export_that_fails_leaves_nothing(tmp_path, monkeypatch):
 def test_without_openexr_a_line_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(ValueError, match=r"OpenEXR is not installed .*png"):
-        export("square_sea", SEA, 0.1, 30.0, 0.0, None, tmp_path / "a")
+        export("square_sea", SEA, 0.1, 30.0, 0.0, "exr", tmp_path / "a")
     assert list(tmp_path.iterdir()) == []
+    assert export("square_sea", SEA, 0.1, 30.0, 0.0, None, tmp_path / "a") == 0
+    assert json.loads((tmp_path / "a" / "sequence.json").read_text("utf-8"))["format"] == "png"

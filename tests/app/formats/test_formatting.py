@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from app.formats.formatting import count, fixed, metres, number, percent, seconds, time_step
+from app.formats.formatting import count, fixed, longest_step, metres, number, percent, seconds, short_step, time_step
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,28 @@ def test_a_time_is_in_the_unit_it_is_read_in(value: float, text: str) -> None:
                        (0.05, "1/20 s"), (2.5e-5, "25 µs"), (0.3, "300 ms")],
 )  # fmt: skip
 def test_a_time_step_is_a_fraction_where_it_is_one(step: float, text: str) -> None:
+    assert short_step(step) == text
+
+
+@pytest.mark.parametrize(
+    ("step", "text"), [(1 / 120, "1/120 s (8.3 ms)"), (0.0015, "1.5 ms"), (1 / 960, "1/960 s (1 ms)"), (0.25, "250 ms")]
+)
+def test_a_time_step_is_written_in_both_notations(step: float, text: str) -> None:
     assert time_step(step) == text
+
+
+@pytest.mark.parametrize(
+    ("step", "text"),
+    [
+        (1 / 120, "1/120 s (8.3 ms)"),
+        (0.0095, "1/106 s (9.4 ms)"),
+        (0.0015, "1/667 s (1.5 ms)"),
+        (0.25, "250 ms"),
+        (2e-5, "20 µs"),
+    ],
+)
+def test_a_bound_of_steps_is_one_that_holds(step: float, text: str) -> None:
+    assert longest_step(step) == text
 
 
 def test_a_fixed_number_of_decimals() -> None:

@@ -11,6 +11,7 @@ from app.panel import stability_map as live
 from app.scenes.rope import scene as rope
 from sim.springs.analysis.growth import EXPLODING, STABLE
 from sim.springs.stability import critical_step
+from sim.validation import ConvergenceError
 
 
 class Handle:
@@ -103,6 +104,19 @@ def test_a_method_that_takes_no_damping_says_so():
     shown.measure(shown.asked)
     shown.draw()
     assert "PEFRL allows no damping" in shown.html.content
+
+
+@pytest.mark.usefixtures("small")
+def test_a_network_that_does_not_come_to_rest_says_so(monkeypatch, capsys):
+    def fail(_: object) -> None:
+        raise ConvergenceError("a state of rest", "3 J of motion", 10)
+
+    monkeypatch.setattr(live, "find_rest_positions", fail)
+    shown, _ = make(rope.Params())
+    shown.measure(shown.asked)
+    shown.draw()
+    assert "The map could not be measured: a state of rest: no solution after 10 iterations" in shown.html.content
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.usefixtures("small")

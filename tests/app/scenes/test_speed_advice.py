@@ -10,14 +10,14 @@ from sim.springs.stability import Gauge
 def gauge_of(name, h_omega):
     """The gauge of a step of h_omega / 1000 s."""
     limit = INTEGRATORS[name].limit(0.1)
-    return Gauge(1000.0, 0.1, h_omega, limit, limit / 1000.0)
+    return Gauge(1000.0, 0.1, h_omega, limit, limit / 1000.0, h_omega / 1000.0, 1000.0)
 
 
 @pytest.mark.parametrize(
     ("name", "h_omega", "text"),
     [
         ("leapfrog", 1.0, "fewer points"),
-        ("leapfrog", 0.5, "fewer points or a larger step, up to 1.8 ms"),
+        ("leapfrog", 0.5, "fewer points or a larger step, up to 1/556 s (1.8 ms)"),
         ("rk4", 1.5, "fewer points or leapfrog instead of Runge-Kutta 4"),
         ("rk4", 2.0, "fewer points"),  # with which leapfrog would not hold
         ("implicit_euler", 1.0, "fewer points, a larger step or leapfrog instead of implicit Euler"),

@@ -1,14 +1,17 @@
 """`springtide stability`, coarse."""
 
 import csv
+import math
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
 
 from app.experiments import pool
-from app.stability import command, drift, linear, rope
+from app.stability import command, damping, drift, linear, rope
 from sim.springs import INTEGRATORS
+from sim.springs.analysis.growth import step_growth
+from sim.springs.stability import critical_step
 
 SAMPLE = ("explicit_euler", "leapfrog", "rk4", "implicit_euler", "implicit_midpoint")  # a third of the time
 
@@ -54,6 +57,31 @@ def test_methods_add_the_damping_that_they_do(maps):
     assert by_name["explicit_euler"][0].max() < 0.0
 
 
+@pytest.mark.parametrize("name", INTEGRATORS)
+@pytest.mark.parametrize("net", damping.networks())
+def test_the_critical_step_is_where_growth_begins_at_every_damping(net, name):
+    record = INTEGRATORS[name]
+    for b in (0.0, 10.0, 1e3, 1e5):
+        built, state = damping.at_rest(net, b)
+        if record.undamped_only and b > 0.0:
+            continue
+        h = critical_step(built, name, state)
+        if 0.0 < h < math.inf:
+            assert step_growth(record, built, 0.95 * h, state.x) < damping.GROWS, b
+            assert step_growth(record, built, 1.05 * h, state.x) > damping.GROWS, b
+        else:
+            assert damping.measured_step(record, built, state, h) == h, b
+
+
+def test_the_table_over_damping_tells_a_wrong_limit():
+    right = damping.DampingRow(
+        "rope", "rk4", np.zeros(4), np.array([0.1, 0.0, math.inf, math.nan]), np.array([0.1, 0.0, math.inf, math.nan])
+    )
+    assert damping.rows([right])[0]["step off at most [%]"] == 0.0
+    wrong = right._replace(theory=np.array([0.05, 0.0, math.inf, math.nan]))
+    assert damping.rows([wrong])[0]["step off at most [%]"] == pytest.approx(100.0)
+
+
 def test_symplectic_energies_are_bounded_and_the_others_drift():
     names = ("symplectic_euler", "leapfrog", "implicit_euler", "explicit_euler")
     drifts = [drift.Drift(name, INTEGRATORS[name].symplectic, *drift.course(name, 20_000)) for name in names]
@@ -71,10 +99,11 @@ def test_the_command_keeps_tables_and_figures(tmp_path, monkeypatch, capsys, map
     names = {name: INTEGRATORS[name] for name in ("leapfrog", "implicit_euler")}
     monkeypatch.setattr(rope, "INTEGRATORS", names)
     monkeypatch.setattr(drift, "INTEGRATORS", names)
+    monkeypatch.setattr(damping, "INTEGRATORS", names)
     assert command.run(quick=True, out=tmp_path, workers=1) == 0
     assert "leapfrog" in capsys.readouterr().out
     kept = {path.name for path in tmp_path.iterdir()}
-    for name in ("linear", "rope", "drift"):
+    for name in ("linear", "rope", "damping", "drift"):
         assert {f"{name}.csv", f"{name}_curves.csv", f"{name}.svg", f"{name}.png"} <= kept
     with (tmp_path / "rope.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))

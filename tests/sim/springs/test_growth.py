@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from sim.springs import INTEGRATORS, rope
+from sim.springs.analysis import settling
 from sim.springs.analysis.growth import EXPLODING, STABLE, growth, measured_limit, oscillator, outcome
 from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.stability import critical_step
 from sim.springs.state import State, acceleration, advance
 from sim.springs.statics import hanging_chain
+from sim.validation import ConvergenceError
 
 EXPLICIT = [name for name, record in INTEGRATORS.items() if math.isfinite(record.limit(0.0))]
 DAMPED = [name for name in EXPLICIT if not INTEGRATORS[name].undamped_only]
@@ -87,6 +89,14 @@ def test_a_settled_rope_stays_where_it_is(surroundings):
     before = state.x.copy()
     advance(net, state, INTEGRATORS["leapfrog"], 1 / 600, 300)
     assert np.abs(state.x - before).max() < 1e-2
+
+
+def test_a_rope_that_does_not_come_to_rest_is_told(monkeypatch):
+    monkeypatch.setattr(settling, "LOOKS", 10)
+    with pytest.raises(
+        ConvergenceError, match=r"a state of rest: no solution after 10 iterations; \S+ J of motion left"
+    ):
+        find_rest_positions(rope(10, floor=-1.0))
 
 
 def test_a_free_hanging_rope_settles_as_statics_says():

@@ -178,7 +178,7 @@ def test_limits_of_runge_kutta_methods_are_where_their_growth_leaves_1(coefficie
 def test_the_search_for_a_stiffness_asks_for_few_limits():
     asked = []
     rk4 = INTEGRATORS["rk4"]
-    record = rk4._replace(limit=lambda zeta: asked.append(zeta) or rk4.limit(zeta))
+    record = rk4._replace(stable_step=lambda *mode: asked.append(mode) or rk4.stable_step(*mode))
     net = rope(points=30, stiffness=8000.0, mass=0.3, damping=1.0, drag=0.1)
     modes = top_modes(net)
     found = critical_stiffness(net, record, 1 / 480, modes=modes)
@@ -215,6 +215,40 @@ def test_a_swinging_rope_holds_at_nine_tenths_of_its_critical_step(name, model):
     assert np.abs(still.v).max() < 1.0
 
 
+@pytest.mark.parametrize("damping", [1e4, 3e4, 1e5, 1e6, 1e12])
+def test_damping_that_is_exact_never_shortens_the_step(damping):
+    """omega = 2 sqrt(k/m) sin(17 pi/38) of ten points: no damping shortens leapfrog's 2/omega."""
+    net = rope(10, stiffness=800.0, damping=damping)
+    longest = 1.0 / (math.sqrt(800.0) * math.sin(17.0 * math.pi / 38.0))
+    assert critical_step(net, "leapfrog") == pytest.approx(longest, rel=1e-6)
+    found = gauge(net, "leapfrog", 1 / 60, State.at_rest(net))
+    assert found.limit == 2.0
+    assert found.share == pytest.approx(1.0 / (60.0 * longest), rel=1e-6)
+    assert critical_stiffness(net, "leapfrog", 1 / 60) == pytest.approx(800.0 * (60.0 * longest) ** 2, rel=1e-6)
+
+
+@pytest.mark.parametrize("zeta", [1e3, 1e6, 1e9])
+@pytest.mark.parametrize(
+    ("name", "reach"),  # of the real axis, over h rate: the other root is slow
+    [("explicit_euler", 2.0), ("symplectic_euler", 2.0), ("leapfrog_lagged", 2.0), ("rk4", 2.785294)],
+)
+def test_far_beyond_critical_damping_the_rate_alone_limits_a_step(name, reach, zeta):
+    record = INTEGRATORS[name]
+    assert 2.0 * zeta * record.limit(zeta) == pytest.approx(reach, rel=1e-6)
+    assert record.stable_step(0.0, 50.0) == pytest.approx(reach / 50.0, rel=1e-6)
+    assert record.stable_step(0.0, 0.0) == math.inf
+
+
+def test_the_gauge_of_what_only_damping_holds_has_no_frequency():
+    """Across a rope at its rest length nothing is stiff, and the damping there is that along it."""
+    net = rope(damping=1e4)
+    found = gauge(net, "rk4", 1e-5, State.at_rest(net))
+    assert (found.omega, found.zeta, found.h_omega, found.limit) == (0.0, math.inf, 0.0, 0.0)
+    assert found.share == pytest.approx(1e-5 / critical_step(net, "rk4"), rel=1e-12)
+    assert found.critical_step == pytest.approx(2.785294 / top_modes(net)[1].rate, rel=1e-3)
+    assert found.highest == pytest.approx(top_modes(net)[0].omega, rel=1e-12)
+
+
 def test_explicit_euler_without_damping_is_never_stable():
     assert critical_step(rope(damping=0.0, drag=0.0), "explicit_euler") == 0.0
     assert critical_stiffness(rope(damping=0.0, drag=0.0), "explicit_euler", 0.01) == 0.0
@@ -248,7 +282,9 @@ def test_the_stiffness_is_that_of_the_stiffest_links_with_known_modes_too():
 
 def test_a_method_that_is_only_stable_where_damped_enough_has_a_largest_stiffness():
     """Of the damping ratio 0.3/sqrt(k), 0.1 or more."""
-    record = INTEGRATORS["rk4"]._replace(limit=lambda zeta: 1.0 if zeta > 0.1 else 0.0)
+    record = INTEGRATORS["rk4"]._replace(
+        stable_step=lambda omega, rate: 1.0 / max(omega, 1e-3) if rate > 0.2 * omega else 0.0
+    )
     assert critical_stiffness(rope(2, 1.0, 1.0, 1.0, 0.6, 0.0, 0.0), record, 1e-6) == pytest.approx(9.0, rel=1e-6)
 
 

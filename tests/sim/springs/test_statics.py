@@ -4,9 +4,10 @@ import math
 import numpy as np
 import pytest
 
-from sim.springs import INTEGRATORS, lab_units, rope
+from sim.springs import INTEGRATORS, lab_units, rope, statics
 from sim.springs.state import State, acceleration, advance, velocities
 from sim.springs.statics import catenary, equilibrium, hanging_chain
+from sim.validation import ConvergenceError
 from tests.sim.springs.nets import DAMPABLE
 
 WEIGHT = 9.80665  # [N/m] of the reference ropes, 2 m long
@@ -94,6 +95,14 @@ def test_a_weightless_stretched_rope_is_straight():
 def test_a_slack_weightless_rope_has_no_catenary(span, gravity):
     with pytest.raises(ValueError, match="span: "):
         catenary(5, 2.0, span, 0.0, 800.0, 1.0, gravity)
+
+
+def test_a_catenary_that_is_not_found_is_no_wrong_argument(monkeypatch):
+    monkeypatch.setattr(statics, "ITERATIONS", 1)
+    with pytest.raises(
+        ConvergenceError, match=r"catenary of a rope: no solution after 1 iterations; \S+ m at its last"
+    ):
+        catenary(9, 2.0, 1.0, 0.3, 800.0, 1.0, 10.0)
 
 
 def test_a_rope_folded_on_itself_hangs_in_two_equal_legs():

@@ -40,7 +40,7 @@ LOOSEST, TIGHTEST = 0.1, 1e-4  # reductions of the residual by conjugate gradien
 ROUND_OFF = 4e-15  # and to the farthest position over g, below which corrections are noise
 
 
-class WorkCount(NamedTuple):
+class NewtonArrays(NamedTuple):
     """Arrays of a Newton solver."""
 
     mean: bool  # links take the tension of their mean length
@@ -72,7 +72,7 @@ solver_sizes = by_net(
 def make_work(p, mean):
     size = p.rows * p.cols
     numbers, n, m = solver_sizes(p, mean)
-    return WorkCount(
+    return NewtonArrays(
         mean,
         numbers,
         np.zeros(3 * size),

@@ -1,0 +1,119 @@
+"""The address that a command prints and opens leads to its own server, whatever else this machine serves."""
+
+import contextlib
+import errno
+import os
+import socket
+from collections.abc import Callable, Iterator
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+
+from app.commands import lab_class, serve
+
+
+def has_ipv6() -> bool:
+    """True if this machine has the address ::1."""
+    with contextlib.suppress(OSError), socket.socket(socket.AF_INET6) as trial:
+        trial.bind(("::1", 0))
+        return True
+    return False
+
+
+needs_ipv6 = pytest.mark.skipif(not has_ipv6(), reason="this machine has no ::1")
+
+
+class FakeViewer:
+    """A lab that only listens."""
+
+    def __init__(self, host: str, port: int, **_: Any) -> None:
+        self.listener = socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
+        self.port: int = self.listener.getsockname()[1]
+
+    def open(self, *_: Any, **__: Any) -> None:
+        """Show a scene."""
+
+    stop_opening = open
+
+    def shut(self) -> None:
+        """Listen no more."""
+        self.listener.close()
+
+
+@pytest.fixture
+def opened(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, int], str]:
+    """The host of the address that the lab opens in the browser, bound to a host and port."""
+    addresses: list[str] = []
+    monkeypatch.setattr(serve, "Viewer", FakeViewer)
+    monkeypatch.setattr(serve, "wait_until", lambda *_: None)
+    monkeypatch.setattr(serve.webbrowser, "open", addresses.append)
+
+    def opened_by(host: str, port: int) -> str:
+        assert serve.serve_lab("rope", None, host, port, browser=True, paused=False, plain=True) == 0
+        return str(urlsplit(addresses[-1]).hostname)
+
+    return opened_by
+
+
+@pytest.fixture
+def other_program() -> Iterator[int]:
+    """The port at which another program serves ::1 alone, as servers of other tools do."""
+    with socket.create_server(("::1", 0), family=socket.AF_INET6) as listener:
+        yield listener.getsockname()[1]
+
+
+@needs_ipv6
+def test_beside_another_program_at_localhost_the_address_is_that_of_the_lab(
+    opened: Callable[[str, int], str], other_program: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for host in ("127.0.0.1", "localhost"):
+        assert opened(host, other_program) == "127.0.0.1"
+        said = capsys.readouterr().out
+        assert f"Springtide is on http://127.0.0.1:{other_program}" in said
+        assert f"localhost:{other_program} may lead to another program" in said
+
+
+@pytest.mark.parametrize(
+    ("host", "shown"),
+    [
+        ("127.0.0.1", "localhost"),
+        ("localhost", "localhost"),
+        ("127.0.0.2", "127.0.0.2"),
+        pytest.param("::1", "::1", marks=needs_ipv6),
+    ],
+)
+def test_the_address_is_the_one_that_is_bound(opened: Callable[[str, int], str], host: str, shown: str) -> None:
+    with contextlib.suppress(OSError):  # macOS has no 127.0.0.2 unless it is set up
+        assert opened(host, 0) == shown
+
+
+@needs_ipv6
+def test_localhost_is_kept_from_other_programs_while_it_is_shown(other_program: int) -> None:
+    with serve.reached_host("127.0.0.1", other_program) as reached:
+        assert reached == "127.0.0.1"
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
+        with serve.reached_host("127.0.0.1", port) as reached:
+            assert reached == "localhost"
+            with socket.create_connection((reached, port), timeout=10) as connection:
+                assert connection.getpeername()[0] == "127.0.0.1"
+            with socket.socket(socket.AF_INET6) as late:
+                if os.name == "posix":  # where it means less than on Windows
+                    late.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                with pytest.raises(OSError, match=r".") as refused:
+                    late.bind(("::1", port))
+            assert refused.value.errno in (errno.EADDRINUSE, errno.EACCES)
+
+
+@needs_ipv6
+def test_the_page_of_a_class_opens_itself_too(
+    monkeypatch: pytest.MonkeyPatch, other_program: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    addresses: list[str] = []
+    monkeypatch.setattr(lab_class, "wait_until", lambda *_: None)
+    monkeypatch.setattr(lab_class.webbrowser, "open", addresses.append)
+    monkeypatch.setattr(lab_class, "Classroom", lambda *_: contextlib.nullcontext())
+    assert lab_class.serve_class([], [], other_program, browser=True) == 0
+    assert addresses[0].startswith(f"http://127.0.0.1:{other_program}/")
+    assert addresses[0] in capsys.readouterr().out

@@ -14,10 +14,18 @@ from app.lab.check import FolderResult, TaskResult, check_folder
 from app.lab.folder import make_folder
 from app.lab.report import page_of
 from app.lab.results_file import csv_text, json_text
+from app.lab.runners import Runners
 from app.lab.task import load_tasks
 from sim.files import replacing
 
-STYLES = {"right": "green", "wrong": "red", "failed": "red", "incomplete": "yellow", "not begun": "dim"}
+STYLES = {
+    "right": "green",
+    "wrong": "red",
+    "failed": "red",
+    "not checked": "yellow",
+    "incomplete": "yellow",
+    "not begun": "dim",
+}
 ITEM_WIDTH = 7  # [characters]
 STATE_WIDTH = 2 + max(map(len, STYLES))  # [characters]
 PARALLEL = 2  # folders of a class that are checked at the same time
@@ -41,8 +49,13 @@ def check(
         if path is not None and str(path) != "-":
             check_out_file(f"--{option}", path)
     found = load_tasks(*tasks)
+    curves, runners = out["report"] is not None, Runners()
     with ThreadPoolExecutor(min(PARALLEL, len(folders))) as pool:
-        results = list(pool.map(lambda folder: check_folder(folder, found, curves=out["report"] is not None), folders))
+        try:
+            results = list(pool.map(lambda one: check_folder(one, found, curves=curves, runners=runners), folders))
+        except BaseException:  # Ctrl-C does not wait for endless functions
+            runners.abort()
+            raise
     if out["json"] is not None and str(out["json"]) == "-":
         print(json_text(results))
     else:
@@ -72,7 +85,7 @@ def print_results(results: Sequence[FolderResult], *, everything: bool = False) 
     for entry in result.tasks:
         if everything or entry.state != "not begun":
             print_task(entry, console)
-    problems = [text for entry in result.tasks for text in entry.problems]
+    problems = dict.fromkeys(text for entry in result.tasks for text in entry.problems)  # of a broken file one
     for text in [result.answers.error, *problems]:
         if text:
             console.print()

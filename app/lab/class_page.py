@@ -14,7 +14,7 @@ from app.lab.task import Task
 from app.render.html import Html, fill, join
 from sim.parameters import in_words
 
-SIGNS = {"right": "✓", "wrong": "✗", "failed": "✗", "incomplete": "●", "not begun": "·"}
+SIGNS = {"right": "✓", "wrong": "✗", "failed": "✗", "incomplete": "●", "not begun": "·", "not checked": "…"}
 MAX_TEXT = 220  # characters of a mistake
 STYLE = """
 body { font: 15px/1.4 system-ui, sans-serif; color: #1b2a3a; margin: 1em 1.5em 3em; }
@@ -133,7 +133,7 @@ def mistakes_of(result: TaskResult) -> list[tuple[str, str]]:
     task, program = result.task, result.program
     found = []
     if program is not None and program.state == "failed":
-        found.append((task.file, "does not run"))
+        found.append((program.file or f"{task.item} {task.name}", "does not run"))
     elif program is not None and program.state == "wrong":
         found.append((f"{task.item} {task.name}", program.mistake or program.text))
     return found + [

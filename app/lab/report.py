@@ -12,7 +12,8 @@ from app.lab.answers import Answers, Value
 from app.lab.chart import chart
 from app.lab.check import FolderResult, TaskResult
 from app.lab.folder import MAX_PICTURES, PICTURES
-from app.lab.program_check import SAMPLES, is_empty
+from app.lab.program_check import SAMPLES
+from app.lab.source import is_empty
 from app.lab.task import Task
 from app.render.formula import formula
 from app.render.html import Html, fill, join
@@ -124,7 +125,7 @@ def overview(result: FolderResult, number: int) -> Html:
 
 def state_class(state: str) -> str:
     """The class of the style sheet for a state."""
-    return {"not begun": "faint", "given": "faint"}.get(state, state)
+    return {"not begun": "faint", "given": "faint", "not checked": "incomplete"}.get(state, state)
 
 
 def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Html) -> Html:
@@ -160,7 +161,7 @@ def program_text(entry: TaskResult) -> Html:
     program = entry.program
     if program is None:
         return Html()
-    text = f"{program.place}: {program.sentence}" if program.place else program.sentence
+    text = program.located
     if program.state == "not begun":
         text = ""
     if program.state == "right":

@@ -44,9 +44,11 @@ def folders(tmp_path: Path) -> list[Path]:
 
 
 def state_of(folder: Path, tmp_path: Path, before: Student | None = None) -> Student:
-    copies = tmp_path / "copies"
-    copies.mkdir(exist_ok=True)
-    return checked(before or Student(folder), TASKS, copies)
+    number = 1 if before is None or before.saved is None else before.saved.number + 1
+    copies = tmp_path / "copies" / folder.name / str(number)
+    copies.mkdir(parents=True, exist_ok=True)
+    with Runner(copies) as runner:
+        return checked(before or Student(folder), keep(read_files(folder), copies, number, TASKS), TASKS, runner)
 
 
 def save(folder: Path, sign: str, more: str = "") -> None:

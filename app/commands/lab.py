@@ -11,7 +11,7 @@ from rich.text import Text
 from app.files import check_out_file
 from app.formats import text_tables
 from app.lab.check import FolderResult, TaskResult, check_folder
-from app.lab.folder import make_folder
+from app.lab.folder import folder_names, make_folder
 from app.lab.report import page_of
 from app.lab.results_file import csv_text, json_text
 from app.lab.runners import Runners
@@ -79,7 +79,8 @@ def print_results(results: Sequence[FolderResult], *, everything: bool = False) 
     everything: list the tasks that are not begun too.
     """
     if len(results) > 1:
-        text_tables.show("", [class_row(result) for result in results])
+        names = folder_names(result.folder for result in results)
+        text_tables.show("", [class_row(result, names[result.folder]) for result in results])
         return
     result, console = results[0], get_console()
     for entry in result.tasks:
@@ -116,12 +117,12 @@ def plain(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-def class_row(result: FolderResult) -> dict[str, str]:
-    """Result of the check of one folder of a class."""
+def class_row(result: FolderResult, name: str) -> dict[str, str]:
+    """Result of the check of one folder of a class. name: of the folder."""
     (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
     rest = [entry.task.item for entry in result.tasks if entry.state != "right" and not entry.task.optional]
     return {
-        "Folder": plain(result.folder.name),
+        "Folder": plain(name),
         "Name": plain(result.answers.name),
         "Right": f"{right} of {count}",
         "Optional": f"{more} of {optional}",

@@ -421,6 +421,7 @@ def test_a_template_lives_whatever_it_is_asked_to_reap(tmp_path: Path, monkeypat
         assert template.reap(socket.socket(), one._process.pid) is None  # of another template
         assert one.call("mine.py", "f", 2.0) == 2.0
         assert one.starts == 1
+        assert template.process.poll() is None
     with monkeypatch.context() as patch, Runner(tmp_path) as one:
         patch.setattr(os, "pidfd_open", lambda _: (_ for _ in ()).throw(OSError(24, "Too many open files")))
         with pytest.raises(RunError, match="no process can be started: Too many open files") as caught:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import inspect
+import shutil
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -279,6 +280,19 @@ def test_files_that_stay_as_they_are_are_not_read_again(right: Session, monkeypa
     save(right, RIGHT + "# once more\n")
     assert right.state.version > version
     assert reads
+
+
+def test_a_folder_that_is_removed_and_made_again_is_followed(right: Session) -> None:
+    files = {path.name: path.read_text() for path in right.folder.glob("*.*")}
+    version = right.state.version
+    shutil.rmtree(right.folder)
+    time.sleep(0.01)
+    right.folder.mkdir()
+    for name, text in files.items():
+        (right.folder / name).write_text(text)
+    save(right, RIGHT + "# in the new folder\n")
+    assert right.state.version > version
+    wait_for(lambda: right.rope.taken == right.state.version)
 
 
 def test_a_forged_answer_is_named(right: Session) -> None:

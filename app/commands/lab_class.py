@@ -18,6 +18,7 @@ from app.lab.task import load_tasks
 from app.server.access import make_key
 
 HOST = "127.0.0.1"
+END_INTERVAL = 0.1  # [s] between two looks of the server whether to end
 PATIENCE = 20.0  # [s] for which a request for what is new waits
 
 
@@ -34,7 +35,7 @@ def serve_class(folders: Sequence[Path], tasks: Sequence[Path], port: int, *, br
             print(f"springtide: cannot serve on {HOST}:{port}: {error.strerror or error}", file=sys.stderr)
             return 1
         address = f"http://localhost:{server.server_address[1]}/{key}/"
-        threading.Thread(target=server.serve_forever, name="class page", daemon=True).start()
+        threading.Thread(target=server.serve_forever, args=(END_INTERVAL,), name="class page", daemon=True).start()
         say(f"The class is on {address}  (Ctrl-C ends it)")
         if browser:
             webbrowser.open(address)

@@ -33,7 +33,7 @@ def folder_names(folders: Iterable[Path]) -> dict[Path, str]:
         others = set(paths.values()) - {path}
         ends = (path.parts[-count:] for count in range(1, len(path.parts) + 1))
         own = next((end for end in ends if not any(other.parts[-len(end) :] == end for other in others)), path.parts)
-        found[folder] = str(Path(*own))
+        found[folder] = Path(*own).as_posix()
     return found
 
 

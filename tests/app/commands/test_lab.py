@@ -176,7 +176,7 @@ def test_a_folder_has_the_shortest_name_that_no_other_has(
     monkeypatch.chdir(tmp_path / "here")
     folders = [Path(path) for path in paths]
     found = folder_names(folders)
-    assert [found[folder].replace("\\", "/") for folder in folders] == names
+    assert [found[folder] for folder in folders] == names
 
 
 def test_a_file_that_does_not_run_is_one_line(empty: Path, capsys) -> None:

@@ -101,7 +101,7 @@ def rows(students: Sequence[Student]) -> Html:
         '<th class="number">Right</th><th>Tasks</th><th class="wide">Rope</th><th>Mistake</th></tr></thead>'
         "<tbody>{}</tbody></table>"
         '<p class="faint small">✓ right, ✗ wrong or does not run, ● not complete, · not begun. Ropes fall for one '
-        "second from the level; the reference's last shape is dashed.</p>",
+        "for one second from the level; the reference's last shape is dashed.</p>",
         len(students), begun, busy, mistakes_table(ready, names), body,
     )  # fmt: skip
 

@@ -229,6 +229,12 @@ class LiveNet(Service[Job | Loaded]):
         for loaded in [item] if isinstance(item, Loaded) else self.versions[-1:]:
             self.tell(loaded.saved, error)
 
+    def close(self) -> None:
+        """End the thread without waiting for steps that are being taken."""
+        for loaded in list(self.versions):
+            loaded.runner.abort()
+        super().close()
+
     def release(self) -> None:
         """End the process of each version."""
         for loaded in self.versions:

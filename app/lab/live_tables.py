@@ -129,6 +129,12 @@ class LiveTables(Service[Saved | Mapping[str, Call]]):
         self.tried.clear()
         self.errors = {**self.errors, "": error}
 
+    def close(self) -> None:
+        """End the thread without waiting for a call."""
+        for runner in list(self.runners.values()):
+            runner.abort()
+        super().close()
+
     def release(self) -> None:
         """End the process of each version."""
         for runner in self.runners.values():

@@ -85,6 +85,7 @@ class Runner:
         self.time_limit = time_limit
         self.compiles = compiles
         self.starts = 0  # processes started
+        self.effort = 0.0  # [s] of processor time that calls have taken; of time, where the system does not tell it
         self.is_fresh = False  # its process runs, and does not know the folder yet: another may be set
         self._parsed: set[str] = set()  # files without an error of syntax
         self._loaded: set[str] = set()  # files that the process has run
@@ -201,13 +202,15 @@ class Runner:
         if self.is_fresh:
             self._say(process, ["folder", str(self.folder)])
             self.is_fresh = False
-        deadline = time.monotonic() + time_limit
+        start = time.monotonic()
         self._used = processor_time(process.pid)[1]
         self._say(process, [kind, file, function, pack(arguments, refer)])
         while True:
-            answer = self._next(deadline, time_limit, file, function)
+            answer = self._next(start + time_limit, time_limit, file, function)
             try:
                 if answer[0] == "result":
+                    used = processor_time(process.pid)[1]
+                    self.effort += used - self._used if used else time.monotonic() - start
                     return unpack(answer[1], lambda _: None)
                 if answer[0] == "loaded":
                     self._loaded.add(file)

@@ -66,6 +66,7 @@ class Session:
         self.values = LiveTables(by_name, time_limit)  # of functions that move nothing, beside the program's number
         self.rope_version = 0  # number of the last version that was tried for the rope
         self.compiler: Runner | None = None  # of the version that is being compiled
+        self.trial: Runner | None = None  # in which a version is being tried
         self.stop = threading.Event()
         self.compiling = threading.Thread(target=self.compile_versions, name="student's compiler", daemon=True)
         self.compiling.start()
@@ -129,7 +130,10 @@ class Session:
 
         A runner that is still fresh after it was not needed.
         """
+        self.trial = runner
         try:
+            if self.stop.is_set():  # who closes sees the trial, or this sees that
+                runner.abort()
             net.attempt(Loaded(saved, runner))
         except RunError as error:
             if not runner.is_fresh:
@@ -172,6 +176,8 @@ class Session:
     def close(self) -> None:
         """End threads and processes, and remove the copies."""
         self.stop.set()
+        if self.trial is not None:
+            self.trial.abort()
         self.thread.join()
         self.to_compile.put(None)
         if self.compiler is not None:

@@ -7,15 +7,16 @@ import sys
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+from types import SimpleNamespace
+from typing import NamedTuple, cast
 
 import numpy as np
 import pytest
 from msgspec.structs import replace
 
 from app.lab.folder import stub
-from app.lab.program_check import SAMPLES, SEED, Verdict, call, check_program, same, special_case
-from app.lab.runner import Runner
+from app.lab.program_check import SAMPLES, SEED, Student, Verdict, call, check_program, same, special_case
+from app.lab.runner import RunError, Runner
 from app.lab.saved import keep
 from app.lab.source import read_source
 from app.lab.task import Task, load_tasks
@@ -247,6 +248,35 @@ def test_an_encoding_that_python_refuses_is_refused(tmp_path: Path, head: bytes)
     assert (python.returncode == 0) == (verdict.state == "right") == (ENCODINGS[head] == "")
     assert ENCODINGS[head] in verdict.sentence
     assert ("SyntaxError" in python.stderr) == bool(ENCODINGS[head])
+
+
+def test_a_task_may_take_as_long_as_others_keep_the_processor(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = [0.0]
+    runner = SimpleNamespace(effort=3.0, call=lambda file, name, *arguments: 1.0)
+    monkeypatch.setattr("app.lab.program_check.time.monotonic", lambda: clock[0])
+    student = Student(cast(Runner, runner), TASKS["gravity"])
+    clock[0] = 50.0
+    assert student(1.0) == 1.0
+    runner.effort = 13.1
+    with pytest.raises(RunError, match="gravity is too slow: 10 s are over"):
+        student(1.0)
+    runner.effort, clock[0] = 3.0, 101.0
+    with pytest.raises(RunError, match="too slow"):
+        student(1.0)
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="elsewhere nothing tells how long a process ran")
+def test_the_effort_of_a_function_is_its_processor_time(tmp_path: Path) -> None:
+    works = "end = time.process_time() + 0.2\n    while time.process_time() < end: pass"
+    (tmp_path / "mine.py").write_text(
+        f"import time\ndef f(x):\n    {works}\n    return x\ndef g(x):\n    time.sleep(0.3)\n    return x\n"
+    )
+    with Runner(tmp_path, time_limit=20.0) as runner:
+        runner.call("mine.py", "f", 1.0)
+        assert 0.15 < runner.effort < 0.35
+        before = runner.effort
+        runner.call("mine.py", "g", 1.0)
+        assert runner.effort - before < 0.15
 
 
 def test_a_busy_machine_is_no_failure_and_the_check_is_made_again(

@@ -5,6 +5,7 @@ import inspect
 import shutil
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -301,6 +302,15 @@ def test_a_forged_answer_is_named(right: Session) -> None:
         patch.setattr(found, "_ask", lambda *_: (1, 2, 3))
         with pytest.raises(RunError, match="pipe of the lab"):
             right.rope.attempt(right.rope.versions[-1])
+
+
+def test_the_end_does_not_wait_for_an_endless_function(tmp_path: Path) -> None:
+    (tmp_path / "rope.py").write_text(with_line("while True: pass"))
+    session = Session(tmp_path, TASKS, time_limit=600.0)
+    wait_for(lambda: session.trial is not None and session.trial.starts)
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(session.close).result(60.0)
+    assert not session.thread.is_alive()
 
 
 def test_what_is_no_folder_is_refused(tmp_path: Path) -> None:

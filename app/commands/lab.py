@@ -11,13 +11,21 @@ from rich.text import Text
 from app.files import check_out_file
 from app.formats import text_tables
 from app.lab.check import FolderResult, TaskResult, check_folder
-from app.lab.folder import make_folder
+from app.lab.folder import folder_names, make_folder
 from app.lab.report import page_of
 from app.lab.results_file import csv_text, json_text
+from app.lab.runners import Runners
 from app.lab.task import load_tasks
 from sim.files import replacing
 
-STYLES = {"right": "green", "wrong": "red", "failed": "red", "incomplete": "yellow", "not begun": "dim"}
+STYLES = {
+    "right": "green",
+    "wrong": "red",
+    "failed": "red",
+    "not checked": "yellow",
+    "incomplete": "yellow",
+    "not begun": "dim",
+}
 ITEM_WIDTH = 7  # [characters]
 STATE_WIDTH = 2 + max(map(len, STYLES))  # [characters]
 PARALLEL = 2  # folders of a class that are checked at the same time
@@ -41,8 +49,13 @@ def check(
         if path is not None and str(path) != "-":
             check_out_file(f"--{option}", path)
     found = load_tasks(*tasks)
+    curves, runners = out["report"] is not None, Runners()
     with ThreadPoolExecutor(min(PARALLEL, len(folders))) as pool:
-        results = list(pool.map(lambda folder: check_folder(folder, found, curves=out["report"] is not None), folders))
+        try:
+            results = list(pool.map(lambda one: check_folder(one, found, curves=curves, runners=runners), folders))
+        except BaseException:  # Ctrl-C does not wait for endless functions
+            runners.abort()
+            raise
     if out["json"] is not None and str(out["json"]) == "-":
         print(json_text(results))
     else:
@@ -66,13 +79,14 @@ def print_results(results: Sequence[FolderResult], *, everything: bool = False) 
     everything: list the tasks that are not begun too.
     """
     if len(results) > 1:
-        text_tables.show("", [class_row(result) for result in results])
+        names = folder_names(result.folder for result in results)
+        text_tables.show("", [class_row(result, names[result.folder]) for result in results])
         return
     result, console = results[0], get_console()
     for entry in result.tasks:
         if everything or entry.state != "not begun":
             print_task(entry, console)
-    problems = [text for entry in result.tasks for text in entry.problems]
+    problems = dict.fromkeys(text for entry in result.tasks for text in entry.problems)  # of a broken file one
     for text in [result.answers.error, *problems]:
         if text:
             console.print()
@@ -103,12 +117,12 @@ def plain(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-def class_row(result: FolderResult) -> dict[str, str]:
-    """Result of the check of one folder of a class."""
+def class_row(result: FolderResult, name: str) -> dict[str, str]:
+    """Result of the check of one folder of a class. name: of the folder."""
     (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
     rest = [entry.task.item for entry in result.tasks if entry.state != "right" and not entry.task.optional]
     return {
-        "Folder": plain(result.folder.name),
+        "Folder": plain(name),
         "Name": plain(result.answers.name),
         "Right": f"{right} of {count}",
         "Optional": f"{more} of {optional}",

@@ -17,6 +17,7 @@ from app.lab.classroom import Classroom
 from app.lab.task import load_tasks
 from app.server.access import make_key
 
+END_INTERVAL = 0.1  # [s] between two looks of the server whether to end
 PATIENCE = 20.0  # [s] for which a request for what is new waits
 
 
@@ -32,7 +33,7 @@ def serve_class(folders: Sequence[Path], tasks: Sequence[Path], port: int, *, br
         except OSError as error:
             print(f"springtide: cannot serve on {LOOPBACK}:{port}: {error.strerror or error}", file=sys.stderr)
             return 1
-        threading.Thread(target=server.serve_forever, name="class page", daemon=True).start()
+        threading.Thread(target=server.serve_forever, args=(END_INTERVAL,), name="class page", daemon=True).start()
         bound = int(server.server_address[1])
         try:
             with reached_host(LOOPBACK, bound) as reached:

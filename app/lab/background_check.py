@@ -13,13 +13,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from app.lab.process import BACKGROUND_NICENESS, lower_priority
-from app.lab.program_check import Verdict, check_program
+from app.lab.program_check import Verdict, check_program, not_checked
 from app.lab.runner import ROOT, RunError, Runner
 from app.lab.service import Service
 from app.lab.task import load_tasks
 
+RETRY_INTERVAL = 2.0  # [s] until functions are checked again that could not be checked
 START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.background_check import main; main()"
-ENDED = Verdict("failed", "The check ended twice without a result. Save the file again.")
+ENDED = Verdict("not checked", "The check ended twice without a result. Save the file again.")
 
 
 class BackgroundCheck(Service[Path]):
@@ -31,7 +32,7 @@ class BackgroundCheck(Service[Path]):
         self.verdicts: Mapping[str, Verdict] = {}  # function -> what its check came to
         self.waiting: tuple[str, ...] = ()  # functions that are being checked, in the order of the requests
         self.process: subprocess.Popen[str] | None = None
-        self.closed = False
+        self.closed = threading.Event()
         self.lock = threading.Lock()  # requests come from one thread, verdicts from another
         self.starting = threading.Lock()  # held by the one that starts the process or ends it
         super().__init__("student's checks")
@@ -45,18 +46,29 @@ class BackgroundCheck(Service[Path]):
             self.inbox.put(folder)
 
     def handle(self, item: Path) -> None:
-        """Check the functions that wait, unless or until there is another request."""
+        """Check the functions that wait, unless or until there is another request.
+
+        Those that cannot be checked go on waiting, and the request is made again.
+        """
         for name in self.waiting if self.inbox.empty() else ():
             verdict = self.ask(item, name) or self.ask(item, name) or ENDED
             with self.lock:
-                if self.closed or not self.inbox.empty():
+                if self.closed.is_set() or not self.inbox.empty():
                     return  # the verdict is out of date
-                self.settle({name: verdict})
+                if verdict.state == "not checked" and verdict is not ENDED:
+                    again = dataclasses.replace(verdict, text=f"{verdict.text}; trying again")
+                    self.verdicts = {**self.verdicts, name: again}
+                else:
+                    self.settle({name: verdict})
+        if self.waiting and self.inbox.empty() and not self.closed.wait(RETRY_INTERVAL):
+            with self.lock:
+                if self.inbox.empty():  # else a newer request has come, of which the functions that wait are part
+                    self.inbox.put(item)
 
     def fail(self, item: Path, error: RunError) -> None:
         """Say it of all functions that wait."""
         with self.lock:
-            self.settle(dict.fromkeys(self.waiting, Verdict("failed", error.text)))
+            self.settle(dict.fromkeys(self.waiting, Verdict("not checked", error.text)))
 
     def settle(self, verdicts: Mapping[str, Verdict]) -> None:
         """Show these verdicts of functions that waited."""
@@ -66,9 +78,12 @@ class BackgroundCheck(Service[Path]):
     def ask(self, folder: Path, name: str) -> Verdict | None:
         """The verdict of the process on a function; None where it ends before."""
         with self.starting:
-            if self.closed:
+            if self.closed.is_set():
                 return None
-            process = self.process = self.ready()
+            try:
+                process = self.process = self.ready()
+            except OSError as error:  # no more processes or memory
+                return not_checked(f"the machine is busy: no process can be started: {error.strerror or error}")
         assert process.stdin is not None
         assert process.stdout is not None
         with contextlib.suppress(OSError, ValueError):
@@ -94,7 +109,7 @@ class BackgroundCheck(Service[Path]):
     def close(self) -> None:
         """End the process, for good; it ends its children."""
         with self.starting:
-            self.closed = True
+            self.closed.set()
             if self.process is not None:
                 self.process.terminate()
         super().close()

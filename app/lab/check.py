@@ -9,7 +9,7 @@ from app.lab.answer_check import AnswerVerdict, check_answer
 from app.lab.answers import FILE, Answers, read_answers
 from app.lab.folder import check_is_folder
 from app.lab.program_check import Points, Verdict, check_program, draw
-from app.lab.runner import Runner
+from app.lab.runners import Runners
 from app.lab.task import Task
 
 
@@ -24,9 +24,12 @@ class TaskResult:
 
     @property
     def state(self) -> str:
-        """ "failed", "wrong", "not begun", "incomplete" or "right": the first of these that a part of the task has."""
+        """The first of these that a part of the task has, or what they come to.
+
+        "failed", "wrong", "not checked", "not begun", "incomplete", "right".
+        """
         states = [*([self.program.state] if self.program else []), *(answer.state for answer in self.answers)]
-        for state in ("failed", "wrong"):
+        for state in ("failed", "wrong", "not checked"):
             if state in states:
                 return state
         open_parts = states.count("not begun")
@@ -36,7 +39,9 @@ class TaskResult:
     def problems(self) -> tuple[str, ...]:
         """The parts that are not right, each with its place and what to do."""
         texts, program = [], self.program
-        if program is not None and program.state in ("wrong", "failed"):
+        if program is not None and program.file:
+            texts.append(program.sentence)
+        elif program is not None and program.state in ("wrong", "failed", "not checked"):
             texts.append(f"{program.place or self.task.file} {self.task.name}: {program.sentence}")
         texts += [f"{FILE} {self.task.name}.{a.question.key}: {a.text}" for a in self.answers if a.state == "wrong"]
         return tuple(texts)
@@ -71,8 +76,10 @@ class FolderResult:
         return sum(result.state == "right" for result in chosen), len(chosen)
 
 
-def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool = False) -> FolderResult:
-    """Check all tasks of a student's folder; with the report's curves, if `curves`.
+def check_folder(
+    folder: Path, tasks: Sequence[Task], *, curves: bool = False, runners: Runners | None = None
+) -> FolderResult:
+    """Check all tasks of a student's folder; with the report's curves, if `curves`. runners: those that may be aborted.
 
     Raises ValueError where it is no folder.
     """
@@ -80,7 +87,7 @@ def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool = False) -
     began = time.monotonic()
     answers = read_answers(folder)
     results = []
-    with Runner(folder) as runner:
+    with (runners or Runners()).runner(folder) as runner:
         for task in tasks:
             program = check_program(folder, runner, task) if task.check is not None else None
             judged = tuple(check_answer(question, answers.of(task, question)) for question in task.questions)

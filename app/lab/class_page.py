@@ -3,18 +3,20 @@
 Students are named as their folders are. The page fetches nothing but its own rows, and runs no other script.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 from app.lab.check import TaskResult
 from app.lab.classroom import Student
+from app.lab.folder import folder_names
 from app.lab.report import state_class
 from app.lab.rope_picture import svg
 from app.lab.task import Task
 from app.render.html import Html, fill, join
 from sim.parameters import in_words
 
-SIGNS = {"right": "✓", "wrong": "✗", "failed": "✗", "incomplete": "●", "not begun": "·"}
+SIGNS = {"right": "✓", "wrong": "✗", "failed": "✗", "incomplete": "●", "not begun": "·", "not checked": "…"}
 MAX_TEXT = 220  # characters of a mistake
 STYLE = """
 body { font: 15px/1.4 system-ui, sans-serif; color: #1b2a3a; margin: 1em 1.5em 3em; }
@@ -91,21 +93,22 @@ def rows(students: Sequence[Student]) -> Html:
     ready = [student for student in students if student.results]
     begun = sum(any(result.state != "not begun" for result in student.results) for student in ready)
     busy = f", {len(students) - len(ready)} being checked" if len(ready) < len(students) else ""
-    body = join(student_row(student) for student in students)
+    names = folder_names(student.folder for student in students)
+    body = join(student_row(student, names[student.folder]) for student in students)
     return fill(
         '<h1>Class of {}</h1><p class="faint">{} have begun{}. The page follows as files are saved.</p>{}'
         '<h2>Students</h2><table class="class"><thead><tr><th>Folder</th><th class="at">At</th>'
         '<th class="number">Right</th><th>Tasks</th><th class="wide">Rope</th><th>Mistake</th></tr></thead>'
         "<tbody>{}</tbody></table>"
         '<p class="faint small">✓ right, ✗ wrong or does not run, ● not complete, · not begun. Ropes fall for one '
-        "second from the level; the reference's last shape is dashed.</p>",
-        len(students), begun, busy, mistakes_table(ready), body,
+        "for one second from the level; the reference's last shape is dashed.</p>",
+        len(students), begun, busy, mistakes_table(ready, names), body,
     )  # fmt: skip
 
 
-def mistakes_table(students: Sequence[Student]) -> Html:
-    """The mistakes of the class, the most frequent first."""
-    found = mistakes(students)
+def mistakes_table(students: Sequence[Student], names: Mapping[Path, str]) -> Html:
+    """The mistakes of the class, the most frequent first. names: of the folders."""
+    found = mistakes(students, names)
     lines = join(
         fill(
             '<tr><td class="number"><b>{}</b></td><td>{}</td><td>{}</td><td class="faint">{}</td></tr>',
@@ -117,14 +120,17 @@ def mistakes_table(students: Sequence[Student]) -> Html:
     return fill("<h2>Mistakes now</h2>{}", fill('<table class="mistakes">{}</table>', lines) if found else nothing)
 
 
-def mistakes(students: Sequence[Student]) -> list[Mistake]:
-    """Mistakes of all students, the most frequent first: of a function, a file that does not run, an answer."""
+def mistakes(students: Sequence[Student], names: Mapping[Path, str]) -> list[Mistake]:
+    """Mistakes of all students, the most frequent first: of a function, a file that does not run, an answer.
+
+    names: of the folders.
+    """
     folders: dict[tuple[str, str], list[str]] = {}
     for student in students:
         own = dict.fromkeys(key for result in student.results for key in mistakes_of(result))
         for key in own:
-            folders.setdefault(key, []).append(student.folder.name)
-    found = [Mistake(*key, tuple(names)) for key, names in folders.items()]
+            folders.setdefault(key, []).append(names[student.folder])
+    found = [Mistake(*key, tuple(own)) for key, own in folders.items()]
     return sorted(found, key=lambda mistake: -len(mistake.folders))
 
 
@@ -133,7 +139,7 @@ def mistakes_of(result: TaskResult) -> list[tuple[str, str]]:
     task, program = result.task, result.program
     found = []
     if program is not None and program.state == "failed":
-        found.append((task.file, "does not run"))
+        found.append((program.file or f"{task.item} {task.name}", "does not run"))
     elif program is not None and program.state == "wrong":
         found.append((f"{task.item} {task.name}", program.mistake or program.text))
     return found + [
@@ -148,12 +154,15 @@ def answer_text(answer: object) -> str:
     return f"{answer:g}" if isinstance(answer, float) else f"“{answer}”"
 
 
-def student_row(student: Student) -> Html:
-    """One student: the task, right ones, all tasks, rope, and the first mistake of the present task, or of any."""
+def student_row(student: Student, name: str) -> Html:
+    """One student: the task, right ones, all tasks, rope, and the first mistake of the present task, or of any.
+
+    name: of the folder.
+    """
     if not student.results:
         return fill(
             '<tr><td class="name">{}</td><td colspan="5" class="faint">{}</td></tr>',
-            student.folder.name, student.error or "being checked …",
+            name, student.error or "being checked …",
         )  # fmt: skip
     at = next((result for result in student.results if result.task.name == student.at), None)
     count = sum(result.state == "right" for result in student.results if not result.task.optional)
@@ -164,7 +173,7 @@ def student_row(student: Student) -> Html:
         '<tr data-student="{}"><td class="name">{}</td><td>{}<br><span class="faint small">{}</span></td>'
         '<td class="number">{} of {}</td><td class="strip">{}</td><td class="wide">{}</td>'
         '<td class="text small">{}</td></tr>',
-        student.folder.name, student.folder.name, at.task.item if at else "–",
+        name, name, at.task.item if at else "–",
         " ".join(filter(None, [at.task.title if at else "nothing begun", student.changed_at])), count, total,
         strip(student), rope(student), shortened(text),
     )  # fmt: skip

@@ -1,9 +1,9 @@
 """The folders of a class while a teacher looks on: each is checked again as its files are saved.
 
 Functions run from copies, so that nothing is written into a folder. Of a saved file only its own tasks are checked.
+One thread has a folder until it is done with it; what was saved meanwhile is found when the folder is looked at again.
 """
 
-import queue
 import shutil
 import tempfile
 import threading
@@ -13,29 +13,28 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import watchfiles
-
 from app.lab.answer_check import check_answer
-from app.lab.answers import Answers, read_answers
+from app.lab.answers import FILE, Answers, read_answers
 from app.lab.check import TaskResult
 from app.lab.folder import check_is_folder
 from app.lab.program_check import Verdict, check_program
 from app.lab.rope_march import FILE as ROPE_FILE
-from app.lab.rope_picture import RopePicture, rope_picture
+from app.lab.rope_picture import NOT_DRAWN, RopePicture, rope_picture
 from app.lab.runner import Runner
-from app.lab.saved import Saved, keep, read_files
+from app.lab.runners import Runners
+from app.lab.saved import Saved
+from app.lab.source import read_source
 from app.lab.task import Task
+from app.lab.versions import LOOK_INTERVAL, Look, Versions
 
 WORKERS = 2  # folders that are checked at the same time
-LOOK_INTERVAL = 500  # [ms] between two looks whether to end
-SETTLE_TIME, MAX_SETTLE_TIME = 50, 400  # [ms] as of a student's own lab
+MISSING = "The folder is not there."
 
 
 class Student(NamedTuple):
     """State of one folder. It is replaced, never changed."""
 
     folder: Path
-    number: int = 0  # how often it was checked
     saved: Saved | None = None
     programs: Mapping[str, Verdict] = {}  # by task
     results: tuple[TaskResult, ...] = ()
@@ -44,26 +43,49 @@ class Student(NamedTuple):
     changed_at: str = ""  # clock time of that
     error: str = ""  # why the folder could not be checked, or its answers not be read
 
+    @property
+    def is_open(self) -> bool:
+        """True if something could not be checked, as the machine was too busy."""
+        return self.rope.text == NOT_DRAWN or any(v.state == "not checked" for v in self.programs.values())
+
+
+class Desk:
+    """One folder, and how far it has been looked at. It belongs to one thread at a time."""
+
+    def __init__(self, folder: Path, tasks: Sequence[Task], copies: Path) -> None:
+        self.versions, self.answers = Versions(folder, tasks, copies), Look(folder, FILE)
+        self.student = Student(folder)
+        self.is_open = True  # something is to be checked again
+
+    def look(self) -> bool:
+        """True if something is to be checked. Raises OSError where the files cannot be copied."""
+        before = self.versions.newest
+        if self.versions.look() is not None:
+            self.is_open = True
+            if before is not None:
+                shutil.rmtree(before.folder, ignore_errors=True)
+        if self.answers.has_changed():
+            self.is_open = True
+        return self.is_open
+
 
 class Classroom:
-    """All folders, a thread that watches them, and threads that check. Use it in a `with` block."""
+    """All folders, and threads that look at them and check. Use it in a `with` block."""
 
     def __init__(self, folders: Sequence[Path], tasks: Sequence[Task]) -> None:
         """Raises ValueError for what is no folder."""
         for folder in folders:
             check_is_folder(folder)
         self.tasks = tuple(tasks)
+        self.copies = Path(tempfile.mkdtemp(prefix="springtide-class-"))
         self.students = {folder: Student(folder) for folder in dict.fromkeys(folders)}
         self.revision = 0  # how often a student has changed
         self.news = threading.Condition()
-        self.copies = Path(tempfile.mkdtemp(prefix="springtide-class-"))
-        self.waiting: queue.SimpleQueue[Path | None] = queue.SimpleQueue()
-        self.queued = set(self.students)
-        self.stop = threading.Event()
-        for folder in self.students:
-            self.waiting.put(folder)
+        self.runners = Runners()
+        self.turns = threading.Condition()
+        # When each folder is looked at next [s], and its desk: those that no thread has now, in the order of the times.
+        self.waiting = [(0.0, Desk(folder, tasks, Path(tempfile.mkdtemp(dir=self.copies)))) for folder in self.students]
         self.threads = [threading.Thread(target=self.work, name="class", daemon=True) for _ in range(WORKERS)]
-        self.threads.append(threading.Thread(target=self.watch, name="class watch", daemon=True))
         for thread in self.threads:
             thread.start()
 
@@ -71,10 +93,10 @@ class Classroom:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.stop.set()
-        self.waiting.put(None)
-        with self.news:
-            self.news.notify_all()
+        self.runners.abort()
+        for condition in (self.news, self.turns):
+            with condition:
+                condition.notify_all()
         for thread in self.threads:
             thread.join()
         shutil.rmtree(self.copies, ignore_errors=True)
@@ -82,63 +104,69 @@ class Classroom:
     def wait(self, revision: int, timeout: float) -> int:
         """Wait until there is something newer than a revision, at most `timeout` [s]; returns the present one."""
         with self.news:
-            self.news.wait_for(lambda: self.stop.is_set() or self.revision != revision, timeout)
+            self.news.wait_for(lambda: self.runners.aborted.is_set() or self.revision != revision, timeout)
             return self.revision
 
-    def watch(self) -> None:
-        """Queue each folder in which a file is saved."""
-        folders = {folder.resolve(): folder for folder in self.students}
-        changes = watchfiles.watch(
-            *folders, stop_event=self.stop, recursive=False, raise_interrupt=False, step=SETTLE_TIME,
-            debounce=MAX_SETTLE_TIME, rust_timeout=LOOK_INTERVAL,
-        )  # fmt: skip
-        for found in changes:
-            for parent in {Path(path).resolve().parent for _, path in found} & folders.keys():
-                self.ask(folders[parent])
-
-    def ask(self, folder: Path) -> None:
-        """Have a folder checked; once, however often it is asked for meanwhile."""
-        with self.news:
-            if folder not in self.queued:
-                self.queued.add(folder)
-                self.waiting.put(folder)
-
     def work(self) -> None:
-        """Check folder after folder."""
-        while (folder := self.waiting.get()) is not None and not self.stop.is_set():
-            with self.news:
-                self.queued.discard(folder)
-                before = self.students[folder]
+        """Look at folder after folder; one that is checked is looked at again after that, and by no other thread."""
+        while (desk := self.next()) is not None:
             try:
-                after = checked(before, self.tasks, Path(tempfile.mkdtemp(dir=self.copies)))
-            except Exception as error:  # a full disk, no more processes: the page lives
-                traceback.print_exception(error)
-                after = before._replace(error=f"The folder could not be checked: {error}")
-            with self.news:
-                if after.number > self.students[folder].number or after.error:
-                    self.students[folder] = after
+                after = self.checked(desk)
+            except Exception as error:  # a full disk, no more processes: the page lives, and it is tried again
+                after = desk.student._replace(error=f"The folder could not be checked: {error}")
+                desk.is_open = True
+                if after.error != desk.student.error:
+                    traceback.print_exception(error)
+            if after is not desk.student and not self.runners.aborted.is_set():
+                desk.student = after
+                with self.news:
+                    self.students[after.folder] = after
                     self.revision += 1
                     self.news.notify_all()
-        self.waiting.put(None)  # for the next thread
+            with self.turns:
+                self.waiting.append((time.monotonic() + LOOK_INTERVAL, desk))
+                self.turns.notify()
+
+    def next(self) -> Desk | None:
+        """The desk that is due, once one is; None at the end."""
+        with self.turns:
+            while not self.runners.aborted.is_set():
+                due = self.waiting[0][0] - time.monotonic() if self.waiting else None
+                if due is not None and due <= 0.0:
+                    return self.waiting.pop(0)[1]
+                self.turns.wait(due)
+        return None
+
+    def checked(self, desk: Desk) -> Student:
+        """The state of a folder as it is now; the same object if nothing has changed."""
+        student = desk.student
+        if not student.folder.is_dir():
+            desk.is_open = True
+            return student if student.error == MISSING else student._replace(error=MISSING)
+        if not desk.look():
+            return student
+        saved = desk.versions.newest
+        assert saved is not None
+        with self.runners.runner(saved.folder) as runner:
+            after = checked(student, saved, self.tasks, runner)
+        desk.is_open = after.is_open
+        return after
 
 
-def checked(before: Student, tasks: Sequence[Task], copies: Path) -> Student:
-    """The state of a folder as it is now. copies: an empty folder, which is removed at the end."""
-    try:
-        texts, answers = read_files(before.folder), read_answers(before.folder)
-        saved = keep(texts, copies, before.number + 1, tasks)
-        affected = saved.affected(before.saved, tasks)
-        programs, rope = dict(before.programs), before.rope
-        with Runner(copies) as runner:
-            for task in tasks:
-                if task.check is not None and (task.file in affected or task.name not in programs):
-                    programs[task.name] = check_program(copies, runner, task)
-            if ROPE_FILE in affected:
-                rope = rope_picture(runner, saved)
-    finally:
-        shutil.rmtree(copies, ignore_errors=True)
+def checked(before: Student, saved: Saved, tasks: Sequence[Task], runner: Runner) -> Student:
+    """The state of a folder with a version of its files. runner: of the copies."""
+    answers = read_answers(before.folder)
+    affected = saved.affected(before.saved, tasks)
+    programs, rope = dict(before.programs), before.rope
+    for task in tasks:
+        verdict = programs.get(task.name)
+        is_open = verdict is None or verdict.state == "not checked"
+        if task.check is not None and (task.file in affected or is_open):
+            programs[task.name] = check_program(saved.folder, runner, task)
+    if ROPE_FILE in affected or rope.text == NOT_DRAWN:
+        rope = rope_picture(runner, saved)
     results = tuple(result_of(task, programs.get(task.name), answers) for task in tasks)
-    after = Student(before.folder, saved.number, saved, programs, results, rope, before.at, before.changed_at)
+    after = Student(before.folder, saved, programs, results, rope, before.at, before.changed_at)
     return turned(before, after)._replace(error=answers.error)
 
 
@@ -154,5 +182,16 @@ def turned(before: Student, after: Student) -> Student:
     if before.results and not new:
         return after
     begun = [result.task.name for result in after.results if result.state != "not begun"]
-    at = (new or begun or [""])[-1]
+    at = broken_at(after, new or begun) or (new or begun or [""])[-1]
     return after._replace(at=at, changed_at=time.strftime("%H:%M:%S") if new else "")
+
+
+def broken_at(student: Student, names: Sequence[str]) -> str:
+    """The task of the function in which a file was broken; "" if none of these functions is in such a file."""
+    for verdict in (student.programs.get(name) for name in names):
+        file, _, line = verdict.place.partition(":") if verdict is not None else ("", "", "")
+        if verdict is not None and verdict.file == file and line and student.saved is not None:
+            found = read_source(student.saved.texts.get(file, b"")).name_at(int(line))
+            if found in student.programs:
+                return found
+    return ""

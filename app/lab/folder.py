@@ -2,8 +2,9 @@
 
 import ast
 import inspect
+import os
 import shlex
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from app.lab.answers import FILE, Answers, Value, answers_text
@@ -21,6 +22,21 @@ def check_is_folder(folder: Path) -> None:
         raise ValueError(f"DIR: {folder}: {what}; `springtide lab new DIR` makes one with the exercises")
 
 
+def folder_names(folders: Iterable[Path]) -> dict[Path, str]:
+    """A name for each folder: the last part of its path, and as many before it as it takes to tell it from the others.
+
+    Two paths of one folder have the same name.
+    """
+    paths = {folder: Path(os.path.abspath(folder)) for folder in folders}
+    found = {}
+    for folder, path in paths.items():
+        others = set(paths.values()) - {path}
+        ends = (path.parts[-count:] for count in range(1, len(path.parts) + 1))
+        own = next((end for end in ends if not any(other.parts[-len(end) :] == end for other in others)), path.parts)
+        found[folder] = Path(*own).as_posix()
+    return found
+
+
 def make_folder(folder: Path, tasks: Sequence[Task], *, solutions: bool = False) -> list[Path]:
     """Write the exercises into a new or empty folder; returns the files. solutions: with the reference solutions.
 
@@ -28,14 +44,22 @@ def make_folder(folder: Path, tasks: Sequence[Task], *, solutions: bool = False)
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise argument_error("DIR", str(folder), "a new or empty folder")
+    return add_exercises(folder, tasks, solutions=solutions)
+
+
+def add_exercises(folder: Path, tasks: Sequence[Task], *, solutions: bool = False) -> list[Path]:
+    """Write the exercises into a folder, and leave files that are there as they are; returns the files written.
+
+    The answers come last: with them a folder is complete. Raises OSError where the folder cannot be written.
+    """
     texts = {name: file_text(name, tasks, solutions=solutions) for name in files_of(tasks)}
+    texts["README.md"] = readme_text(folder.absolute().name, tasks)
     texts[FILE] = answers_text(tasks, right_answers(tasks) if solutions else Answers("", {}))
-    texts["README.md"] = readme_text(folder.name, tasks)
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / PICTURES).mkdir()
-    for name, text in texts.items():
-        (folder / name).write_text(text, "utf-8")
-    return [folder / name for name in texts]
+    (folder / PICTURES).mkdir(parents=True, exist_ok=True)
+    missing = [folder / name for name in texts if not (folder / name).exists()]
+    for path in missing:
+        path.write_text(texts[path.name], "utf-8")
+    return missing
 
 
 def files_of(tasks: Sequence[Task]) -> list[str]:

@@ -19,7 +19,7 @@ from app.lab.cloth_march import Sheet
 from app.lab.process import ON_HUB
 from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_march import Forces, Segment
-from app.lab.runner import RunError, Runner, unexpected
+from app.lab.runner import BUSY, RunError, Runner, unexpected
 from app.lab.saved import Saved
 from app.lab.service import Service
 
@@ -169,10 +169,10 @@ class LiveNet(Service[Job | Loaded]):
     def __init__(
         self,
         material: Material,
-        tell: Callable[[Saved, RunError], None],
+        tell: Callable[[Saved, RunError | None], None],
         compile_it: Callable[[Saved], None] = lambda saved: None,
     ) -> None:
-        """tell: is told of a version that fails while it runs; on this object's thread.
+        """tell: is told of a version that fails while it runs, or that runs after all; on this object's thread.
 
         compile_it: called once with a version that has taken `COMPILE_AFTER` in plain Python.
         """
@@ -182,6 +182,7 @@ class LiveNet(Service[Job | Loaded]):
         self.method, self.sphere = "rk4", False  # of the last job: what a new version is tried with
         self.tell, self.compile_it = tell, compile_it
         self.effort = 0.0  # [s] of processor time that the newest version has taken in plain Python
+        self.is_busy = False  # the machine was too busy for the last job
         self.waited = 0.0  # [s] for which other labs of a hub kept the last march from the processor
         # The one that is preferred last: the last version before the newest, the newest, the newest compiled.
         self.versions: list[Loaded] = []
@@ -228,6 +229,12 @@ class LiveNet(Service[Job | Loaded]):
         for loaded in [item] if isinstance(item, Loaded) else self.versions[-1:]:
             self.tell(loaded.saved, error)
 
+    def close(self) -> None:
+        """End the thread without waiting for steps that are being taken."""
+        for loaded in list(self.versions):
+            loaded.runner.abort()
+        super().close()
+
     def release(self) -> None:
         """End the process of each version."""
         for loaded in self.versions:
@@ -262,13 +269,20 @@ class LiveNet(Service[Job | Loaded]):
                 step = self.material.step_of(job.method)
                 done = runner.march(own, step, job.x, job.v, job.segments, job.sheet)
             except Exception as error:
-                self.failed.add(attempt)
                 runner.close()
+                if isinstance(error, RunError) and error.kind == BUSY:  # the next job tries the same
+                    self.tell(saved, error)
+                    self.is_busy, self.waited = True, MAX_REST
+                    return unanswered(job)
+                self.failed.add(attempt)
                 if not isinstance(error, RunError):
                     self.tell(saved, unexpected(error, self.material.file))
                 elif not compiled:  # plain Python is tried next, and says where it was
                     self.tell(saved, error)
                 continue
+            if self.is_busy:
+                self.tell(saved, None)
+                self.is_busy = False
             self.waited = max(0.0, done.seconds - done.effort) if ON_HUB else 0.0
             if saved.number == self.taken and not compiled:
                 self.effort += done.effort

@@ -7,18 +7,20 @@ last version that worked goes on. The panel shows functions that move nothing at
 """
 
 import math
+import time
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.runner import RunError, Runner
+from app.lab.runner import BUSY, RunError, Runner
 from app.lab.saved import Saved
 from app.lab.service import Service
 from app.lab.tabulate import Range
 from app.lab.task import Task
 
+RETRY_INTERVAL = 0.5  # [s] until a call is made again for which the machine was too busy
 COSTLY = ("endless", "ended", "memory")  # kinds of errors that may end the process
 
 
@@ -89,6 +91,7 @@ class LiveTables(Service[Saved | Mapping[str, Call]]):
         self.runners: dict[int, Runner] = {}  # version -> its process
         self.calls: Mapping[str, Call] = {}
         self.tried: dict[str, tuple[int, Call]] = {}  # function -> version and arguments of the last attempt
+        self.is_busy = False  # the machine was too busy for a call of these
         self.wake: Callable[[], None] = lambda: None
         self.report = TableReport()
         super().__init__("student's tables")
@@ -126,6 +129,12 @@ class LiveTables(Service[Saved | Mapping[str, Call]]):
         self.tried.clear()
         self.errors = {**self.errors, "": error}
 
+    def close(self) -> None:
+        """End the thread without waiting for a call."""
+        for runner in list(self.runners.values()):
+            runner.abort()
+        super().close()
+
     def release(self) -> None:
         """End the process of each version."""
         for runner in self.runners.values():
@@ -143,7 +152,7 @@ class LiveTables(Service[Saved | Mapping[str, Call]]):
 
     def compute(self) -> None:
         """Bring the tables up to date with calls and versions."""
-        before, found = self.tables, {}
+        before, found, self.is_busy = self.tables, {}, False
         for name, call in self.calls.items():
             table = self.table_of(name, call)
             if table is not None:
@@ -156,6 +165,9 @@ class LiveTables(Service[Saved | Mapping[str, Call]]):
         self.tables = found
         if found.keys() != before.keys() or any(found[name] is not before[name] for name in found):
             self.wake()
+        if self.is_busy:
+            time.sleep(RETRY_INTERVAL)
+            self.inbox.put(self.calls)
 
     def table_of(self, name: str, call: Call) -> Table | None:
         """The table of a function by the newest version that works; None where there is none."""
@@ -175,6 +187,10 @@ class LiveTables(Service[Saved | Mapping[str, Call]]):
             except RunError as error:
                 if saved is newest:
                     self.errors = {**self.errors, name: error}
+                if error.kind == BUSY:
+                    self.is_busy = True
+                    del self.tried[name]
+                    return self.tables.get(name)
                 if error.kind in COSTLY:
                     self.failed.add((saved.number, name))
                 continue

@@ -4,23 +4,28 @@ A wrong function is compared with the typical mistakes of its task, and with tho
 sign, a factor, an argument that is not used.
 """
 
-import ast
 import copy
 import dataclasses
+import itertools
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from app.lab.checking import Wrong, number_text
-from app.lab.runner import RunError, Runner
+from app.lab.runner import BUSY, MAX_WAIT, RunError, Runner
+from app.lab.source import read_source
 from app.lab.task import Task
 from app.lab.wire import Foreign
 
+MAX_TRIES = 3  # of a check, on a machine that is too busy to start a process
+RETRY_INTERVAL = 0.5  # [s] between two of them
 SAMPLES = 12  # random inputs
 TOLERANCE = 1e-4  # of the largest value of a result: single precision is right too
-TASK_LIMIT = 10.0  # [s] for all calls of one task
+TASK_LIMIT = 10.0  # [s] of processor time for all calls of one task
+NO_SPECIAL_CASE = ": look for a division by 0 or the root of a negative number"
 SEED = 20150130
 
 
@@ -28,20 +33,31 @@ SEED = 20150130
 class Verdict:
     """Result of the check of one function.
 
-    state: "not begun", "right", "wrong" or "failed" (no result). mistake: the name of a recognised mistake, or "".
-    place: file and line of a mistake, as an editor takes it: "rope.py:17"; "" if it is unknown.
+    state: "not begun", "right", "wrong", "failed" (no result), or "not checked" (the machine is too busy). mistake: the
+    name of a recognised mistake, or "". place: file and line of a mistake, as an editor takes it: "rope.py:17"; "" if
+    it is unknown. file: the file that does not run, whatever function of it is asked for, or "".
     """
 
     state: str
     text: str = ""
     mistake: str = ""
     place: str = ""
+    file: str = ""
 
     @property
     def sentence(self) -> str:
         """The mistake in words."""
         named = f"{self.mistake}: " if self.state == "wrong" and self.mistake else ""
+        if self.file:
+            file, _, line = self.place.partition(":")
+            where = ", ".join([*([file] if file != self.file else []), *([f"line {line}"] if line else [])])
+            named = f"{self.file} does not run: {where}{': ' if where else ''}"
         return named + self.text + ("" if self.text.endswith((".", "?", "!")) else ".")
+
+    @property
+    def located(self) -> str:
+        """The mistake in words, after its place."""
+        return self.sentence if self.file or not self.place else f"{self.place}: {self.sentence}"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -61,17 +77,23 @@ class Student:
     def __init__(self, runner: Runner, task: Task) -> None:
         self.runner = runner
         self.task = task
-        self.started = time.monotonic()
+        self.started, self.effort = time.monotonic(), runner.effort
         self.like: Any = None  # a result of the reference solution
 
     def __call__(self, *arguments: Any) -> Any:
         """The result, in the form of the reference's. Raises RunError or Wrong."""
-        if time.monotonic() - self.started > TASK_LIMIT:
+        # A machine that is busy with other processes may take longer.
+        is_late = time.monotonic() - self.started > MAX_WAIT * TASK_LIMIT
+        if is_late or self.runner.effort - self.effort > TASK_LIMIT:
             raise RunError("endless", f"{self.task.name} is too slow: {TASK_LIMIT:g} s are over", self.task.file)
         value = self.runner.call(self.task.file, self.task.name, *arguments)
         if self.like is None:
             self.like = self.reference(*arguments)
-        return conform(value, self.like)
+        found = conform(value, self.like)
+        if has_nan(found) and not has_nan(self.reference(*arguments)):
+            why = special_case(self.task.arguments, arguments)
+            raise Wrong(f"it returns NaN (not a number){why or NO_SPECIAL_CASE}", "NaN")
+        return found
 
     def reference(self, *arguments: Any) -> Any:
         """The result of the reference solution; it cannot change the arguments."""
@@ -147,43 +169,55 @@ def same(found: Any, expected: Any) -> bool:
     return True
 
 
-def definition(folder: Path, task: Task) -> ast.FunctionDef | None:
-    """The function in the student's file; None if it is not there, or the file cannot be parsed."""
-    try:
-        tree = ast.parse((folder / task.file).read_bytes())
-    except (OSError, SyntaxError, ValueError, RecursionError, MemoryError):  # the last two where it nests too deeply
-        return None
-    found = (node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == task.name)
-    return next(found, None)
+def has_nan(value: Any) -> bool:
+    """True if a result has a part that is not a number."""
+    return any(np.isnan(part).any() for part in parts(value))
 
 
-def is_begun(folder: Path, task: Task) -> bool:
-    """True if the function in the student's file has a body: more than a docstring, `...` and `pass`.
-
-    True without a function too: running the file says what is wrong.
-    """
-    node = definition(folder, task)
-    return node is None or not all(is_empty(line) for line in node.body)
-
-
-def is_empty(line: ast.stmt) -> bool:
-    """True if a line is a docstring, `...` or `pass`."""
-    return isinstance(line, ast.Pass) or (isinstance(line, ast.Expr) and isinstance(line.value, ast.Constant))
+def special_case(names: Sequence[str], arguments: Sequence[Any]) -> str:
+    """The case in which a function was called, in words: arguments that are equal, or else 0; "" for any other."""
+    arrays = [(name, a) for name, a in zip(names, arguments, strict=True) if isinstance(a, np.ndarray | float | int)]
+    pairs = itertools.combinations([(name, a) for name, a in arrays if np.ndim(a)], 2)
+    found = [f"{one} = {other}" for (one, a), (other, b) in pairs if np.array_equal(a, b)]
+    found = found or [f"{name} = 0" for name, a in arrays if not np.any(a)]
+    return f" where {' and '.join(found)} (0/0)" if found else ""
 
 
 def check_program(folder: Path, runner: Runner, task: Task) -> Verdict:
     """Judge the student's function of a programming task."""
-    if (folder / task.file).is_file() and not is_begun(folder, task):
+    try:
+        source = read_source((folder / task.file).read_bytes())
+    except OSError:  # the call says what is wrong with the file
+        source = read_source(b"")
+    if not source.is_begun(task.name):
         return Verdict("not begun")
+    verdict = judged(runner, task, source.line_of(task.name))
+    for _ in range(1, MAX_TRIES):
+        if verdict.state != "not checked":
+            break
+        time.sleep(RETRY_INTERVAL)
+        verdict = judged(runner, task, source.line_of(task.name))
+    return verdict
+
+
+def not_checked(why: str) -> Verdict:
+    """The verdict on a function that could not be run by no fault of its own."""
+    return Verdict("not checked", f"could not be checked ({why})")
+
+
+def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
+    """As `check_program`, of a function that is begun, once. line: on which it begins."""
     student = Student(runner, task)
     try:
         compare(student)
         behave(student)
     except RunError as error:
-        return Verdict("failed", error.text, error.kind, place_of(error.file, error.line))
+        place = place_of(error.file, error.line)
+        if error.kind == BUSY:
+            return not_checked(error.text)
+        return Verdict("failed", error.text, error.kind, place, task.file if error.loading else "")
     except Wrong as error:
-        node = definition(folder, task)
-        return Verdict("wrong", str(error), error.mistake, place_of(task.file, node and node.lineno))
+        return Verdict("wrong", str(error), error.mistake, place_of(task.file, line))
     return Verdict("right")
 
 
@@ -231,13 +265,7 @@ def compare(student: Student) -> None:
     found = []
     for sample in samples:
         student.like = student.reference(*sample)
-        value = normalise(student(*sample))
-        for part in parts(value):
-            if np.isnan(part).any() and not any(np.isnan(p).any() for p in parts(expected[len(found)])):
-                raise Wrong(
-                    "it returns NaN (not a number): look for a division by 0 or the root of a negative number", "NaN"
-                )
-        found.append(value)
+        found.append(normalise(student(*sample)))
     if all(same(a, b) for a, b in zip(found, expected, strict=True)):
         return
     for other in getattr(task.check, "ALTERNATIVES", ()):
@@ -275,7 +303,7 @@ def name_common_mistake(student: Student, samples: list[Any], found: list[Any], 
         raise Wrong("every result has the right size and the wrong sign", "sign reversed")
     if factor := common_factor(found, expected):
         raise Wrong(f"every result is {factor:.4g} times what it must be", "constant factor")
-    unused = [name for i, name in enumerate(task.arguments) if ignores(student, samples, i)]
+    unused = [name for i, name in enumerate(task.arguments) if ignores(student, samples, found, i)]
     if unused:
         raise Wrong(f"the result does not change with {' and '.join(unused)}", f"{unused[0]} not used")
 
@@ -302,19 +330,22 @@ def scaled(value: Any, factor: float) -> Any:
     return tuple(factor * part for part in value) if isinstance(value, tuple) else factor * np.asarray(value)
 
 
-def ignores(student: Student, samples: list[Any], i: int) -> bool:
-    """True if the student's result does not depend on argument `i`, though the reference does."""
+def ignores(student: Student, samples: list[Any], found: list[Any], i: int) -> bool:
+    """True if the student's result never depends on argument `i`, though the reference does.
+
+    found: the student's results. Each pair of samples is tried, as a force may be 0 at many of them; False for a
+    function that is too slow for that.
+    """
+    normalise = getattr(student.task.check, "normalise", lambda value: value)
     changed_reference = False
-    for first, second in zip(samples[:3], samples[3:6], strict=True):
-        if np.shape(first[i]) != np.shape(second[i]):
-            continue
+    for (first, result), second in itertools.product(zip(samples, found, strict=True), samples):
         other = (*first[:i], second[i], *first[i + 1 :])
-        if same(student.reference(*first), student.reference(*other)):
+        if np.shape(first[i]) != np.shape(second[i]) or same(student.reference(*first), student.reference(*other)):
             continue
+        if time.monotonic() - student.started > TASK_LIMIT / 2.0:
+            return False
         changed_reference = True
         student.like = student.reference(*other)
-        if not same(
-            student(*other), conform(student.runner.call(student.task.file, student.task.name, *first), student.like)
-        ):
+        if not same(normalise(student(*other)), result):
             return False
     return changed_reference

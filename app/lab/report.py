@@ -5,14 +5,16 @@ import base64
 import inspect
 import re
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from app.lab.answer_check import AnswerVerdict
 from app.lab.answers import Answers, Value
 from app.lab.chart import chart
 from app.lab.check import FolderResult, TaskResult
-from app.lab.folder import MAX_PICTURES, PICTURES
-from app.lab.program_check import SAMPLES, is_empty
+from app.lab.folder import MAX_PICTURES, PICTURES, folder_names
+from app.lab.program_check import SAMPLES
+from app.lab.source import is_empty
 from app.lab.task import Task
 from app.render.formula import formula
 from app.render.html import Html, fill, join
@@ -44,9 +46,11 @@ pre { background: #f3f5f7; padding: 0.7em; overflow-x: auto; font-size: 13px; } 
 
 def page_of(results: Sequence[FolderResult]) -> str:
     """The page of one student, or of a class with an overview first."""
-    title = heading(results[0]) if len(results) == 1 else f"Lab reports of {len(results)} folders"
-    overview = class_overview(results) if len(results) > 1 else Html()
-    body = join(student_section(result, number) for number, result in enumerate(results))
+    names = folder_names(result.folder for result in results)
+    headings = [heading(result, names[result.folder]) for result in results]
+    title = headings[0] if len(results) == 1 else f"Lab reports of {len(results)} folders"
+    overview = class_overview(results, names) if len(results) > 1 else Html()
+    body = join(student_section(result, number, headings[number]) for number, result in enumerate(results))
     return fill(
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">\n'
         # Nothing is fetched and no script runs, whatever the page holds.
@@ -58,8 +62,8 @@ def page_of(results: Sequence[FolderResult]) -> str:
     )  # fmt: skip
 
 
-def class_overview(results: Sequence[FolderResult]) -> Html:
-    """One row for each student, with a link to the section."""
+def class_overview(results: Sequence[FolderResult], names: Mapping[Path, str]) -> Html:
+    """One row for each student, with a link to the section. names: of the folders."""
     rows = []
     for number, result in enumerate(results):
         (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
@@ -67,7 +71,7 @@ def class_overview(results: Sequence[FolderResult]) -> Html:
         rows.append(
             fill(
                 '<tr><td><a href="#student-{}">{}</a></td><td>{}</td><td>{} of {}</td><td>{} of {}</td></tr>',
-                number, result.folder.name, name, right, count, more, optional,
+                number, names[result.folder], name, right, count, more, optional,
             )
         )  # fmt: skip
     return fill(
@@ -76,7 +80,7 @@ def class_overview(results: Sequence[FolderResult]) -> Html:
     )
 
 
-def student_section(result: FolderResult, number: int) -> Html:
+def student_section(result: FolderResult, number: int, title: str) -> Html:
     """Everything of one student."""
     (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
     error = fill('<p class="failed">{}</p>', result.answers.error) if result.answers.error else Html()
@@ -90,15 +94,15 @@ def student_section(result: FolderResult, number: int) -> Html:
     return fill(
         '<section id="student-{0}"><h1>{1}</h1><p>Checked on {2}.</p>'
         "<p>{3} of {4} mandatory tasks are right, and {5} of {6} optional ones.</p>{7}{8}{9}{10}{11}{12}</section>",
-        number, heading(result), time.strftime("%Y-%m-%d %H:%M"), right, count, more, optional, error,
+        number, title, time.strftime("%Y-%m-%d %H:%M"), right, count, more, optional, error,
         overview(result, number), tasks, fill("<h2>More pictures</h2>{}", rest) if rest else Html(),
         fill("<h2>Code</h2>{}", written) if written else Html(), not_begun(result),
     )  # fmt: skip
 
 
-def heading(result: FolderResult) -> str:
-    """The subject and the name of the student."""
-    return f"Lab report: Springs and waves – {result.answers.name or f'folder {result.folder.name}'}"
+def heading(result: FolderResult, folder: str) -> str:
+    """The subject and the name of the student, or that of the folder."""
+    return f"Lab report: Springs and waves – {result.answers.name or f'folder {folder}'}"
 
 
 def not_begun(result: FolderResult) -> Html:
@@ -124,7 +128,7 @@ def overview(result: FolderResult, number: int) -> Html:
 
 def state_class(state: str) -> str:
     """The class of the style sheet for a state."""
-    return {"not begun": "faint", "given": "faint"}.get(state, state)
+    return {"not begun": "faint", "given": "faint", "not checked": "incomplete"}.get(state, state)
 
 
 def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Html) -> Html:
@@ -160,7 +164,7 @@ def program_text(entry: TaskResult) -> Html:
     program = entry.program
     if program is None:
         return Html()
-    text = f"{program.place}: {program.sentence}" if program.place else program.sentence
+    text = program.located
     if program.state == "not begun":
         text = ""
     if program.state == "right":

@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 
 from app.lab.check import FolderResult, TaskResult
+from app.lab.folder import folder_names
 
 FORMULA_SIGNS = ("=", "+", "-", "@", "\t", "\r")  # a spreadsheet would run a cell that begins so
 
@@ -49,13 +50,14 @@ def csv_text(results: Sequence[FolderResult]) -> str:
     """A row for each student, a column for each task."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    names = [entry.task.name for entry in results[0].tasks]
-    writer.writerow(["folder", "name", "complete", "right", "optional_right", *names])
+    tasks = [entry.task.name for entry in results[0].tasks]
+    writer.writerow(["folder", "name", "complete", "right", "optional_right", *tasks])
+    folders = folder_names(result.folder for result in results)
     for result in results:
         right, more = result.count(optional=False)[0], result.count(optional=True)[0]
         states = [entry.state for entry in result.tasks]
-        row = [cell(result.folder.name), cell(result.answers.name), "yes" if result.is_complete else "no", right, more]
-        writer.writerow([*row, *states])
+        names = cell(folders[result.folder]), cell(result.answers.name)
+        writer.writerow([*names, "yes" if result.is_complete else "no", right, more, *states])
     return out.getvalue()
 
 

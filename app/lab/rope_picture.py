@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.lab.live_net import ROPE
 from app.lab.rope_march import FILE, Forces, Functions, Segment, march
-from app.lab.runner import RunError, Runner
+from app.lab.runner import BUSY, RunError, Runner
 from app.lab.saved import Saved
 from app.render.html import Html, fill, join
 
@@ -22,6 +22,7 @@ WIDTH, HEIGHT = 132, 80  # [px]
 SCALE = 30.0  # [px/m]
 FAR = 10.0  # [m] from the origin, beyond which a rope has flown apart
 SAME = 1e-6  # [m] below which two ropes are the same
+NOT_DRAWN = "Not drawn yet: the machine is busy."
 REFERENCE_COLOUR, OWN_COLOUR = "#8a939c", "#1c6aa8"
 
 
@@ -50,8 +51,9 @@ def rope_picture(runner: Runner, saved: Saved) -> RopePicture:
     reference = reference_poses(step)
     try:
         found = runner.march(own, step, *start())
-    except RunError:
-        return RopePicture(reference=reference, text="Does not run.")
+    except RunError as error:
+        text = NOT_DRAWN if error.kind == BUSY else "Does not run."
+        return RopePicture(reference=reference, text=text)
     inside = int(np.logical_and.accumulate((np.abs(found.x) < FAR).all(axis=(1, 2))).sum())
     if inside < POSES:
         return RopePicture(found.x[:inside], reference, f"Apart within {(inside + 1) * POSE_STEPS * STEP:.1f} s.")

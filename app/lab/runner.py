@@ -2,6 +2,8 @@
 
 A call that takes more than 2 s, without the time in which other processes had the processor, is ended with its process,
 and the next call gets a new one. What went wrong is a `RunError`, which says what and where in words for the student.
+A process that cannot be started, or that ends because the one that forked it has ended, is no fault of the functions:
+the call is made again, and after some tries it fails with the kind `BUSY`.
 """
 
 import ast
@@ -27,12 +29,16 @@ from app.lab.cloth_march import Sheet
 from app.lab.process import COMPILES, FORKS, TRACE_SIGNAL
 from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_march import March, Segment, packed
+from app.lab.source import decoded
 from app.lab.tabulate import Range
 from app.lab.template import Forked, Template, can_fork
 from app.lab.wire import pack, receive, send, unpack
 
 TIME_LIMIT = 2.0  # [s] of one call
-LOAD_LIMIT = 10.0  # [s] until a new process answers its first call, which imports numpy
+LOAD_LIMIT = 10.0  # [s] until a new process is ready, which imports numpy; longer at each further try
+MAX_LOAD_LIMIT = 90.0  # [s]
+MAX_TRIES = 3  # of a call whose process is lost
+BUSY = "busy"  # kind of an error that is no fault of the student's functions
 COMPILE_LIMIT = 60.0  # [s] for compiling
 TABLE_ROWS = 512  # of a table that are computed in one call
 MAX_WAIT = 10.0  # ratio of the longest wait to the time limit, on a machine that is busy with other processes
@@ -49,19 +55,25 @@ Process: TypeAlias = subprocess.Popen[bytes] | Forked
 class RunError(Exception):
     """A student's function did not come to a result.
 
-    kind: "missing", "syntax", "raised", "endless", "ended", "memory", "printed", or of a march those of
-    `rope_march.Unfit`. file, line: in the student's folder.
+    kind: "missing", "syntax", "raised", "endless", "ended", "memory", "printed", `BUSY`, or of a march those of
+    `rope_march.Unfit`. file, line: in the student's folder. loading: the file itself does not run, so that each of its
+    functions fails.
     """
 
-    def __init__(self, kind: str, text: str, file: str, line: int | None = None) -> None:
+    def __init__(self, kind: str, text: str, file: str, line: int | None = None, *, loading: bool = False) -> None:
         super().__init__(text)
         self.kind = kind
         self.text = text
         self.file = file
         self.line = line
+        self.loading = loading
 
     def __str__(self) -> str:
         return f"{self.file}, line {self.line}: {self.text}" if self.line else f"{self.file}: {self.text}"
+
+
+class LostError(Exception):
+    """The process of a call has ended with its template."""
 
 
 class Runner:
@@ -73,8 +85,12 @@ class Runner:
         self.time_limit = time_limit
         self.compiles = compiles
         self.starts = 0  # processes started
+        self.effort = 0.0  # [s] of processor time that calls have taken; of time, where the system does not tell it
         self.is_fresh = False  # its process runs, and does not know the folder yet: another may be set
         self._parsed: set[str] = set()  # files without an error of syntax
+        self._loaded: set[str] = set()  # files that the process has run
+        self._broken: dict[str, RunError] = {}  # file -> why it does not run: it is not tried for each function
+        self._load_limit = LOAD_LIMIT
         self._process: Process | None = None
         self._aborted = False
         self._used = 0.0  # [s] of processor time that the process had taken at the start of the call
@@ -152,10 +168,31 @@ class Runner:
 
     def _ask(self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float | None = None) -> Any:
         """Answer of the process to a message. function: its name for errors. time_limit: [s], or None."""
+        if self._aborted:
+            raise RunError("ended", "the lab has ended the process", file)
         if not (self.folder / file).is_file():
             raise RunError("missing", "there is no such file", file)
+        if file in self._broken:
+            raise self._broken[file]
         self._check_syntax(file)
-        functions: list[Callable[..., Any]] = []
+        try:
+            for _ in range(MAX_TRIES):
+                functions: list[Callable[..., Any]] = []
+                with contextlib.suppress(LostError):
+                    return self._answer(kind, file, function, arguments, time_limit or self.time_limit, functions)
+                if functions:  # they may have been called, and are not to be called twice for one call
+                    break
+        except RunError as error:
+            if error.loading:
+                self._broken[file] = error
+            raise
+        raise RunError(BUSY, "the machine is busy: the process of the call was lost", file)
+
+    def _answer(
+        self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float,
+        functions: list[Callable[..., Any]],
+    ) -> Any:  # fmt: skip
+        """As `_ask`, by the present process. functions: takes those among the arguments. Raises LostError, RunError."""
 
         def refer(function: Callable[..., Any]) -> int:
             functions.append(function)
@@ -165,18 +202,23 @@ class Runner:
         if self.is_fresh:
             self._say(process, ["folder", str(self.folder)])
             self.is_fresh = False
-        time_limit = time_limit or self.time_limit
-        deadline = time.monotonic() + time_limit
+        start = time.monotonic()
         self._used = processor_time(process.pid)[1]
         self._say(process, [kind, file, function, pack(arguments, refer)])
         while True:
-            answer = self._next(deadline, time_limit, file, function)
+            answer = self._next(start + time_limit, time_limit, file, function)
             try:
                 if answer[0] == "result":
+                    used = processor_time(process.pid)[1]
+                    self.effort += used - self._used if used else time.monotonic() - start
                     return unpack(answer[1], lambda _: None)
+                if answer[0] == "loaded":
+                    self._loaded.add(file)
+                    continue
                 if answer[0] == "failed":
-                    _, kind, text, where, line = answer
-                    raise RunError(str(kind), str(text), str(where), line if isinstance(line, int) else None)
+                    _, kind, text, where, line, loading = answer
+                    line = line if isinstance(line, int) else None
+                    raise RunError(str(kind), str(text), str(where), line, loading=bool(loading))
                 reply = compute(functions, answer)
             except RunError as error:
                 if error.kind == "memory":
@@ -190,7 +232,7 @@ class Runner:
     def close(self) -> None:
         """End the process, and all that it has started."""
         process, trace = self._process, self._trace
-        self._process, self._trace, self.is_fresh = None, None, False
+        self._process, self._trace, self.is_fresh, self._loaded = None, None, False, set()
         if process is None:
             return
         if process.returncode is None:  # else its number, and its group's, may be another process's by now
@@ -217,13 +259,23 @@ class Runner:
         try:
             process = self._process = self._started(surroundings)
         except OSError as error:  # no more processes, files or memory
-            raise RunError("ended", f"no process can be started: {error.strerror or error}", "Python") from error
+            why = error.strerror or str(error) or type(error).__name__
+            raise RunError(BUSY, f"the machine is busy: no process can be started: {why}", "Python") from error
         if self._aborted:
             process.kill()
         self._used = 0.0
         self._answers = queue.SimpleQueue()
         threading.Thread(target=read_answers, args=(process, self._answers), daemon=True).start()
-        self._next(time.monotonic() + LOAD_LIMIT, LOAD_LIMIT, "Python", "the start of the process")
+        try:
+            self._next(time.monotonic() + self._load_limit, self._load_limit, "Python", "the start of a process")
+        except (LostError, RunError) as error:
+            if self._aborted:
+                raise
+            self._load_limit = min(3.0 * self._load_limit, MAX_LOAD_LIMIT)
+            raise RunError(
+                BUSY, f"the machine is busy: no process can be started: {error or 'it was lost'}", "Python"
+            ) from None
+        self._load_limit = LOAD_LIMIT
         self.is_fresh = True
         return process
 
@@ -232,9 +284,10 @@ class Runner:
         if file in self._parsed:
             return
         try:
-            ast.parse((self.folder / file).read_bytes())
+            ast.parse(decoded((self.folder / file).read_bytes()))
         except SyntaxError as error:
-            raise RunError("syntax", f"{type(error).__name__}: {error.msg}", file, error.lineno) from None
+            text = f"{type(error).__name__}: {error.msg}"
+            raise RunError("syntax", text, file, error.lineno, loading=True) from None
         except (OSError, ValueError, RecursionError, MemoryError):  # which the process meets as well
             return
         self._parsed.add(file)
@@ -287,6 +340,10 @@ class Runner:
                     raise
                 deadline = time.monotonic() + left
 
+    def _is_loading(self, file: str) -> bool:
+        """True if the process has not yet run a file to its end."""
+        return file not in self._loaded and (self.folder / file).is_file()
+
     def _say(self, process: Process, message: list[Any]) -> None:
         """Send a message; a process that has ended is noticed at the next answer."""
         assert process.stdin is not None
@@ -296,24 +353,29 @@ class Runner:
     def _next(self, deadline: float, time_limit: float, file: str, function: str) -> list[Any]:
         """The next message of the process. Raises RunError where none comes in time, or the process has ended.
 
+        Raises LostError where it has ended with its template.
+
         deadline: [s] of the monotonic clock. time_limit: [s] that led to it, which the error tells.
         """
         try:
             answer = self._wait(deadline, time_limit)
         except queue.Empty:
-            place = self._where()
+            place, loading = self._where(), self._is_loading(file)
             self.close()
-            where, line, inner = place or (file, None, function)
+            where, line, inner = place or (file, None, file if loading else function)
+            inner = where if inner == "<module>" else inner
             text = f"{inner} does not come to an end within {time_limit:g} s: is there an endless loop?"
-            raise RunError("endless", text, where, line) from None
+            raise RunError("endless", text, where, line, loading=loading) from None
         if answer is None:
-            process = self._process
+            process, loading = self._process, self._is_loading(file)
             if process is not None:
                 has_ended(process, block=True)
             self.close()
+            if isinstance(process, Forked) and process.is_orphan and not self._aborted:
+                raise LostError
             status = process.returncode if process is not None else None
             how = f"signal {-status}" if status is not None and status < 0 else f"exit status {status}"
-            raise RunError("ended", f"{function} ended its process ({how})", file)
+            raise RunError("ended", f"{file if loading else function} ended its process ({how})", file, loading=loading)
         return answer
 
 
@@ -332,6 +394,8 @@ def read_answers(process: Process, answers: "queue.SimpleQueue[list[Any] | None]
 
 def kill_group(process: Process) -> None:
     """Kill a process and all that it has started. Raises OSError where that is not possible."""
+    if isinstance(process, Forked) and process.is_orphan and process.has_ended():
+        return  # it has done so itself, and its number may be another's by now
     with contextlib.suppress(ProcessLookupError):  # just forked: it has no group yet, and has started nothing
         if os.name == "posix":
             os.killpg(process.pid, signal.SIGKILL)

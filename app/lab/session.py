@@ -1,13 +1,12 @@
-"""`springtide lab DIR` while it runs: watches the student's folder, tries saved files, and runs them.
+"""`springtide lab DIR` while it runs: looks at the student's folder, tries saved files, and runs them.
 
-A thread waits for files to be saved. Each saved version is copied, tried in a separate process, and handed to the
-rope (`live_net.py`) where it works; where it does not, the last one that worked goes on. The seas run by tables of
-functions (`live_tables.py`), in the same way. What the panel shows is one
-frozen record, `state`, which is replaced and never changed.
+A thread looks twice a second for saved files. Each saved version is copied, tried in a separate process, and handed to
+the rope (`live_net.py`) where it works; where it does not, the last one that worked goes on. The seas run by tables of
+functions (`live_tables.py`), in the same way. What the panel shows is one frozen record, `state`, which is replaced and
+never changed.
 """
 
 import contextlib
-import itertools
 import queue
 import shutil
 import tempfile
@@ -18,21 +17,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import watchfiles
-
 from app.lab.background_check import BackgroundCheck
 from app.lab.folder import check_is_folder
 from app.lab.live_code import LiveCode
 from app.lab.live_net import CLOTH, ROPE, LiveNet, Loaded
 from app.lab.live_tables import LiveTables
-from app.lab.runner import TIME_LIMIT, RunError, Runner
-from app.lab.saved import Saved, keep, read_files, stamps
+from app.lab.runner import BUSY, TIME_LIMIT, RunError, Runner
+from app.lab.saved import Saved
 from app.lab.task import Task
-
-# [ms] without a further change before a save is read: editors write a file in several steps. So often it wakes.
-SETTLE_TIME = 50
-MAX_SETTLE_TIME = 400  # [ms]
-LOOK_INTERVAL = 500  # [ms] between two looks whether to end
+from app.lab.versions import LOOK_INTERVAL, Versions
 
 
 class CodeState(NamedTuple):
@@ -59,7 +52,9 @@ class Session:
         self.folder, self.tasks, self.time_limit = folder, tasks, time_limit
         self.state = CodeState()
         self.copies = Path(tempfile.mkdtemp(prefix="springtide-lab-"))
-        self.saved: Saved | None = None  # the newest version
+        self.versions = Versions(folder, tasks, self.copies)
+        self.saved: Saved | None = None  # the newest version that was taken up
+        self.postponed: list[LiveNet] = []  # for which it could not be tried, as the machine is too busy
         self.spare: Runner | None = self.make_runner()  # with a process: starting it takes longer than a trial
         by_name = {task.name: task for task in tasks}
         self.to_compile: queue.SimpleQueue[Saved | None] = queue.SimpleQueue()
@@ -71,6 +66,7 @@ class Session:
         self.values = LiveTables(by_name, time_limit)  # of functions that move nothing, beside the program's number
         self.rope_version = 0  # number of the last version that was tried for the rope
         self.compiler: Runner | None = None  # of the version that is being compiled
+        self.trial: Runner | None = None  # in which a version is being tried
         self.stop = threading.Event()
         self.compiling = threading.Thread(target=self.compile_versions, name="student's compiler", daemon=True)
         self.compiling.start()
@@ -85,48 +81,41 @@ class Session:
         return runner
 
     def watch(self) -> None:
-        """Load the files as they are, then each time that one is saved, also where the system does not tell of it."""
-        changes = watchfiles.watch(
-            self.folder, stop_event=self.stop, recursive=False, raise_interrupt=False, step=SETTLE_TIME,
-            debounce=MAX_SETTLE_TIME, rust_timeout=LOOK_INTERVAL, yield_on_timeout=True,
-        )  # fmt: skip
-        seen = None
-        for told in itertools.chain([()], changes):
-            if self.stop.is_set():
-                return
+        """Load the files as they are, then each time that one is saved."""
+        found: Saved | None = None
+        while True:
             try:
-                now = stamps(self.folder)
-                if told or now != seen:
-                    self.load()
-                seen = now
+                found = self.versions.look() or found  # one that could not be taken up is tried again
+                if found is not None:
+                    self.load(found)
+                    found = None
+                elif self.postponed and self.saved is not None:
+                    nets, self.postponed = self.postponed, []
+                    for net in nets:
+                        self.try_version(net, self.saved, Runner(self.saved.folder, self.time_limit))
             except Exception as error:  # the thread lives: the files are taken up once that is possible
                 self.note_trouble(error)
+            if self.stop.wait(LOOK_INTERVAL):
+                return
 
-    def load(self) -> None:
-        """Take the files up as they are now, where one has changed."""
-        texts = read_files(self.folder)
-        if self.saved is not None and texts == self.saved.texts:
-            return
-        number = 1 if self.saved is None else self.saved.number + 1
-        folder = self.copies / str(number)
-        folder.mkdir(exist_ok=True)
-        saved = keep(texts, folder, number, self.tasks)
+    def load(self, saved: Saved) -> None:
+        """Take a version up."""
         affected = saved.affected(self.saved, self.tasks)
         names = [task.name for task in self.tasks if task.file in affected]
         self.check.request(saved.folder, names, saved.begun)
         self.tables.adopt(saved)
         self.values.adopt(saved)
-        self.saved = saved
+        self.saved, self.postponed = saved, []
         runner, self.spare = self.spare or self.make_runner(), None
-        runner.folder = folder.resolve()
+        runner.folder = saved.folder.resolve()
         self.state = self.state._replace(version=saved.number, saved_at=time.strftime("%H:%M:%S"), error=None)
-        if ROPE.file in texts and ROPE.file in affected:
+        if ROPE.file in saved.texts and ROPE.file in affected:
             self.rope_version = saved.number
             if self.compiler is not None:
                 self.compiler.abort()
             self.try_version(self.rope, saved, runner)
-        if CLOTH.file in texts and CLOTH.file in affected:
-            self.try_version(self.cloth, saved, runner if runner.is_fresh else Runner(folder, self.time_limit))
+        if CLOTH.file in saved.texts and CLOTH.file in affected:
+            self.try_version(self.cloth, saved, runner if runner.is_fresh else Runner(saved.folder, self.time_limit))
         self.spare = runner if runner.is_fresh else self.make_runner()
 
     def note_trouble(self, error: Exception) -> None:
@@ -141,13 +130,19 @@ class Session:
 
         A runner that is still fresh after it was not needed.
         """
+        self.trial = runner
         try:
+            if self.stop.is_set():  # who closes sees the trial, or this sees that
+                runner.abort()
             net.attempt(Loaded(saved, runner))
         except RunError as error:
             if not runner.is_fresh:
                 runner.close()
+            if error.kind == BUSY:
+                self.postponed.append(net)
             self.note_failure(saved, error)
             return
+        self.note_failure(saved, None)
         self.state = self.state._replace(begun=saved.begun, not_compiled="")
         net.adopt(Loaded(saved, Runner(saved.folder, self.time_limit) if runner.is_fresh else runner))
 
@@ -169,14 +164,20 @@ class Session:
             else:
                 runner.close()
 
-    def note_failure(self, saved: Saved, error: RunError) -> None:
-        """A version cannot run; errors of versions before the newest are out of date."""
-        if saved.number == self.state.version:
+    def note_failure(self, saved: Saved, error: RunError | None) -> None:
+        """A version cannot run, or the machine is no longer too busy for it (None).
+
+        Errors of versions before the newest are out of date.
+        """
+        is_busy = self.state.error is not None and self.state.error.kind == BUSY
+        if saved.number == self.state.version and (error is not None or is_busy):
             self.state = self.state._replace(error=error)
 
     def close(self) -> None:
         """End threads and processes, and remove the copies."""
         self.stop.set()
+        if self.trial is not None:
+            self.trial.abort()
         self.thread.join()
         self.to_compile.put(None)
         if self.compiler is not None:

@@ -2,7 +2,9 @@
 
 The template waits at a socket. A request with three files forks a process that has these as standard input, standard
 output and trace; another one reaps a process that has ended, which keeps its number until then. The template ends with
-the lab, and what it has forked notices that (`worker.end_with_parent`). Linux only: elsewhere each process is started.
+the lab, and what it has forked notices that (`worker.end_with_parent`) and ends too. A process remembers the connection
+to its template: of an earlier template's processes the present one knows nothing. Linux only: elsewhere each process is
+started.
 """
 
 import contextlib
@@ -21,18 +23,28 @@ from typing import IO
 FORK, FORK_COMPILER, REAP = range(3)  # requests
 REQUEST = struct.Struct("<Bq")  # one of them, and the number of a process to reap
 ANSWER = struct.Struct("<q")  # number of a new process, or the exit status of one that was reaped
-START_LIMIT = 10.0  # [s] until a new template answers, which imports numpy
+UNKNOWN = -(2**31)  # exit status of a process that is not the template's
+MAX_STARTS = 3  # of a template for one process
+ANSWER_LIMIT = 60.0  # [s] until a template answers: a new one imports numpy, and all its processes end with it
 FILES = 3  # of a process
 
 
 class Forked:
     """A forked process, as the lab sees it; used as `subprocess.Popen`."""
 
-    def __init__(self, template: "Template", pid: int, stdin: IO[bytes], stdout: IO[bytes]) -> None:
-        """Raises OSError where the process cannot be watched."""
-        self.template, self.pid, self.stdin, self.stdout = template, pid, stdin, stdout
+    def __init__(
+        self, template: "Template", connection: socket.socket, pid: int, watched: int, stdin: IO[bytes],
+        stdout: IO[bytes],
+    ) -> None:  # fmt: skip
+        """connection: to the template that forked it. watched: a file that is readable once it has ended."""
+        self.template, self.connection, self.pid, self.watched = template, connection, pid, watched
+        self.stdin, self.stdout = stdin, stdout
         self.returncode: int | None = None
-        self.watched = os.pidfd_open(pid)
+
+    @property
+    def is_orphan(self) -> bool:
+        """True if its template is known to have ended: it ends too, whatever it runs."""
+        return self.template.connection is not self.connection
 
     def has_ended(self, *, block: bool = False) -> bool:
         """Return whether it has ended. block: wait until it has."""
@@ -55,10 +67,8 @@ class Forked:
         """Wait until it has ended, and reap it; returns its exit status."""
         if self.returncode is None:
             self.has_ended(block=True)
-            try:
-                self.returncode = self.template.ask(REAP, self.pid)
-            except OSError:  # the template has ended, and the process with it
-                self.returncode = -signal.SIGKILL
+            status = self.template.reap(self.connection, self.pid)
+            self.returncode = -signal.SIGKILL if status is None else status
             os.close(self.watched)
         return self.returncode
 
@@ -79,12 +89,17 @@ class Template:
         theirs_in, ours_in = os.pipe()
         ours_out, theirs_out = os.pipe()
         stdin, stdout = os.fdopen(ours_in, "wb"), os.fdopen(ours_out, "rb")
-        request = FORK_COMPILER if compiles else FORK
+        request, files = FORK_COMPILER if compiles else FORK, (theirs_in, theirs_out, trace)
         try:
-            with contextlib.suppress(ConnectionError):
-                return Forked(self, self.ask(request, 0, (theirs_in, theirs_out, trace)), stdin, stdout)
-            self.start(command, environment)
-            return Forked(self, self.ask(request, 0, (theirs_in, theirs_out, trace)), stdin, stdout)
+            with self.lock:  # another thread waits, and finds the template that this one has started
+                for _ in range(MAX_STARTS):
+                    with contextlib.suppress(ConnectionError):
+                        pid = self.ask(request, 0, files)
+                        break
+                    self.start(command, environment)
+                else:
+                    pid = self.ask(request, 0, files)
+                return Forked(self, self.connected, pid, self.watch(pid), stdin, stdout)
         except OSError:
             stdin.close()
             stdout.close()
@@ -93,39 +108,70 @@ class Template:
             os.close(theirs_in)
             os.close(theirs_out)
 
+    def reap(self, connection: socket.socket, pid: int) -> int | None:
+        """Exit status of a process of the template at a connection; None if that template has ended."""
+        with self.lock, contextlib.suppress(ConnectionError, TimeoutError):
+            if connection is self.connection:
+                status = self.ask(REAP, pid)
+                return None if status == UNKNOWN else status
+        return None
+
+    @property
+    def connected(self) -> socket.socket:
+        """The connection to a template that has answered."""
+        assert self.connection is not None
+        return self.connection
+
+    def watch(self, pid: int) -> int:
+        """A file that is readable once a process has ended. Raises OSError, and ends the process, if there is none."""
+        try:
+            return os.pidfd_open(pid)
+        except OSError:
+            os.kill(pid, signal.SIGKILL)
+            self.ask(REAP, pid)
+            raise
+
     def start(self, command: Sequence[str], environment: dict[str, str]) -> None:
-        """Start a template in place of one that has ended. Raises OSError."""
-        with self.lock:
-            if self.process is not None:
-                self.process.kill()
-                self.process.wait()
-            ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-            ours.settimeout(START_LIMIT)
-            with theirs:
-                self.process = subprocess.Popen(
-                    command,
-                    stdin=theirs.fileno(),
-                    stdout=subprocess.DEVNULL,
-                    stderr=subprocess.DEVNULL,
-                    env=environment,
-                    process_group=0,  # Ctrl-C in the terminal is the lab's to handle
-                )
-            self.connection = ours
+        """Start a template in place of one that has ended; with the lock held. Raises OSError."""
+        if self.process is not None:
+            self.process.kill()
+            self.process.wait()
+        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        ours.settimeout(ANSWER_LIMIT)
+        with theirs:
+            self.process = subprocess.Popen(
+                command,
+                stdin=theirs.fileno(),
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                env=environment,
+                process_group=0,  # Ctrl-C in the terminal is the lab's to handle
+            )
+        self.connection = ours
+
+    def disconnect(self) -> None:
+        """Leave a template that has ended, or is not waited for any longer."""
+        self.connected.close()
+        self.connection = None
 
     def ask(self, request: int, pid: int, files: Sequence[int] = ()) -> int:
-        """The answer to a request. Raises ConnectionError where no template runs, another OSError of a fork."""
-        with self.lock:
-            if self.connection is None:
-                raise ConnectionError
-            try:
-                socket.send_fds(self.connection, [REQUEST.pack(request, pid)], files)
-                answer = self.connection.recv(ANSWER.size)
-            except OSError:
-                answer = b""
-            if not answer:
-                self.connection.close()
-                self.connection = None
-                raise ConnectionError
+        """The answer to a request; with the lock held.
+
+        Raises ConnectionError where no template runs, TimeoutError where it does not answer, another OSError of a fork.
+        """
+        if self.connection is None:
+            raise ConnectionError("nothing forks processes yet")
+        try:
+            socket.send_fds(self.connection, [REQUEST.pack(request, pid)], files)
+            answer = self.connection.recv(ANSWER.size)
+        except TimeoutError:
+            self.disconnect()
+            raise TimeoutError(f"the process that forks others does not answer within {ANSWER_LIMIT:g} s") from None
+        except OSError:
+            answer = b""
+        if not answer:
+            self.disconnect()
+            raise ConnectionError("the process that forks others has ended")
         found = ANSWER.unpack(answer)[0]
         if request != REAP and found <= 0:
             raise OSError(-found, os.strerror(-found))
@@ -143,11 +189,12 @@ def can_fork() -> bool:
     return True
 
 
-def fork_on_request() -> tuple[int, bool]:
-    """Serve the requests that come through standard input. Returns in each forked process: (trace, compiles).
+def fork_on_request() -> tuple[int, bool, int]:
+    """Serve the requests that come through standard input. Returns in each forked process: (trace, compiles, template).
 
-    Ends the template when the lab has ended.
+    template: the number of this process, which has ended if it is no longer the parent. Ends when the lab has ended.
     """
+    own = os.getpid()
     connection = socket.socket(fileno=os.dup(0))
     gc.collect()
     gc.freeze()  # so that a collection in a fork copies no page
@@ -157,7 +204,10 @@ def fork_on_request() -> tuple[int, bool]:
             sys.exit()
         request, pid = REQUEST.unpack(message)
         if request == REAP:
-            answer = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+            try:
+                answer = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+            except ChildProcessError:
+                answer = UNKNOWN
         else:
             try:
                 answer = os.fork()
@@ -170,7 +220,7 @@ def fork_on_request() -> tuple[int, bool]:
                 os.dup2(files[1], 1)
                 os.close(files[0])
                 os.close(files[1])
-                return files[2], request == FORK_COMPILER
+                return files[2], request == FORK_COMPILER, own
             for file in files:
                 os.close(file)
         connection.send(ANSWER.pack(answer))

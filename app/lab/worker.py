@@ -2,7 +2,8 @@
 
 It says `["ready"]` once, and gets `["folder", path]` once. It takes `["call", file, function, arguments]` and answers
 with `["result", value]`, `["callback", number, arguments]` (a function among the arguments is called: the other side
-computes it), or `["failed", kind, text, file, line]`. With `["march", file, function, arguments]` it advances a rope or
+computes it), or `["failed", kind, text, file, line, loading]` (loading: the file itself does not run). It says
+`["loaded", file]` once it has run a file. With `["march", file, function, arguments]` it advances a rope or
 a cloth by the student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it
 compiles those of a rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function
 at many arguments (`tabulate.py`). What a student prints is counted and dropped: the pipes are the lab's own.
@@ -14,6 +15,7 @@ import importlib
 import importlib.util
 import io
 import os
+import signal
 import sys
 import threading
 import time
@@ -97,20 +99,25 @@ class Worker:
             except BrokenPipeError:
                 return
             except ValueError as error:  # the result is too long to send
-                send(self.outgoing, ["failed", "raised", f"the result has {error}", file, None])
+                send(self.outgoing, ["failed", "raised", f"the result has {error}", file, None, False])
             if kind == "march" and not self.was_tried:
                 self.was_tried = True
                 lower_priority(ROPE_NICENESS)
 
     def answer(self, kind: str, file: str, function: str, arguments: Any) -> list[Any]:
         """The message with the result of a call or a march."""
+        loading = False
         try:
             if kind == "compile":
                 from app.lab.compiled import compile_functions  # numba, which takes a second to import
 
                 self.compiled, why = compile_functions(self.folder / file, *unpack(arguments, self.remote))
                 return ["result", pack([sorted(self.compiled), why], lambda _: 0)]
+            loading = file not in self.modules
             module = self.load(file)
+            if loading:
+                send(self.outgoing, ["loaded", file])
+                loading = False
             if kind == "march":
                 own, step, sheet, x, v, segments = unpack(arguments, self.remote)
                 if sheet is None:
@@ -121,27 +128,27 @@ class Worker:
                 return ["result", pack(tuple(done), lambda _: 0)]
             target = getattr(module, function, None)
             if not callable(target):
-                return ["failed", "missing", f"there is no function {function}", file, None]
+                return ["failed", "missing", f"there is no function {function}", file, None, False]
             if kind == "table":
                 columns, shape, allowed = unpack(arguments, self.remote)
                 return ["result", pack(tabulate(target, function, columns, shape, Range(*allowed)), lambda _: 0)]
             value = target(*unpack(arguments, self.remote))
             return ["result", pack(value, lambda _: 0)]
         except Unfit as error:
-            return ["failed", error.kind, error.text, file, error.line]
+            return ["failed", error.kind, error.text, file, error.line, False]
         except PrintedTooMuchError:
-            return ["failed", "printed", f"prints more than {MAX_LINES} lines at a time", *self.place(file)]
+            return ["failed", "printed", f"prints more than {MAX_LINES} lines at a time", *self.place(file), loading]
         except MemoryError:
             text = f"asks for more memory than the {MEMORY // 2**20} MiB that a call may take"
-            return ["failed", "memory", text, *self.place(file)]
+            return ["failed", "memory", text, *self.place(file), loading]
         except SystemExit:
-            return ["failed", "ended", "calls exit(), which ends the program", *self.place(file)]
+            return ["failed", "ended", "calls exit(), which ends the program", *self.place(file), loading]
         except SyntaxError as error:
             where = Path(error.filename or file).name
-            return ["failed", "syntax", f"{type(error).__name__}: {error.msg}", where, error.lineno]
+            return ["failed", "syntax", f"{type(error).__name__}: {error.msg}", where, error.lineno, loading]
         except BaseException as error:
             text = "".join(traceback.format_exception_only(error)).strip().splitlines()
-            return ["failed", "raised", text[-1] if text else type(error).__name__, *self.place(file)]
+            return ["failed", "raised", text[-1] if text else type(error).__name__, *self.place(file), loading]
 
     def place(self, file: str) -> tuple[str, int | None]:
         """File and line of the student's code where the present exception arose."""
@@ -191,11 +198,16 @@ def limit_memory() -> None:
 
 
 def end_with_parent(parent: int) -> None:
-    """End this process when the lab has ended, also in the middle of an endless loop."""
+    """End this process, and what it has started, when the lab has ended, also in the middle of an endless loop.
+
+    parent: the number of the process that started this one.
+    """
 
     def watch() -> NoReturn:
         while os.getppid() == parent:
             time.sleep(LOOK_AT_PARENT)
+        if os.name == "posix" and os.getpgid(0) == os.getpid():
+            os.killpg(0, signal.SIGKILL)
         os._exit(0)
 
     threading.Thread(target=watch, daemon=True).start()
@@ -203,8 +215,11 @@ def end_with_parent(parent: int) -> None:
 
 def main() -> None:
     """The process, or the template that it is forked from."""
-    trace, compiles = fork_on_request() if sys.argv[2] == FORKS else (int(sys.argv[2]), sys.argv[3] == COMPILES)
-    end_with_parent(os.getppid())
+    if sys.argv[2] == FORKS:
+        trace, compiles, parent = fork_on_request()
+    else:
+        trace, compiles, parent = int(sys.argv[2]), sys.argv[3] == COMPILES, os.getppid()
+    end_with_parent(parent)
     if TRACE_SIGNAL is not None:
         faulthandler.register(TRACE_SIGNAL, file=trace, all_threads=False)
     worker = Worker(was_tried=compiles)

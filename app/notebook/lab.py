@@ -98,13 +98,17 @@ class Lab:
         before, and RuntimeError where it is begun again or another scene is opened meanwhile.
         """
         check_number("seconds", seconds, 0.0, MAX_WAIT, "s")
-        viewer = self._open
-        while viewer.loop.scene.params != viewer.panel.params:
-            time.sleep(POLL_INTERVAL)  # until what was set has been compiled and taken
-            self._check_open()
         answer: Future[float] = Future()
-        served = viewer.served
-        served.commands.put(Advance(float(seconds), answer))
+        served, loop, panel = self._open.served, self._open.loop, self._open.panel
+
+        def begin() -> None:
+            """Run; on the simulation thread, which looks again in its next tick until it has what was set."""
+            if loop.scene.params == panel.params:
+                loop.handle(Advance(float(seconds), answer))
+            elif not answer.done():  # it is compiled first
+                served.commands.put(Ask(begin, Future()))
+
+        served.commands.put(Ask(begin, Future()))
         return self._result_of(answer, served)
 
     def reset(self) -> None:

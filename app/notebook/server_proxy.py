@@ -29,20 +29,23 @@ def springtide() -> dict[str, object]:
 
 
 def lab_words() -> list[str]:
-    """The words of a command line that runs the student's folder, made with the exercises at the first start.
+    """The words of a command line that runs the student's folder.
+
+    The exercises are made where it has no answers yet, whatever other files it holds.
 
     None where the environment names no folder, or one that cannot be made.
     """
     named = os.environ.get(LAB_VARIABLE)
     if not named:
         return []
-    from app.lab.folder import make_folder
+    from app.lab.answers import FILE
+    from app.lab.folder import add_exercises
     from app.lab.task import load_tasks
 
     try:
         folder = Path(named).expanduser().absolute()
-        if not folder.exists() or not any(folder.iterdir()):
-            make_folder(folder, load_tasks())
+        if not (folder / FILE).exists():
+            add_exercises(folder, load_tasks())
     except (OSError, RuntimeError) as error:  # the latter without a home folder
         print(f"springtide: {LAB_VARIABLE}: {error}", file=sys.stderr)
         return []

@@ -8,7 +8,7 @@ from app.lab.live_net import CLOTH, ROPE, StudentReport
 from app.lab.live_tables import Call, LiveTables, TableReport
 from app.lab.live_values import LiveValues
 from app.lab.program_check import Verdict
-from app.lab.runner import RunError
+from app.lab.runner import BUSY, RunError
 from app.lab.scene_values import VALUES, calls_here
 from app.lab.session import CodeState, Session
 from app.lab.task import Task
@@ -33,8 +33,14 @@ ROUNDING = 1e-9  # [m] by which a right solution may differ where nothing else e
 CHART_WIDTH, CHART_HEIGHT = 280, 110  # [pixels] of the chart of the difference
 CHART_LEFT, CHART_BOTTOM, CHART_TOP = 40, 18, 8  # [pixels] of its margins
 MAX_POINTS = 150  # of its line
-ORDER = ("failed", "wrong", "checking", "right")  # of the functions
-COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "failed": ERROR_COLOUR, "checking": WARNING_COLOUR}
+ORDER = ("failed", "wrong", "not checked", "checking", "right")  # of the functions
+COLOURS = {
+    "right": GOOD_COLOUR,
+    "wrong": ERROR_COLOUR,
+    "failed": ERROR_COLOUR,
+    "checking": WARNING_COLOUR,
+    "not checked": WARNING_COLOUR,
+}
 
 
 HINTS = {  # scene -> what to begin with
@@ -107,6 +113,16 @@ def place_of(error: RunError) -> str:
     return f"{error.file}, line {error.line}" if error.line else error.file
 
 
+def is_busy(state: CodeState) -> bool:
+    """True if the newest version could not be run, by no fault of its own."""
+    return state.error is not None and state.error.kind == BUSY
+
+
+def busy_text(state: CodeState) -> Html:
+    """The reason, and that it is tried again."""
+    return coloured(f"could not be run ({state.error.text if state.error else ''}); trying again", WARNING_COLOUR)
+
+
 def begun_of(session: Session) -> frozenset[str]:
     """Functions of the saved version that have a body."""
     return frozenset() if session.saved is None else session.saved.begun
@@ -124,6 +140,8 @@ def headline(state: CodeState, report: StudentReport, tables: TableReport, scene
 
     mistake: of a function that runs.
     """
+    if is_busy(state):
+        return fill("Your code: {}", busy_text(state))
     if state.error is not None:
         place, text = place_of(state.error), state.error.text
         return fill("Your code: {}: {}: {}", coloured("stopped", ERROR_COLOUR), place, text)
@@ -143,7 +161,7 @@ def code_lines(state: CodeState, report: StudentReport, tables: TableReport, sce
     """The saved version, its error, and the part of the scene that it moves."""
     runs = bool(report.version or tables.running)
     said: list[Html] = [saved_text(state, HINTS.get(scene, ""), runs=runs or tables.off)]
-    if state.error is not None:
+    if state.error is not None and not is_busy(state):
         place = bold(place_of(state.error))
         said.append(fill('<div class="springtide-code-error">{}: {}</div>', place, state.error.text))
         if runs:
@@ -172,6 +190,8 @@ def saved_text(state: CodeState, hint: str, *, runs: bool) -> Html:
     """The version, and the first function to write if none runs."""
     if not state.version:
         return fill("Reading your files …")
+    if is_busy(state):
+        return fill("Saved at {}: {}", state.saved_at, busy_text(state))
     if state.error is not None:
         return fill("Saved at {}: {}", state.saved_at, coloured("stopped", ERROR_COLOUR))
     if not runs and hint:
@@ -265,7 +285,7 @@ def function_lines(session: Session, scene: str) -> Html:
     for task in session.tasks:
         if not task.file:
             continue
-        verdict = Verdict("checking") if task.name in waiting else verdicts.get(task.name, Verdict("not begun"))
+        verdict = verdicts.get(task.name, Verdict("checking" if task.name in waiting else "not begun"))
         if verdict.state == "not begun":
             not_begun += 1
         else:
@@ -286,8 +306,7 @@ def compared_text(scene: str, task: str, values: LiveTables) -> Html:
 
 def function_line(task: Task, verdict: Verdict, compared: Html) -> Html:
     """One function: its name and state, its errors, and its values in the scene."""
-    place = f"{verdict.place}: " if verdict.place else ""
-    why = f"{place}{verdict.sentence}" if verdict.state in ("wrong", "failed") else ""
+    why = verdict.located if verdict.text else ""
     return fill(
         '<div class="springtide-function" data-function="{}" data-state="{}">{} {}{}{}</div>',
         task.name, verdict.state, task.name, coloured(verdict.state, COLOURS[verdict.state]),

@@ -30,6 +30,10 @@ def no_damping(x1, x2, v1, v2, k, b, d):
     return spring_force(x1, x2, v1, v2, k, 0.0, d)
 
 
+def only_pulls(x1, x2, v1, v2, k, b, d):
+    return spring_force(x1, x2, v1, v2, k if np.linalg.norm(x2 - x1) > d else 0.0, b, d)
+
+
 def not_normalised(x1, x2, v1, v2, k, b, d):
     r = x2 - x1
     return k * (np.linalg.norm(r) - d) * r - b * (v1 - v2)
@@ -67,6 +71,12 @@ MISTAKES = (
         "The damping uses v1 only, so that it also brakes a spring that moves as a whole. A spring damps the relative "
         "velocity v1 - v2.",
         lambda x1, x2, v1, v2, k, b, d: spring_force(x1, x2, v1, 0.0 * v2, k, b, d),
+    ),
+    Mistake(
+        "no force when compressed",
+        "This spring only pulls, as a rope does. A spring also pushes its ends apart where it is shorter than d: leave "
+        "out the condition on the sign of |r| - d.",
+        only_pulls,
     ),
     Mistake("damping forgotten", "There is no damping. Subtract b (v1 - v2).", no_damping),
     Mistake(

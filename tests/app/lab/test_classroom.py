@@ -1,10 +1,14 @@
 """The teacher's page: folders that are checked as files are saved, ropes, and who may read the page."""
 
+import functools
 import http.client
+import shutil
 import socket
 import struct
 import threading
+import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -13,13 +17,16 @@ import pytest
 from app.__main__ import main
 from app.commands.lab_class import make_server
 from app.lab.answers import change_answer, read_answers
+from app.lab.check import check_folder
 from app.lab.class_page import mistakes, page, rows
 from app.lab.classroom import Classroom, Student, checked
-from app.lab.folder import make_folder
-from app.lab.rope_picture import rope_picture, svg
+from app.lab.folder import folder_names, make_folder
+from app.lab.program_check import Verdict, not_checked
+from app.lab.rope_picture import RopePicture, rope_picture, svg
 from app.lab.runner import Runner
-from app.lab.saved import keep, read_files
-from app.lab.task import load_tasks
+from app.lab.runners import Runners
+from app.lab.saved import Saved, keep, read_files
+from app.lab.task import Task, load_tasks
 from tests.waiting import wait_for
 
 TASKS = tuple(task for task in load_tasks() if task.item.startswith("3.2"))
@@ -44,9 +51,11 @@ def folders(tmp_path: Path) -> list[Path]:
 
 
 def state_of(folder: Path, tmp_path: Path, before: Student | None = None) -> Student:
-    copies = tmp_path / "copies"
-    copies.mkdir(exist_ok=True)
-    return checked(before or Student(folder), TASKS, copies)
+    number = 1 if before is None or before.saved is None else before.saved.number + 1
+    copies = tmp_path / "copies" / folder.name / str(number)
+    copies.mkdir(parents=True, exist_ok=True)
+    with Runner(copies) as runner:
+        return checked(before or Student(folder), keep(read_files(folder), copies, number, TASKS), TASKS, runner)
 
 
 def save(folder: Path, sign: str, more: str = "") -> None:
@@ -109,7 +118,7 @@ def test_mistakes_are_counted_by_students_and_a_file_that_does_not_run_once(
     save(folders[1], "+")
     (folders[2] / "rope.py").write_text("def spring_force(:\n")
     change_answer(folders[1], TASKS, read_answers(folders[1]), "spring_force", "stretch", 0.5625)
-    found = mistakes([state_of(folder, tmp_path) for folder in folders])
+    found = mistakes([state_of(folder, tmp_path) for folder in folders], folder_names(folders))
     assert [(mistake.place, mistake.folders) for mistake in found] == [
         ("3.2-1 spring_force", ("ada", "bo")),
         ("3.2-1 Stretch", ("bo",)),
@@ -143,6 +152,125 @@ def test_a_class_is_followed_and_nothing_is_written(folders: list[Path], tmp_pat
         assert "sign of the damping" in rows(tuple(classroom.students.values()))
         copies = classroom.copies
     assert not copies.exists()
+
+
+def test_no_save_is_lost_whenever_it_comes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folders = [tmp_path / "class" / name for name in ("ada", "bo")]
+    for folder in folders:
+        folder.mkdir(parents=True)
+        (folder / "rope.py").write_text("version 000")
+    busy: dict[Path, str] = {}
+    rng, checks = np.random.default_rng(7), []
+
+    def check(copies: Path, runner: Runner, task: Task) -> Verdict:
+        owner = copies.parent
+        assert busy.setdefault(owner, threading.current_thread().name) == threading.current_thread().name
+        time.sleep(rng.uniform(0.0, 0.05))
+        checks.append(owner)
+        return Verdict("wrong", (copies / task.file).read_text())
+
+    def picture(runner: Runner, saved: Saved) -> RopePicture:  # it comes last
+        busy.pop(saved.folder.parent, None)
+        return RopePicture()
+
+    monkeypatch.setattr("app.lab.classroom.check_program", check)
+    monkeypatch.setattr("app.lab.classroom.rope_picture", picture)
+    monkeypatch.setattr("app.lab.classroom.LOOK_INTERVAL", 0.02)
+    own = [task for task in TASKS if task.file == "rope.py"]
+
+    def shown(folder: Path) -> set[str]:
+        return {verdict.text for verdict in classroom.students[folder].programs.values()}
+
+    with Classroom(folders, own) as classroom:
+        wait_for(lambda: all(shown(folder) == {"version 000"} for folder in folders))
+        for number in range(1, 101):
+            for folder in folders:
+                (folder / "rope.py").write_text(f"version {number:03}")
+            time.sleep(rng.uniform(0.0, 0.05))
+        wait_for(lambda: all(shown(folder) == {"version 100"} for folder in folders))
+    assert not any("could not be checked" in student.error for student in classroom.students.values())
+    assert len(set(checks)) == 2
+
+
+def test_a_folder_that_is_removed_and_made_again_is_followed(folders: list[Path]) -> None:
+    with Classroom(folders[:1], TASKS) as classroom:
+        wait_for(lambda: classroom.students[folders[0]].results)
+        shutil.rmtree(folders[0])
+        wait_for(lambda: "not there" in rows(tuple(classroom.students.values())))
+        make_folder(folders[0], TASKS)
+        wait_for(lambda: not classroom.students[folders[0]].error)
+        save(folders[0], "+")
+        wait_for(lambda: "sign of the damping" in rows(tuple(classroom.students.values())))
+
+
+def test_folders_of_one_name_are_told_apart_on_the_page(tmp_path: Path) -> None:
+    folders = [tmp_path / name / "lab" for name in ("ada", "bo")] + [tmp_path / "carl"]
+    students = []
+    for folder in folders:
+        make_folder(folder, TASKS)
+        save(folder, "+")
+        students.append(state_of(folder, tmp_path))
+    page = rows(students)
+    assert ">ada/lab<" in page
+    assert ">bo/lab<" in page
+    assert ">carl<" in page
+    assert "ada/lab, bo/lab, carl" in page
+
+
+def endless(folder: Path) -> None:
+    """Write an endless loop into every function of the rope."""
+    (folder / "rope.py").write_text((folder / "rope.py").read_text().replace("    ...\n", "    while True: pass\n"))
+
+
+def test_the_end_does_not_wait_for_endless_functions(folders: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.lab.runners.Runner", functools.partial(Runner, time_limit=600.0))
+    for folder in folders:
+        endless(folder)
+    with Classroom(folders, TASKS) as classroom:
+        wait_for(lambda: [runner for runner in classroom.runners.running if runner.starts])
+    assert not any(thread.is_alive() for thread in classroom.threads)
+    runners = Runners()
+    with ThreadPoolExecutor(1) as pool:
+        found = pool.submit(check_folder, folders[0], TASKS, runners=runners)
+        wait_for(lambda: [runner for runner in runners.running if runner.starts])
+        runners.abort()
+        assert {entry.program.mistake for entry in found.result(60.0).tasks if entry.program} == {"ended"}
+
+
+def test_a_function_that_could_not_be_checked_is_checked_again(
+    folders: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    save(folders[0], "-")
+    asked: list[str] = []
+
+    def check(copies: Path, runner: Runner, task: Task) -> Verdict:
+        asked.append(task.name)
+        return Verdict("right") if asked.count(task.name) > 1 else not_checked("the machine is busy")
+
+    monkeypatch.setattr("app.lab.classroom.check_program", check)
+    with Classroom(folders[:1], TASKS) as classroom:
+        wait_for(lambda: classroom.students[folders[0]].results)
+        wait_for(lambda: {v.state for v in classroom.students[folders[0]].programs.values()} == {"right"})
+        revision = classroom.revision
+        wait_for(lambda: classroom.revision == revision)
+    assert len(asked) == 2 * len(set(asked))
+
+
+def test_a_broken_file_is_where_its_line_is(folders: list[Path], tmp_path: Path) -> None:
+    save(folders[0], "-")
+    first = state_of(folders[0], tmp_path)
+    text = (folders[0] / "rope.py").read_text().replace("(length - rest_length)", "(length - rest_length")
+    (folders[0] / "rope.py").write_text(text)
+    second = state_of(folders[0], tmp_path, first)
+    assert second.at == "spring_force"
+    states = {name: verdict.state for name, verdict in second.programs.items()}
+    assert states.pop("spring_force") == "failed"
+    assert set(states.values()) == {"not begun"}
+    page = rows([second])
+    line = text[: text.index("(length - rest_length")].count("\n") + 1
+    assert f"rope.py does not run: line {line}: SyntaxError" in page
+    assert page.count("SyntaxError") == 1
+    assert "step_leapfrog: " not in page
 
 
 @pytest.fixture

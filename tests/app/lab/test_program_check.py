@@ -1,19 +1,24 @@
 """The checks of programming tasks: right solutions pass, wrong ones are refused and named."""
 
 import inspect
+import itertools
+import subprocess
+import sys
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+from types import SimpleNamespace
+from typing import NamedTuple, cast
 
 import numpy as np
 import pytest
 from msgspec.structs import replace
 
 from app.lab.folder import stub
-from app.lab.program_check import SAMPLES, SEED, Verdict, call, check_program, is_begun, same
-from app.lab.runner import Runner
-from app.lab.saved import is_there, keep
+from app.lab.program_check import SAMPLES, SEED, Student, Verdict, call, check_program, same, special_case
+from app.lab.runner import RunError, Runner
+from app.lab.saved import keep
+from app.lab.source import read_source
 from app.lab.task import Task, load_tasks
 from tests.app.lab.right_solutions import RIGHT
 from tests.app.lab.wrong_solutions import WRONG
@@ -131,9 +136,172 @@ def test_a_function_without_body_is_not_begun(desk: Desk, name: str) -> None:
     assert verdict_of(desk, TASKS[name], stub(TASKS[name])).state == "not begun"
 
 
-def test_a_byte_order_mark_begins_no_function(tmp_path: Path) -> None:
-    (tmp_path / TASKS["gravity"].file).write_bytes(b"\xef\xbb\xbf" + stub(TASKS["gravity"]).encode())
-    assert not is_begun(tmp_path, TASKS["gravity"])
+def test_a_byte_order_mark_begins_no_function() -> None:
+    assert not read_source(b"\xef\xbb\xbf" + stub(TASKS["gravity"]).encode()).is_begun("gravity")
+
+
+FORCE = with_body(TASKS["spring_force"], RIGHT["spring_force"])
+STUB = stub(TASKS["spring_force"])
+# Two definitions of one name -> the state of the last one, and the line on which it begins.
+TWICE = {
+    "right below the stub": (STUB + FORCE, "right", 0),
+    "stub below the right one": (FORCE + STUB, "not begun", 0),
+    "wrong below the right one": (FORCE + "\n" + with_body(TASKS["spring_force"], "return x1"), "wrong", "\ndef"),
+    "assigned below the stub": (STUB + FORCE.replace("def s", "def a_s") + "spring_force = a_spring_force", "right", 0),
+    "under a condition": (STUB + "if True:\n" + textwrap.indent(FORCE, "    "), "right", 0),
+    "of a class": (FORCE + "class Mine:\n    def spring_force(self): ...\n", "right", 0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", TWICE)
+def test_the_last_definition_of_a_name_counts(desk: Desk, case: str) -> None:
+    source, state, mark = TWICE[case]
+    verdict = verdict_of(desk, TASKS["spring_force"], source)
+    assert verdict.state == state, verdict
+    if mark:
+        line = (HEAD + source).rpartition(mark)[0].count("\n") + 2
+        assert verdict.place.endswith(f":{line}")
+
+
+def test_a_result_that_is_not_a_number_is_said_with_the_case_in_which_it_comes(desk: Desk) -> None:
+    task, words = TASKS["spring_force"], "it returns NaN (not a number) "
+    body = next(body for mistake, body in WRONG["spring_force"] if mistake == "NaN")
+    assert verdict_of(desk, task, with_body(task, body)).text == words + "where v1 = v2 (0/0)"
+    always = verdict_of(desk, task, with_body(task, "return x1 * float('nan')"))
+    assert always.text.startswith(words[:-1] + ": look for a division by 0")
+    assert special_case(("a", "b", "c"), (np.zeros(3), np.ones(3), 0.0)) == " where a = 0 and c = 0 (0/0)"
+
+
+BROKEN = """import numpy as np
+
+
+def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):
+    r = x2 - x1
+    return stiffness * (np.linalg.norm(r) - rest_length * r
+
+
+def rope_acceleration(x, v):
+    return 0 * x
+
+
+# a method
+def step_leapfrog(x, v):
+    'Not begun.'
+    ...
+"""
+
+
+def test_of_a_file_that_cannot_be_parsed_each_function_is_read_alone(tmp_path: Path) -> None:
+    source = read_source(BROKEN.encode())
+    names = ("spring_force", "rope_acceleration", "step_leapfrog", "step_rk4")
+    assert [source.is_begun(name) for name in names] == [True, True, False, False]
+    assert [source.name_at(line) for line in (4, 6, 10, 16, 1)] == [*names[:1], *names[:3], ""]
+    saved = keep({"rope.py": BROKEN.encode()}, tmp_path, 1, TASKS.values())
+    assert saved.begun == {"spring_force", "rope_acceleration"}
+    # With nothing else to blame, every function shows that the file does not run.
+    assert read_source(b"import numpy as\n").is_begun("spring_force")
+    assert read_source((STUB + "x = (\n").encode()).is_begun("spring_force")
+
+
+@pytest.mark.parametrize("name", ["spring_force", "step_euler"])
+def test_a_file_that_does_not_run_is_one_error_for_all_its_functions(tmp_path: Path, name: str) -> None:
+    for code, words in {
+        BROKEN: "rope.py does not run: line 6: SyntaxError: '(' was never closed.",
+        HEAD + "x = 1 / 0\n": "rope.py does not run: line 3: ZeroDivisionError: division by zero.",
+        HEAD + "import own\n": "rope.py does not run: own.py, line 1: ModuleNotFoundError: No module named 'nothing'.",
+    }.items():
+        (tmp_path / "rope.py").write_text(code)
+        (tmp_path / "own.py").write_text("import nothing\n")
+        with Runner(tmp_path) as runner:
+            verdict = check_program(tmp_path, runner, TASKS[name])
+        begun = code is not BROKEN or name == "spring_force"
+        assert (verdict.state, verdict.sentence if begun else words) == ("failed" if begun else "not begun", words)
+
+
+def test_an_endless_file_is_run_once_for_all_its_functions(tmp_path: Path) -> None:
+    own = [task for task in TASKS.values() if task.file == "rope.py"]
+    (tmp_path / "rope.py").write_text(HEAD + FORCE + "while True: pass\n")
+    with Runner(tmp_path, time_limit=0.3) as runner:
+        verdicts = [check_program(tmp_path, runner, task) for task in own]
+        assert runner.starts == 1
+    line = (HEAD + FORCE).count("\n") + 1
+    said = f"rope.py does not run: line {line}: rope.py does not come to an end within 0.3 s: is there an endless loop?"
+    assert {verdict.sentence for verdict in verdicts} == {said}
+
+
+# Bytes of a file -> what Python says of it, or "" where it runs.
+ENCODINGS = {
+    b"# gr\xf6\xdfe\n": r"line 1: SyntaxError: Non-UTF-8 code starting with '\xf6', but no encoding declared",
+    b"\n\n\n# gr\xf6\xdfe\n": r"line 4: SyntaxError: Non-UTF-8 code starting with '\xf6', but no encoding declared",
+    b"# coding: latin-1\n# gr\xf6\xdfe\n": "",
+    b"\xef\xbb\xbf# gr\xc3\xb6\xc3\x9fe\n": "",
+    b"# coding: nothing\n": "line 1: SyntaxError: unknown encoding: nothing",
+}
+
+
+@pytest.mark.parametrize("head", ENCODINGS)
+def test_an_encoding_that_python_refuses_is_refused(tmp_path: Path, head: bytes) -> None:
+    (tmp_path / "rope.py").write_bytes(head + (HEAD + FORCE).encode())
+    python = subprocess.run([sys.executable, tmp_path / "rope.py"], capture_output=True, text=True, check=False)
+    with Runner(tmp_path) as runner:
+        verdict = check_program(tmp_path, runner, TASKS["spring_force"])
+    assert (python.returncode == 0) == (verdict.state == "right") == (ENCODINGS[head] == "")
+    assert ENCODINGS[head] in verdict.sentence
+    assert ("SyntaxError" in python.stderr) == bool(ENCODINGS[head])
+
+
+def test_a_task_may_take_as_long_as_others_keep_the_processor(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = [0.0]
+    runner = SimpleNamespace(effort=3.0, call=lambda file, name, *arguments: 1.0)
+    monkeypatch.setattr("app.lab.program_check.time.monotonic", lambda: clock[0])
+    student = Student(cast(Runner, runner), TASKS["gravity"])
+    clock[0] = 50.0
+    assert student(1.0) == 1.0
+    runner.effort = 13.1
+    with pytest.raises(RunError, match="gravity is too slow: 10 s are over"):
+        student(1.0)
+    runner.effort, clock[0] = 3.0, 101.0
+    with pytest.raises(RunError, match="too slow"):
+        student(1.0)
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="elsewhere nothing tells how long a process ran")
+def test_the_effort_of_a_function_is_its_processor_time(tmp_path: Path) -> None:
+    works = "end = time.process_time() + 0.2\n    while time.process_time() < end: pass"
+    (tmp_path / "mine.py").write_text(
+        f"import time\ndef f(x):\n    {works}\n    return x\ndef g(x):\n    time.sleep(0.3)\n    return x\n"
+    )
+    with Runner(tmp_path, time_limit=20.0) as runner:
+        runner.call("mine.py", "f", 1.0)
+        assert 0.15 < runner.effort < 0.35
+        before = runner.effort
+        runner.call("mine.py", "g", 1.0)
+        assert runner.effort - before < 0.15
+
+
+def test_a_busy_machine_is_no_failure_and_the_check_is_made_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    refusals = iter([OSError(11, "Resource temporarily unavailable"), ConnectionError(), MemoryError])
+    started = Runner._started
+
+    def start(self: Runner, surroundings: dict[str, str]) -> object:
+        refusal = next(refusals, None)
+        if isinstance(refusal, OSError):
+            raise refusal
+        return started(self, surroundings)
+
+    monkeypatch.setattr("app.lab.program_check.RETRY_INTERVAL", 0.0)
+    monkeypatch.setattr(Runner, "_started", start)
+    (tmp_path / "rope.py").write_text(HEAD + FORCE)
+    with Runner(tmp_path) as runner:
+        assert check_program(tmp_path, runner, TASKS["spring_force"]).state == "right"
+        assert runner.starts == 3
+    refusals = itertools.repeat(ConnectionError())
+    with Runner(tmp_path) as runner:
+        verdict = check_program(tmp_path, runner, TASKS["spring_force"])
+    assert verdict.state == "not checked"
+    assert verdict.text == ("could not be checked (the machine is busy: no process can be started: ConnectionError)")
 
 
 @pytest.mark.parametrize("deep", ["-" * 100_000 + "1", "a" + ".a" * 100_000])
@@ -141,7 +309,7 @@ def test_a_file_that_nests_too_deeply_has_failed(desk: Desk, deep: str) -> None:
     task = TASKS["gravity"]
     source = f"def gravity(mass):\n    return {deep}\n"
     assert verdict_of(desk, task, source).state == "failed"
-    assert is_there(task, {task.file: source.encode()})
+    assert read_source(source.encode()).has("gravity")
 
 
 def test_a_change_affects_its_file_and_one_that_no_task_names_all_files(tmp_path: Path) -> None:

@@ -1,11 +1,14 @@
 """Functions of students in a process of their own: what can go wrong in one is named, and the next call works."""
 
+import contextlib
 import os
 import signal
+import socket
 import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +16,9 @@ import numpy as np
 import pytest
 
 from app.lab import runner
+from app.lab.process import FORKS
 from app.lab.runner import RunError, Runner, has_ended
+from app.lab.template import Template
 from tests.waiting import wait_for
 
 ROOT = Path(__file__).parents[3]
@@ -330,6 +335,119 @@ def test_processes_are_forked_from_one_that_is_started_again_where_it_has_ended(
         for one_more in (first, second):
             assert one_more.call("mine.py", "right", 3.0) == 6.0
             assert one_more.call("mine.py", "f", 1.0)[1] == runner.TEMPLATE.process.pid != parent
+
+
+def children(parent: int, word: str = "") -> list[int]:
+    """The processes of a parent, also those that are to be reaped; or those that run by a command with a word."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            state, its_parent = (path / "stat").read_text().rpartition(")")[2].split()[:2]
+            words = (path / "cmdline").read_text().split("\0")
+            if int(its_parent) == parent and (not word or (state != "Z" and word in words)):
+                found.append(int(path.name))
+    return found
+
+
+@pytest.mark.skipif(runner.TEMPLATE is None, reason="processes are forked on Linux only")
+@pytest.mark.parametrize("kills", [3, pytest.param(20, marks=pytest.mark.stress)])
+def test_a_template_that_is_killed_blames_no_function(tmp_path: Path, kills: int, monkeypatch) -> None:
+    before_test = runner.TEMPLATE.process
+    monkeypatch.setattr(runner, "TEMPLATE", Template())
+    write(tmp_path, "__import__('time').sleep(0.02)\n    return x")
+    rng = np.random.default_rng(1)
+    calls, errors, stop = [0] * 4, [], threading.Event()
+
+    def call(number: int) -> None:
+        with Runner(tmp_path) as each:
+            while not stop.is_set():
+                try:
+                    assert each.call("mine.py", "f", 2.0) == 2.0
+                    calls[number] += 1
+                except RunError as error:
+                    errors.append(str(error))
+
+    threads = [threading.Thread(target=call, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    try:
+        for _ in range(kills):
+            before = list(calls)
+            wait_for(lambda before=before: all(now > then for now, then in zip(calls, before, strict=True)))
+            time.sleep(rng.uniform(0.0, 1.0))
+            os.kill(runner.TEMPLATE.process.pid, signal.SIGKILL)
+        wait_for(lambda: len(children(runner.TEMPLATE.process.pid)) == 4)  # those of earlier ones have ended
+        before = list(calls)
+        wait_for(lambda: all(now > then for now, then in zip(calls, before, strict=True)))
+        mine = {process.pid for process in (before_test, runner.TEMPLATE.process) if process is not None}
+        assert set(children(os.getpid(), FORKS)) <= mine
+    finally:
+        stop.set()
+        for thread in threads:
+            thread.join()
+        runner.TEMPLATE.process.kill()
+        runner.TEMPLATE.process.wait()
+    assert errors == []
+
+
+@pytest.mark.skipif(runner.TEMPLATE is None, reason="processes are forked on Linux only")
+def test_threads_that_find_no_template_start_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write(tmp_path, "return x")
+    template, starts = Template(), []
+    start = template.start
+
+    def slow_start(*arguments: Any) -> None:
+        starts.append(arguments)
+        time.sleep(0.2)  # the other thread gets there, too
+        start(*arguments)
+
+    monkeypatch.setattr(template, "start", slow_start)
+    monkeypatch.setattr(runner, "TEMPLATE", template)
+    with Runner(tmp_path) as first, Runner(tmp_path) as second, ThreadPoolExecutor(2) as pool:
+        assert list(pool.map(lambda each: each.call("mine.py", "f", 1.0), (first, second))) == [1.0, 1.0]
+    assert len(starts) == 1
+    template.process.kill()
+    template.process.wait()
+
+
+@pytest.mark.skipif(runner.TEMPLATE is None, reason="processes are forked on Linux only")
+def test_a_template_lives_whatever_it_is_asked_to_reap(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write(tmp_path, "return x")
+    template = Template()
+    monkeypatch.setattr(runner, "TEMPLATE", template)
+    with Runner(tmp_path) as one:
+        one.call("mine.py", "f", 1.0)
+        assert template.reap(template.connected, os.getpid()) is None  # no child of it
+        assert template.reap(socket.socket(), one._process.pid) is None  # of another template
+        assert one.call("mine.py", "f", 2.0) == 2.0
+        assert one.starts == 1
+        assert template.process.poll() is None
+    with monkeypatch.context() as patch, Runner(tmp_path) as one:
+        patch.setattr(os, "pidfd_open", lambda _: (_ for _ in ()).throw(OSError(24, "Too many open files")))
+        with pytest.raises(RunError, match="no process can be started: Too many open files") as caught:
+            one.call("mine.py", "f", 1.0)
+    assert caught.value.kind == runner.BUSY
+    wait_for(lambda: children(template.process.pid) == [])
+    template.process.kill()
+    template.process.wait()
+
+
+def test_a_process_that_is_slow_to_start_gets_more_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write(tmp_path, "return x")
+    monkeypatch.setattr("app.lab.runner.LOAD_LIMIT", 1e-6)
+    monkeypatch.setattr("app.lab.runner.MAX_LOAD_LIMIT", 20.0)
+    limits = []
+    with Runner(tmp_path) as one:
+        with monkeypatch.context() as patch:
+            patch.setattr("app.lab.runner.read_answers", lambda *_: None)  # never ready
+            for _ in range(3):
+                limits.append(one._load_limit)
+                with pytest.raises(RunError, match=r"the machine is busy: no process can be started: .*within"):
+                    one.call("mine.py", "f", 1.0)
+        assert limits == pytest.approx([1e-6, 3e-6, 9e-6])
+        one._load_limit = 20.0
+        assert one.call("mine.py", "f", 1.0) == 1.0
+        assert one._load_limit == 1e-6
 
 
 @pytest.mark.skipif(runner.TEMPLATE is None, reason="processes are forked on Linux only")

@@ -3,8 +3,10 @@
 import contextlib
 import dataclasses
 import inspect
+import shutil
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +16,13 @@ from app.lab.background_check import BackgroundCheck
 from app.lab.folder import make_folder
 from app.lab.live_net import StudentReport
 from app.lab.live_tables import TableReport
-from app.lab.program_check import Verdict
+from app.lab.program_check import Verdict, not_checked
 from app.lab.rope_march import REFERENCE
 from app.lab.runner import RunError, Runner
-from app.lab.saved import read_files, stamps
+from app.lab.saved import read_files
 from app.lab.session import CodeState, Session
 from app.lab.task import load_tasks
+from app.lab.versions import stamps
 from app.messages import Grab, Place, StudentAnswer
 from app.panel.code_panel import code_lines, function_lines, headline
 from app.scenes.rope.parameters import Params
@@ -234,10 +237,31 @@ def test_where_no_process_can_be_started_that_is_said_and_tried_again(right: Ses
         wait_for(lambda: right.state.error)
         assert right.state.error is not None
         assert "no process can be started: Resource temporarily unavailable" in str(right.state.error)
-    save(right, RIGHT + "\n# once more\n")
-    wait_for(lambda: right.rope.taken == right.state.version)
+        text = code_lines(right.state, right.rope.report, TableReport(), "rope")
+        assert "could not be run (the machine is busy: no process" in text
+        assert "trying again" in headline(right.state, right.rope.report, TableReport(), "rope")
+        assert "stopped" not in text
+        saved = right.state.version
+        assert right.spare is not None
+        right.spare.close()
+        (right.folder / "rope.py").write_text(RIGHT + "\n# once more\n")
+        wait_for(lambda: right.state.version > saved and right.state.error and right.postponed)
+    wait_for(lambda: right.rope.taken == right.state.version and right.state.error is None)  # nothing is saved
     run(scene, 3)
     assert right.rope.report.version == right.state.version
+
+
+def test_a_check_that_a_busy_machine_does_not_allow_is_made_again(
+    right: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = iter([not_checked("the machine is busy"), Verdict("right")])
+    monkeypatch.setattr("app.lab.background_check.RETRY_INTERVAL", 0.3)
+    monkeypatch.setattr(right.check, "ask", lambda folder, name: next(answers))
+    right.check.request(right.folder, ["spring_force"], frozenset({"spring_force"}))
+    wait_for(lambda: right.check.verdicts.get("spring_force") not in (None, Verdict("right")))
+    assert "could not be checked (the machine is busy); trying again." in function_lines(right, "rope")
+    wait_for(lambda: right.check.verdicts.get("spring_force") == Verdict("right"))
+    assert not right.check.waiting
 
 
 def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None:
@@ -256,8 +280,9 @@ def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None
 
 def test_files_that_stay_as_they_are_are_not_read_again(right: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     looks, reads = [], []
-    monkeypatch.setattr("app.lab.session.stamps", lambda folder: looks.append(1) or stamps(folder))
-    monkeypatch.setattr("app.lab.session.read_files", lambda folder: reads.append(1) or read_files(folder))
+    wait_for(lambda: time.monotonic() > right.versions.files.sure_at)
+    monkeypatch.setattr("app.lab.versions.stamps", lambda *of: looks.append(1) or stamps(*of))
+    monkeypatch.setattr("app.lab.versions.read_files", lambda folder: reads.append(1) or read_files(folder))
     wait_for(lambda: len(looks) >= 2)
     assert not reads
     version = right.state.version
@@ -266,12 +291,34 @@ def test_files_that_stay_as_they_are_are_not_read_again(right: Session, monkeypa
     assert reads
 
 
+def test_a_folder_that_is_removed_and_made_again_is_followed(right: Session) -> None:
+    files = {path.name: path.read_text() for path in right.folder.glob("*.*")}
+    version = right.state.version
+    shutil.rmtree(right.folder)
+    time.sleep(0.01)
+    right.folder.mkdir()
+    for name, text in files.items():
+        (right.folder / name).write_text(text)
+    save(right, RIGHT + "# in the new folder\n")
+    assert right.state.version > version
+    wait_for(lambda: right.rope.taken == right.state.version)
+
+
 def test_a_forged_answer_is_named(right: Session) -> None:
     found = right.rope.versions[-1].runner
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(found, "_ask", lambda *_: (1, 2, 3))
         with pytest.raises(RunError, match="pipe of the lab"):
             right.rope.attempt(right.rope.versions[-1])
+
+
+def test_the_end_does_not_wait_for_an_endless_function(tmp_path: Path) -> None:
+    (tmp_path / "rope.py").write_text(with_line("while True: pass"))
+    session = Session(tmp_path, TASKS, time_limit=600.0)
+    wait_for(lambda: session.trial is not None and session.trial.starts)
+    with ThreadPoolExecutor(1) as pool:
+        pool.submit(session.close).result(60.0)
+    assert not session.thread.is_alive()
 
 
 def test_what_is_no_folder_is_refused(tmp_path: Path) -> None:
@@ -317,7 +364,7 @@ def test_a_check_that_is_killed_is_made_once_more_and_then_said(tmp_path: Path) 
         assert check.process is not None
         check.process.kill()
         wait_for(lambda: not check.waiting)
-        assert check.verdicts["spring_force"].state == "failed"
+        assert check.verdicts["spring_force"].state == "not checked"
     finally:
         check.close()
 

@@ -58,6 +58,15 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             r = x2 - x1
             return stiffness * (np.linalg.norm(r) - rest_length) * r / np.linalg.norm(r) - damping * (v2 - v1)"""),
         ("rest length forgotten", "return stiffness * (x2 - x1) - damping * (v1 - v2)"),
+        ("no force when compressed", """
+            r = x2 - x1
+            stretch = max(np.linalg.norm(r) - rest_length, 0)
+            return stiffness * stretch * r / np.linalg.norm(r) - damping * (v1 - v2)"""),
+        ("NaN", """
+            r, dv = x2 - x1, v1 - v2
+            speed = np.linalg.norm(dv)
+            n = r / np.linalg.norm(r)
+            return stiffness * (np.linalg.norm(r) - rest_length) * n - damping * speed * dv / speed"""),
         ("damping on absolute velocity", """
             r = x2 - x1
             l = np.linalg.norm(r)

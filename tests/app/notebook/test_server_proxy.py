@@ -40,6 +40,22 @@ def test_the_students_folder_is_made_once_and_run(
     assert capsys.readouterr().err.startswith("springtide: SPRINGTIDE_LAB: ")
 
 
+def test_exercises_are_made_beside_other_files_and_change_none(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "untitled.txt").write_text("")
+    (tmp_path / ".data").mkdir()
+    (tmp_path / "rope.py").write_text("mine")
+    monkeypatch.setenv(LAB_VARIABLE, str(tmp_path))
+    springtide()
+    assert (tmp_path / "rope.py").read_text() == "mine"
+    for name in ("answers.toml", "README.md", "cloth.py", "pictures"):
+        assert (tmp_path / name).exists(), name
+    (tmp_path / "cloth.py").unlink()  # the folder has its answers: what is missing there was removed
+    springtide()
+    assert not (tmp_path / "cloth.py").exists()
+
+
 def test_the_entry_point_is_declared_and_is_taken_by_the_proxy() -> None:
     entries = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]
     assert entries == {"jupyter_serverproxy_servers": {"springtide": "app.notebook.server_proxy:springtide"}}

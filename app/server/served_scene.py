@@ -58,11 +58,8 @@ class ServedScene:
             questions=viewer.questions,
             beside=None if viewer.pane_of else Beside(viewer.comparing.want, viewer.comparing.end, viewer.pane_words),
         )  # fmt: skip
-        self.gate = gate = CompileGate(viewer.compiling, kind, self.panel.read())
-        read = self.panel.read
-        self.loop = SimLoop(
-            self.scene, self.commands, lambda: gate.read(read()), viewer.audience, admit=gate.admit, paused=paused
-        )
+        self.gate = CompileGate(viewer.compiling, kind, params)
+        self.loop = SimLoop(self.scene, self.commands, viewer.audience, admit=self.gate.admit, paused=paused)
 
     def start(self) -> None:
         """Run the threads."""

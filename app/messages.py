@@ -201,6 +201,7 @@ class Line(NamedTuple):
     dash: tuple[float, ...] = ()
     fill: str = ""  # CSS colour of the area below
     dots: bool = False  # a dot at each value instead of a line, in files
+    cross: bool = False  # a cross with the label at the top edge, at each finite value, instead of a line
 
 
 class Snapshot(NamedTuple, Generic[P, F, R]):

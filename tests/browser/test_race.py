@@ -109,7 +109,7 @@ def test_labels_are_dark_in_dark_mode_and_light_again(
 DRAWN = """() => { const chart = Object.values(window.__viserTestpoints?.uplots ?? {}).map((one) => one.chart)
     .find((one) => one.root.querySelector(".u-title")?.textContent === "Distance from the reference");
   if (!chart) return null;
-  // The points of each line, in the order of the series: uPlot keeps none, so they are noted as it makes the path again.
+  // The points of each line, in the order of the series: uPlot keeps none, so they are noted as it makes paths again.
   const spied = chart.series.map((series, k) => {
     if (k === 0) return [];
     const points = [], put = Path2D.prototype.lineTo;

@@ -96,7 +96,7 @@ class Panel:
         self.display = Display(gui, view)
         self.own = own_presets(kind)  # name in the list -> set-up of the user
         # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
-        self.loaded = min(kind.presets, key=lambda name: len(changed_names(self.params_of(name), params)))
+        self.loaded = self.nearest_preset(params)
         first_views = self.open_first_view_of, self.place_first_view
         actions = Actions(post, self.load, *first_views, self.toggle_plots, self.undo, self.follow)
         self.head = Head(gui, kind, view, scenes, actions)
@@ -205,6 +205,10 @@ class Panel:
         own = self.own.get(preset)
         params = own.params if own else check_record(type(self.params), self.kind.presets[preset])
         return with_fields_of(self.params, params)
+
+    def nearest_preset(self, params: BaseParams) -> str:
+        """Name of the preset that parameters differ from the least."""
+        return min(self.kind.presets, key=lambda name: len(changed_names(self.params_of(name), params)))
 
     def comparable_names(self) -> tuple[str, ...]:
         """Names of set-ups for a comparison: presets, and the user's own set-ups."""

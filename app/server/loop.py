@@ -23,6 +23,7 @@ from app.messages import (
     Pause,
     Place,
     Play,
+    Point,
     Release,
     Reset,
     StepOnce,
@@ -234,8 +235,12 @@ class SimLoop(Run):
         return bool(waiting) or unfinished is not None
 
     def handle(self, command: Command) -> None:
-        """Carry out one command."""
+        """Carry out one command. A scene that could not begin takes other values, and has nothing to run."""
         match command:
+            case Play() | StepOnce() | TogglePlay() | Place() | Grab() | Release() | Point() | StudentAnswer() if (
+                self.unmade
+            ):
+                pass
             case Play():
                 self.running, self.halted = True, ""
                 if self.replay is not None and self.replay.ended:

@@ -64,7 +64,7 @@ class Run(Snapshots):
         if self.replay is not None:
             self.halt(self.replay.reason)
             self.replay = None
-        if effect == "forces":
+        if effect == "forces" and not self.unmade:
             self.taking = True
             self.guarded(lambda: self.scene.change_forces(params), else_anew=True)
             self.scene.params, self.taking = params, False  # also where the scene failed, so that a reset has them
@@ -138,7 +138,8 @@ class Run(Snapshots):
     def guarded(self, action: Callable[[], None], *, again: bool = False, else_anew: bool = False) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
 
-        again: to be done once more where it is ended early. else_anew: where it is ended early the scene begins anew.
+        again: a beginning, to be done once more where it is ended early; where it fails there is no scene to run.
+        else_anew: where it is ended early the scene begins anew.
         """
         self.may_end, self.may_begin = self.solving, again or else_anew
         try:
@@ -148,13 +149,14 @@ class Run(Snapshots):
             if again or else_anew or self.request[STOP] == ABANDON:
                 self.unfinished = action if again else self.scene.reset
         except DivergenceError as error:
+            self.unmade = again
             if error.moments and self.running:
                 self.replay = Replay(error.moments, str(error))
             else:
                 self.halt(str(error))
         except Exception as error:
-            traceback.print_exc()
-            self.halt(f"The scene stopped with {type(error).__name__}: {error}")
+            self.unmade = again
+            self.halt(failure_words(error, begins=again))
         finally:
             self.may_end = self.may_begin = False
 
@@ -203,7 +205,7 @@ class Run(Snapshots):
 
     def begin(self, reset: Callable[[], None]) -> None:
         """Begin the scene again; if that is cancelled, the next tick does it."""
-        self.unfinished = None
+        self.unfinished, self.unmade = None, False
         self.guarded(reset, again=True)
 
     def begin_with(self, params: BaseParams) -> None:
@@ -218,8 +220,17 @@ class Run(Snapshots):
         self.give_up(BEGUN)
         self.scene.params, self.cost_unknown = params, True
         self.halted, self.replay, self.unfinished, self.pacer.debt = "", None, None, 0.0
+        self.unmade = False
         self.history.clear()
         self.guarded(lambda: self.scene.resume(state.value))
         if self.seat is not None:
             self.seat.go_on_from(self.scene.time)
         self.running = not self.halted
+
+
+def failure_words(error: Exception, *, begins: bool) -> str:
+    """Why a scene stopped, for the panel. Prints the traceback, unless a scene cannot begin with a user's values."""
+    if begins and isinstance(error, ValueError):
+        return f"The scene cannot begin with these values. {error}"
+    traceback.print_exception(error)
+    return f"The scene stopped with {type(error).__name__}: {error}"

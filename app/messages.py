@@ -102,12 +102,20 @@ class KeptState(NamedTuple):
     arrays: Mapping[int, int]  # identity -> bytes of each array in it; some are shared with the states before
 
 
-class Load(NamedTuple):
-    """Take a whole record of parameters, as a preset has it, and start from it: one command, one step of the loop."""
+class Take(NamedTuple):
+    """Take a whole record of parameters; of several the latest counts.
+
+    The scene goes on as the effect of the change asks for.
+    """
 
     params: BaseParams  # the scene's `Params`
-    number: int  # of the preset, counted from 1: parameters polled with another number belong before or after it
-    state: KeptState | None = None  # to go on from, of a scene that had these parameters; None: begin again
+    start: bool = False  # begin again and run, whatever has changed, as for a preset
+    state: KeptState | None = None  # go on from here and run; of a scene that had these parameters
+
+    @property
+    def changes_only(self) -> bool:
+        """True if the run goes on from where it is, unless a parameter that has changed affects the start."""
+        return not self.start and self.state is None
 
 
 class Place(NamedTuple):
@@ -161,7 +169,7 @@ class Advance(NamedTuple):
 
 
 SceneCommand = Place | Grab | Release | Point | StudentAnswer  # what a scene handles; the rest is the loop's
-Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Load | Ask | Advance | SceneCommand
+Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Take | Ask | Advance | SceneCommand
 
 
 PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SERIES); a NaN time clears the plots
@@ -193,6 +201,7 @@ class Line(NamedTuple):
     dash: tuple[float, ...] = ()
     fill: str = ""  # CSS colour of the area below
     dots: bool = False  # a dot at each value instead of a line, in files
+    cross: bool = False  # a cross with the label at the top edge, at each finite value, instead of a line
 
 
 class Snapshot(NamedTuple, Generic[P, F, R]):

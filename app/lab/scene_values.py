@@ -69,16 +69,16 @@ VALUES: Mapping[tuple[str, str], SceneValue] = {  # scene and task -> the value
     ("radial_sea", "draft"): SceneValue(
         "the box in these fluids", "m",
         lambda n: (n("box_density"), n("box_height"), n("oil_density"), n("thickness"), n("water_density")),
-        lambda n: n("box_draft"), needs=("spill", "layer"),
+        lambda n: n("box_draft_at_rest"), needs=("spill", "layer"),
     ),
     ("radial_sea", "mixture_viscosity"): SceneValue(
         "this mixture", "Pa·s",
-        lambda n: (1e-3 * n("oil_viscosity"), 1e-3 * n("water_viscosity"), n("fraction")),
-        lambda n: 1e-3 * n("solution_viscosity"), needs=("spill", "mixed"),
+        lambda n: (n("oil_viscosity"), n("water_viscosity"), n("fraction")),
+        lambda n: n("solution_viscosity"), needs=("spill", "mixed"),
     ),
     ("radial_sea", "wave_decay"): SceneValue(
         f"1 m high, 1 m long, after {DECAY_TIME:g} s (the program takes the exact root)", "m",
-        lambda n: (1.0, WAVE, 1e-3 * n("surface_viscosity") / n("surface_density"), DECAY_TIME),
+        lambda n: (1.0, WAVE, n("surface_viscosity") / n("surface_density"), DECAY_TIME),
         lambda n: math.exp(-DECAY_TIME / n("short_wave_lifetime")),
     ),
     ("radial_sea", "reflectance"): SceneValue(

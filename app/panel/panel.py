@@ -1,4 +1,4 @@
-"""The control panel, generated from a scene's parameters. The simulation polls `read`; callbacks only touch the panel.
+"""The control panel, generated from a scene's parameters. Callbacks only touch the panel, and post commands.
 
 Every callback is a coroutine, so that all of them run on viser's event loop, one after the other: two changes at once
 cannot lose each other.
@@ -13,7 +13,7 @@ import viser
 
 from app.lab import task
 from app.lab.workbook import Workbook
-from app.messages import BaseParams, KeptState, Load, PlotRow, Reset, StepOnce, TogglePlay
+from app.messages import BaseParams, KeptState, PlotRow, Reset, StepOnce, Take, TogglePlay
 from app.panel.compare import Beside, Compare
 from app.panel.controls import Controls
 from app.panel.display import Display, add_switches
@@ -89,15 +89,14 @@ class Panel:
         self.server, self.kind, self.view, self.post = server, kind, view, post
         self.open_scene, self.beside, self.changed = open_scene, beside, changed
         self.gui = gui = server.gui
-        # Parameters as set now, and how many presets were loaded: read by another thread.
-        self.state: tuple[BaseParams, int] = params, 0
+        self.params = params  # as set now; other threads read them
         self.status_at = self.marks_at = 0.0
         self.history = History()
         self.plots = Plots(server, kind)
         self.display = Display(gui, view)
         self.own = own_presets(kind)  # name in the list -> set-up of the user
         # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
-        self.loaded = min(kind.presets, key=lambda name: len(changed_names(self.params_of(name), params)))
+        self.loaded = self.nearest_preset(params)
         first_views = self.open_first_view_of, self.place_first_view
         actions = Actions(post, self.load, *first_views, self.toggle_plots, self.undo, self.follow)
         self.head = Head(gui, kind, view, scenes, actions)
@@ -159,11 +158,6 @@ class Panel:
         with gui.add_folder("Help", expand_by_default=False):
             self.help = gui.add_html("")
 
-    @property
-    def params(self) -> BaseParams:
-        """The parameters as set now."""
-        return self.state[0]
-
     def add_keys(self) -> None:
         """Keyboard and command palette. W A S D Q E and the arrows already move the camera."""
         actions: list[tuple[str, Key | None, Callable[[], None]]] = [
@@ -187,25 +181,21 @@ class Panel:
 
         self.gui.add_command("Reset view", hotkey="V").on_trigger(self.reset_view)
 
-    def read(self) -> tuple[BaseParams, int]:
-        """The parameters as set now, and the number of the last preset; polled by the simulation once a frame."""
-        return self.state
-
     def set(self, name: str, value: object) -> None:
         """Set one parameter, as its control would; on viser's event loop."""
         self.controls[name].set(value)
 
     def on_change(self, name: str, value: Value) -> None:
         """A control was set."""
-        params, number = self.state
-        if getattr(params, name) == value:
+        if getattr(self.params, name) == value:
             return
-        self.history.note(Settings(params, self.loaded), name)
-        self.state = dataclasses.replace(params, **{name: value}), number
-        self.refresh()
+        self.history.note(Settings(self.params, self.loaded), name)
+        self.take(Take(dataclasses.replace(self.params, **{name: value})), self.loaded)
 
-    def refresh(self) -> None:
-        """Show the parameters in the controls, and send them to the simulation."""
+    def take(self, command: Take, preset: str) -> None:
+        """Take parameters, show them, and have the simulation take them too. preset: that they come from."""
+        self.params, self.loaded = command.params, preset
+        self.post(command)
         self.shown.show(self.kind.hidden(self.params))
         self.show_preset()
         self.changed(self.params)
@@ -215,6 +205,10 @@ class Panel:
         own = self.own.get(preset)
         params = own.params if own else check_record(type(self.params), self.kind.presets[preset])
         return with_fields_of(self.params, params)
+
+    def nearest_preset(self, params: BaseParams) -> str:
+        """Name of the preset that parameters differ from the least."""
+        return min(self.kind.presets, key=lambda name: len(changed_names(self.params_of(name), params)))
 
     def comparable_names(self) -> tuple[str, ...]:
         """Names of set-ups for a comparison: presets, and the user's own set-ups."""
@@ -267,29 +261,20 @@ class Panel:
 
     def load_params(self, params: BaseParams, preset: str) -> None:
         """Take parameters, and the scene from its start: one command. preset: that they come from."""
-        number = self.state[1] + 1
         self.history.note(Settings(self.params, self.loaded), preset)
-        self.take(params, preset, number)
-        self.post(Load(params, number))
+        self.take(Take(params, start=True), preset)
 
     def resume(self, params: BaseParams, state: KeptState) -> None:
         """Have the scene go on from a state, with the parameters that it had then: one command."""
-        number = self.state[1] + 1
         self.history.note(Settings(self.params, self.loaded), "moment")
-        self.take(params, self.loaded, number)
-        self.post(Load(params, number, state))
+        self.take(Take(params, state=state), self.loaded)
 
     def undo(self) -> None:
         """The settings before the last change of a parameter or preset."""
         settings = self.history.take_last()
         if settings is not None:
             known = settings.preset in (*self.kind.presets, *self.own)  # a set-up of the user may be gone
-            self.take(settings.params, settings.preset if known else next(iter(self.kind.presets)), self.state[1])
-
-    def take(self, params: BaseParams, preset: str, number: int) -> None:
-        """Take and show parameters. preset: that they come from. number: how many presets have been loaded."""
-        self.state, self.loaded = (params, number), preset
-        self.refresh()
+            self.take(Take(settings.params), settings.preset if known else next(iter(self.kind.presets)))
 
     def show_preset(self) -> None:
         """Show which preset is loaded, and whether a parameter that matters is not as it has it."""

@@ -33,6 +33,7 @@ TICKS = 4  # about so many intervals between two ends of a scale
 MIN_SPAN = 1e-3  # of a scale, over the size of its numbers: a constant has a scale too
 MIN_FILLED = 0.3  # share of a scale that its data must fill, or the scale is made anew
 KEPT_OPACITY, KEPT_DASH = "99", (5.0, 4.0)  # of the lines of an earlier run: a hexadecimal byte, [pixels]
+CROSS_CLASS = "springtide-cross"  # of lines that are crosses
 EMPTY = np.array([0.0, 1.0])  # the times of a chart without rows
 
 Look: TypeAlias = tuple[str, tuple[Line, ...], float | None, "Scale | None"]
@@ -273,10 +274,10 @@ def beside(shown: Sequence[PlotRow], kept: Sequence[PlotRow]) -> list[PlotRow]:
 
 
 def with_kept(chart: Chart, kept: Chart) -> Chart:
-    """A chart with the lines of an earlier one; areas are left out, which would cover one another."""
+    """A chart with the lines of an earlier one, without its areas and crosses, which would cover the present ones."""
     here, before = (np.array(one.columns, np.float64).T for one in (chart, kept))
     places = np.union1d(here[:, 0], before[:, 0])
-    shown = [i for i, line in enumerate(kept.lines) if not line.fill]
+    shown = [i for i, line in enumerate(kept.lines) if not (line.fill or line.cross)]
     return Chart(
         chart.first,
         (*chart.lines, *(kept_line(kept.lines[i]) for i in shown)),
@@ -327,5 +328,7 @@ def series_of(first: str, lines: Sequence[Line]) -> tuple[uplot.Series, ...]:
             look["dash"] = line.dash
         if line.fill:
             look["fill"] = line.fill
+        if line.cross:  # drawn by `js/charts.js`
+            look.update({"label": f"× {line.label}", "class": CROSS_CLASS, "width": 0.0, "points": {"show": False}})
         series.append(look)
     return tuple(series)

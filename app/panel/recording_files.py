@@ -4,6 +4,7 @@ import csv
 import io
 import itertools
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -110,7 +111,7 @@ def plots_csv(kind: AnyKind, plotted: Plotted) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([name for name, _ in columns])
-    cells = ([repr(value) for value in values.tolist()] for _, values in columns)
+    cells = (["" if math.isnan(value) else repr(value) for value in values.tolist()] for _, values in columns)
     writer.writerows(itertools.zip_longest(*cells, fillvalue=""))
     return text.getvalue()
 

@@ -55,8 +55,8 @@ class Share:
         gui = panel.gui
         self.wake, self.make_replay = wake, make_replay
         self.lines: dict[str, viser.GuiHtmlHandle] = {}  # of each group
-        # Buttons -> their names, and the time [s] until which they say that it is done.
-        self.confirmed: dict[GuiHandle, tuple[tuple[str, ...], float]] = {}
+        # Identity of buttons -> the buttons, their names, and the time [s] until which they say that it is done.
+        self.confirmed: dict[str, tuple[GuiHandle, tuple[str, ...], float]] = {}
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
         self.ballot = Ballot(panel.server, panel.head.folder, questions, self.show, self.refuse)
         with panel.head.folder:
@@ -104,18 +104,18 @@ class Share:
     def confirm(self, buttons: GuiHandle, name: str, done: str) -> None:
         """Have a button say for a moment that its action was done."""
         with self.confirming:
-            options = self.confirmed.get(buttons, (buttons.options, 0.0))[0]
-            self.confirmed[buttons] = options, time.monotonic() + CONFIRMED_TIME
+            _, options, _ = self.confirmed.get(uuid_of(buttons), (buttons, buttons.options, 0.0))
+            self.confirmed[uuid_of(buttons)] = buttons, options, time.monotonic() + CONFIRMED_TIME
             buttons.options = tuple(done if option == name else option for option in options)
 
     def end_confirmations(self) -> None:
         """Give the buttons their names back."""
         now = time.monotonic()
         with self.confirming:
-            for buttons, (options, end) in list(self.confirmed.items()):
+            for identity, (buttons, options, end) in list(self.confirmed.items()):
                 if now > end:
                     buttons.options = options
-                    del self.confirmed[buttons]
+                    del self.confirmed[identity]
 
     async def on_inbox(self, event: ViserEvent) -> None:
         """A page has sent its address ("?scene=...") or a file ("{...}"), below a line with the page's own word."""

@@ -7,7 +7,6 @@ after each report of another place, until the page has reported this one.
 
 import math
 import threading
-import weakref
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -16,6 +15,7 @@ import viser
 from numpy.typing import NDArray
 
 from app.messages import Vector
+from app.render.of_handles import OfHandles
 
 NEAR, FAR = 0.01, 1000.0  # [m] from the camera, where the picture begins and ends: viser's own
 FIT_MARGIN = 1.1  # room around what a camera shows
@@ -50,8 +50,8 @@ def set_clipping(server: viser.ViserServer, near: float = NEAR, far: float = FAR
         camera.near, camera.far = near, far
 
 
-_wanted: weakref.WeakKeyDictionary[viser.CameraHandle, NDArray[np.float64]] = weakref.WeakKeyDictionary()  # (2, 3) [m]
-_watched: weakref.WeakSet[viser.CameraHandle] = weakref.WeakSet()  # the reports of these are looked at
+_wanted: OfHandles[NDArray[np.float64]] = OfHandles()  # (2, 3) [m] where a camera is to be
+_watched: OfHandles[bool] = OfHandles()  # the reports of these cameras are looked at
 _placing = threading.Lock()  # viewer thread, callbacks and changes of the scene place cameras
 
 
@@ -93,13 +93,13 @@ def place_camera(
     """Place the camera of one browser, and see to it that the page takes it (`on_report`)."""
     place = np.array([position, target], float)
     with _placing:
-        if camera not in _watched:
-            _watched.add(camera)
+        if not _watched.get(camera):
+            _watched.put(camera, True)
             camera.on_update(on_report)
-        is_there = camera not in _wanted and bool((np.abs(place_of(camera) - place) <= SAME_PLACE).all())
+        is_there = _wanted.get(camera) is None and bool((np.abs(place_of(camera) - place) <= SAME_PLACE).all())
         set_camera(camera, position, target, field_of_view)
         if not is_there:  # otherwise there would be nothing to report
-            _wanted[camera] = place
+            _wanted.put(camera, place)
 
 
 def place_of(camera: viser.CameraHandle) -> NDArray[np.float64]:
@@ -109,7 +109,7 @@ def place_of(camera: viser.CameraHandle) -> NDArray[np.float64]:
 
 def is_waiting(camera: viser.CameraHandle) -> bool:
     """True if the page of a camera that was placed has not reported that it is there."""
-    return camera in _wanted
+    return _wanted.get(camera) is not None
 
 
 def has_taken(wanted: NDArray[np.float64], reported: NDArray[np.float64]) -> bool:
@@ -129,7 +129,7 @@ async def on_report(camera: viser.CameraHandle) -> None:
         if wanted is None:
             return
         if has_taken(wanted, place_of(camera)):
-            del _wanted[camera]
+            _wanted.drop(camera)
         else:
             position, target = wanted
             set_camera(camera, position, target)

@@ -67,7 +67,8 @@ def line_chart(
     places, values = np.asarray(columns[0], float), np.array(columns[1:], float).reshape(len(lines), -1)
     if scale:
         values = np.log10(values, out=np.full_like(values, math.nan), where=values > 0.0)
-    finite = values[np.isfinite(values)]
+    finite = values[[not line.cross for line in lines]]
+    finite = finite[np.isfinite(finite)]
     if finite.size == 0:
         return None
     if scale:
@@ -97,7 +98,11 @@ def line_chart(
 
 
 def draw_line(line: Line, places: NDArray[np.float64], values: NDArray[np.float64], x: Axis, y: Axis) -> Html:
-    """One line, and the area below it if it has one; or dots."""
+    """One line, and the area below it if it has one; or dots, or crosses at the top edge."""
+    if line.cross:
+        at = (x.at(place) for place in places[np.isfinite(values)].tolist())
+        mark = '<path d="M{0:.1f} {1}l10 10m0 -10l-10 10" stroke="{2}" stroke-width="2"/>'
+        return join(fill(mark, place - 5.0, TOP - 5, line.colour) for place in at)
     if line.dots:
         places, values = places[np.isfinite(values)], values[np.isfinite(values)]
         at = ((x.at(place), y.at(value)) for place, value in zip(places, values, strict=True))
@@ -151,11 +156,12 @@ def draw_key(lines: Sequence[Line]) -> tuple[Html, int]:
         if place > LEFT and place + width > WIDTH - RIGHT - FIRST_LABEL_WIDTH:
             place, row = float(LEFT), row + 1
         base = PLOT_HEIGHT + KEY_HEIGHT * row - 6
+        drawn = f"M{place + 4:.0f} {base - 9}l10 10m0 -10l-10 10" if line.cross else f"M{place:.0f} {base - 4}h18"
         names.append(
             fill(
-                '<path d="M{:.0f} {}h18" stroke="{}" stroke-width="3" stroke-dasharray="{}"/><text x="{:.0f}" y="{}">{}'
-                "</text>",
-                place, base - 4, line.fill or line.colour, dashes(line), place + KEY_LINE, base, line.label,
+                '<path d="{}" stroke="{}" stroke-width="{}" stroke-dasharray="{}"/><text x="{:.0f}" y="{}">{}</text>',
+                drawn, line.fill or line.colour, 2 if line.cross else 3, dashes(line), place + KEY_LINE, base,
+                line.label,
             )
         )  # fmt: skip
         place += width + KEY_SPACE

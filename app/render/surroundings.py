@@ -4,7 +4,6 @@ The sky is the background of the page's canvas (`js/page.css`), as these scenes 
 What a browser draws as a picture has no background, so that it is put behind the picture here.
 """
 
-import weakref
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +11,7 @@ import viser
 from numpy.typing import NDArray
 
 from app.render.cameras import NEAR, set_clipping
+from app.render.of_handles import OfHandles
 from app.render.staff import Staff
 from app.render.viser_inside import update_node
 
@@ -59,7 +59,7 @@ class SkyColours(NamedTuple):
 MIDDLE, AROUND = (0.5, 0.42), 0.55  # of width and height of the picture; and of the way to the corners
 LIGHT_SKY = SkyColours((240, 243, 246), (190, 206, 224), (112, 140, 172))
 DARK_SKY = SkyColours((38, 47, 60), (26, 33, 43), (10, 13, 19))
-_dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that draw dark
+_dark: OfHandles[bool] = OfHandles()  # browsers that draw dark
 
 
 class Surroundings:
@@ -76,7 +76,7 @@ class Surroundings:
         scene.configure_fog(*NO_FOG, enabled=False)
         set_clipping(server, near)
         for client in server.get_clients().values():
-            _dark.discard(client)  # the floor begins light: js/display.js asks for a dark one
+            _dark.drop(client)  # the floor begins light: js/display.js asks for a dark one
         self.shown: tuple[bool, bool] | None = None
         self.staff = Staff(server)
         self.floor = scene.add_grid(
@@ -105,7 +105,7 @@ class Surroundings:
 
 def set_dark(client: viser.ClientHandle, dark: bool) -> None:
     """Draw the floor dark, or light again, for one browser. The node stays that of the server."""
-    (_dark.add if dark else _dark.discard)(client)
+    _dark.put(client, dark)
     update_node(client, FLOOR, **(DARK if dark else LIGHT)._asdict())
 
 
@@ -114,6 +114,6 @@ def before_sky(client: viser.ClientHandle, pixels: NDArray[np.uint8]) -> NDArray
 
     Returns sRGB (height, width, 3). Where a scene draws a sky of its own, nothing of this one is seen.
     """
-    sky = (DARK_SKY if client in _dark else LIGHT_SKY).pixels(*pixels.shape[:2])
+    sky = (DARK_SKY if _dark.get(client) else LIGHT_SKY).pixels(*pixels.shape[:2])
     alpha = pixels[..., 3:] / 255.0
     return np.rint(alpha * pixels[..., :3] + (1.0 - alpha) * sky).astype(np.uint8)

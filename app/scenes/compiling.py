@@ -48,11 +48,15 @@ class Compiling:
     def missing(self, name: str, params: BaseParams | None) -> list[Job]:
         """Pieces to compile before a scene runs with these parameters; None: all that it may ever call.
 
-        Empty where nothing can be kept: then each process compiles for itself, when it calls.
+        Empty where nothing can be kept: then each process compiles for itself, when it calls. Empty, too, for
+        parameters with which the scene cannot be built: it says why.
         """
         if CACHE is None:
             return []
-        jobs = (Job(name, piece, drawn) for piece, drawn in missing(name, params))
+        try:
+            jobs = [Job(name, piece, drawn) for piece, drawn in missing(name, params)]
+        except ValueError:
+            return []
         return [job for job in jobs if job not in self.settled]
 
     def want(self, jobs: Iterable[Job]) -> None:

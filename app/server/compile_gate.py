@@ -2,9 +2,10 @@
 
 from collections.abc import Iterable
 
-from app.messages import BaseParams, Command, Load
+from app.messages import BaseParams, Command, Take
 from app.scenes.compiling import Compiling, Job
 from app.scenes.contract import AnyKind
+from app.server.merging import merged
 
 
 class CompileGate:
@@ -13,14 +14,11 @@ class CompileGate:
     The simulation thread alone calls it and changes it; the viewer thread reads `notice`.
     """
 
-    def __init__(self, compiling: Compiling, kind: AnyKind, state: tuple[BaseParams, int]) -> None:
-        """state: parameters that run, and the number of the last `Load`."""
+    def __init__(self, compiling: Compiling, kind: AnyKind, params: BaseParams) -> None:
+        """params: those that run."""
         self.compiling, self.kind = compiling, kind
-        self.seen = state  # the last record of the panel that could run
-        self.passed = state  # the same as the simulation is given it
-        self.held: Load | None = None  # waits for the compiler
-        self.loaded = state[1]  # number of the last `Load` that was passed on
-        self.dropped: int | None = None  # number of the last one that was dropped for a newer record
+        self.params = params  # those that were handed over last
+        self.held: list[Take] = []  # wait for the compiler, in order
         self.jobs: dict[BaseParams, list[Job]] = {}  # still to be compiled, asked for once and not in each tick
         self.notice = ""  # pending compilation, in words
 
@@ -36,37 +34,32 @@ class CompileGate:
         return not self.jobs[params]
 
     def admit(self, commands: Iterable[Command]) -> list[Command]:
-        """The commands that can be handled now. A preset waits until it can run, and the latest one wins."""
-        admitted: list[Command] = []
+        """The commands that can be handled now, in order.
+
+        Parameters that cannot run yet wait, and come later by themselves. Newer ones that can run drop them, as those
+        are of no more interest: an undo, or another preset.
+        """
+        admitted: list[Command] = self.passed()
         for command in commands:
-            if not isinstance(command, Load):
+            if not isinstance(command, Take):
                 admitted.append(command)
-            elif self.is_ready(command.params):
-                admitted.append(self.pass_on(command))
+                continue
+            if self.is_ready(command.params):
+                admitted += self.passed()  # of those that wait, what is ready by now
+                self.held = [command]
             else:
-                self.held = command
-        if self.held is not None and self.is_ready(self.held.params):
-            admitted.append(self.pass_on(self.held))
+                self.held = [take for take in merged([*self.held, command], self.params) if isinstance(take, Take)]
+            admitted += self.passed()
         return admitted
 
-    def pass_on(self, load: Load) -> Load:
-        """Note that this preset is handed to the simulation."""
-        self.held, self.loaded = None, load.number
-        return load
-
-    def read(self, state: tuple[BaseParams, int]) -> tuple[BaseParams, int]:
-        """The parameters to run with, of those that the panel has now; read after `admit` had the commands.
-
-        A newer record that can run drops a preset that cannot, and comes with the number of the preset before it.
-        """
-        params, number = state
-        if state is self.seen or not self.is_ready(params):
-            return self.passed
-        if self.held is not None:
-            if self.is_ready(self.held.params):  # since `admit`, which passes it on in the next tick
-                return self.passed
-            self.held, self.dropped = None, self.held.number
-        self.seen, self.passed = state, (params, self.loaded) if number == self.dropped else state
-        self.jobs.clear()
-        self.notice = ""
-        return self.passed
+    def passed(self) -> list[Command]:
+        """Those of the parameters that wait that can run now, up to the first that cannot."""
+        ready: list[Command] = []
+        while self.held and self.is_ready(self.held[0].params):
+            take = self.held.pop(0)
+            self.params = take.params
+            ready.append(take)
+        if ready and not self.held:
+            self.jobs.clear()
+            self.notice = ""
+        return ready

@@ -1,4 +1,4 @@
-"""The simulation thread's loop: handle commands, read parameters, take fixed steps, publish a snapshot.
+"""The simulation thread's loop: handle commands, take fixed steps, publish a snapshot.
 
 One accumulator and one wall deadline. Time that cannot be made up is dropped and shown, never owed. `SimLoop.tick` is a
 plain function of elapsed wall time, so that tests, headless runs and benchmarks call it without a thread.
@@ -20,24 +20,24 @@ from app.messages import (
     DivergenceError,
     Grab,
     Halt,
-    Load,
     Pause,
     Place,
     Play,
+    Point,
     Release,
     Reset,
     StepOnce,
     StudentAnswer,
+    Take,
     TogglePlay,
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.stepping import steps_to
-from app.server.merging import begins_anew, is_urgent, merged
+from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
 from app.server.run import Goal, Run
 from app.server.shared_clock import Seat
 from app.server.snapshots import Clock
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
-from sim.parameters import effect_of_change
 
 PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
@@ -49,13 +49,12 @@ MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 
 
 class SimLoop(Run):
-    """Runs a scene on a thread, by commands and parameters that come from others."""
+    """Runs a scene on a thread, by commands that come from others."""
 
     def __init__(
         self,
         scene: AnyScene,
         commands: "queue.SimpleQueue[Command] | None" = None,
-        read_params: Callable[[], tuple[BaseParams, int]] | None = None,
         audience: Callable[[], int] = lambda: 1,
         *,
         admit: Callable[[Iterable[Command]], list[Command]] = list,
@@ -63,9 +62,9 @@ class SimLoop(Run):
         clock: Clock = time.perf_counter,
         effort: Clock = time.thread_time,
     ) -> None:
-        """read_params: the parameters as set now, and the number of the last `Load`; audience: how many browsers look.
+        """audience: how many browsers look.
 
-        admit: of the commands that have come, those to handle now; called before `read_params`, on the same thread.
+        admit: of the commands that have come, and of those that it held back before, those to handle now.
         clock: wall time [s]. effort: what solving is charged by, this thread's processor time [s], so that a busy
         machine that takes the processor away does not make the scene look expensive.
         """
@@ -74,9 +73,7 @@ class SimLoop(Run):
         self.is_late = False  # controls were answered in the middle of the last tick
         self.turn_at = 0.0  # [s] of the clock, when controls were last answered
         self.lateness = 0.0  # [s] by which sleeps lately ended too late, as others had the processor
-        self.read_params = read_params or (lambda: (scene.params, self.loaded))
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
-        self.loaded = 0  # number of the last `Load` that was handled
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
         self.tick_time = 0.0  # [s] that the last tick took
         super().__init__(scene, audience, clock, effort, paused=paused)
@@ -92,10 +89,8 @@ class SimLoop(Run):
         was_late, self.is_late = self.is_late, False
         self.busy_since = self.clock()
         self.turn_at = self.busy_since - PATIENCE * was_late  # what ended the last tick has waited long enough
-        params, loads = self.poll()
-        # Parameters first: a reset starts from them. A record of a `Load` that is still on the way comes with it.
-        changed = loads == self.loaded and params is not self.scene.params and self.take(params)
-        changed |= self.handle_waiting() or not self.is_shown
+        self.take_in()
+        changed = self.handle_waiting() or not self.is_shown
         if changed and was_late:
             self.publish()  # before steps that may take long
             changed = False
@@ -130,11 +125,6 @@ class SimLoop(Run):
     def takes_long(self) -> bool:
         """True if controls may have to be answered in the middle of a tick soon."""
         return self.busy_since is not None or self.tick_time > 0.5 * PATIENCE
-
-    def poll(self) -> tuple[BaseParams, int]:
-        """Take in the commands that have come, then read the parameters: these are as new as any preset among them."""
-        self.take_in()
-        return self.read_params()
 
     def take_in(self, *taken: Command) -> None:
         """Have the commands wait that have come and can be handled. taken: out of the queue before."""
@@ -184,10 +174,9 @@ class SimLoop(Run):
         # A turn that was due at the start of a short tick is no reason for one in the next.
         self.is_late |= self.busy_since is not None and self.turn_at - self.busy_since >= PATIENCE
         try:
-            params, loads = self.poll()
-            if loads != self.loaded:  # they come with a `Load` that waits
-                params = self.scene.params
-            effect, whole = effect_of_change(self.scene.params, params), is_kept_whole()
+            self.take_in()
+            params, effect = effect_of_takes(self.scene.params, self.waiting)
+            whole = is_kept_whole()
             anew = any(map(begins_anew, self.waiting)) or effect == "start"
             asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
             if anew and (self.solving or self.may_begin):
@@ -196,8 +185,9 @@ class SimLoop(Run):
             if asked and self.may_end and not whole:
                 self.request[STOP] = 1
                 return
-            if effect == "look":
+            if effect == "look" and not (asked or self.taking):
                 self.scene.params = params
+                self.waiting = [command for command in self.waiting if not isinstance(command, Take)]
             within_steps = self.solving and not whole
             drags = self.drags_waiting() if within_steps else []
             for command in drags:
@@ -211,7 +201,7 @@ class SimLoop(Run):
 
     def drags_waiting(self) -> list[Grab | Place | Release]:
         """The drags among the waiting commands; the others go on waiting for the next tick."""
-        drags = [command for command in merged(self.waiting) if isinstance(command, Grab | Place | Release)]
+        drags = [command for command in self.waiting if isinstance(command, Grab | Place | Release)]
         self.waiting = [command for command in self.waiting if not isinstance(command, Grab | Place | Release)]
         return drags
 
@@ -226,20 +216,31 @@ class SimLoop(Run):
         self.fresh.set()
 
     def handle_waiting(self) -> bool:
-        """Handle the waiting commands once they are merged, after a reset that was cancelled, unless
-        another one waits; True where there was one."""
+        """Handle the waiting commands once they are merged, after a reset that was cancelled, unless the first of them
+        that concerns the scene begins it again; True where there was one.
+
+        Those that follow a cancelled one wait for the next tick, where what has cancelled it may supersede them.
+        """
         waiting, self.waiting = self.waiting, []
-        left = merged(waiting)
-        unfinished = None if any(begins_anew(command) for command in left) else self.unfinished
+        left, unfinished = merged(waiting, self.scene.params), self.unfinished
         if unfinished is not None:
-            self.begin(unfinished)
-        for command in left:
-            self.handle(command)
+            first = [command for command in left if not isinstance(command, Motion)][:1]
+            if any(map(begins_anew, first)) or effect_of_takes(self.scene.params, first)[1] == "start":
+                self.unfinished = None
+            else:
+                self.begin(unfinished)
+        while left and self.unfinished is None:
+            self.handle(left.pop(0))
+        self.waiting[:0] = left
         return bool(waiting) or unfinished is not None
 
     def handle(self, command: Command) -> None:
-        """Carry out one command."""
+        """Carry out one command. A scene that could not begin takes other values, and has nothing to run."""
         match command:
+            case Play() | StepOnce() | TogglePlay() | Place() | Grab() | Release() | Point() | StudentAnswer() if (
+                self.unmade
+            ):
+                pass
             case Play():
                 self.running, self.halted = True, ""
                 if self.replay is not None and self.replay.ended:
@@ -256,16 +257,13 @@ class SimLoop(Run):
                     self.seat.clock.step_by_hand(steps)
             case Halt(reason):
                 self.halt(reason)
-            case Load(params, number, state):
-                self.loaded = number
-                self.scene.params = params
-                self.cost_unknown = True
-                if state is None:
-                    self.counts["starts"] += 1
-                    self.reset()
+            case Take(params, start, state):
+                if start:
+                    self.begin_with(params)
+                elif state is not None:
+                    self.resume(params, state)
                 else:
-                    self.resume(state)
-                self.running = not self.halted
+                    self.take(params)
             case Reset():
                 self.counts["starts"] += 1
                 self.reset()
@@ -311,8 +309,7 @@ class SimLoop(Run):
         self.busy_since, self.is_shown = None, False
 
     def wait(self, seconds: float, stop: threading.Event) -> None:
-        """Sleep for `seconds`; a command or other parameters end a sleep that is longer than a hand should have to
-        wait."""
+        """Sleep for `seconds`; a command ends a sleep that is longer than a hand should have to wait."""
         start, left = self.clock(), seconds
         while left > MAX_DEAF_TIME and not self.waiting and not stop.is_set():
             with contextlib.suppress(queue.Empty):
@@ -322,7 +319,8 @@ class SimLoop(Run):
                     stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # not more ticks than frames
                     return
                 self.take_answer(command)
-            if self.poll()[0] != self.scene.params or self.waiting:
+            self.take_in()  # parameters that were held back may be ready
+            if self.waiting:
                 return
             left = seconds - (self.clock() - start)
         if left > 0.0:

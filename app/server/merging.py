@@ -1,98 +1,120 @@
-"""Coalescing of waiting commands: the latest of those that supersede each other is left."""
+"""Coalescing of waiting commands: those that a later one supersedes are dropped, the others keep their order."""
 
-from collections.abc import Iterable
-from typing import Literal
+import itertools
+from collections.abc import Iterable, Sequence
 
 from app.messages import (
     Advance,
     Ask,
+    BaseParams,
     Command,
     Grab,
     Halt,
-    Load,
     Pause,
     Place,
     Play,
-    Point,
     Release,
     Reset,
     SceneCommand,
     StepOnce,
     StudentAnswer,
+    Take,
     TogglePlay,
 )
+from sim.parameters import EFFECTS, Effect, effect_of_change
 
-Motion = Literal["play", "pause", "toggle"]
-AFTER: dict[tuple[Motion | None, type], Motion | None] = {  # (waiting, next) -> what both together ask for
-    ("play", TogglePlay): "pause",
-    ("pause", TogglePlay): "play",
-    ("toggle", TogglePlay): None,
-    (None, TogglePlay): "toggle",
-}
-COMMAND_OF: dict[Motion, Command] = {"play": Play(), "pause": Pause(), "toggle": TogglePlay()}
+Motion = Play | Pause | TogglePlay | Halt  # what leaves the scene alone
 
 
-def merged(commands: Iterable[Command]) -> list[Command]:
-    """The commands that have the same effect as all of them in order.
+def merged(commands: Iterable[Command], params: BaseParams) -> list[Command]:
+    """The commands that have the same effect as all of them in order. params: those of the scene before.
 
-    Of presets and resets the last is left, and nothing that a scene was asked for before it; single steps are added
-    up; of the positions of one thing, and of the drags of one browser, the last is left. What a program waits for comes
-    last, in order.
+    Only neighbours are merged, so that nothing moves past what might depend on it.
     """
-    halt: Halt | None = None
-    start: Load | Reset | None = None
-    motion: Motion | None = None
-    steps = 0
-    asked: list[Command] = []
-    scene: dict[tuple[str, str | int], SceneCommand] = {}
+    kept: list[Command] = []
     for command in commands:
-        match command:
-            case Halt():
-                halt = halt or command
-            case Load():
-                start, steps, motion = command, 0, None  # it starts the run
-                scene.clear()
-            case Reset():
-                start = start if isinstance(start, Load) else command
-                steps = 0
-                scene.clear()
-            case Play() | Pause() | TogglePlay():
-                steps = 0 if isinstance(command, Play) else steps
-                motion = AFTER.get((motion, type(command)), "play" if isinstance(command, Play) else "pause")
-            case StepOnce(more):
-                steps, motion = steps + more, "pause"
-            case Place(thing, _):
-                put_last(scene, ("place", thing), command)
-            case Grab() | Release():
-                put_last(scene, ("drag", command.client), command)
-            case Point():
-                put_last(scene, ("point", ""), command)
-            case StudentAnswer():
-                put_last(scene, ("student", ""), command)
-            case Ask() | Advance():
-                asked.append(command)
-    found: list[Command] = [halt] if halt else []
-    if start is not None:
-        found.append(start)
-    found.extend(scene.values())
-    if steps:
-        found.append(StepOnce(steps))
-    if motion is not None and not (steps and motion == "pause"):  # a step pauses the run
-        found.append(COMMAND_OF[motion])
-    return found + asked
+        match kept[-1] if kept else None, command:
+            case (_, Take(start=True)):
+                while kept and isinstance(kept[-1], Take | Reset | StepOnce | Motion):
+                    kept.pop()  # nothing of it is left once the scene has begun again, and runs
+            case (Take(), Take()) if command.changes_only:
+                drop_changes(kept, command, params)
+            case (StepOnce(before), StepOnce(steps)):
+                kept.pop()
+                command = StepOnce(before + steps)
+            case (last, _) if last is not None and repeats(last, command):
+                kept.pop()
+            case _:
+                pass
+        kept.append(command)
+    return kept
+
+
+def repeats(earlier: Command, later: Command) -> bool:
+    """True if the later one of two neighbours does all that both do."""
+    match earlier, later:
+        case (Place(thing), Place(other)):
+            return thing == other
+        case (Grab(particle, _, client), Grab(other, _, by)):
+            return (particle, client) == (other, by)
+        case (Release(client), Release(by)):
+            return client == by
+        case (Reset(), Reset()) | (StudentAnswer(), StudentAnswer()):
+            return True
+        case _:
+            return False
+
+
+def drop_changes(kept: list[Command], change: Take, params: BaseParams) -> None:
+    """Drop the last changes of parameters as far as `change` alone does what they and it do in order."""
+    last = len(kept)
+    while last and isinstance(before := kept[last - 1], Take) and before.changes_only:
+        last -= 1
+    earlier = [command.params for command in kept if isinstance(command, Take)]
+    chain = [command.params for command in kept[last:] if isinstance(command, Take)]
+    records = [*[params, *earlier][-len(chain) - 1 :], change.params]  # the first is the one before the chain
+    for dropped in range(len(chain), 0, -1):
+        if is_one_change(records[-dropped - 2 :]):
+            del kept[-dropped:]
+            return
+
+
+def is_one_change(records: Sequence[BaseParams]) -> bool:
+    """True if going from the first record to the last at once does what it does by the others.
+
+    Other forces count from the next step on, so that of several the last ones count: a net whose number of points
+    changes twice is interpolated once. A scene that has begun again and then takes other forces need not be as one that
+    begins with these.
+    """
+    effects: list[Effect | None] = [effect_of_change(a, b) for a, b in itertools.pairwise(records)]
+    begins = [number for number, effect in enumerate(effects) if effect == "start"]
+    if begins and "forces" in effects[begins[-1] :]:
+        return False
+    return rank(effect_of_change(records[0], records[-1])) >= max(map(rank, effects))
+
+
+def rank(effect: Effect | None) -> int:
+    """Effects in order: a greater one includes the smaller ones."""
+    return -1 if effect is None else EFFECTS.index(effect)
 
 
 def begins_anew(command: Command) -> bool:
-    """True if the scene begins from its start after this command."""
-    return isinstance(command, Reset) or (isinstance(command, Load) and command.state is None)
+    """True if the scene begins from its start after this command, whatever it is like before."""
+    return isinstance(command, Reset) or (isinstance(command, Take) and command.start)
 
 
 def is_urgent(command: Command) -> bool:
-    """True if a command should not wait for a long solve: all but drags, going on, and those of a waiting program."""
+    """True if a command should not wait for a long solve.
+
+    Drags, going on and those of a waiting program may; a change of parameters as its effect asks for.
+    """
+    if isinstance(command, Take):
+        return not command.changes_only
     return not isinstance(command, SceneCommand | Play | Ask | Advance)
 
 
-def put_last(waiting: dict[tuple[str, str | int], SceneCommand], key: tuple[str, str | int], new: SceneCommand) -> None:
-    """Replace the waiting command of a key, and move it to the end: the order of the latest ones is kept."""
-    waiting.pop(key, None)
-    waiting[key] = new
+def effect_of_takes(params: BaseParams, commands: Iterable[Command]) -> tuple[BaseParams, Effect | None]:
+    """The last record that commands bring, and the greatest effect on the way to it from `params`."""
+    records = [params, *(command.params for command in commands if isinstance(command, Take))]
+    effects: list[Effect | None] = [effect_of_change(a, b) for a, b in itertools.pairwise(records)]
+    return records[-1], max(effects, key=rank, default=None)

@@ -16,6 +16,7 @@ from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
 
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
+BEGUN = "the lab was begun again or went on from another moment"  # why the time that a program waits for does not come
 
 
 class Goal(NamedTuple):
@@ -36,6 +37,7 @@ class Run(Snapshots):
         self.pacer = FixedStep()
         self.cost_unknown = True  # the cost of a step with the parameters as they are is not known
         self.goal: Goal | None = None  # that a program waits for
+        self.taking = False  # the scene takes other forces: its parameters are the old or the new ones
         super().__init__(scene, audience, clock, effort, paused=paused)
 
     def follow(self, seat: Seat, wall: float) -> bool:
@@ -52,27 +54,25 @@ class Run(Snapshots):
             (self.advance_within_budget if self.cost_unknown and self.running else self.advance)(n)
         return n > 0
 
-    def take(self, params: BaseParams) -> bool:
-        """Take parameters according to the effect of their change; False if they are those of the scene."""
+    def take(self, params: BaseParams) -> None:
+        """Take parameters according to the effect of their change."""
         effect = effect_of_change(self.scene.params, params)
-        if effect is None:
-            return False
-        if effect == "look":
+        if effect in (None, "look"):
             self.scene.params = params
-            return True
+            return
         self.cost_unknown = True
         if self.replay is not None:
             self.halt(self.replay.reason)
             self.replay = None
-        if effect == "forces" and self.unfinished is None:
+        if effect == "forces" and not self.unmade:
+            self.taking = True
             self.guarded(lambda: self.scene.change_forces(params), else_anew=True)
-            self.scene.params = params  # also where the scene failed: not to be tried again in every tick
+            self.scene.params, self.taking = params, False  # also where the scene failed, so that a reset has them
         else:
             self.scene.params = params
             if self.seat is not None:
                 self.seat.begin_others()
             self.reset()
-        return True
 
     def settle(self, goal: Goal) -> None:
         """Answer the program that waits, where the run has come to the time or can come no further."""
@@ -138,7 +138,8 @@ class Run(Snapshots):
     def guarded(self, action: Callable[[], None], *, again: bool = False, else_anew: bool = False) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
 
-        again: to be done once more where it is ended early. else_anew: where it is ended early the scene begins anew.
+        again: a beginning, to be done once more where it is ended early; where it fails there is no scene to run.
+        else_anew: where it is ended early the scene begins anew.
         """
         self.may_end, self.may_begin = self.solving, again or else_anew
         try:
@@ -148,13 +149,14 @@ class Run(Snapshots):
             if again or else_anew or self.request[STOP] == ABANDON:
                 self.unfinished = action if again else self.scene.reset
         except DivergenceError as error:
+            self.unmade = again
             if error.moments and self.running:
                 self.replay = Replay(error.moments, str(error))
             else:
                 self.halt(str(error))
         except Exception as error:
-            traceback.print_exc()
-            self.halt(f"The scene stopped with {type(error).__name__}: {error}")
+            self.unmade = again
+            self.halt(failure_words(error, begins=again))
         finally:
             self.may_end = self.may_begin = False
 
@@ -167,17 +169,21 @@ class Run(Snapshots):
         return changed or replay.ended
 
     def step_by_hand(self, count: int) -> None:
-        """Take up to `count` single steps, at least one, while the frame's budget lasts; the rest is dropped."""
-        if self.replay is not None and not self.replay.ended:
-            self.replay.step()
-            if self.replay.ended:
-                self.halt(self.replay.reason)
-            return
-        self.replay = None
-        spent = 0.0
+        """Take up to `count` single steps, at least one, while the frame's budget lasts; the rest is dropped.
+
+        The last moments of a run that diverged are shown first, one for each step.
+        """
+        spent, halted = 0.0, self.halted
         for done in range(count):
+            if self.replay is not None and not self.replay.ended:
+                self.replay.step()
+                if self.replay.ended:
+                    self.halt(self.replay.reason)
+                    halted = self.halted
+                continue
+            self.replay = None
             spent += self.advance(1)
-            if self.halted or spent > SOLVE_SHARE * FRAME_INTERVAL:
+            if self.halted != halted or spent > SOLVE_SHARE * FRAME_INTERVAL:
                 self.pacer.dropped += count - done - 1
                 return
 
@@ -189,7 +195,7 @@ class Run(Snapshots):
 
     def reset(self) -> None:
         """The scene from its start; a run that had halted goes on."""
-        self.give_up("the lab was begun again")
+        self.give_up(BEGUN)
         self.running, self.halted = self.running or bool(self.halted), ""
         self.pacer.debt = 0.0
         self.replay = None
@@ -199,13 +205,32 @@ class Run(Snapshots):
 
     def begin(self, reset: Callable[[], None]) -> None:
         """Begin the scene again; if that is cancelled, the next tick does it."""
-        self.unfinished = None
+        self.unfinished, self.unmade = None, False
         self.guarded(reset, again=True)
 
-    def resume(self, state: KeptState) -> None:
-        """The scene from a state that was kept."""
+    def begin_with(self, params: BaseParams) -> None:
+        """The scene from its start with these parameters, running."""
+        self.scene.params, self.cost_unknown = params, True
+        self.counts["starts"] += 1
+        self.reset()
+        self.running = not self.halted
+
+    def resume(self, params: BaseParams, state: KeptState) -> None:
+        """The scene from a state that was kept, with the parameters that it had then, running."""
+        self.give_up(BEGUN)
+        self.scene.params, self.cost_unknown = params, True
         self.halted, self.replay, self.unfinished, self.pacer.debt = "", None, None, 0.0
+        self.unmade = False
         self.history.clear()
         self.guarded(lambda: self.scene.resume(state.value))
         if self.seat is not None:
             self.seat.go_on_from(self.scene.time)
+        self.running = not self.halted
+
+
+def failure_words(error: Exception, *, begins: bool) -> str:
+    """Why a scene stopped, for the panel. Prints the traceback, unless a scene cannot begin with a user's values."""
+    if begins and isinstance(error, ValueError):
+        return f"The scene cannot begin with these values. {error}"
+    traceback.print_exception(error)
+    return f"The scene stopped with {type(error).__name__}: {error}"

@@ -47,7 +47,9 @@ class ServedScene:
         self.is_open = True
         self.threads: list[threading.Thread] = []
         self.commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        wanted = params
         self.scene = viewer.make_scene(kind, params, self.commands.put)
+        params = self.scene.params  # others than the wanted ones where the scene cannot begin with those
         self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
         self.view = view_named(kind.name)(self.server, self.commands.put)
         place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
@@ -58,11 +60,10 @@ class ServedScene:
             questions=viewer.questions,
             beside=None if viewer.pane_of else Beside(viewer.comparing.want, viewer.comparing.end, viewer.pane_words),
         )  # fmt: skip
-        self.gate = gate = CompileGate(viewer.compiling, kind, self.panel.read())
-        read = self.panel.read
-        self.loop = SimLoop(
-            self.scene, self.commands, lambda: gate.read(read()), viewer.audience, admit=gate.admit, paused=paused
-        )
+        self.gate = CompileGate(viewer.compiling, kind, params)
+        self.loop = SimLoop(self.scene, self.commands, viewer.audience, admit=self.gate.admit, paused=paused)
+        if params != wanted:  # the loop finds out once more, and says why; the panel has the controls to put it right
+            self.panel.load_params(wanted, self.panel.nearest_preset(wanted))
 
     def start(self) -> None:
         """Run the threads."""

@@ -37,6 +37,7 @@ class Snapshots:
         self.may_end = False  # what runs may be ended early: steps, or a picture
         self.may_begin = False  # what runs may be ended early where the scene begins anew after it
         self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
+        self.unmade = False  # the scene could not begin: it waits for other values
         self.running = not paused
         self.halted = ""
         self.seat: Seat | None = None  # at a clock that other loops have too
@@ -97,8 +98,9 @@ class Snapshots:
         self.may_begin = last is not None
         self.may_end = self.may_begin and self.clock() - self.whole_at < MAX_BLIND_TIME
         try:
-            if last is not None and self.unfinished is not None:
-                return self.without_frame(last)  # of a scene that is not made
+            if last is not None and (self.unfinished is not None or self.unmade):
+                self.is_shown = True  # all that there is of a scene that is not made
+                return self.without_frame(last)
             found = self.collect(serial)
             self.is_shown, self.whole_at = self.scene.params is params, self.clock()
             return found._replace(serial=self.counts["snapshots"])  # controls may have been answered with others

@@ -135,6 +135,19 @@ class Viewer:
             threading.Thread(target=ahead, args=(kind.name,), name="compile ahead", daemon=True).start()
 
     def make_scene(self, kind: AnyKind, params: BaseParams, post: PostCommand) -> AnyScene:
+        """The simulation; with the parameters of its first view where it cannot begin with these.
+
+        Raises what the scene raises where it cannot begin with those either.
+        """
+        try:
+            return self.begun_scene(kind, params, post)
+        except ValueError:
+            first = kind.opening_params()
+            if params == first:
+                raise
+            return self.begun_scene(kind, first, post)
+
+    def begun_scene(self, kind: AnyKind, params: BaseParams, post: PostCommand) -> AnyScene:
         """The simulation, with a student's functions beside it where there are any that it has a use for."""
         if self.session is None:
             return kind.make(params)

@@ -106,7 +106,7 @@ def test_keys_go_to_the_lab_after_a_list_was_used(shown: tuple[Viewer, Tab]) -> 
     lab, tab = shown
     tab.page.get_by_label("Preset").click()
     tab.page.get_by_role("option", name="Pendulum", exact=False).first.click()
-    tab.wait(lambda: lab.panel.read()[1] > 0, 10)
+    tab.wait(lambda: lab.loop.counts["starts"] > 0, 10)
     tab.wait(lambda: lab.loop.running, 10)
     tab.page.keyboard.press("Space")
     tab.wait(lambda: not lab.loop.running, 10)

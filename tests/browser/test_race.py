@@ -104,3 +104,40 @@ def test_labels_are_dark_in_dark_mode_and_light_again(
         tab.page.emulate_media(color_scheme="light")
     tab.wait(lambda: brightness() > 150)
     assert tab.errors == []
+
+
+DRAWN = """() => { const chart = Object.values(window.__viserTestpoints?.uplots ?? {}).map((one) => one.chart)
+    .find((one) => one.root.querySelector(".u-title")?.textContent === "Distance from the reference");
+  if (!chart) return null;
+  // The points of each line, in the order of the series: uPlot keeps none, so they are noted as it makes paths again.
+  const spied = chart.series.map((series, k) => {
+    if (k === 0) return [];
+    const points = [], put = Path2D.prototype.lineTo;
+    Path2D.prototype.lineTo = function (x, y) { points.push([this, x, y]); put.call(this, x, y); };
+    let made;
+    try { made = series.paths(chart, k, 0, chart.data[0].length - 1); } finally { Path2D.prototype.lineTo = put; }
+    return points.filter(([path]) => path === made.stroke).map(([, x, y]) => [x, y]);
+  });
+  return { labels: chart.series.map((series) => series.label), lowest: chart.bbox.top + chart.bbox.height,
+    points: spied, data: chart.data.map((column) => [...column]),
+    crosses: [...chart.over.querySelectorAll(".springtide-placed-cross")].map((mark) =>
+      [mark.textContent, mark.getBoundingClientRect().top - chart.over.getBoundingClientRect().top]) }; }"""
+
+
+def test_the_error_of_a_rope_that_has_diverged_ends_in_a_cross_and_is_not_drawn_as_the_best(
+    shown: tuple[Viewer, Tab],
+) -> None:
+    lab, tab = shown
+    tab.follow(lab, SCENE, check_record(Params, {**PRESETS["Shaken at the root"], "time_step": 1 / 60}))
+    tab.wait(lambda: lab.scene.race.entrants[0].failure and lab.scene.race.entrants[1].failure)
+    tab.wait(lambda: (found := tab.page.evaluate(DRAWN)) and len(found["crosses"]) == 2)
+    found = tab.page.evaluate(DRAWN)
+    for rope in (0, 1):
+        errors, points = found["data"][2 + rope], np.array(found["points"][2 + rope])
+        assert errors[-1] is None
+        assert min(error for error in errors if error is not None) > 1e-6
+        assert points[:, 1].max() < 0.7 * found["lowest"]  # the scale goes down to 0.1 nm
+        said = lab.scene.race.entrants[rope].failure.partition(":")[0]
+        assert f"× {rope + 1}: {said}" in found["labels"]
+        assert [f"× {rope + 1}: {said}", pytest.approx(14 * rope - 7, abs=1)] in found["crosses"]
+    assert tab.errors == []

@@ -1,4 +1,6 @@
 // Gaps in the charts: uPlot leaves a gap at null only, and viser sends arrays of numbers, in which NaN means no value.
+// On a logarithmic scale uPlot takes NaN for its lowest value.
+// Crosses at the upper edge, with their words, at the values of the series of the class "springtide-cross".
 // The time axis: viser keeps the part of it that is shown, and on a slow page loses it when a chart is made anew. Here all
 // of it is shown again, unless it was zoomed by hand.
 // The height of the charts: those of a pane fill it.
@@ -11,19 +13,50 @@
   const SEARCH_INTERVAL = 200; // [ms] between two looks for new charts
   const BELOW = 16; // [pixels] of a pane below its charts
   const MIN_ZOOM = 3; // [pixels] of a drag that zooms; uPlot's own is less
+  const CROSS = "springtide-cross", PLACED = "springtide-placed-cross";
+  const CROSS_HEIGHT = 14, CROSS_WIDTH = 8; // [pixels] of a cross; its words stand to its right
+  const CROSS_STYLE = "position:absolute;white-space:nowrap;font:12px/14px sans-serif;pointer-events:none";
   const LINE_STYLE = "position:absolute;top:0;bottom:0;width:0;border-left:2px solid #e03131;pointer-events:none";
 
-  // uPlot asks this for the parts of a line that are not drawn: [from, to] along x [pixels of the canvas].
-  function gapsAtNaN(chart, series, first, last) {
-    const [x] = chart.data, y = chart.data[series], gaps = [];
-    const place = (k) => chart.valToPos(x[Math.min(Math.max(k, first), last)], "x", true);
-    for (let k = first; k <= last; k++) {
-      if (!Number.isNaN(y[k])) continue;
-      const start = k;
-      while (k < last && Number.isNaN(y[k + 1])) k++;
-      gaps.push([place(start - 1), place(k + 1)]);
+  // Have uPlot see null where a column has NaN, before it makes the path of a line.
+  const isWatched = new WeakSet(); // series
+  function leaveGaps(chart) {
+    const without = chart.series.filter((series, k) => k > 0 && !isWatched.has(series));
+    for (const series of without) {
+      const { paths } = series;
+      series.paths = (own, k, ...rest) => {
+        if (own.data[k].some(Number.isNaN)) own.data[k] = Array.from(own.data[k], (y) => (Number.isNaN(y) ? null : y));
+        return paths(own, k, ...rest);
+      };
+      isWatched.add(series);
     }
-    return gaps;
+    if (without.length) chart.redraw();
+  }
+
+  function placeCrosses(chart) {
+    const wanted = [];
+    chart.series.forEach(({ class: kind, label, _stroke, show }, k) => {
+      if (kind !== CROSS || !show) return;
+      chart.data[k].forEach((y, row) => {
+        if (y !== null && !Number.isNaN(y)) wanted.push([chart.valToPos(chart.data[0][row], "x"), label, _stroke]);
+      });
+    });
+    const marks = [...chart.over.querySelectorAll(`.${PLACED}`)];
+    while (marks.length > wanted.length) marks.pop().remove();
+    wanted.forEach(([left, label, stroke], n) => {
+      let mark = marks[n];
+      if (!mark) {
+        mark = document.createElement("div");
+        mark.className = PLACED;
+        chart.over.append(mark);
+      }
+      const style = `${CROSS_STYLE};color:${stroke};top:${n * CROSS_HEIGHT - CROSS_HEIGHT / 2}px;left:${left - CROSS_WIDTH / 2}px`;
+      if (mark.dataset.style !== style) {
+        mark.dataset.style = style;
+        mark.style.cssText = style;
+      }
+      if (mark.textContent !== label) mark.textContent = label;
+    });
   }
 
   // A drag across a chart zooms it, a double click ends that.
@@ -90,6 +123,11 @@
     requestAnimationFrame(update);
   }
   requestAnimationFrame(update);
+  // A chart that is made anew is prepared before it is first drawn: viser makes it, and uPlot draws a moment later.
+  const isChart = (node) => node.nodeType === Node.ELEMENT_NODE && (node.matches(".uplot") || node.querySelector(".uplot"));
+  new MutationObserver((changes) => {
+    if (changes.some(({ addedNodes }) => [...addedNodes].some(isChart))) look(lastMoment);
+  }).observe(document.documentElement, { childList: true, subtree: true });
 
   function look(moment) {
     const charts = Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ chart }) => chart);
@@ -97,9 +135,8 @@
     for (const chart of charts) {
       showWholeAxis(chart);
       placeMoment(chart, moment === "" ? NaN : Number(moment));
-      const without = chart.series.filter((series, k) => k > 0 && series.gaps !== gapsAtNaN);
-      for (const series of without) series.gaps = gapsAtNaN;
-      if (without.length) chart.redraw();
+      leaveGaps(chart);
+      placeCrosses(chart);
     }
   }
 })();

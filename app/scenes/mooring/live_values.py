@@ -22,10 +22,10 @@ def live_values(snapshot: Snapshot) -> dict[str, Measure]:
             max(line.most_at_fairlead for line in readings.lines), "N", "Largest tension so far"
         ),
         "uplift": Measure(first.uplift, "N", "Upward force of line 1 on its anchor"),
-        "lying_length": Measure(first.lying, "m", "Length of line 1 on the bed"),
+        "line_1_lying_length": Measure(first.lying, "m", "Length of line 1 on the bed"),
         "hanging_length": Measure(p.length - first.lying, "m", "Length of line 1 that hangs"),
         "fairlead_height": Measure(height, "m", "Height of the fairlead of line 1 over the bed"),
         "line_weight": Measure(weight, "N/m", "Weight of a metre of line in water"),
-        "slack_share": Measure(first.slack_share, "1", "Share of time that line 1 is slack"),
+        "line_1_slack_share": Measure(first.slack_share, "1", "Share of time that line 1 is slack"),
         "offset": Measure(readings.offset, "m", "Level distance of the body from its place of rest"),
     }

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.messages import Line
 from app.scenes.charts import PALETTE, Chart, CurveAxes
@@ -79,9 +80,23 @@ class RaceCharts:
             floor = np.where(np.isnan(table[1]), FLOOR_WITHOUT_REFERENCE, table[1])
             errors = table[0], floor, *np.maximum(table[2::2], ERROR_TICKS[0][0])  # NaN stays
             energies = table[0], *np.clip(table[3::2], -self.max_energy, self.max_energy)
-            end = round_up(race.t)
+            end, (marks, places) = round_up(race.t), self.ends(table)
+            none = (None,) * len(marks)  # no numbers of marks
             self.drawn = {
-                "plot_errors": Chart("t [s]", (FLOOR_LINE, *lines), errors, end, (table[1], *table[2::2])),
-                "plot_energies": Chart("t [s]", lines, energies, end, (*table[3::2],)),
+                "plot_errors": Chart(
+                    "t [s]", (FLOOR_LINE, *lines, *marks), (*errors, *places), end, (table[1], *table[2::2], *none)
+                ),
+                "plot_energies": Chart("t [s]", (*lines, *marks), (*energies, *places), end, (*table[3::2], *none)),
             }
         return self.drawn
+
+    def ends(self, table: NDArray[np.float64]) -> tuple[list[Line], list[NDArray[np.float64]]]:
+        """A cross where each rope has diverged, and its column: a number at that row, NaN at the others."""
+        marks: list[Line] = []
+        places: list[NDArray[np.float64]] = []
+        for i, entrant in enumerate(self.race.entrants):
+            without = np.flatnonzero(np.isnan(table[3 + 2 * i]))
+            if entrant.failure and len(without) and (row := without[0]) > 0:  # it has run before
+                marks.append(Line(f"{entrant.number}: {entrant.failure.partition(':')[0]}", PALETTE[i], cross=True))
+                places.append(np.where(np.arange(len(table[0])) == row, ERROR_TICKS[0][0], math.nan))
+        return marks, places

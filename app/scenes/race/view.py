@@ -1,7 +1,6 @@
 """The race as drawn: a tube for each rope in its own colour, the reference runs translucent, a label on each root."""
 
 import math
-import weakref
 from typing import ClassVar, TypeAlias
 
 import numpy as np
@@ -216,7 +215,7 @@ class View(SpringView[Params, RaceFrame, RaceReadings]):
         self.ropes: RopesDrawing | None = None
         self.params: Params | None = None  # that the height of a row of labels [m] is of
         self.label_row = 0.0
-        self.dark: weakref.WeakSet[viser.ClientHandle] = weakref.WeakSet()  # browsers that draw on a dark floor
+        self.dark: set[int] = set()  # browsers that draw on a dark floor
 
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: all ropes, as far as they swing, and labels."""
@@ -240,8 +239,9 @@ class View(SpringView[Params, RaceFrame, RaceReadings]):
             self.ropes.beads.on_drag("left")(self.on_bead)  # beads are numbered through, rope after rope
             for tube in self.ropes.tubes:
                 tube.on_drag("left")(self.on_surface)
-            for client in tuple(self.dark):
-                self.ropes.set_dark(client, True)
+            for number, client in self.server.get_clients().items():
+                if number in self.dark:
+                    self.ropes.set_dark(client, True)
         self.ropes.show(frame, self.label_row)
         p = frame.params
         self.root.show(frame.root if p.handles else None)
@@ -263,6 +263,6 @@ class View(SpringView[Params, RaceFrame, RaceReadings]):
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Draw sky, floor and ropes dark, or light again, for one browser."""
         super().set_dark(client, dark)
-        (self.dark.add if dark else self.dark.discard)(client)
+        (self.dark.add if dark else self.dark.discard)(client.client_id)
         if self.ropes is not None:
             self.ropes.set_dark(client, dark)

@@ -55,10 +55,10 @@ def fluid_values(column: FluidColumn) -> dict[str, Measure]:
         "surface_density": Measure(top.density, "kg/m³", "Density of the fluid on top"),
         "net_force": Measure(force, "N", "Upward force on 1 m³ of oil in water, less its weight"),
         "added_draft": Measure(added, "m", "Extra draft of a body with straight sides"),
-        "oil_viscosity": Measure(1e3 * oil.viscosity, "mPa·s", "Viscosity of the oil"),
-        "water_viscosity": Measure(1e3 * water.viscosity, "mPa·s", "Viscosity of the water"),
-        "surface_viscosity": Measure(1e3 * top.viscosity, "mPa·s", "Viscosity of the fluid on top"),
-        "solution_viscosity": Measure(1e3 * solution, "mPa·s", "Viscosity of a solution, by Arrhenius"),
+        "oil_viscosity": Measure(oil.viscosity, "Pa·s", "Viscosity of the oil"),
+        "water_viscosity": Measure(water.viscosity, "Pa·s", "Viscosity of the water"),
+        "surface_viscosity": Measure(top.viscosity, "Pa·s", "Viscosity of the fluid on top"),
+        "solution_viscosity": Measure(solution, "Pa·s", "Viscosity of a solution, by Arrhenius"),
     }
 
 
@@ -110,7 +110,7 @@ def body_values(body: "BodyReading") -> dict[str, Measure]:
     """Weight and draft of one body."""
     name, p = slug(body.title), body.prediction
     return {
-        f"{name}_draft": Measure(p.draft, "m", f"{body.title}: draft at rest"),
+        f"{name}_draft_at_rest": Measure(p.draft, "m", f"{body.title}: draft at rest by Archimedes"),
         f"{name}_draft_in_water": Measure(p.draft_in_water, "m", f"{body.title}: draft at rest in water"),
         f"{name}_added_draft": Measure(p.draft - p.draft_in_water, "m", f"{body.title}: extra draft"),
         f"{name}_deeper": Measure(body.mean_draft - p.draft_in_water, "m", f"{body.title}: deeper than in clean water"),

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.scenes.contract import Measure
-from sim.springs.stability import gauge, top_modes
 from sim.springs.state import energy, velocities
 
 if TYPE_CHECKING:
@@ -15,8 +14,8 @@ if TYPE_CHECKING:
 def measures(scene: "RopeScene") -> dict[str, Measure]:
     """The measures at the scene's time."""
     e, state, account = energy(scene.net, scene.state), scene.state, scene.account
-    # The scene's own assessment is up to half a second old.
-    now = gauge(scene.net, scene.integrator, scene.step, state, top_modes(scene.net, state.x, state.t))
+    scene.assess_stability()  # its own assessment is up to half a second old
+    now = scene.stability.stability
     gained = e.gravity - account.initial.gravity
     return {
         "tip_height": Measure(float(state.x[2, 0, -1]), "m", "Height of the tip"),

@@ -13,7 +13,7 @@ from app.lab.folder import make_folder
 from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.messages import Load
+from app.messages import Take
 from app.scenes import NAMES
 from app.server.viewer import Viewer
 from tests import coroutines
@@ -89,10 +89,10 @@ def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) 
         coroutines.run(callback(SimpleNamespace(target=command, client_id=1)))
     assert panel.head.preset.value == "Pendulum" != before
     time.sleep(0.3)  # viser tells of the assignment to the list, too
-    assert [type(c) for c in posted] == [Load]
+    assert posted == [Take(panel.params, start=True)]
     panel.head.preset.value = before
     chosen: list[Any] = panel.head.preset._impl.update_cb
     for callback in chosen:
         coroutines.run(callback(SimpleNamespace(target=panel.head.preset, client_id=1)))
     time.sleep(0.3)
-    assert [c.number for c in posted] == [1, 2]
+    assert [c.start for c in posted] == [True, True]

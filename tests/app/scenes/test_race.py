@@ -11,6 +11,7 @@ from app.commands.run import run_to_file
 from app.formats import formatting
 from app.messages import Grab, Place, Release
 from app.render.html import ERROR_COLOUR
+from app.render.line_chart import line_chart
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.race.charts import MAX_ROWS, RaceCharts, round_up
 from app.scenes.race.entrants import tick_of
@@ -449,3 +450,23 @@ def test_all_roots_swing_as_the_root_of_a_rope_does():
         for entrant in scene.race.entrants:
             np.testing.assert_allclose(entrant.state.x[:, 0, 0], rope.state.x[:, 0, 0], atol=1e-9)
     assert rope.state.x[0, 0, 0] != ROOT[0]
+
+
+def test_the_curves_of_a_rope_that_has_diverged_end_and_a_cross_says_when():
+    scene = SCENE.make(check_record(Params, {**PRESETS["Shaken at the root"], "time_step": 1 / 60}))
+    while not scene.race.entrants[0].failure:
+        scene.advance(1)
+    scene.advance(20)
+    for name, chart in scene.curves().items():
+        columns = dict(zip([line.label for line in chart.lines], chart.columns[1:], strict=True))
+        numbers = dict(zip([line.label for line in chart.lines], chart.numbers, strict=True))
+        said = f"1: {scene.race.entrants[0].failure.partition(':')[0]}"
+        errors = columns[method_label := next(label for label in columns if label.startswith("1 "))]
+        end = int(np.flatnonzero(np.isnan(errors))[0])
+        assert np.isnan(errors[end:]).all()
+        assert np.isnan(numbers[method_label][end:]).all()
+        assert np.isfinite(errors[:end]).all()
+        assert np.flatnonzero(np.isfinite(columns[said])).tolist() == [end]
+        assert numbers[said] is None  # a mark, no number for files
+        svg = line_chart(name, chart.first, chart.lines, chart.columns, chart.end, SCENE.curves[name].ticks).svg
+        assert svg.count("m0 -10l-10 10") == 2 * sum(line.cross for line in chart.lines)  # in the chart and in its key

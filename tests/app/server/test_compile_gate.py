@@ -1,6 +1,6 @@
 """Parameters that need what is not compiled yet wait for it; the scene goes on with the old ones."""
 
-from app.messages import Load, Play, Reset
+from app.messages import KeptState, Play, Reset, Take
 from app.scenes.compiling import Compiling, Job
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import SCENE
@@ -28,77 +28,89 @@ class Queue(Compiling):
         self.settled.add(Job("rope", piece, False))
 
 
-def made() -> tuple[Queue, CompileGate, Params]:
-    queue, first = Queue(), Params()
-    return queue, CompileGate(queue, SCENE, (first, 0)), first
+def made() -> tuple[Queue, CompileGate]:
+    queue = Queue()
+    return queue, CompileGate(queue, SCENE, Params())
 
 
 def test_a_method_that_is_not_compiled_waits_and_starts_by_itself() -> None:
-    queue, gate, first = made()
-    chosen = Params(integrator="rk4"), 0
-    assert gate.read(chosen) == (first, 0)
+    queue, gate = made()
+    chosen = Take(Params(integrator="rk4"))
+    assert gate.admit([chosen]) == []
     assert "rk4" in gate.notice
     assert queue.wanted == ["rk4"]
-    gate.read(chosen)
+    assert gate.admit([]) == []
     assert queue.wanted == ["rk4"]  # asked for once
     queue.finish("rk4")
-    assert gate.read(chosen) is chosen
+    assert gate.admit([]) == [chosen]
+    assert gate.admit([]) == []
     assert not gate.notice
 
 
 def test_going_back_to_what_is_there_ends_the_wait() -> None:
-    _, gate, _ = made()
-    gate.read((Params(integrator="rk4"), 0))
-    back = Params(gravity=3.0), 0
-    assert gate.read(back) is back
+    queue, gate = made()
+    assert gate.admit([Take(Params(integrator="rk4"))]) == []
+    back = Take(Params(gravity=3.0))
+    assert gate.admit([back]) == [back]
     assert not gate.notice
+    queue.finish("rk4")
+    assert gate.admit([]) == []
 
 
 def test_a_preset_is_held_until_it_can_run() -> None:
-    queue, gate, first = made()
-    load = Load(Params(integrator="tr_bdf2"), 1)
-    assert gate.admit([load, Reset()]) == [Reset()]
-    assert gate.read((load.params, 1)) == (first, 0)
+    queue, gate = made()
+    preset = Take(Params(integrator="tr_bdf2"), start=True)
+    assert gate.admit([preset, Reset()]) == [Reset()]
     queue.finish("tr_bdf2")
-    assert gate.admit([Play()]) == [Play(), load]
-    assert gate.read((load.params, 1)) == (load.params, 1)
+    assert gate.admit([Play()]) == [preset, Play()]
     assert gate.admit([]) == []
 
 
 def test_of_two_presets_only_the_last_is_loaded() -> None:
-    queue, gate, _ = made()
-    later = Load(Params(gravity=3.0), 2)
-    assert gate.admit([Load(Params(integrator="tr_bdf2"), 1)]) == []
+    queue, gate = made()
+    later = Take(Params(gravity=3.0), start=True)
+    assert gate.admit([Take(Params(integrator="tr_bdf2"), start=True)]) == []
     assert gate.admit([later]) == [later]
     queue.finish("tr_bdf2")
     assert gate.admit([]) == []
-    assert gate.read((later.params, 2)) == (later.params, 2)
 
 
-def test_a_newer_record_drops_the_preset_that_waits() -> None:
-    queue, gate, first = made()
-    load = Load(Params(integrator="rk4"), 1)
-    assert gate.admit([load]) == []
-    assert gate.read((load.params, 1)) == (first, 0)
-    undone = Params(gravity=3.0), 1  # an undo: the number stays
-    assert gate.read(undone) == (undone[0], 0)
+def test_a_slider_that_is_moved_while_a_preset_is_compiled_is_taken_after_its_start() -> None:
+    queue, gate = made()
+    preset = Take(Params(integrator="rk4"), start=True)
+    moved = [Take(Params(integrator="rk4", gravity=gravity)) for gravity in (3.0, 4.0, 5.0)]
+    assert gate.admit([preset]) == []
+    for change in moved:
+        assert gate.admit([change]) == []
+    queue.finish("rk4")
+    assert gate.admit([]) == [preset, moved[-1]]
+
+
+def test_a_moment_to_go_on_from_keeps_its_own_parameters() -> None:
+    queue, gate = made()
+    kept = Take(Params(integrator="rk4"), state=KeptState(0.0, {}))
+    moved = Take(Params(integrator="rk4", gravity=3.0))
+    assert gate.admit([kept, moved]) == []
+    queue.finish("rk4")
+    assert gate.admit([]) == [kept, moved]
+
+
+def test_a_newer_record_that_can_run_drops_the_preset_that_waits() -> None:
+    queue, gate = made()
+    assert gate.admit([Take(Params(integrator="rk4"), start=True)]) == []
+    undone = Take(Params(gravity=3.0))
+    assert gate.admit([undone]) == [undone]
     assert not gate.notice
-    assert gate.admit([]) == []
     queue.finish("rk4")
     assert gate.admit([]) == []
-    moved = Params(gravity=4.0), 1
-    assert gate.read(moved) == (moved[0], 0)
-    later = Load(Params(gravity=5.0), 2)
+    later = Take(Params(gravity=5.0), start=True)
     assert gate.admit([later]) == [later]
-    assert gate.read((later.params, 2)) == (later.params, 2)
 
 
 def test_a_preset_that_can_run_since_a_moment_ago_is_not_dropped_for_a_newer_record() -> None:
-    queue, gate, first = made()
-    load = Load(Params(integrator="rk4"), 1)
-    assert gate.admit([load]) == []
+    queue, gate = made()
+    preset = Take(Params(integrator="rk4"), start=True)
+    assert gate.admit([preset]) == []
     queue.finish("rk4")
-    newer = Params(integrator="rk4", gravity=3.0), 1
-    assert gate.read(newer) == (first, 0)
-    assert gate.admit([]) == [load]
-    assert gate.read(newer) is newer
+    newer = Take(Params(integrator="rk4", gravity=3.0))
+    assert gate.admit([newer]) == [preset, newer]

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from app.messages import Grab, Pause, Place, Play, Reset, StudentAnswer
+from app.messages import Grab, Pause, Place, Play, Reset, StudentAnswer, Take
 from app.scenes.cloth.parameters import Params as ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import Params
@@ -19,21 +19,18 @@ from sim.ocean.spectra import SPECTRA
 from sim.ocean.statistics import open_sea_height
 
 
-class Asked:
-    """What the panel has now."""
-
-    def __init__(self, params):
-        self.params = params
-
-    def __call__(self):
-        return self.params, 0
+def ask(loop, **changes):
+    """Have a loop asked for a change of its parameters; returns the record."""
+    params = dataclasses.replace(loop.scene.params, **changes)
+    loop.commands.put(Take(params))
+    return params
 
 
 @pytest.fixture
 def busy():
     """A loop in the middle of a step that takes long."""
     scene = RopeScene(Params(points=4))
-    loop = SimLoop(scene, None, Asked(scene.params), clock=lambda: 1.0)
+    loop = SimLoop(scene, clock=lambda: 1.0)
     loop.busy_since = loop.turn_at = 1.0 - 2.0 * PATIENCE
     loop.solving = loop.may_end = True
     return loop
@@ -48,7 +45,7 @@ def test_a_solve_ends_for_what_begins_anew_and_not_for_a_drag(busy, command, end
 
 @pytest.mark.parametrize(("change", "ends"), [({"stiffness": 90.0}, 1), ({"points": 5}, 1), ({"speed": 0.5}, 0)])
 def test_a_solve_ends_for_other_forces_and_not_for_the_look(busy, change, ends):
-    busy.read_params.params = dataclasses.replace(busy.scene.params, **change)
+    ask(busy, **change)
     busy.give_turn()
     assert busy.request[STOP] == ends
 
@@ -56,11 +53,11 @@ def test_a_solve_ends_for_other_forces_and_not_for_the_look(busy, change, ends):
 def test_a_look_and_a_drag_show_in_the_middle_of_a_solve_and_nothing_new_does_not(busy):
     busy.give_turn()
     assert busy.latest.serial == 1
-    busy.read_params.params = dataclasses.replace(busy.scene.params, grid=False)
+    params = ask(busy, grid=False)
     busy.give_turn()
     assert busy.latest.serial == 2
     assert not busy.latest.frame.params.grid
-    assert busy.latest.params is busy.read_params.params
+    assert busy.latest.params is params
     busy.commands.put(Play())
     busy.commands.put(Place("root", (0.0, 0.0, 0.5)))
     busy.give_turn()
@@ -71,7 +68,7 @@ def test_a_look_and_a_drag_show_in_the_middle_of_a_solve_and_nothing_new_does_no
 
 def test_in_the_middle_of_a_reset_the_last_frame_stays_with_the_new_parameters(busy):
     busy.solving = False
-    busy.scene.params = busy.read_params.params = dataclasses.replace(busy.scene.params, points=5)
+    busy.scene.params = dataclasses.replace(busy.scene.params, points=5)
     busy.scene.frame = None  # not asked for
     busy.give_turn()
     assert len(busy.latest.frame.points) == 4
@@ -138,20 +135,40 @@ def test_a_reset_that_was_ended_early_is_done_again_and_a_step_is_not(busy):
     assert busy.counts["solves ended early"] == 2
 
 
-def test_other_forces_after_a_reset_that_was_ended_early_begin_again(busy):
-    changed, resets = [], busy.scene.reset
+@pytest.fixture
+def ended_once(busy):
+    """Resets that were begun, with their stiffness; the first is ended early."""
+    begun, reset = [], busy.scene.reset
 
     def ended():
-        raise InterruptionError
+        begun.append(busy.scene.params.stiffness)
+        if len(begun) == 1:
+            raise InterruptionError
+        reset()
 
-    busy.scene.reset, busy.scene.change_forces = ended, changed.append
-    busy.read_params.params = dataclasses.replace(busy.scene.params, root_swing=0.2)
+    busy.scene.reset = ended
+    return begun
+
+
+def test_other_forces_after_a_reset_that_was_ended_early_follow_it(busy, ended_once):
     busy.commands.put(Reset())
+    ask(busy, stiffness=90.0)
     busy.tick(0.0)
-    busy.scene.reset = resets
-    busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
+    assert [type(command) for command in busy.waiting] == [Take]  # of a scene that is not made
     busy.tick(0.0)
-    assert (busy.unfinished, busy.halted) == (None, "")
+    assert ended_once == [800.0, 800.0]
+    assert (busy.unfinished, busy.halted, busy.scene.params.stiffness) == (None, "", 90.0)
+
+
+def test_a_preset_that_was_ended_early_for_another_leaves_nothing_of_itself(busy, ended_once):
+    first, second = (dataclasses.replace(busy.scene.params, stiffness=k) for k in (90.0, 70.0))
+    for command in (Take(first, start=True), Take(dataclasses.replace(first, gravity=1.0))):
+        busy.commands.put(command)
+    busy.tick(0.0)
+    busy.commands.put(Take(second, start=True))
+    busy.tick(0.0)
+    assert ended_once == [90.0, 70.0]
+    assert (busy.unfinished, busy.scene.params, busy.waiting) == (None, second, [])
 
 
 @pytest.mark.parametrize(("command", "ends"), [(Reset(), 1), (Pause(), 0)])
@@ -168,9 +185,8 @@ def test_a_change_of_forces_is_ended_in_its_middle_only_for_a_new_beginning(busy
     ended, resets, reset, whole = [], [], busy.scene.reset, busy.scene.change_forces
     busy.solving, busy.scene.change_forces = False, change
     busy.scene.reset = lambda: resets.append(reset())
-    busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
     frame = busy.latest.frame
-    busy.take(busy.read_params.params)
+    busy.take(dataclasses.replace(busy.scene.params, stiffness=90.0))
     busy.publish()
     assert ended == [ends]
     assert (busy.latest.frame is frame) == ends  # nothing is shown of what is half done
@@ -183,26 +199,26 @@ def test_a_change_of_forces_is_ended_in_its_middle_only_for_a_new_beginning(busy
 def test_where_nothing_may_be_ended_other_forces_are_answered_with_the_last_frame(busy):
     busy.solving = busy.may_end = False
     first = busy.latest.frame
-    busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
+    params = ask(busy, stiffness=90.0)
     busy.give_turn()
     assert busy.request[STOP] == 0
-    assert busy.latest.params is busy.read_params.params
+    assert busy.latest.params is params
     assert busy.latest.frame is first
-    assert busy.scene.params is not busy.read_params.params  # which the next tick gives it
+    assert busy.scene.params is not params  # which the next tick gives it
     busy.tick(0.0)
-    assert busy.scene.params is busy.read_params.params
+    assert busy.scene.params is params
 
 
 def test_steps_that_are_kept_whole_are_neither_ended_nor_shown_half_done(busy):
-    busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
+    params = ask(busy, stiffness=90.0)
     busy.commands.put(Pause())
     busy.commands.put(Grab(1, (0.0, 0.0, 0.0)))
     busy.scene.frame = None  # not asked for
     with kept_whole():
         busy.give_turn()
     assert busy.request[STOP] == 0
-    assert busy.latest.params is busy.read_params.params
-    assert busy.waiting == [Pause(), Grab(1, (0.0, 0.0, 0.0))]
+    assert busy.latest.params is params
+    assert busy.waiting == [Take(params), Pause(), Grab(1, (0.0, 0.0, 0.0))]
     busy.give_turn()
     assert busy.request[STOP] == 1
 
@@ -246,7 +262,7 @@ def test_a_reset_that_takes_long_says_that_it_has_begun(busy):
 
 def test_a_reset_is_not_ended_by_other_forces_or_a_pause(busy):
     def long_reset():
-        busy.read_params.params = dataclasses.replace(busy.scene.params, stiffness=90.0)
+        ask(busy, stiffness=90.0)
         busy.commands.put(Pause())
         busy.give_turn()
         ended.append(int(busy.request[STOP]))
@@ -276,7 +292,7 @@ def test_a_turn_that_is_due_is_given_though_nobody_asks():
 @pytest.mark.parametrize("changes", [{"integrator": "implicit_euler", "time_step": 0.05}, {"thickness": 0.1}])
 def test_a_cloth_gives_turns_within_a_step_and_shows_the_last_whole_one(changes):
     scene = ClothScene(ClothParams(rows=16, cols=16, **changes))
-    loop = SimLoop(scene, None, Asked(scene.params))
+    loop = SimLoop(scene)
     other = ClothScene(scene.params)
     seen = []
 
@@ -309,17 +325,17 @@ def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(
 
     ended, frame, earlier = [], busy.scene.frame, busy.latest.frame
     busy.running, busy.solving, busy.scene.frame = False, False, long_frame
-    busy.read_params.params = dataclasses.replace(busy.scene.params, points=5)
+    params = ask(busy, points=5)
     busy.publish()
     assert (ended, busy.is_shown, busy.halted) == ([1], False, "")
     assert busy.latest.frame is earlier
     busy.request[STOP] = 0
     busy.tick(0.0)
     assert (ended, busy.is_shown) == ([1, 0], True)
-    assert busy.latest.params is busy.read_params.params
+    assert busy.latest.params is params
     assert len(busy.latest.frame.points) == 5
     busy.whole_at -= MAX_BLIND_TIME
-    busy.read_params.params = dataclasses.replace(busy.scene.params, points=6)
+    ask(busy, points=6)
     busy.publish()
     assert ended == [1, 0, 0]
     assert busy.is_shown
@@ -341,7 +357,7 @@ def test_a_look_that_is_taken_in_the_middle_of_a_picture_is_drawn_by_the_next(bu
 
     frame, busy.running, busy.solving = busy.scene.frame, False, False
     busy.scene.frame = long_frame
-    busy.read_params.params = dataclasses.replace(busy.scene.params, grid=False)
+    ask(busy, grid=False)
     busy.publish()
     assert busy.latest.serial == 3  # the answer in between was the second
     assert busy.latest.frame.params.grid

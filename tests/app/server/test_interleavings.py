@@ -159,18 +159,18 @@ def test_a_preset_that_is_undone_while_it_is_compiled_never_begins(
     reset = scene.reset
     monkeypatch.setattr(scene, "reset", lambda: (begun.append(scene.params), reset()))
     for number in range(times):
-        before, loaded = panel.params, watched.loop.loaded
+        before, starts = panel.params, watched.loop.counts["starts"]
         panel.load_params(Params(integrator="rk4", gravity=9.0), undone)
         assert asked(watched, lambda: scene.params) == before
         panel.undo()
         assert asked(watched, lambda: scene.params) == before
         panel.set("gravity", 1.0 + number % 7)
         assert asked(watched, lambda: scene.params.gravity) == 1.0 + number % 7  # type: ignore[attr-defined]
-        assert watched.loop.loaded == loaded
+        assert watched.loop.counts["starts"] == starts
         assert not watched.loop.halted
         if number % 5 == 4:
             panel.load_params(Params(gravity=2.0), ready)
-            assert asked(watched, lambda: watched.loop.loaded) == panel.state[1]
+            assert asked(watched, lambda: watched.loop.counts["starts"]) == starts + 1
     assert all(params.integrator != "rk4" for params in begun)
     assert len(begun) == times // 5
 
@@ -187,7 +187,7 @@ def test_a_preset_that_settles_late_is_not_lost(watched: Viewer, monkeypatch: py
         panel.load_params(Params(integrator="rk4", gravity=1.0 + number), preset)
         for _ in range(8):  # ticks
             asked(watched, lambda: None)
-        assert watched.loop.loaded == panel.state[1]
+        assert watched.loop.counts["starts"] == number + 1
         assert watched.scene.params is panel.params
         assert not watched.loop.halted
 

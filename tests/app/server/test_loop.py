@@ -2,9 +2,8 @@
 
 import contextvars
 import dataclasses
-import itertools
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 from typing import Any, NamedTuple
 
@@ -14,20 +13,21 @@ import pytest
 from app.messages import (
     Advance,
     Ask,
+    Command,
     DivergenceError,
     Halt,
-    Load,
+    KeptState,
     Pause,
     Play,
     Reset,
     StepOnce,
     StudentAnswer,
+    Take,
     TogglePlay,
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL
 from app.server.loop import IDLE_INTERVAL, MAX_FRAME_INTERVAL, PATIENCE, SimLoop
-from app.server.merging import merged
 from app.server.pacer import SOLVE_SHARE, FixedStep
 from sim.parameters import parameter
 from tests.waiting import wait_for
@@ -161,12 +161,13 @@ def test_a_frame_never_solves_longer_than_its_budget_allows() -> None:
 
 
 def test_a_slider_reaches_the_simulation_in_the_next_frame() -> None:
-    values = Params()
-    loop, scene = make(read_params=lambda: (values, 0))
+    loop, scene = make()
     loop.tick(FRAME_INTERVAL)
-    values = Params(stiffness=7.0)
+    for stiffness in np.linspace(2.0, 7.0, 200):  # as many as a mouse sends in one frame, and more
+        loop.commands.put(Take(Params(stiffness=stiffness)))
     loop.tick(FRAME_INTERVAL)
     assert scene.seen[-1] == 7.0
+    assert scene.changes == 1
 
 
 @pytest.mark.parametrize("options", [{"paused": True}, {"audience": lambda: 0}], ids=["paused", "nobody looks"])
@@ -217,10 +218,10 @@ def test_what_goes_wrong_pauses_the_run_and_is_said(error: Exception, capsys: py
 
 
 def test_parameters_that_the_scene_cannot_take_pause_the_run_and_are_tried_once(capsys: pytest.CaptureFixture) -> None:
-    values = Params()
-    loop, scene = make(read_params=lambda: (values, 0))
+    loop, scene = make()
     loop.tick(FRAME_INTERVAL)
     values, scene.fails = Params(stiffness=3.0), ValueError("no such net")
+    loop.commands.put(Take(values))
     for _ in range(5):
         loop.tick(FRAME_INTERVAL)
     assert "no such net" in loop.latest.status.halted
@@ -233,13 +234,13 @@ def test_parameters_that_the_scene_cannot_take_pause_the_run_and_are_tried_once(
 
 
 def test_a_step_that_became_a_thousand_times_as_expensive_does_not_hold_up_the_frame() -> None:
-    values = Params(speed=8.0)
-    loop, scene = make(cost=1e-7, read_params=lambda: (values, 0))
-    scene.step = 1e-5
+    loop, scene = make(cost=1e-7)
+    scene.params, scene.step = Params(speed=8.0), 1e-5
     for _ in range(10):
         loop.tick(FRAME_INTERVAL)
     assert loop.counts["steps"] > 10_000
-    values, scene.cost = Params(speed=8.0, stiffness=2.0), 1e-4
+    loop.commands.put(Take(Params(speed=8.0, stiffness=2.0)))
+    scene.cost = 1e-4
     before = scene.clock.now
     loop.tick(FRAME_INTERVAL)
     assert scene.clock.now - before <= FRAME_INTERVAL
@@ -333,14 +334,13 @@ def test_whoever_shows_has_to_look_often_only_where_ticks_take_long() -> None:
 
 
 def test_other_parameters_end_a_long_sleep() -> None:
-    given = [Params()]
-    loop, _ = make(read_params=lambda: (given[-1], 0))
+    loop, _ = make()
     stop = threading.Event()
     sleep = threading.Thread(target=loop.wait, args=(1000.0, stop))
     sleep.start()
     sleep.join(0.2)
     assert sleep.is_alive()
-    given.append(Params(stiffness=3.0))
+    loop.commands.put(Take(Params(stiffness=3.0)))
     sleep.join(10.0)
     stop.set()
     assert not sleep.is_alive()
@@ -383,15 +383,14 @@ def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time
 
 
 @pytest.mark.parametrize("seconds", [IDLE_INTERVAL, 4 * FRAME_INTERVAL])
-def test_a_command_ends_a_long_sleep_and_is_handled_after_the_parameters(seconds: float) -> None:
-    given = Params()
-    loop, scene = make(read_params=lambda: (given, 0))
+def test_a_command_ends_a_long_sleep_and_is_handled_after_the_parameters_before_it(seconds: float) -> None:
+    loop, scene = make()
     stop = threading.Event()
-    threading.Timer(0.1, lambda: loop.commands.put(Reset())).start()
+    threading.Timer(0.1, lambda: [loop.commands.put(c) for c in (Take(Params(stiffness=3.0)), Reset())]).start()
     loop.wait(1000.0 * seconds, stop)
-    assert loop.waiting == [Reset()]
+    loop.take_in()  # the second may have come after the sleep
+    assert loop.waiting == [Take(Params(stiffness=3.0)), Reset()]
     assert scene.resets == 0
-    given = Params(stiffness=3.0)
     reset, seen = scene.reset, []
     scene.reset = lambda: seen.append(scene.params.stiffness) or reset()
     loop.tick(FRAME_INTERVAL)
@@ -402,51 +401,34 @@ def test_a_command_ends_a_long_sleep_and_is_handled_after_the_parameters(seconds
 
 
 def test_a_change_of_look_touches_neither_forces_nor_start() -> None:
-    values = Params()
-    loop, scene = make(read_params=lambda: (values, 0))
+    loop, scene = make()
     loop.tick(FRAME_INTERVAL)
-    values = Params(grid=False, speed=2.0)
-    loop.tick(FRAME_INTERVAL)
-    assert scene.params == values
+
+    def give(params: Params) -> None:
+        loop.commands.put(Take(params))
+        loop.tick(FRAME_INTERVAL)
+        assert scene.params == params
+
+    give(Params(grid=False, speed=2.0))
     assert (scene.changes, scene.resets) == (0, 0)
-    values = Params(grid=False, speed=2.0, stiffness=3.0)
-    loop.tick(FRAME_INTERVAL)
+    give(Params(grid=False, speed=2.0, stiffness=3.0))
     assert (scene.changes, scene.resets) == (1, 0)
-    values = Params(points=5)
-    loop.tick(FRAME_INTERVAL)
-    assert (scene.changes, scene.starts) == (1, [values])
+    give(Params(points=5))
+    assert (scene.changes, scene.starts) == (1, [Params(points=5)])
 
 
-@pytest.mark.parametrize("paused", [False, True])
-def test_merged_commands_leave_the_run_as_all_of_them_in_order_do(paused: bool) -> None:
-    commands = (Play(), Pause(), TogglePlay(), StepOnce(), Reset(), Load(Params(stiffness=3.0), 1, None))
-    for length in (2, 3, 4):
-        for sequence in itertools.product(commands, repeat=length):
-            ends = []
-            for several in (sequence, merged(sequence)):
-                loop, scene = make(paused=paused)
-                for command in several:
-                    loop.handle(command)
-                ends.append((loop.running, loop.halted, loop.loaded, scene.params))
-            assert ends[0] == ends[1], sequence
-
-
-def test_a_preset_is_one_command_and_starts_from_exactly_its_record() -> None:
-    """Whenever the thread that sets it is interrupted: the record without its command, or the command after others."""
-    state = Params(), 0
-    loop, scene = make(read_params=lambda: state)
+def test_a_preset_starts_from_exactly_its_record_and_what_is_changed_after_it_follows() -> None:
+    loop, scene = make(paused=True)
     loop.tick(FRAME_INTERVAL)
     preset = Params(stiffness=5.0, points=7)
-    state = preset, 1  # set, but the command has not been put yet
-    loop.tick(FRAME_INTERVAL)
-    assert scene.params == Params()
-    loop.commands.put(Load(preset, 1))
-    state = Params(stiffness=6.0, points=7), 1  # and already changed by hand
+    loop.commands.put(Take(Params(stiffness=4.0)))  # of no more interest
+    loop.commands.put(Take(preset, start=True))
+    loop.commands.put(Take(Params(stiffness=6.0, points=7)))  # changed by hand before the next frame
     loop.tick(FRAME_INTERVAL)
     assert scene.starts == [preset]
-    loop.tick(FRAME_INTERVAL)
-    assert scene.params.stiffness == 6.0
-    assert scene.resets == 1
+    assert (scene.params.stiffness, scene.changes) == (6.0, 1)
+    assert loop.running
+    assert loop.latest.status.starts == 1
 
 
 def test_states_are_kept_while_the_run_goes_on_and_gone_on_from_without_a_new_start() -> None:
@@ -462,7 +444,7 @@ def test_states_are_kept_while_the_run_goes_on_and_gone_on_from_without_a_new_st
     assert loop.latest.state is None
     time, state = states[3]
     starts = loop.latest.status.starts
-    loop.commands.put(Load(Params(stiffness=3.0), 1, state))
+    loop.commands.put(Take(Params(stiffness=3.0), state=state))
     loop.tick(0.0)
     assert (scene.time, scene.params.stiffness, scene.resets) == (time, 3.0, 0)
     assert loop.running
@@ -497,14 +479,14 @@ def test_no_plot_row_is_lost_where_nobody_takes_the_snapshots() -> None:
 def test_a_scene_that_fails_outside_its_guard_halts_the_run_and_the_thread_lives(capsys: pytest.CaptureFixture) -> None:
     loop, _ = make()
     stop = threading.Event()
-    read, faults = loop.read_params, [ZeroDivisionError("no such step")]
+    faults = [ZeroDivisionError("no such step")]
 
-    def fail_once() -> tuple[Params, int]:
+    def fail_once(commands: Iterable[Command]) -> list[Command]:
         if faults:
             raise faults.pop()
-        return read()
+        return list(commands)
 
-    loop.read_params = fail_once
+    loop.admit = fail_once
     thread = threading.Thread(target=loop.run, args=(stop,), daemon=True)
     thread.start()
     stop.wait(0.1)
@@ -542,7 +524,8 @@ def test_a_program_that_waits_is_told_why_the_time_does_not_come() -> None:
     loop, scene = make()
     for command, kind, words in (
         (Reset(), RuntimeError, "begun again"),
-        (Load(Params(), 0), RuntimeError, "begun again"),
+        (Take(Params(), start=True), RuntimeError, "begun again"),
+        (Take(Params(), state=KeptState(0.0, {})), RuntimeError, "another moment"),
         (Advance(1.0, Future()), RuntimeError, "another program"),
         (Halt("no more"), DivergenceError, "no more"),
     ):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.messages import Moment, Pause, Play, Reset, StepOnce
+from app.messages import Moment, Pause, Play, Reset, StepOnce, Take
 from app.render.cameras import fit_cameras
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.parameters import PRESETS, Params
@@ -97,7 +97,7 @@ def test_a_reset_ends_the_replay_and_other_forces_halt_at_the_last_good_state() 
     assert loop.running
     loop = diverged()
     params = check_record(Params, {**PRESETS["Euler explodes"], "stiffness": 10.0})
-    loop.read_params = lambda: (params, loop.loaded)
+    loop.commands.put(Take(params))
     loop.tick(FRAME_INTERVAL)
     assert loop.replay is None
     assert "became unstable" in loop.halted

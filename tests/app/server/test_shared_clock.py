@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.messages import KeptState, Load, Pause, Play, Reset, StepOnce, TogglePlay
+from app.messages import KeptState, Pause, Play, Reset, StepOnce, Take, TogglePlay
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.race import scene as race
 from app.scenes.rope.scene import SCENE
@@ -113,7 +113,7 @@ def test_what_begins_one_run_again_begins_all():
     group = of_steps(*STEPS)
     group.run(1.0)
     changed = check_record(SCENE.params, {"time_step": 1 / 60, "length": 1.0, "integrator": "rk4"})
-    group.loops[1].commands.put(Load(changed, 1))
+    group.loops[1].commands.put(Take(changed, start=True))
     group.run(0.2)
     assert 0.0 < max(group.times) < 0.3
     group.run(0.5)
@@ -124,7 +124,7 @@ def test_a_change_that_begins_one_run_again_begins_all():
     ropes = race.SCENE.make(race.Params(ropes=2))
     group = Group(rope(), ropes)
     group.run(0.5)
-    group.loops[1].read_params = lambda: (race.Params(ropes=1), 0)
+    group.loops[1].commands.put(Take(race.Params(ropes=1)))
     group.run(0.2)
     assert len(ropes.frame().ropes) == 1
     assert 0.0 < max(group.times) < 0.3
@@ -151,7 +151,7 @@ def test_a_run_that_goes_on_from_an_earlier_moment_advances_as_the_others_do():
     state = KeptState(first.scene.keep(), {})
     kept_at = first.scene.time
     group.run(1.0)
-    first.commands.put(Load(first.scene.params, 1, state))
+    first.commands.put(Take(first.scene.params, state=state))
     group.run(FRAME_INTERVAL)
     gap = group.times[1] - group.times[0]
     assert group.times[0] == pytest.approx(kept_at, abs=0.05)

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Reset, StepOnce
+from app.messages import Grab, Play, Reset, StepOnce, TogglePlay
 from app.panel.recorder import MAX_RATE
 from app.scenes import scene_named
 from app.scenes.compiling import Job
+from app.scenes.rope import scene as rope_scene
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests import coroutines
@@ -115,6 +116,51 @@ def test_a_scene_that_cannot_be_opened_leaves_a_page_that_says_why_and_offers_th
     monkeypatch.undo()
     lab.want("rope")
     wait_for(lambda: lab.is_open and lab.panel.kind.name == "rope" and lab.served.shown > 0)
+
+
+@pytest.fixture
+def picky(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A rope that cannot be built with one stiffness."""
+    build = rope_scene.build
+
+    def build_or_not(params: Any, *places: Any) -> Any:
+        if params.stiffness == 1234.0:
+            raise ValueError("stiffness: 1234 is not allowed; allowed: another one")
+        return build(params, *places)
+
+    monkeypatch.setattr(rope_scene, "build", build_or_not)
+
+
+@pytest.mark.parametrize("opened", [True, False])
+def test_values_with_which_a_scene_cannot_begin_leave_its_panel_which_puts_them_right(
+    lab: Viewer, picky: None, capsys: pytest.CaptureFixture, opened: bool
+) -> None:
+    """In a link or on the command line, and as a preset or a set-up of a scene that runs."""
+    lab.visitors = lambda: 1  # type: ignore[method-assign]
+    wrong = check_record(scene_named("rope").params, {"stiffness": 1234.0, "points": 5})
+    if opened:
+        lab.open("rope", wrong)
+    else:
+        lab.panel.load_params(wrong, next(iter(lab.panel.kind.presets)))
+    panel = lab.panel
+    assert panel.params == wrong
+    assert panel.controls["stiffness"].field.value == "1234"
+    wait_for(lambda: lab.loop.halted)
+    said = "The scene cannot begin with these values. stiffness: 1234 is not allowed; allowed: another one"
+    for command in (Play(), TogglePlay(), StepOnce(), Grab(3, (0.0, 0.0, 0.0)), Reset()):
+        lab.commands.put(command)
+        wait_for(lambda: lab.commands.empty() and not lab.loop.waiting)
+        assert lab.loop.halted == said
+        assert not lab.loop.running
+    wait_for(lambda: said in panel.head.status.content)
+    panel.set("damping", 3.0)  # which alone would let the motion go on
+    wait_for(lambda: lab.scene.params.damping == 3.0)
+    assert lab.loop.halted == said
+    panel.set("stiffness", 500.0)
+    wait_for(lambda: lab.loop.running and len(lab.loop.latest.frame.points) == 5)
+    assert lab.loop.latest.status.time < 5.0
+    assert (lab.scene.params.stiffness, lab.loop.halted) == (500.0, "")
+    assert "Traceback" not in capsys.readouterr().err
 
 
 def test_a_scene_comes_back_with_the_parameters_it_was_first_opened_with(lab: Viewer) -> None:
@@ -245,8 +291,7 @@ def test_presets_under_load_each_start_on_exactly_their_own_record(lab: Viewer, 
         if number % 10 == 0:
             time.sleep(0.005)
     allowed = {id(record) for record in records}
-    wait_for(lambda: lab.loop.loaded == count)
-    wait_for(lambda: lab.scene.params == lab.panel.params)
+    wait_for(lambda: lab.scene.params is lab.panel.params)
     assert len(starts) > count / 50
     assert all(id(params) in allowed for params in starts)
     assert starts[-1] is records[-1]

@@ -1,0 +1,160 @@
+"""Every button of every tab, pressed as viser hands a browser's press on: none raises, and each shows what it did."""
+
+import asyncio
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import viser
+from viser import _messages
+
+from app.lab.folder import make_folder
+from app.lab.session import Session
+from app.lab.task import load_tasks
+from app.lab.workbook import Workbook
+from app.messages import Command
+from app.panel import share
+from app.panel.compare import Beside
+from app.scenes import NAMES
+from app.server.viewer import Viewer
+from tests.waiting import wait_for
+
+CLIENT = 1
+BUTTONS = (viser.GuiButtonHandle, viser.GuiButtonGroupHandle)
+# What a button says when it has done what it names; the others show it elsewhere.
+CONFIRMED = {
+    share.COPY: "Copied", share.SAVE: "Saved", share.KEEP: "Kept in the list", share.REMOVE: "Removed",
+}  # fmt: skip
+
+
+class Camera(SimpleNamespace):
+    """A camera that can be watched, and need not be hashable."""
+
+    def on_update(self, callback: object) -> None:
+        """It never reports."""
+
+
+class Client:
+    """A browser as the panel's callbacks see it; it notes what it is sent."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self.client_id, self.gui, self.sent = CLIENT, gui, []
+        self.camera = Camera(
+            position=np.ones(3), look_at=np.zeros(3), up_direction=np.array([0.0, 0.0, 1.0]), fov=1.0, wxyz=np.ones(4),
+            near=0.1, far=100.0, image_width=32, image_height=16,
+        )  # fmt: skip
+
+    def add_notification(self, *said: object, **how: object) -> None:
+        self.sent.append(said)
+
+    def send_file_download(self, name: str, content: bytes, **how: object) -> None:
+        self.sent.append((name, len(content)))
+
+    def get_render(self, height: int, width: int, **how: object) -> np.ndarray:
+        return np.full((height, width, 4), 255, np.uint8)
+
+    def flush(self) -> None:
+        """Nothing waits."""
+
+    @property
+    def state(self) -> object:
+        return len(self.sent), [np.array(value).tolist() for value in vars(self.camera).values()]
+
+
+class Pressed:
+    """A scene with its panel, threads stopped so that nothing changes but by what is pressed."""
+
+    def __init__(self, viewer: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.viewer, self.panel = viewer, viewer.panel
+        self.gui = viewer.server.gui
+        self.client = Client(viewer.server.gui)
+        self.posted: list[Command] = []
+        self.asked: list[object] = []  # of the viewer
+        monkeypatch.setattr(self.gui, "_resolve_client", lambda number: self.client)
+        monkeypatch.setattr(self.panel, "post", self.posted.append)
+        monkeypatch.setattr(self.panel.head, "actions", self.panel.head.actions._replace(post=self.posted.append))
+        monkeypatch.setattr(self.panel, "open_scene", lambda *scene: self.asked.append(scene))
+        assert self.panel.compare is not None
+        asked = Beside(lambda *given: self.asked.append(given), lambda: self.asked.append("end"), lambda: ())
+        monkeypatch.setattr(self.panel.compare, "beside", asked)
+
+    def buttons(self) -> Iterator[tuple[Any, str]]:
+        """Handles of the visible buttons, with the name of each; a handle may be made anew by a press."""
+        for handle in list(self.gui._gui_input_handle_from_uuid.values()):
+            if isinstance(handle, BUTTONS) and handle.visible:
+                yield from ((handle, name) for name in getattr(handle, "options", ("",)))
+
+    def press(self, handle: Any, name: str) -> None:
+        """Hand a press on to viser, as it comes from a browser; what the callback raises is raised here."""
+        updates = {"value": name or True}
+        coroutine = self.gui._handle_gui_updates(CLIENT, _messages.GuiUpdateMessage(handle._impl.uuid, updates))
+        asyncio.run_coroutine_threadsafe(coroutine, self.viewer.server.get_event_loop()).result(60.0)
+        files = self.panel.share.files
+        wait_for(lambda: not files.busy.locked())
+        self.update()
+
+    def update(self) -> None:
+        """Bring the panel up to date, as the viewer's thread does at each frame."""
+        self.panel.status_at = self.panel.marks_at = 0.0
+        self.panel.recorder.advance(time.monotonic())
+        self.panel.update(self.viewer.loop.latest, [])
+        self.panel.share.files.sent = self.panel.recorder.shown
+
+    def shown(self) -> object:
+        """All that a user may see of it: the panel's texts and values, what was sent, posted and asked for."""
+        handles = list(self.gui._gui_input_handle_from_uuid.values())
+        texts = [getattr(handle, name, None) for handle in handles for name in ("options", "label", "visible")]
+        lines = [line.content for line in self.panel.share.lines.values()]
+        recorder = self.panel.recorder
+        return (
+            texts, [str(handle.value) for handle in handles if not isinstance(handle, BUTTONS)], lines,
+            len(self.posted), len(self.asked), self.client.state, recorder.position, recorder.playing,
+            self.panel.map and self.panel.map.asked, self.panel.guide and self.panel.guide.answer.content,
+        )  # fmt: skip
+
+
+@pytest.fixture
+def students_lab(tmp_path: Path) -> Iterator[Viewer]:
+    """`springtide lab DIR`, which has all tabs."""
+    tasks, folder = load_tasks(), tmp_path / "mine"
+    make_folder(folder, tasks)
+    session = Session(folder, tasks)
+    viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
+    yield viewer
+    viewer.shut()
+    session.close()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_button_of_every_tab_is_pressed(
+    name: str, students_lab: Viewer, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    viewer = students_lab
+    viewer.visitors = lambda: 1  # type: ignore[method-assign]
+    viewer.open(name)
+    wait_for(lambda: sum(kept.state is not None for kept in viewer.panel.recorder.kept()) > 1)
+    viewer.served.stop_threads()
+    pressed = Pressed(viewer, monkeypatch)
+    pressed.panel.share.name.value = "Mine"
+    assert pressed.panel.guide is not None
+    pressed.panel.guide.workbook.go(3)  # not the first one, before which there is none
+    pressed.update()
+    done: list[tuple[object, str]] = []
+    silent: list[str] = []
+    while left := [press for press in pressed.buttons() if (press[0]._impl.uuid, press[1]) not in done]:
+        handle, label = left[0]
+        before = pressed.shown()
+        pressed.press(handle, label)
+        done.append((handle._impl.uuid, label))
+        if pressed.shown() == before and label not in CONFIRMED.values():
+            silent.append(label or handle.label)
+        if label in CONFIRMED:
+            assert CONFIRMED[label] in handle.options
+    labels = [label for _, label in done]
+    assert {*CONFIRMED, "Play", "Pause", "Step", "Reset"} <= {*labels, "Play" if "Pause" in labels else "Pause"}
+    assert silent == []
+    assert "Traceback" not in capsys.readouterr().err

@@ -1,0 +1,245 @@
+"""Commands that wait for one tick: merged, they do what all of them do in order."""
+
+import dataclasses
+import functools
+import itertools
+from collections.abc import Iterable
+from concurrent.futures import Future
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.messages import (
+    Advance,
+    Ask,
+    Command,
+    Grab,
+    Halt,
+    KeptState,
+    Moment,
+    Pause,
+    Place,
+    Play,
+    Point,
+    Release,
+    Reset,
+    StepOnce,
+    StudentAnswer,
+    Take,
+    TogglePlay,
+)
+from app.scenes.contract import FRAME_INTERVAL
+from app.scenes.rope.parameters import Params as RopeParams
+from app.scenes.rope.scene import RopeScene
+from app.server.loop import SimLoop
+from app.server.merging import merged
+from app.server.replay import Replay
+from app.server.run import Goal
+from sim.parameters import parameter
+
+ORIGIN = (0.0, 0.0, 0.0)
+
+
+@dataclasses.dataclass(frozen=True)
+class Params:
+    speed: float = parameter(1.0, 0.01, 8.0, affects="look")
+    stiffness: float = parameter(1.0, 0.0, 10.0, affects="forces")
+    points: int = parameter(2, 2, 10, affects="start")
+    grid: bool = parameter(True, affects="look")
+
+
+class Scene:
+    """A scene with a memory: what is done to it, and in which order, shows in `state`."""
+
+    step = 0.01
+    faster = ""
+    frame_interval = FRAME_INTERVAL
+    time = 0.0
+
+    def __init__(self) -> None:
+        self.params = Params()
+        self.reset()
+
+    @property
+    def state(self) -> tuple[object, ...]:
+        return self.params, self.time, self.made_of, self.motion, self.hold, self.places, self.points, self.answers
+
+    @state.setter
+    def state(self, state: tuple[Any, ...]) -> None:
+        self.params, self.time, self.made_of, self.motion, self.hold, self.places, self.points, self.answers = state
+
+    def reset(self) -> None:
+        """A start depends on all parameters; two things stay where they were put, as the camera of a sea does."""
+        self.made_of = self.params.points, self.params.stiffness
+        self.time, self.hold, self.motion = 0.0, None, ()
+        self.places: tuple[tuple[str, object], ...] = tuple(p for p in getattr(self, "places", ()) if p[0] == "camera")
+        self.points: tuple[object, ...] = getattr(self, "points", ())
+        self.answers = 1  # of a student's functions, that wait
+
+    def change_forces(self, params: Params) -> None:
+        self.params = params
+
+    def advance(self, steps: int) -> None:
+        for _ in range(steps):
+            self.time += self.step
+            self.motion = hash((self.motion, self.params.stiffness, self.hold, self.places))
+
+    def handle(self, command: Command) -> None:
+        match command:
+            case Place(thing, position):
+                self.places = tuple(sorted({**dict(self.places), thing: position}.items()))
+            case Grab(0, target):  # as the root of a rope, which stays there
+                self.places = tuple(sorted({**dict(self.places), "root": target}.items()))
+            case Grab(particle, target, client) if self.hold is None or self.hold[2] == client:
+                self.hold = particle, target, client
+            case Release(client) if self.hold is not None and self.hold[2] == client:
+                self.hold = None
+            case Point(origin):
+                self.points = (*self.points, origin)
+            case StudentAnswer():
+                self.motion = hash((self.motion, self.answers, self.params.stiffness)) if self.answers else self.motion
+                self.answers = 0
+            case _:
+                pass
+
+    def keep(self) -> object:
+        return self.time
+
+    def resume(self, kept: Any) -> None:
+        self.time, self.motion, self.hold, self.made_of = kept, ("kept",), None, ("kept", self.params)
+
+    def frame(self) -> float:
+        return self.time
+
+    def readings(self) -> None:
+        return None
+
+    def take_plot_rows(self) -> tuple[()]:
+        return ()
+
+    def curves(self) -> None:
+        return None
+
+
+class Lane:
+    """A loop whose whole state is a value: what one command makes of one state is worked out once."""
+
+    def __init__(self) -> None:
+        self.scene = Scene()
+        self.loop = SimLoop(self.scene, clock=lambda: 0.0, effort=lambda: 0.0)  # type: ignore[arg-type]
+        self.known: dict[tuple[object, ...], tuple[Any, ...]] = {}
+
+    def after(self, state: tuple[Any, ...], command: Command) -> tuple[Any, ...]:
+        """The state after a command. Commands without content are equal as tuples, so that they are told by kind."""
+        key = state, type(command), command.steps if isinstance(command, StepOnce) else id(command)
+        if key not in self.known:
+            self.known[key] = self.handled(state, command)
+        return self.known[key]
+
+    def begin(self, **changes: object) -> tuple[Any, ...]:
+        """A state of the loop after half a second, with other values of `running`, `halted`, `replay`, `goal`."""
+        self.scene.__init__()
+        self.scene.advance(50)
+        given = {"running": True, "halted": "", "replay": None, "goal": None, **changes}
+        return self.scene.state, given["running"], given["halted"], given["replay"], given["goal"], False, ()
+
+    def handled(self, state: tuple[Any, ...], command: Command) -> tuple[Any, ...]:
+        """The state after a command; the answers to programs are part of it."""
+        loop, scene = self.loop, self.scene
+        scene.state, loop.running, loop.halted, shown, goal, starts, answers = state
+        loop.replay = None if shown is None else Replay(MOMENTS, "it diverged")
+        if loop.replay is not None:
+            loop.replay.number, loop.replay.shown_for = shown
+        waiting: Future[float] = Future()
+        loop.goal = None if goal is None else Goal(goal[0], waiting, goal[1])
+        loop.counts["starts"] = starts
+        match command:
+            case Ask():
+                answers = (*answers, scene.state)
+            case Advance(seconds):
+                loop.handle(Advance(seconds, Future()))
+            case _:
+                loop.handle(command)
+        if waiting.done():
+            answers = (*answers, str(waiting.exception()))
+        return (
+            scene.state, loop.running, loop.halted,
+            None if loop.replay is None else (loop.replay.number, loop.replay.shown_for),
+            None if loop.goal is None else (loop.goal.until, loop.goal.was_running),
+            loop.counts["starts"] > 0, answers,
+        )  # fmt: skip
+
+
+MOMENTS = tuple(Moment(0.1 * k, k, ORIGIN, ORIGIN) for k in range(3))
+COMMANDS: tuple[Command, ...] = (
+    Play(), Pause(), TogglePlay(), StepOnce(), StepOnce(2), Halt("no picture"), Reset(),
+    Take(Params(grid=False)), Take(Params(stiffness=3.0)), Take(Params(points=5)), Take(Params()),
+    Take(Params(points=5, stiffness=3.0)), Take(Params(stiffness=4.0), start=True),
+    Take(Params(stiffness=5.0), state=KeptState(0.25, {})),
+    Place("root", (1.0, 0.0, 0.0)), Place("camera", (2.0, 0.0, 0.0)),
+    Grab(0, (3.0, 0.0, 0.0)), Grab(1, (4.0, 0.0, 0.0)), Grab(1, (5.0, 0.0, 0.0)), Grab(1, (6.0, 0.0, 0.0), 7),
+    Release(), Point((8.0, 0.0, 0.0), (0.0, 0.0, -1.0)),
+    StudentAnswer(), Ask(lambda: None, Future()), Advance(2.0, Future()),
+)  # fmt: skip
+STATES: dict[str, dict[str, object]] = {
+    "running": {},
+    "paused": {"running": False},
+    "halted": {"running": False, "halted": "it diverged"},
+    "replayed": {"replay": (0, 0.0)},
+    "replayed, paused": {"running": False, "replay": (1, 0.0)},
+    "a program waits": {"goal": (9.0, False)},
+}
+
+
+def test_all_sequences_of_four_commands_do_the_same_merged_as_in_order() -> None:
+    """Of every kind, on loops in every state; a shorter sequence begins a longer one."""
+    lane = Lane()
+    begins = [lane.begin(**changes) for changes in STATES.values()]
+    after, count = lane.after, 0
+    for sequence in sequences():
+        several = merged(sequence, Params())
+        if len(several) == len(sequence):
+            assert all(a is b for a, b in zip(several, sequence, strict=True))
+            continue
+        count += 1
+        for begin in begins:
+            assert functools.reduce(after, several, begin) == functools.reduce(after, sequence, begin), sequence
+    assert count > 1000
+
+
+def sequences() -> Iterable[tuple[Command, ...]]:
+    return itertools.chain.from_iterable(itertools.product(COMMANDS, repeat=length) for length in range(1, 5))
+
+
+@pytest.mark.parametrize("first", range(10))
+def test_a_rope_is_left_by_merged_commands_as_by_all_in_order(first: int) -> None:
+    params = RopeParams(points=4, root_swing=0.1, integrator="rk4")
+    earlier = RopeScene(params)
+    earlier.advance(20)
+    stiffer = dataclasses.replace(params, stiffness=900.0)
+    commands: tuple[Command, ...] = (
+        StepOnce(3), Reset(), Take(stiffer), Take(dataclasses.replace(stiffer, gravity=3.0)), Take(params),
+        Take(stiffer, start=True), Take(params, state=KeptState(earlier.keep(), {})),
+        Grab(3, (1.0, 0.0, 0.0)), Grab(3, (0.0, 1.0, 0.0)), Place("root", (0.2, 0.0, 0.0)),
+    )  # fmt: skip
+    count = 0
+    for rest in itertools.product(commands, repeat=2):
+        sequence = (commands[first], *rest)
+        several = merged(sequence, params)
+        if len(several) == len(sequence):
+            continue
+        ends = []
+        for done in (several, sequence):
+            loop = SimLoop(RopeScene(params), paused=True, effort=lambda: 0.0)
+            loop.scene.advance(30)
+            for command in (*done, StepOnce(20)):
+                loop.handle(command)
+            state = loop.scene.state
+            assert not loop.halted
+            ends.append((loop.scene.params, loop.scene.time, state.x, state.v))
+        assert ends[0][:2] == ends[1][:2], sequence
+        assert np.array_equal(ends[0][2], ends[1][2]), sequence
+        assert np.array_equal(ends[0][3], ends[1][3]), sequence
+        count += 1
+    assert count > 5
